@@ -1,5 +1,5 @@
-/// Interpolation and arithmetic of functions that run on the host and on the device. On the device they use
-/// instructions that are faster than the plain form, or whose rounding does not depend on the compiler.
+/// Interpolation and arithmetic for functions on host and device. On the device they use faster instructions,
+/// or instructions whose rounding does not depend on the compiler.
 #pragma once
 
 #include <cmath>

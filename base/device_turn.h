@@ -1,4 +1,4 @@
-/// Powers and turns in few instructions for functions that run on the host and on the device.
+/// Fast powers of two, roots, sines and cosines for functions on host and device.
 #pragma once
 
 #include <cmath>

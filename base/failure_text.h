@@ -1,4 +1,4 @@
-/// What a user is told of an exception.
+/// The text of an exception for the user.
 #pragma once
 
 #include <exception>
@@ -7,7 +7,7 @@
 
 namespace emscape {
 
-/// what(), and plain words for std::bad_alloc.
+/// what(), or a readable text for std::bad_alloc.
 inline std::string failureText(const std::exception& failure) {
   return dynamic_cast<const std::bad_alloc*>(&failure) != nullptr ? "out of memory" : failure.what();
 }

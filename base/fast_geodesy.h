@@ -15,15 +15,15 @@ namespace emscape {
 constexpr double kWgs84SemiMajor_m = 6378137.0;
 constexpr double kWgs84EccentricitySquared = (2.0 - 1.0 / 298.257223563) / 298.257223563;
 
-/// A point of the ellipsoid (height 0), with the vectors that the loops need.
+/// A point of the ellipsoid (height 0), with the vectors for the loops.
 struct SurfacePoint {
   Vec3d ecef_m;  ///< foot on the ellipsoid
   Vec3d up;      ///< outward unit normal
 };
 
-/// Distances and azimuths from one station, and points at a distance along an azimuth.
-/// Great ellipses and geodesics are taken as circles of the radius that the ellipsoid has at the station
-/// along the azimuth.
+/// Distances and azimuths from one station, and points at a distance along an azimuth. Great ellipses and
+/// geodesics are approximated by circles with the ellipsoid's radius of curvature at the station along the
+/// azimuth.
 /// @accuracy largest difference from GeographicLib over the whole earth, poles and antimeridian included,
 /// both ways:
 ///   to 100 km:  distance 3e-9 of itself, azimuth 8e-6 degree, position 0.014 m
@@ -52,7 +52,7 @@ FastGeodesy fastGeodesy(double latitude_deg, double longitude_deg);
 /// Ground distance and azimuth from the station to a point of the ellipsoid.
 struct FastInverse {
   double distance_m = 0;
-  double sin_azimuth = 0;  ///< at the station itself: azimuth 0
+  double sin_azimuth = 0;  ///< azimuth 0 at the station itself
   double cos_azimuth = 1;
 };
 EMSCAPE_HD inline FastInverse fastInverse(const FastGeodesy& geodesy, const Vec3d& foot_ecef_m);

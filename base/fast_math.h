@@ -1,8 +1,8 @@
 /// Elementary functions for inner loops: branch-free, without tables and library calls, one source for host
 /// and device, so that a plain loop over them under `#pragma omp simd` becomes SIMD code.
 ///
-/// g++ 12 vectorises such loops with -O3 -fopenmp-simd -fno-trapping-math, and needs -fno-math-errno too
-/// if they also call std::sqrt: set these on the one file that holds the loop. Never compile them with
+/// g++ 12 vectorises such loops with -O3 -fopenmp-simd -fno-trapping-math, and also needs -fno-math-errno if
+/// they call std::sqrt: set these options only for the file with the loop. Never compile them with
 /// -ffast-math or -fassociative-math: rounding to an integer relies on the order of additions. Accuracies
 /// hold with and without fused multiply-add.
 #pragma once

@@ -1,5 +1,5 @@
-/// Owners of GDAL's objects. Emscape calls GDAL by its C functions alone: they are the same in every GDAL 3,
-/// while the C++ classes differ from version to version.
+/// Owners of GDAL objects. Emscape uses only GDAL's C functions: they are the same in every GDAL 3, while the
+/// C++ classes differ between versions.
 #pragma once
 
 #include <gdal.h>
@@ -18,7 +18,7 @@ struct Release<kRelease> {
   using pointer = Handle;
   void operator()(Handle object) const { kRelease(object); }
 };
-/// Owns what a function of GDAL releases.
+/// Owns an object that is released by a GDAL function.
 template <auto* kRelease>
 using Owned = std::unique_ptr<std::remove_pointer_t<typename Release<kRelease>::pointer>, Release<kRelease>>;
 
@@ -31,7 +31,7 @@ using Geometry = Owned<OGR_G_DestroyGeometry>;
 using ColorTable = Owned<GDALDestroyColorTable>;
 using AttributeTable = Owned<GDALDestroyRasterAttributeTable>;
 
-// Of netCDF files.
+// For netCDF files.
 using Group = Owned<GDALGroupRelease>;
 using Dimension = Owned<GDALDimensionRelease>;
 using Array = Owned<GDALMDArrayRelease>;

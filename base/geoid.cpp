@@ -12,7 +12,7 @@ constexpr const char* kGridName = "egm96_15.gtx";
 
 std::mutex settings_mutex;
 std::string chosen_file;  ///< of setGeoidFile()
-bool is_read = false;     ///< the grid was read: chosen_file has no effect any more
+bool is_read = false;     ///< the grid was read; chosen_file has no further effect
 
 GeoidGrid readGrid() {
   const std::lock_guard<std::mutex> lock(settings_mutex);

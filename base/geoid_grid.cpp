@@ -55,7 +55,7 @@ void addPaths(char** paths, std::vector<std::string>& folders) {
   CSLDestroy(paths);
 }
 
-/// Folders in which PROJ and GeographicLib look for their grids, those of the environment first.
+/// Folders in which PROJ and GeographicLib search for their grids, those of the environment first.
 std::vector<std::string> gridFolders() {
   std::vector<std::string> folders;
   for (const char* variable : {"PROJ_DATA", "PROJ_LIB", "GEOGRAPHICLIB_GEOID_PATH"})
@@ -83,7 +83,7 @@ void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
       file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, nullptr, nullptr));
   const int columns = dataset ? GDALGetRasterXSize(dataset.get()) : 0;
   const int rows = dataset ? GDALGetRasterYSize(dataset.get()) : 0;
-  double west_deg = 0;  // of the file's first post; PGM files, which say nothing, begin at Greenwich
+  double west_deg = 0;  // of the file's first post; PGM files, which do not state it, begin at Greenwich
   PgmScale scale{0, 1};
   double transform[6];
   bool is_placed = dataset != nullptr;
@@ -101,7 +101,7 @@ void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
   }
   posts_per_degree_ = columns / 360;
   const double n = posts_per_degree_;
-  // The cubic needs a post more to the south and west, and two to the north and east.
+  // Cubic interpolation needs one more post to the south and west, and two to the north and east.
   first_row_ = static_cast<int>(std::floor((area.south_deg + 90) * n)) - 1;
   row_count_ = std::min(static_cast<int>(std::floor((area.north_deg + 90) * n)) + 2, rows) - first_row_ + 1;
   const bool is_round = area.east_deg - area.west_deg >= 360;

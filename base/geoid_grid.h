@@ -6,10 +6,10 @@
 
 namespace emscape {
 
-/// Part of the globe of which a grid's posts are read.
+/// Part of the globe for which a grid's posts are read.
 struct GeoidArea {
   double south_deg = -90, north_deg = 90;
-  double west_deg = -180, east_deg = 180;  ///< east - west: 0..360, or more: all round
+  double west_deg = -180, east_deg = 180;  ///< east - west: 0..360; 360 or more: the whole circle
 };
 
 /// Geoid undulations, bicubic between posts that are evenly spaced in latitude and longitude. Immutable; safe
@@ -17,7 +17,7 @@ struct GeoidArea {
 class GeoidGrid {
  public:
   /// Reads the posts around an area from a global grid of 360 n x (180 n + 1) posts: PROJ's GTX and GeoTIFF
-  /// files, GeographicLib's PGM files, and what else GDAL reads with a georeference.
+  /// files, GeographicLib's PGM files, and other georeferenced files that GDAL reads.
   /// @throws Error (bad_input) naming the file: not readable, or not such a grid
   explicit GeoidGrid(const std::string& file, const GeoidArea& area = {});
 
@@ -35,15 +35,15 @@ class GeoidGrid {
   std::vector<float> posts_;              ///< m; the southern row first
 };
 
-/// The file of a geoid's grid in the folders in which PROJ and GeographicLib look for theirs.
+/// Finds the file of a geoid grid in the folders of PROJ and GeographicLib.
 /// @param names     file names, the preferred first
 /// @param searched  receives the folders, separated by commas
 /// @return empty if there is none
 std::string findGeoidFile(const std::vector<std::string>& names, std::string& searched);
 
-/// EGM2008 around an area, from the finest grid that is installed: us_nga_egm08_25.tif or egm08_25.gtx (PROJ,
-/// 2.5 minutes), egm2008-2_5.pgm, egm2008-5.pgm or egm2008-1.pgm (GeographicLib).
-/// @throws Error (bad_input) that says what to install if there is none
+/// EGM2008 around an area, from the finest installed grid: us_nga_egm08_25.tif or egm08_25.gtx (PROJ, 2.5
+/// minutes), egm2008-2_5.pgm, egm2008-5.pgm or egm2008-1.pgm (GeographicLib).
+/// @throws Error (bad_input) that states what to install if there is none
 GeoidGrid egm2008Grid(const GeoidArea& area);
 
 }  // namespace emscape

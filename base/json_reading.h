@@ -1,4 +1,4 @@
-/// JSON that is read with its faults in plain words, in place of the library's.
+/// Reading of JSON, with readable messages instead of those of the library.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace emscape {
 
-/// What is wrong with a value: "type must be number, but is string", "key 'dims' not found".
+/// Description of a fault: "type must be number, but is string", "key 'dims' not found".
 inline std::string faultOf(const nlohmann::json::exception& error) {
   std::string text = error.what();  // "[json.exception.type_error.302] type must be ..."
   const std::size_t prefix = text.find("] ");
@@ -20,8 +20,8 @@ inline std::string faultOf(const nlohmann::json::exception& error) {
 
 /// Parses a text and calls read() with it.
 /// @param advice  ends the messages, such as "; start the series again"; may be empty
-/// @throws Error (bad_input): not JSON, with line and column; a value that is missing or of another type than
-/// read() takes. Errors of read() without a location get that of the file.
+/// @throws Error (bad_input): not JSON, with line and column; a value that is missing or has the wrong type.
+/// Errors of read() without a location get that of the file.
 template <class Json, class Read>
 auto readJson(std::string_view text, const std::string& file, const Read& read,
               const std::string& advice = "") {

@@ -13,7 +13,7 @@ namespace emscape {
 /// limits of the process's control group and address space. None if the system does not report it.
 std::optional<std::size_t> availableMemory_bytes();
 
-/// What cannot be begun for lack of memory.
+/// A task that needs memory.
 struct MemoryNeed {
   std::string what;              ///< "the mesh of 600 tetrahedra"
   std::size_t needed_bytes = 0;  ///< upper bound
@@ -24,7 +24,7 @@ struct MemoryNeed {
 /// @param whose  "host's" or "GPU's"
 std::string memoryShortage(const MemoryNeed& need, const char* whose, std::size_t free_bytes);
 
-/// Called before memory is taken that may exceed availableMemory_bytes().
+/// Checks a need for memory that may exceed availableMemory_bytes(), before the allocation.
 /// @throws Error (other) with memoryShortage() if it does
 void requireMemory(const MemoryNeed& need, const SourceLocation& location);
 

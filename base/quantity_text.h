@@ -1,4 +1,4 @@
-/// Values with their unit, as they are written for people.
+/// Values with their unit, as text for people.
 #pragma once
 
 #include <optional>
@@ -6,25 +6,25 @@
 
 namespace emscape {
 
-/// Watts and hertz have a decimal prefix (n, u, m, k, M, G, T) with which the number is 1 or more and below
-/// 1000: "10 MW", "9.41 GHz", "0 W". Beyond these prefixes the number has an exponent. Of other units the
-/// number is plain: "12000 m".
+/// Watts and hertz have the decimal prefix (n, u, m, k, M, G, T) for which the number is at least 1 and below
+/// 1000: "10 MW", "9.41 GHz", "0 W". Beyond these prefixes the number has an exponent. Other units have no
+/// prefix: "12000 m".
 struct PrefixedUnit {
   std::string unit;   ///< "MHz"
-  double factor = 1;  ///< one of it in the plain unit: 1e6
+  double factor = 1;  ///< value in the plain unit: 1e6
 };
-/// The prefix of a value; factor 1 where the unit has none, and of 0, infinities and NaN.
-/// @param digits  significant ones, to which the value is rounded first: 999999.9 W is 1 MW to 6 digits
+/// The prefix of a value; factor 1 if the unit has no prefix, and for 0, infinities and NaN.
+/// @param digits  significant digits, to which the value is rounded first: 999999.9 W is 1 MW to 6 digits
 PrefixedUnit prefixedUnit(double value, const std::string& unit, int digits = 6);
 
-/// "10 MW". @param unit    may be empty  @param digits  significant ones, 1..17
+/// "10 MW". @param unit    may be empty  @param digits  significant digits, 1..17
 std::string quantityText(double value, const std::string& unit, int digits = 6);
 /// "1 MHz to 1 THz", "0 to 100 dB".
 std::string rangeText(double minimum, double maximum, const std::string& unit, int digits = 6);
 
 /// Reads a number that may be followed by the unit, with or without a prefix: "3e9", "3 GHz", "3000MHz".
 /// @param unit    plain: "Hz"
-/// @param shown   factor of a number without a unit
+/// @param shown   factor for a number without a unit
 /// @return the value in the plain unit; none for another text
 std::optional<double> parseQuantity(const std::string& text, const std::string& unit, double shown = 1);
 

@@ -1,4 +1,4 @@
-/// Random numbers by counter, the same on every machine and in any order.
+/// Counter-based random numbers, the same on every machine and in any order.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace emscape {
 /// @see Salmon, Moraes, Dror, Shaw, "Parallel random numbers: as easy as 1, 2, 3", SC 2011
 std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter,
                                         std::array<std::uint32_t, 2> key);
-/// The middle of the word's interval among 2^32 equal ones of (0, 1).
+/// Maps a word to the middle of its interval, one of 2^32 equal intervals of (0, 1).
 double fractionOf(std::uint32_t word);
 
 /// Quantile of the normal distribution with mean 0 and standard deviation 1.

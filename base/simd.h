@@ -1,8 +1,8 @@
 /// Versions of a function for wider vector units, chosen when the program starts.
 #pragma once
 
-/// Put before a function's definition: g++ compiles it for AVX-512, for AVX2 and for the plain target, with
-/// all that is inlined into it. Off under sanitizers, whose run time is not initialised when the version is
+/// Placed before a function's definition: g++ compiles it, with everything that is inlined, for AVX-512, AVX2
+/// and the baseline target. Off under sanitizers, whose run time is not initialised when the version is
 /// chosen.
 #if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)

@@ -7,7 +7,7 @@ namespace emscape {
 
 class Stopwatch {
  public:
-  /// Milliseconds since the start or the last lap, and begins a new lap.
+  /// Returns the milliseconds since the start or the last lap, and begins a new lap.
   double lap_ms() {
     const auto now = std::chrono::steady_clock::now();
     const double elapsed = std::chrono::duration<double, std::milli>(now - begin_).count();

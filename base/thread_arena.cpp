@@ -15,7 +15,7 @@
 namespace emscape {
 namespace {
 
-/// Makes each thread nice that enters an arena.
+/// Sets the nice value of each thread that enters an arena.
 class NiceThreads : public tbb::task_scheduler_observer {
  public:
   NiceThreads(tbb::task_arena& arena, int niceness)
@@ -31,7 +31,7 @@ class NiceThreads : public tbb::task_scheduler_observer {
     const int already = std::exchange(reached, niceness_);
     const auto thread = static_cast<id_t>(gettid());
     const int before = getpriority(PRIO_PROCESS, thread) - already;
-    setpriority(PRIO_PROCESS, thread, std::min(before + niceness_, 19));  // a failure costs nothing but speed
+    setpriority(PRIO_PROCESS, thread, std::min(before + niceness_, 19));  // a failure only affects speed
 #endif
   }
 

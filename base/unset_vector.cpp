@@ -15,7 +15,7 @@ void* allocateUnset(std::size_t bytes) {
   void* const memory = std::aligned_alloc(unit, rounded > 0 ? rounded : unit);
   if (memory == nullptr) throw std::bad_alloc();
 #ifdef MADV_HUGEPAGE
-  if (is_large) static_cast<void>(madvise(memory, rounded, MADV_HUGEPAGE));  // as good without
+  if (is_large) static_cast<void>(madvise(memory, rounded, MADV_HUGEPAGE));  // also valid without
 #endif
   return memory;
 }

@@ -7,8 +7,8 @@
 
 namespace emscape {
 
-/// Milliseconds from 1970-01-01T00:00:00Z to an ISO 8601 time "YYYY-MM-DDTHH:MM:SS[.fraction]Z"
-/// (years 1..9999, no leap seconds, the fraction cut to milliseconds); none if the text is not such a time.
+/// Milliseconds from 1970-01-01T00:00:00Z to an ISO 8601 time "YYYY-MM-DDTHH:MM:SS[.fraction]Z" (years
+/// 1..9999, no leap seconds, the fraction truncated to milliseconds); empty if the text is not such a time.
 std::optional<std::int64_t> parseUtc_ms(const std::string& text);
 
 /// ISO 8601 text, with milliseconds, of a time in milliseconds from 1970-01-01T00:00:00Z.

@@ -80,8 +80,8 @@ bool isZombie(long process) {
   return name_end != std::string::npos && text.compare(name_end + 2, 1, "Z") == 0;
 }
 
-/// True if a file is a temporary whose writer no longer runs. Of writers on other machines that share the
-/// folder nothing is known.
+/// True if a file is a temporary whose writer no longer runs. Writers on other machines that share the folder
+/// are unknown.
 bool isStale(const fs::path& path) {
   const Writer writer = writerOf(path);
   if (writer.process == 0 || (!writer.machine.empty() && writer.machine != machineName())) return false;
@@ -109,7 +109,7 @@ class Descriptor {
   const int number_;
 };
 
-/// Renaming over a folder fails late and over a device would replace it, so both are refused before work
+/// Renaming to a folder fails late, and renaming to a device would replace it; both are refused before work
 /// begins.
 void checkTarget(const fs::path& path) {
   std::error_code ignored;
@@ -130,7 +130,7 @@ class Temporary {
     std::ofstream stream;
     try {
       errno = 0;
-      stream.open(path_, std::ios::binary | std::ios::trunc);  // may lack memory when the file is there
+      stream.open(path_, std::ios::binary | std::ios::trunc);  // may lack memory after the file was created
       if (!stream) failWriting(file.path, causeOf(errno));
       stream.exceptions(std::ios::badbit | std::ios::failbit);
       errno = 0;
@@ -326,7 +326,7 @@ bool FolderLock::lock(std::string& holder) {
       holder = bytes > 0 ? text : "not known which";
       return false;
     }
-    // The holder before may have removed the file between the two calls.
+    // The previous holder may have removed the file between the two calls.
     struct stat held {
     }, named{};
     if (::fstat(descriptor, &held) == 0 && ::stat(file_.c_str(), &named) == 0 &&

@@ -28,8 +28,8 @@ struct OutputFile {
 void writeWhole(const std::vector<OutputFile>& files);
 void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
-/// Eight hexadecimal digits that set apart the machines that may share a folder: of the host's name and
-/// the namespace of the process numbers.
+/// Eight hexadecimal digits that identify a machine among those that may share a folder: from the host's name
+/// and the namespace of process numbers.
 const std::string& machineName();
 /// True if a process of this machine runs.
 bool isRunning(long process);
@@ -45,11 +45,11 @@ void publish(const std::filesystem::path& temporary, const std::filesystem::path
 /// True for names that temporaryFor() gives.
 bool isTemporary(const std::filesystem::path& path);
 
-/// Removes from a folder the temporaries of processes of this machine that no longer run.
-/// @return how many; 0 where the folder does not exist
+/// Removes the temporaries in a folder that belong to ended processes of this machine.
+/// @return their number; 0 if the folder does not exist
 int removeStaleTemporaries(const std::filesystem::path& folder);
 
-/// Removes the temporaries of one file that were left by processes that no longer run.
+/// Removes the temporaries of one file that belong to ended processes.
 void removeStaleTemporariesOf(const std::filesystem::path& path);
 
 /// Bytes that overwrite as many bytes of a file.
@@ -58,13 +58,13 @@ struct FilePatch {
   std::string bytes;
 };
 
-/// Overwrites parts of a file in place; they are on the disk at return. Not all or nothing: a crash of
-/// the machine may leave some of the patches unwritten.
+/// Overwrites parts of a file in place; they are on the disk at return. Not atomic: after a crash of the
+/// machine some of the patches may be unwritten.
 /// @throws Error (other)
 void patchFile(const std::filesystem::path& path, const std::vector<FilePatch>& patches);
 
 /// Appends bytes to a file, which is created if it does not exist; they are on the disk at return.
-/// @throws Error (other); a part of the bytes may then be there
+/// @throws Error (other); some of the bytes may then be in the file
 void appendToFile(const std::filesystem::path& path, const std::string& bytes);
 
 /// Size and checksum of a file's content.
@@ -82,7 +82,7 @@ FileDigest digestOf(const std::filesystem::path& path);
 /// takes it back from a process that dies.
 class FolderLock {
  public:
-  /// Creates FOLDER/NAME, which says who holds the lock and is removed with it.
+  /// Creates FOLDER/NAME, which names the holder of the lock and is removed with it.
   /// @throws Error (other) that names the process that holds it, or the cause of another failure
   FolderLock(const std::filesystem::path& folder, const std::string& name);
   /// The same, but null if another process holds the lock.

@@ -8,8 +8,8 @@ import json
 import pathlib
 import sys
 
-SAMPLES_PER_S = 510e9  # trilinear texture samples of an H100, measured: one kernel that does nothing else
-BYTES_PER_S = 2994e9   # of its memory, read and written, measured: a copy
+SAMPLES_PER_S = 510e9  # trilinear texture samples of an H100, measured with a kernel that does nothing else
+BYTES_PER_S = 2994e9   # of its memory, read and written, measured with a copy
 
 
 def row(what, measured, floor, bound=""):
@@ -39,7 +39,7 @@ def pattern_rows(results):
 
 
 def field_table(results):
-    """A row a scenario; the CPU's times stand in cpu-field-NAME."""
+    """One row per scenario; the CPU's times are in cpu-field-NAME."""
     names = sorted(n for n in results if n.startswith("field-"))
     if not names:
         return

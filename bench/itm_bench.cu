@@ -1,5 +1,5 @@
-// ITM, point-to-point, on a GPU: distance from the CPU's double and evaluations a second at profiles of 300
-// posts.
+// ITM, point-to-point, on a GPU: difference from the CPU in double precision, and evaluations per second for
+// profiles of 300 posts.
 //
 //   nvcc -std=c++17 -O2 -arch=sm_90 -I. bench/itm_bench.cu -o itm_bench_cuda && ./itm_bench_cuda
 #include <algorithm>

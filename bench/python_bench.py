@@ -20,7 +20,7 @@ def microseconds(call, count):
 
 
 def tell_gpu(scenario):
-    """What an array of a field on a GPU costs, and where DLPack says that it is."""
+    """Time of getting an array of a field on a GPU, and its device according to DLPack."""
     try:
         solver = em.Solver(scenario, "cuda")
     except em.DeviceError as error:
@@ -60,7 +60,7 @@ def main():
     field = solver.at(0)
     print(f"Field.numpy()                        {microseconds(field.numpy, 20000):8.2f} us")
     print(f"Field.dlpack()                       {microseconds(field.dlpack, 20000):8.2f} us")
-    # Nothing has changed, so that nothing is computed: what is left is the call and the snapshot.
+    # Nothing has changed, so nothing is computed: only the call and the snapshot take time.
     print(f"Solver.at(), nothing to compute      {microseconds(lambda: solver.at(0), 5000):8.2f} us")
 
     probe = "import time; t = time.perf_counter(); import emscape; print(time.perf_counter() - t, open('/proc/self/statm').read().split()[1])"

@@ -1,4 +1,4 @@
-"""A display for programs that draw with OpenGL where there is none."""
+"""A display for programs that draw with OpenGL on machines without one."""
 
 import contextlib
 import os
@@ -7,7 +7,7 @@ import subprocess
 
 @contextlib.contextmanager
 def virtual_display():
-    """An X server of its own that shows nothing, as $DISPLAY for as long as it lasts; yields its name.
+    """A private X server without a screen, as $DISPLAY while the context lasts; yields its name.
 
     The server chooses a number that is free, so that any number of them start at the same time. Needs xvfb.
     """
@@ -34,7 +34,7 @@ def virtual_display():
 
 @contextlib.contextmanager
 def display():
-    """The display that there is, else a virtual one."""
+    """The existing display, otherwise a virtual one."""
     if os.environ.get("DISPLAY"):
         yield os.environ["DISPLAY"]
     else:

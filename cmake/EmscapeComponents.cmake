@@ -1,5 +1,5 @@
-# The components of others in the programs and libraries, with version and licence: the one list of `emscape --licences`, of the
-# bill of materials, and of the Debian packages' dependencies and copyright files.
+# The third-party components of the programs and libraries, with version and licence: the single source for `emscape --licences`,
+# the bill of materials, and the Debian packages' dependencies and copyright files.
 find_package(PkgConfig REQUIRED)
 
 # emscape_component(NAME LICENCE SPDX SHARED|STATIC LIBRARY|HEADERS MODULE pkg-config|VERSION version [PACKAGE debian] [PROGRAM])
@@ -22,7 +22,7 @@ function(emscape_component name)
   if(ARG_PACKAGE AND NOT ARG_PROGRAM)
     set_property(GLOBAL APPEND PROPERTY EMSCAPE_LIBRARY_PACKAGES ${ARG_PACKAGE})
   endif()
-  if(ARG_PACKAGE AND NOT ARG_SHARED)  # their code is in ours, and so must be their copyright
+  if(ARG_PACKAGE AND NOT ARG_SHARED)  # their code is part of ours, so their copyright must be, too
     set_property(GLOBAL APPEND PROPERTY EMSCAPE_CONTAINED_PACKAGES ${ARG_PACKAGE})
   endif()
 endfunction()

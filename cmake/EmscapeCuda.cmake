@@ -1,10 +1,10 @@
-# Device code: whether it is built, for which GPUs, and how a module takes it in.
-set(EMSCAPE_OLDEST_CUDA 12.0)  # the first that takes the standard headers of GCC 12
+# Device code: whether it is built, for which GPUs, and how a module includes it.
+set(EMSCAPE_OLDEST_CUDA 12.0)  # the first version that accepts the standard headers of GCC 12
 if(NOT EMSCAPE_CUDA MATCHES "^(AUTO|ON|OFF)$")
   message(FATAL_ERROR "EMSCAPE_CUDA=${EMSCAPE_CUDA}: must be AUTO, ON or OFF")
 endif()
 
-# emscape_find_nvcc(OBSTACLE): sets CMAKE_CUDA_COMPILER, and OBSTACLE to why it cannot be used; empty if it can.
+# emscape_find_nvcc(OBSTACLE): sets CMAKE_CUDA_COMPILER, and OBSTACLE to the reason why it cannot be used, or empty.
 function(emscape_find_nvcc obstacle)
   find_program(CMAKE_CUDA_COMPILER NAMES $ENV{CUDACXX} nvcc PATHS /usr/local/cuda/bin)
   if(NOT CMAKE_CUDA_COMPILER)
@@ -51,7 +51,7 @@ else()
 endif()
 
 if(EMSCAPE_WITH_CUDA)
-  # Machine code for A100, for Ada and for Hopper; what is newer compiles the last one's PTX when it starts.
+  # Machine code for A100, Ada and Hopper; newer GPUs compile Hopper's PTX at startup.
   if(NOT CMAKE_CUDA_ARCHITECTURES AND NOT DEFINED ENV{CUDAARCHS})
     set(CMAKE_CUDA_ARCHITECTURES 80-real 89-real 90)
   endif()
@@ -67,8 +67,8 @@ if(EMSCAPE_WITH_CUDA)
   message(STATUS "CUDA: ${CMAKE_CUDA_COMPILER_VERSION} for ${CMAKE_CUDA_ARCHITECTURES}")
 endif()
 
-# emscape_cuda_sources(MODULE WITH ... [WITHOUT ...]): sources of a module where device code is built, and those
-# that stand in their place where it is not.
+# emscape_cuda_sources(MODULE WITH ... [WITHOUT ...]): sources of a module if device code is built, and the ones that replace them
+# if it is not.
 function(emscape_cuda_sources module)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "WITH;WITHOUT")
   if(EMSCAPE_WITH_CUDA)

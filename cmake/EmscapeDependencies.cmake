@@ -4,11 +4,11 @@ list(APPEND CMAKE_MODULE_PATH
   /usr/share/cmake/geographiclib)
 set(EMSCAPE_DEPENDENCIES TBB GDAL GeographicLib OpenVDB pugixml yaml-cpp nlohmann_json fmt PNG ZLIB)
 
-# emscape_find_dependencies(COMMAND ...): find_package REQUIRED or find_dependency, for each of them.
+# emscape_find_dependencies(COMMAND ...): find_package REQUIRED or find_dependency, for each package.
 macro(emscape_find_dependencies command)
   set(_emscape_shared_libs "${BUILD_SHARED_LIBS}")
   set(_emscape_log_level "${CMAKE_MESSAGE_LOG_LEVEL}")
-  set(CMAKE_MESSAGE_LOG_LEVEL WARNING)  # Debian's find modules print what concerns nobody
+  set(CMAKE_MESSAGE_LOG_LEVEL WARNING)  # Debian's find modules print irrelevant messages
   foreach(_emscape_package IN LISTS EMSCAPE_DEPENDENCIES)
     cmake_language(CALL ${command} ${_emscape_package} ${ARGN})
   endforeach()

@@ -1,5 +1,5 @@
 # Installs the programs with their data, manual pages and documentation (component program), and the libraries with their public
-# headers and what find_package(emscape) reads (component development).
+# headers and the files that find_package(emscape) reads (component development).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 

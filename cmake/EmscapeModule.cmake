@@ -1,8 +1,8 @@
 # emscape_module(NAME SOURCES ... [LINKS ...] [PRIVATE_LINKS ...])
-# A library emscape_NAME, called emscape::NAME, of one module's sources. Its public headers lie in
-# include/emscape/NAME, the internal ones next to the sources. Its sources are compiled in groups, which parse the headers
+# A library emscape_NAME, called emscape::NAME, of one module's sources. Its public headers are in include/emscape/NAME, the
+# internal ones next to the sources. Its sources are compiled in groups, which parse the headers
 # once and instantiate templates once (EMSCAPE_UNITY): a name in an anonymous namespace is unique in its module. A source with
-# options of its own, or with SKIP_UNITY_BUILD_INCLUSION, is compiled alone.
+# individual options, or with SKIP_UNITY_BUILD_INCLUSION, is compiled separately.
 function(emscape_module name)
   cmake_parse_arguments(PARSE_ARGV 1 ARG "" "" "SOURCES;LINKS;PRIVATE_LINKS")
   add_library(emscape_${name} ${ARG_SOURCES})
@@ -17,16 +17,16 @@ function(emscape_module name)
   install(TARGETS emscape_${name} EXPORT emscape COMPONENT development)
 endfunction()
 
-# The sources of a target are compiled in groups, if asked for.
+# Compiles the sources of a target in groups, if requested.
 function(emscape_unity target)
   if(EMSCAPE_UNITY)
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 12)
-    # a class that a source defines for itself, with members of an anonymous namespace, seems to come from a header
+    # a class local to a source, with members of an anonymous namespace, seems to come from a header
     target_compile_options(${target} PRIVATE $<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>)
   endif()
 endfunction()
 
-# Warnings, as errors if asked for, on a target of our own.
+# Enables warnings, as errors if requested, for a target of the project.
 function(emscape_warnings target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wshadow -Wnon-virtual-dtor -Woverloaded-virtual
                                            $<$<BOOL:${EMSCAPE_WERROR}>:-Werror>>
@@ -38,7 +38,7 @@ function(emscape_warnings target)
   endif()
 endfunction()
 
-# emscape_precompile(TARGET HEADER ...): headers of others that most sources of a target include; they are parsed once.
+# emscape_precompile(TARGET HEADER ...): external headers that most sources of a target include; they are parsed once.
 function(emscape_precompile target)
   target_precompile_headers(${target} PRIVATE ${ARGN})
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)  # for ccache
@@ -52,17 +52,31 @@ function(emscape_tests module)
   emscape_test_program(${module}_tests ${module})
 endfunction()
 
-# emscape_test_program(TARGET LABEL [PROPERTY VALUE ...]): each test of the program is one of ctest's, with the label.
+# emscape_test_program(TARGET LABEL [PROPERTY VALUE ...]): makes each test of the program a ctest test with the label.
 function(emscape_test_program target label)
   target_link_libraries(${target} PRIVATE emscape_test_support)
   emscape_precompile(${target} <gmock/gmock.h> <gtest/gtest.h>)
-  # Half the time of compilation; the libraries that the tests call are optimised, and checked for undefined behaviour, as
-  # ever.
+  # Halves the compilation time; the libraries that the tests call are still optimised, and checked for undefined behaviour.
   if(EMSCAPE_SANITIZE)
     target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:-O0 -fno-sanitize=undefined>)
   else()
     target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
   endif()
   emscape_warnings(${target})
-  gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS ${label} ${ARGN})
+  emscape_add_tests(${target} "" LABELS ${label} ${ARGN})
+endfunction()
+
+# emscape_add_tests(TARGET PREFIX PROPERTY VALUE ...): each test of a program of GoogleTest is one of ctest's. Under a sanitizer,
+# where a program takes longer to load than most tests to run, each of ctest's tests is one of six shards of the program; the
+# environment variable GTEST_FILTER then selects tests by name.
+function(emscape_add_tests target prefix)
+  if(NOT EMSCAPE_SANITIZE)
+    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${prefix}" PROPERTIES ${ARGN})
+    return()
+  endif()
+  foreach(shard RANGE 5)
+    set(name "${prefix}${target}.${shard}")
+    add_test(NAME "${name}" COMMAND ${target})
+    set_tests_properties("${name}" PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=6;GTEST_SHARD_INDEX=${shard}" ${ARGN})
+  endforeach()
 endfunction()

@@ -1,4 +1,4 @@
-# Options and what holds for every target of the project.
+# Options, and settings of every target of the project.
 option(EMSCAPE_TESTS "Build the tests" ON)
 option(EMSCAPE_WERROR "Treat warnings as errors" ON)
 option(EMSCAPE_UNITY "Compile the sources of the libraries in groups: half the time of a whole build" ON)
@@ -22,18 +22,19 @@ endif()
 
 find_program(EMSCAPE_CCACHE ccache)
 mark_as_advanced(EMSCAPE_CCACHE)
-# Paths below the source folder are hashed as relative ones: build folders of equal depth, such as those of the presets and of
-# `pip install .`, share objects. The sloppiness is needed with precompiled headers.
+# Paths below the source folder are hashed as relative ones, and the working directory is not hashed: checkouts, and build folders
+# of equal depth such as those of the presets and of `pip install .`, share objects. The sloppiness is needed with precompiled
+# headers.
 if(EMSCAPE_CCACHE)
-  set(EMSCAPE_CCACHE_COMMAND "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}"
+  set(EMSCAPE_CCACHE_COMMAND "${CMAKE_COMMAND}" -E env "CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}" CCACHE_NOHASHDIR=1
     CCACHE_SLOPPINESS=pch_defines,time_macros "${EMSCAPE_CCACHE}")
   if(NOT CMAKE_CXX_COMPILER_LAUNCHER)
     set(CMAKE_CXX_COMPILER_LAUNCHER "${EMSCAPE_CCACHE_COMMAND}")
   endif()
 endif()
 
-# object-size: GCC 12 reports loads well inside constant arrays. null, alignment and pointer-overflow check every access,
-# for twice the time of compilation; what they are for, the address sanitizer sees.
+# object-size: GCC 12 reports loads well inside constant arrays. null, alignment and pointer-overflow check every access and
+# double the compilation time; the address sanitizer detects the same errors.
 set(address_sanitizers -fsanitize=address,undefined -fno-sanitize=object-size,null,alignment,pointer-overflow
     -fno-sanitize-recover=undefined -fno-omit-frame-pointer)
 if(EMSCAPE_SANITIZE STREQUAL "address")

@@ -1,9 +1,10 @@
-# Debian packages, by the target emscape_packages (scripts/package) into packages/: `emscape` of the programs, `libemscape-dev` of the libraries.
+# Debian packages, by the target emscape_packages (scripts/package) into packages/: `emscape` with the programs, `libemscape-dev`
+# with the libraries.
 set(EMSCAPE_PACKAGE_MAINTAINER "Emscape developers <maintainers@emscape.invalid>" CACHE STRING "Maintainer of the Debian packages")
 get_property(library_packages GLOBAL PROPERTY EMSCAPE_LIBRARY_PACKAGES)
 get_property(contained_packages GLOBAL PROPERTY EMSCAPE_CONTAINED_PACKAGES)
 
-# The copyright: ours, and that of each component whose code is inside.
+# The copyright: ours, and that of each included component.
 set(EMSCAPE_CONTAINED_COPYRIGHTS "")
 foreach(package IN LISTS contained_packages)
   set(file "/usr/share/doc/${package}/copyright")
@@ -14,7 +15,7 @@ foreach(package IN LISTS contained_packages)
 endforeach()
 configure_file(cmake/package/copyright.in "${PROJECT_BINARY_DIR}/package/copyright" @ONLY)
 
-# The date of a version is that of its heading in the changelog.
+# The date of a version is taken from its heading in the changelog.
 file(STRINGS CHANGELOG.md heading REGEX "^## \\[${PROJECT_VERSION}\\] - " LIMIT_COUNT 1)
 string(REGEX REPLACE "^.* - " "" date "${heading}")
 if(date STREQUAL "")
@@ -52,7 +53,7 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME emscape)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# Beside the libraries: the EGM96 geoid, and the font of labels and of the window.
+# In addition to the libraries: the EGM96 geoid, and the font of labels and of the window.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "proj-data, fonts-dejavu-core")
 # Videos; OpenGL for the window, which loads it when it starts.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "ffmpeg, libgl1, libegl1, libgl1-mesa-dri")

@@ -1,4 +1,4 @@
-# The window: whether it is built, and the libraries that it needs as the target emscape_view_libraries.
+# The window: whether it is built, and its libraries as the target emscape_view_libraries.
 if(NOT EMSCAPE_VIEW MATCHES "^(AUTO|ON|OFF)$")
   message(FATAL_ERROR "EMSCAPE_VIEW=${EMSCAPE_VIEW}: must be AUTO, ON or OFF")
 endif()

@@ -10,7 +10,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-# Name: colours (dBW/m2; dB). The slices lie east to west and the camera looks north, or they are level, seen from above.
+# Name: colours (dBW/m2; dB). The slices run from east to west and are seen from the south, or they are level and seen from above.
 PICTURES = {
     "horizon": "-130:-50",
     "diffraction": "-130:-50",
@@ -31,7 +31,7 @@ SHIP = ["profile", "ship_duct.yaml", "--emitter", "ship radar", "--to", "51.3,4.
 COAST = ["vertical", "coast_duct.yaml", "--emitter", "coastal radar", "--azimuth", "300", "--range", "200000", "--max-height", "3000", "-o"]
 MAST = ["vertical", "jacksboro.yaml", "--emitter", "communications mast", "--azimuth", "190", "--range", "14000",
         "--max-height", "900", "--quantity", "power_density_dbwm2", "--threshold", "-90", "-o"]
-# Name: command, scenario in scenarios, options, the last of them for the picture; then more options.
+# Name: command, scenario in scenarios, options (the last one for the picture); then more options.
 DIAGRAMS = {
     "ship_duct": (SHIP, []),
     "ship_standard": (SHIP, ["--set", "atmosphere.refractivity.duct_height_m=0"]),
@@ -43,7 +43,7 @@ DIAGRAMS = {
 
 
 def compress(full, picture):
-    """96 colours are enough, and take a quarter of the space."""
+    """Reduces to 96 colours, which are enough and take a quarter of the space."""
     subprocess.run(
         ["ffmpeg", "-loglevel", "error", "-y", "-i", full, "-vf",
          "split[a][b];[a]palettegen=max_colors=96[p];[b][p]paletteuse=dither=none", picture],

@@ -23,9 +23,9 @@ MODES = ("dvr", "mida")
 LARGE = "1200x900"
 REAL_TIME_MS = 40  # the paper's bound
 PATTERNS = ("--rays", "columns,quarter,adaptive")
-RATIOS = {"1:1": "columns", "1:3": "quarter"}  # interpolated to cast pixels, in the paper's words and in ours
+RATIOS = {"1:1": "columns", "1:3": "quarter"}  # interpolated to cast pixels, in the paper's notation and in ours
 
-# What the paper measured: mean times of 100 frames of EME (ms).
+# The paper's measurements: mean times of 100 frames of EME (ms).
 PAPER_MS = {"dvr": {"full": 51.84, "columns": 29.68, "quarter": 18.96}, "mida": {"full": 59.06, "columns": 33.79, "quarter": 21.08}}
 # Its tables 1 (1200 x 900 pixels) and 2 (as many pixels as the two largest dimensions have voxels): max, mean, ratio in %.
 PAPER_ERRORS = {
@@ -69,7 +69,7 @@ def volumes(options):
 
 
 class Emscape:
-    """The program, and what it has measured."""
+    """The program, and its measurements."""
 
     def __init__(self, options):
         self.program = options.emscape
@@ -166,7 +166,7 @@ COLORS = {"full": "#d55e00", "columns": "#0072b2", "quarter": "#009e73", "adapti
 
 
 def draw_figure_5(measured, file):
-    """An SVG that is the same, byte for byte, for the same times."""
+    """An SVG; equal times give equal bytes."""
     import matplotlib
     matplotlib.use("svg")
     import matplotlib.pyplot as plt
@@ -194,7 +194,7 @@ CROP = {"large": f"crop={PANEL}:{PANEL},", "equal": "crop=iw/2:ih/2,"}  # of the
 
 
 def pictures(emscape, volume, size, patterns, folder):
-    """Cast and interpolated side by side, and what these miss by: images/paper_NAME_SIZE.png."""
+    """Cast and interpolated pictures side by side, with the errors: images/paper_NAME_SIZE.png."""
     files = {}
     for rays in ("full", *patterns):
         files[rays] = folder / f"{volume.name}_{size}_{rays}.png"
@@ -233,7 +233,7 @@ def picture_section(emscape, present):
 
 
 class Claims:
-    """Each claim of the paper with our figure beside it."""
+    """Each claim of the paper with our figure."""
 
     def __init__(self, measured, present):
         self.measured = measured
@@ -319,7 +319,7 @@ class Claims:
 
 
 def beyond(measured, present):
-    """What is not in the paper: float interpolation and adaptive rays."""
+    """Results beyond the paper: float interpolation and adaptive rays."""
     rows = []
 
     def add(name, p):

@@ -14,7 +14,7 @@ MARKER = "<!-- Below: made by make_scenario_format.py. -->\n"
 
 
 def kind_of(spec):
-    """Type, unit and range of a value, in words."""
+    """Type, unit and range of a value as text."""
     if "$ref" in spec:
         name = spec["$ref"].split("/")[-1]
         return f"[{name}](#{name.lower()})"
@@ -42,7 +42,7 @@ def number(value):
 
 
 def variants_of(definition):
-    """(choice, properties, required keys) of each variant; one without a choice where there are none."""
+    """(choice, properties, required keys) of each variant; a single one without a choice if there are no variants."""
     for condition in definition.get("allOf", []):
         (choice,) = (spec["const"] for spec in condition["if"]["properties"].values())
         yield choice, condition["then"]["properties"], condition["then"].get("required", [])
@@ -51,7 +51,7 @@ def variants_of(definition):
 
 
 def rows_of(definition):
-    """(key, kind, default, description), each once; those that hold for some variants only name them."""
+    """(key, kind, default, description), each once; keys of only some variants name these."""
     uses = {}
     variants = list(variants_of(definition))
     for choice, properties, required in variants:

@@ -24,7 +24,7 @@ def opened(name):
     return {"do": "panel", "name": name, "open": True}
 
 
-# Per picture: more options, and what is done before it is taken.
+# Per picture: additional options, and the commands run before it is taken.
 PICTURES = {
     "view_dark": ([], [*BEGIN, opened("colors")]),
     "view_light": (["--theme", "light"], [*BEGIN, opened("help")]),

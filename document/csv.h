@@ -7,10 +7,11 @@
 
 namespace emscape::document {
 
-/// A cell without the blanks around it; a view of the text that the reader was given.
+/// A cell without surrounding blanks; a view of the reader's text.
 struct CsvCell {
   std::string_view text;
-  int column = 1;  ///< of its first character, from 1, in characters; of an empty cell, where the cell begins
+  int column = 1;  ///< of its first character, counted in characters from 1; for an empty cell, the beginning
+                   ///< of the cell
 };
 
 struct CsvRow {
@@ -18,8 +19,8 @@ struct CsvRow {
   std::vector<CsvCell> cells;  ///< at least one
 };
 
-/// Lines end in LF, CRLF or CR. Lines of blanks and lines that begin with # are left out. There are no
-/// quotes: a comma always separates.
+/// Lines end in LF, CRLF or CR. Lines of blanks and lines that begin with # are left out. Quotes have no
+/// special meaning: a comma always separates cells.
 class CsvReader {
  public:
   /// @param text  must outlive the reader and its cells

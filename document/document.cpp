@@ -55,7 +55,7 @@ class PositionFinder {
  private:
   std::string_view text_;
   std::vector<std::size_t> line_begins_;
-  // The last position found: the next one is mostly after it, which saves time in a file of one long line.
+  // The last position: the next one is usually after it, which saves time in a file with one long line.
   std::size_t line_ = 0, byte_ = 0;
   int column_ = 1;
 };
@@ -205,7 +205,7 @@ class TreeBuilder : public YAML::EventHandler {
   DocumentNodePtr root_;
 };
 
-/// Tabs before the first word of a line: YAML forbids them, and parsers disagree on what they then read. JSON
+/// Tabs before the first word of a line: YAML forbids them, and parsers disagree on their meaning. JSON
 /// allows them.
 bool hasTabsAsIndentation(const std::string& file, const std::string& text, ProblemList& problems) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");

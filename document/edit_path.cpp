@@ -73,7 +73,7 @@ class Resolver {
   }
 
  private:
-  /// The step that begins here as it is written, to the next point.
+  /// The unquoted step that begins here and ends at the next point.
   std::string word() const {
     if (path_[at_] != '"') return path_.substr(at_, path_.find('.', at_) - at_);
     const std::size_t end = endOfQuotes(path_, at_);
@@ -195,7 +195,7 @@ class Resolver {
 
   const std::string& path_;
   DocumentNodePtr node_;
-  const ObjectSpec* object_;  ///< of the object that the next step is a key of; null in a list or a value
+  const ObjectSpec* object_;  ///< of the object whose key is the next step; null in a list or a value
   std::size_t at_ = 0;
   bool ended_ = false;
   ResolvedPath result_;

@@ -8,13 +8,13 @@
 
 namespace emscape::document {
 
-/// The value that a path leads to.
+/// The value at the end of a path.
 struct ResolvedPath {
   NodePath steps;
-  std::string text;                 ///< the path with quotes where an edit's text needs them
+  std::string text;                 ///< the path, with quotes if an edit's text requires them
   std::string name;                 ///< of the key or item, for messages
   const ValueSpec* spec = nullptr;  ///< of the value
-  bool required = false;            ///< a key that must be given
+  bool required = false;            ///< a required key
   bool exists = false;              ///< the document has a value there
 };
 
@@ -22,8 +22,8 @@ struct ResolvedPath {
 /// their index from 0 if they have none. Names are matched against those in the document, the longest first,
 /// so that they may contain points; a name in double quotes (\" and \\ within) is taken literally. Keys need
 /// not exist in the document, items must.
-/// @throws Error (bad_input), without a location, for keys and items that do not exist; the message names
-/// those that do
+/// @throws Error (bad_input), without a location, for keys and items that do not exist; the message lists the
+/// existing ones
 ResolvedPath resolvePath(const std::string& path, const DocumentNodePtr& root, const ObjectSpec& spec);
 
 /// A name in double quotes, with \" and \\ for a quote and a backslash.

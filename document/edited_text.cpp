@@ -37,7 +37,7 @@ void EditedText::apply(const Splice& splice, const std::string& label) {
   text_.replace(splice.begin, splice.end - splice.begin, splice.text);
   Change merged{splice.begin, splice.end, splice.begin, splice.end, label};
   std::vector<Change> kept;
-  std::ptrdiff_t shift = 0;  // of the bytes before the splice, from text() to the file
+  std::ptrdiff_t shift = 0;  // shift of the bytes before the splice, from text() to the file
   bool met = false;
   for (const Change& change : changes_) {
     if (change.new_end < splice.begin || change.new_begin > splice.end) {

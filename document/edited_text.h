@@ -10,8 +10,8 @@
 
 namespace emscape::document {
 
-/// The text of a file with changes, and the location in the file of each of its positions. Adjacent changes
-/// are merged.
+/// The text of a file with changes, and the location in the file of each position. Adjacent changes are
+/// merged.
 class EditedText {
  public:
   EditedText() = default;
@@ -36,7 +36,7 @@ class EditedText {
 
   std::string file_;
   std::string original_, text_;
-  std::vector<Change> changes_;  ///< in order, not meeting
+  std::vector<Change> changes_;  ///< in order, not adjacent
 };
 
 }  // namespace emscape::document

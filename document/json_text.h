@@ -6,12 +6,12 @@
 
 namespace emscape::document {
 
-/// Strict JSON in UTF-8 that ends with a line end. The members of the root are on lines of their own; so are
-/// those of every other object or list that is longer than a line. Numbers have enough digits to read the
-/// same double again.
+/// Strict JSON in UTF-8 that ends with a line end. Each member of the root is on a separate line, as are the
+/// members of every other object or list that is longer than a line. Numbers have enough digits to be read
+/// back exactly.
 std::string jsonText(const nlohmann::ordered_json& root);
 
-/// A float as the shortest decimal number that is this float once it is read as a double and rounded.
+/// A float as the shortest decimal number that gives this float when it is read as a double and rounded.
 nlohmann::ordered_json shortNumber(float value);
 
 }  // namespace emscape::document

@@ -1,4 +1,4 @@
-/// Numbers edited in a document without reading its text again.
+/// Edits of numbers in a document without parsing its text again.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace emscape::document {
 
-/// The document that readDocument() would make of a text after a change: of a number written in the place of
-/// a scalar, which leaves all other values as they are.
+/// The document that readDocument() would build after a change that replaces a scalar by a number and leaves
+/// all other values unchanged.
 /// @param splice  of spliceFor(text, root, path, value)
-/// @return null if the text has to be read: for other changes, and where the document has anchors
+/// @return null if the text must be parsed: for other changes, and if the document has anchors
 DocumentNodePtr withNumberSpliced(const std::string& text, const DocumentNodePtr& root, const NodePath& path,
                                   const DocumentNodePtr& value, const Splice& splice);
 

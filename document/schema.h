@@ -1,5 +1,5 @@
 /// Tables of document formats: every key with its type, unit, range, default and meaning. The checks, their
-/// messages and the JSON Schema all come from such a table.
+/// messages and the JSON Schema are derived from the table.
 #pragma once
 
 #include <limits>
@@ -21,20 +21,20 @@ struct ValueSpec {
   double minimum = -std::numeric_limits<double>::infinity();  ///< number, integer
   double maximum = std::numeric_limits<double>::infinity();
   bool minimum_excluded = false;
-  std::vector<std::string> choices;       ///< choice; number: words that may stand in its place
-  const ObjectSpec* object = nullptr;     ///< object; number: keys that may stand in its place
+  std::vector<std::string> choices;       ///< choice; number: words that are allowed instead
+  const ObjectSpec* object = nullptr;     ///< object; number: keys that are allowed instead
   std::shared_ptr<const ValueSpec> item;  ///< list
   int min_items = 0;                      ///< list; text, file: characters
   int max_items = 0;
-  bool items_differ = false;  ///< list: no two items are equal, nor are their names where they are objects
+  bool items_differ = false;  ///< list: no two items are equal; objects have different names
 
   ValueSpec from(double lowest) const;  ///< with this minimum
-  ValueSpec above(double bound) const;  ///< with this minimum, itself excluded
+  ValueSpec above(double bound) const;  ///< with this minimum, excluded
   ValueSpec to(double highest) const;   ///< with this maximum
   ValueSpec distinct() const;           ///< with items_differ
-  /// Of a number: or this word in its place.
+  /// A number, or this word instead.
   ValueSpec orWord(std::string word) const;
-  /// Of a number: or these keys in its place. Keeps a pointer to `fields`, which must outlive the table.
+  /// A number, or these keys instead. Keeps a pointer to `fields`, which must outlive the table.
   ValueSpec orObject(const ObjectSpec& fields) const;
 };
 
@@ -57,8 +57,9 @@ struct ObjectSpec {
   std::string name;           ///< in messages and in the JSON Schema's definitions
   std::string discriminator;  ///< key whose value selects the variant; empty: none
   std::vector<KeySpec> keys;
-  std::vector<std::vector<std::string>> exactly_one_of = {};        ///< groups of which one key must be given
-  std::vector<std::pair<std::string, std::string>> goes_with = {};  ///< first only together with second
+  std::vector<std::vector<std::string>> exactly_one_of = {};  ///< groups of which one key must be given
+  std::vector<std::pair<std::string, std::string>> goes_with =
+      {};  ///< the first key is allowed only with the second
 
   /// The row of a key, or null. @param variant  the discriminator's value; null: any
   const KeySpec* find(const std::string& key, const std::string* variant) const;

@@ -87,7 +87,7 @@ std::string expectation(const ValueSpec& spec) {
   return "";
 }
 
-/// YAML does not read these as text.
+/// Values that YAML does not read as text.
 bool looksLikeText(const DocumentNode& node) {
   return node.quoted || (!numberOf(node.text) && !booleanOf(node.text));
 }
@@ -126,7 +126,7 @@ class Checker {
     std::map<std::string, int> lines;
     std::set<std::string> seen;
     std::vector<std::string>
-        meant;  // probable meanings of unknown keys; the missing keys among them are not reported again
+        meant;  // probable meanings of unknown keys; missing keys among them are not reported
     for (const MapEntry& entry : node.entries) {
       const auto [first, is_new] = lines.emplace(entry.key, entry.position.line);
       if (!is_new) {

@@ -33,11 +33,11 @@ std::string rangeFault(const std::string& name, const std::string& text, double 
 
 /// The message for a key that an object does not have: with the missing unit suffix, or with the key that was
 /// probably meant.
-/// @param meant  set to the names that the message proposes
+/// @param meant  set to the proposed names
 std::string unknownKeyMessage(const std::string& key, const ObjectSpec& spec, const std::string* variant,
                               std::vector<std::string>* meant = nullptr);
 
-/// ", did you mean 'x'?" with the closest of the names, or nothing where none is close.
+/// ", did you mean 'x'?" with the closest of the names; empty if none is close.
 std::string didYouMean(const std::string& word, const std::vector<std::string>& names,
                        std::string* closest = nullptr);
 

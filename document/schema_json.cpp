@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A bound without a decimal point where it is whole.
+/// A bound, without a decimal point if it is a whole number.
 Json number(double value) {
   return value == std::floor(value) && std::abs(value) < 1e15 ? Json(static_cast<long long>(value))
                                                               : Json(value);
@@ -94,7 +94,7 @@ class SchemaWriter {
 
   Json object(const ObjectSpec& spec) {
     if (spec.discriminator.empty()) return variant(spec, nullptr);
-    // if-then rather than oneOf: validators then point at the faulty key.
+    // if-then instead of oneOf, so that validators report the faulty key.
     const KeySpec& discriminator = *spec.find(spec.discriminator, nullptr);
     Json variants = Json::array();
     for (const std::string& choice : discriminator.value.choices) {

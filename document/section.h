@@ -1,4 +1,4 @@
-/// Values of an object of a document, read by the table of the format.
+/// Values of an object of a document, according to the table of the format.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,18 @@
 
 namespace emscape::document {
 
-/// One object of the file. Reading a value that is not given returns the table's default. If there is none,
-/// or if the value is faulty (checkObject() has reported it), numbers are NaN, so that later checks stay
-/// silent, whole numbers 0, and texts and lists empty. Asking for a key that the table does not have is a
-/// programming error (std::logic_error). Valid as long as the document, the table and `file` are.
+/// One object of the file. A value that is not given has the table's default. Without a default, or if the
+/// value is faulty (which checkObject() reports), numbers are NaN, so that later checks report nothing, whole
+/// numbers are 0, and texts and lists are empty. A key that is not in the table is a programming error
+/// (std::logic_error). Valid as long as the document, the table and `file`.
 class Section {
  public:
-  /// @param node  null for an object that is not there: everything has its default
+  /// @param node  null for a missing object: all values have their defaults
   Section(const std::string& file, const DocumentNode* node, const ObjectSpec& spec);
 
   /// True if the key is given, with a value of the right type.
   bool has(const std::string& key) const;
-  /// True if the object is given and checkObject() finds nothing wrong in it.
+  /// True if the object is given and checkObject() finds no fault in it.
   bool sound() const;
 
   double number(const std::string& key) const;
@@ -31,17 +31,16 @@ class Section {
   std::string text(const std::string& key) const;  ///< text, timestamp, file
   /// Index of a choice in the table's order; 0 if it is faulty.
   int choiceIndex(const std::string& key) const;
-  /// The value of a choice whose order in the table is the enumeration's.
+  /// The value of a choice whose order in the table is that of the enumeration.
   template <class Enum>
   Enum choice(const std::string& key) const {
     return static_cast<Enum>(choiceIndex(key));
   }
 
-  /// The keys of an object, or those in place of a number: node() is null where the number is given.
+  /// The keys of an object, or those that replace a number; node() is null if a number is given.
   Section section(const std::string& key) const;
   std::vector<Section> sections(const std::string& key) const;  ///< list of objects
-  std::vector<double> numbers(
-      const std::string& key) const;  ///< list of numbers; shorter than it should be if faulty
+  std::vector<double> numbers(const std::string& key) const;    ///< list of numbers; shorter if faulty
   std::vector<std::string> texts(const std::string& key) const;
   std::vector<std::vector<double>> numberLists(const std::string& key) const;
 

@@ -93,8 +93,7 @@ class Splicer {
     const DocumentNode& old = *entry.value;
     const Span span = valueSpanOf(text_, entry);
     if (span.begin == span.end) return {span.begin, span.end, " " + written};
-    // A block begins on a line of its own; a value that was on one line may have less indentation than a
-    // block needs.
+    // A block begins on a new line; a value on one line may have less indentation than a block needs.
     const bool is_block =
         (old.kind == NodeKind::map || old.kind == NodeKind::sequence) && !isFlow(text_, old);
     const std::size_t colon = afterColon(text_, entry);
@@ -159,7 +158,7 @@ class Splicer {
     if (!parent.items.empty()) begin = dashBefore(begin);
     const std::size_t line = lineBegin(text_, begin);
     if (!isOnlyBlanks(string_view(text_).substr(line, begin - line))) {
-      // The key is on the line of a dash: the next key moves there.
+      // The key is on the line of a dash; the next key is moved there.
       if (is_last) refuse("a key is on the line of another value");
       return {children[index].begin, children[index + 1].begin, ""};
     }

@@ -1,4 +1,4 @@
-/// Text files that people write: UTF-8 check and checksum.
+/// Text files: UTF-8 check and checksum.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ std::string checkedUtf8(const std::string& file, std::string bytes);
 /// Characters (code points) of UTF-8 text.
 std::size_t characterCount(std::string_view text);
 
-/// FNV-1a, 64 bits, over all that was added: detects changed inputs; no protection against forgery.
+/// FNV-1a, 64 bits, over all added data: detects changed inputs; no protection against forgery.
 class ContentHash {
  public:
   void add(std::string_view bytes);

@@ -15,7 +15,7 @@ bool countsEmitters(Quantity quantity) {
   return quantity == Quantity::emitter_count || quantity == Quantity::dominant_emitter;
 }
 
-/// True if a quantity's channel has all emitters for any combination, per_band too.
+/// True if a quantity's channel has all emitters for any combination, including per_band.
 bool takesAllEmitters(Quantity quantity) {
   return quantity == Quantity::sinr_db;
 }

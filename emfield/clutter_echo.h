@@ -1,8 +1,8 @@
 /// Clutter in the resolution cell of a voxel while a radar's beam is aimed at it.
 ///
-/// Land and sea: the map at the beam's azimuth and the voxel's slant range, weighed by the pattern, there and
-/// back, towards the surface. Rain: the beam's cross section times the range cell, in the part of the beam
-/// between mean sea level and the top of the rain.
+/// Land and sea: the map at the beam's azimuth and the voxel's slant range, weighted by the two-way pattern
+/// towards the surface. Rain: the beam's cross section times the range cell, in the part of the beam between
+/// mean sea level and the top of the rain.
 #pragma once
 
 #include <cmath>
@@ -15,14 +15,14 @@
 
 namespace emscape::emfield {
 
-/// A radar's clutter in a channel, behind its filter, as plain data; all 0: none.
+/// A radar's clutter in a channel, after its filter, as plain data; all 0: none.
 struct ClutterTask {
-  float surface = 0;              ///< over noise, for 1 / (m2 rad) of a map's cell, on boresight (m2 rad)
-  float rain = 0;                 ///< over noise, times range^2, the whole beam in rain (m2)
+  float surface = 0;              ///< clutter over noise on boresight, per value of a map's cell (m2 rad)
+  float rain = 0;                 ///< clutter over noise times range^2, with the whole beam in rain (m2)
   float rain_octaves_per_m = 0;   ///< two-way loss through gases and rain, log2
   float rain_top_m = 0;           ///< of the rain, above the radar
   float sea_level_m = 0;          ///< above the radar
-  float elevation_width_rad = 0;  ///< of the beam, there and back
+  float elevation_width_rad = 0;  ///< two-way width of the beam
   float curvature_per_m = 0;      ///< 1 / (2 effective earth radius)
 
   EMSCAPE_HD bool isNone() const { return surface == 0 && rain == 0; }
@@ -62,7 +62,7 @@ EMSCAPE_HD inline float rainToNoise(const ClutterTask& task, const EmitterBeam& 
 }
 
 /// Clutter of land and sea over noise at a slant range. Without branches, for SIMD.
-/// @param map   ClutterMapView, or another one with its cellAt()
+/// @param map   ClutterMapView, or a type with the same cellAt()
 template <scenario::PatternKind kind, class Map>
 EMSCAPE_HD inline float surfaceToNoise(const ClutterTask& task, const Map& map, const EmitterBeam& beam,
                                        const Aim& aim, float range_m) {
@@ -79,7 +79,7 @@ EMSCAPE_HD inline float surfaceToNoise(const ClutterTask& task, const Map& map, 
   return task.surface * cell.echo * power * power;
 }
 
-/// Both.
+/// The sum of both.
 template <scenario::PatternKind kind, class Map>
 EMSCAPE_HD inline float clutterToNoise(const ClutterTask& task, const Map& map, const EmitterBeam& beam,
                                        const Aim& aim, float range_m) {

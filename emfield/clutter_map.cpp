@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kMinAzimuths = 90, kMaxAzimuths = 1440, kMaxRanges = 2048;
 
-/// From the radar to the region's farthest point, at most.
+/// Upper bound of the distance from the radar to the region's farthest point.
 double reach_m(const scenario::Region& region, const Station& station) {
   const Vec3d middle_m = {
       0, 0,

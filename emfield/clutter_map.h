@@ -1,10 +1,10 @@
-/// A radar's surface clutter by azimuth and slant range: the land and sea that it sees, before the antenna's
+/// A radar's surface clutter by azimuth and slant range: the land and sea in its sight, without the antenna's
 /// pattern.
 ///
-/// One walk outwards per azimuth: a post whose elevation is above those of all posts before it is in sight,
-/// over an earth of effective radius, and with it the face between it and the post before. The face's echo is
-/// its reflectivity at the grazing angle of the ray on it, times its area. The map depends on the radar's
-/// site, its wave and its range cell, not on the direction of its beam.
+/// One walk outwards per azimuth: a post is in sight if its elevation is above those of all posts before it,
+/// over an earth of effective radius. The face between it and the post before is then also in sight. The
+/// face's echo is its reflectivity at the grazing angle of the ray on it, times its area. The map depends on
+/// the radar's site, its wave and its range cell, not on the direction of its beam.
 #pragma once
 
 #include <cmath>
@@ -21,15 +21,15 @@
 
 namespace emscape::emfield {
 
-/// A cell of the map: per radian of azimuth and in one range cell of the radar, the sum over the surface of
-/// cross section over range^4, with the air's two-way loss (1 / (m2 rad)); and that sum weighted by the sine
-/// of the ray's elevation.
+/// A cell of the map: the sum over the surface of cross section over range^4, per radian of azimuth and in
+/// one range cell of the radar, with the two-way loss of the atmosphere (1 / (m2 rad)); and the same sum
+/// weighted by the sine of the ray's elevation.
 struct ClutterCell {
   float echo = 0;
   float echo_times_sine = 0;
 };
 
-/// The cells' places: azimuth clockwise from north, 2 pi i / azimuths; slant range (n + 1/2) step.
+/// Positions of the cells: azimuth clockwise from north, 2 pi i / azimuths; slant range (n + 1/2) step.
 struct ClutterGrid {
   int azimuths = 0, ranges = 0;
   float step_m = 1;        ///< >= the radar's range cell
@@ -38,13 +38,14 @@ struct ClutterGrid {
   std::size_t cells() const { return static_cast<std::size_t>(azimuths) * static_cast<std::size_t>(ranges); }
 };
 
-/// Two neighbours of a place in a map and the weight of the second: the first at 0, the second at 1.
+/// Two neighbours of a position in a map, and the interpolation weight of the second: 0 at the first, 1 at
+/// the second.
 struct ClutterNeighbours {
   int first = 0, second = 0;
   float weight = 0;
 };
 
-/// The rows beside an azimuth of -pi..pi.
+/// The rows on both sides of an azimuth, -pi..pi.
 EMSCAPE_HD inline ClutterNeighbours rowsBeside(float azimuth_rad, int azimuths, float azimuths_per_rad) {
   const float row = azimuth_rad * azimuths_per_rad;
   const float turned = row < 0 ? row + static_cast<float>(azimuths) : row;
@@ -52,8 +53,8 @@ EMSCAPE_HD inline ClutterNeighbours rowsBeside(float azimuth_rad, int azimuths, 
   return {first, first + 1 < azimuths ? first + 1 : 0, turned - static_cast<float>(i)};
 }
 
-/// The cells beside a range: interpolated between their middles, below that of the first cell its own value.
-/// Without branches, for SIMD.
+/// The cells on both sides of a range, for interpolation between their middles; below the middle of the first
+/// cell, that cell. Without branches, for SIMD.
 EMSCAPE_HD inline ClutterNeighbours cellsBeside(float range_m, int ranges, float cells_per_m) {
   const float place = range_m * cells_per_m - 0.5f;
   const int last = ranges - 1, n = static_cast<int>(place > 0 ? place : 0.0f);
@@ -74,7 +75,7 @@ struct ClutterMapView {
   int azimuths = 0, ranges = 0;
   float cells_per_m = 0, azimuths_per_rad = 0;
 
-  /// Beyond the last range its value.
+  /// Beyond the last range, the value at the last range.
   EMSCAPE_HD ClutterCell cellAt(float azimuth_rad, float range_m) const {
     const ClutterNeighbours rows = rowsBeside(azimuth_rad, azimuths, azimuths_per_rad);
     const ClutterNeighbours columns = cellsBeside(range_m, ranges, cells_per_m);
@@ -87,7 +88,7 @@ struct ClutterMapView {
   }
 };
 
-/// What the rows of a map are filled from, as plain data.
+/// Inputs of the rows of a map, as plain data.
 struct ClutterMapTask {
   Station station;
   GroundPosts ground;  ///< posts as far as the last cell
@@ -137,7 +138,7 @@ struct ClutterMapTask {
     const double per_m = 1 / static_cast<double>(grid.step_m);
     const double from_a = a.slant_m * per_m, whole = (b.slant_m - a.slant_m) * per_m;
     const double begin = whole > 0 ? from_a : from_a + whole, end = whole > 0 ? from_a + whole : from_a;
-    constexpr double kSmall = 1e-9;  // of a cell: the face is seen at one range
+    constexpr double kSmall = 1e-9;  // of a cell: the face is at a single range
     const int last = end < grid.ranges ? static_cast<int>(end) : grid.ranges - 1;
     for (int n = static_cast<int>(begin); n <= last; ++n) {
       const double from = begin > n ? begin : n, to = end < n + 1 ? end : n + 1;
@@ -177,10 +178,11 @@ struct ClutterMapInputs {
 };
 ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar);
 
-/// The task of a radar's map without the ground; none: it has no map. Two rows per beamwidth, 90 to 1440 in
-/// all; cells as long as the range cell, at most 2048 as far as the region's farthest point: at most 24 MB.
-/// @param extent  of paths that may reach farther than the region; null: none does. The cells keep their
-/// places
+/// The task of a radar's map without the ground; empty if it has no map. Two rows per beamwidth, 90 to 1440
+/// in all; cells as long as the range cell, at most 2048 as far as the region's farthest point: at most 24
+/// MB.
+/// @param extent  of paths that may extend beyond the region; null: none. The positions of the cells do not
+/// change
 std::optional<ClutterMapTask> clutterMapTask(const scenario::Scenario& scenario,
                                              const scenario::Emitter& radar, const Station& station,
                                              const propagation::PathExtent* extent = nullptr);

@@ -22,12 +22,12 @@ struct ColumnGeometryView {
   const float* axis_east = nullptr;
   const float* axis_north = nullptr;
   const float* axis_up = nullptr;
-  /// Squared distance (m2) of the emitter from the column's line, and t (m) of the point nearest to it, so
-  /// that the distance squared is offset2 + (t - nearest)^2, without cancellation at any distance.
+  /// Squared distance (m2) of the emitter from the column's line, and t (m) of the nearest point of the line:
+  /// the squared distance is offset2 + (t - nearest)^2, without cancellation at any distance.
   const float* offset2_m2 = nullptr;
   const float* nearest_t_m = nullptr;
   /// Added to the straight line's rise (m) so that it points along the start of the refracted ray.
-  /// @accuracy launch angle within 0.001 degree to 500 km and 10 km of height: it is that of the column's
+  /// @accuracy launch angle within 0.001 degree to 500 km and 10 km of height; it is computed at the column's
   /// middle
   const float* lift_m = nullptr;
   /// Voxels below this z (m) are in shadow; -infinity: none is. NaN: unknown.
@@ -36,12 +36,12 @@ struct ColumnGeometryView {
   ExcessView excess;
   /// Reflected ray of each voxel, dense order; null: the model has none.
   const ReflectedRayCode* reflected = nullptr;
-  /// Mechanism of each voxel (propagation::Mechanism), dense order; null: the model has one, or it is not
-  /// asked for.
+  /// Mechanism of each voxel (propagation::Mechanism), dense order; null: the model has only one, or it is
+  /// not needed.
   const std::uint8_t* mechanisms = nullptr;
 };
 
-/// Numbers that columnGeometry() gives, in the order of ColumnGeometryView.
+/// Numbers per column from columnGeometry(), in the order of ColumnGeometryView.
 constexpr int kColumnNumbers = 9;
 
 /// @param numbers  kColumnNumbers x columns, as columnGeometry() fills them
@@ -71,7 +71,7 @@ EMSCAPE_HD inline void columnGeometry(const Station& station, const GridColumn& 
     return refractionLift_m(station, foot.distance_m, level_m, heightMsl_m(column, t_m));
   };
   const double lift_m = liftAt(middle_m);
-  // In an exponential atmosphere the lift falls with height: the column's line is turned by that.
+  // In an exponential atmosphere the lift falls with height, which turns the column's line.
   double lift_rise = 0;
   if (station.refraction.exponential && middle_m != 0) {
     lift_rise = (liftAt(1.5 * middle_m) - liftAt(0.5 * middle_m)) / middle_m;

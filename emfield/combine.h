@@ -21,12 +21,11 @@ struct EmitterBeam {
   /// Unit vectors of the antenna's frame in the emitter's east-north-up axes.
   Vec3f forward, right, up;
   float steer_u = 0, steer_v = 0;
-  /// Peak EIRP less losses, over 4 pi (W): divided by the distance squared it is the power density on
-  /// boresight.
+  /// Peak EIRP minus losses, over 4 pi (W); divided by the squared distance, the power density on boresight.
   float eirp_over_4pi_w = 0;
 };
 
-/// Lower limit (m) of the distance, so that the field is finite at the emitter itself.
+/// Lower limit (m) of the distance, so that the field is finite at the emitter.
 constexpr float kMinDistance_m = 1;
 
 /// A voxel relative to an emitter.
@@ -34,8 +33,8 @@ struct VoxelRay {
   Vec3f direction;  ///< of the refracted ray's start, in the antenna's frame (forward, right, up); not a unit
                     ///< vector
   float length2_m2;     ///< the direction's length squared
-  float isotropic_wm2;  ///< power density if the antenna radiated as on boresight; 0 in shadow and where it
-                        ///< is unknown
+  float isotropic_wm2;  ///< power density with the boresight gain in every direction; 0 in shadow and if
+                        ///< unknown
 };
 
 /// Start of the direct refracted ray, east-north-up at the emitter; not a unit vector.
@@ -73,8 +72,8 @@ EMSCAPE_HD inline Vec3f reflectedDirection(const EmitterBeam& emitter, const Ref
 
 /// Power density (W/m2) of one emitter at the voxel at z = t_m of a column, without the excess loss of its
 /// path (ColumnGeometryView::excess, if there is one); 0 in shadow and where the path is
-/// unknown. Nearer than the far field (2 D^2 / lambda) it is the extrapolated far field.
-/// @accuracy 1e-4 dB of double precision on axis and on smooth patterns, to 500 km
+/// unknown. Within the near field (< 2 D^2 / lambda) it is the extrapolated far field.
+/// @accuracy within 1e-4 dB of double precision on axis and for smooth patterns, to 500 km
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, std::size_t column, float t_m) {
   const VoxelRay ray = voxelRay(emitter, column, t_m);
@@ -87,7 +86,7 @@ EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, std::size_t
   return ray.isotropic_wm2 * amplitude * amplitude;
 }
 
-/// The same of the direct and the reflected ray.
+/// The same for the sum of the direct and the reflected ray.
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, const ReflectedRayCode& code,
                                          std::size_t column, float t_m) {
@@ -101,14 +100,14 @@ EMSCAPE_HD inline float powerDensity_wm2(const EmitterBeam& emitter, const Refle
          powerOfBothRays(reflected, direct, amplitude(reflectedDirection(emitter, reflected, column, t_m)));
 }
 
-/// True if an emitter's power density depends on the pattern along the reflected ray: between isotropic
-/// antennas the excess contains it.
+/// True if an emitter's power density depends on the pattern along the reflected ray; for isotropic antennas
+/// the excess includes the ray.
 EMSCAPE_HD inline bool weighsReflectedRays(const EmitterBeam& emitter) {
   return emitter.geometry.reflected != nullptr && emitter.pattern.kind != scenario::PatternKind::isotropic;
 }
 
 /// The power density of the direct ray to a voxel outside the pattern's lobe.
-/// @param depth  below 0 where it does (scenario::depthInLobe)
+/// @param depth  below 0 outside the lobe (scenario::depthInLobe)
 EMSCAPE_HD inline float sideLobePowerDensity_wm2(const EmitterBeam& emitter, std::size_t column, float t_m,
                                                  float& depth) {
   const VoxelRay ray = voxelRay(emitter, column, t_m);
@@ -122,7 +121,7 @@ enum class Reduction {
   maximum,             ///< largest weight * S
   count,               ///< number of emitters with S > weight
   dominant,            ///< weight of the emitter with the largest S, -1 if all are 0
-  dominant_mechanism,  ///< the same; of emitters with mechanisms per voxel that of the voxel
+  dominant_mechanism,  ///< the same; for emitters with mechanisms per voxel, that of the voxel
   signal,  ///< sum of weight * S of the emitters with weight >= 0; second: of -weight * S of the others
 };
 
@@ -179,7 +178,7 @@ EMSCAPE_HD inline float mechanismWeight(const ColumnGeometryView& geometry, floa
   return geometry.mechanisms != nullptr ? static_cast<float>(geometry.mechanisms[voxel]) : weight;
 }
 
-/// An emitter's part in one channel.
+/// An emitter's contribution to one channel.
 struct ChannelWeight {
   int channel = 0;  ///< index into CombineTask::accumulators
   float weight = 1;
@@ -189,8 +188,8 @@ struct CombineEmitter {
   EmitterBeam beam;
   int emitter_index = 0;
   std::vector<ChannelWeight> shares;
-  /// Power density (W/m2) at every voxel, dense order, excess loss included: written by the pass, or read by
-  /// it in place of being computed. Null: neither.
+  /// Power density (W/m2) at every voxel, dense order, including the excess loss; written by the pass, or
+  /// read instead of computed. Null: neither.
   float* power_wm2 = nullptr;
   bool power_is_known = false;
 };
@@ -203,11 +202,11 @@ struct CombineTask {
   std::vector<CombineEmitter> emitters;
   std::vector<Reduction> reductions;      ///< one per channel
   std::vector<Accumulator> accumulators;  ///< one per channel; value null: not part of this pass
-  std::vector<ConstAccumulator> initial;  ///< initial value of each accumulator; value null: nothing
+  std::vector<ConstAccumulator> initial;  ///< initial value of each accumulator; value null: none
   bool keep = false;                      ///< true: continue with the values in the accumulators
 };
 
-/// True if a pass adds an emitter to any of its accumulators; radars' echoes are not added by it.
+/// True if a pass adds an emitter to any of its accumulators. Echoes of radars are added by other passes.
 inline bool takesPart(const CombineTask& task, const CombineEmitter& emitter) {
   for (const ChannelWeight& share : emitter.shares) {
     if (task.accumulators[static_cast<std::size_t>(share.channel)].value != nullptr) return true;

@@ -16,7 +16,7 @@ bool radiatesCut(const scenario::Emitter& emitter) {
          emitter.propagation.parabolic_equation.source == propagation::PeRadiator::pattern;
 }
 
-/// How the beam moves in elevation; empty: it does not.
+/// Description of the beam's motion in elevation; empty if it does not move.
 std::string motionInElevation(const scenario::Scenario& scenario, const scenario::Emitter& emitter) {
   const scenario::ScanSpec& scan = emitter.scan;
   switch (scan.kind) {

@@ -1,4 +1,4 @@
-/// The vertical cut through an antenna's beam, which some models radiate instead of an isotropic source.
+/// The vertical cut through an antenna's beam, which some models use as source instead of an isotropic one.
 #pragma once
 
 #include <optional>
@@ -19,11 +19,11 @@ struct ElevationCut {
   double operator()(double elevation_rad) const;
 };
 
-/// The cut that an emitter's model radiates; none: it radiates isotropically, or the antenna does.
+/// The cut that an emitter's model uses; none if the source or the antenna is isotropic.
 std::optional<ElevationCut> elevationCut(const scenario::Emitter& emitter, const scenario::BeamPose& beam);
 
-/// @throws Error (bad_input) at the emitter's settings if its model radiates a cut while the beam moves in
-/// elevation: by its scan, or onto the targets of radars
+/// @throws Error (bad_input) at the emitter's settings if its model uses a cut and the beam moves in
+/// elevation, by its scan or towards the targets of radars
 void checkElevationCut(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
 
 }  // namespace emscape::emfield

@@ -1,4 +1,4 @@
-/// The excess loss of an emitter's paths: a model of the registry, the attenuation by the air, and their
+/// The excess loss of an emitter's paths: a model of the registry, the atmospheric attenuation, and their
 /// tables.
 #pragma once
 
@@ -25,10 +25,10 @@ namespace emscape::emfield {
 struct EmitterExcess {
   propagation::ExcessModel model;
   propagation::AirLoss air;
-  /// What is still to be marched for the model's tables; null: they are complete, or there are none.
+  /// The pending march for the model's tables; null if they are complete, or if there are none.
   std::shared_ptr<propagation::FieldMarch> march;
 
-  /// Tables of model and air, in host memory; empty if they need none.
+  /// Tables of model and air, in host memory; empty if not needed.
   std::shared_ptr<const std::vector<float>> model_tables, air_tables;
   /// The same, pointing to copies of the tables elsewhere.
   EmitterExcess withTablesAt(const float* model_tables_copy, const float* air_tables_copy) const;
@@ -42,7 +42,7 @@ propagation::EmitterInputs emitterInputs(const scenario::Scenario& scenario,
                                          const scenario::Emitter& emitter);
 
 /// The models' inputs for the emitter's paths from its site.
-/// @param beam        of the emitter, from which the model takes what depends on the antenna
+/// @param beam        of the emitter, for models that depend on the antenna
 /// @param terrain     null: none
 /// @param extent      read only where propagation::needsExtent()
 /// @throws Error (bad_input) for a model without terrain if the ground below the emitter is missing
@@ -50,7 +50,8 @@ propagation::PathInputs pathInputs(const scenario::Scenario& scenario, const sce
                                    const scenario::BeamPose& beam, const Station& station,
                                    const scenario::Terrain* terrain, const propagation::PathExtent& extent);
 
-/// Calls a function; its Errors get the emitter's name, that of its model and the line of its settings.
+/// Calls a function and adds to its Errors the names of emitter and model and the line of the model's
+/// settings.
 void inModel(const scenario::Emitter& emitter, const std::function<void()>& body);
 
 /// Extent of the paths from a station to a grid.
@@ -62,7 +63,7 @@ bool hasExcess(const scenario::Scenario& scenario, const scenario::Emitter& emit
 
 /// The excess of an emitter that has one.
 /// @param radials  for models with ModelInfo::radial
-/// @param points   of a surface, for models with ModelInfo::excess_at; null: those interpolate
+/// @param points   of a surface, for models with ModelInfo::excess_at; null: these models interpolate
 EmitterExcess planExcess(const propagation::PathInputs& inputs,
                          const propagation::RadialInputs* radials = nullptr,
                          const propagation::PathPoints* points = nullptr);
@@ -71,7 +72,7 @@ EmitterExcess planExcess(const propagation::PathInputs& inputs,
 EmitterExcess planExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                          const scenario::BeamPose& beam, const Station& station,
                          const scenario::Terrain* terrain, const GridColumns& columns);
-/// Marches on the CPU, if the model does. @throws Error (bad_input) that names the emitter
+/// Runs the model's march on the CPU, if it has one. @throws Error (bad_input) that names the emitter
 void marchTables(const scenario::Emitter& emitter, EmitterExcess& excess);
 
 }  // namespace emscape::emfield

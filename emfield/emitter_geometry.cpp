@@ -111,7 +111,7 @@ void EmitterGeometry::locateColumns(const Station& station, const GridColumns& c
   const ColumnsView view = columns.view();
   parallelFor(static_cast<int>(column_count_), 4096, [&](int begin, int end) {
     for (int c = begin; c < end; ++c) {
-      if (c > begin && isSameColumn(view, c - 1, c)) {  // places that are left out
+      if (c > begin && isSameColumn(view, c - 1, c)) {  // positions that are left out
         for (int n = 0; n < kColumnNumbers; ++n)
           arrays_[n * column_count_ + c] = arrays_[n * column_count_ + c - 1];
         if (paths != nullptr) paths[c] = paths[c - 1];

@@ -15,9 +15,9 @@
 
 namespace emscape::emfield {
 
-/// What some channel needs of an emitter's geometry.
+/// Parts of an emitter's geometry that the channels need.
 struct GeometryNeeds {
-  bool any = false;          ///< columns and excess, for its power or its echoes
+  bool any = false;          ///< columns and excess, for power or echoes
   bool clutter_map = false;  ///< clutter of land and sea
   bool mechanisms = false;   ///< per voxel, of a model with several
 };
@@ -25,7 +25,7 @@ struct GeometryNeeds {
 /// Stages 1 and 2 of one emitter.
 class EmitterGeometry {
  public:
-  /// Times of the two stages (ms), the second without its marches.
+  /// Times of the two stages (ms); the second without marches.
   struct Times {
     double columns_ms = 0, march_ms = 0, excess_ms = 0;
     double marched_heights = 0;
@@ -39,7 +39,7 @@ class EmitterGeometry {
                Times& times, const TerrainBounds* bounds = nullptr, const GeometryNeeds& needs = {});
 
   ColumnGeometryView view() const;
-  /// Of a radar with clutter of the surface, if it was asked for; else without cells.
+  /// Of a radar with surface clutter, if it was requested; else without cells.
   ClutterMapView clutterMap() const {
     return clutterMapView(clutter_grid_, clutter_.empty() ? nullptr : clutter_.data());
   }
@@ -51,11 +51,11 @@ class EmitterGeometry {
 
   static constexpr std::size_t kBytesPerColumn = 10 * sizeof(float);
   /// Bytes per voxel of an emitter: its excess, its reflected ray and its mechanism, if its model has them,
-  /// and what the model computes of a surface's points beforehand.
+  /// and data that the model precomputes for a surface's points.
   /// @param on_surface  GridColumns::every_height
   static std::size_t bytesPerVoxel(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                    bool on_surface = false, const GeometryNeeds& needs = {});
-  /// Bytes per emitter for a grid of so many columns and layers.
+  /// Bytes per emitter for a grid with these numbers of columns and layers.
   static std::size_t bytesOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                              std::size_t columns, int layers, bool on_surface = false,
                              const GeometryNeeds& needs = {});
@@ -69,7 +69,7 @@ class EmitterGeometry {
   void mapClutter(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                   const Station& station, const propagation::PathExtent& extent,
                   const scenario::Terrain* terrain);
-  /// @param paths  receives the paths to the columns if these are not tilted; null: they are not asked for
+  /// @param paths  receives the paths to the columns if these are not tilted; null: not needed
   void locateColumns(const Station& station, const GridColumns& columns, FastInverse* paths);
 
   std::size_t column_count_ = 0;
@@ -80,7 +80,7 @@ class EmitterGeometry {
   std::vector<ReflectedRayCode> reflected_;  ///< the same
   std::vector<std::uint8_t> mechanisms_;     ///< the same
   ClutterGrid clutter_grid_;
-  std::vector<ClutterCell> clutter_;  ///< empty: no clutter of the surface
+  std::vector<ClutterCell> clutter_;  ///< empty: no surface clutter
   long long unknown_columns_ = 0;
   unsigned warnings_ = 0;
 };

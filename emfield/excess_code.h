@@ -1,8 +1,8 @@
-/// A voxel's excess loss, for storage between updates: a 16-bit code, or over a surface the number itself.
+/// A voxel's excess loss, for storage between updates: a 16-bit code, or for surfaces a float.
 ///
-/// Excess is a path's loss less that of free space; negative where rays add up. It depends on the emitter's
-/// position, frequency and polarisation and on terrain and air, not on its power or antenna; except where a
-/// model radiates the antenna's elevation cut.
+/// Excess is the loss of a path minus its free-space loss; negative where rays add constructively. It depends
+/// on the emitter's position, frequency and polarisation, the terrain and the atmosphere, not on power or
+/// antenna, except for models that use the antenna's elevation cut.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace emscape::emfield {
 using ExcessCode = std::int16_t;
 
 constexpr float kExcessCodesPerDb = 128;
-/// Largest excess that a code holds (dB), either way; beyond it saturates.
+/// Largest magnitude of the excess in a code (dB); larger values saturate.
 constexpr float kMaxExcess_db = 32767 / kExcessCodesPerDb;
 /// Code of an unknown path.
 constexpr ExcessCode kUnknownExcess = -32768;
@@ -42,13 +42,13 @@ EMSCAPE_HD inline float excessFactor(ExcessCode code) {
   const float factor = fastDbToRatio(static_cast<float>(code) * (-1 / kExcessCodesPerDb));
   return code == kUnknownExcess ? 0.0f : factor;
 }
-/// The same of an excess in dB; 0 for NaN, the unknown one.
+/// The same for an excess in dB; 0 for NaN (unknown).
 EMSCAPE_HD inline float excessFactor(float excess_db) {
   const float factor = fastDbToRatio(-excess_db);
   return excess_db == excess_db ? factor : 0.0f;
 }
 
-/// Excess of voxels, dense order: one of the two, or none.
+/// Excess of voxels, dense order: one of the two representations, or none.
 struct ExcessView {
   const ExcessCode* codes = nullptr;
   const float* db = nullptr;

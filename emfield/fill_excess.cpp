@@ -87,7 +87,7 @@ ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terra
   grid.every_height = columns.every_height;
   if (!columns.first_valid_k.empty()) grid.first_valid_k = columns.first_valid_k.data();
   if (columns.tilted) {
-    // The ground track of a segment is not longer than the distance between posts.
+    // The ground track of a segment is at most as long as the distance between posts.
     constexpr double kMaxTrack_m = 100;
     const double track_m = std::min(postSpacing_m(terrain), kMaxTrack_m);
     grid.segments = std::clamp(static_cast<int>(std::ceil(2 * tiltOf(columns) / track_m)), 1, grid.layers);

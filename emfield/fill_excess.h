@@ -30,7 +30,7 @@ struct ExcessGrid {
   bool every_height = false;  ///< see ExcessColumn
   /// Ground below each column; null: read at the end of each profile (tilted columns), or none.
   const float* ground_msl_m = nullptr;
-  /// From the station to each column, if it is known and the columns are not tilted; null: it is computed.
+  /// Paths from the station to each column, if known and the columns are not tilted; null: they are computed.
   const FastInverse* paths = nullptr;
   /// Lowest layer of each column that counts; null: all do.
   const std::uint16_t* first_valid_k = nullptr;
@@ -45,8 +45,8 @@ struct ExcessGrid {
     if (first_valid_k == nullptr) return 0;
     return first_valid_k[column] < layers ? first_valid_k[column] : layers;
   }
-  /// True if no layer of a column counts, but not for want of terrain, which is reported. A tilted column may
-  /// want it anywhere.
+  /// True if no layer of a column counts, for a reason other than missing terrain, which is reported. For a
+  /// tilted column terrain may be missing anywhere.
   EMSCAPE_HD bool isLeftOut(std::size_t column) const {
     return !tilted && first_valid_k != nullptr && first_valid_k[column] >= layers &&
            !(ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column]);
@@ -56,7 +56,7 @@ struct ExcessGrid {
   EMSCAPE_HD bool isWithoutGround(std::size_t column) const {
     return ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column];
   }
-  /// From a station to below the middle of a segment.
+  /// Distance and azimuth from a station to the point below the middle of a segment.
   EMSCAPE_HD FastInverse coordinatesOf(const Station& station, std::size_t column, int segment) const {
     if (paths != nullptr) return paths[column];
     const auto first_m = static_cast<double>(t_m[firstLayer(segment)]);
@@ -108,7 +108,7 @@ struct ExcessTask {
     return part;
   }
 
-  /// Height of a voxel as the model takes it.
+  /// Height of a voxel, as input of the model.
   EMSCAPE_HD float modelHeight_m(double range_m, float height_msl_m) const {
     if constexpr (propagation::OnEffectiveEarth<Model>::value) {
       if (station.refraction.exponential) {
@@ -119,7 +119,7 @@ struct ExcessTask {
     return height_msl_m;
   }
 
-  /// Adds the attenuation by the air at some heights of a segment.
+  /// Adds the atmospheric attenuation at some heights of a segment.
   EMSCAPE_HD void addAir(std::size_t c, int segment, const ExcessColumn& part, int begin, int end,
                          float* excess_db) const {
     if (air.isClear()) return;
@@ -133,7 +133,7 @@ struct ExcessTask {
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
   /// @param reflected   dense order; receives the column's reflected rays if the model has any
-  /// @param mechanisms  dense order; receives its mechanisms if the model has several; null: not asked for
+  /// @param mechanisms  dense order; receives its mechanisms if the model has several; null: not needed
   /// @return warning bits of the model
   template <class Reader>
   EMSCAPE_HD unsigned fillColumn(std::size_t c, const ExcessScratch& scratch, const Reader& read,
@@ -145,7 +145,7 @@ struct ExcessTask {
       float* const excess_db = scratch.excess_db + first;
       if constexpr (propagation::Reflects<Model>::value) {
         for (int k = 0; k < part.count; ++k) {
-          // Lobes are narrow: a leaning column's voxels are at ranges of their own.
+          // Lobes are narrow, so each voxel of a tilted column has its own range.
           const double range_m =
               grid.tilted
                   ? footInverse(station, grid.columns[c], static_cast<double>(grid.t_m[first + k])).distance_m
@@ -171,7 +171,7 @@ struct ExcessTask {
 struct ExcessOutput {
   ExcessStore excess;
   ReflectedRayCode* reflected = nullptr;  ///< of models with a reflected ray
-  std::uint8_t* mechanisms = nullptr;     ///< of models with several; null: not asked for
+  std::uint8_t* mechanisms = nullptr;     ///< of models with several; null: not needed
   float* shadow_edge_m = nullptr;         ///< set to NaN where terrain is missing: the column is unknown
 
   EMSCAPE_HD void markUnknown(std::size_t column) const { shadow_edge_m[column] = NAN; }

@@ -50,9 +50,9 @@ GridColumn tiltedColumn(const GeoFrame& frame, const Vec3d& base_m, double upper
   return column;
 }
 
-/// Undulations of the geoid at many places close to each other: bilinear in cells so small that the geoid is
-/// flat there, which are parts of those of the geoid's grid.
-/// @accuracy 0.1 mm where the geoid's slope changes by 1e-6 per km
+/// Undulations of the geoid at many positions close to each other: bilinear in small cells, parts of the
+/// cells of the geoid grid, in which the geoid is nearly flat.
+/// @accuracy 0.1 mm if the geoid's slope changes by 1e-6 per km
 class NearGeoid {
  public:
   double undulation_m(double latitude_deg, double longitude_deg) {
@@ -67,7 +67,7 @@ class NearGeoid {
 
  private:
   static constexpr double kCellsPerDegree = 64;
-  static constexpr int kKept = 128;  ///< cells of one row, which the next row of places often needs again
+  static constexpr int kKept = 128;  ///< cells of one row, which the next row of positions often needs again
   struct Cell {
     double i = HUGE_VAL, j = HUGE_VAL;
     double corners_m[4];
@@ -89,7 +89,7 @@ class NearGeoid {
   Cell cells_[kKept];
 };
 
-/// Makes the vertical columns whose t = 0 is at a height above a place.
+/// Makes vertical columns whose t = 0 is at a height above a position.
 class ColumnMaker {
  public:
   PlaceColumn columnAbove(const Surface::Place& place, double base_msl_m) {
@@ -123,16 +123,16 @@ void setOutlineOfGrid(GridColumns& columns) {
   }
 }
 
-/// What is known of some of a surface's places.
+/// Sums over a part of a surface's positions.
 struct PlacesPart {
   Vec3d feet{0, 0, 0};  ///< sum
   double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;
-  double farthest2_m2 = 0;               ///< of a foot from the middle, in a straight line
+  double farthest2_m2 = 0;               ///< largest squared straight-line distance of a foot from the middle
   double beyond_m = 0;                   ///< the same along the ground
-  long long holes = 0, first_hole = -1;  ///< places without ground
+  long long holes = 0, first_hole = -1;  ///< positions without ground
 };
 
-/// Places that a thread visits together. Their sums are added in order, whatever thread computes them.
+/// Positions that a thread processes together. Their sums are added in order, whichever thread computes them.
 constexpr int kPlacesPart = 4096;
 
 /// Calls visit(first, end, part) for all parts.
@@ -144,7 +144,7 @@ void visitParts(std::vector<PlacesPart>& parts, int places, const Visit& visit) 
   });
 }
 
-/// Sets a circle around all places with ground, and gives places that are left out the column of its middle,
+/// Sets a circle around all positions with ground. Positions that are left out get the column of its centre,
 /// so that their numbers are finite.
 void setOutlineOfPlaces(const Surface& surface, std::vector<PlacesPart>& parts, GridColumns& columns) {
   Vec3d sum{0, 0, 0};
@@ -177,7 +177,7 @@ void setOutlineOfPlaces(const Surface& surface, std::vector<PlacesPart>& parts, 
   });
   double farthest2_m2 = 0;
   for (const PlacesPart& part : parts) farthest2_m2 = std::max(farthest2_m2, part.farthest2_m2);
-  // The earth's radii differ by less than 1.5 %, and much less so the arcs over one chord.
+  // The earth's radii differ by less than 1.5 %, and the arcs over one chord by much less.
   constexpr double kNearlyFarthest2 = 0.97;
   const Station station = makeStation({middle.latitude_deg, middle.longitude_deg, 0}, 0, 1);
   visitParts(parts, places, [&](int first, int end, PlacesPart& part) {

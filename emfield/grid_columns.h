@@ -16,8 +16,8 @@
 
 namespace emscape::emfield {
 
-/// One column of voxels: the line base + t * axis, where t is the frame's z (m). Over a surface t is its
-/// height (Surface::heights_m), and base the point from which that counts.
+/// One column of voxels: the line base + t * axis, where t is the frame's z (m). For surfaces t is the height
+/// (Surface::heights_m), and base the point with t = 0.
 struct GridColumn {
   Vec3d base_ecef_m;       ///< at t = 0
   Vec3d axis;              ///< unit vector of growing t
@@ -31,7 +31,7 @@ EMSCAPE_HD inline double heightMsl_m(const GridColumn& column, double t_m) {
   return column.height_msl_m[0] + t_m * (column.height_msl_m[1] + t_m * column.height_msl_m[2]);
 }
 
-/// A vertical column above a place of a surface, in a third of the memory.
+/// A vertical column above a position of a surface, in a third of the memory.
 struct PlaceColumn {
   Vec3d foot_ecef_m;                    ///< point of the ellipsoid below
   double base_ellipsoid_m, base_msl_m;  ///< heights of t = 0
@@ -46,7 +46,7 @@ EMSCAPE_HD inline GridColumn gridColumn(const PlaceColumn& column) {
   return {foot + up * column.base_ellipsoid_m, up, foot, {0, 0, 0}, {column.base_msl_m, 1, 0}};
 }
 
-/// Columns as plain data: one of the two.
+/// Columns as plain data: one of the two kinds.
 struct ColumnsView {
   const GridColumn* of_grid = nullptr;
   const PlaceColumn* of_surface = nullptr;
@@ -61,16 +61,17 @@ struct GridColumns {
   Dims dims;
   bool tilted = false;        ///< columns are not vertical (enu frame)
   bool every_height = false;  ///< models do not interpolate between layers
-  /// No column is farther from any point than one of these, and beyond_outline_m (along the ground).
+  /// The distance of any column from any point is at most the largest distance of these columns plus
+  /// beyond_outline_m (along the ground).
   std::vector<GridColumn> outline;
   double beyond_outline_m = 0;
   double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;  ///< of the columns' points
   std::vector<GridColumn> of_grid;                            ///< or, of a surface:
-  UnsetVector<PlaceColumn> of_surface;  ///< places that are left out have the column of the outline
+  UnsetVector<PlaceColumn> of_surface;  ///< positions that are left out have the column of the outline
   std::vector<float> t_m;               ///< z of each layer
   std::vector<float> ground_msl_m;  ///< ground below each column (m); NaN over holes; empty without terrain
   std::vector<std::uint16_t>
-      first_valid_k;  ///< lowest layer whose centre is not below ground; dims.z over holes and where left out
+      first_valid_k;  ///< lowest layer whose centre is not below ground; dims.z over holes and if left out
   long long hole_columns = 0;
   /// A column over a hole, for messages; -1 if there is none.
   long long first_hole = -1;
@@ -92,7 +93,7 @@ double tiltOf(const GridColumns& columns);
 /// @param terrain  null: nothing is below ground
 /// @accuracy enu: heights along a column within 1 mm, its foot within 1 m, for regions to 500 km
 GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* terrain);
-/// The same over the places of a surface. dims: its width, its height, its number of heights.
+/// The same for a surface. dims: width, height, number of heights.
 GridColumns makeGridColumns(const Surface& surface, const scenario::Terrain* terrain);
 
 }  // namespace emscape::emfield

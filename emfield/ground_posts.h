@@ -1,7 +1,7 @@
-/// Terrain profiles from an emitter to the columns: the posts at which every one of them reads the ground.
+/// Terrain profiles from an emitter to the columns: the posts at which they read the ground.
 ///
-/// Posts are half a post of the elevation model apart, closer near the emitter, whatever the grid; the field,
-/// the jammers' paths and the budget of a single path read the same ones.
+/// The spacing is half that of the elevation model, smaller near the emitter, and independent of the grid.
+/// The field, the jammers' paths and the budget of a single path use the same posts.
 #pragma once
 
 #include <vector>
@@ -16,13 +16,13 @@ namespace emscape::emfield {
 using propagation::ExcessScratch;
 using propagation::TerrainProfile;
 
-/// Distance (m) between the posts of the terrain; over a smooth earth (null) a length over which it deviates
+/// Distance (m) between the posts of the terrain; for a smooth earth (null) a length over which it deviates
 /// from a plane by millimetres.
 double postSpacing_m(const scenario::Terrain* terrain);
 
-/// Ranges of posts from 0 to the first one not below farthest_m: every few metres at first, where a few
-/// metres of ground mask a large angle, then in proportion to the range, then evenly, half the spacing apart.
-/// A longer list begins with the shorter one.
+/// Ranges of posts from 0 to the first one not below farthest_m: first every few metres, because near the
+/// emitter a few metres of ground mask a large angle, then proportional to the range, then equally spaced at
+/// half the post spacing. Shorter lists are prefixes of longer ones.
 std::vector<double> postRanges(double farthest_m, double post_spacing_m);
 
 /// The ground as plain data, for loops on host and device.
@@ -59,7 +59,7 @@ EMSCAPE_HD void visitPosts(const Station& station, const GroundPosts& ground, co
     for (int i = 0; i < count; ++i) visit(i, 0.0f);
     return;
   }
-  constexpr int kAtOnce = 4;  // loads that do not wait for one another
+  constexpr int kAtOnce = 4;  // independent loads
   TerrainWalk walk(station, ground.terrain, path);
   for (int i = 0; i < count;) {
     const double* const ranges_m = ground.ranges_m + i;

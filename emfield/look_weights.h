@@ -1,4 +1,4 @@
-/// What a radar's look weighs each voxel with, apart from all powers.
+/// Weights of the voxels for a radar's look, independent of all powers.
 #pragma once
 
 #include <cstddef>
@@ -6,17 +6,16 @@
 
 namespace emscape::emfield {
 
-/// Weights of all voxels, dense order: written by a pass, or read by it in place of being computed. Null:
-/// neither.
+/// Weights of all voxels, dense order: written by a pass, or read instead of computed. Null: neither.
 struct WeightArray {
   float* values = nullptr;
   bool is_known = false;
 };
 
-/// The weights of a RadarPass that outlive it.
+/// The weights of a RadarPass that are kept after it.
 struct LookWeights {
   WeightArray echo;                  ///< echoWeight() with the excess loss of the path
-  std::vector<WeightArray> jammers;  ///< jammingWeight() of each jammer; empty: none outlives it
+  std::vector<WeightArray> jammers;  ///< jammingWeight() of each jammer; empty: none is kept
 };
 
 }  // namespace emscape::emfield

@@ -1,9 +1,9 @@
-/// Occupancy: the share of an interval's time in which an emitter's power density is above a threshold
-/// (channel occupancy of Report ITU-R SM.2256, 2.16, at each voxel).
+/// Occupancy: the fraction of an interval in which an emitter's power density is above a threshold (channel
+/// occupancy of Report ITU-R SM.2256, 2.16, at each voxel).
 ///
-/// The beam's positions in the interval stand for it one by one, and nothing is assumed of the pattern but
-/// how far from the beam it reaches a level. Several emitters are taken as independent of each other, which
-/// their turns are in the long run: the share in which any of them is above is 1 - (1 - p1) (1 - p2) ...
+/// The motion of the beam is represented by single positions; of the pattern only the angular distance from
+/// the beam at which it reaches a level is used. Several emitters are assumed to be independent, which holds
+/// for their turns in the long run: the fraction in which any of them is above is 1 - (1 - p1) (1 - p2) ...
 #pragma once
 
 #include <vector>
@@ -17,12 +17,12 @@
 
 namespace emscape::emfield {
 
-/// How far (rad of azimuth) from the beam's azimuth a pattern reaches each level at any elevation, as plain
-/// data.
+/// Largest distance (rad of azimuth) from the beam's azimuth at which a pattern reaches each level, over all
+/// elevations, as plain data.
 struct PatternReach {
   static constexpr int kLevels = 161;
   static constexpr float kLevelsPerDb = 2;  ///< level n is n / 2 dB below the maximum
-  float azimuth_rad[kLevels] = {};          ///< pi: all around
+  float azimuth_rad[kLevels] = {};          ///< pi: the full circle
 
   /// @param level  power relative to the maximum, > 0
   EMSCAPE_HD float towards(float level) const {
@@ -32,13 +32,14 @@ struct PatternReach {
   }
 };
 
-/// Positions of a beam at equal steps of azimuth about the up of a frame, and one elevation; or a single one.
+/// Positions of a beam at equal steps of azimuth about the up axis of a frame, at one elevation; or a single
+/// position.
 struct BeamArc {
   Aim aim;                            ///< of the first position
   float first_rad = 0, step_rad = 0;  ///< azimuths; at most a turn
   int begin = 0, count = 1;           ///< its positions in OccupancyPass::cos_azimuth
   int reach = -1;                     ///< index into OccupancyPass::reaches; -1: unknown
-  float share = 0;                    ///< of the interval, of one position
+  float share = 0;                    ///< of one position in the interval
 };
 
 /// The positions of a beam in an interval.
@@ -48,7 +49,7 @@ struct BeamPositions {
   std::vector<PatternReach> reaches;
 };
 
-/// An emitter's part in a channel of occupancy.
+/// An emitter's contribution to a channel of occupancy.
 struct OccupancyShare {
   int channel = 0;
   float threshold_wm2 = 0;
@@ -95,7 +96,7 @@ inline OccupancyPass occupancyPass(const OccupancyShare& share, const EmitterBea
   return pass;
 }
 
-/// Positions of an arc with the voxel in them; at most three runs of them.
+/// Positions of an arc that may illuminate the voxel; at most three runs.
 struct PositionRuns {
   int begin[3] = {}, end[3] = {};
 };
@@ -165,7 +166,7 @@ EMSCAPE_HD inline int countAbove(const OccupancyPass& pass, const BeamArc& arc, 
   return above;
 }
 
-/// The share of the interval in which one emitter is above the threshold at a voxel.
+/// The fraction of the interval in which one emitter is above the threshold at a voxel.
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline float occupancyAt(const OccupancyPass& pass, std::size_t voxel, std::size_t column,
                                     float t_m) {
@@ -204,7 +205,7 @@ EMSCAPE_HD inline float occupancyAt(const OccupancyPass& pass, std::size_t voxel
   return share < 1 ? share : 1.0f;
 }
 
-/// The occupancy by emitters so far and one more.
+/// Adds one emitter to the accumulated occupancy.
 EMSCAPE_HD inline float withOccupancy(float share, float accumulated) {
   return accumulated + share * (1 - accumulated);
 }

@@ -8,7 +8,7 @@
 namespace emscape::emfield {
 namespace {
 
-/// Columns that are counted and sorted together, in their order.
+/// Number of columns that are counted and sorted together, in their order.
 constexpr int kPart = 1 << 14;
 
 /// Sine of the angle from one azimuth to another.
@@ -56,7 +56,7 @@ PathSectors::PathSectors(const Station& station, const ExcessGrid& grid, int cou
   const int columns = static_cast<int>(grid.column_count), sectors = this->count();
   const int parts = (columns + kPart - 1) / kPart;
   UnsetVector<int> sector_of(grid.column_count);  // -1: none
-  // Number of paths of each part to each sector; then where the next of these goes.
+  // Number of paths of each part to each sector; then the index of the next path.
   std::vector<std::size_t> next(static_cast<std::size_t>(parts) * sectors);
   const auto inParts = [&](const auto& visit) {
     parallelFor(parts, 1, [&](int begin, int end) {

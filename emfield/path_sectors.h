@@ -1,5 +1,5 @@
-/// The columns of a surface by the direction of their paths from a station: those of one narrow sector share
-/// the search of the terrain.
+/// The columns of a surface by the direction of their paths from a station: columns of one narrow sector
+/// share the search of the terrain.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ struct SectorPath {
 class PathSectors {
  public:
   /// Columns that are left out or without ground are in no sector.
-  /// @param count  of sectors around the station, rounded up to a multiple of 4; they are not equally wide,
+  /// @param count  number of sectors around the station, rounded up to a multiple of 4. They differ in width,
   /// but none is wider than 8 / count (rad)
   PathSectors(const Station& station, const ExcessGrid& grid, int count);
 
@@ -34,11 +34,11 @@ class PathSectors {
     double sine, cosine;
   };
   Azimuth middle(int sector) const { return azimuthAt(sector, 0.5); }
-  /// Largest |aside_rad| of a sector, at most.
+  /// Upper bound of |aside_rad| in a sector.
   double halfWidth_rad(int sector) const;
 
  private:
-  /// @param part  of the sector, 0..1 with the azimuth
+  /// @param part  position in the sector, 0..1 with the azimuth
   Azimuth azimuthAt(int sector, double part) const;
   int sectorOf(double sin_azimuth, double cos_azimuth) const;
 

@@ -20,7 +20,7 @@ namespace {
 using scenario::Emitter;
 using scenario::Quantity;
 
-/// True for quantities of an echo behind the radar's filter, against clutter.
+/// True for quantities of an echo after the radar's filter, against clutter.
 bool isAgainstClutter(Quantity quantity) {
   return quantity == Quantity::detection_probability || quantity == Quantity::detection_age_s ||
          quantity == Quantity::sclnr_db;
@@ -69,7 +69,7 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Sce
   return task;
 }
 
-/// More (s) than the age of any detection in the intervals of a channel's radars.
+/// Upper bound (s) of the age of any detection in the intervals of a channel's radars.
 double longestAge_s(const Channel& channel, const scenario::Scenario& scenario) {
   double longest_s = 0;
   for (const int e : channel.emitters) {
@@ -214,7 +214,7 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
       weigh([](const Emitter& emitter) { return emitter.dutyCycle(); });
       break;
   }
-  // The combine stage has the power density of the beam's own direction, but not that of another look, and no
+  // The combine stage computes the power density for the beam's direction, but not for other looks, and no
   // jamming.
   const bool is_plain = channel.quantity == Quantity::snr_db &&
                         scenario.output.radar_look == scenario::RadarLook::scan &&

@@ -1,4 +1,4 @@
-/// Stage 4: from accumulators to the quantities that a volume holds.
+/// Stage 4: from accumulators to the quantities of a volume.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace emscape::emfield {
 
-/// How a channel's accumulator becomes its quantity.
+/// Conversion of a channel's accumulator to its quantity.
 enum class ProductForm {
   decibels,      ///< scale * 10 log10(accumulator) + offset
   itself,        ///< the accumulator
@@ -28,7 +28,7 @@ struct ProductScale {
   ProductForm form = ProductForm::decibels;
   float scale = 1;
   float offset = 0;    ///< dB; of ages s
-  float floor = -120;  ///< lowest value kept
+  float floor = -120;  ///< lowest stored value
 };
 
 EMSCAPE_HD inline float decibelsOf(const ProductScale& product, float accumulator) {
@@ -56,10 +56,10 @@ constexpr float kMaxMargin = 1e6f;
 /// Largest jammer-to-signal ratio (100 dB): that of a jammed radar without an echo.
 constexpr float kMaxJammerToSignal = 1e10f;
 
-/// The scale of a quantity's colours (a value of volume::kScaleKey); null: none.
+/// The colour scale of a quantity (a value of volume::kScaleKey); null: none.
 const char* scaleOf(scenario::Quantity quantity);
 
-/// Line for the legend on the quantity's bounds or its signal (volume::kLegendNoteKey); empty: none.
+/// Line of the legend about the quantity's bounds or its signal (volume::kLegendNoteKey); empty: none.
 std::string legendNoteOf(scenario::Quantity quantity, const scenario::Scenario& scenario);
 
 /// Computation of a channel: its reduction, each emitter's weight, and its scale.
@@ -67,18 +67,18 @@ struct ChannelPlan {
   Reduction reduction = Reduction::sum;
   ProductScale product;
   std::vector<float> weights;  ///< in the order of Channel::emitters
-  /// In the same order: radars that enter by their echoes instead of their weights; empty: none.
+  /// In the same order: radars that contribute their echoes instead of weighted powers; empty: none.
   std::vector<RadarTask> radars;
-  /// Of channels of occupancy: the power density (W/m2) above which an emitter counts; else 0.
+  /// For channels of occupancy: the power density (W/m2) above which an emitter counts; else 0.
   float occupancy_threshold_wm2 = 0;
   /// The curves that the tasks point to (detection_probability), in the same order.
   std::vector<std::shared_ptr<const DetectionCurve>> curves;
 
-  /// True if emitters enter by their power densities and weights.
+  /// True if emitters contribute weighted power densities.
   bool reducesPower() const { return radars.empty() && occupancy_threshold_wm2 == 0; }
 };
 
-/// @throws Error (bad_input) if the scenario lacks what the quantity needs (a receiver, a radar)
+/// @throws Error (bad_input) if the scenario lacks an object that the quantity needs (a receiver, a radar)
 ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenario);
 
 /// Values of one channel.

@@ -1,9 +1,9 @@
 /// Radar quantities of a target at a voxel: signal-to-noise with and without jamming, detection,
 /// burn-through.
 ///
-/// With S the radar's one-way power density at the voxel, an echo's signal-to-noise is (root S)^2: S contains
-/// all effects of the path, which enter twice. Jamming is one-way; its power over the noise at the radar's
-/// receiver, on boresight, does not depend on the voxel, but the beam's direction does. Clutter adds to the
+/// With S the radar's one-way power density at the voxel, an echo's signal-to-noise ratio is (root S)^2: S
+/// contains all effects of the path, which therefore enter twice. Jamming is one-way; its power over the
+/// noise on boresight does not depend on the voxel, but the beam's direction does. Clutter adds to the
 /// jamming (clutter_echo.h).
 #pragma once
 
@@ -20,30 +20,30 @@
 
 namespace emscape::emfield {
 
-/// The measure that a radar adds to a channel.
+/// The value that a radar adds to a channel.
 enum class RadarMeasure {
   root_of_signal_to_noise,
   signal_to_jamming,  ///< S / J, times a factor, within RadarTask::lowest..ceiling: the ceiling without
                       ///< jamming, the lowest without echo; 0 (nothing) without both
   detection,          ///< probability of detection from S / (C + N + J); 0 without echo
   root_of_signal_to_clutter_and_noise,
-  detection_age,  ///< RadarTask::ceiling less the age (s) of the last pass, if its probability is at least
-                  ///< RadarTask::lowest; 0 (nothing) if not
+  detection_age,  ///< RadarTask::ceiling minus the age (s) of the last pass, if its probability is at least
+                  ///< RadarTask::lowest; else 0 (nothing)
 };
 
 /// Jamming at a radar.
 struct JammerAtRadar {
   Vec3f direction;               ///< unit vector along the ray's start, in the frame of the radar's look
   float boresight_to_noise = 0;  ///< jamming over noise at the receiver if the beam pointed there
-  /// True if the jammer's model has a reflected ray. Then boresight_to_noise has the jammer's largest gain
-  /// along both rays, and its pattern's amplitudes along them are those below.
+  /// True if the jammer's model has a reflected ray. Then boresight_to_noise has the jammer's larger gain of
+  /// the two rays, and the following are its pattern's amplitudes along them.
   bool has_reflected_ray = false;
   ReflectedRay reflected = {};
   Vec3f reflected_direction = {};  ///< as `direction`
   float direct_amplitude = 1, reflected_amplitude = 1;
 };
 
-/// A radar's part in a channel, as plain data.
+/// A radar's contribution to a channel, as plain data.
 struct RadarTask {
   RadarMeasure measure = RadarMeasure::root_of_signal_to_noise;
   Reduction reduction = Reduction::maximum;  ///< for detections, sum means independent detections
@@ -73,7 +73,7 @@ EMSCAPE_HD inline float echoWeight(const RadarLook& look, const EmitterBeam& bea
   return ray.isotropic_wm2 * (amplitude * amplitude);
 }
 
-/// The same with the reflected ray, which the echo takes too: with both rays' amplitude F there and F back.
+/// The same with the reflected ray: the amplitude F of both rays applies in both directions.
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline float echoWeight(const RadarLook& look, const EmitterBeam& beam,
                                    const ReflectedRayCode& code, std::size_t column, float t_m) {
@@ -97,7 +97,7 @@ EMSCAPE_HD inline float jammingWeight(const RadarLook& look, const EmitterBeam& 
   return amplitude * amplitude;
 }
 
-/// The same of a jammer with a reflected ray.
+/// The same for a jammer with a reflected ray.
 template <scenario::PatternKind kind>
 EMSCAPE_HD inline float jammingWeightOfBothRays(const RadarLook& look, const EmitterBeam& beam,
                                                 const JammerAtRadar& jammer, std::size_t column, float t_m) {
@@ -185,8 +185,8 @@ struct RadarPass {
   const float* t_m = nullptr;        ///< z of each layer
   const int* first_row_k = nullptr;  ///< for each y the lowest layer with a voxel above ground; null: 0
   float* accumulator = nullptr;      ///< dense order
-  bool has_reflected_rays = false;   ///< some ray, also of a jammer, has a reflected one that is weighed
-  ClutterMapView clutter_map;        ///< without cells: no clutter of the surface
+  bool has_reflected_rays = false;   ///< the radar or a jammer has weighted reflected rays
+  ClutterMapView clutter_map;        ///< without cells: no surface clutter
 };
 
 /// One voxel of a pass. The CPU does the same row by row.
@@ -233,7 +233,7 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
 /// Runs a pass on the CPU. Voxels below first_row_k are not changed.
 void radarCpu(const RadarPass& pass, const LookWeights& weights = {});
 
-/// A radar's part in a channel with the data that it points to.
+/// A radar's contribution to a channel, with the data to which it points.
 struct RadarShare {
   int channel = 0;
   RadarTask task;  ///< without jammers and curve

@@ -12,7 +12,7 @@ RadarShare radarShare(const scenario::Scenario& scenario, int radar, const Emitt
   RadarShare share;
   share.task = task;
   const scenario::BeamPose& frame = task.look.kind == LookKind::held ? state.beam : state.mount;
-  if (task.look.kind != LookKind::steered) {  // an array is steered onto the target
+  if (task.look.kind != LookKind::steered) {  // an array is steered to the target
     share.task.look.steer_u = static_cast<float>(state.beam.steer_u);
     share.task.look.steer_v = static_cast<float>(state.beam.steer_v);
   }

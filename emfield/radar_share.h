@@ -1,4 +1,4 @@
-/// A radar's part in a channel from the state of its beam and the jammers that it receives.
+/// A radar's contribution to a channel, from the state of its beam and the received jammers.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,7 @@ struct JammerPath {
   /// Unit vector from the radar along the start of the refracted ray to the jammer, east-north-up.
   Vec3d direction;
   /// At the radar, with the jammer's antenna gain, propagation model and losses; with `reflected` the gain is
-  /// the largest of the pattern along both rays.
+  /// the larger one of the two rays.
   double power_density_wm2 = 0;
 
   /// The reflected ray of models that have one.
@@ -29,8 +29,8 @@ struct JammerPath {
   std::optional<Reflected> reflected;
 };
 
-/// A radar's part in a channel at one instant.
-/// @param task     as the channel's plan has it
+/// A radar's contribution to a channel at one instant.
+/// @param task     that of the channel's plan
 /// @param jammers  that count in the channel
 RadarShare radarShare(const scenario::Scenario& scenario, int radar, const scenario::EmitterState& state,
                       const RadarTask& task, const std::vector<JammerPath>& jammers);

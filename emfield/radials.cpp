@@ -19,7 +19,7 @@ using propagation::RadialInputs;
 constexpr int kArcs = 7200;
 constexpr double kArc_rad = 2 * kPi / kArcs;
 
-/// The farthest places of each arc.
+/// The farthest positions of each arc.
 class Arcs {
  public:
   explicit Arcs(const Station& station) : station_(station), farthest_m_(kArcs, 0) {}
@@ -28,7 +28,7 @@ class Arcs {
     const Seen seen = see(column, t_m);
     raise(seen.arc, seen.distance_m);
   }
-  /// All places of the straight line between two columns.
+  /// Adds all positions on the straight line between two columns.
   void addBetween(const GridColumn& first, const GridColumn& second, double t_m) {
     const Seen begin = see(first, t_m), end = see(second, t_m);
     raise(begin.arc, begin.distance_m);
@@ -64,7 +64,7 @@ class Arcs {
   std::vector<float> farthest_m_;
 };
 
-/// Of a grid the farthest places are on its border; where columns lean, at their middles or ends.
+/// The farthest positions of a grid are on its border; for tilted columns, at their middles or ends.
 void addGrid(const GridColumns& columns, Arcs& arcs) {
   const Dims& dims = columns.dims;
   std::vector<std::size_t> border;
@@ -110,7 +110,7 @@ void setSector(RadialInputs& radials) {
   radials.azimuth_span_rad = (kArcs - widest) * kArc_rad;
 }
 
-/// Distance (m) of a place from the next: on the diagonal.
+/// Distance (m) between neighbouring columns, on the diagonal.
 double spacingOf(const GridColumns& columns) {
   const Dims& dims = columns.dims;
   if (dims.x * dims.y < 2) return 0;

@@ -1,4 +1,4 @@
-/// Inputs of models that march outwards: where an emitter's field is wanted, and the ground around it.
+/// Inputs of models that march outwards: the positions of the field, and the ground around the emitter.
 #pragma once
 
 #include "emfield/grid_columns.h"

@@ -11,7 +11,7 @@ namespace {
 /// Heights in the chord's raster. @return false if one is NaN
 EMSCAPE_SIMD_CLONES bool readInRaster(const TerrainChord& in, const double* ranges_m, int count,
                                       float* height_msl_m) {
-  const TerrainChord chord = in;  // no store into height_msl_m changes it
+  const TerrainChord chord = in;  // stores into height_msl_m do not change it
   float unknown = 0;
 #pragma omp simd reduction(+ : unknown)
   for (int i = 0; i < count; ++i) {

@@ -1,17 +1,17 @@
 /// Refraction by an atmosphere whose refractivity falls exponentially with height.
 ///
-/// Models that stand on an effective earth of radius k a are right in the lowest kilometres, where
-/// refractivity is nearly linear in height. Here a point is given the height on the effective earth at which
-/// the ray to it would be if it bent on as it does down there: rays keep their course near the ground and
-/// their horizons.
+/// Models with an effective earth of radius k a are valid in the lowest kilometres, where refractivity is
+/// nearly linear in height. Here the height of a point is replaced by the height on the effective earth that
+/// the ray would reach with its curvature near the ground: the paths of rays near the ground, and their
+/// horizons, are unchanged.
 #pragma once
 
 #include <cmath>
 
 #include "emscape/base/host_device.h"
 
-/// Put before a loop that the device is not to unroll, so that kernels which seldom need it keep their
-/// registers.
+/// Placed before a loop that must not be unrolled on the device, to save registers in kernels that rarely
+/// need it.
 #if defined(__CUDA_ARCH__)
 #define EMSCAPE_ROLLED _Pragma("unroll 1")
 #else
@@ -20,9 +20,9 @@
 
 namespace emscape::emfield {
 
-/// Heights below 3 km stay as they are, so that masts keep their heights above the terrain.
+/// Heights below 3 km are unchanged, so that masts keep their heights above the terrain.
 ///
-/// Plain data. Without `exponential` all heights are as they are.
+/// Plain data. Without `exponential` all heights are unchanged.
 struct Refraction {
   bool exponential = false;
   double earth_radius_m = 0;
@@ -33,12 +33,13 @@ struct Refraction {
   static constexpr int kNodes = 33;
   static constexpr float kHighest_m = 100e3f;
   static constexpr double kLinear_m = 3e3, kExponential_m = 10e3;
-  /// Height on the effective earth of the same horizon over the height, at heights spaced evenly in their
-  /// square root up to kHighest_m.
+  /// Height on the effective earth with the same horizon, divided by the height, at heights equally spaced in
+  /// their square root up to kHighest_m.
   float grazing_ratio[kNodes] = {};
 
-  /// Mean (1/m) of the bending along a ray, weighted by the distance still to go: a ray that leaves the lower
-  /// end arrives `distance_m` squared times this lower than a straight line. Twice through the ray's path.
+  /// Mean (1/m) of the curvature along a ray, weighted by the remaining distance: at the far end the ray from
+  /// the lower end is this value times `distance_m` squared below the straight line. Computed in two
+  /// iterations of the ray's path.
   /// @param distance_m  along the ground
   EMSCAPE_HD double bending(double from_m, double to_m, double distance_m) const {
     constexpr int kSteps = 16;
@@ -78,7 +79,7 @@ struct Refraction {
     return mean;
   }
 
-  /// Height (m) on the effective earth of a ray that starts as the one from a low to a high point.
+  /// Height (m) on the effective earth of a ray with the launch angle of the ray from a low to a high point.
   EMSCAPE_HD double imageHeight_m(double low_m, double high_m, double distance_m) const {
     const double more =
         bending(low_m, high_m, distance_m) - (1 / earth_radius_m - 1 / effective_earth_radius_m) / 2;
@@ -93,14 +94,14 @@ struct Refraction {
     return radius_m * std::atan(std::sqrt(image_m * (2 * radius_m + image_m)) / radius_m);
   }
 
-  /// Part (0..1) of a height's correction: 0 below kLinear_m, where the linear refractivity is as good and
-  /// where heights belong with those of the terrain, 1 from kExponential_m on.
+  /// Weight (0..1) of a height's correction: 0 below kLinear_m, where the linear refractivity is equally
+  /// accurate and heights must match those of the terrain; 1 from kExponential_m on.
   static EMSCAPE_HD double correctedPart(double height_msl_m) {
     const double t = (height_msl_m - kLinear_m) / (kExponential_m - kLinear_m);
     return t < 0 ? 0 : t > 1 ? 1 : t * t * (3 - 2 * t);
   }
 
-  /// Height (m) on the effective earth that has the horizon of a height.
+  /// Height (m) on the effective earth with the same horizon as a height.
   EMSCAPE_HD double grazingHeight_m(double height_msl_m) const {
     if (!exponential || !(height_msl_m > kLinear_m)) return height_msl_m;
     const double position = std::sqrt(height_msl_m / double(kHighest_m)) * (kNodes - 1);
@@ -116,7 +117,7 @@ struct Refraction {
   /// @accuracy of points above 10 km, seen from below 3 km: horizons within 0.1 %, rays within 20 m at 500 km
   EMSCAPE_HD double effectiveHeight_m(double height_msl_m, double station_msl_m, double range_m) const {
     if (!exponential || !(range_m > 0) || !(height_msl_m > kLinear_m)) return height_msl_m;
-    // The lowest point of the ray, or the ground that it grazes, is where the image has to be right.
+    // The image must be exact at the lowest point of the ray, or at the ground that it grazes.
     const double radius_m = effective_earth_radius_m;
     double begin_m = range_m / 2 - radius_m * (height_msl_m - station_msl_m) / range_m;
     begin_m = begin_m < 0 ? 0 : begin_m > range_m ? range_m : begin_m;

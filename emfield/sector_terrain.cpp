@@ -8,10 +8,10 @@ namespace emscape::emfield {
 namespace {
 
 constexpr int kBlock = SectorPosts::kBlock, kGroup = SectorPosts::kGroup;
-/// So that a parabola leaves the ground track by less than 1 mm.
+/// Limit for which a parabola deviates from the ground track by less than 1 mm.
 constexpr double kMaxChord_m = 12000;
 
-/// Positions in the middle of a sector, as SectorTerrain keeps them.
+/// Positions in the middle of a sector, as stored by SectorTerrain.
 struct MiddleTask {
   const float *column[3], *row[3];  ///< parabolas of each block
   const float* last_part;
@@ -52,7 +52,7 @@ EMSCAPE_SIMD_CLONES void readMiddle(const MiddleTask& task, int groups, float* h
   }
 }
 
-/// What the bounds of a chord's blocks need.
+/// Inputs of the bounds of a chord's blocks.
 struct ChordTask {
   SectorChord chord;
   const float *first_part, *last_part, *last_m;  ///< SectorPosts
@@ -62,13 +62,13 @@ struct ChordTask {
   float half_width_rad;
 };
 
-/// Of the positions of a block (posts).
+/// Extent of the positions of a block (posts).
 struct Extent {
   float low, high;
 };
 
-/// Sets the slack of blocks, NaN where one is wider than the bounds reach. A block's box of positions holds
-/// those of all paths; nothing is steeper there.
+/// Sets the slack of blocks; NaN if a block is wider than the bounds cover. The box of a block contains the
+/// positions of all paths; the slope in it does not exceed the bound.
 EMSCAPE_SIMD_CLONES void boundBlocks(const ChordTask& task, int first_block, int end_block, float* slack_m) {
   constexpr float kMargin = 0.02f;      // posts: for rounding, and for the curvature of a block
   constexpr float kRounding_m = 0.01f;  // of heights
@@ -104,7 +104,7 @@ EMSCAPE_SIMD_CLONES void boundBlocks(const ChordTask& task, int first_block, int
   }
 }
 
-/// Whether a chord is within a raster from its begin to a part of it.
+/// True if a chord is within a raster from its beginning to a part of it.
 bool isWithin(const scenario::TerrainRaster& raster, const ChordInRaster& chord, double part) {
   constexpr double kMargin = 0.01;  // posts
   const auto within = [part](const Parabola<double>& parabola, double first, double last) {
@@ -269,7 +269,7 @@ int SectorTerrain::setChord(int index, int end) {
   return within;
 }
 
-/// Gives a chord to its blocks, and to those that fill the last group.
+/// Assigns a chord to its blocks, and to the padding of the last group.
 void SectorTerrain::spread(int index, int last_post) {
   const SectorChord& chord = chords_[index];
   const int first = index * posts_.blocksPerChord();

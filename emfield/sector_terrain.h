@@ -1,5 +1,5 @@
-/// The ground below paths of nearly the same azimuth: exact heights at the posts of any of them, and bounds
-/// of the heights of all.
+/// The ground below paths of nearly the same azimuth: exact heights at the posts of each path, and bounds of
+/// the heights of all paths.
 #pragma once
 
 #include <algorithm>
@@ -30,24 +30,24 @@ class SectorPosts {
   int chords() const { return (blocks() + blocks_per_chord_ - 1) / blocks_per_chord_; }
   /// Range of post i.
   const float* range_m() const { return range_m_.data(); }
-  /// Part of its chord at which post i is: 0 at the chord's first post, 1 at that of the next chord.
+  /// Position of post i in its chord: 0 at the chord's first post, 1 at that of the next chord.
   const float* part() const { return part_.data(); }
-  /// Those of the first and the last post of each block.
+  /// The same for the first and the last post of each block.
   const float* firstPart() const { return first_part_.data(); }
   const float* lastPart() const { return last_part_.data(); }
-  /// Ranges of the first and the last obstacle of each block: of its posts without the emitter's own.
+  /// Ranges of the first and the last obstacle of each block: of its posts except the emitter's.
   const float* first_m() const { return first_m_.data(); }
   const float* last_m() const { return last_m_.data(); }
 
   /// Index of an obstacle in arrays of groups: first the first posts of a group's blocks, then the second
-  /// ones, and so on, so that loops over the blocks are vector loops. The place of the emitter's own post is
-  /// that of another copy of the first obstacle, and places beyond the last post are those of copies of it.
+  /// ones, and so on, so that loops over the blocks are vector loops. The entry of the emitter's post is a
+  /// copy of the first obstacle, and entries beyond the last post are copies of the last one.
   static int inGroups(int post) {
     const int block = post / kBlock;
     return (block / kGroup * kBlock + post % kBlock) * kGroup + block % kGroup;
   }
   std::size_t sizeInGroups() const { return static_cast<std::size_t>(groups()) * kGroup * kBlock; }
-  /// The post at each place of such an array.
+  /// The post of each entry of such an array.
   std::vector<int> postsInGroups() const;
 
  private:
@@ -55,15 +55,15 @@ class SectorPosts {
   std::vector<float> range_m_, part_, first_part_, last_part_, first_m_, last_m_;
 };
 
-/// A chord of all paths of a sector: the parabolas of positions in the raster, c[0] + s (c[1] + s c[2]) at
-/// the part s of the sector's half width, -1..1.
+/// A chord of all paths of a sector: the parabolas of positions in the raster, c[0] + s (c[1] + s c[2]), with
+/// s = -1..1 across the sector.
 struct SectorChord {
   Parabola<float> column[3], row[3];  ///< relative to the corner
   int corner_column, corner_row;
   const float* corner_msl_m;
 };
 
-/// One sector at a time; each thread has its own.
+/// The terrain of one sector at a time; each thread has its own object.
 class SectorTerrain {
  public:
   /// All must outlive this object.
@@ -75,10 +75,10 @@ class SectorTerrain {
   /// @param posts           that the farthest path needs, >= 1
   void read(const PathSectors::Azimuth& middle, double half_width_rad, int posts);
 
-  /// Posts that are known: from the emitter to the edge of the finest raster, or to the first block with a
-  /// void in the middle or wider than the bounds reach.
+  /// Number of known posts: from the emitter to the edge of the finest raster, or to the first block that has
+  /// a void in the middle or is wider than the bounds cover.
   int posts() const { return posts_read_; }
-  /// Their blocks; the last one may be known in part.
+  /// Their blocks; the last one may be incomplete.
   int blocks() const { return (posts_read_ + SectorPosts::kBlock - 1) / SectorPosts::kBlock; }
   /// Height of the ground below the emitter.
   float base_msl_m() const { return base_msl_m_; }

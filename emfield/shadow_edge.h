@@ -14,7 +14,7 @@ using propagation::HorizonGeometry;
 using propagation::RangeTerms;
 
 /// Height of a point above mean sea level from that on the effective earth, in an exponential atmosphere. A
-/// call of its own, whose registers the other loops do not pay for.
+/// separate call, to save registers in the other loops.
 [[gnu::noinline]] EMSCAPE_HD inline float heightOfImage_m(const Station& station, float image_m,
                                                           double range_m) {
   return float(station.refraction.heightOfImage_m(double(image_m), station.height_msl_m, range_m));
@@ -30,9 +30,10 @@ struct ShadowTask {
     return {float(station.effective_height_msl_m), float(station.effective_earth_radius_m)};
   }
 
-  /// z (m, in the grid's frame) of the shadow's edge in a column: voxels at or above it are lit. -infinity:
-  /// nothing is in shadow; +infinity: all is; NaN: unknown, because the path crosses missing terrain. A
-  /// tilted column that leaves and enters shadow is in shadow up to its last dark voxel.
+  /// z (m, in the grid's frame) of the shadow's edge in a column: voxels at or above it are in sight.
+  /// -infinity: nothing is in shadow; +infinity: everything is; NaN: unknown, because the path crosses
+  /// missing terrain. A tilted column that leaves and enters shadow is in shadow up to its last voxel in
+  /// shadow.
   /// @param slopeTo  float(FastInverse, count): GrazingSlope of posts 1..count - 1 toward a point
   template <class SlopeTo>
   EMSCAPE_HD float edge_m(const ExcessGrid& grid, std::size_t c, const SlopeTo& slopeTo) const {

@@ -5,8 +5,8 @@
 namespace emscape::emfield {
 namespace {
 
-/// The CRPL exponential reference atmosphere of a refractivity at sea level: N falls in the first kilometre
-/// by 7.32 exp(0.005577 N), and exponentially on (Bean and Thayer 1959, citation not checked).
+/// The CRPL exponential reference atmosphere of a refractivity at sea level: N falls by 7.32 exp(0.005577 N)
+/// in the first kilometre, and exponentially with height (Bean and Thayer 1959, citation not checked).
 Refraction exponentialRefraction(const Station& station, double sea_level_refractivity) {
   Refraction refraction;
   refraction.exponential = true;

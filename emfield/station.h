@@ -1,4 +1,4 @@
-/// An emitter's position, with the derived quantities that the geometry needs.
+/// An emitter's position, with the derived quantities for the geometry.
 #pragma once
 
 #include "base/fast_geodesy.h"
@@ -23,9 +23,9 @@ struct Station {
   double effective_height_msl_m = 0;  ///< on the effective earth: Refraction::grazingHeight_m()
 };
 
-/// Refractivity is linear in height.
+/// For refractivity that is linear in height.
 Station makeStation(const GeodeticPosition& position, double height_msl_m, double k_factor);
-/// Refractivity is that of the atmosphere.
+/// For the refractivity of the atmosphere.
 Station makeStation(const GeodeticPosition& position, double height_msl_m,
                     const propagation::Atmosphere& atmosphere);
 
@@ -33,7 +33,7 @@ Station makeStation(const GeodeticPosition& position, double height_msl_m,
 Vec3d lineTo(const Station& from, const GeodeticPosition& to);
 
 /// Correction of the rise (m) of the straight line to a point, so that it starts along the refracted ray.
-/// @param range_m       over the ground
+/// @param range_m       along the ground
 /// @param level_m       distance of the point in the station's horizontal plane
 /// @param height_msl_m  of the point
 /// @accuracy launch angle within 0.003 degree in an exponential atmosphere

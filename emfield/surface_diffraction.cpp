@@ -17,13 +17,13 @@ using propagation::DiffractionModel;
 
 constexpr int kBlock = SectorPosts::kBlock, kGroup = SectorPosts::kGroup;
 
-/// Number of groups of kGroup that hold so many blocks, or groups.
+/// Number of groups of kGroup that contain a number of blocks, or of groups.
 int groupsOf(int count) {
   return (count + kGroup - 1) / kGroup;
 }
 
 /// Bounds of the blocks of a sector's paths. Heights are relative to the ground below the emitter; "lowered"
-/// ones are less the earth's bulge r^2 / (2 a). Arrays, those of groups too, are padded to whole groups.
+/// heights are minus the earth's bulge r^2 / (2 a). Arrays, also those of groups, are padded to whole groups.
 struct SectorBounds {
   float base_msl_m = 0;
   float tx_m = 0;
@@ -37,7 +37,7 @@ struct SectorBounds {
   std::vector<float> group_lowered_m, group_tx_slope;
 };
 
-/// What all paths share.
+/// Values common to all paths.
 struct Posts {
   DiffractionModel<float> model;
   const double* exact_range_m;
@@ -52,10 +52,11 @@ struct Posts {
 
 /// Work of one thread.
 struct PathMemory {
-  std::vector<float> height_m;          ///< of the posts of the blocks that were read
-  std::vector<int> read_for;            ///< per block: number of the path for which it was read
-  std::vector<float> rx_m;              ///< heights of the receivers as the model takes them
-  std::vector<int> rx_block, nu_block;  ///< per height: the blocks that decided on the path before
+  std::vector<float> height_m;  ///< of the posts of the blocks that were read
+  std::vector<int> read_for;    ///< per block: number of the path for which it was read
+  std::vector<float> rx_m;      ///< heights of the receivers, as inputs of the model
+  std::vector<int> rx_block,
+      nu_block;  ///< per height: the blocks that determined the loss of the previous path
   int tx_block = 0;
   bool is_unknown = false;  ///< a void was read
   /// Paths of the sector that were searched, and of their receivers, path by path: nu and distance of the
@@ -88,7 +89,7 @@ class Search {
 
   /// @param boundOf(lowered_m, tx_slope, first_m, last_m)  bound of valueOf over obstacles at those ranges
   /// @param valueOf(range_m, height_m)                     of an obstacle
-  /// @param most  where the search starts; receives the maximum
+  /// @param most  start of the search; receives the maximum
   template <class BoundOf, class ValueOf>
   void operator()(const BoundOf& boundOf, const ValueOf& valueOf, Maximum& most) const {
     const int guess = std::min(most.block, path_.blocks - 1);
@@ -135,7 +136,7 @@ class Search {
     const int begin = group * kGroup;
     const float least = most.value;
     float bound[kGroup];
-    unsigned exceeds = 0;  // bit i: the bound of i does
+    unsigned exceeds = 0;  // bit i: the bound of i exceeds the maximum
 #pragma omp simd reduction(| : exceeds)
     for (int i = 0; i < kGroup; ++i) {
       bound[i] =
@@ -218,7 +219,7 @@ inline void findEdges(const Posts& posts, const SectorBounds& bounds, const Path
   const float d = path.distance_m, tx_m = bounds.tx_m;
   const float k = posts.model.half_curvature, bulge = k * d;
   const int last = path.blocks - 1;
-  // The steepest post as far as it is known: it is only searched for if it may be above the line of sight.
+  // The known part of the steepest post, which is only searched for if it may be above the line of sight.
   float steepest = bounds.highest_tx_slope[last];
   bool is_found = false;
   for (int n = 0; n < count; ++n) {
@@ -269,7 +270,7 @@ inline void findEdges(const Posts& posts, const SectorBounds& bounds, const Path
   }
 }
 
-/// Bounds the blocks of a sector from the heights in its middle.
+/// Computes bounds of the blocks of a sector from the heights in its middle.
 EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terrain, float tx_msl_m,
                                    SectorBounds& bounds) {
   const float base = terrain.base_msl_m(), tx = posts.model.raised_m(tx_msl_m - base, 0);
@@ -415,7 +416,7 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
   setLosses(sector, memory);
 }
 
-/// Number of sectors: none wider than a part of the posts' spacing, and not more than paths are worth it.
+/// Number of sectors: none wider than a part of the post spacing, and not too many for the number of paths.
 int sectorsOf(const ExcessTask<propagation::DiffractionExcess>& task) {
   constexpr double kWidth_posts = 1.5;
   constexpr std::size_t kPathsPerSector = 32;

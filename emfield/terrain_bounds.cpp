@@ -15,8 +15,8 @@ inline float steeper(float a, float b) {
 }
 
 /// Upper bounds of the slope (m per m) in the cells north of a row of posts. Heights are bilinear: along a
-/// row or a column none is larger than those between neighbouring posts of the cell.
-/// @param per_post_lon, per_post_lat  posts per metre, at most
+/// row or a column no slope is larger than those between neighbouring posts of the cell.
+/// @param per_post_lon, per_post_lat  upper bounds of the posts per metre
 void slopesOfRow(const float* south, const float* north, int cells, float per_post_lon, float per_post_lat,
                  float* slope) {
 #pragma omp simd

@@ -1,5 +1,5 @@
-/// Upper bounds of the ground's slope along short parts of paths, from one lookup each: from the heights
-/// along one path follow bounds of those beside it.
+/// Upper bounds of the ground's slope along short parts of paths, by one lookup each. With the heights along
+/// one path they give bounds of the heights beside it.
 #pragma once
 
 #include <vector>
@@ -18,15 +18,15 @@ class TerrainBounds {
 
   explicit TerrainBounds(const scenario::TerrainView& terrain);
 
-  /// True if the bounds are known: there is a raster, not too near a pole, and small enough for positions in
-  /// it (posts) to be precise as float.
+  /// True if the bounds are known: there is a raster, not too close to a pole, and small enough for precise
+  /// positions (posts) in float.
   bool isUsable() const { return !steepest_.empty(); }
   /// Number of windows of a row.
   int rowWindows() const { return windows_; }
   /// One per window, rows one after another: an upper bound of the ground's slope (m per m) in any direction;
-  /// infinity if a post is void. Window (i, j) holds every part of the ground that begins at column i kStride
-  /// to (i + 1) kStride and row j kStride to (j + 1) kStride, these being its lowest, and extends by no more
-  /// than kMaxExtent.
+  /// infinity if a post is void. Window (i, j) contains every part of the ground that begins at column i
+  /// kStride to (i + 1) kStride and row j kStride to (j + 1) kStride, these being its lowest, and extends by
+  /// no more than kMaxExtent.
   const float* steepest() const { return steepest_.data(); }
 
  private:

@@ -43,12 +43,12 @@ double totalOf(int layers, double first_m, double ratio) {
   return total;
 }
 
-/// Memory while the mesh is made, and written: vertices, and of a file their offset and type; coordinates,
-/// number in the lattice and number in the mesh.
+/// Memory for making and writing the mesh: vertices, and of a file their offset and type; coordinates, number
+/// in the lattice and number in the mesh.
 constexpr std::size_t kCellBytes = 4 * sizeof(std::int32_t) + sizeof(std::int64_t) + 1;
 constexpr std::size_t kPointBytes = sizeof(Vec3d) + sizeof(std::size_t) + sizeof(std::int32_t);
 
-/// A column of the region: where it is, and its foot in the frame.
+/// A column of the region: its position, and its foot in the frame.
 struct Foot {
   Surface::Place place;
   double ground_msl_m = 0;  ///< NaN over a hole
@@ -65,7 +65,7 @@ Vec3d localOf(const GeoFrame& frame, const Foot& foot, double height_m) {
 Foot footOf(const GeoFrame& frame, const scenario::Terrain* terrain, double x_m, double y_m) {
   Foot foot;
   foot.position_m = {x_m, y_m, 0};
-  // In a tangent frame the place on the earth depends on z as well: once more with the z found.
+  // In a tangent frame the position on the earth also depends on z: repeated with the computed z.
   const int rounds = frame.origin().kind == FrameKind::enu ? 2 : 1;
   for (int round = 0; round < rounds; ++round) {
     const GeodeticPosition at = frame.toGeodetic({x_m, y_m, foot.position_m.z});

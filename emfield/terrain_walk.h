@@ -1,7 +1,7 @@
-/// Terrain heights along an azimuth of a station, in the order of rising range.
+/// Terrain heights along an azimuth of a station, in order of increasing range.
 ///
-/// Positions are exact at the ends and in the middle of chords, and on a parabola of latitude and longitude
-/// between.
+/// Positions are exact at the ends and in the middle of chords, and between them on parabolas of latitude and
+/// longitude.
 /// @accuracy positions within 2 cm of fastDirect() to 75 degrees of latitude, 10 cm beyond, farther than 10
 /// km from the poles; heights in a raster within 2 mm times the slope of the ground
 #pragma once
@@ -29,7 +29,7 @@ EMSCAPE_HD inline Parabola<double> parabolaThrough(double begin, double middle, 
   return {{begin, 4 * to_middle - to_end, 2 * to_end - 4 * to_middle}};
 }
 
-/// The parabolas of latitude and longitude of a chord; longitudes in the same turn as the begin's.
+/// The parabolas of latitude and longitude of a chord; longitudes in the same 360 degrees as the beginning's.
 struct ChordPosition {
   Parabola<double> latitude_rad, longitude_rad;
 };
@@ -43,12 +43,12 @@ EMSCAPE_HD inline ChordPosition chordThrough(const FastDirect& begin, const Fast
           parabolaThrough(begin.longitude_rad, beside(middle.longitude_rad), beside(end.longitude_rad))};
 }
 
-/// The same in posts of a raster, and their bounds.
+/// The same in posts of a raster, with bounds.
 struct ChordInRaster {
   Parabola<double> column, row;
   double lowest_column, highest_column, lowest_row, highest_row;
 
-  /// Whether the chord, and a margin (posts) around it, is within the raster.
+  /// True if the chord, with a margin (posts), is within the raster.
   EMSCAPE_HD bool isWithin(const scenario::TerrainRaster& raster, double margin) const {
     return lowest_column - margin >= raster.first_column && highest_column + margin <= raster.last_column &&
            lowest_row - margin >= raster.first_row && highest_row + margin <= raster.last_row;
@@ -86,7 +86,7 @@ EMSCAPE_HD inline float bilinearHeight(const float* corner_msl_m, int row_posts,
   return lerp(lerp(south[at], south[at + 1], to_east), lerp(north[at], north[at + 1], to_east), to_north);
 }
 
-/// Longest chord (m) that leaves the ground track by no more than the accuracy above.
+/// Longest chord (m) whose deviation from the ground track is within the accuracy above.
 EMSCAPE_HD inline double maxChord_m(double sine_of_latitude) {
   constexpr double kOf60Degrees = 0.866025403784439, kOf80Degrees = 0.984807753012208;
   return sine_of_latitude < kOf60Degrees ? 32000 : sine_of_latitude < kOf80Degrees ? 8000 : 100;
@@ -96,8 +96,8 @@ EMSCAPE_HD inline double maxChord_m(double sine_of_latitude) {
 struct TerrainChord {
   double begin_m = 0, per_m = 0;  ///< part of the chord at a range: (range - begin_m) * per_m, 0..1
   ChordPosition position;
-  /// Posts of the finest raster here, from the one that `corner` points to, as long as the whole chord is in
-  /// that raster; null: it is not.
+  /// Posts of the finest raster here, from the one that `corner` points to, if the whole chord is in that
+  /// raster; else null.
   const float* corner_msl_m = nullptr;
   int row_posts = 0;  ///< posts in a row of that raster
   Parabola<float> column, row;
@@ -134,12 +134,12 @@ class TerrainWalk {
     per_m_ = chord_m_ > 0 ? 1 / chord_m_ : 0;
   }
 
-  /// Range at which the chord of a range ends; infinity for the last one.
+  /// Range at which the chord of a range ends; infinity for the last chord.
   EMSCAPE_HD double endOfChord_m(double range_m) const {
     const int index = indexOf(range_m);
     return index < last_ ? (index + 1) * chord_m_ : HUGE_VAL;
   }
-  /// The chord that holds a range; ranges must not fall from one call to the next.
+  /// The chord that contains a range; ranges must not decrease from one call to the next.
   EMSCAPE_HD const TerrainChord& chordAt(double range_m) {
     const int index = indexOf(range_m);
     if (index != index_) {

@@ -1,12 +1,12 @@
-/// The direct and the reflected ray of a voxel, weighed by the antenna's amplitude along each.
+/// The direct and the reflected ray of a voxel, weighted by the antenna's amplitude along each.
 ///
-/// The excess of a model with a reflected ray is that between isotropic antennas, L = q I + (1 - q) L0, where
-/// I = -20 log |1 + rho| is the interference with the reflected ray's relative amplitude rho, and L0 what the
-/// loss changes to at the horizon. With the antennas' amplitudes d along the direct and r along the reflected
-/// ray, I becomes -20 log |1 + rho r / d|, so that the power is multiplied by
+/// The excess of a model with a reflected ray is for isotropic antennas, L = q I + (1 - q) L0, where I = -20
+/// log |1 + rho| is the interference with the reflected ray's relative amplitude rho, and L0 the loss at and
+/// beyond the horizon. With the antennas' amplitudes d along the direct and r along the reflected ray, I
+/// becomes -20 log |1 + rho r / d|, so that the power is multiplied by
 ///     d^2 (|d + r rho|^2 / (d^2 |1 + rho|^2))^q
-/// in place of d^2. rho, q and the reflected ray's direction depend on places alone: the combine stage reads
-/// them from a code per voxel, and a beam that turns does not change them.
+/// instead of d^2. rho, q and the reflected ray's direction depend only on positions: the combine stage reads
+/// them from a code per voxel, and a turning beam does not change them.
 #pragma once
 
 #include <cmath>
@@ -58,7 +58,7 @@ EMSCAPE_HD inline ReflectedRay reflectedRay(const ReflectedRayCode& code) {
   return ray;
 }
 
-/// Start of a reflected ray: a unit vector in the vertical plane of the direct one.
+/// Start of a reflected ray: a unit vector in the vertical plane of the direct ray.
 /// @param direct           east-north-up, of any length
 /// @param depression_sine  of the reflected ray, 0..1
 EMSCAPE_HD inline Vec3f reflectedDirection(const Vec3f& direct, float depression_sine) {
@@ -68,8 +68,8 @@ EMSCAPE_HD inline Vec3f reflectedDirection(const Vec3f& direct, float depression
   return {direct.x * scale, direct.y * scale, -depression_sine};
 }
 
-/// Factor of the antennas on the power between isotropic ones whose excess includes the reflected ray; the
-/// square of `direct` without one. Without branches, for SIMD.
+/// Factor of the antennas on the power for isotropic antennas whose excess includes the reflected ray;
+/// without a reflected ray, the square of `direct`. Without branches, for SIMD.
 /// @param direct, reflected  amplitude of the pattern along each ray with the field's sign; with antennas at
 /// both ends the product of the two
 /// @return power ratio; in a null 60 dB below `direct` alone, as in the model

@@ -1,4 +1,4 @@
-"""Where a radar sees a low target, with and without a jammer; why it does not see it at one place.
+"""Where a radar detects a low target, with and without a jammer, and why it does not at one position.
 
     python examples/coverage.py
 """

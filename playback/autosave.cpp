@@ -20,10 +20,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of an input: of programs that run at the same time or ended before their time.
+/// Limit of files per input: of programs that run at the same time or ended abnormally.
 constexpr int kMaxFiles = 32;
 
-/// When a file was written last, in milliseconds since 1970; none if there is no such file.
+/// Time at which a file was last written, in milliseconds since 1970; empty if there is no such file.
 std::optional<std::int64_t> writtenAt_ms(const fs::path& file) {
   struct stat status {};
   if (stat(file.c_str(), &status) != 0) return std::nullopt;

@@ -14,7 +14,7 @@ namespace emscape::playback {
 /// caller at its next push() or finish().
 class BackgroundWriter {
  public:
-  /// @param max_waiting  push() waits while so many jobs are waiting: the bound on the memory that they hold
+  /// @param max_waiting  push() waits while this number of jobs are waiting, which limits their memory
   explicit BackgroundWriter(std::size_t max_waiting);
   /// Finishes the running job and drops the waiting ones.
   ~BackgroundWriter();

@@ -16,7 +16,7 @@ double SystemClock::now_ms() const {
 }
 
 void SystemClock::waitUntil(double time_ms, Event& event) {
-  constexpr double kForever_ms = 1e12;  // 30 years: the steady clock's own count does not overflow
+  constexpr double kForever_ms = 1e12;  // 30 years, for which the steady clock does not overflow
   const Milliseconds until(std::min(time_ms, kForever_ms));
   event.waitUntil(start_ + std::chrono::duration_cast<std::chrono::steady_clock::duration>(until));
 }

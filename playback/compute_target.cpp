@@ -5,7 +5,7 @@ namespace emscape::playback {
 emfield::FieldOptions ComputeTarget::fieldOptions() const {
   emfield::FieldOptions options;
   options.backend = choice.backend;
-  // A field is written by kernels, which need every voxel to be there.
+  // Kernels write the field, which requires storage for every voxel.
   if (precision == volume::VoxelPrecision::float16) options.device_precision = precision;
   return options;
 }

@@ -16,8 +16,7 @@ constexpr std::size_t kCacheBytes = std::size_t{512} << 20;
 /// Times closer than this are the same step (s).
 constexpr double kSameTime_s = 1e-6;
 
-/// The values in the host's memory; those that are there already are not copied. info is not that of
-/// `volume`.
+/// The values in host memory, copied only if necessary. info is not that of `volume`.
 std::shared_ptr<const volume::DenseVolume> valuesOf(const volume::Volume& volume) {
   return volume.dense() ? volume.dense() : volume.host();
 }

@@ -54,7 +54,7 @@ void EditQueue::clear() {
   ++number_;
 }
 
-/// @return whether the first operation, which makes edits, is done
+/// @return true if the first operation, which makes edits, is finished
 bool EditQueue::makeEdits(EditHistory& history, std::vector<Outcome>& outcomes) {
   const std::optional<Result> result = is_asked_ ? worker_.take() : std::nullopt;
   if (is_asked_ && !result) return false;

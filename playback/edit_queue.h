@@ -14,13 +14,13 @@ namespace emscape::playback {
 
 /// Executes changes of an EditHistory in the order of the requests. Reading a large scenario again takes
 /// longer than a frame of a window: it is done on a thread of this object, everything else in update(). Of
-/// the pending moves of a drag only the last is made. One thread uses it.
+/// the pending moves of a drag only the last is made. For one thread.
 class EditQueue {
  public:
   /// Result of set() or drag().
   struct Outcome {
     std::vector<scenario::Edit> edits;
-    std::string error;  ///< empty: success; else all faults, and nothing is changed
+    std::string error;  ///< empty: success; else all faults, with nothing changed
   };
 
   /// @param wake  called on the thread of this object when update() has something to do; may be empty
@@ -35,11 +35,11 @@ class EditQueue {
   /// Calls back from update() when all earlier requests are done.
   void then(std::function<void()> callback) { push({Kind::callback, {}, std::move(callback)}); }
 
-  /// Between the first drag() and the end of the drag.
+  /// True between the first drag() and the end of the drag.
   bool isDragging() const { return is_dragging_; }
   /// True if a request is pending.
   bool isBusy() const { return !waiting_.empty(); }
-  /// Executes what can be done now. @return the edits made or refused since the last call
+  /// Executes the operations that are ready. @return the edits made or refused since the last call
   std::vector<Outcome> update(EditHistory& history);
   /// Drops all pending requests.
   void clear();

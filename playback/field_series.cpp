@@ -32,7 +32,7 @@ void setRanges(std::vector<volume::Volume>& volumes, const std::vector<ValueRang
 }
 
 int rangeSearchStride(int steps) {
-  // Beams come round: a part of the steps shows the range well enough for colours.
+  // Beams repeat their motion, so a part of the steps is sufficient for the range of colours.
   constexpr int kMaxSteps = 24;
   return (steps + kMaxSteps - 1) / kMaxSteps;
 }
@@ -57,7 +57,7 @@ void FieldSeries::setScenario(LoadedScenario input, std::vector<double> times_s)
 
 void FieldSeries::compareWith(const LoadedScenario& reference, const std::string& name) {
   emfield::FieldOptions options = options_;
-  options.move_tolerance_m = 0;  // else what a step shows depends on the steps before
+  options.move_tolerance_m = 0;  // else a step would depend on the previous steps
   auto series = std::make_unique<FieldSeries>(reference, times_s_, options, stop_);
   const std::vector<emfield::Channel>& own = solver_.channels();
   const std::vector<emfield::Channel>& others = series->channels();
@@ -117,7 +117,7 @@ std::vector<volume::Volume> FieldSeries::compute(int step) {
   const scenario::Snapshot now = snapshot(step);
   std::vector<volume::Volume> volumes = solver_.volumes();
   for (volume::Volume& volume : volumes) {
-    // The solver leaves a volume that did not change as it was, its time too.
+    // The solver does not change an unchanged volume, including its time.
     volume::VolumeInfo info = volume.info();
     info.time_s = now.time_s;
     info.time_utc = now.time_utc;

@@ -1,4 +1,4 @@
-/// Names as parts of file names.
+/// Names in file names.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace emscape::playback {
 /// becomes '_'.
 std::string fileNameOf(const std::string& name);
 
-/// The same for several names, of which no two get the same: later ones get "-2", "-3" and so on.
+/// The same for several names, with distinct results: later ones get "-2", "-3" and so on.
 std::vector<std::string> distinctFileNames(const std::vector<std::string>& names);
 
 }  // namespace emscape::playback

@@ -1,4 +1,4 @@
-/// Frames by their index, within a bound of memory. Internal to the module.
+/// Frames by their index, with a limit of memory. Internal to the module.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 
 namespace emscape::playback {
 
-/// One thread at a time uses it.
+/// For one thread at a time.
 class FrameCache {
  public:
   /// Distance of a frame from the next expected one; the frame with the largest is dropped first.
@@ -21,9 +21,9 @@ class FrameCache {
 
   /// Null if the frame is not cached.
   const Frame* find(int index) const;
-  /// Adds a frame; drops those with the largest distance to keep the bound.
+  /// Adds a frame; drops those with the largest distance to stay within the limit.
   void keep(int index, Frame frame, const Distance& distance);
-  /// True if a frame would be kept: there is room, or one with a larger distance.
+  /// True if a frame would be kept: there is memory, or a frame with a larger distance.
   bool wouldKeep(int index, const Distance& distance) const;
   /// Ascending.
   std::vector<int> indices() const;

@@ -73,7 +73,7 @@ struct ComputedMesh {
   }
 };
 
-/// A scenario's frames, computed as they are asked for.
+/// A scenario's frames, computed on request.
 class ComputedFrames : public FrameSource {
  public:
   ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const ComputeTarget& target,
@@ -126,7 +126,7 @@ class ComputedFrames : public FrameSource {
   }
 
  private:
-  /// That of all frames; none if each has its own.
+  /// The range of all frames; none if each has its own.
   std::optional<ValueRange> rangeOf(FieldSeries& series, const std::string& quantity,
                                     const ProgressSink& progress) const {
     const std::size_t channel = channelOf(series.channels(), quantity);
@@ -305,8 +305,8 @@ std::unique_ptr<DifferenceSource> openComparison(const FrameSelection& selection
   field.independent = true;
   const bool compares = !selection.compare.empty();
   if (compares) {
-    field.range.reset();  // a range is that of the differences
-    referenceOf(field);   // throws its faults now
+    field.range.reset();  // the range is that of the differences
+    referenceOf(field);   // throws its faults here
   }
   const auto openReference = [field, target, stop] {
     return openField(referenceOf(field), target, {}, stop);

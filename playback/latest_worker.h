@@ -1,4 +1,4 @@
-/// Background work of which only the latest request is served.
+/// Background work that serves only the latest request.
 #pragma once
 
 #include <atomic>
@@ -13,8 +13,8 @@
 namespace emscape::playback {
 
 /// Runs one task after another on its own thread. A new request replaces a pending one, and a new result
-/// replaces one that was not taken. One thread requests and takes; only the destructor waits, for the end of
-/// the running task.
+/// replaces one that was not taken. One thread requests and takes results; only the destructor waits, for the
+/// end of the running task.
 template <class Request, class Result>
 class LatestWorker {
  public:
@@ -72,7 +72,7 @@ class LatestWorker {
   std::atomic<bool> closing_{false};
   long long asked_ = 0, taken_ = 0;  // numbers of requests; of the asking thread
   std::mutex mutex_;
-  long long done_ = 0;  // number of the request that the result answers
+  long long done_ = 0;  // number of the request of the result
   std::optional<Result> result_;
   std::thread thread_;
 };

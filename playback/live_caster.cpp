@@ -53,7 +53,7 @@ void LiveCaster::close() {
 
 void LiveCaster::request(ViewRequest request) {
   view_box_.put(std::move(request));
-  stop_restoration_ = true;  // after the request is there: see restore()
+  stop_restoration_ = true;  // after the request is stored: see restore()
 }
 
 void LiveCaster::deliver(FieldDelivery delivery, Mailbox<FieldDelivery>::Time asked) {
@@ -105,7 +105,7 @@ void LiveCaster::takeMail() {
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.error.clear();
   }
-  // The field first: what is asked of the view belongs to the newest one.
+  // The field first, because requests for the view refer to the newest field.
   if (field) {
     noteInput(field->since);
     attempt([&] { applyField(field->value); });
@@ -323,7 +323,7 @@ void LiveCaster::drawFrame(const render::FramePlan& plan) {
 void LiveCaster::restore() {
   is_drawing_ = true;
   stop_restoration_ = false;
-  // Requests are put before the flag is set: one that came before the line above is in its box.
+  // Requests are stored before the flag is set: one that arrived before the line above is in its mailbox.
   if (hasMail() || closing_) stop_restoration_ = true;
   render::FrameReport restored;
   arena_.run([&] { restored = painter_.restore(&stop_restoration_); });
@@ -342,7 +342,7 @@ void LiveCaster::publish() {
   arena_.run([&] {
     const render::Pattern pattern = progress_.complete ? render::Pattern::full : drawn_.pattern;
     const std::string note = painter_.note(pattern);
-    // The picture as it was cast takes a GPU longer to send: while it is busy the quantised one will do.
+    // The float picture takes longer to transfer from a GPU; in busy frames the quantised one is sufficient.
     finished_is_exact_ = progress_.complete && (controller_.state() != render::ControllerState::busy ||
                                                 painter_.backend() == Backend::cpu);
     if (finished_is_exact_) {

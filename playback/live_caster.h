@@ -35,7 +35,7 @@ struct Versioned {
 /// Source of the colours.
 struct ColorOrder {
   enum class Kind {
-    first_step,  ///< fitted to the first step that is drawn, or as the style says
+    first_step,  ///< fitted to the first drawn step, or as in the style
     step,        ///< fitted to the step on screen
     range,
     function
@@ -75,11 +75,11 @@ struct PictureProgress {
   bool complete = false;  ///< all of its pixels are cast
 };
 
-/// Draws the last request: the state machine of render::FrameController on a thread of its own.
+/// Draws the last request: the state machine of render::FrameController on a separate thread.
 class LiveCaster {
  public:
   struct Events {
-    /// Its status says what this thread knows.
+    /// Receives the picture, with the status known to this thread.
     std::function<void(LivePicture, PictureProgress)> publish;
     std::function<void()> changed;  ///< of the status
   };
@@ -117,7 +117,7 @@ class LiveCaster {
   void applyField(const FieldDelivery& delivery);
   void applyColors(const ColorOrder& order);
   void fitColorsTo(const ValueRange& range);
-  /// Makes a change; what it throws becomes the error of the status.
+  /// Makes a change; exceptions become the error of the status.
   void attempt(const std::function<void()>& change);
   void raise(render::SceneEvent event);
   void changeLabels();
@@ -125,8 +125,7 @@ class LiveCaster {
   void noteInput(Time since);
   // Requests of the controller
   bool canDraw() const;
-  /// Tetrahedra have no patterns to choose from: pictures that are not complete are projected, or there are
-  /// none.
+  /// Tetrahedra have no patterns: incomplete pictures are projected, or there are none.
   render::ControllerOptions controllerOptions() const;
   void act(const render::ControllerAction& action);
   void drawFrame(const render::FramePlan& plan);
@@ -156,14 +155,14 @@ class LiveCaster {
   PictureProgress progress_;     // of the picture
   bool is_labels_only_ = false;  // the next picture only needs new labels
   bool is_raised_ = false;       // an event since the last frame was begun
-  std::optional<Time> input_;    // the oldest that no picture shows yet
+  std::optional<Time> input_;    // the oldest input that no picture shows yet
   double input_to_frame_ms_ = 0;
-  double prepare_ms_ = 0;          // since the last frame
-  render::FrameReport drawn_;      // the busy frame
-  bool has_image_ = false;         // the last picture can be shown again
-  bool finished_is_exact_ = true;  // the picture that was published last was not quantised before its labels
-  render::Image8 busy_image_;      // memory for a picture on the way to its labels
-  std::optional<Time> shown_input_;  // that the next picture is the first to show
+  double prepare_ms_ = 0;            // since the last frame
+  render::FrameReport drawn_;        // the busy frame
+  bool has_image_ = false;           // the last picture can be shown again
+  bool finished_is_exact_ = true;    // the last published picture was not quantised before its labels
+  render::Image8 busy_image_;        // memory for a picture on the way to its labels
+  std::optional<Time> shown_input_;  // input that the next picture is the first to show
 
   mutable std::mutex mutex_;
   CasterStatus status_;

@@ -25,7 +25,7 @@ std::vector<double> timesOf(const FrameSource& source) {
 
 /// Delay after a request before unrequested work starts.
 constexpr double kQuiet_ms = 150;
-/// A field that takes longer leaves a core to others even if they do not need it yet.
+/// A field that takes longer leaves a core free even if it is not needed yet.
 constexpr double kLongField_ms = 200;
 
 }  // namespace
@@ -127,8 +127,7 @@ void LiveFields::serve() {
   }
 }
 
-/// Gives the source the scenario and the quantity that are wanted. @return whether they are others than
-/// before
+/// Sets the requested scenario and quantity of the source. @return true if they have changed
 bool LiveFields::applyChanges() {
   const bool is_edited = wanted_.scenario != scenario_;
   const bool is_other_quantity = wanted_.quantity != quantity_;

@@ -26,12 +26,12 @@ struct FieldRequest {
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
   std::string quantity;
   bool compares = false;  ///< with the reference: FrameSource::setComparison()
-  long long search = 0;   ///< number of the search of the series' range that is asked for; 0: none
+  long long search = 0;   ///< number of the requested search of the series' range; 0: none
 };
 
-/// A field and what belongs to it.
+/// A field and its data.
 struct FieldDelivery {
-  long long revision = 0;  ///< of the request that it answers
+  long long revision = 0;  ///< of its request
   std::string title;
   std::optional<LoadedScenario> scene;
   std::string quantity;
@@ -41,7 +41,7 @@ struct FieldDelivery {
 /// The range of the values of a series.
 struct SeriesRange {
   long long search = 0;  ///< of the request
-  ValueRange range;      ///< empty: it was not found
+  ValueRange range;      ///< empty: not found
 };
 
 struct FieldsStatus {
@@ -51,14 +51,14 @@ struct FieldsStatus {
   double field_ms = 0;  ///< of the last field
   long long fields_computed = 0;
   long long failed_revision = 0;  ///< the last request that failed
-  std::string error;              ///< why; empty once another request succeeded
+  std::string error;              ///< reason; empty after another request has succeeded
   ErrorCode error_code = ErrorCode::other;
-  SeriesRange series;  ///< of the last search that ended
+  SeriesRange series;  ///< of the last completed search
   long long wake_ups = 0;
 };
 
-/// Serves the latest request; a new one replaces a pending one. Without requests for a moment it computes the
-/// next steps of a series that is being played, and searches its range.
+/// Serves the latest request; a new one replaces a pending one. After a moment without requests it computes
+/// the next steps of a playing series, and searches its range.
 class LiveFields {
  public:
   struct Options {
@@ -72,15 +72,15 @@ class LiveFields {
   struct Events {
     std::function<void(FieldDelivery, Mailbox<FieldRequest>::Time asked)> deliver;
     std::function<void()> changed;    ///< of the status
-    std::function<bool()> is_shared;  ///< whether others need the processor now; empty: no
+    std::function<bool()> is_shared;  ///< true if others need the processor now; empty: never
   };
   using Open = std::function<std::unique_ptr<FrameSource>(const StopFlag& stop)>;
 
-  /// @param open   makes the source, on the thread of this object; frames of it must be independent; null:
-  /// there are no fields, and no request is served
+  /// @param open   makes the source, on the thread of this object; frames of it must be independent; null: no
+  /// fields, and no request is served
   /// @param first  the first request
   LiveFields(Open open, FieldRequest first, const Options& options, Events events);
-  /// close().
+  /// Calls close().
   ~LiveFields();
   LiveFields(const LiveFields&) = delete;
   LiveFields& operator=(const LiveFields&) = delete;
@@ -131,11 +131,11 @@ class LiveFields {
   std::shared_ptr<const scenario::Scenario> scenario_;  // of the source, if it is not the opened one
   std::string quantity_;
   bool compares_ = false;
-  int index_ = 0;                    // of the step asked for last, in the source
-  bool is_playing_ = false;          // steps are asked for one after another
+  int index_ = 0;                    // of the last requested step, in the source
+  bool is_playing_ = false;          // steps are requested one after another
   std::optional<Time> field_begin_;  // of the last field
   Time quiet_from_{};
-  long long search_ = 0;          // of the series' range: the last that was begun
+  long long search_ = 0;          // of the series' range: number of the last search begun
   std::vector<int> search_left_;  // steps, the next one last
   ValueRange search_range_;
 

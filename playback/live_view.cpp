@@ -29,7 +29,7 @@ ViewRequest viewOf(const PictureStyle& style, const LiveOptions& options) {
   return view;
 }
 
-/// Pictures of what there is come before fields.
+/// Pictures of existing fields have priority over new fields.
 int solveNiceness(const LiveOptions& options) {
   constexpr int kBehindPictures = 4;
   return options.niceness > 0 ? options.niceness + kBehindPictures : 0;
@@ -95,7 +95,7 @@ struct LiveView::Impl {
              },
              [this] { tell(); }, [this] { return caster.isDrawing(); }}) {}
 
-  /// Each thread calls the object of the other one: both end before either object goes.
+  /// Each thread calls the object of the other one: both end before either object is destroyed.
   ~Impl() {
     caster.stop();
     fields.close();

@@ -1,4 +1,4 @@
-/// A mailbox with a single slot in which the latest request wins.
+/// A mailbox with a single slot, which keeps the latest request.
 #pragma once
 
 #include <chrono>
@@ -10,8 +10,8 @@
 
 namespace emscape::playback {
 
-/// Holds at most one value. A value that was not taken is replaced by the next one, so that requests never
-/// pile up. Threads may share it; nothing waits.
+/// Has at most one value. A value that was not taken is replaced by the next one, so that requests do not
+/// accumulate. Threads may share it; nothing waits.
 template <class T>
 class Mailbox {
  public:

@@ -14,7 +14,7 @@ using Point = render::TransferFunction::OpacityPoint;
 constexpr double kShellHalfWidth = 0.02;  // of the interval
 constexpr double kShellOpacity = 0.1;
 
-/// Positions are parts of the interval, 0..1.
+/// Positions are fractions of the interval, 0..1.
 void addShell(std::vector<Point>& points, double at, double opacity) {
   points.push_back({at - kShellHalfWidth, 0});
   points.push_back({at, opacity});
@@ -30,7 +30,7 @@ std::vector<Point> unitPreset(const std::string& name, double at) {
   if (name == "shell") {
     addShell(points, at, kShellOpacity);
   } else if (name == "bands") {
-    // The strong ones are rare: they may be denser.
+    // Strong values are rare, so their bands may be denser.
     constexpr int kBands = 5;
     for (int band = 1; band <= kBands; ++band) {
       const double part = static_cast<double>(band) / (kBands + 1);

@@ -12,7 +12,7 @@
 namespace emscape::playback {
 namespace {
 
-/// Below the title: that a difference is shown, and to what.
+/// Subtitle of a difference, with its reference.
 std::string subtitleOf(const volume::VolumeInfo& info) {
   const auto reference = info.extra.find(kDifferenceToKey);
   return reference == info.extra.end() ? "" : "difference to " + reference->second;
@@ -116,7 +116,7 @@ void Painter::setSettings(const render::RenderSettings& settings) {
   if (cells_) cells_->setSettings(settings);
   style_.settings = settings;
   setLegend();
-  fitCamera();  // heights may be stretched otherwise
+  fitCamera();  // the vertical exaggeration may have changed
 }
 
 void Painter::setTransferFunction(const render::TransferFunction& function) {

@@ -21,7 +21,7 @@ struct Ray {
   Vec3d at(double t) const { return origin_m + direction * t; }
 };
 
-/// The whole ray before the camera.
+/// The whole ray in front of the camera.
 Ray rayOf(const render::Camera& camera, const render::SceneBox& box, render::ImageSize size, double x,
           double y) {
   const Vec3d on_plane = camera.right * (camera.planeX(x, size) * camera.half_height) +
@@ -77,7 +77,7 @@ HalfSpace halfSpaceOf(const render::CutPlane& plane, const render::SceneBox& box
   return kept;
 }
 
-/// A ray that planes have clipped.
+/// A ray clipped by planes.
 struct ClippedRay {
   Ray ray;
   bool begins_at_plane = false, ends_at_plane = false;
@@ -131,7 +131,7 @@ std::optional<double> meetGround(const Ray& ray, const render::HeightField& grou
       (ray.end - ray.begin);
   const int steps = static_cast<int>(std::ceil(2 * posts)) + 1;
   double above = ray.begin;
-  if (clearance_m(above) <= 0) return above;  // the box's side, where the ground is cut
+  if (clearance_m(above) <= 0) return above;  // the side of the box, where the ground is cut
   for (int step = 1; step <= steps; ++step) {
     double below = ray.begin + (ray.end - ray.begin) * step / steps;
     if (!(clearance_m(below) <= 0)) {
@@ -203,7 +203,8 @@ Vec3d aboveGround(const Vec3d& ground_m, double height_agl_m, const DenseVolume&
   if (std::isnan(ground_msl_m)) return ground_m;
   Vec3d position_m = ground_m;
   position_m.z += ground_msl_m + height_agl_m - frame.heightMsl_m(ground_m);
-  // Into the lowest voxel above the ground: the one at this height may have its centre below it.
+  // Moves to the lowest voxel above the ground, because the centre of the voxel at this height may be below
+  // it.
   const VolumeSample sample = sampleVolume(volume, position_m);
   if (sample.kind != VolumeSample::Kind::masked || volume.first_valid_k.empty()) return position_m;
   const int first =

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxPoints = 200;        // of a line
 constexpr int kMaxPointsOfAll = 4000;  // of all lines
-constexpr int kMinPoints = 64;         // heights above ground follow it
+constexpr int kMinPoints = 64;         // for heights above ground
 
 /// Times of a line's points: those of the track, and others between them so that the line follows the ground.
 std::vector<double> timesOf(const std::vector<scenario::TrackPoint>& track, double duration_s,
@@ -36,7 +36,7 @@ std::vector<double> timesOf(const std::vector<scenario::TrackPoint>& track, doub
   return times_s;
 }
 
-/// NaN where the ground below it is not known.
+/// NaN if the ground below it is unknown.
 Vec3d positionOf(const scenario::SitePosition& site, const scenario::Terrain* terrain,
                  const GeoFrame& frame) {
   GeodeticPosition position{site.latitude_deg, site.longitude_deg, site.height_ellipsoid_m.value_or(0)};

@@ -1,4 +1,4 @@
-/// The ways of a scenario's moving platforms, as lines. Internal to the module.
+/// The tracks of a scenario's moving platforms, as lines. Internal to the module.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,10 @@
 
 namespace emscape::playback {
 
-/// Keeps the lines: only how far the platforms have come differs from one time to the next. One thread uses
-/// it.
+/// Keeps the lines: only the current positions differ from one time to the next. For one thread.
 class PlatformTracks {
  public:
-  /// @param grid  in whose frame the lines are
+  /// @param grid  the frame of the lines
   std::vector<render::Track> at(double time_s, const LoadedScenario& scene, const volume::Grid& grid);
 
  private:

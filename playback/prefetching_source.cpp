@@ -127,9 +127,8 @@ long long PrefetchingSource::distance(int index) const {
 void PrefetchingSource::keep(int index, Frame frame) {
   std::lock_guard<std::mutex> lock(mutex_);
   ++computed_;
-  frame.changed = true;  // the frame asked for before may be any
-  // A frame that was requested a moment ago is newer than what is shown, although another one is requested by
-  // now.
+  frame.changed = true;  // the previously requested frame may be any
+  // A recently requested frame is newer than the shown one, even if another one is requested now.
   if (index == requested_ || !latest_ || latest_->index != requested_) latest_ = IndexedFrame{index, frame};
   cache_->keep(index, std::move(frame), [this](int other) { return distance(other); });
 }

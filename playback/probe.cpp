@@ -26,7 +26,7 @@ bool holdsField(const DenseVolume& volume, int i, int j, int k) {
   return !volume.isMasked(i, j, k) && std::isfinite(value) && value > volume.info.floor;
 }
 
-/// Trilinear; none unless all eight voxels around hold a field.
+/// Trilinear; none unless all eight voxels around have a field.
 std::optional<float> interpolated(const DenseVolume& volume, const Vec3d& at) {
   const Dims& dims = volume.grid.dims;
   const auto lower = [](double position, int count) {

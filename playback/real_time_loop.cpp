@@ -127,7 +127,7 @@ void RealTimeLoop::beginField(int step) {
   });
 }
 
-/// The step that will be due when it is computed, but no other than a later one.
+/// Begins the step that will be due when it is computed; only later steps than the present one.
 void RealTimeLoop::beginNextField() {
   const int newest = pending_ ? pending_->step : shown_step_;
   if (field_.active() || computed_ || newest + 1 >= source_.count()) return;
@@ -138,8 +138,8 @@ void RealTimeLoop::beginNextField() {
   beginField(step);
 }
 
-/// Draws the first picture a few times: camera and colours are fitted, the memory is there, and the pattern
-/// is chosen before the clock starts.
+/// Draws the first picture a few times, so that camera and colours are fitted, memory is allocated and the
+/// pattern is chosen before the clock starts.
 void RealTimeLoop::rehearse() {
   painter_.setFrame(pending_->frame);
   constexpr int kFrames = 4;
@@ -218,7 +218,7 @@ void RealTimeLoop::drawFrame(const render::FramePlan& plan) {
   }
   event.prepare_ms = now_ms() - begin_ms;
   drawn_ = painter_.draw(plan);
-  beginNextField();  // in parallel with the rest, in the remaining time of the slot
+  beginNextField();  // in parallel, in the remaining time of the slot
   event.labels_ms = show();
   event.rays = drawn_.rays;
   event.cast_ms = drawn_.cast_ms;
@@ -249,7 +249,7 @@ void RealTimeLoop::endRestoration() {
 
 /// The picture is exact from now on.
 void RealTimeLoop::settle() {
-  if (pending_) {  // the field is as it was, but not the time
+  if (pending_) {  // the field is unchanged, but not the time
     painter_.setFrame(pending_->frame);
     shown_step_ = pending_->step;
     pending_.reset();
@@ -270,7 +270,8 @@ void RealTimeLoop::settle() {
   report(event);
 }
 
-/// Counts slots up to this one, in which a frame was drawn: late if it came after the last that asked for it.
+/// Counts slots up to this one, in which a frame was drawn: late if it came after the last slot that
+/// requested it.
 void RealTimeLoop::countSlots(long long slot, RealTimeEvent& event) {
   for (long long s = accounted_slot_ + 1; s <= slot; ++s) {
     if (!isDue(s)) continue;

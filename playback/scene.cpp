@@ -17,9 +17,9 @@ int postsAlong(double size_m, double spacing_m) {
   return std::clamp(static_cast<int>(std::ceil(size_m / spacing_m)) + 1, 2, kMaxPosts);
 }
 
-/// The ground (frame z, m) at a place of the frame; NaN over a hole.
+/// The ground (frame z, m) at a position of the frame; NaN over a hole.
 double groundZ_m(const scenario::Terrain& terrain, const GeoFrame& frame, double x_m, double y_m) {
-  // In a tangent frame the place on the earth depends on z as well: once more with the z found.
+  // In a tangent frame the position on the earth also depends on z: repeated with the computed z.
   double z_m = 0;
   const int rounds = frame.origin().kind == FrameKind::enu ? 2 : 1;
   for (int round = 0; round < rounds; ++round) {

@@ -126,7 +126,7 @@ void SeriesFiles::writeIndex(const std::vector<bool>& finished) const {
 }
 
 void SeriesFiles::removeOld() const {
-  // name_ is letters, digits, '_' and '-' alone: nothing in it means anything to a regular expression.
+  // name_ has only letters, digits, '_' and '-', which need no escaping in a regular expression.
   const std::regex ours(name_ + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|vtu|raw|nvdb\.json|raw\.json)|)" + name_ +
                         R"(\.pvd|series\.json|series\.steps)");
   std::vector<fs::path> files;

@@ -1,5 +1,4 @@
-/// The volume files of a series: which there are, what they are called, and writing them. Internal to the
-/// module.
+/// The volume files of a series: names and writing. Internal to the module.
 #pragma once
 
 #include <filesystem>
@@ -27,18 +26,17 @@ class SeriesFiles {
   /// Names in the folder of all files of a step, sidecars included; always in the same order.
   std::vector<std::string> namesOf(int step) const;
 
-  /// Writes a step in every format. @throws Error (other, device); then no file of the format that failed is
-  /// there
+  /// Writes a step in every format. @throws Error (other, device); then there is no file of the failed format
   void write(int step, const std::vector<volume::Volume>& channels) const;
 
-  /// Changes the ranges in a step's files. @param ranges  one per channel; the files keep theirs if empty
+  /// Changes the ranges in a step's files. @param ranges one per channel; empty ranges are not changed
   /// @return the names of the files that may have changed
   /// @throws Error
   std::set<std::string> setRanges(int step, const std::vector<ValueRange>& ranges) const;
 
-  /// True if there is a list of the files that writeIndex() writes.
+  /// True if writeIndex() has a list of files to write.
   bool hasIndex() const;
-  /// Writes it. @param finished  one per step
+  /// Writes the list. @param finished  one per step
   void writeIndex(const std::vector<bool>& finished) const;
 
   /// Removes the files of any series of this name, and its description, from the folder.

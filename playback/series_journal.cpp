@@ -67,7 +67,7 @@ StepRecord recordFrom(const Json& json, int steps, std::size_t channels) {
   return record;
 }
 
-/// Bytes up to the end of the last whole line.
+/// Bytes up to the end of the last complete line.
 std::size_t wholeLines(const std::vector<std::uint8_t>& bytes) {
   const auto last = std::find(bytes.rbegin(), bytes.rend(), '\n');
   return static_cast<std::size_t>(bytes.rend() - last);

@@ -17,22 +17,22 @@ struct StepRecord {
     std::string name;
     FileDigest digest;
   };
-  int step = 0;                    ///< counts from 0; in the journal from 1
+  int step = 0;                    ///< from 0; in the journal from 1
   std::vector<ValueRange> own;     ///< of the step's values, one per channel
-  std::vector<ValueRange> stored;  ///< that the step's files state
+  std::vector<ValueRange> stored;  ///< stored in the step's files
   std::vector<File> files;
 };
 
-/// A file of JSON lines that grows by one synced line per record; the last record of a step counts. One
-/// thread uses it.
+/// A file of JSON lines that grows by one synced line per record; the last record of a step is valid. For one
+/// thread.
 class SeriesJournal {
  public:
   explicit SeriesJournal(const std::filesystem::path& folder);
 
-  /// The records of a journal by step; none if there is no file. A last line without its end, left by a
-  /// process that died, is ignored.
-  /// @param channels  ranges that each record must hold
-  /// @throws Error (bad_input) that names file and line for any other line that is no record
+  /// The records of a journal by step; none if there is no file. An incomplete last line, left by a killed
+  /// process, is ignored.
+  /// @param channels  number of ranges in each record
+  /// @throws Error (bad_input) that names file and line for any other invalid line
   std::vector<std::optional<StepRecord>> read(int steps, std::size_t channels) const;
 
   /// Adds a record. @throws Error (other)
@@ -40,7 +40,7 @@ class SeriesJournal {
 
  private:
   const std::filesystem::path file_;
-  bool is_open_ = false;  // a line that was cut short has been removed
+  bool is_open_ = false;  // an incomplete line has been removed
 };
 
 }  // namespace emscape::playback

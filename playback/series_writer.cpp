@@ -226,8 +226,9 @@ class SeriesWriter {
   const SeriesFiles files_;
   SeriesJournal journal_;
   SeriesState state_;
-  std::vector<ValueRange> ranges_;                // over the steps so far, or as given
-  std::vector<std::optional<StepRecord>> steps_;  // those whose files are whole; the writer's while it runs
+  std::vector<ValueRange> ranges_;  // over the steps so far, or the given range
+  std::vector<std::optional<StepRecord>>
+      steps_;  // steps with complete files; used by the writer's thread while it runs
   int finished_count_ = 0;
   int next_index_at_ = 1;
 };

@@ -142,7 +142,7 @@ std::vector<TimelineTick> Timeline::ticks(double from_s, double to_s, int count)
   if (!(from_s < to_s) || !std::isfinite(to_s - from_s)) return ticks;
   const double step_s = tickStep_s(to_s - from_s, count);
   const scenario::Clock clock{epoch_utc_, 0, 1};
-  // By whole numbers of steps, so that no error adds up.
+  // By whole numbers of steps, so that no error accumulates.
   for (double n = std::ceil(from_s / step_s - 1e-9); n * step_s <= to_s + 1e-9 * step_s; ++n) {
     const double time_s = n * step_s + 0.0;  // not -0
     const std::string text = render::tickText(time_s, step_s);
@@ -310,7 +310,7 @@ double Timeline::advance(double dt_s) {
     const double length_s = range.end_s - range.begin_s;
     const double beyond_s = std::fmod(next_s - range.begin_s, length_s);
     time_s_ = range.begin_s + (beyond_s < 0 ? beyond_s + length_s : beyond_s);
-  } else {  // a hand that was moved out of the range stays where it is
+  } else {  // a time outside the playing range is not changed
     time_s_ = rate_ > 0 ? std::max(time_s_, range.end_s) : std::min(time_s_, range.begin_s);
     playing_ = false;
   }

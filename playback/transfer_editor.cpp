@@ -173,12 +173,12 @@ void TransferEditor::setInterval(double lowest, double highest) {
   TransferFunction next = base();
   const double from = next.lowest(), to = next.highest();
   const auto moved = [&](double at) {
-    // Ends are met exactly.
+    // The ends are exact.
     return at == to ? highest : lowest + (highest - lowest) * ((at - from) / (to - from));
   };
   for (auto& point : next.colors) point.at = moved(point.at);
   for (auto& point : next.opacities) point.at = moved(point.at);
-  // Colours that rounding has brought together are one.
+  // Colours at positions that are equal after rounding are merged.
   next.colors.erase(std::unique(next.colors.begin(), next.colors.end(),
                                 [](const auto& a, const auto& b) { return !(a.at < b.at); }),
                     next.colors.end());

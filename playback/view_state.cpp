@@ -45,7 +45,11 @@ ValueSpec text(int min_characters = 0) {
   return value;
 }
 
-/// The table of the format. That of the transfer function depends on how the file writes it.
+ValueSpec within(const render::SettingLimits& limits, const char* unit = "") {
+  return spec::number(unit).from(limits.min).to(limits.max);
+}
+
+/// The table of the format. The table of the transfer function depends on its form in the file.
 class ViewFormat {
  public:
   explicit ViewFormat(const DocumentNode* transfer) : transfer_(transfer) {
@@ -73,13 +77,13 @@ class ViewFormat {
          spec::optional("range", spec::object(range_), ""),
          spec::optional("transfer", spec::object(transfer_.object()), ""),
          spec::optional("mode", spec::choice(kModes), ""),
-         spec::optional("step_voxels", spec::number("voxels").from(0.05).to(10), ""),
-         spec::optional("mida_gamma", spec::number().from(-1).to(1), ""),
+         spec::optional("step_voxels", within(render::kStepLimits, "voxels"), ""),
+         spec::optional("mida_gamma", within(render::kMidaGammaLimits), ""),
          spec::optional("exact", boolean, ""),
          spec::optional("shading", boolean, ""),
          spec::optional("iso_value", value, ""),
-         spec::optional("iso_opacity", spec::number().from(0).to(1), ""),
-         spec::optional("vertical_exaggeration", spec::number().from(0).to(100), ""),
+         spec::optional("iso_opacity", within(render::kIsoOpacityLimits), ""),
+         spec::optional("vertical_exaggeration", within(render::kExaggerationLimits), ""),
          spec::optional("planes", spec::listOf(text(1), 0, render::kMaxCutPlanes), ""),
          spec::optional("theme", spec::choice(kThemes), ""),
          spec::optional("show_terrain", boolean, ""),
@@ -205,7 +209,7 @@ class Reader {
   ProblemList& problems_;
 };
 
-/// A newer version would be a list of unknown keys; one error says it.
+/// Reports a newer version with one error, instead of a list of unknown keys.
 void refuseNewerVersion(const std::string& file, const DocumentNodePtr& root) {
   const DocumentNodePtr version = document::valueAt(root, {"schema_version"});
   const auto number = version && !version->quoted ? document::numberOf(version->text) : std::nullopt;

@@ -1,5 +1,8 @@
 #include "emscape/playback/volume_input.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -23,15 +26,37 @@ scenario::Clock clockOf(const std::vector<VolumeFile>& files) {
   return clock;
 }
 
-std::vector<VolumeFile> sorted(std::vector<VolumeFile> files, const fs::path& path,
-                               const std::string& quantity) {
-  if (files.empty()) {
-    throw Error(ErrorCode::bad_input, {path.string(), 0, 0}, "there is no volume of '" + quantity + "'");
+/// The files of one quantity, by time, out of all volumes or fields of an input.
+class FilesOfQuantity {
+ public:
+  /// @param quantity  empty: receives the first that is added
+  explicit FilesOfQuantity(std::string& quantity) : quantity_(quantity) {}
+
+  void add(const fs::path& file, const volume::VolumeInfo& info) {
+    if (quantity_.empty()) quantity_ = info.quantity;
+    if (info.quantity == quantity_) files_.push_back({file, info.time_s});
+    if (std::find(found_.begin(), found_.end(), info.quantity) == found_.end())
+      found_.push_back(info.quantity);
   }
-  std::stable_sort(files.begin(), files.end(),
-                   [](const VolumeFile& a, const VolumeFile& b) { return a.time_s < b.time_s; });
-  return files;
-}
+
+  /// @throws Error (bad_input) with the quantities that the input has
+  std::vector<VolumeFile> sorted(const fs::path& path) {
+    if (files_.empty()) {
+      throw Error(ErrorCode::bad_input, {path.string(), 0, 0},
+                  found_.empty() ? "there is no volume"
+                                 : fmt::format("there is no volume of '{}'; there are volumes of {}",
+                                               quantity_, fmt::join(found_, ", ")));
+    }
+    std::stable_sort(files_.begin(), files_.end(),
+                     [](const VolumeFile& a, const VolumeFile& b) { return a.time_s < b.time_s; });
+    return std::move(files_);
+  }
+
+ private:
+  std::string& quantity_;
+  std::vector<std::string> found_;
+  std::vector<VolumeFile> files_;
+};
 
 /// The .vtu files of a folder by name, or of a list.
 std::vector<fs::path> meshesOf(const fs::path& path) {
@@ -49,14 +74,11 @@ std::vector<fs::path> meshesOf(const fs::path& path) {
 
 std::vector<VolumeFile> volumeFilesOf(const fs::path& path, std::string& quantity) {
   const bool is_series = fs::is_directory(path) || path.extension() == ".pvd";
-  std::vector<VolumeFile> files;
+  FilesOfQuantity files(quantity);
   for (const auto& file : is_series ? volume::seriesOf(path) : std::vector<fs::path>{path}) {
-    for (const volume::DenseVolume& volume : volume::listVolume(file).volumes) {
-      if (quantity.empty()) quantity = volume.info.quantity;
-      if (volume.info.quantity == quantity) files.push_back({file, volume.info.time_s});
-    }
+    for (const volume::DenseVolume& volume : volume::listVolume(file).volumes) files.add(file, volume.info);
   }
-  return sorted(std::move(files), path, quantity);
+  return files.sorted(path);
 }
 
 bool holdsMeshes(const fs::path& path) {
@@ -65,7 +87,7 @@ bool holdsMeshes(const fs::path& path) {
     try {
       return volume::isMeshFile(volume::seriesOf(path).front());
     } catch (const Error&) {
-      return false;  // reading it reports the fault
+      return false;  // the fault is reported when the file is read
     }
   }
   if (!fs::is_directory(path)) return false;
@@ -78,14 +100,11 @@ bool holdsMeshes(const fs::path& path) {
 }
 
 std::vector<VolumeFile> meshFilesOf(const fs::path& path, std::string& quantity) {
-  std::vector<VolumeFile> files;
+  FilesOfQuantity files(quantity);
   for (const fs::path& file : meshesOf(path)) {
-    for (const volume::VolumeInfo& info : volume::listMesh(file)) {
-      if (quantity.empty()) quantity = info.quantity;
-      if (info.quantity == quantity) files.push_back({file, info.time_s});
-    }
+    for (const volume::VolumeInfo& info : volume::listMesh(file)) files.add(file, info);
   }
-  return sorted(std::move(files), path, quantity);
+  return files.sorted(path);
 }
 
 std::vector<VolumeFile> chosenFiles(std::vector<VolumeFile> files, const std::string& times,

@@ -1,4 +1,4 @@
-/// Faults that a model reports of its inputs.
+/// Faults of a model's inputs.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace emscape::propagation {
 
-/// Origin of a value, by which messages name its line in the scenario.
+/// Origin of a value, from which messages derive its line in the scenario.
 enum class InputOrigin { frequency, ground, settings };
 
 struct InputFault {

@@ -1,4 +1,4 @@
-/// A value that a model chooses by itself, for reports.
+/// A value that a model chooses automatically, for reports.
 #pragma once
 
 #include <string>

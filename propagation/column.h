@@ -1,5 +1,5 @@
-/// Inputs of an excess-loss model for one column of the grid: the terrain up to it and the heights of its
-/// voxels.
+/// Inputs of an excess-loss model for one column of the grid: the terrain profile up to the column and the
+/// heights of its voxels.
 #pragma once
 
 #include <cstddef>
@@ -15,29 +15,29 @@ struct ExcessColumn {
   double azimuth_rad = 0;  ///< from the emitter, clockwise from north, -pi .. pi
   float ground_msl_m = 0;  ///< NaN over missing terrain
   TerrainProfile profile;  ///< from the emitter to below the column; no posts for models without terrain
-  const float* height_msl_m = nullptr;  ///< of the voxels, rising
+  const float* height_msl_m = nullptr;  ///< of the voxels, ascending
   int count = 0;
   /// True: models evaluate every height. False: they may interpolate between some.
   bool every_height = false;
   std::size_t place = 0;  ///< index of the column in its grid
 
-  /// The tolerance of an interpolation between heights: none of theirs if every height is evaluated.
+  /// The tolerance of an interpolation between heights; negative if every height is evaluated.
   EMSCAPE_HD float tolerance_db(float of_model_db) const { return every_height ? -1.0f : of_model_db; }
 };
 
-/// Warning bit that models return for missing terrain; their other bits are their own.
+/// Warning bit that models return for missing terrain; their other bits are specific to the model.
 constexpr unsigned kMissingTerrain = 1u << 31;
 
 /// Some of a column's heights, for a model that fills them by bisection.
 struct ColumnPart {
   int begin = 0, end = 0;      ///< heights begin..end - 1; begin is a multiple of kBisectionStep
-  float* memory_db = nullptr;  ///< for a height more
+  float* memory_db = nullptr;  ///< for one more height
 
   /// Number of heights of the bisection, including the first of the next part.
   EMSCAPE_HD int reach(int count) const { return (end < count ? end + 1 : count) - begin; }
 };
 
-/// Scratch memory for one column at a time, cut from one block; one per thread.
+/// Scratch memory for one column at a time, in one block; one per thread.
 struct ExcessScratch {
   double* range_m = nullptr;
   float* ground_msl_m = nullptr;

@@ -8,10 +8,10 @@ namespace emscape::propagation {
 
 /// Orientation of a wave's electric field to the ground.
 enum class LinearPolarization { horizontal, vertical };
-/// Mixed polarisations count as vertical, the part that is diffracted more strongly.
+/// Mixed polarisations count as vertical, which is diffracted more strongly.
 LinearPolarization linearPolarization(Polarization polarization);
 
-/// A ground as a wave sees it: relative permittivity eps' - i eps'' with eps'' = sigma / (2 pi f eps0).
+/// Electrical constants of a ground: relative permittivity eps' - i eps'' with eps'' = sigma / (2 pi f eps0).
 struct GroundConstants {
   double relative_permittivity = 22;
   double conductivity_s_per_m = 0.003;
@@ -20,7 +20,7 @@ struct GroundConstants {
   EMSCAPE_HD double lossFactor(double frequency_hz) const {
     return conductivity_s_per_m * kSiemensPerMetreToLoss_hz / frequency_hz;
   }
-  /// 1 / (2 pi eps0), which recommendations write as 18 GHz / (S/m).
+  /// 1 / (2 pi eps0), approximated by 18 GHz / (S/m) in recommendations.
   static constexpr double kSiemensPerMetreToLoss_hz = 1.79751e10;
 };
 
@@ -29,9 +29,9 @@ constexpr GroundConstants kDiffractionLand{22, 0.003};
 constexpr GroundConstants kDiffractionSea{80, 5};
 
 /// Constants of a kind of ground at a frequency. Waters by P.527 at 15 degrees (sea water of 35 g/kg): the
-/// conductivity holds the loss of the turning dipoles too, and grows with frequency. Grounds by one pair for
-/// all frequencies (wet 25 and 0.02 S/m, average 15 and 0.005, dry 4 and 0.001; the NTIA's figures for ITM;
-/// concrete 5.3 and 0.1, P.2040 at 3 GHz): above some 10 GHz their loss is understated.
+/// conductivity includes the dielectric relaxation loss and increases with frequency. Land has one pair of
+/// constants for all frequencies (wet 25 and 0.02 S/m, average 15 and 0.005, dry 4 and 0.001; the NTIA's
+/// figures for ITM; concrete 5.3 and 0.1, P.2040 at 3 GHz): above about 10 GHz its loss is underestimated.
 GroundConstants groundConstants(GroundKind kind, double frequency_hz);
 /// The constants given for a ground; for the others, those of its kind.
 GroundConstants groundConstants(const Ground& ground, double frequency_hz);

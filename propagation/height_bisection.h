@@ -1,4 +1,4 @@
-/// Losses over a column's heights by adaptive bisection, from few evaluations of a model.
+/// Losses over a column's heights by adaptive bisection, with few evaluations of a model.
 #pragma once
 
 #include <cmath>
@@ -7,14 +7,15 @@
 
 namespace emscape::propagation {
 
-/// Indices between evaluations that are always made; values between two of them depend on these two only.
+/// Number of indices between evaluations that are always made; values between two of these depend only on the
+/// two.
 constexpr int kBisectionStep = 16;
 
-/// Evaluates a function at some indices of 0..count - 1 and draws straight lines between them: every
-/// kBisectionStep indices and at the last one, and between two evaluations if the value half way differs from
-/// their line by more than a tolerance, or if the slope is so large that a bend may be missed.
+/// Evaluates a function at some indices of 0..count - 1 and interpolates linearly between them. It is
+/// evaluated every kBisectionStep indices, at the last one, and between two evaluations if the value half way
+/// differs from their line by more than a tolerance, or if the slope is so large that a bend may be missed.
 /// @param tolerance_db  negative: every index is evaluated
-/// @param evaluate  double or float of an index; called no more than once for each
+/// @param evaluate  double or float of an index; called at most once for each
 /// @param out       `count` values
 template <class Evaluate>
 EMSCAPE_HD void fillByBisection(Evaluate evaluate, int count, float tolerance_db, float* out) {
@@ -33,7 +34,7 @@ EMSCAPE_HD void fillByBisection(Evaluate evaluate, int count, float tolerance_db
     return std::fabs(out[middle] - line) <= tolerance_db && std::fabs(out[end] - out[begin]) <= kSteep_db;
   };
   // One call site only, so that the threads of a GPU's warp call the function together.
-  int ends[kDeepest];  // of the intervals still to do, the nearest last
+  int ends[kDeepest];  // of the pending intervals, the nearest last
   int waiting = 0, from = 0, at = 0;
   bool is_middle = false;
   for (;;) {

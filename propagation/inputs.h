@@ -33,25 +33,25 @@ struct PathExtent {
 };
 
 /// Amplitude of an antenna (relative voltage, with the field's sign) against the angle above the horizontal
-/// (rad), in the vertical plane of its beam; empty: the model has no use for it, or the antenna is isotropic.
+/// (rad), in the vertical plane of its beam; empty: the model does not use it, or the antenna is isotropic.
 using ElevationPattern = std::function<double(double elevation_rad)>;
 
-/// All inputs that the paths from an emitter have in common.
+/// All common inputs of the paths from an emitter.
 struct PathInputs {
   EmitterInputs emitter;
   Site site;
   /// Height of the smooth surface; set for models with ModelInfo::on_smooth_surface.
   double surface_msl_m = 0;
-  /// Set for models with ModelInfo::needs_extent, and if the air attenuates.
+  /// Set for models with ModelInfo::needs_extent, and if there is atmospheric attenuation.
   PathExtent extent;
   double post_spacing_m = 0;  ///< of terrain profiles far from the emitter
   ElevationPattern elevation_pattern;
 };
 
-/// Places with the same heights above a base at each: a path to every point of a surface.
+/// Positions with the same heights above a base at each: the paths to the points of a surface.
 struct PathPoints {
-  std::vector<double> range_m;      ///< to each place along the ground; NaN: left out
-  std::vector<double> base_msl_m;   ///< of each place
+  std::vector<double> range_m;      ///< to each position along the ground; NaN: left out
+  std::vector<double> base_msl_m;   ///< of each position
   std::vector<float> above_base_m;  ///< heights
 };
 

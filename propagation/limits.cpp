@@ -5,7 +5,7 @@
 namespace emscape::propagation {
 namespace {
 
-/// What a message says of a value beyond its limit.
+/// Consequence of a value beyond its limit, in a message.
 std::string_view consequenceOf(Beyond beyond) {
   switch (beyond) {
     case Beyond::warned:
@@ -18,12 +18,12 @@ std::string_view consequenceOf(Beyond beyond) {
   return "";
 }
 
-/// The same in the table of limits.
+/// Consequence in the table of limits.
 std::string inTable(Beyond beyond) {
   return std::string(consequenceOf(beyond)) + (beyond == Beyond::refused ? "" : ", with a warning");
 }
 
-/// With a space before it, if there is one.
+/// The unit, preceded by a space if there is one.
 std::string unitOf(const ModelLimit& limit) {
   return limit.unit.empty() ? "" : fmt::format(" {}", limit.unit);
 }

@@ -1,5 +1,5 @@
 /// Range of validity of a propagation model: one table per model, from which its checks, messages and
-/// documentation come.
+/// documentation are derived.
 ///
 /// A model's header lists its limits as named constants, and all of them in one table:
 ///

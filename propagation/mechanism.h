@@ -1,4 +1,4 @@
-/// What determines the loss at a place: a propagation model, or a part of one.
+/// Mechanism that determines the loss at a position: a propagation model, or a part of one.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 namespace emscape::propagation {
 
-/// Those of parabolic_equation first; then the other models, each as a whole.
+/// The mechanisms of parabolic_equation, followed by the other models, each as a whole.
 enum class Mechanism : std::uint8_t {
   parabolic_equation,
   diffraction,
@@ -27,15 +27,15 @@ enum class Mechanism : std::uint8_t {
   p452
 };
 
-/// That of a model as a whole.
+/// The mechanism of a model as a whole.
 Mechanism mechanismOf(PropagationModel model);
 
 /// Names by value: "parabolic_equation", ...
 std::vector<std::string> mechanismNames();
 
-/// Where a model writes the mechanism of each height of a column.
+/// Output of the mechanism of each height of a column.
 struct MechanismStore {
-  std::uint8_t* lowest = nullptr;  ///< null: it is not asked for
+  std::uint8_t* lowest = nullptr;  ///< null: not needed
   std::size_t stride = 0;          ///< from one height to the next
 
   EMSCAPE_HD void set(int k, Mechanism mechanism) const {

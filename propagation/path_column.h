@@ -32,7 +32,7 @@ class PathColumn {
     warnings_ |= model(column_, scratch_, scratch_.excess_db);
     return static_cast<double>(scratch_.excess_db[0]);
   }
-  /// Warnings of a model that evaluates no function for columns.
+  /// Adds warnings of a model that has no function for columns.
   void addWarnings(unsigned warnings) { warnings_ |= warnings; }
   const ExcessColumn& column() const { return column_; }
   /// Warnings of all models evaluated so far.

@@ -1,5 +1,5 @@
-/// A setting of a propagation model by its name in files: the scenario schema, its validation and the
-/// comparison of two scenarios come from these rows.
+/// A setting of a propagation model with its name in files. The scenario schema, its validation and the
+/// comparison of two scenarios are derived from these rows.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct Setting {
   std::vector<std::string> choices;  ///< names of an enumeration's values, in its order; empty: a number
   std::string unit;                  ///< of a number
   double min = 0, max = 0;           ///< of a number, both allowed
-  bool has_auto = false;             ///< a number, or `auto` in files, which is 0 here
+  bool has_auto = false;             ///< a number may be `auto` in files, which is 0 here
   /// The number, or the index of the choice.
   double (*get)(const ModelSettings&) = nullptr;
   void (*set)(ModelSettings&, double value) = nullptr;

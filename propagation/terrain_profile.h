@@ -1,11 +1,11 @@
-/// Terrain along a path, as the models read it.
+/// Terrain along a path, input of the models.
 #pragma once
 
 #include "emscape/base/host_device.h"
 
 namespace emscape::propagation {
 
-/// Terrain along a path: `count` posts, ranges rising strictly from 0 at the transmitter.
+/// Terrain along a path: `count` posts, ranges strictly increasing from 0 at the transmitter.
 struct TerrainProfile {
   const double* range_m = nullptr;
   const float* height_msl_m = nullptr;

@@ -11,9 +11,9 @@
 namespace emscape::render {
 namespace {
 
-/// Pixels that a pass looks at, along a tile's side: 16 of them make one packet of rays.
+/// Examined pixels along a tile's side: 16 pixels make one packet of rays.
 constexpr int kTile = 4;
-/// The same of a block: the rays of a pass may be few, and are to be neighbours none the less.
+/// The same for a block, so that the rays of a pass, which may be few, are still neighbours.
 constexpr int kBlock = 4 * kTile;
 
 Pixel pixelAt(int x, int y) {
@@ -73,7 +73,7 @@ inline PixelLanes uniform<PixelLanes>(float value) {
 
 namespace {
 
-/// The picture as midpoints see it.
+/// Access to the picture for the prediction of midpoints.
 struct KnownPixels {
   using Color = PixelLanes;
 
@@ -91,14 +91,14 @@ struct KnownPixels {
     std::memcpy(static_cast<void*>(pixel), &color, sizeof color);
   }
 
-  /// Along the direction in which the next known pixels lie `step` further in memory.
+  /// Prediction along the direction in which the next known pixels are `step` further in memory.
   static Along<PixelLanes> along(const Rgba* middle, std::ptrdiff_t step) {
     return predictAlong(load(middle - step), load(middle + step), load(middle - 3 * step),
                         load(middle + 3 * step));
   }
 };
 
-/// What one pass works on.
+/// Inputs of one pass.
 struct PassTask {
   Pass pass;
   KnownPixels known;
@@ -109,7 +109,7 @@ struct PassTask {
 
 /// One row of a tile: midpoints first_x, first_x + pass.stepX(), ... below end_x.
 inline void predictRow(const PassTask& task, int first_x, int end_x, int y, std::vector<Pixel>& queue) {
-  // Copies: what is written below, a byte, could be any part of the task.
+  // Copies, because the bytes written below might alias any part of the task.
   const KnownPixels known = task.known;
   const int reach = task.pass.reach;
   const int step_x = task.pass.stepX();
@@ -142,7 +142,7 @@ inline void predictRow(const PassTask& task, int first_x, int end_x, int y, std:
 
 /// Visits a row of blocks of pixels (0, first_y), (step_x, first_y), ...: block by block, tile by tile, row
 /// by row of each tile.
-/// @param visit  gets a row's first pixel
+/// @param visit  receives a row's first pixel
 template <class Visit>
 inline void visitTiles(ImageSize size, int step_x, int step_y, int first_y, const Visit& visit) {
   const int end_y = std::min(first_y + kBlock * step_y, size.height);
@@ -222,7 +222,7 @@ const std::vector<Pixel>& AdaptiveFrame::missing() {
       }
     });
   };
-  // A counting sort: how many there are of each class in each row of blocks, then where each begins.
+  // A counting sort: number of pixels of each class in each row of blocks, then the beginning of each.
   places_.assign(static_cast<std::size_t>(rows), {});
   parallelFor(rows, 1, [&](int begin, int end) {
     for (int row = begin; row < end; ++row) {

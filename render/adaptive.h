@@ -1,9 +1,9 @@
 /// The pattern `adaptive`: rays are cast where the picture cannot be predicted.
 ///
 /// A lattice of every fourth pixel is cast. The pixels between are filled in four passes, at half and then at
-/// a quarter of its distance: the centres of the cells, then the middles of their sides. Each such midpoint
-/// is predicted from the pixels that are known by then (adaptive_predict.h); where the prediction's estimated
-/// error exceeds a tolerance the ray is cast. Rays are collected a pass at a time and cast together.
+/// a quarter of the lattice's spacing: the centres of the cells, then the middles of their sides. Each
+/// midpoint is predicted from the pixels known so far (adaptive_predict.h); if the estimated error of the
+/// prediction exceeds a tolerance, the ray is cast. The rays of a pass are collected and cast together.
 #pragma once
 
 #include <array>
@@ -19,31 +19,30 @@
 
 namespace emscape::render {
 
-/// Classes of a prediction's estimated error; each is about twice the one before.
+/// Classes of a prediction's estimated error; each is about twice the previous one.
 constexpr int kErrorClasses = 16;
 
 /// Draws frames of this pattern; keeps its buffers between them. Results do not depend on the number of
-/// threads. One thread calls it.
+/// threads. For one thread.
 class AdaptiveFrame {
  public:
-  /// Casts pixels into the image that is being drawn; neighbours in the list mostly are neighbours in the
-  /// picture. @return false: stopped
+  /// Casts pixels into the current image; neighbours in the list are usually neighbours in the picture.
+  /// @return false if stopped
   using Caster = std::function<bool(const std::vector<Pixel>& pixels)>;
 
   /// Draws a frame.
-  /// @param image   of the size that the picture has; every pixel is written, those outside as transparent
-  /// black
-  /// @param inside  the pixels that may show something; one row for each of the image's
-  /// @param tolerance_levels  see kDefaultTolerance_levels; 0: only what is predicted without doubt is not
+  /// @param image   of the picture's size; every pixel is written, those outside as transparent black
+  /// @param inside  the pixels that may be visible; one entry per row of the image
+  /// @param tolerance_levels  see kDefaultTolerance_levels; 0: only pixels with a certain prediction are not
   /// cast
-  /// @param max_rays  > 0: while frames cast more, the tolerance is raised from one frame to the next, and
-  /// lowered again when they do not
+  /// @param max_rays  > 0: while frames cast more, the tolerance is raised from frame to frame; otherwise it
+  /// is lowered again
   /// @return false if it was stopped
   bool draw(Image& image, const Silhouette& inside, double tolerance_levels, double max_rays,
             const Caster& cast);
 
-  /// The pixels of the last frame that were predicted, those with the largest estimated error first (to a
-  /// factor of two, neighbours together). All of them cast, the image is that of the pattern `full`.
+  /// The predicted pixels of the last frame, in order of decreasing estimated error (to a factor of two,
+  /// neighbours together). When all are cast, the image is that of the pattern `full`.
   const std::vector<Pixel>& missing();
 
  private:
@@ -56,7 +55,8 @@ class AdaptiveFrame {
 
   ImageSize size_;
   ToleranceController hold_;
-  std::vector<std::uint8_t> classes_;       ///< of the estimated error, a byte a pixel; 0: is as it was cast
+  std::vector<std::uint8_t>
+      classes_;  ///< class of the estimated error, one byte per pixel; 0: the pixel was cast
   std::vector<std::vector<Pixel>> queues_;  ///< rays to be cast, by rows of blocks
   std::vector<Pixel> queue_;                ///< the same, joined
   std::vector<Pixel> missing_;

@@ -1,4 +1,4 @@
-/// The passes of the pattern `adaptive` and what they predict: single source for host and device.
+/// The passes of the pattern `adaptive` and their predictions: single source for host and device.
 #pragma once
 
 #include "emscape/base/host_device.h"
@@ -14,26 +14,26 @@ constexpr int kLatticeStep = 4;
 struct Pass {
   int reach;  ///< distance of the nearest known pixels, along either axis; a power of two
   bool diagonal;
-  double tolerance;  ///< part of the frame's
+  double tolerance;  ///< fraction of the frame's tolerance
 
   EMSCAPE_HD int firstY() const { return diagonal ? reach : 0; }
   EMSCAPE_HD int stepY() const { return diagonal ? 2 * reach : reach; }
   EMSCAPE_HD int stepX() const { return 2 * reach; }
   EMSCAPE_HD int firstX(int y) const { return diagonal || (y & reach) == 0 ? reach : 0; }
-  /// Midpoints along a row and a column of a picture, or one more.
+  /// Number of midpoints along a row and a column of a picture, or one more.
   EMSCAPE_HD int columns(ImageSize size) const { return (size.width + stepX() - 1) / stepX(); }
   EMSCAPE_HD int rows(ImageSize size) const { return (size.height + stepY() - 1) / stepY(); }
 };
 constexpr Pass kPasses[] = {{2, true, 0.2}, {2, false, 0.5}, {1, true, 0.5}, {1, false, 1.0}};
 
-/// The picture as midpoints see it: Known has Color, at(x, y) and `size`.
+/// Access to the picture: Known has Color, at(x, y) and `size`.
 template <class Known>
 EMSCAPE_HD bool contains(const Known& known, int x, int y) {
   return x >= 0 && y >= 0 && x < known.size.width && y < known.size.height;
 }
 
-/// Along the direction (dx, dy) from a midpoint whose two nearest pixels are in the picture. What is beyond
-/// its edge follows from the curvature on the other side.
+/// Prediction along the direction (dx, dy) from a midpoint whose two nearest pixels are in the picture.
+/// Pixels beyond its edge are extrapolated with the curvature on the other side.
 template <class Known>
 EMSCAPE_HD Along<typename Known::Color> alongFrom(const Known& known, int x, int y, int dx, int dy) {
   using Color = typename Known::Color;
@@ -48,7 +48,7 @@ EMSCAPE_HD Along<typename Known::Color> alongFrom(const Known& known, int x, int
   return predictAlong(a, b, low, high);
 }
 
-/// Predicts any midpoint of a pass. @return false: no direction has a pixel at either end
+/// Predicts any midpoint of a pass. @return false: no direction has pixels at both ends
 template <class Known>
 EMSCAPE_HD bool predictMidpoint(const Known& known, const Pass& pass, int x, int y,
                                 Prediction<typename Known::Color>& prediction) {

@@ -1,10 +1,10 @@
-/// Predicting a pixel from the known ones around it, and by how much the prediction may be wrong: single
-/// source for host and device over plain data.
+/// Prediction of a pixel from the known pixels around it, with an estimate of its error: single source for
+/// host and device over plain data.
 ///
 /// A midpoint is half-way between two known pixels along each of two directions. Along a direction the four
-/// nearest known pixels give a cubic prediction, (9 (a + b) - (c + d)) / 16, that may leave the linear one,
-/// (a + b) / 2, by no more than a quarter of the step between a and b: edges do not ring. The direction along
-/// which the picture changes less counts more.
+/// nearest known pixels give a cubic prediction, (9 (a + b) - (c + d)) / 16, whose deviation from the linear
+/// one, (a + b) / 2, is limited to a quarter of the step between a and b, so that edges do not ring. The
+/// direction along which the picture changes less has more weight.
 ///
 /// Color is Rgba, or a vector of the four channels that has the operators and the functions below.
 #pragma once
@@ -17,7 +17,7 @@
 
 namespace emscape::render {
 
-/// A level of 255 in units of a colour's components, and the other way round.
+/// A level of 255 in units of a colour's components, and the inverse.
 constexpr float kLevel = 1.0F / 255;
 constexpr float kLevels = 255;
 
@@ -62,7 +62,7 @@ EMSCAPE_HD inline Rgba uniform<Rgba>(float value) {
 
 // --- Predictions ---
 
-/// A prediction along one direction; sizes are those of the largest channel.
+/// A prediction along one direction; magnitudes are those of the largest channel.
 template <class Color>
 struct Along {
   Color color;
@@ -70,7 +70,7 @@ struct Along {
   float bend = 0;  ///< |cubic - linear| before it is limited
 };
 
-/// From the two nearest pixels of a direction, and the next two beyond them.
+/// Prediction from the two nearest pixels of a direction and the next two beyond them.
 template <class Color>
 EMSCAPE_HD Along<Color> predictAlong(const Color& a, const Color& b, const Color& beyond_a,
                                      const Color& beyond_b) {
@@ -84,28 +84,28 @@ EMSCAPE_HD Along<Color> predictAlong(const Color& a, const Color& b, const Color
   return {greater(addScaled(sum, 0.5F, limited), zero), largestChannel(step),
           largestChannel(magnitude(bend))};
 }
-/// From the two nearest alone.
+/// Prediction from only the two nearest pixels.
 template <class Color>
 EMSCAPE_HD Along<Color> predictAlong(const Color& a, const Color& b) {
   return {(a + b) * 0.5F, largestChannel(magnitude(a - b)), 0.0F};
 }
 
-/// A pixel as it is predicted, and an estimate of its error in levels: what the tolerance is held against.
+/// A predicted pixel, and an estimate of its error in levels, which is compared with the tolerance.
 template <class Color>
 struct Prediction {
   Color color;
   float error_levels = 0;
 };
 
-/// Steps beyond this say that an edge may pass, however well the predictions agree.
+/// A larger step indicates that an edge may be there, however well the predictions agree.
 constexpr float kSteep = 8 * kLevel;
 
 EMSCAPE_HD inline float steepness(float step) {
   return 0.5F * greater(step - kSteep, 0.0F);
 }
 
-/// From both directions: their disagreement, the bend of the straighter one, and the steepness of the calmer
-/// one.
+/// Prediction from both directions, with an error from their difference, the bend of the straighter one, and
+/// the steepness of the flatter one.
 template <class Color>
 EMSCAPE_HD Prediction<Color> predict(const Along<Color>& p, const Along<Color>& q) {
   constexpr float kNoise = 0.5F * kLevel;
@@ -115,7 +115,7 @@ EMSCAPE_HD Prediction<Color> predict(const Along<Color>& p, const Along<Color>& 
   return {addScaled(apart, share, q.color),
           (disagreement + lesser(p.bend, q.bend) + steepness(lesser(p.step, q.step))) * kLevels};
 }
-/// From one direction, at the picture's edge: half its step stands for the disagreement.
+/// Prediction from one direction, at the picture's edge, with half the step instead of the difference.
 template <class Color>
 EMSCAPE_HD Prediction<Color> predict(const Along<Color>& p) {
   return {p.color, (0.5F * p.step + p.bend + steepness(p.step)) * kLevels};

@@ -6,7 +6,8 @@
 namespace emscape::render {
 
 double nextTolerance_levels(double tolerance_levels, double cost, double budget) {
-  // Times fall about with the square root of the tolerance; less than the square is damped.
+  // Times are about inversely proportional to the square root of the tolerance; an exponent below 2 is
+  // damped.
   constexpr double kResponse = 1.5;
   const double factor = std::clamp(std::pow(cost / budget, kResponse), 0.5, 2.0);
   return std::clamp(tolerance_levels * factor, kMinTolerance_levels, kMaxTolerance_levels);
@@ -17,7 +18,7 @@ double ToleranceController::levels(double asked_levels) const {
 }
 
 void ToleranceController::drawn(double levels, double rays, double max_rays) {
-  // Rays fall with some power of the tolerance; the last two frames give the exponent.
+  // The number of rays falls with a power of the tolerance; the last two frames determine the exponent.
   constexpr double kAim = 0.98;
   const double fall = std::log(last_rays_ / std::max(rays, 1.0));
   const double rise = std::log(std::max(levels, kMinTolerance_levels) / last_levels_);

@@ -1,4 +1,4 @@
-/// Premultiplied pixels of four bytes, one over another. Single source for host and device.
+/// Compositing of premultiplied pixels of four bytes. Single source for host and device.
 #pragma once
 
 #include <cstdint>
@@ -7,8 +7,8 @@
 
 namespace emscape::render {
 
-/// What is seen of `back` behind `front`: each byte rounded to nearest and clamped. Alpha is the highest
-/// byte, the order of the others is free, but the same in both.
+/// `front` over `back`: each byte is rounded to nearest and clamped. Alpha is the highest byte; the order of
+/// the others is arbitrary but equal in both.
 EMSCAPE_HD inline std::uint32_t bytesOver(std::uint32_t front, std::uint32_t back) {
   constexpr std::uint32_t kPair = 0x00FF00FFU;  // two bytes, each with room for carries
   const std::uint32_t clear = 255 - (front >> 24);
@@ -21,7 +21,7 @@ EMSCAPE_HD inline std::uint32_t bytesOver(std::uint32_t front, std::uint32_t bac
   return pairOver(front & kPair, back & kPair) | pairOver(front >> 8 & kPair, back >> 8 & kPair) << 8;
 }
 
-/// From 0xAARRGGBB to 0xAABBGGRR, which lies in memory as r g b a, and back.
+/// Converts 0xAARRGGBB to 0xAABBGGRR, which is r g b a in memory, and back.
 EMSCAPE_HD inline std::uint32_t redAndBlueSwapped(std::uint32_t pixel) {
   return (pixel & 0xFF00FF00U) | (pixel >> 16 & 0xFFU) | (pixel & 0xFFU) << 16;
 }

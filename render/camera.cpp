@@ -19,12 +19,12 @@ constexpr double kLargestFov_deg = 150;
 constexpr double kMinDistance = 0.01;
 constexpr double kMaxDistance = 1000;
 constexpr double kMaxExaggeration = 20;
-/// The drawn box is to be at least this high, relative to its longer side.
+/// Target of the minimum height of the drawn box, relative to its longer side.
 constexpr double kHeightWanted = 0.32;
 
 // --- text form ---
 
-/// One key of the text form: a number, its range, and where it goes.
+/// One key of the text form: a number, its range, and its destination.
 struct CameraKey {
   const char* name;
   double least, largest;
@@ -122,7 +122,7 @@ std::array<Vec3d, 8> cornersOf(const SceneBox& box) {
   return corners;
 }
 
-/// What the box covers of the plane at one unit before the eye (perspective), or of the plane through it
+/// Extent of the box in the plane one unit in front of the eye (perspective), or in the plane through the eye
 /// (orthographic).
 struct ViewExtent {
   double least_x = 1e300, largest_x = -1e300, least_y = 1e300, largest_y = -1e300;
@@ -146,7 +146,7 @@ ViewExtent extentOf(const SceneBox& box, const Axes& axes, const Vec3d& eye, Pro
   return extent;
 }
 
-/// The part of a picture that margins leave, in half heights of the picture.
+/// The part of a picture inside the margins, in half heights of the picture.
 struct FreeArea {
   double width, height, center_x, center_y;
 };
@@ -158,14 +158,14 @@ FreeArea freeArea(ImageSize size, const FrameMargins& margins) {
           margins.bottom - margins.top};
 }
 
-/// How many times too large the box is for the free area when half_height is the scale.
+/// Ratio of the size of the box to the free area, with half_height as scale.
 double overflowOf(const ViewExtent& extent, const FreeArea& area, double half_height) {
   return std::max((extent.largest_x - extent.least_x) / area.width,
                   (extent.largest_y - extent.least_y) / area.height) /
          half_height;
 }
 
-/// Nearest distance from which the whole box fits (perspective).
+/// Minimum distance from which the whole box fits (perspective).
 double fittingDistance_m(const SceneBox& box, const Axes& axes, const Vec3d& target, const FreeArea& area,
                          double half_height) {
   double too_near = 0;

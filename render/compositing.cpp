@@ -1,5 +1,8 @@
 #include "render/compositing.h"
 
+#include <fmt/format.h>
+
+#include "emscape/base/error.h"
 #include "emscape/render/render_settings.h"
 #include "render/names.h"
 
@@ -15,6 +18,11 @@ constexpr Named<CompositingMode> kModes[] = {{CompositingMode::dvr, "dvr"},
 
 const char* toString(CompositingMode mode) {
   return nameOf(kModes, mode);
+}
+
+void SettingLimits::require(double value) const {
+  if (value >= min && value <= max) return;
+  throw Error(ErrorCode::bad_input, fmt::format("{} {}: expected a number {}..{}", name, value, min, max));
 }
 
 CompositingMode parseCompositingMode(const std::string& name) {

@@ -1,4 +1,5 @@
-/// How the samples of a ray become a pixel: one small functor per mode, plain data for host and device.
+/// Combination of the samples of a ray into a pixel: one small functor per mode, plain data for host and
+/// device.
 #pragma once
 
 #include <cmath>
@@ -14,7 +15,7 @@ namespace emscape::render {
 EMSCAPE_HD inline float opacityOver(float opacity, float steps) {
   return opacity >= 1.0F ? 1.0F : 1.0F - power(1.0F - opacity, steps);
 }
-/// A sample of one step, cut to a part of it. @param sample premultiplied; part 0..1
+/// A sample of one step, shortened to a part of the step. @param sample premultiplied; part 0..1
 EMSCAPE_HD inline Rgba shortened(const Rgba& sample, float part) {
   return sample.a > 0.0F ? sample * (opacityOver(sample.a, part) / sample.a) : sample;
 }
@@ -44,8 +45,8 @@ struct TransferView {
   }
 };
 
-/// What every compositor offers: samples come front to back; `f` is normalised, `sample` premultiplied and
-/// corrected for its length.
+/// Interface of every compositor. Samples are added front to back; `f` is normalised, `sample` premultiplied
+/// and corrected for its length.
 ///   kNeedsColor           false: add() does not look at `sample`
 ///   canSkip(level)        whether the samples of a brick change nothing; see SkipView::levels
 ///   ignores(f, sample)    whether a sample changes nothing. It is then not added, nor is done() asked: so a

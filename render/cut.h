@@ -1,5 +1,5 @@
-/// Half-spaces that a ray is clipped to, and the sections on their planes: plain data, single source for host
-/// and device.
+/// Half-spaces to which a ray is clipped, and the sections on their planes: plain data, single source for
+/// host and device.
 #pragma once
 
 #include <cmath>
@@ -13,16 +13,16 @@
 
 namespace emscape::render {
 
-/// The part of a ray that planes leave.
+/// The part of a ray that planes keep.
 struct CutInterval {
-  double begin = 0, end = 0;     ///< along the ray; empty where end <= begin
+  double begin = 0, end = 0;     ///< along the ray; empty if end <= begin
   bool begins_at_plane = false;  ///< the ray enters the kept side there
   bool ends_at_plane = false;    ///< the ray leaves the kept side there
 };
 
 /// Planes in the volume's index space.
 struct CutView {
-  /// Keeps what has dot(normal, position) <= offset.
+  /// Keeps the half-space dot(normal, position) <= offset.
   struct Plane {
     Vec3d normal;
     double offset = 0;
@@ -31,10 +31,10 @@ struct CutView {
   Plane planes[kMaxCutPlanes];
   int count = 0;
   const Rgba* colors = nullptr;  ///< opaque, by the index of the transfer function's table
-  /// Values as near to the floor as this are no field: sections are transparent there.
+  /// Values within this distance of the floor are no field: sections are transparent there.
   float floor = 0, near_floor = 0;
 
-  /// Whether a position is on the removed side of a plane.
+  /// True if a position is on the removed side of a plane.
   bool removes(const Vec3d& position) const {
     for (int n = 0; n < count; ++n) {
       if (dot(planes[n].normal, position) > planes[n].offset) return true;
@@ -42,7 +42,7 @@ struct CutView {
     return false;
   }
 
-  /// Clips a part of a ray. @param of_ground  to the planes that cut the ground alone
+  /// Clips a part of a ray. @param of_ground  only to the planes that cut the ground
   EMSCAPE_HD void clip(const Vec3d& origin, const Vec3d& direction, bool of_ground,
                        CutInterval& interval) const {
     for (int n = 0; n < count; ++n) {
@@ -67,7 +67,7 @@ struct CutView {
     }
   }
 
-  /// The section's colour where the volume has a value. @param known  the voxel is not masked
+  /// The section's colour, if the volume has a value. @param known  the voxel is not masked
   EMSCAPE_HD Rgba color(const TransferView& transfer, bool known, float value) const {
     return known && std::fabs(value - floor) > near_floor ? colors[transfer.index(transfer.normalized(value))]
                                                           : Rgba{};
@@ -80,10 +80,10 @@ struct RayBounds {
   float end = 1e30F;
 };
 
-/// The part of a pixel's ray that planes leave.
+/// The part of a pixel's ray that planes keep.
 struct CutRay {
   RayBounds bounds;  ///< of samples
-  Rgba section;      ///< what is behind them; transparent: no section, or none that shows
+  Rgba section;      ///< section behind the samples; transparent: no visible section
 };
 
 }  // namespace emscape::render

@@ -41,15 +41,15 @@ bool parseSwitch(const SpecText& text, const std::string& value) {
   text.refuse(fmt::format("on '{}': expected true or false", value));
 }
 
-/// The two points of a line as they are given.
+/// The two points of a line.
 struct LinePoints {
   double x1_m = 0, y1_m = 0, x2_m = 0, y2_m = 0;
 };
 
-/// A number of a text form and where it goes.
+/// A number of a text form and its destination.
 struct PlaneKey {
   const char* name;
-  double largest;  ///< and its negative is the least
+  double largest;  ///< its negative is the minimum
   void (*set)(CutPlane&, LinePoints&, double);
 };
 

@@ -1,4 +1,4 @@
-/// Interface of a renderer to the processor that casts its pictures: one implementation for the CPU, one for
+/// Interface between a renderer and the processor that casts its pictures; implemented for the CPU and for
 /// CUDA.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace emscape::render {
 
-/// Casts frames and keeps the picture of the last one where it was cast. For use by one thread.
+/// Casts frames and keeps the last picture in the memory in which it was cast. For one thread.
 class FrameCaster {
  public:
   virtual ~FrameCaster() = default;
@@ -25,12 +25,12 @@ class FrameCaster {
   /// See Renderer.
   virtual std::size_t volumeBytes() const = 0;
 
-  /// See Renderer. @param scene  prepared, of the volume that was set last
+  /// See Renderer. @param scene  prepared, for the last volume that was set
   virtual FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size,
                            const StopFlag* stop) = 0;
   virtual FrameReport restore(const Scene& scene, const StopFlag* stop) = 0;
 
-  /// Before and after a frame whose picture the caller wants in an image of its own: the CPU casts into it.
+  /// Called before and after a frame whose picture the caller wants in its own image: the CPU casts into it.
   virtual void bindTarget(Image& image) = 0;
   virtual void unbindTarget(Image& image, const FrameReport& report) = 0;
   /// The picture of the last frame.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kForever = std::numeric_limits<double>::infinity();
 
-/// The paper's: a restoration then takes about epsilon (1:1), 1.33 epsilon (1:3).
+/// As in Feng et al. 2016: a restoration then takes about epsilon (1:1), 1.33 epsilon (1:3).
 double epsilonFactor(Pattern pattern) {
   switch (pattern) {
     case Pattern::full:

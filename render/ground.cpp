@@ -14,13 +14,13 @@ namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kMaxPosts = 1 << 28;
-/// Thickness of the block below the lowest of ground and box, as a part of the box's height.
+/// Thickness of the block below the lower of ground and box, relative to the box's height.
 constexpr double kPlinth = 0.025;
 /// Hatching lines of a pit across the longer side of the ground.
 constexpr float kHatchLines = 90;
 constexpr int kGroundGrain = 16;
 
-/// Muted, so that the field's colours stand out: lowland, slopes, heights, summits.
+/// Muted colours, so that the field is prominent: lowland, slopes, heights, summits.
 struct TintPoint {
   float at;
   Rgba color;
@@ -63,7 +63,7 @@ void check(const HeightField& field) {
   }
 }
 
-/// Posts of a field, by its own numbers, that cover a box along one axis.
+/// Posts of a field, by index, that cover a box along one axis.
 struct PostRange {
   int first, count;
 };
@@ -78,7 +78,7 @@ PostRange cover(double first_m, double spacing_m, double lower_m, double upper_m
   return {static_cast<int>(first), static_cast<int>(last - first) + 1};
 }
 
-/// The post that stands for one beyond the edge: the edge's own for one spacing, none further out (-1).
+/// The post used beyond the edge: that of the edge for one spacing, none further out (-1).
 int heldPost(int post, int count) {
   if (post < -1 || post > count) return -1;
   return std::clamp(post, 0, count - 1);

@@ -1,8 +1,8 @@
-/// The ground as a surface that rays hit: plain data with a hierarchy of largest heights, single source for
+/// Intersection of rays with the ground: plain data with a hierarchy of largest heights, single source for
 /// host and device.
 ///
-/// The ground is a solid block: below its heights down to a base plane, inside the volume's box. Where a post
-/// is unknown the block has a pit down to the base, hatched. Its sides are drawn plain.
+/// The ground is a solid block from its heights down to a base plane, inside the volume's box. At an unknown
+/// post the block has a hatched pit down to the base. Its sides are drawn plain.
 #pragma once
 
 #include <vector>
@@ -16,7 +16,7 @@
 
 namespace emscape::render {
 
-/// Where a ray meets the ground.
+/// Intersection of a ray with the ground.
 struct GroundHit {
   bool found = false;
   double distance = 0;  ///< along the ray
@@ -26,7 +26,7 @@ struct GroundHit {
 /// Positions are in the volume's index space; *post space* counts x and y in posts.
 struct GroundView {
   static constexpr int kMaxLevels = 16;
-  /// What rounding may make of a distance (voxels): nearer than this to the surface or the base is on it.
+  /// Tolerance of distances (voxels): points within this distance of the surface or the base are on it.
   static constexpr float kRounding = 1e-3F;
 
   const float* heights = nullptr;  ///< columns * rows posts, index space z; NaN: unknown. Null: no ground
@@ -43,7 +43,7 @@ struct GroundView {
 
   /// The first point of the block on a ray between two distances.
   EMSCAPE_HD GroundHit firstHit(const Vec3d& origin, const Vec3d& direction, double begin, double end) const;
-  /// Colour of the block's inside, where it is cut. @param z  index space
+  /// Colour of the block's inside, visible at a cut. @param z  index space
   EMSCAPE_HD Rgba cutColor(float z) const { return wallColor(z, 1.0F, 0.0F); }
 
  private:
@@ -62,7 +62,7 @@ class GroundSurface {
   GroundSurface(const HeightField& field, const volume::Grid& grid, const SceneBox& box);
 
   GroundView view() const;
-  /// What GroundView::highest refers to.
+  /// The levels of GroundView::highest.
   const std::vector<float>& level(int level) const { return highest_[static_cast<std::size_t>(level)]; }
 
  private:

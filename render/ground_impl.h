@@ -1,9 +1,9 @@
-/// The ray's way over the ground; included by ground.h.
+/// The path of a ray over the ground; included by ground.h.
 #pragma once
 
 namespace emscape::render {
 
-/// A ray in post space, from where it enters the block; its parameter still counts voxels of index space.
+/// A ray in post space, from its entry into the block; its parameter is in voxels of index space.
 struct GroundView::PostRay {
   float x, y, z;
   float dx, dy, dz;
@@ -80,7 +80,7 @@ EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, fl
   const float y = held(ray.y + ray.dy * enter - static_cast<float>(j), 0.0F, 1.0F);
   const float z = ray.z + ray.dz * enter;
   const float base = static_cast<float>(lower.z);
-  if (!(twist == twist)) {  // a pit: nothing but its floor
+  if (!(twist == twist)) {  // a pit: only its floor
     const bool enters_floor = z <= base;
     if (!enters_floor && !(ray.dz < 0.0F && z + ray.dz * (leave - enter) <= base + kRounding)) return false;
     distance = enters_floor ? enter : enter + (base - z) / ray.dz;

@@ -1,4 +1,4 @@
-/// The ground as the pixels of a picture see it, kept while the camera stands still.
+/// The ground in each pixel of a picture, kept while the camera does not move.
 #pragma once
 
 #include <cmath>
@@ -9,13 +9,13 @@
 
 namespace emscape::render {
 
-/// One entry a pixel, filled as pixels are cast.
+/// One entry per pixel, filled when pixels are cast.
 struct GroundLayer {
   static constexpr float kUnknown = -1.0F;
   static constexpr float kNone = std::numeric_limits<float>::infinity();
 
   ImageSize size;
-  std::vector<float> distances;  ///< along the ray; kNone: it misses the ground; kUnknown: not looked at yet
+  std::vector<float> distances;  ///< along the ray; kNone: it misses the ground; kUnknown: not yet computed
   std::vector<Rgba> colors;      ///< of hits
   bool complete = false;         ///< no pixel is unknown
 
@@ -26,7 +26,7 @@ struct GroundLayer {
     complete = false;
   }
   std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * size.width + x; }
-  /// What a pixel shows whose volume alone looks like `front`. Its ground is known.
+  /// The colour of a pixel whose volume has the colour `front`. Its ground must be known.
   Rgba behind(const Rgba& front, std::size_t pixel) const {
     return distances[pixel] < kNone ? over(front, colors[pixel]) : front;
   }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxSide = 32768;
 
-/// PNG wants colours that are not premultiplied.
+/// PNG requires colours that are not premultiplied.
 std::vector<std::uint8_t> straightAlpha(const Image8& image) {
   std::vector<std::uint8_t> straight(image.rgba);
   for (std::size_t i = 0; i < straight.size(); i += 4) {

@@ -1,4 +1,4 @@
-/// How the pixels that are not cast follow from those that are: single source for host and device.
+/// Interpolation of the pixels that are not cast: single source for host and device.
 #pragma once
 
 #include <cstdint>
@@ -28,8 +28,8 @@ EMSCAPE_HD inline Rgba toRgba(const Rgba8& p) {
   return {part(0), part(8), part(16), part(24)};
 }
 
-/// The two ways to fill a pixel, by kind of arithmetic; see Interpolation. Color: what is interpolated.
-/// The mean of a colour and itself is that colour: so an edge pixel copies the one neighbour that it has.
+/// The two kinds of arithmetic; see Interpolation. Color is the interpolated type. The mean of a colour and
+/// itself is that colour, so that an edge pixel copies its only neighbour.
 struct FloatArithmetic {
   using Color = Rgba;
   EMSCAPE_HD static const Rgba& of(const Rgba& source) { return source; }
@@ -38,25 +38,25 @@ struct FloatArithmetic {
 struct Bits8Arithmetic {
   using Color = Rgba8;
   EMSCAPE_HD static Rgba8 of(const Rgba& source) { return quantized(source); }
-  /// (p + q + 1) / 2 of each byte: what both have or one has, less half of what one has.
+  /// (p + q + 1) / 2 of each byte: the bits that at least one has, minus half of the bits that only one has.
   EMSCAPE_HD static Rgba8 mean(const Rgba8& p, const Rgba8& q) {
     return {(p.levels | q.levels) - ((p.levels ^ q.levels) >> 1 & 0x7F7F7F7FU)};
   }
 };
 
-/// Four pixels of a pattern, (x, y) to (x + 1, y + 1), from source pixels alone, each of which is read once:
+/// Four pixels of a pattern, (x, y) to (x + 1, y + 1), from source pixels, each of which is read once:
 /// interpolate() by cells.
 /// @param x, y  even
 /// @param source  source(x, y): a pixel that was cast
 /// @param put  put(column, row, color) takes pixel (x + column, y + row): Rgba, a source pixel, or
-///             Arithmetic::Color. What it is given of pixels beyond the picture has no meaning.
+///             Arithmetic::Color. Values for pixels beyond the picture are undefined.
 template <class Arithmetic, class Source, class Put>
 EMSCAPE_HD void fillCell(Pattern pattern, ImageSize size, int x, int y, const Source& source,
                          const Put& put) {
   const auto meanOf = [](const Rgba& p, const Rgba& q) {
     return Arithmetic::mean(Arithmetic::of(p), Arithmetic::of(q));
   };
-  // Neighbours, and those of the same parity; at an edge pixels of the cell in their place.
+  // Neighbours, and those of the same parity; at an edge replaced by pixels of the cell.
   const int right = x + 1 < size.width ? x + 1 : x;
   const int below = y + 1 < size.height ? y + 1 : y;
   const int next_x = x + 2 < size.width ? x + 2 : x;

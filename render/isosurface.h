@@ -1,4 +1,4 @@
-/// Where a ray meets the surface of one value. Single source for host and device.
+/// Intersection of a ray with an isosurface. Single source for host and device.
 #pragma once
 
 #include "emscape/base/host_device.h"
@@ -19,7 +19,7 @@ struct IsoHit {
   bool found = false;
   bool cap = false;  ///< the ray enters the box inside the surface: the box's face is the surface
   float distance = 0;
-  float value = 0;  ///< of the field there
+  float value = 0;  ///< value of the field there
 };
 
 /// A point of a ray with the field's value.
@@ -39,7 +39,7 @@ EMSCAPE_HD FieldPoint fieldPoint(const VolumeView& volume, const RaySegments& se
 
 /// The crossing between two points on either side of the surface: bisected a fixed number of times, then
 /// linear. Not found if a masked or NaN sample is between.
-/// @accuracy 1/256 of the distance of the points for any field; for smooth ones about the square of that
+/// @accuracy 1/256 of the distance of the points for any field; for smooth ones about the square of this
 template <class Sampler>
 EMSCAPE_HD IsoHit refineCrossing(const VolumeView& volume, const RaySegments& segments, float iso,
                                  FieldPoint near, FieldPoint far) {

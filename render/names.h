@@ -1,4 +1,4 @@
-/// Enumerations as they are written on the command line: one table each way.
+/// Names of enumerations on the command line: one table for both directions.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +22,7 @@ const char* nameOf(const Named<Value> (&table)[count], Value value) {
   return "";
 }
 
-/// @throws Error (usage) that says what `what` may be
+/// @throws Error (usage) that lists the allowed values of `what`
 template <class Value, std::size_t count>
 Value parseName(const Named<Value> (&table)[count], const char* what, const std::string& name) {
   std::string allowed;

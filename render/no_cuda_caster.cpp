@@ -1,4 +1,4 @@
-/// Frames cast by a GPU, in a build without CUDA: there are none.
+/// Frames cast by a GPU: not available in a build without CUDA.
 #include "emscape/base/error.h"
 #include "render/frame_caster.h"
 

@@ -1,4 +1,4 @@
-/// Pictures from CUDA to OpenGL, in a build without CUDA: there are none.
+/// Pictures from CUDA to OpenGL: not available in a build without CUDA.
 #include "emscape/base/error.h"
 #include "emscape/render/device_picture.h"
 

@@ -57,7 +57,7 @@ double PatternChoice::expected_ms(std::size_t level, double full_ms, double othe
 }
 
 void PatternChoice::followBudget(const FrameCost& cost) {
-  constexpr double kMinPart = 0.1;  // where the rest takes it all
+  constexpr double kMinPart = 0.1;  // if the rest of the frame takes all of it
   const double left_ms = std::max(kAdaptiveTarget * budget_ms_ - other_ms_.median(), kMinPart * budget_ms_);
   tolerance_levels_ = nextTolerance_levels(tolerance_levels_, cost.draw_ms, left_ms);
 }

@@ -22,7 +22,8 @@ void checkSize(const volume::DenseVolume& volume) {
   }
 }
 
-/// Codes of a run of values. A value outside the codes' range, which no sample shows, takes the nearest code.
+/// Codes of a run of values. A value outside the codes' range, which no sample reaches, gets the nearest
+/// code.
 /// @return whether all values are finite
 EMSCAPE_SIMD_CLONES bool encodeRun(const float* values, int count, const QuantizedValues& coded,
                                    std::int16_t* codes) {
@@ -36,7 +37,7 @@ EMSCAPE_SIMD_CLONES bool encodeRun(const float* values, int count, const Quantiz
     float code = from_middle * codes_per_unit;
     code = code > -kLargest ? code : -kLargest;  // NaN too
     code = code < kLargest ? code : kLargest;
-    // What is converted is positive, so that it is rounded.
+    // The converted number is positive, so that truncation rounds it.
     codes[i] =
         static_cast<std::int16_t>(static_cast<int>(code + kLargest + 0.5F) - QuantizedValues::kLargest);
   }

@@ -13,12 +13,12 @@
 
 namespace emscape::render {
 
-/// Keeps a volume and what is derived from its values. Memory is kept from one volume to the next of the same
+/// Keeps a volume and the data derived from its values. Memory is reused for the next volume of the same
 /// grid. Values without a mask are read in place; values with one are copied. Finite values are also kept in
 /// 16 bits.
 class PreparedVolume {
  public:
-  /// @throws Error (bad_input) unless the volume holds as many values as voxels
+  /// @throws Error (bad_input) unless the volume has one value per voxel
   void set(std::shared_ptr<const volume::DenseVolume> volume);
 
   bool isSet() const { return volume_ != nullptr; }

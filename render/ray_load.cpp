@@ -7,7 +7,7 @@
 namespace emscape::render {
 namespace {
 
-/// The ray of a pixel among drawn positions; its parameter counts metres.
+/// The ray of a pixel in drawn positions; its parameter is in metres.
 Ray rayOf(const Camera& camera, int x, int y, ImageSize size) {
   const Vec3d offset = camera.right * (camera.planeX(x, size) * camera.half_height) +
                        camera.up * (camera.planeY(y, size) * camera.half_height);

@@ -1,4 +1,4 @@
-/// A ray inside the volume, cut into the segments in which it is sampled; the maximum value ahead on it.
+/// A ray inside the volume, divided into the segments in which it is sampled; the maximum value ahead on it.
 #pragma once
 
 #include "base/device_math.h"
@@ -8,7 +8,7 @@
 
 namespace emscape::render {
 
-/// The part of a ray in the box of voxels, from where it enters: segments of one step, the last one shorter.
+/// The part of a ray in the box of voxels, from its entry: segments of one step, the last one shorter.
 struct RaySegments {
   Vec3f start;
   Vec3f direction;     ///< of unit length: distances are in voxels
@@ -44,8 +44,8 @@ struct RaySegments {
             multiplyAdd(direction.y, distance, shifted_start.y),
             multiplyAdd(direction.z, distance, shifted_start.z)};
   }
-  /// How many whole steps a distance holds, at most `count`; to rounding, which the distances of BrickStep
-  /// leave room for.
+  /// Number of whole steps in a distance, at most `count`; exact except for rounding, which the distances of
+  /// BrickStep allow for.
   EMSCAPE_HD int stepsIn(float distance) const {
     const float steps = distance * per_step;
     return steps < static_cast<float>(count) ? static_cast<int>(steps) : count;
@@ -53,13 +53,13 @@ struct RaySegments {
 };
 
 /// The maximum f that the samples ahead on a ray can have, from the bricks that contain them. It is cached
-/// until the ray has left the brick with the maximum; an answer does not depend on earlier questions.
+/// until the ray has left the brick with the maximum; results do not depend on earlier calls.
 class OccupancyLookahead {
  public:
   EMSCAPE_HD OccupancyLookahead(const SkipView& skip, const VolumeView& volume, const RaySegments& segments)
       : skip_(skip), volume_(volume), segments_(segments) {}
 
-  /// Whether the sample of any segment from `next` on can have a larger f.
+  /// True if the sample of any segment from `next` on can have a larger f.
   EMSCAPE_HD bool exceeds(int next, float f) {
     if (next >= until_) walk(next);
     return highest_ > f;

@@ -1,11 +1,11 @@
 /// Casting one pixel of a scene: single source for host and device over plain data.
 ///
-/// Rays live in *index space*, where voxel (i, j, k) has its centre at (i, j, k): there every voxel is a unit
-/// cube, and lengths along a ray are in voxels for any spacing and vertical exaggeration. A ray
-/// crosses the box of voxels, -0.5 .. dims - 0.5 along each axis; it is cut into segments of one step from
-/// where it enters, the last one shorter, and sampled in the middle of each segment with the opacity of the
-/// segment's length. Hence homogeneous fog is exact for any step length. No jitter: a pixel depends on its
-/// coordinates and the scene alone.
+/// Rays are in *index space*, where voxel (i, j, k) has its centre at (i, j, k): every voxel is a unit cube,
+/// and lengths along a ray are in voxels for any spacing and vertical exaggeration. A ray crosses the box of
+/// voxels, -0.5 .. dims - 0.5 along each axis. From its entry it is divided into segments of one step, the
+/// last one shorter, and sampled in the middle of each segment with the opacity of the segment's length.
+/// Hence homogeneous fog is exact for any step length. There is no jitter: a pixel depends only on its
+/// coordinates and the scene.
 #pragma once
 
 #include "base/device_math.h"
@@ -33,7 +33,7 @@ using Ray = RayOf<double>;
 /// A camera in index space.
 struct CameraView {
   Vec3d eye;
-  Vec3d forward, right, up;  ///< of one unit of length; not orthogonal where voxels are not cubes
+  Vec3d forward, right, up;  ///< of one unit of length; not orthogonal if voxels are not cubes
   double half_height = 1;
   double shift_x = 0, shift_y = 0;
   bool orthographic = false;
@@ -57,7 +57,7 @@ struct CameraView {
   }
 };
 
-/// The part of a ray in a box: empty where end <= begin. Never begins behind the origin.
+/// The part of a ray in a box; empty if end <= begin. Never begins behind the origin.
 template <class Real>
 struct RayIntervalOf {
   Real begin = 0, end = 0;
@@ -91,7 +91,7 @@ EMSCAPE_HD inline RayIntervalOf<Real> clip(const RayOf<Real>& ray, const Vec3<Re
   return interval;
 }
 
-/// The ground where a ray meets it. What planes cut off of it shows a wall.
+/// Intersection of a ray with the ground. Where planes cut the ground, a wall is visible.
 EMSCAPE_HD inline GroundHit groundHit(const GroundView& ground, const CutView& cut, const Ray& ray) {
   const RayInterval over_ground = clip(ray, ground.lower, ground.upper);
   CutInterval left{over_ground.begin, over_ground.end};
@@ -127,13 +127,13 @@ struct RaycastTask {
 
   EMSCAPE_HD bool isExact() const { return opaque_enough > 1.0F; }
 
-  /// Where the ray of a pixel meets the ground.
+  /// Intersection of a pixel's ray with the ground.
   EMSCAPE_HD GroundHit groundAt(int x, int y) const {
     return ground.heights != nullptr ? groundHit(ground, cut, camera.ray(x, y)) : GroundHit{};
   }
 
-  /// What the planes leave of a pixel's ray before the ground. Where they do not touch it: all that `limit`
-  /// allows. @param limit  where the ground is hit
+  /// The part of a pixel's ray that the planes keep in front of the ground; all up to `limit` if they do not
+  /// cut it. @param limit distance of the ground
   template <class Sampler>
   EMSCAPE_HD CutRay cutRay(int x, int y, float limit) const {
     const Ray ray = camera.ray(x, y);
@@ -161,7 +161,7 @@ struct RaycastTask {
     return result;
   }
 
-  /// The volume as a pixel shows it, premultiplied.
+  /// The volume in a pixel, premultiplied.
   /// @param bounds  the ground or a section ends the ray
   template <class Compositor, class Sampler>
   EMSCAPE_HD Rgba castVolume(int x, int y, RayBounds bounds) const {
@@ -169,7 +169,7 @@ struct RaycastTask {
                                                     volume_highest_f);
   }
 
-  /// The same with the transfer function's colours from another memory.
+  /// The same with the transfer function's colours in other memory.
   /// @param kMayShade  false: without the code for shading; shades_fog must not be set
   /// @param kBatch  number of samples that are fetched before the first is composited; the result does not
   ///                depend on it
@@ -187,7 +187,7 @@ struct RaycastTask {
   }
 
   /// One of Compositor::kParts parts of a ray, the first one in front.
-  /// @return whether nothing behind it matters
+  /// @return true if nothing behind it matters
   template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
   EMSCAPE_HD bool castPart(const RaySegments& segments, int part, const Colors& colors,
                            Compositor& compositor) const {
@@ -201,14 +201,14 @@ struct RaycastTask {
                                                          compositor);
   }
 
-  /// The segments of a pixel's ray in the volume, none where it does not meet it.
+  /// The segments of a pixel's ray in the volume; none if it misses it.
   EMSCAPE_HD RaySegments segmentsOf(int x, int y, RayBounds bounds) const {
     const Ray ray = camera.ray(x, y);
     const RayInterval inside = insideOf(ray, bounds);
     return segmentsOf(ray, inside.end > inside.begin ? inside : RayInterval{});
   }
 
-  /// The isosurface as a pixel shows it, premultiplied.
+  /// The isosurface in a pixel, premultiplied.
   template <class Sampler>
   EMSCAPE_HD Rgba castSurface(int x, int y, RayBounds bounds) const {
     const Ray ray = camera.ray(x, y);
@@ -227,14 +227,14 @@ struct RaycastTask {
   }
 
  private:
-  /// Whole segments begin .. end of a ray, and the last one, which is shorter, if that is asked for.
-  /// @return whether nothing behind them matters
+  /// Whole segments begin .. end of a ray, and, if requested, the last one, which is shorter.
+  /// @return true if nothing behind them matters
   template <class Compositor, class Sampler, bool kMayShade, int kBatch, class Colors>
   EMSCAPE_HD bool march(const RaySegments& segments, int begin, int end, bool with_last, const Colors& colors,
                         Compositor& compositor) const {
     OccupancyLookahead ahead(skip, volume, segments);
     const Vec3f to_viewer = kMayShade ? shading.toViewer(segments.direction) : Vec3f{};
-    // Takes the sample of segment n, of `part` of a step. @return whether nothing behind it matters
+    // Adds the sample of segment n, of `part` of a step. @return true if nothing behind it matters
     const auto take = [&](int n, float part, float value, float f, Rgba sample) {
       if (compositor.ignores(f, sample)) return false;
       if constexpr (Compositor::kNeedsColor) {

@@ -35,7 +35,7 @@ std::vector<Lattice> withoutEmpty(const std::vector<Lattice>& lattices) {
   return kept;
 }
 
-/// Bits8Arithmetic in floats, channel by channel: so it becomes the processor's vectors.
+/// Bits8Arithmetic in floats, channel by channel, for vectorisation.
 struct Bits8Channels {
   static float mean(float a, float b) {
     return static_cast<float>((quantized(a) + quantized(b) + 1) / 2) / 255.0F;
@@ -72,8 +72,7 @@ void fillRows(Pattern pattern, Image& image, int begin, int end) {
   const int width = image.size.width;
   for (int y = begin; y < end; ++y) {
     const bool odd_row = y % 2 == 1;
-    // A checkerboard's odd row may consist of one missing pixel alone: it has neighbours only above and
-    // below.
+    // A checkerboard's odd row may consist of a single missing pixel, with neighbours only above and below.
     const bool single = pattern == Pattern::checkerboard && width == 1;
     if (odd_row && (pattern == Pattern::quarter || single)) fillFromRowsBeside<Arithmetic>(image, y);
     fillRow<Arithmetic>(&image.at(0, y), width, odd_row && pattern == Pattern::checkerboard ? 0 : 1);

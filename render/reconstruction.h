@@ -1,4 +1,4 @@
-/// Which pixels are cast and how the others follow: the patterns of pixel interpolation.
+/// The patterns of pixel interpolation: cast pixels, and interpolation of the others.
 #pragma once
 
 #include <cstdint>
@@ -25,15 +25,14 @@ struct Lattice {
   EMSCAPE_HD long long count() const { return static_cast<long long>(columns) * rows; }
 };
 
-/// The source pixels of a pattern, and those that are left; together they are the image, each pixel once.
+/// The source pixels of a pattern, and the remaining pixels; together they are the image, each pixel once.
 /// Empty lattices are left out. None for adaptive.
 std::vector<Lattice> sourceLattices(Pattern pattern, ImageSize size);
 std::vector<Lattice> missingLattices(Pattern pattern, ImageSize size);
 long long pixelCount(const std::vector<Lattice>& lattices);
 
-/// Fills every pixel that is not a source pixel from those that are. An edge pixel with one neighbour copies
-/// it. 8-bit interpolation rounds half up and leaves source pixels as they were cast. Nothing is done for
-/// adaptive.
+/// Interpolates every pixel that is not a source pixel. An edge pixel with one neighbour copies it. 8-bit
+/// interpolation rounds half up and does not change source pixels. No effect for adaptive.
 void interpolate(Pattern pattern, Interpolation interpolation, Image& image);
 
 }  // namespace emscape::render

@@ -20,7 +20,7 @@ EMSCAPE_HD inline Rgba addScaled(const Rgba& p, float s, const Rgba& q) {
   return {multiplyAdd(p.r, s, q.r), multiplyAdd(p.g, s, q.g), multiplyAdd(p.b, s, q.b),
           multiplyAdd(p.a, s, q.a)};
 }
-/// What is seen of `back` behind `front`.
+/// `front` over `back`.
 EMSCAPE_HD inline Rgba over(const Rgba& front, const Rgba& back) {
   return addScaled(back, 1.0F - front.a, front);
 }

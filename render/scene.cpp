@@ -11,12 +11,6 @@
 namespace emscape::render {
 namespace {
 
-void requireRange(const char* name, double value, double least, double largest) {
-  if (!(value >= least && value <= largest)) {
-    throw Error(ErrorCode::bad_input, fmt::format("{} {}: expected {}..{}", name, value, least, largest));
-  }
-}
-
 /// Drawn positions to the index space of a grid, axis by axis.
 struct IndexSpace {
   Vec3d origin_m;   ///< drawn position of the centre of voxel (0, 0, 0)
@@ -46,7 +40,7 @@ CameraView viewOf(const Camera& camera, const IndexSpace& space, ImageSize size)
   return view;
 }
 
-/// Those that cut the ground.
+/// The planes that cut the ground.
 std::vector<CutPlane> planesOfGround(const std::vector<CutPlane>& planes) {
   std::vector<CutPlane> cutting;
   for (const CutPlane& plane : planes) {
@@ -56,7 +50,7 @@ std::vector<CutPlane> planesOfGround(const std::vector<CutPlane>& planes) {
 }
 
 CutView::Plane viewOf(const CutPlane& plane, const volume::Grid& grid) {
-  // Outward of what is kept, in frame metres.
+  // Outward normal of the kept side, in frame metres.
   Vec3d outward{0, 0, 1};
   Vec3d point_m{0, 0, plane.altitude_m};
   const bool vertical = plane.kind == CutPlane::Kind::vertical;
@@ -75,7 +69,7 @@ CutView::Plane viewOf(const CutPlane& plane, const volume::Grid& grid) {
   return {normal * scale, dot(outward, point_m - grid.first_center_m) * scale, vertical};
 }
 
-/// The light stands a little above and to the left of the viewer.
+/// The light is slightly above and to the left of the viewer.
 ShadingView shadingOf(const Camera& camera, const IndexSpace& space) {
   constexpr double kLeft = 0.3, kAbove = 0.4;
   const Vec3d& spacing = space.spacing_m;
@@ -111,10 +105,10 @@ void Scene::setCamera(const Camera& camera) {
 }
 
 void Scene::setSettings(const RenderSettings& settings) {
-  requireRange("step (voxels)", settings.step_voxels, 0.05, 10);
-  requireRange("MIDA gamma", settings.mida_gamma, -1, 1);
-  requireRange("vertical exaggeration", settings.vertical_exaggeration, 0, 100);
-  requireRange("iso opacity", settings.iso_opacity, 0, 1);
+  kStepLimits.require(settings.step_voxels);
+  kMidaGammaLimits.require(settings.mida_gamma);
+  kExaggerationLimits.require(settings.vertical_exaggeration);
+  kIsoOpacityLimits.require(settings.iso_opacity);
   if (std::isinf(settings.iso_value)) throw Error(ErrorCode::bad_input, "iso value: must be finite");
   checkCutPlanes(settings.planes);
   if (planesOfGround(settings.planes) != planesOfGround(settings_.planes)) ++versions_.view;
@@ -155,7 +149,7 @@ bool Scene::isHidden(const Vec3d& frame_m) {
   if (!(distance > 0)) return false;
   const Ray ray{eye, (target - eye) / distance};
   const GroundHit hit = groundHit(ground_->view(), cut, ray);
-  // A marker that stands on the ground is not hidden by what it stands on.
+  // A marker on the ground is not hidden by the ground below it.
   constexpr double kStandsOn_voxels = 0.5;
   return hit.found && hit.distance < distance - kStandsOn_voxels;
 }
@@ -199,7 +193,7 @@ CutView Scene::cutView() const {
   for (const CutPlane& plane : settings_.planes) {
     if (plane.on) view.planes[view.count++] = viewOf(plane, grid());
   }
-  // Interpolation may leave values a little apart from the floor.
+  // Interpolated values may differ slightly from the floor.
   constexpr double kNearFloor = 1e-3;  // of the transfer function's interval
   view.floor = floor_;
   view.near_floor = categorical_ || function_.opacities.empty()

@@ -1,4 +1,4 @@
-/// A scene as it was set, and what the host derives from it when it is needed.
+/// A scene as set, and the data that the host derives from it on demand.
 #pragma once
 
 #include <memory>
@@ -15,18 +15,18 @@
 
 namespace emscape::render {
 
-/// Everything but the values of the volume. For use by one thread.
+/// Everything except the values of the volume. For one thread.
 class Scene {
  public:
-  /// Revision counters, one per input. Dependents compare them to decide what to derive again.
+  /// Revision counters, one per input. Dependents compare them to find what must be derived again.
   struct Versions {
     unsigned table = 0;   ///< the transfer function's table
-    unsigned levels = 0;  ///< what skipRule() says
+    unsigned levels = 0;  ///< the result of skipRule()
     unsigned ground = 0;
-    unsigned view = 0;  ///< the camera, or the ground, or what planes cut off of it
+    unsigned view = 0;  ///< the camera, the ground, or its cuts by planes
   };
 
-  /// @param floor  value of voxels that hold no field
+  /// @param floor  value of voxels without a field
   void setVolume(const volume::Grid& grid, bool categorical, float floor);
   /// @throws Error (bad_input) for an impossible field
   void setHeightField(std::shared_ptr<const HeightField> height_field);
@@ -38,26 +38,26 @@ class Scene {
   const RenderSettings& settings() const { return settings_; }
   const TransferFunction& transferFunction() const { return function_; }
   const Camera& camera() const { return camera_; }
-  /// The volume holds indices.
+  /// True if the volume has indices.
   bool categorical() const { return categorical_; }
-  /// @throws Error (other) if no volume is set, as all below
+  /// @throws Error (other) if no volume is set, as all functions below
   const volume::Grid& grid() const;
   double isoValue() const;
   SceneBox box() const;
   bool isHidden(const Vec3d& frame_m);
 
-  /// Prepares what is missing; the functions below are for after that.
+  /// Prepares missing data. The functions below must be called after it.
   void prepare();
   const Versions& versions() const { return versions_; }
   const TransferTable& table() const { return *table_; }
   SkipRule skipRule() const;
   const std::optional<GroundSurface>& ground() const { return ground_; }
-  /// To be cast with the values of the volume and its bricks: `volume`, `skip` and `volume_highest_f` are
-  /// left open.
+  /// The inputs of a cast, except `volume`, `skip` and `volume_highest_f`, which depend on the values of the
+  /// volume and its bricks.
   RaycastTask task(ImageSize size) const;
-  /// Whether planes cut the volume.
+  /// True if planes cut the volume.
   bool isCut() const;
-  /// Whether rays that meet transparent samples alone are transparent.
+  /// True if rays with only transparent samples are transparent.
   bool transparentShowsNothing() const;
 
  private:

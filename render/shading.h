@@ -1,5 +1,5 @@
-/// Light on surfaces and fog: the gradient of a volume as a normal, and Blinn and Phong's reflection.
-/// Single source for host and device.
+/// Shading of surfaces and fog: the gradient of a volume as a normal, and Blinn-Phong reflection. Single
+/// source for host and device.
 #pragma once
 
 #include <cmath>
@@ -11,10 +11,10 @@
 
 namespace emscape::render {
 
-/// One directional light and the shape of voxels. *Drawn* directions are those of the scene as it is seen:
-/// voxels have their spacing there and heights are stretched.
+/// One directional light and the shape of voxels. *Drawn* directions are those of the displayed scene: voxels
+/// have their spacing, and heights are stretched.
 struct ShadingView {
-  // A white light near the viewer. What faces it is somewhat brighter than without, what turns away darker.
+  // A white light near the viewer. Surfaces that face it are slightly brighter than without, others darker.
   static constexpr float kAmbient = 0.45F;
   static constexpr float kDiffuse = 0.75F;
   static constexpr float kSpecular = 0.3F;
@@ -35,13 +35,13 @@ struct ShadingView {
     return normalized(Vec3f{gradient.x / voxel.x, gradient.y / voxel.y, gradient.z / voxel.z});
   }
 
-  /// Whether a gradient has a direction: it is neither nothing nor infinite.
+  /// True if a gradient has a direction: it is neither zero nor infinite.
   EMSCAPE_HD static bool isSlope(const Vec3f& gradient) {
     const float squared = dot(gradient, gradient);
     return squared > 0.0F && squared - squared == 0.0F;
   }
 
-  /// A premultiplied colour as lit; its opacity stays. Both sides of a surface are the same.
+  /// A premultiplied colour with shading; its opacity is unchanged. Both sides of a surface are equal.
   EMSCAPE_HD Rgba lit(const Rgba& color, const Vec3f& surface_normal, const Vec3f& to_viewer) const {
     const Vec3f n = dot(surface_normal, to_viewer) < 0.0F ? -surface_normal : surface_normal;
     const float toward = dot(n, to_light);
@@ -52,7 +52,8 @@ struct ShadingView {
             held(color.b * diffuse + specular, color.a), color.a};
   }
 
-  /// A sample of fog as lit: where the value hardly changes there is no surface, and the colour stays.
+  /// A sample of fog with shading: where the value hardly changes there is no surface, and the colour is
+  /// unchanged.
   /// @param gradient  of f, per voxel, in index space
   EMSCAPE_HD Rgba litFog(const Rgba& sample, const Vec3f& gradient, const Vec3f& to_viewer) const {
     if (!isSlope(gradient)) return sample;
@@ -68,7 +69,7 @@ struct ShadingView {
 };
 
 /// Difference of values along one axis, per voxel: central, one voxel to either side; shorter at the border
-/// of the volume; one-sided where a neighbour is masked or NaN; 0 where both are.
+/// of the volume; one-sided if a neighbour is masked or NaN; 0 if both are.
 /// @param axis   unit vector; position and voxels are the position's component along it and the voxels there
 /// @param value  at the centre
 template <class Sampler>

@@ -10,11 +10,11 @@ namespace emscape::render {
 namespace {
 
 constexpr int kSilhouetteGrain = 32;
-/// Pixels by which the projected outline is widened, so that only its inside must be looked at: far more than
-/// the projection's rounding errors, little enough that few rays are tested.
+/// Pixels by which the projected outline is widened, so that only its inside must be tested: much more than
+/// the projection's rounding errors, but so little that few rays are tested.
 constexpr double kMargin = 1.0 / 64;
-/// Perspective: what of the box lies nearer to the eye's plane than this part of its diagonal is left out of
-/// the projection; if the eye is not far from the box by comparison, rays are tested instead.
+/// Perspective: parts of the box that are closer to the eye's plane than this fraction of its diagonal are
+/// left out of the projection. If the eye is not much farther from the box, rays are tested instead.
 constexpr double kNearest = 1e-6;
 constexpr double kEyeAtBox = 1e-4;
 
@@ -32,7 +32,7 @@ struct Extent {
   }
 };
 
-/// Positions by what each axis of a camera has of them: the inverse of CameraView::ray().
+/// Coordinates of positions along the axes of a camera: the inverse of CameraView::ray().
 class Projection3 {
  public:
   explicit Projection3(const CameraView& camera) : camera_(camera) {
@@ -43,7 +43,7 @@ class Projection3 {
     to_up_ = cross(camera.forward, camera.right) / volume;
   }
   double depth(const Vec3d& position) const { return dot(position - camera_.eye, to_forward_); }
-  /// @param position  before the eye's plane, unless the projection is orthographic
+  /// @param position  in front of the eye's plane, unless the projection is orthographic
   PlanePoint operator()(const Vec3d& position) const {
     const Vec3d offset = position - camera_.eye;
     const double scale = camera_.half_height * (camera_.orthographic ? 1.0 : dot(offset, to_forward_));
@@ -61,8 +61,8 @@ class Projection3 {
 /// Lines whose ends span the box' outline in the picture.
 using Lines = std::vector<std::array<PlanePoint, 2>>;
 
-/// The box' edges as far as they lie at least `nearest` before the eye, and all lines between the points
-/// where they are cut.
+/// The parts of the box's edges that are at least `nearest` in front of the eye, and all lines between the
+/// points where they are cut.
 Lines outlineOf(const Projection3& project, const Vec3d& lower, const Vec3d& upper, double nearest) {
   const auto corner = [&](unsigned i) {
     return Vec3d{(i & 1U) != 0 ? upper.x : lower.x, (i & 2U) != 0 ? upper.y : lower.y,
@@ -91,7 +91,7 @@ Lines outlineOf(const Projection3& project, const Vec3d& lower, const Vec3d& upp
   return lines;
 }
 
-/// What lies between two heights of the convex hull of the lines.
+/// Extent of the convex hull of the lines between two heights.
 Extent extentBetween(const Lines& lines, double top, double bottom) {
   Extent extent;
   for (const auto& [p, q] : lines) {
@@ -111,7 +111,7 @@ double distanceToBox(const Vec3d& p, const Vec3d& lower, const Vec3d& upper) {
       Vec3d{beyond(p.x, lower.x, upper.x), beyond(p.y, lower.y, upper.y), beyond(p.z, lower.z, upper.z)});
 }
 
-/// What a box covers of a picture, unless the eye is in it or too close.
+/// Outline of a box in a picture, unless the eye is in it or too close.
 struct Outline {
   bool is_known = false;
   Lines lines;
@@ -122,7 +122,7 @@ Outline outlineOf(const CameraView& camera, const Vec3d& lower, const Vec3d& upp
   if (camera.orthographic) return {true, outlineOf(project, lower, upper, 0.0)};
   const double diagonal = length(upper - lower);
   if (distanceToBox(camera.eye, lower, upper) <= kEyeAtBox * diagonal) return {};
-  // Depths count lengths along `forward`, which is of any length in index space.
+  // Depths are in units of `forward`, which has any length in index space.
   const double aspect = static_cast<double>(camera.size.width) / camera.size.height;
   const double reach = length(camera.forward) +
                        camera.half_height * ((aspect + std::abs(camera.shift_x)) * length(camera.right) +
@@ -130,7 +130,7 @@ Outline outlineOf(const CameraView& camera, const Vec3d& lower, const Vec3d& upp
   return {true, outlineOf(project, lower, upper, kNearest * diagonal / reach)};
 }
 
-/// The pixels of a row that an outline covers, and at most those that it passes by within kMargin.
+/// The pixels of a row that an outline covers, and at most those within kMargin of it.
 Span spanOf(const Outline& outline, int y, int width) {
   if (!outline.is_known) return {0, width};
   const Extent extent = extentBetween(outline.lines, y - kMargin, y + kMargin);
@@ -186,7 +186,7 @@ void findSilhouette(const CameraView& camera, const Vec3d& lower, const Vec3d& u
 
 std::vector<IndexBox> visibleBoxes(const SkipView& skip, const Dims& voxels) {
   constexpr int kEdge = 1 << SkipView::kEdgeBits;
-  // Positions of samples are floats; the outer bricks reach to the box' faces and beyond.
+  // Positions of samples are floats; the outer bricks extend to the faces of the box and beyond.
   constexpr double kRounding = 1.0 / 64;
   const auto lower = [&](int brick) { return (brick > 0 ? brick * kEdge : -1) - kRounding; };
   const auto upper = [&](int brick, int bricks, int count) {

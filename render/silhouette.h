@@ -7,28 +7,28 @@
 
 namespace emscape::render {
 
-/// Pixels begin <= x < end of a row; none where end <= begin.
+/// Pixels begin <= x < end of a row; none if end <= begin.
 struct Span {
   int begin = 0, end = 0;
 
   EMSCAPE_HD bool contains(int x) const { return x >= begin && x < end; }
 };
 
-/// What a box covers of a picture: it is convex, hence one span a row.
+/// The pixels covered by a box: it is convex, so each row has one span.
 struct Silhouette {
   std::vector<Span> rows;  ///< of the picture, from the top
 
   long long count() const;
 };
 
-/// The silhouette of a box in index space, by the same test that a ray is cast by: the first and the last
-/// pixel of each span meet the box (see clip()), and no pixel outside of a span does. Rays within the box'
-/// own rounding errors of its outline aside, all pixels between meet it.
-/// @param silhouette  is written; its memory is used again
+/// The silhouette of a box in index space, by the test that is used in casting a ray: the first and the last
+/// pixel of each span meet the box (see clip()), and no pixel outside of a span does. Except for rays within
+/// rounding errors of the outline, all pixels between meet the box.
+/// @param silhouette  overwritten; its memory is reused
 void findSilhouette(const CameraView& camera, const Vec3d& lower, const Vec3d& upper, Silhouette& silhouette);
 
-/// The same for rays that are cast with other rounding errors: what the box passes by within a 64th of a
-/// pixel is in it too, and every pixel of the picture where the eye is in the box or close to it.
+/// The same for rays that are cast with other rounding errors: pixels within 1/64 pixel of the box are
+/// included, and every pixel of the picture if the eye is in the box or close to it.
 void findWideSilhouette(const CameraView& camera, const Vec3d& lower, const Vec3d& upper,
                         Silhouette& silhouette);
 
@@ -42,8 +42,8 @@ struct IndexBox {
 /// @param skip  with levels
 std::vector<IndexBox> visibleBoxes(const SkipView& skip, const Dims& voxels);
 
-/// Takes from each span's ends the pixels whose rays meet none of the boxes; rays that pass by closely may
-/// stay.
+/// Removes pixels at the ends of each span whose rays meet none of the boxes; rays that pass closely may
+/// remain.
 void narrowSilhouette(const CameraView& camera, const std::vector<IndexBox>& boxes, Silhouette& silhouette);
 
 /// Every pixel of a picture.

@@ -18,12 +18,12 @@ struct BrickLevel {
 /// Plain data; see TransferTable::skipRule().
 struct SkipRule {
   TransferView table;
-  const int* visible_before = nullptr;  ///< how many entries of the table before each have an opacity
+  const int* visible_before = nullptr;  ///< number of entries of the table before each with an opacity
   CompositingMode mode = CompositingMode::dvr;
   float iso_value = 0;
 
   EMSCAPE_HD BrickLevel of(const volume::ValueRange& range) const {
-    if (range.empty()) return {};  // nothing in it shows, not even 0
+    if (range.empty()) return {};  // nothing in it is visible, not even 0
     // Interpolation may round a little beyond its operands.
     const float rounding = range.max > range.min ? (range.max - range.min) * 1e-6F : 0.0F;
     const float highest = table.normalized(range.max + rounding);
@@ -37,7 +37,7 @@ struct SkipRule {
   }
 
  private:
-  /// Whether any value of a range has an opacity.
+  /// True if any value of a range has an opacity.
   EMSCAPE_HD bool anyVisible(const volume::ValueRange& range) const {
     // One entry more on each side: interpolation may round a little beyond its operands.
     const int first = table.index(table.normalized(range.min)) - 1;
@@ -47,12 +47,12 @@ struct SkipRule {
   }
 };
 
-/// Whether testing for bricks to skip pays on a GPU. It costs a part of the frame if anything is skipped or
-/// not: on an H100, while they were always looked for, about 0.14 of a full frame of DVR, 0.24 of one with a
-/// quarter of the rays, 0.5 of one of MIDA. Of the samples in bricks that can be skipped two thirds are
-/// saved, as rays go in groups that skip together. MIDA moreover skips only what is below its maximum so far.
-/// Maximum projection and isosurfaces skip most of any volume.
-/// @param skippable_share  of the bricks, 0..1: those of a level below SkipView::kNever
+/// True if testing for bricks to skip is worthwhile on a GPU. The test has a cost even if nothing is skipped:
+/// on an H100, when it was always made, about 0.14 of a full frame of DVR, 0.24 of one with a quarter of the
+/// rays, 0.5 of one of MIDA. Two thirds of the samples in bricks that can be skipped are saved, because rays
+/// skip in groups. MIDA also skips only bricks below its present maximum. Maximum projection and isosurfaces
+/// skip most of any volume.
+/// @param skippable_share  fraction 0..1 of the bricks with a level below SkipView::kNever
 inline bool skippingPays(CompositingMode mode, double skippable_share) {
   constexpr double kMinShareDvr = 0.3;
   constexpr double kMinShareMida = 0.8;

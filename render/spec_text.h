@@ -8,12 +8,12 @@
 
 namespace emscape::render {
 
-/// A text form taken apart. Its errors begin with what it describes and the whole text.
+/// A parsed text form. Its errors begin with the described object and the whole text.
 class SpecText {
  public:
-  /// @param what      it describes, for example "camera"
-  /// @param kinds     that there are
-  /// @param expected  what an error says of another kind
+  /// @param what      the described object, for example "camera"
+  /// @param kinds     allowed kinds
+  /// @param expected  text of the error for another kind
   /// @throws Error (usage) for another kind, a part without '=' and a repeated key
   SpecText(std::string what, std::string text, const std::set<std::string>& kinds,
            const std::string& expected);

@@ -125,7 +125,7 @@ class Reader {
   ProblemList& problems_;
 };
 
-/// "#rrggbb" where that is this very colour, else its components.
+/// "#rrggbb" if that is exactly this colour, else its components.
 void addColor(const Rgb& color, Json& point) {
   const auto level = [](float component) {
     return static_cast<int>(std::lround(std::min(std::max(component, 0.0F), 1.0F) * 255.0F));

@@ -14,7 +14,7 @@ namespace emscape::render {
 /// range, and colours are the name of a map or points.
 class TransferFormat {
  public:
-  /// @param node  the object to be read, which decides about the forms; null: points, in values
+  /// @param node  the object to be read, which determines the forms; null: points, in values
   explicit TransferFormat(const document::DocumentNode* node);
   TransferFormat(const TransferFormat&) = delete;
   TransferFormat& operator=(const TransferFormat&) = delete;
@@ -31,8 +31,8 @@ class TransferFormat {
 
 /// Reads a function from an object that checkObject() found sound.
 /// @param format  of this object
-/// @param info    of the volume that it is for; null: positions must be values, the unit is taken as it is
-/// @param problems  what is wrong beyond the table; the result then means nothing
+/// @param info    of its volume; null: positions must be values, and the unit is not checked
+/// @param problems  receives faults that the table does not cover; the result is then undefined
 TransferFunction readTransferFunction(const document::Section& section, const TransferFormat& format,
                                       const volume::VolumeInfo* info, document::ProblemList& problems);
 

@@ -60,23 +60,22 @@ constexpr QuantileOpacity kQuantileOpacity[] = {{0.5, 0.0},    {0.8, 0.0025}, {0
                                                 {0.995, 0.07}, {0.999, 0.14}, {0.9999, 0.3}};
 /// Fraction of the range, from below, that is not coloured.
 constexpr double kColorsFrom = 0.3;
-/// Values that the quantiles are taken from, about.
+/// Approximate number of values for the quantiles.
 constexpr long long kQuantileSample = 200000;
 
-/// The same over the range of the values, where nothing else is known.
+/// The same over the range of the values, if nothing else is known.
 constexpr TransferFunction::OpacityPoint kRangeOpacity[] = {{0.0, 0.0},   {0.2, 0.0},  {0.45, 0.004},
                                                             {0.7, 0.018}, {0.9, 0.07}, {1.0, 0.16}};
 constexpr double kCategoryOpacity = 0.03;
 
-/// Of a probability: clear where it is small, a shell at one half.
+/// For a probability: transparent where it is small, a shell at one half.
 constexpr TransferFunction::OpacityPoint kProbabilityOpacity[] = {{0.0, 0.0},  {0.1, 0.001}, {0.4, 0.01},
                                                                   {0.5, 0.05}, {0.6, 0.03},  {1.0, 0.04}};
-/// Of a ratio (dB) of which what lies below 0 is looked for: a shell at 0, little above.
+/// For a ratio (dB) whose values below 0 are of interest: a shell at 0, little above.
 constexpr TransferFunction::OpacityPoint kRatioOpacity[] = {{-30, 0},  {-30, 0.04}, {-3, 0.04}, {0, 0.08},
                                                             {3, 0.01}, {10, 0.002}, {30, 0.003}};
 
-/// Of a difference, where it is a part of the largest one, in either direction: clear where little has
-/// changed.
+/// For a difference, relative to the largest one, in both directions: transparent where little has changed.
 constexpr TransferFunction::OpacityPoint kDifferenceOpacity[] = {
     {0.03, 0.0}, {0.1, 0.003}, {0.3, 0.015}, {0.6, 0.04}, {1.0, 0.1}};
 
@@ -96,10 +95,10 @@ std::vector<TransferFunction::ColorPoint> colorsOver(const ColorMap& map, double
   return colors;
 }
 
-/// Values that hold a field, evenly picked, in ascending order.
+/// Values with a field, regularly sampled, in ascending order.
 std::vector<float> sortedSample(const volume::DenseVolume& volume) {
   const Dims& dims = volume.grid.dims;
-  // Odd, so that picking does not follow the rows of a grid with an even number of columns.
+  // Odd, so that sampling does not follow the rows of a grid with an even number of columns.
   const long long stride = std::max(1LL, dims.count() / kQuantileSample) | 1LL;
   std::vector<float> values;
   for (long long i = 0; i < dims.count(); i += stride) {
@@ -139,8 +138,8 @@ TransferFunction functionOfDifference(const volume::VolumeInfo& info, double lar
   return function;
 }
 
-/// What all but a few of the differences of a volume are not larger than: those to the floor would leave the
-/// others without colours.
+/// Upper limit of all but a few of the differences of a volume, because differences to the floor would leave
+/// the others without colours.
 double usualDifference(const volume::DenseVolume& volume) {
   constexpr double kPart = 0.95;
   std::vector<float> values = sortedSample(volume);
@@ -152,7 +151,7 @@ double usualDifference(const volume::DenseVolume& volume) {
   return double{*usual};
 }
 
-/// The function of a scale that the volume names; none for volumes that name none.
+/// The function of the volume's scale; none if the volume has no scale.
 std::optional<TransferFunction> functionOfScale(const volume::VolumeInfo& info) {
   const auto scale = info.extra.find(volume::kScaleKey);
   if (scale == info.extra.end()) return std::nullopt;

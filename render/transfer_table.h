@@ -1,4 +1,4 @@
-/// A transfer function as the ray caster reads it: tables for one sampling step.
+/// A transfer function for the ray caster: tables for one sampling step.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace emscape::render {
 
-/// Samples a transfer function at equidistant values; a categorical one has one entry a category and one for
-/// none.
+/// Samples a transfer function at equidistant values; a categorical one has one entry per category and one
+/// for none.
 /// @accuracy colours and opacities are those of a value within 1/8190 of the function's interval
 class TransferTable {
  public:
@@ -30,12 +30,12 @@ class TransferTable {
   std::vector<Rgba> samples_;
   std::vector<Rgba> projected_;
   std::vector<Rgba> opaque_;
-  std::vector<int> visible_before_;  ///< how many entries before each have an opacity
+  std::vector<int> visible_before_;  ///< number of entries before each with an opacity
   double lowest_ = 0;
   double highest_ = 1;
 };
 
-/// What SkipView refers to.
+/// The data of SkipView.
 struct SkipLevels {
   std::vector<float> highest;
   std::vector<float> levels;

@@ -1,4 +1,4 @@
-/// A volume as the ray caster reads it: plain data, sampling, and the bricks that need no sampling.
+/// A volume for the ray caster: plain data, sampling, and the bricks that need no sampling.
 #pragma once
 
 #include <cmath>
@@ -19,7 +19,7 @@ struct QuantizedValues {
   static constexpr std::int32_t kWeights = 32767;
   static constexpr std::int32_t kLargest = 32767;  ///< codes are -kLargest..kLargest
 
-  const std::int16_t* codes = nullptr;  ///< as VolumeView::values; null: there are none
+  const std::int16_t* codes = nullptr;  ///< as VolumeView::values; null: none
   float middle = 0;
   float step_per_weight = 0;  ///< step / kWeights
 
@@ -28,15 +28,14 @@ struct QuantizedValues {
   EMSCAPE_HD float step() const { return step_per_weight * static_cast<float>(kWeights); }
 };
 
-/// Values as a PreparedVolume holds them. Positions are in index space: voxel (i, j, k) has its centre at
-/// (i, j, k).
+/// Values of a PreparedVolume. Positions are in index space: voxel (i, j, k) has its centre at (i, j, k).
 struct VolumeView {
-  const float* values = nullptr;  ///< masked voxels hold the value of the first above them that is not
+  const float* values = nullptr;  ///< masked voxels have the value of the first unmasked voxel above them
   Dims dims;
-  const std::int32_t* first_valid_k = nullptr;  ///< one a column; null: no voxel is masked
+  const std::int32_t* first_valid_k = nullptr;  ///< one per column; null: no voxel is masked
   int masked_below = 0;                         ///< no voxel of a layer from here up is masked
   bool all_finite = true;                       ///< no value is NaN or infinite
-  std::uint64_t texture = 0;                    ///< on a GPU: of the values, which are null then
+  std::uint64_t texture = 0;                    ///< on a GPU: texture of the values; `values` is then null
   const volume::SparseBlock* sparse = nullptr;  ///< on a GPU, where there is no texture; see SparseVoxels
   QuantizedValues coded;
 
@@ -50,7 +49,7 @@ struct VolumeView {
   }
 };
 
-/// A position along one axis, held inside the centres of the outer voxels, and the cell of two voxels around
+/// A position along one axis, clamped to the centres of the outer voxels, and the cell of two voxels around
 /// it.
 struct CellPosition {
   int low = 0, high = 0;
@@ -73,7 +72,7 @@ struct ArrayVoxels {
   EMSCAPE_HD float at(int i, int j, int k) const { return volume.at(i, j, k); }
 };
 
-/// Whether the voxel nearest to a position is masked.
+/// True if the voxel nearest to a position is masked.
 EMSCAPE_HD inline bool nearestIsMasked(const VolumeView& volume, const Vec3f& position) {
   if (volume.masked_below == 0 || !(position.z < static_cast<float>(volume.masked_below))) return false;
   return volume.isMasked(CellPosition(position.x, volume.dims.x).nearest(),
@@ -81,14 +80,13 @@ EMSCAPE_HD inline bool nearestIsMasked(const VolumeView& volume, const Vec3f& po
                          CellPosition(position.z, volume.dims.z).nearest());
 }
 
-/// What samplers have in common. Nothing is drawn where the nearest voxel is masked, and where there is no
-/// value (NaN). Sampler: fetch(volume, shifted), the value, masked or not; kShift is to be added to each
-/// coordinate before.
+/// Common parts of samplers. Nothing is drawn where the nearest voxel is masked or the value is NaN. Sampler:
+/// fetch(volume, shifted) returns the value, masked or not; kShift must be added to each coordinate before.
 template <class Sampler>
 struct SamplerOf {
   static constexpr float kShift = 0;
 
-  /// @return whether something is drawn there
+  /// @return true if something is drawn there
   EMSCAPE_HD static bool sample(const VolumeView& volume, const Vec3f& position, float& value) {
     if (nearestIsMasked(volume, position)) return false;
     const float shift = Sampler::kShift;
@@ -97,8 +95,8 @@ struct SamplerOf {
   }
 };
 
-/// Trilinear between voxel centres. The floor below the ground does not bleed into the air, as masked voxels
-/// hold the value above them.
+/// Trilinear between voxel centres. The floor below the ground does not blend in, because masked voxels have
+/// the value above them.
 template <class Voxels>
 struct TrilinearSamplerOf : SamplerOf<TrilinearSamplerOf<Voxels>> {
   EMSCAPE_HD static float fetch(const VolumeView& volume, const Vec3f& position) {
@@ -133,22 +131,22 @@ struct BrickStep {
   float leave = 0;  ///< voxels along the ray that are certainly inside it
 };
 
-/// Which bricks need no sampling, for the transfer function and the mode in force.
+/// The bricks that need no sampling, for the present transfer function and mode.
 struct SkipView {
   static constexpr int kEdgeBits = 3;
   static constexpr float kNever = 2.0F;
-  /// Samples nearer to a face (voxels) than rounding can distinguish are tested again.
+  /// Samples within this distance (voxels) of a face, in the order of rounding errors, are tested again.
   static constexpr float kFaceMargin = 1e-3F;
 
-  const float* highest = nullptr;  ///< one a brick: no f of a sample in it is larger
-  /// The same, but kNever where some sample in it has an opacity (except in maximum projection, where opacity
-  /// does not matter). For an isosurface: kNever where samples lie on both sides of it. Null: nothing is
+  const float* highest = nullptr;  ///< one per brick: upper bound of f of its samples
+  /// The same, but kNever if some sample in it has an opacity (except in maximum projection, where opacity
+  /// does not matter). For an isosurface: kNever if samples are on both sides of it. Null: nothing is
   /// skipped.
   const float* levels = nullptr;
   Dims dims;
 
   /// Brick along one axis and the distance to its far face; the outer bricks reach to infinity.
-  /// @param per_voxel  distance along the ray per voxel of the axis; infinite: along none
+  /// @param per_voxel  distance along the ray per voxel of the axis; infinite: perpendicular to the axis
   EMSCAPE_HD int along(float position, float per_voxel, int voxels, int bricks, float& leave) const {
     const int brick = CellPosition(position, voxels).low >> kEdgeBits;
     const bool forward = per_voxel > 0.0F;

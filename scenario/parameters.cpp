@@ -161,7 +161,7 @@ class GroupBuilder {
       result.value = textOf(row.default_value);
     } else {
       result.value = node->kind == NodeKind::scalar ? node->text : document::flowText(*node, /*json=*/false);
-      // Keys in place of a number.
+      // Keys instead of a number.
       if (node->kind == NodeKind::map) result.type = Parameter::Type::text;
     }
     if (spec.name == "emitter" && row.name == "platform") {

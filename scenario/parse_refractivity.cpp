@@ -22,7 +22,7 @@ using document::NodeKind;
 constexpr std::uint32_t kMaxDraws = 1000;
 constexpr double kFarAboveSea_m = 50;
 
-/// 32-bit FNV-1a: a counter of the key's own, whatever keys the table has.
+/// 32-bit FNV-1a: a counter for each key, independent of the other keys of the table.
 std::uint32_t hashOf(const std::string& key) {
   std::uint32_t hash = 2166136261u;
   for (const char c : key) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
@@ -63,7 +63,7 @@ class Values {
     }
     return keys;
   }
-  /// What is wrong with a value of a key; empty if nothing is.
+  /// The fault of a value; empty if there is none.
   std::string faultOf(const std::string& key, const std::string& text, double value) const {
     const std::string kind = section_.text("kind");
     return document::rangeFault("'" + key + "'", text, value, refractivitySpec().find(key, &kind)->value);
@@ -194,7 +194,7 @@ void warnOfEnsemble(const Section& section, const Values& values, ParseContext& 
   }
 }
 
-/// Height of a platform above sea where the scenario gives it without the terrain's; none: unknown.
+/// Height of a platform above sea level, if it is known without the terrain; empty if unknown.
 std::optional<double> highest_msl_m(const Platform& platform, bool has_terrain) {
   std::optional<double> highest_m;
   for (const TrackPoint& point : platform.track) {
@@ -207,7 +207,7 @@ std::optional<double> highest_msl_m(const Platform& platform, bool has_terrain) 
   return highest_m;
 }
 
-/// @param measured  profiles as they are in the file
+/// @param measured  the profiles of the file
 void warnOfMeasuredHeights(const RefractivityField& measured, const Scenario& scenario,
                            const Section& section, ParseContext& context) {
   double first_m = -HUGE_VAL, last_m = HUGE_VAL;

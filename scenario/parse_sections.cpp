@@ -25,7 +25,7 @@ Taper taperOf(const Section& section) {
 
 constexpr std::size_t kMaxNamedFileBytes = std::size_t{64} << 20;
 
-/// @param default_dbi  in place of the formula where the section has no gain; NaN: the formula
+/// @param default_dbi  gain of a section without one; NaN: by formula
 AntennaPtr makeAntenna(const Section& section, const ParseContext& context,
                        double default_dbi = std::numeric_limits<double>::quiet_NaN()) {
   const double azimuth_deg = section.number("beamwidth_az_deg"),
@@ -64,7 +64,7 @@ AntennaPtr makeAntenna(const Section& section, const ParseContext& context,
   return nullptr;
 }
 
-/// An antenna whose gain, where it is a formula's, is at most the pattern's directivity.
+/// An antenna; a gain by formula is limited to the pattern's directivity.
 AntennaPtr makeConsistentAntenna(const Section& section, const ParseContext& context) {
   AntennaPtr antenna = makeAntenna(section, context);
   const bool has_formula =

@@ -12,6 +12,7 @@
 #include "emscape/scenario/platform.h"
 #include "emscape/scenario/receiver.h"
 #include "emscape/scenario/scenario.h"
+#include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/target.h"
 #include "scenario/schema.h"
 #include "scenario/source.h"
@@ -24,10 +25,12 @@ using document::Section;
 /// Context that the parsers of one file share.
 struct ParseContext {
   std::string file;
+  ReadFor read_for = ReadFor::series;
   ProblemList problems;
   document::ContentHash hash;
-  const NamedFiles* before = nullptr;  ///< content of the files from an earlier reading; null: read them
-  NamedFiles files;                    ///< content of the files from this reading
+  const NamedFiles* before =
+      nullptr;       ///< content of the files from an earlier reading; null: the files are read
+  NamedFiles files;  ///< content of the files from this reading
   propagation::Atmosphere atmosphere;  ///< of the scenario
   std::string epoch_utc;               ///< of the scenario; empty: none
 
@@ -48,7 +51,7 @@ int parseCarrier(const Section& section, const std::vector<Platform>& platforms,
 /// Null without the key, or if it is faulty.
 std::shared_ptr<const propagation::Refractivity> parseRefractivity(const Section& atmosphere,
                                                                    ParseContext& context);
-/// k_factor of an atmosphere whose refractivity is linear, if it is in 0.5..10; else the other value.
+/// k_factor of an atmosphere with linear refractivity, if it is in 0.5..10; else `otherwise`.
 double kFactorOf(const Section& atmosphere, double otherwise);
 /// Warnings that depend on the emitters and on the ground.
 /// @param root  of a scenario without faults
@@ -58,13 +61,13 @@ void warnOfRefractivity(const Scenario& scenario, const Section& root, ParseCont
 std::optional<Clutter> parseClutter(const Section& section, const Emitter& radar, ParseContext& context);
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
 
-/// Sets the noise temperature of an antenna if its receiver asks for that of the sky (antenna_noise).
+/// Sets the noise temperature of an antenna if its receiver requests that of the sky (antenna_noise).
 /// @param section       of the receiver
 /// @param frequency_hz  0: unknown, which is a problem
 void parseAntennaNoise(const Section& section, double frequency_hz, const ScanSpec& scan,
                        ParseContext& context, double& antenna_temperature_k);
 
-/// What receivers with and without a platform have in common.
+/// The common values of receivers with and without a platform.
 ReceiverProfile parseReceiverProfile(const Section& section);
 /// @param section  with a platform
 PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Platform>& platforms,

@@ -36,7 +36,7 @@ std::optional<double> courseOnLeg(const std::vector<TrackPoint>& track, std::siz
   const SitePosition& end = track[i + 1].position;
   constexpr double kStandingStill_m = 1e-3;
   if (geodesic(begin, end).distance_m < kStandingStill_m) return std::nullopt;
-  // Seen from the end that is further away, the direction is well defined.
+  // From the farther end, the direction is well defined.
   const GeodesicInverse ahead = geodesic(at, end), behind = geodesic(at, begin);
   return ahead.distance_m >= behind.distance_m ? radToDeg(ahead.azimuth_rad)
                                                : positiveDegrees(radToDeg(behind.azimuth_rad) + 180);

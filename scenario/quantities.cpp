@@ -52,7 +52,8 @@ bool hasInterval(const QuantityInfo& quantity, IntervalKind interval) {
   switch (interval) {
     case IntervalKind::instant:
       return true;
-    case IntervalKind::max_hold:  // the largest of a ratio is not that of its parts, which change apart
+    case IntervalKind::max_hold:  // the largest ratio is not the ratio of the largest parts, which change
+                                  // independently
       return !quantity.needs_jammer && quantity.quantity != Quantity::sinr_db;
     case IntervalKind::mean:
       return quantity.quantity == Quantity::power_density_dbwm2 ||

@@ -1,4 +1,4 @@
-/// What single quantities need of a scenario.
+/// Requirements of quantities on a scenario.
 #pragma once
 
 #include <string>
@@ -8,9 +8,9 @@
 
 namespace emscape::scenario {
 
-/// What a quantity of a receiver (QuantityKind::of_receiver) or detection_age_s needs and the scenario lacks,
-/// as the message of an error; empty: it has everything, or it is another quantity.
-/// @param output  of the scenario, or about to be
+/// Error message that names what the scenario lacks for a quantity of a receiver (QuantityKind::of_receiver)
+/// or detection_age_s; empty if nothing is missing, and for other quantities.
+/// @param output  of the scenario, possibly not yet set
 std::string unmetNeed(Quantity quantity, const Scenario& scenario, const OutputSpec& output);
 
 }  // namespace emscape::scenario

@@ -34,7 +34,7 @@ enum Column { range, latitude, longitude, height, m, n, pressure, temperature, h
 struct ColumnLimits {
   const char* name;
   double lowest, highest;
-  const char* below;  ///< what a value outside probably is
+  const char* below;  ///< probable meaning of a value outside
   const char* above;
 };
 constexpr std::array<ColumnLimits, kColumns> kLimits{{
@@ -49,7 +49,7 @@ constexpr std::array<ColumnLimits, kColumns> kLimits{{
     {"relative_humidity_percent", 0, 100, "", ""},
 }};
 
-/// M falls over the last 500 m of a profile of more than 1 km: as N does.
+/// True if M falls over the last 500 m of a profile of more than 1 km, as N does.
 bool looksLikeN(const RefractivityProfile& profile) {
   const double top_m = profile.levels.back().height_msl_m;
   return top_m - profile.levels.front().height_msl_m > 1000 && profile.at(top_m) < profile.at(top_m - 500);
@@ -160,7 +160,7 @@ class CsvProfiles {
                           number(humidity) / 100 * saturationPressure_hpa(temperature_k));
   }
 
-  /// Begins a profile if the row has another range or place than the one before.
+  /// Begins a profile if range or position of the row differ from those of the previous row.
   void beginProfile() {
     const double range_m = has(range) ? number(range) : 0;
     const Place place = has(latitude) ? Place{number(latitude), number(longitude)} : Place{};

@@ -23,7 +23,7 @@ std::string renamed(const std::string& name, const fs::path& from, const fs::pat
   return fs::absolute(from / name).lexically_normal().lexically_relative(to).generic_string();
 }
 
-/// Calls visit(path, node) for every name of a file in a value.
+/// Calls visit(path, node) for every file name in a value.
 template <class Visit>
 void forEachFileName(const DocumentNodePtr& node, const ValueSpec& spec, NodePath& path, const Visit& visit) {
   if (spec.type == document::ValueType::file) visit(path, *node);

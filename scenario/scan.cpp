@@ -12,14 +12,14 @@ namespace {
 double positiveModulo(double value, double period) {
   const double rest = std::fmod(value, period);
   const double positive = rest < 0 ? rest + period : rest;
-  return positive < period ? positive : 0;  // a tiny negative rest rounds to the period
+  return positive < period ? positive : 0;  // a tiny negative remainder rounds to the period
 }
 
 std::int64_t nanoseconds(double time_s) {
   return std::llround(time_s * 1e9);
 }
 
-/// Azimuth and bar of a beam that sweeps back and forth, each sweep one bar further.
+/// Azimuth and bar of a beam that sweeps back and forth, one bar further with each sweep.
 BeamDirection sweepAt(const ScanSpec& scan, double t_s, int bars) {
   const double swept_deg = t_s * scan.rate_deg_s;
   const double there_and_back_deg = positiveModulo(swept_deg, 2 * scan.width_deg);

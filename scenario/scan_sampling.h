@@ -1,24 +1,35 @@
-/// How well a scenario's time steps sample a beam that scans.
+/// Sampling of a scanning beam by a scenario's time steps.
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "emscape/scenario/clock.h"
 #include "emscape/scenario/scan.h"
+#include "emscape/scenario/scenario.h"
 
 namespace emscape::scenario {
 
 struct ScanSampling {
   double step_deg = 0;   ///< azimuth that the beam sweeps in one time step
-  double lit_share = 0;  ///< 0..1 of the azimuths of its turn or sector that are within half a beamwidth of
-                         ///< the beam at one of the clock's times
+  double lit_share = 0;  ///< fraction 0..1 of the azimuths of its turn or sector that are within half a
+                         ///< beamwidth of the beam at one of the clock's times
 };
 
 /// @param beamwidth_az_deg  between half-power points
 /// @return none for beams that do not sweep and for a clock of a single time
 std::optional<ScanSampling> scanSampling(const ScanSpec& scan, double beamwidth_az_deg, const Clock& clock);
 
-/// True where steps larger than half a beamwidth leave azimuths that are never lit.
+/// True if steps larger than half a beamwidth leave azimuths that are never illuminated.
 bool leavesGaps(const ScanSampling& sampling, double beamwidth_az_deg);
+
+/// Azimuths that beams sweep between the times of a clock and never light at one of them.
+struct UnlitAzimuths {
+  std::size_t first_emitter = 0;  ///< of those concerned
+  std::string warning;            ///< one line about all of them; beams of the same width and rate together
+};
+
+/// @return none where the output does not show where a scan is at a time, or where beams light all azimuths
+std::optional<UnlitAzimuths> unlitAzimuths(const Scenario& scenario, const Clock& clock);
 
 }  // namespace emscape::scenario

@@ -21,7 +21,7 @@ bool areSame(const std::vector<T>& a, const std::vector<T>& b) {
                     [](const T& x, const T& y) { return membersOf(x) == membersOf(y); });
 }
 
-/// Adds what a beam does in a part of an interval.
+/// Adds the motion of a beam in a part of an interval.
 class SweepBuilder {
  public:
   SweepBuilder(const Emitter& emitter, double interval_s, ScanSweep& sweep)
@@ -64,7 +64,7 @@ class SweepBuilder {
               times * (to_s - from_s) / interval_s_, times});
     }
   }
-  /// Sweeps over the same azimuths, there and back, are one arc.
+  /// Sweeps over the same azimuths in both directions are one arc.
   void addArc(const SweptArc& arc) {
     constexpr double kSame_deg = 1e-9;
     for (SweptArc& known : sweep_.arcs) {

@@ -1,4 +1,4 @@
-/// Where a beam is during an interval, and for which part of it.
+/// The directions of a beam during an interval, and their share of the time.
 #pragma once
 
 #include <cmath>
@@ -12,15 +12,15 @@ namespace emscape::scenario {
 
 /// Azimuths that a beam passes at a constant rate and at one elevation. Angles are those of BeamDirection.
 struct SweptArc {
-  double first_deg = 0;  ///< the least azimuth
+  double first_deg = 0;  ///< the smallest azimuth
   double width_deg = 0;  ///< >= 0; above 360: more than a turn; 0: the beam stays
   double elevation_deg = 0;
   double share = 0;  ///< of the interval, 0..1
-  double times = 1;  ///< how often it is passed
+  double times = 1;  ///< number of passes
 
-  /// A turn or more.
+  /// True for a full turn or more.
   bool isRound() const { return width_deg >= 360; }
-  /// Turns without a rest: every azimuth is passed equally often.
+  /// True for a whole number of turns: every azimuth is passed equally often.
   bool isWholeTurns() const {
     return isRound() && std::abs(std::remainder(width_deg, 360)) < 1e-6 * width_deg;
   }
@@ -32,7 +32,7 @@ struct SweptDwell {
   double share = 0;  ///< of the interval, 0..1
 };
 
-/// Shares add up to the part of the interval in which the emitter is active.
+/// The sum of the shares is the part of the interval in which the emitter is active.
 struct ScanSweep {
   std::vector<SweptArc> arcs;      ///< of an antenna that turns; each once
   std::vector<SweptDwell> dwells;  ///< of an array that is steered
@@ -41,14 +41,16 @@ struct ScanSweep {
 };
 bool operator==(const ScanSweep& a, const ScanSweep& b);
 
-/// Duration (s) of one turn, one sweep there and back, one raster or one cycle of dwells; 0: the beam stays.
+/// Duration (s) of one turn, one sweep there and back, one raster or one cycle of dwells; 0: the beam does
+/// not move.
 double scanCycle_s(const ScanSpec& scan);
 
-/// Duration (s) of an emitter's interval; a beam that stays has no turns: their number in steps of the clock.
+/// Duration (s) of an emitter's interval. For a beam that does not move, turns are counted in steps of the
+/// clock.
 double intervalDuration_s(const IntervalSpec& interval, const ScanSpec& scan, const Clock& clock);
 
-/// The sweep of an emitter during [begin, begin + duration), in the times at which it is active; empty: it is
-/// not. For the same part of a turn or cycle it is the same to the last bit but for `first_deg` of turns.
+/// The sweep of an emitter during [begin, begin + duration), at the times at which it is active; empty if it
+/// is inactive. For the same part of a turn or cycle it is bit-identical except for `first_deg` of turns.
 /// @param duration_s  > 0
 ScanSweep sweepOf(const Emitter& emitter, double begin_s, double duration_s);
 
@@ -58,9 +60,9 @@ struct TimedPass {
   double begin_deg = 0, end_deg = 0;  ///< azimuths as of BeamDirection, at most a turn apart
 };
 
-/// The last passes of a beam that is fixed, rotates or sweeps a sector in [begin, begin + duration): of each
-/// time at which the emitter is active those of its last turn or sweep there and back. A beam that stays
-/// has passes of one azimuth.
+/// The last passes of a beam that is fixed, rotates or sweeps a sector in [begin, begin + duration): for each
+/// active time, those of its last turn or sweep there and back. A beam that does not move has passes of one
+/// azimuth.
 std::vector<TimedPass> lastPassesOf(const Emitter& emitter, double begin_s, double duration_s);
 
 }  // namespace emscape::scenario

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kMargin_deg = 0.018;  // 2 km of latitude
 
-/// Grows around points, longitudes counted from a reference so that a box may cross the antimeridian.
+/// A bounding box of points, with longitudes relative to a reference so that it may cross the antimeridian.
 class BoxBuilder {
  public:
   explicit BoxBuilder(double reference_longitude_deg) : reference_deg_(reference_longitude_deg) {}
@@ -61,8 +61,8 @@ class BoxBuilder {
 };
 
 void addRegion(BoxBuilder& builder, const Region& region) {
-  // Points of the edge are dense enough that nothing between them is outside the margin for any region
-  // within a hemisphere.
+  // Points of the edge are so dense that everything between them is within the margin for any region within a
+  // hemisphere.
   constexpr int kPointsPerEdge = 33;
   const GeoFrame frame(region.origin);
   const double half_x_m = region.size_m.x / 2, half_y_m = region.size_m.y / 2;
@@ -83,7 +83,7 @@ void addRegion(BoxBuilder& builder, const Region& region) {
 }
 
 void addTrack(BoxBuilder& builder, const std::vector<TrackPoint>& track) {
-  // Legs are geodesics; a leg that spans much longitude is followed more closely.
+  // Legs are geodesics; a leg that spans many degrees of longitude is sampled more densely.
   constexpr double kStep_deg = 1;
   for (std::size_t i = 0; i < track.size(); ++i) {
     const SitePosition& a = track[i].position;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <map>
 
 #include "base/whole_file.h"
 #include "document/schema_check.h"
@@ -143,7 +142,7 @@ IntervalSpec parseInterval(const Section& section, ParseContext& context) {
   return interval;
 }
 
-/// The quantities that have a meaning over an interval, with commas between them.
+/// The quantities that are defined for an interval, separated by commas.
 std::string quantitiesOver(IntervalKind interval) {
   std::string names;
   for (const QuantityInfo& row : quantityTable()) {
@@ -242,7 +241,7 @@ void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, Pa
   }
 }
 
-/// Warns of jammers that are in no radar's band, if the output depends on jamming.
+/// Warns about jammers outside the bands of all radars, if the output depends on jamming.
 void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<std::string>& quantities = scenario.output.quantities;
   const bool counts = std::any_of(quantities.begin(), quantities.end(), [](const std::string& quantity) {
@@ -266,7 +265,7 @@ void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseConte
   }
 }
 
-/// An antenna whose gain is more than its pattern can have.
+/// Warns about an antenna whose gain exceeds the directivity of its pattern.
 /// @param section  of the emitter or receiver
 void warnOfGain(const Antenna& antenna, const Section& section, const char* consequence,
                 ParseContext& context) {
@@ -295,51 +294,13 @@ void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& co
   }
 }
 
-/// Whether the output holds a radar's beam, or any other's, where its scan has it at the time.
-bool showsScans(const OutputSpec& output) {
-  return output.interval.kind == IntervalKind::instant &&
-         std::any_of(output.quantities.begin(), output.quantities.end(), [&](const std::string& name) {
-           const Quantity quantity = quantityFromName(name);
-           const bool is_of_target = quantity == Quantity::jammer_to_signal_db ||
-                                     quantity == Quantity::burn_through_margin_db ||
-                                     (needsRadar(quantity) && output.radar_look == RadarLook::target);
-           return !is_of_target;
-         });
-}
-
-/// Beams that sweep further in a time step than they are wide, so that the series never shows some azimuths;
-/// those of the same width and rate together, at the first.
+/// Warns at the first of the beams.
 void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseContext& context) {
-  struct Beams {
-    SourceLocation first;
-    std::string names;
-    int count = 0;
-  };
-  std::map<std::string, Beams> beams;  // by what they do
-  const std::vector<Section> sections = root.sections("emitters");
-  for (std::size_t i = 0; i < sections.size() && showsScans(scenario.output); ++i) {
-    const Emitter& emitter = scenario.emitters[i];
-    const double width_deg = emitter.antenna->beamwidth_az_deg;
-    const auto sampling = scanSampling(emitter.scan, width_deg, scenario.clock);
-    if (!sampling || !leavesGaps(*sampling, width_deg)) continue;
-    const bool rotates = emitter.scan.kind == ScanKind::rotate;
-    Beams& alike = beams[fmt::format(
-        "{:.3g} deg wide, {{}} {:.4g} deg in a step of {} s: of {{}} azimuths {:.0f} % are ever lit. A "
-        "smaller "
-        "step_s, or a rate whose steps fall between those of earlier turns, lights the others; an 'interval' "
-        "of the output shows what is lit between the steps",
-        width_deg, sampling->step_deg, scenario.clock.step_s, 100 * sampling->lit_share)];
-    if (alike.count++ == 0)
-      alike.first = sections[i].section("scan").locationOf(rotates ? "rate_rpm" : "rate_deg_s");
-    alike.names += fmt::format("{}'{}'", alike.count > 1 ? ", " : "", emitter.name);
-  }
-  for (const auto& [sweep, alike] : beams) {
-    const bool is_one = alike.count == 1;
-    context.problems.addWarning(
-        alike.first,
-        fmt::format("the {} of {}, {}", is_one ? "beam" : "beams", alike.names,
-                    fmt::format(fmt::runtime(sweep), is_one ? "sweeps" : "sweep", is_one ? "its" : "their")));
-  }
+  const std::optional<UnlitAzimuths> unlit = unlitAzimuths(scenario, scenario.clock);
+  if (!unlit) return;
+  const bool rotates = scenario.emitters[unlit->first_emitter].scan.kind == ScanKind::rotate;
+  const Section scan = root.sections("emitters")[unlit->first_emitter].section("scan");
+  context.problems.addWarning(scan.locationOf(rotates ? "rate_rpm" : "rate_deg_s"), unlit->warning);
 }
 
 Scenario parseRoot(const Section& root, ParseContext& context) {
@@ -372,7 +333,7 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
     warnOfEmittersWithoutBand(scenario, root, context);
     warnOfIdleJammers(scenario, root, context);
     warnOfGains(scenario, root, context);
-    warnOfCoarseSteps(scenario, root, context);
+    if (context.read_for == ReadFor::series) warnOfCoarseSteps(scenario, root, context);
     warnOfRefractivity(scenario, root, context);
   }
   scenario.hash = context.hash.hex();
@@ -441,9 +402,10 @@ void requireScenario(const ParseResult& result) {
 
 }  // namespace
 
-ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits) {
+ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits, ReadFor read_for) {
   ParseContext context;
   context.file = file;
+  context.read_for = read_for;
   ScenarioSource source;
   try {
     source.text = {file, document::checkedUtf8(file, readWholeText(file, kMaxScenarioBytes))};
@@ -502,8 +464,9 @@ std::string scenarioJsonSchema() {
       "platforms that do not exist, files that cannot be read.");
 }
 
-std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits) {
-  const ParseResult result = parseScenario(file, edits);
+std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits,
+                                             ReadFor read_for) {
+  const ParseResult result = parseScenario(file, edits, read_for);
   for (const Problem& problem : result.problems) {
     if (problem.severity == Severity::warning)
       logWarning(toString(problem.location) + ": " + problem.message);

@@ -58,7 +58,7 @@ PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Pl
   return state;
 }
 
-/// Turns two vectors of an orthonormal pair within their plane: a towards b.
+/// Rotates an orthonormal pair of vectors in their plane: a towards b.
 void turn(Vec3d& a, Vec3d& b, double angle_deg) {
   const double c = std::cos(degToRad(angle_deg)), s = std::sin(degToRad(angle_deg));
   const Vec3d turned_a = a * c + b * s;
@@ -102,7 +102,7 @@ BeamPose mountPose(BeamPose pose, const Emitter& emitter) {
   return pose;
 }
 
-/// At t_s, or at some time of the duration that begins there.
+/// True at t_s, or at some time of the duration that begins then.
 bool isActive(const Emitter& emitter, double t_s, double duration_s) {
   return emitter.active_s.empty() ||
          std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [&](const TimeInterval& interval) {

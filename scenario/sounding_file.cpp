@@ -1,5 +1,5 @@
-// Soundings of the Integrated Global Radiosonde Archive, version 2 (IGRA 2): fixed columns, as NOAA's "IGRA
-// v2 Format Description: Sounding Data" gives them.
+// Soundings of the Integrated Global Radiosonde Archive, version 2 (IGRA 2): fixed columns, according to
+// NOAA's "IGRA v2 Format Description: Sounding Data".
 #include <fmt/core.h>
 
 #include <cmath>

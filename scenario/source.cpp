@@ -27,7 +27,7 @@ bool isNull(const std::string& value) {
   return word == "null" || word == "Null" || word == "NULL" || word == "~";
 }
 
-/// The value that an edit gives; null: it removes.
+/// The value of an edit; null: removal.
 DocumentNodePtr valueOf(const Edit& edit) {
   if (trimmed(edit.value).empty()) {
     throw Error(ErrorCode::bad_input, "the value is empty; null removes a key, \"\" is the empty text");
@@ -40,7 +40,7 @@ DocumentNodePtr valueOf(const Edit& edit) {
   return value;
 }
 
-/// True if a path leads to the value of the other path or into it.
+/// True if a path refers to the value of the other path or to a part of it.
 bool leadsInto(const std::string& outer, const std::string& inner) {
   return inner.compare(0, outer.size(), outer) == 0 &&
          (inner.size() == outer.size() || inner[outer.size()] == '.');

@@ -23,7 +23,7 @@ constexpr std::size_t kMaxScenarioBytes = std::size_t{4} << 20;
 /// are not read again.
 struct NamedFiles {
   std::map<std::string, std::string> digests;  ///< ContentHash of a file's bytes, by its resolved name
-  std::map<std::string, std::shared_ptr<const std::vector<TrackPoint>>> tracks;  ///< valid ones, by name
+  std::map<std::string, std::shared_ptr<const std::vector<TrackPoint>>> tracks;  ///< valid tracks, by name
   std::map<std::string, AntennaPtr> antennas;     ///< by the antenna's keys and values, written on one line
   std::map<std::string, RcsTablePtr> rcs_tables;  ///< valid ones, by resolved name
   std::map<std::string, std::shared_ptr<const RefractivityFile>>
@@ -35,15 +35,15 @@ struct NamedFiles {
 /// An applied edit.
 struct MadeEdit {
   Edit edit;
-  bool moves_paths =
-      false;  ///< the same path may lead to another value afterwards: a name changed, or an item was removed
+  bool moves_paths = false;  ///< the same path may refer to another value afterwards, because a name changed
+                             ///< or an item was removed
 };
 
 /// Immutable; shared by all copies of a scenario.
 struct ScenarioSource {
   document::EditedText text;
   document::DocumentNodePtr root;  ///< null if the text could not be read
-  std::vector<MadeEdit> edits;     ///< since the file was read; without those that later ones supersede
+  std::vector<MadeEdit> edits;     ///< since the file was read, without superseded ones
   NamedFiles files;
 };
 

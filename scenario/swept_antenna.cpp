@@ -12,14 +12,14 @@
 namespace emscape::scenario {
 namespace {
 
-/// Intervals of a table: those of a span for a number of steps in a beamwidth, even, up to a limit.
+/// Number of intervals of a table: a span with a number of steps per beamwidth; even, up to a limit.
 int intervalsFor(double span_deg, double beamwidth_deg, double steps_per_beamwidth, int most) {
   const double steps = std::min(std::ceil(span_deg / beamwidth_deg * steps_per_beamwidth), double(most));
   return 2 * static_cast<int>(std::ceil(steps / 2));
 }
 
-/// The pattern as it is tabulated. A floor under it is none of the table's, in which it would be rounded
-/// where it begins: the largest values have the same floor. A mean has it in its power.
+/// The pattern without its lower limit, in which the table would round the edge: for the largest values the
+/// limit is the same as that of the pattern. A mean includes it in its power.
 struct Sampled {
   PatternView view;
   float floor_amplitude = 0;
@@ -29,7 +29,7 @@ struct Sampled {
   }
 };
 
-/// A pattern at one elevation as the antenna turns: the power at azimuths off the beam, around the circle.
+/// Power of a pattern at one elevation by azimuth relative to the beam, over the full circle.
 class PowerRow {
  public:
   /// @param elevation_rad  of the row
@@ -74,7 +74,7 @@ class PowerRow {
     const int i = static_cast<int>(below);
     return at(i) + (x - below) * (at(i + 1) - at(i));
   }
-  /// From azimuth 0, of the power as it is interpolated.
+  /// Integral of the interpolated power from azimuth 0.
   double integralTo(double x) const {
     const double turns = std::floor(x / count_);
     const double in_turn = x - turns * count_;
@@ -84,7 +84,7 @@ class PowerRow {
            part * (at(i) + part / 2 * (at(i + 1) - at(i)));
   }
 
-  /// Of entries first..last, by two runs of a power of two of them that may overlap.
+  /// Largest of the entries first..last, from two overlapping runs whose length is a power of two.
   double largestOf(int first, int last) {
     std::size_t level = 0;
     while ((2 << level) <= last - first + 1) ++level;
@@ -134,7 +134,7 @@ double powerOf(Rows& rows, const ScanSweep& sweep, double azimuth_deg, SweptPatt
   double power = 0;
   for (const SweptArc& arc : sweep.arcs) {
     PowerRow& row = rows.of(arc);
-    // The beam is at first..first + width: the azimuth is at these angles off it.
+    // The beam is at first..first + width; these are the angles of the azimuth relative to it.
     const double begin_deg = azimuth_deg - arc.first_deg - arc.width_deg,
                  end_deg = azimuth_deg - arc.first_deg;
     if (pattern == SweptPattern::mean) {
@@ -165,7 +165,7 @@ double angleOf(int index, int intervals, double span_deg) {
   return span_deg * (index - intervals / 2) / intervals;
 }
 
-/// Whole turns of one tilt each: the same in every azimuth.
+/// Whole turns, each with one tilt: the same at every azimuth.
 AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
   const Sampled sampled(antenna, pattern);
   const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 8, 3600);

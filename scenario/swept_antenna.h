@@ -11,13 +11,13 @@ enum class SweptPattern {
   mean      ///< the root of the mean power of the interval
 };
 
-/// The pattern in the frame about whose up the beam turns (arcs), or in that of the array (dwells); forward
-/// is azimuth 0 of the sweep. Its gain is the antenna's, so that amplitudes are relative to the beam's
-/// maximum and a mean contains the part of the interval in which the emitter is active.
+/// The pattern in the frame about whose up axis the beam turns (arcs), or in the frame of the array (dwells);
+/// forward is azimuth 0 of the sweep. It has the antenna's gain: amplitudes are relative to the beam's
+/// maximum, and a mean includes the active part of the interval.
 /// @param sweep  not empty; azimuths of arcs relative to the frame
 /// @accuracy 0.1 dB down to 20 dB below the maximum, without nulls to 30 dB; next to nulls 0.5 dB; for
-/// beamwidths below 1.5 degrees 0.2 dB. Entries of tables are a 16th of a beamwidth apart, but not nearer
-/// than 1/8 degree; those of whole turns, which depend on elevation alone, a 32nd or 1/40 degree
+/// beamwidths below 1.5 degrees 0.2 dB. Entries of tables are a 16th of a beamwidth apart, but at least 1/8
+/// degree; entries for whole turns, which depend only on elevation, a 32nd or 1/40 degree
 AntennaPtr sweptAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern);
 
 }  // namespace emscape::scenario

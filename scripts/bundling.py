@@ -1,4 +1,4 @@
-"""What scripts/wheel and scripts/bundle have in common: libraries that are copied into a package, and GDAL, which is not.
+"""Shared by scripts/wheel and scripts/bundle: libraries that are copied into a package, and GDAL, which is not.
 
 GDAL is left to the system, as Debian's contains code under the GPL; a package takes the libgdal that it finds, of any version
 between GDAL_VERSIONS. For that its programs are linked with an empty library GDAL_LIBRARY, of which there is one for each version of
@@ -28,7 +28,7 @@ def output(*words, **options):
 
 
 def run_program(main):
-    """Calls main(); a command that fails ends the program with its messages."""
+    """Calls main(); a failing command ends the program with its messages."""
     try:
         main()
     except subprocess.CalledProcessError as error:
@@ -37,7 +37,7 @@ def run_program(main):
 
 
 def prepare_environment():
-    """Where the tools of packages-wheel.txt are installed; returns a function from a tool's name to its path."""
+    """Installs the tools of packages-wheel.txt; returns a function from a tool's name to its path."""
     environment, packages = ROOT / "build" / "wheel" / "environment", ROOT / "scripts" / "packages-wheel.txt"
     installed = environment / "installed.txt"
     if not installed.exists() or installed.read_text() != packages.read_text():
@@ -53,7 +53,7 @@ def make_empty_library(file, soname, needed=None):
 
 
 def detach_gdal(tool, binaries, folder):
-    """The libgdal of the binaries becomes GDAL_LIBRARY; writes one for each version into the folder, as VERSION.so."""
+    """Replaces the binaries' libgdal by GDAL_LIBRARY; writes one for each version into the folder, as VERSION.so."""
     for binary in binaries:
         for linked in re.findall(r"\[(libgdal\.so\.\d+)\]", output("readelf", "--dynamic", binary)):
             run(tool("patchelf"), "--replace-needed", linked, GDAL_LIBRARY, binary)

@@ -1,5 +1,4 @@
-/// The value range of each small block of a volume, so that a ray caster can skip blocks that it would not
-/// show.
+/// The value range of each small block of a volume, so that a ray caster can skip invisible blocks.
 #pragma once
 
 #include <vector>
@@ -44,8 +43,8 @@ struct BricksView {
 /// Min-max bricks of a volume. Brick (x, y, z) owns the voxels [x, x + 1) * edge and so on; its range is
 /// taken with an apron of one voxel all around, so that every trilinear sample taken inside the box of its
 /// voxels (which reaches half a voxel beyond their centres) is within [min, max]. NaN voxels are ignored.
-/// Masked voxels enter with their stored value; a brick whose voxels, apron included, are all masked or all
-/// NaN is empty.
+/// Masked voxels count with their stored value; a brick is empty if all its voxels, including the apron, are
+/// masked or NaN.
 class Bricks {
  public:
   /// Computed in parallel. @param edge  voxels, >= 1; @throws Error (bad_input) for another edge

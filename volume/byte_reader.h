@@ -1,4 +1,4 @@
-/// Reads a file's bytes in order, with a check of the end. Internal to the module.
+/// Reads the bytes of a file in order, with bounds checks. Internal to the module.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ class ByteReader {
     return result;
   }
 
-  /// A text after its length in 32 bits.
+  /// A text preceded by its length in 32 bits.
   std::string text(const char* what) {
     const auto length = value<std::uint32_t>(what);
     const std::uint8_t* begin = take(length, what);

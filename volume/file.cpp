@@ -26,7 +26,7 @@ struct Format {
   void (*set_range)(const fs::path& path, const std::vector<StoredRange>& ranges);
 };
 
-/// For files that hold one volume: checks the name, if given.
+/// For files with one volume: checks the name, if given.
 DenseVolume named(DenseVolume volume, const fs::path& path, const std::string& name) {
   if (!name.empty() && volume.info.quantity != name) {
     throw Error(ErrorCode::bad_input, {path.string()},

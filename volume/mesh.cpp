@@ -14,10 +14,11 @@ namespace emscape::volume {
 namespace {
 
 constexpr int kGrain = 1 << 14;
-/// Least volume of a cell, as a part of the cube of its longest edge.
+/// Minimum volume of a cell, relative to the cube of its longest edge.
 constexpr double kDegenerate = 1e-12;
 
-/// Calls test(n) for n in [0, count) in parallel. @return the least n for which it is true; -1 if none is
+/// Calls test(n) for n in [0, count) in parallel. @return the smallest n for which it is true; -1 if there is
+/// none
 template <class Test>
 long long firstWhere(long long count, const Test& test) {
   std::atomic<long long> first{count};
@@ -47,14 +48,14 @@ double shapeOf(const TetrahedralMesh& mesh, const std::array<std::int32_t, 4>& c
     for (int j = i + 1; j < 4; ++j) longest = std::max(longest, length(corner[j] - corner[i]));
   }
   if (!(longest > 0)) return 0;
-  // Scaled first, so that nothing overflows or vanishes.
+  // Scaled first, to avoid overflow and underflow.
   const Vec3d a = (corner[1] - corner[0]) / longest;
   const Vec3d b = (corner[2] - corner[0]) / longest;
   const Vec3d c = (corner[3] - corner[0]) / longest;
   return dot(cross(a, b), c);
 }
 
-/// A face, in the list of the faces of which `least` is the vertex of the lowest index.
+/// A face, in the list of the faces whose vertex of lowest index is `least`.
 struct FaceRecord {
   std::int32_t middle, greatest;
   FaceId id;
@@ -108,7 +109,7 @@ FaceLists listFaces(const TetrahedralMesh& mesh) {
   return lists;
 }
 
-/// Sorts a point's faces and joins those that are the same. @return false for a face that does not conform
+/// Sorts a point's faces and joins equal faces. @return false for a face that does not conform
 bool joinFaces(const TetrahedralMesh& mesh, FaceRecord* begin, FaceRecord* end, std::vector<FaceId>& other) {
   std::sort(begin, end);
   bool conforms = true;

@@ -1,6 +1,6 @@
 /// Cells that meet or overlap without a common face. Across a face of two cells the number of cells at a
-/// place does not change; hence cells overlap where lines have entered the mesh through its boundary twice
-/// more than they have left it.
+/// point does not change; hence cells overlap where a line has entered the mesh through its boundary at least
+/// twice more than it has left it.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,12 +14,12 @@
 namespace emscape::volume {
 namespace {
 
-/// Where lines pass through a face, as weights of its corners: near each corner, and inside. They are no
-/// simple fractions, which the edges of regular meshes pass through.
+/// Points at which lines pass through a face, as weights of its corners: near each corner, and inside. They
+/// are not simple fractions, because the edges of regular meshes pass through such points.
 constexpr double kWeights[4][3] = {
     {0.9713, 0.0129, 0.0158}, {0.0127, 0.9716, 0.0157}, {0.0161, 0.0126, 0.9713}, {0.3517, 0.2931, 0.3552}};
 constexpr int kInside = 3;
-constexpr double kMaxTests = 2e7;  ///< lines times faces at their places, along an axis
+constexpr double kMaxTests = 2e7;  ///< lines times candidate faces, along an axis
 
 /// A position by a line along an axis: two coordinates across it, and one along it.
 struct AlongAxis {
@@ -44,7 +44,7 @@ std::array<Vec3d, 3> cornersOf(const TetrahedralMesh& mesh, FaceId face) {
   return {corner(0), corner(1), corner(2)};
 }
 
-/// Its length is twice the area.
+/// Normal of a face; its length is twice the area.
 Vec3d normalOf(const std::array<Vec3d, 3>& corners) {
   return cross(corners[1] - corners[0], corners[2] - corners[0]);
 }
@@ -55,7 +55,7 @@ int steepestAxis(const Vec3d& normal) {
   return y >= z ? 1 : 2;
 }
 
-/// A boundary face that a line passes.
+/// The intersection of a line with a boundary face.
 struct Passage {
   double at;      ///< along the line
   double cosine;  ///< of the angle between the line and the face's normal, 0..1
@@ -63,7 +63,7 @@ struct Passage {
   bool enters;
 };
 
-/// The boundary faces by their places across an axis, in square buckets.
+/// The boundary faces by their position across an axis, in square buckets.
 class BoundaryAcross {
  public:
   BoundaryAcross(const TetrahedralMesh& mesh, const std::vector<FaceId>& boundary, const MeshBounds& bounds,
@@ -73,7 +73,7 @@ class BoundaryAcross {
     size_u_ = upper.u - lower_.u;
     size_v_ = upper.v - lower_.v;
     rows_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(boundary.size()))), 1, 4096);
-    // Long faces cover many buckets: fewer, then.
+    // Long faces cover many buckets; then fewer are used.
     std::size_t members = 0;
     for (;; rows_ /= 2) {
       members = 0;
@@ -99,7 +99,8 @@ class BoundaryAcross {
     return first_[bucket + 1] - first_[bucket];
   }
 
-  /// The faces that a line passes, in its direction. @return false if it passes an edge: it tells nothing
+  /// The faces that a line intersects, in its direction. @return false if it intersects an edge, which gives
+  /// no information
   bool follow(const AlongAxis& line, std::vector<Passage>& passages) const {
     passages.clear();
     const double rounding = 1e-15 * size_u_ * size_v_;
@@ -179,8 +180,8 @@ struct Line {
   int weights;  ///< row of kWeights
 };
 
-/// One line through the inside of each boundary face and one near each of its vertices, by the axes that are
-/// the steepest on their faces.
+/// One line through the inside of each boundary face and one near each of its vertices, along the axis that
+/// is closest to the face's normal.
 std::array<std::vector<Line>, 3> linesThrough(const TetrahedralMesh& mesh,
                                               const std::vector<FaceId>& boundary) {
   std::array<std::vector<Line>, 3> lines;
@@ -199,15 +200,15 @@ std::array<std::vector<Line>, 3> linesThrough(const TetrahedralMesh& mesh,
   return lines;
 }
 
-/// What a line has found.
+/// Result of a line.
 struct Contact {
   bool touches = false;   ///< its face lies on one of another cell
   bool overlaps = false;  ///< at `at`, along the line
   double at = 0;
 };
 
-/// @param face  through which the line was laid
-/// @param rounding_m  thickness of overlaps that are none
+/// @param face  through which the line passes
+/// @param rounding_m  thickness of overlaps that are ignored
 Contact contactOf(const std::vector<Passage>& passages, FaceId face, double rounding_m) {
   Contact contact;
   int cells = 0;  // that hold the line
@@ -215,7 +216,7 @@ Contact contactOf(const std::vector<Passage>& passages, FaceId face, double roun
     const Passage& here = passages[n];
     const int before = cells;
     cells += here.enters ? 1 : -1;
-    // Where rounding has opened the boundary a line tells nothing.
+    // Where rounding has opened the boundary, a line gives no information.
     if (cells < 0 || (n + 1 == passages.size() && cells != 0)) return {};
     if (n + 1 == passages.size()) break;
     const Passage& next = passages[n + 1];
@@ -231,7 +232,7 @@ Contact contactOf(const std::vector<Passage>& passages, FaceId face, double roun
   return contact;
 }
 
-/// The first cells that hold a position.
+/// The first cells that contain a position.
 std::vector<int> cellsAt(const TetrahedralMesh& mesh, const Vec3d& position) {
   std::mutex mutex;
   std::vector<int> found;

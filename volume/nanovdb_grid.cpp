@@ -30,7 +30,7 @@ DenseVolume readyForSampling(const DenseVolume& volume) {
   for (int j = 0; j < dims.y; ++j) {
     for (int i = 0; i < dims.x; ++i) {
       const int own = std::min(first(i, j), dims.z - 1);
-      int reached = own;  // the lowest voxel that is a neighbour of one in the air
+      int reached = own;  // the lowest voxel that is a neighbour of one above ground
       for (int v = std::max(j - 1, 0); v <= std::min(j + 1, dims.y - 1); ++v) {
         for (int u = std::max(i - 1, 0); u <= std::min(i + 1, dims.x - 1); ++u) {
           reached = std::min(reached, first(u, v) - 1);

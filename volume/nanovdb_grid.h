@@ -6,13 +6,13 @@
 
 namespace emscape::volume {
 
-/// A grid of the voxels that are neither masked nor at the floor: of floats, of a categorical volume of
-/// int32.
+/// A grid of the voxels that are neither masked nor at the floor: of floats, or of int32 for a categorical
+/// volume.
 /// @throws Error (bad_input) at `location` for categorical values that are not indices
 nano::Handle toNano(const DenseVolume& volume, const SourceLocation& location);
 
 /// The volume from which toNano() makes a grid of floats for sampling between voxels: without a mask. Masked
-/// voxels that a sample in the air can reach repeat the first value above them; the others have the floor.
+/// voxels that a sample above ground can reach repeat the first value above them; the others have the floor.
 DenseVolume readyForSampling(const DenseVolume& volume);
 
 }  // namespace emscape::volume

@@ -1,7 +1,7 @@
-/// Volumes as NanoVDB grids, as GPUs read them, with a sidecar.
+/// Volumes as NanoVDB grids, for GPUs, with a sidecar.
 ///
-/// PATH holds one grid per quantity, as in a .vdb file (vdb.h), uncompressed. NanoVDB has no metadata: they
-/// are in the sidecar PATH.json, {"volumes": [...]}, each with its grid, info and mask.
+/// PATH holds one grid per quantity, as in a .vdb file (vdb.h), uncompressed. NanoVDB has no metadata; the
+/// sidecar PATH.json contains them: {"volumes": [...]}, each with its grid, info and mask.
 #pragma once
 
 #include <filesystem>

@@ -18,7 +18,7 @@ struct GridEntry {
   std::uint64_t size = 0;
 };
 
-/// The voxels from `first` on, as many as `dims` says, in dense order.
+/// The `dims` voxels from `first` on, in dense order.
 struct DenseBox {
   nano::Coord first;
   Dims dims;
@@ -82,7 +82,7 @@ class NanoGrid {
     return reinterpret_cast<const Node*>(begin_ + position);
   }
 
-  /// More nodes than fit into the grid mean that some are visited twice.
+  /// More nodes than fit into the grid: some are visited twice.
   void countNode(std::uint64_t bytes) {
     visited_bytes_ += bytes;
     if (visited_bytes_ > size_) file_.fail("nodes of the tree overlap");

@@ -5,9 +5,8 @@
 
 namespace emscape::volume {
 
-/// A file of another program may be so sparse that the box of its active voxels is huge. Beyond kAlwaysDense
-/// voxels the active ones must fill at least one in kSparsest, else the file is more likely damaged than
-/// sparse.
+/// A file of another program may be so sparse that the box of its active voxels is very large. Beyond
+/// kAlwaysDense voxels at least one in kSparsest must be active; else the file is probably damaged.
 /// @throws Error (bad_input) at `location`
 inline void checkSparseness(const Dims& dims, std::uint64_t active, const SourceLocation& location) {
   constexpr long long kAlwaysDense = 1LL << 27;

@@ -1,4 +1,4 @@
-/// A NanoVDB grid taken apart into blocks: for host and device.
+/// Access to the blocks of a NanoVDB grid, for host and device.
 #pragma once
 
 #include "volume/nanovdb_wrapper.h"

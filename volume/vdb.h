@@ -3,7 +3,7 @@
 /// One grid per quantity, named by it: a FloatGrid, or an Int32Grid for categorical quantities; class "fog
 /// volume"; index (i, j, k) maps to that voxel's centre in the frame's metres; the background is the floor. A
 /// voxel is active if it holds a field: it is not masked and its value is not the floor (so NaN is active).
-/// Its metadata contain all that is needed to read the same volume again:
+/// Its metadata contain everything that is needed to read the same volume again:
 ///
 ///   emscape:quantity, :unit, :time_utc  string        emscape:time_s  double
 ///   emscape:floor, :range_min, :range_max  float       emscape:categorical  bool

@@ -39,7 +39,7 @@ class GridFiller {
         }
       }
     });
-    // Made by the library, so that the virtual functions of grid and tree are not compiled here once more.
+    // Created by the library, so that the virtual functions of grid and tree are not compiled here again.
     const auto grid = openvdb::gridPtrCast<GridType>(openvdb::GridBase::createGrid(GridType::gridType()));
     grid->tree().root().setBackground(floor_, /*updateChildNodes=*/false);
     for (std::unique_ptr<Leaf>& leaf : leaves) {

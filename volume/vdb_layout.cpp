@@ -30,7 +30,7 @@ enum ValueKind : std::int8_t {
 constexpr int kUpperLog2 = 5, kLowerLog2 = 4, kLeafLog2 = 3;
 /// Edge of a root's child (voxels); the root's keys are multiples of it.
 constexpr std::int32_t kUpperEdge = 1 << (kUpperLog2 + kLowerLog2 + kLeafLog2);
-/// Coordinates beyond this come from damage, and would overflow where boxes are computed.
+/// Coordinates beyond this limit are due to damage, and would overflow in the computation of boxes.
 constexpr std::int32_t kFarthest = 1 << 28;
 
 class TreeWalk {

@@ -1,6 +1,6 @@
 /// Check of a .vdb file's layout on the disk, byte by byte, before OpenVDB reads it: OpenVDB trusts the sizes
-/// in a file, so that a damaged one makes it write beyond its buffers or allocate without limit. Internal to
-/// the module; free of OpenVDB.
+/// in a file; with a damaged file it would write beyond its buffers or allocate without limit. Internal to
+/// the module; does not use OpenVDB.
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ constexpr int kVdbUuidOffset = 21, kVdbUuidBytes = 36;
 struct VdbHeader {
   std::uint32_t file_version = 0;
   std::uint32_t library_major = 0, library_minor = 0;
-  bool has_offsets = false;  ///< descriptors say where grids end
+  bool has_offsets = false;  ///< descriptors have the ends of grids
   int grid_count = 0;
 };
 
@@ -27,12 +27,13 @@ struct VdbHeader {
 VdbHeader readVdbHeader(ByteReader& reader);
 
 struct VdbDescriptor {
-  std::string unique_name;      ///< with a hidden suffix that distinguishes grids of one name
-  std::string name;             ///< for display: "density" or "density[1]"
-  std::string type;             ///< for example Tree_float_5_4_3
-  std::string instance_parent;  ///< unique name of the grid whose tree this one shares; empty: it has its own
-  bool half = false;            ///< floating-point values are stored in 16 bits
-  std::uint64_t end = 0;        ///< offset of the end of the grid; 0 if the file has no offsets
+  std::string unique_name;  ///< with a hidden suffix that distinguishes grids of one name
+  std::string name;         ///< for display: "density" or "density[1]"
+  std::string type;         ///< for example Tree_float_5_4_3
+  std::string
+      instance_parent;  ///< unique name of the grid whose tree this one shares; empty: it has a separate tree
+  bool half = false;    ///< floating-point values are stored in 16 bits
+  std::uint64_t end = 0;  ///< offset of the end of the grid; 0 if the file has no offsets
 };
 
 VdbDescriptor readVdbDescriptor(ByteReader& reader, const VdbHeader& header);

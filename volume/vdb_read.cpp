@@ -173,7 +173,7 @@ DenseVolume volumeOf(const VdbGrid& entry) {
   return volume;
 }
 
-/// Brings the transform's scale and the centre of the voxel `first` to the volume's grid.
+/// Sets the volume's grid from the transform's scale and the centre of the voxel `first`.
 void placeGrid(DenseVolume& volume, const openvdb::math::Transform& transform, const openvdb::Coord& first,
                const VdbFile& file) {
   if (!transform.isLinear()) file.fail("grid " + volume.info.quantity + ": its transform is not linear");

@@ -13,8 +13,8 @@
 namespace emscape::volume {
 namespace {
 
-/// Writes to our own stream, which throws: OpenVDB's File does not notice a full disk. Unlike OpenVDB's
-/// Stream it writes the grids' offsets, so that readers need not load them all.
+/// Writes to our own stream, which throws, because OpenVDB's File does not detect a full disk. Unlike
+/// OpenVDB's Stream it writes the grids' offsets, so that readers need not load all grids.
 class SeekableArchive : public openvdb::io::Archive {
  public:
   void writeTo(std::ostream& stream, const openvdb::GridCPtrVec& grids) const {

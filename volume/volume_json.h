@@ -23,8 +23,7 @@ DenseVolume fromJson(const nlohmann::ordered_json& json, const std::string& file
 /// The info of a field and the frame of its mesh.
 nlohmann::ordered_json toJson(const MeshField& field);
 
-/// A field without values, on a mesh that has a frame alone. @throws Error (bad_input) that names file and
-/// key
+/// A field without values, on a mesh that has only a frame. @throws Error (bad_input) that names file and key
 MeshField meshFieldFromJson(const nlohmann::ordered_json& json, const std::string& file);
 
 /// @throws Error (bad_input) with line and column
@@ -33,7 +32,7 @@ nlohmann::ordered_json parseJson(const std::string& text, const std::string& fil
 /// Numbers; infinities and NaN, which JSON does not have, as text.
 nlohmann::ordered_json numberToJson(double value);
 
-/// The member of a JSON object, which must be there and of the type; @throws Error (bad_input)
+/// The member of a JSON object, which must exist and have this type; @throws Error (bad_input)
 template <class Value>
 Value requiredFromJson(const nlohmann::ordered_json& json, const char* key, const std::string& file) {
   try {

@@ -1,4 +1,4 @@
-/// Volumes as VTK image data (.vti) and series of them (.pvd), for ParaView and the like.
+/// Volumes as VTK image data (.vti) and series of them (.pvd), for example for ParaView.
 ///
 /// Point data at the voxels' centres: one array per quantity, named by it, Float32, or Int32 for categorical
 /// ones; appended raw, little endian. Masked voxels are 0 in a UInt8 array `valid`, present if a volume has a

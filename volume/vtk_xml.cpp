@@ -30,7 +30,7 @@ int digitOf(std::uint8_t character) {
 
 /// Decodes up to the first character that is not a digit. VTK encodes a header and the data after it
 /// separately, so that padding may occur in the middle; it ends a group of four.
-/// @param max_bytes  stops when that many bytes are there
+/// @param max_bytes  stops after this number of bytes
 std::vector<std::uint8_t> fromBase64(const std::uint8_t* begin, const std::uint8_t* end,
                                      std::uint64_t max_bytes) {
   std::vector<std::uint8_t> bytes;

@@ -22,8 +22,8 @@ class VtkXmlFile {
   pugi::xml_node root() const { return root_; }
   bool bigEndian() const;
 
-  /// The bytes of a DataArray of numbers, decoded and decompressed; of numbers as text those that a binary
-  /// array would have.
+  /// The bytes of a DataArray of numbers, decoded and decompressed; for numbers as text, the bytes of the
+  /// equivalent binary array.
   /// @param expected_bytes  any other number is an Error, before anything is allocated for it
   std::vector<std::uint8_t> arrayBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
 
@@ -47,13 +47,13 @@ class VtkXmlFile {
   std::vector<std::uint8_t> bytes_;
   pugi::xml_document document_;
   pugi::xml_node root_;
-  std::uint64_t appended_ = 0;  ///< offset of the appended data, behind the underscore; 0: there are none
+  std::uint64_t appended_ = 0;  ///< offset of the appended data, after the underscore; 0 if there are none
 };
 
-/// What errors call a DataArray: its Name; `of Points` and the like, by its parent, if it has none.
+/// Name of a DataArray in errors: its Name; if it has none, its parent, such as `of Points`.
 std::string arrayName(const pugi::xml_node& array);
 
-/// The text that an array of character numbers spells, up to its zero.
+/// The text of an array of character codes, up to its zero.
 std::string spelledText(const std::string& numbers_text);
 
 }  // namespace emscape::volume

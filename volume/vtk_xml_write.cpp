@@ -78,7 +78,7 @@ void AppendedArrays::add(pugi::xml_node parent, const AppendedArray& array) {
 
 void AppendedArrays::write(const std::filesystem::path& path, const pugi::xml_document& document) const {
   std::ostringstream text;
-  text.exceptions(std::ios::badbit);  // else it ends where memory does, in silence
+  text.exceptions(std::ios::badbit);  // else it ends silently if memory is exhausted
   document.save(text, "  ");
   const std::string whole = text.str();
   writeWhole(path, [&](std::ostream& stream) {

@@ -1,4 +1,4 @@
-/// The XML files of VTK with appended data, as they are written. Internal to the module.
+/// Writes the XML files of VTK with appended data. Internal to the module.
 #pragma once
 
 #include <cstdint>
@@ -36,7 +36,7 @@ struct AppendedArray {
 /// The appended data of a file.
 class AppendedArrays {
  public:
-  /// Adds an array after those before, and its DataArray to `parent`.
+  /// Appends an array, and its DataArray to `parent`.
   void add(pugi::xml_node parent, const AppendedArray& array);
   /// Writes the file, atomically. @throws Error (other)
   void write(const std::filesystem::path& path, const pugi::xml_document& document) const;

@@ -42,7 +42,7 @@ class VtuFile {
     std::vector<std::string> names;
     for (const pugi::xml_node& array : piece_.child("PointData").children("DataArray")) {
       const std::string name = array.attribute("Name").value();
-      // vtkGhostType and the like mark points for VTK's own use.
+      // vtkGhostType and similar arrays mark points for VTK's own use.
       const bool is_field = array.attribute("NumberOfComponents").as_int(1) == 1 && name.rfind("vtk", 0) != 0;
       if (is_field) names.push_back(name);
     }
@@ -78,7 +78,7 @@ class VtuFile {
     return mesh;
   }
 
-  /// A field without values, on a mesh that has a frame alone. @param ours  whether the file describes it
+  /// A field without values, on a mesh that has only a frame. @param ours true if the file describes it
   MeshField describe(const std::string& name, bool& ours) const {
     const std::string json = spelledText(file_.fieldText("emscape:" + name));
     ours = !json.empty();

@@ -84,7 +84,7 @@ int check(const std::string& dir, const GlobalOptions& global) {
     }
     checked.push_back({dataset, dataset->check(folder.root / dataset->name)});
   }
-  // a folder in which nothing could be checked has not passed
+  // a folder without a dataset that could be checked has not passed
   const bool pass =
       !checked.empty() && std::all_of(checked.begin(), checked.end(),
                                       [](const Outcome& outcome) { return outcome.check.pass(); });

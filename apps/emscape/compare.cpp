@@ -1,13 +1,16 @@
-/// emscape compare: what one scenario wins and loses against another.
+/// emscape compare: gains and losses of one scenario against another.
 #include "emscape/study/compare.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
@@ -37,7 +40,7 @@ struct CompareCommand {
   std::set<std::string> given;  ///< names of the options on the command line
 };
 
-/// Writes B less A in the voxels of A's region.
+/// Writes B minus A in the voxels of A's region.
 void writeVolume(const CompareCommand& command, const study::ComparedScenario& a,
                  const study::ComparedScenario& b, double time_s, emfield::FieldOptions options) {
   options.quantities = {command.maps.quantity};
@@ -79,6 +82,14 @@ int finish(study::MapFolder& folder, const study::Comparison& comparison, const 
   return 0;
 }
 
+/// Of B: its scenario's name, or what it changes in A.
+std::string nameOfB(const CompareCommand& command, const scenario::Scenario& b) {
+  if (!command.b.empty()) return b.name;
+  std::vector<std::string> edits;
+  for (const scenario::Edit& edit : command.edits_b) edits.push_back(scenario::toString(edit));
+  return fmt::format("A with {}", fmt::join(edits, ", "));
+}
+
 int compareScenarios(const CompareCommand& command, const GlobalOptions& global) {
   if (command.b.empty() && command.edits_b.empty()) {
     throw Error(ErrorCode::usage, "compare: give a second scenario, or --set-b PATH=VALUE for the first one");
@@ -86,8 +97,10 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
   if (!command.volume.empty()) volume::formatOf(command.volume);
   std::vector<scenario::Edit> edits_b = command.edits;
   edits_b.insert(edits_b.end(), command.edits_b.begin(), command.edits_b.end());
-  study::ComparedScenario a{scenario::loadScenario(command.a, command.edits), nullptr};
-  study::ComparedScenario b{scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b),
+  study::ComparedScenario a{scenario::loadScenario(command.a, command.edits, scenario::ReadFor::chosen_times),
+                            nullptr};
+  study::ComparedScenario b{scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b,
+                                                   scenario::ReadFor::chosen_times),
                             nullptr};
   study::CompareRequest request;
   request.coverage = requestOf(command.maps, a.scenario->clock);
@@ -112,7 +125,8 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
                            of.times_s,
                            of.heights},
                           command.maps.formats);
-  if (!global.json) printHeading(a.scenario->name, b.scenario->name, *grid, of.quantity, of.threshold);
+  if (!global.json)
+    printHeading(a.scenario->name, nameOfB(command, *b.scenario), *grid, of.quantity, of.threshold);
   const ProgressSink show = progressSink(global);
   const study::Comparison comparison = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     study::Comparison result = study::computeComparison(
@@ -131,7 +145,8 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
   return finish(folder, comparison, a, b, command.maps.quantity, global);
 }
 
-/// Of folders of maps only these options make sense: what the maps hold was chosen when they were computed.
+/// For folders of maps only these options are allowed: the contents of the maps were chosen when they were
+/// computed.
 void checkFolderOptions(const CompareCommand& command) {
   static const std::set<std::string> kAllowed{"A",         "B",       "--output", "--products",
                                               "--heights", "--times", "--format", "--explain"};

@@ -1,4 +1,4 @@
-/// emscape coverage: maps of coverage at heights above ground or sea.
+/// emscape coverage: coverage maps at heights above ground or sea level.
 #include "emscape/study/coverage.h"
 
 #include <fmt/core.h>
@@ -40,7 +40,8 @@ void printRow(const study::MapRecord& record) {
 }
 
 int coverage(const CoverageCommand& command, const GlobalOptions& global) {
-  const auto scenario = scenario::loadScenario(command.scenario, command.edits);
+  const auto scenario =
+      scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   const study::CoverageRequest request = requestOf(command.maps, scenario->clock);
   study::checkRequest(request, *scenario);
   const study::MapArea area = areaOf(command.maps, *scenario);

@@ -55,7 +55,8 @@ study::ExposureRequest requestOf(const ExposureCommand& command, const scenario:
 
 int exposure(const ExposureCommand& command, const GlobalOptions& global) {
   const render::ImageSize size = render::parseImageSize(command.size);
-  const auto scenario = scenario::loadScenario(command.scenario, command.edits);
+  const auto scenario =
+      scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   const study::ExposureRequest request = requestOf(command, *scenario);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const ProgressSink show = progressSink(global);

@@ -54,7 +54,7 @@ Json toJson(const FrameOrigin& frame) {
           {"height_msl_m", frame.height_msl_m}};
 }
 
-/// What the models of the emitters choose by themselves at the first step; reads the terrain only if some do.
+/// Automatic choices of the emitters' models at the first step; reads the terrain only if there are any.
 Json choicesOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
   const bool has_any =
       std::any_of(scenario->emitters.begin(), scenario->emitters.end(), [](const scenario::Emitter& emitter) {
@@ -67,7 +67,7 @@ Json choicesOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
       emfield::modelChoices(scenario::snapshotAt(scenario, terrain.get(), time_s), terrain.get()));
 }
 
-/// What the field takes; null where it cannot be computed, which `validate` explains.
+/// Memory, time and disk space of the field; null if it cannot be computed (`validate` reports the reason).
 Json workOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
   emfield::FieldOptions options;
   options.allow_missing_terrain = true;
@@ -79,7 +79,7 @@ Json workOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
   }
 }
 
-/// What a file holds.
+/// The contents of a file.
 struct Description {
   Json json;
   std::shared_ptr<const propagation::Refractivity> refractivity;  ///< for the plot; null: there is none
@@ -154,7 +154,7 @@ Description describeScenario(const std::string& file) {
   return {json, refractivity};
 }
 
-/// @param file  a CSV file of profiles, or soundings of IGRA 2
+/// @param file  a CSV file of profiles, or IGRA 2 soundings
 Description describeRefractivity(const std::string& file) {
   constexpr double kGHz = 1e9;
   const scenario::RefractivityFile read =
@@ -169,7 +169,7 @@ Description describeRefractivity(const std::string& file) {
           refractivity};
 }
 
-/// Appends what volumes and fields on meshes have in common.
+/// Appends the entries that volumes and fields on meshes share.
 void addValues(Json& json, const volume::VolumeInfo& info, const volume::Statistics& statistics) {
   json["time_s"] = info.time_s;
   json["time_utc"] = info.time_utc;
@@ -203,7 +203,7 @@ Json describeVolume(const volume::DenseVolume& volume) {
   return json;
 }
 
-/// The first step's volumes; of a series also its steps.
+/// Describes the volumes of the first step and, for a series, its steps.
 Json describeVolumeFiles(const std::string& path) {
   std::string quantity;
   const std::vector<playback::VolumeFile> files = playback::volumeFilesOf(path, quantity);
@@ -218,7 +218,7 @@ Json describeVolumeFiles(const std::string& path) {
   return json;
 }
 
-/// The first step's mesh and fields; of a series also its steps.
+/// Describes the mesh and fields of the first step and, for a series, its steps.
 Json describeMeshFiles(const std::string& path) {
   std::string quantity;
   const std::vector<playback::VolumeFile> files = playback::meshFilesOf(path, quantity);
@@ -248,7 +248,7 @@ Json describeMeshFiles(const std::string& path) {
   return json;
 }
 
-/// To 12 digits: the quotient of a width and a count of posts has no more.
+/// Rounds to 12 digits, the accuracy of a width divided by a number of posts.
 double twelveDigits(double value) {
   return std::stod(fmt::format("{:.12g}", value));
 }
@@ -282,14 +282,14 @@ Json describeAntenna(const std::string& file) {
           {"beamwidth_el_deg", antenna->beamwidth_el_deg}};
 }
 
-/// A text as it is if it fits on a line, else quoted.
+/// A text unchanged if it fits on a line, otherwise quoted.
 std::string onOneLine(const std::string& text) {
   const bool fits =
       std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
   return fits ? text : Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-/// A JSON report as indented lines of text: the same facts for people. Members of a list begin with "-".
+/// Prints a JSON report as indented lines of text. Members of a list begin with "-".
 void printText(const Json& json, int depth) {
   const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
   for (const auto& [key, value] : json.items()) {

@@ -1,4 +1,4 @@
-/// emscape link: emitters at receivers and targets in the view of radars, over time.
+/// emscape link: signals of emitters at receivers, and detection of targets by radars, over time.
 #include "emscape/emfield/link.h"
 
 #include <fmt/core.h>
@@ -31,8 +31,8 @@ struct LinkCommand {
   std::string size = "1400x800";
 };
 
-/// Indices of the named items; of all without names.
-/// @throws Error (usage) that lists the names that there are
+/// Indices of the named items; all items if no names are given.
+/// @throws Error (usage) that lists the existing names
 template <class Item>
 std::vector<int> chosen(const std::vector<Item>& items, const std::vector<std::string>& names,
                         const char* option, const char* kind, const std::string& file) {
@@ -49,7 +49,7 @@ int link(const LinkCommand& command, const GlobalOptions& global) {
   options.times_s = command.times.empty() ? scenario::timesOf(scenario.clock)
                                           : scenario::parseTimes(command.times, scenario.clock);
   options.emitters = chosen(scenario.emitters, command.emitters, "--emitter", "emitter", scenario.file);
-  // A choice of receivers alone leaves the targets out, and the other way round.
+  // Naming only receivers excludes the targets, and vice versa.
   if (!command.receivers.empty() || command.targets.empty())
     options.receivers = chosen(scenario.placed_receivers, command.receivers, "--receiver",
                                "receiver with a platform", scenario.file);

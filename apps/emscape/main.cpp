@@ -7,7 +7,8 @@
 int main(int argc, char** argv) {
   const int status = emscape::app::runCommandLine(argc, argv);
   if (status == 0) return 0;
-  // HDF5 crashes in its exit handler after a netCDF file that met a full disk; all else is done.
+  // After a netCDF file could not be written to a full disk, HDF5 crashes in its exit handler. Nothing else
+  // is left to do here.
   std::fflush(nullptr);
   std::_Exit(status);
 }

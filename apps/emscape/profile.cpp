@@ -40,7 +40,7 @@ struct ProfileOptions {
   std::string size = "1400x800";
 };
 
-/// @throws Error (usage) unless there are three numbers within their ranges
+/// @throws Error (usage) unless the text has three numbers within their ranges
 scenario::SitePosition parsePoint(const std::string& text, bool above_ground) {
   std::vector<double> numbers;
   std::istringstream parts(text);
@@ -65,8 +65,8 @@ scenario::SitePosition parsePoint(const std::string& text, bool above_ground) {
   return point;
 }
 
-/// The scenario with a platform at the point, the last one: its ground is read and its height checked as for
-/// any platform.
+/// The scenario with one more platform, the last one, at the point: its ground is read and its height checked
+/// as for any platform.
 std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenario::SitePosition& point) {
   auto result = std::make_shared<Scenario>(scenario);
   scenario::Platform platform;
@@ -77,7 +77,8 @@ std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenar
   return result;
 }
 
-/// The first budget, of the emitter's model or a compared one, whose model has a field over range and height.
+/// The first budget, of the emitter's model or a compared one, whose model provides a field over range and
+/// height.
 const emfield::PathBudget* budgetOfSection(const ProfileReport& report) {
   const auto hasSection = [](const emfield::PathBudget& budget) {
     return propagation::modelInfo(budget.model).radial != nullptr;
@@ -89,7 +90,7 @@ const emfield::PathBudget* budgetOfSection(const ProfileReport& report) {
   return nullptr;
 }
 
-/// Draws the loss over range and height where a model has it, else the path over the terrain.
+/// Draws the loss over range and height if a model provides it, otherwise the path over the terrain.
 void draw(const ProfileReport& report, const scenario::Snapshot& snapshot, int emitter,
           const scenario::Terrain* terrain, const ProfileOptions& options) {
   constexpr int kRanges = 400, kHeights = 240;
@@ -106,7 +107,8 @@ void draw(const ProfileReport& report, const scenario::Snapshot& snapshot, int e
 
 ProfileReport makeReport(const ProfileOptions& options) {
   const scenario::SitePosition to = parsePoint(options.to, options.above_ground);
-  const auto scenario = withPoint(*scenario::loadScenario(options.scenario, options.edits), to);
+  const auto scenario = withPoint(
+      *scenario::loadScenario(options.scenario, options.edits, scenario::ReadFor::chosen_times), to);
   const int emitter = namedIndex(scenario->emitters, options.emitter, "--emitter", "emitter", scenario->file);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain.get(), options.time_s);

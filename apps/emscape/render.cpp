@@ -40,7 +40,7 @@ using playback::RealTimeLoop;
 using playback::RealTimeOptions;
 using playback::ViewState;
 
-/// Options that are also in a view have an effect only if given; viewOf() has their defaults.
+/// Options that are also part of a view have an effect only if they are given; viewOf() has their defaults.
 struct RenderOptions {
   const CLI::App* command = nullptr;
   playback::FrameSelection selection;
@@ -79,8 +79,8 @@ struct RenderOptions {
   std::string device_volume = "float";
 };
 
-/// The view to draw: that of --state, or the default one, with the given options. They are parsed here, so
-/// that errors are reported before anything is computed.
+/// The view to draw: that of --state, or the default one, changed by the given options. They are parsed here,
+/// so that errors are reported before anything is computed.
 ViewState viewOf(const RenderOptions& options) {
   ViewState view = options.state.empty() ? ViewState{} : playback::readViewState(options.state);
   const auto isGiven = [&options](const char* name) { return options.command->count(name) > 0; };
@@ -179,7 +179,7 @@ Sinks openSinks(const RenderOptions& options, const PictureStyle& style, const s
   return sinks;
 }
 
-/// The source and the painter; the first frame is set.
+/// The source and the painter, with the first frame set.
 struct Stage {
   ComputeTarget target;
   std::unique_ptr<FrameSource> source;
@@ -202,7 +202,7 @@ Stage openStage(const playback::FrameSelection& selection, const RenderOptions& 
   });
 }
 
-/// Writes the file of --save-state: the view, with the colours that were fitted to the first frame.
+/// Writes the file of --save-state: the view, with the colours fitted to the first frame.
 void saveState(const RenderOptions& options, ViewState view, const Stage& stage) {
   if (options.save_state.empty()) return;
   view.time_s = stage.source->time_s(0);
@@ -214,7 +214,7 @@ void saveState(const RenderOptions& options, ViewState view, const Stage& stage)
   logInfo("wrote " + options.save_state);
 }
 
-/// Of the last picture.
+/// Report on the cells of the last picture.
 Json cellsJson(const playback::CellPicture& picture) {
   Json json{{"drawn", picture.text()}};
   if (picture.projected) {
@@ -234,7 +234,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   checkMeshOptions(options, view);
   const PictureStyle style = styleOf(view, options);
   const std::string mode = render::toString(view.settings.mode);
-  // For files `auto` casts every pixel.
+  // `auto` casts every pixel for files.
   const render::FramePlan plan{
       options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays),
       render::parseInterpolation(options.interpolate)};
@@ -277,7 +277,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   return 0;
 }
 
-/// @param keeps_events  for --json, which tells each frame
+/// @param keeps_events  for --json, which reports each frame
 RealTimeOptions realTimeOptionsOf(const RenderOptions& options, bool keeps_events) {
   RealTimeOptions loop;
   constexpr double kBudget_ms = 40;  // the paper's limit for real time
@@ -308,7 +308,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   constexpr int kSeveral = 2;
   const Sinks sinks = openSinks(options, style, source->name(), kSeveral, loop_options.frames_per_s);
 
-  // Long enough for delays of the encoder.
+  // Enough for delays of the encoder.
   constexpr long long kWaitingBytes = 256LL << 20;
   BackgroundWriter writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * style.size.count()))));
   int number = 0;
@@ -345,7 +345,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   return 0;
 }
 
-/// Options that only --realtime takes.
+/// Adds the options that need --realtime.
 void addRealTimeOptions(CLI::App& command, RenderOptions& options) {
   CLI::Option* realtime = command.add_flag(
       "--realtime", options.realtime,
@@ -425,16 +425,16 @@ Examples:
                       "Scenario of the ground and emitters to draw with volumes");
   command
       ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(within(render::kExaggerationLimits));
   addPlaneOption(*command, options->planes);
   command->add_option("--step", options->step_voxels, "Distance of samples, in voxels; default: 1")
-      ->check(CLI::Range(0.05, 10.0));
+      ->check(within(render::kStepLimits));
   command->add_option("--mida-gamma", options->mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
-      ->check(CLI::Range(-1.0, 1.0));
+      ->check(within(render::kMidaGammaLimits));
   command->add_option("--iso-value", options->iso_value,
                       "Value of the isosurface, in the quantity's unit; default: the middle of the colours");
   command->add_option("--iso-opacity", options->iso_opacity, "Opacity of the isosurface")
-      ->check(CLI::Range(0.0, 1.0));
+      ->check(within(render::kIsoOpacityLimits));
   command->add_flag("--shading", options->shading, "Shading of dvr and mida; iso is always shaded");
   command->add_option("--theme", options->theme, "Background and labels; default: dark")
       ->check(CLI::IsMember({"dark", "light"}));

@@ -35,7 +35,7 @@ struct SimulateOptions {
   double cache_mib = 0;
 };
 
-/// @throws Error (usage) unless .vtu is for a mesh, and a mesh for .vtu
+/// @throws Error (usage) for .vtu without a mesh, and for a mesh in another format
 std::vector<std::string> formatsOf(const SimulateOptions& options) {
   const std::string for_mesh = playback::kMeshFormat;
   if (options.formats.empty()) return {options.mesh.empty() ? "vdb" : for_mesh};
@@ -59,7 +59,7 @@ playback::SeriesOptions seriesOptionsOf(const SimulateOptions& options) {
   return series;
 }
 
-/// @throws Error (usage) if the folder has a series and neither --resume nor --overwrite is given
+/// @throws Error (usage) if the folder contains a series and neither --resume nor --overwrite is given
 void checkFolderIsFree(const SimulateOptions& options) {
   if (options.resume || options.force) return;
   if (const std::optional<playback::SeriesStatus> found = playback::findSeries(options.folder)) {
@@ -78,7 +78,7 @@ Json rangesToJson(const playback::SeriesResult& result) {
   return ranges;
 }
 
-/// Changes the series to differences.
+/// Changes the series to differences from the comparison.
 void compare(playback::FieldSeries& series, const SimulateOptions& options) {
   const bool with_original = options.compare == playback::kOriginal;
   const std::string& file = with_original ? options.scenario : options.compare;

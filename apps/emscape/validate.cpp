@@ -1,4 +1,4 @@
-/// emscape validate: reports all faults of a scenario and of the files it names.
+/// emscape validate: reports all errors in a scenario and the files it names.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -23,14 +23,14 @@ namespace {
 using scenario::Problem;
 using scenario::Severity;
 
-/// Converts an error to a problem; without a location it is that of the scenario file.
+/// Converts an error to a problem; an error without a location is located in the scenario file.
 Problem problemOf(const Error& error, const std::string& scenario_file) {
   const SourceLocation location =
       error.location().file.empty() ? SourceLocation{scenario_file, 0, 0} : error.location();
   return {location, Severity::error, error.message() + optionText(error.hint())};
 }
 
-/// Columns of the region whose centre has no known ground.
+/// Reports columns of the region with unknown ground at their centre.
 void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& terrain,
                    std::vector<Problem>& problems) {
   const volume::Grid grid = emfield::gridOf(scenario.region);
@@ -55,12 +55,12 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
                    first.longitude_deg)});
 }
 
-/// Checks each platform at every step of the clock: none is below the ground or over missing terrain.
-/// @return true if the first step has no fault
+/// Checks at every step of the clock that no platform is below the ground or over missing terrain.
+/// @return true if the first step has no error
 bool checkSteps(const scenario::Scenario& scenario, const scenario::Terrain* terrain,
                 std::vector<Problem>& problems) {
   const std::vector<double> times = scenario::timesOf(scenario.clock);
-  const auto alone = std::make_shared<scenario::Scenario>(scenario);  // with one platform at a time
+  const auto alone = std::make_shared<scenario::Scenario>(scenario);  // with a single platform at a time
   alone->emitters.clear();
   alone->placed_receivers.clear();
   bool starts = true;
@@ -84,8 +84,8 @@ bool checkSteps(const scenario::Scenario& scenario, const scenario::Terrain* ter
 }
 
 /// Checks that need the whole scenario: the ground, the quantities, the models, every step.
-/// @param choices  receives what the models choose by themselves at the first step
-/// @param work     receives what the field takes, if it can be computed
+/// @param choices  receives the models' automatic choices at the first step
+/// @param work     receives the field's memory, time and disk space, if it can be computed
 void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std::vector<Problem>& problems,
                   std::vector<emfield::EmitterChoice>& choices, std::optional<WorkEstimate>& work) {
   try {

@@ -65,7 +65,8 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
                                                       : render::parseImageSize(command.size);
   if (std::any_of(command.outputs.begin(), command.outputs.end(), render::isPlotFile))
     study::checkVerticalPlot(size, command.azimuths_deg.size());
-  const auto scenario = scenario::loadScenario(command.scenario, command.edits);
+  const auto scenario =
+      scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   const study::VerticalRequest request = requestOf(command, *scenario);
   const scenario::Emitter& emitter = scenario->emitters[request.emitter];
   const scenario::TrackPoint site = scenario::pointAt(scenario->platforms[emitter.platform], command.time_s);

@@ -6,7 +6,7 @@
 namespace emscape::manual {
 namespace {
 
-/// Splits what CLI11 makes of a type and its validators: "TEXT:{a,b}" or "INT:INT in [0 - 9]".
+/// Splits CLI11's text of a type and its validators: "TEXT:{a,b}" or "INT:INT in [0 - 9]".
 void describeType(const std::string& type, OptionDescription& option) {
   const std::size_t colon = type.find(':');
   option.value = type.substr(0, colon);

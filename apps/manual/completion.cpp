@@ -20,7 +20,7 @@ std::string nameOf(const OptionDescription& option) {
   return option.names.back();
 }
 
-/// --help is of each command.
+/// True if the list has the option; commands repeat options of those above them, such as --help.
 bool hasOption(const std::vector<OptionDescription>& options, const std::string& name) {
   for (const OptionDescription& option : options) {
     if (nameOf(option) == name) return true;
@@ -56,7 +56,7 @@ bool isNumber(const OptionDescription& option) {
   return option.value == "INT" || option.value == "UINT" || option.value == "FLOAT";
 }
 
-/// The function's name for a path.
+/// The name of the shell function for a path.
 std::string functionOf(const std::string& path) {
   std::string name = "_" + path;
   for (char& c : name) {
@@ -65,14 +65,14 @@ std::string functionOf(const std::string& path) {
   return name;
 }
 
-/// Text in single quotes within single quotes of a shell.
+/// Text in single quotes, inside a single-quoted shell text.
 std::string quoted(const std::string& text) {
   std::string result;
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result;
 }
 
-/// Text in the brackets and between the colons of zsh's _arguments.
+/// Text escaped for the brackets and colons of zsh's _arguments.
 std::string zshText(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -122,7 +122,7 @@ std::string bashCompletion(const CommandDescription& program) {
     subcommands += fmt::format("      {}) path=$path' '$word ;;\n", joined(paths, " | "));
     options += fmt::format("    '{}:subcommands') words='{}' ;;\n", visited.path, joined(inner, " "));
   });
-  // Words are split at '=', too: --backend=cpu arrives as three.
+  // Words are also split at '=': --backend=cpu arrives as three words.
   return fmt::format(R"(# Completion of {0} in bash; made from its command line's description.
 {1}() {{
   local current=${{COMP_WORDS[COMP_CWORD]}} previous=${{COMP_WORDS[COMP_CWORD - 1]}} path={0} word words= files= takes_value=

@@ -7,10 +7,10 @@
 
 namespace emscape::manual {
 
-/// A script for bash, to be sourced or installed as bash-completion/completions/PROGRAM.
+/// A bash script, to be sourced or installed as bash-completion/completions/PROGRAM.
 std::string bashCompletion(const CommandDescription& program);
 
-/// A function of zsh, to be installed as _PROGRAM in a folder of $fpath.
+/// A zsh function, to be installed as _PROGRAM in a folder of $fpath.
 std::string zshCompletion(const CommandDescription& program);
 
 }  // namespace emscape::manual

@@ -1,5 +1,5 @@
-/// emscape_manual FOLDER: writes the manual pages and the shell completion of the programs, from the parsers
-/// that they use.
+/// emscape_manual FOLDER: writes the manual pages and the shell completion of the programs, from their
+/// parsers.
 #include <algorithm>
 #include <cstdio>
 #include <exception>

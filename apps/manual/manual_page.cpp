@@ -9,7 +9,8 @@
 namespace emscape::manual {
 namespace {
 
-/// Text in which nothing is taken for a macro or an escape. Hyphens become those that can be copied.
+/// Escapes a text, so that nothing is interpreted as a macro or an escape. Hyphens become ASCII ones, which
+/// can be copied.
 std::string roff(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -37,7 +38,7 @@ std::string listed(const std::vector<std::string>& words) {
   return result;
 }
 
-/// Name and value in a paragraph of their own, then the help.
+/// Name and value as a tagged paragraph, followed by the help.
 std::string optionText(const OptionDescription& option) {
   std::string text = ".TP\n";
   for (const std::string& name : option.names) {
@@ -87,13 +88,13 @@ std::string footerText(const std::string& footer, const char* section) {
     }
   }
   keep(false);
-  // A paragraph that ends, or is followed by a section, has nothing in it.
+  // Removes empty paragraphs before a section or at the end.
   for (std::size_t at; (at = text.find(".PP\n.S")) != std::string::npos;) text.erase(at, 4);
   while (text.size() >= 4 && text.compare(text.size() - 4, 4, ".PP\n") == 0) text.erase(text.size() - 4);
   return text;
 }
 
-/// The text with a paragraph of its own at its beginning, unless it begins with a section.
+/// The text, preceded by a paragraph macro unless it begins with a section.
 std::string paragraphs(const std::string& text) {
   return text.empty() || text.rfind(".S", 0) == 0 ? text : ".PP\n" + text;
 }

@@ -1,4 +1,4 @@
-/// Manual pages of a command line, in the man(7) macros.
+/// Manual pages of a command line, in man(7) macros.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct ManualPage {
   std::string text;
 };
 
-/// A page of the program and one of each subcommand; a subcommand's own subcommands are on its page.
+/// One page for the program and one for each subcommand; a subcommand's own subcommands are on its page.
 /// @param version  of the program
 std::vector<ManualPage> manualPages(const CommandDescription& program, const std::string& version);
 

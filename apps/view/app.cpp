@@ -29,7 +29,7 @@ constexpr double kCursorBlink_s = 0.4;
 constexpr double kOpeningPoll_s = 0.03;
 
 constexpr int kWindowFits = 8;
-/// Time (s) from the start after which a window that does not take the size asked for keeps its own.
+/// Time (s) from the start after which a window that has not taken the requested size keeps its own.
 constexpr double kFitLimit_s = 5;
 constexpr render::ImageSize kUsualSize{1200, 900};
 
@@ -138,8 +138,8 @@ void App::showTitle() {
   window_.setTitle(titleOf(session_->options()));
 }
 
-/// Gives the window the size at which the picture has the size of the first view. The size of the panels
-/// depends on that of the window, so that it is found by search; they change until the input is open.
+/// Gives the window the size at which the picture has the size of the first view. The panels' size depends on
+/// the window's, so the size is found by search; the panels change until the input is open.
 void App::fitWindowToPicture() {
   constexpr int kIterations = 60;  // each at least halves the difference
   const render::ImageSize wanted = session_->options().view.size;
@@ -153,7 +153,7 @@ void App::fitWindowToPicture() {
   constexpr float kRounding = 0.01F;  // of the search
   const render::ImageSize fitting{static_cast<int>(std::ceil(width - kRounding)),
                                   static_cast<int>(std::ceil(height - kRounding))};
-  if (fitting != size && fitting != fitting_) {  // the same size again: the window is still to take it
+  if (fitting != size && fitting != fitting_) {  // skipped if the window has not yet taken this size
     --window_fits_;
     fitting_ = fitting;
     window_.resize(fitting.width, fitting.height);
@@ -161,7 +161,7 @@ void App::fitWindowToPicture() {
   if (session_->picture() && (fitting == size || log_.now_s() > kFitLimit_s)) window_fits_ = 0;
 }
 
-/// True until the window has the size of the first picture, or cannot have it: scripts wait for that.
+/// True until the window fits the first picture, or cannot; scripts wait for that.
 bool App::isFitting() const {
   return window_fits_ > 0 && session_->picture();
 }
@@ -194,7 +194,7 @@ void App::run() {
     failIfNothingOpens();
     if (ImGui::GetIO().WantTextInput) frames_left_ = std::max(frames_left_, 1);
     if (!quits_ && !script_.finished() && !isFitting()) script_.run(*session_, *this, log_.now_s());
-    if (panelsChanged()) frames_left_ = kFramesAfterEvent;  // the layout needs more than one frame
+    if (panelsChanged()) frames_left_ = kFramesAfterEvent;  // the layout takes more than one frame
     const bool script_waits_for_frames = script_.nextRun_s(log_.now_s()) == 0.0;
     if (!window_.input().empty() || screenshot_ || script_waits_for_frames || flies_) {
       frames_left_ = std::max(frames_left_, 1);

@@ -17,7 +17,7 @@ namespace emscape::view {
 class App : private WindowControl {
  public:
   /// @throws Error (device) without a display or OpenGL, or without the GPU that the options ask for;
-  /// (bad_input) for the script; (other) for the log
+  /// (bad_input) for a faulty script; (other) if the log cannot be written
   explicit App(const ViewOptions& options);
 
   /// Runs until the user, the script or a signal ends it.
@@ -34,10 +34,10 @@ class App : private WindowControl {
   void press(const KeyChord& chord) override;
   void inject(const InputEvent& event) override;
 
-  /// Handles input and lays out the panels; draws them if that is due.
+  /// Handles input and lays out the panels; draws them if drawing is due.
   void frame();
   void draw(const Layout& layout);
-  /// Seconds until the window is to be drawn again; 0: now.
+  /// Seconds until the window must be drawn again; 0: now.
   double untilDrawing_s() const;
   void handleKeys(const std::vector<InputEvent>& events);
   void drawPanels(const Layout& layout);
@@ -46,7 +46,7 @@ class App : private WindowControl {
   void takeScreenshot();
   double waitTime_s() const;
   void failIfNothingOpens() const;
-  /// On the GPU or, if that fails and the backend is automatic, on the CPU.
+  /// Creates the session on the GPU or, if that fails and the backend is automatic, on the CPU.
   std::unique_ptr<Session> makeFirstSession(const ViewOptions& options);
   std::unique_ptr<Session> makeSession(const ViewOptions& options);
   void handleRequests();
@@ -59,7 +59,7 @@ class App : private WindowControl {
   Script script_;
   Window window_;
   PictureTexture texture_;
-  bool shares_gpu_;  // pictures go from CUDA to OpenGL on the GPU
+  bool shares_gpu_;  // pictures are passed from CUDA to OpenGL on the GPU
   playback::ComputeTarget target_;
   std::shared_ptr<Files> files_ = std::make_shared<Files>();
   std::unique_ptr<Session> session_;
@@ -77,7 +77,7 @@ class App : private WindowControl {
   std::optional<std::string> screenshot_;
   std::string open_panels_;
   int window_fits_;            // remaining attempts to give the picture the size of the first view
-  render::ImageSize fitting_;  // the size that was asked for last
+  render::ImageSize fitting_;  // the size requested last
 };
 
 }  // namespace emscape::view

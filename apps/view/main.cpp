@@ -28,8 +28,8 @@ void show(const ViewOptions& options) {
       std::fprintf(stderr, "%s\n", line.c_str());
   });
   setThreadLimit(options.threads);
-  std::signal(SIGPIPE, SIG_IGN);  // if ffmpeg has ended, the write fails
-  // A wrong name, and all faults of a scenario, are reported before a window appears.
+  std::signal(SIGPIPE, SIG_IGN);  // after ffmpeg has ended, writes fail instead
+  // A wrong name and all errors in a scenario are reported before a window appears.
   using playback::InputKind;
   const std::optional<InputKind> kind =
       options.input.empty() ? std::nullopt : std::optional(playback::inputKindOf(options.input));

@@ -18,7 +18,7 @@ constexpr double kFly_diagonals_s = 0.15;
 constexpr double kFast = 4;
 constexpr double kDoubleClick_s = 0.35;
 constexpr double kDoubleClick_px = 5;
-constexpr double kClick_px = 3;  // within it a press is no drag yet
+constexpr double kClick_px = 3;  // a shorter movement is not yet a drag
 
 bool isInside(const Area& area, double x, double y) {
   return x >= area.x && y >= area.y && x < area.x + area.width && y < area.y + area.height;
@@ -116,7 +116,7 @@ void MouseControl::takePlatform(std::size_t emitter, const Area& picture, Sessio
 
 void MouseControl::movePlatform(const Area& picture, Session& session) {
   if (!is_platform_moved_ && std::hypot(x_ - pressed_x_, y_ - pressed_y_) < kClick_px) return;
-  if (std::exchange(is_platform_moved_, true) && !session.isDragging()) {  // it was taken back
+  if (std::exchange(is_platform_moved_, true) && !session.isDragging()) {  // it was undone
     drag_ = Drag::none;
     return;
   }
@@ -130,7 +130,7 @@ void MouseControl::showCursor(const Area& picture, bool panels_want_mouse, Sessi
   if (drag_ == Drag::platform) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
     if (!is_platform_moved_) return;
-    // The picture follows as soon as it can.
+    // The picture follows as soon as possible.
     const ImVec2 cursor(static_cast<float>(x_), static_cast<float>(y_));
     ImGui::GetBackgroundDrawList()->AddCircle(cursor, 0.7F * ImGui::GetFontSize(),
                                               ImGui::ColorConvertFloat4ToU32(accentColor(session.theme())), 0,

@@ -1,4 +1,4 @@
-/// The mouse and the keys of flying, on the picture.
+/// Mouse and flying keys over the picture.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace emscape::view {
 /// Converts events over the picture to movements of the session's camera, platforms and probe.
 class MouseControl {
  public:
-  /// @param panels_want_mouse  the cursor is over a panel, or drags something of one
+  /// @param panels_want_mouse  the cursor is over a panel or drags an item of one
   void handle(const std::vector<InputEvent>& events, const Area& picture, bool panels_want_mouse,
               Session& session);
   /// Flies while the right button and keys are held. @param elapsed_s  since the last frame

@@ -60,7 +60,7 @@ void PictureTexture::draw(int left, int bottom, int width, int height) const {
   glDisable(GL_SCISSOR_TEST);
   glDisable(GL_FRAMEBUFFER_SRGB);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
-  // The first row of the picture is its top one.
+  // The first row of the picture is the top one.
   glBlitFramebuffer(0, 0, size_.width, size_.height, left, bottom + height, left + width, bottom,
                     GL_COLOR_BUFFER_BIT, GL_NEAREST);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);

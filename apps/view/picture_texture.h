@@ -18,7 +18,8 @@ class PictureTexture {
   PictureTexture& operator=(const PictureTexture&) = delete;
 
   void set(const render::Image8& image);
-  /// From the memory of the GPU that also runs OpenGL. @throws Error (device); the previous picture stays
+  /// Sets a picture in the memory of the GPU that also runs OpenGL. @throws Error (device); the previous
+  /// picture is kept
   void set(const render::DevicePicture& picture);
   bool isSet() const { return size_.count() > 0; }
   /// Draws the picture into the bound framebuffer, scaled with nearest-pixel sampling if the sizes differ.
@@ -26,7 +27,7 @@ class PictureTexture {
   void draw(int left, int bottom, int width, int height) const;
 
  private:
-  /// Pixels come from memory, or from the bound buffer for unpacking where that is null.
+  /// Reads the pixels from memory, or from the bound unpack buffer if `pixels` is null.
   void setPixels(render::ImageSize size, const void* pixels);
 
   unsigned texture_ = 0;

@@ -26,7 +26,7 @@ Examples:
 
 Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectation of the script was not met.)";
 
-/// Parsed options. Those that are also in a view have an effect only if given.
+/// Parsed options. Those that are also part of a view have an effect only if they are given.
 struct Typed {
   std::string state, size, mode, rays = "auto", camera, range, theme, quantity;
   double time_s = 0, exaggeration = 0, step_voxels = 0, budget_ms = 40;
@@ -66,10 +66,10 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_option("--budget", typed.budget_ms, "Milliseconds between two pictures while it changes")
       ->check(CLI::Range(1.0, 1e5));
   app.add_option("--exaggeration", typed.exaggeration, "Vertical exaggeration; 0: chosen from the box")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(app::within(render::kExaggerationLimits));
   app::addPlaneOption(app, typed.planes);
   app.add_option("--step", typed.step_voxels, "Distance of samples, in voxels; default: 1")
-      ->check(CLI::Range(0.05, 10.0));
+      ->check(app::within(render::kStepLimits));
   app.add_flag("--shading", typed.shading, "Shading of dvr and mida; iso is always shaded");
   app.add_flag("--allow-missing-terrain", options.allow_missing_terrain,
                "Compute although elevation data is missing; the holes are drawn as such");
@@ -85,7 +85,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_flag("--quiet,-q", options.quiet, "Only warnings and errors on standard error");
 }
 
-/// Without INPUT these have nothing to apply to.
+/// Refuses options that apply only to an INPUT.
 void refuseOptionsOfInput(const CLI::App& app) {
   for (const char* name :
        {"--scenario", "--mesh", "--cells", "--cell-rasterizer", "--cell-order", "--cell-perspective",
@@ -96,7 +96,7 @@ void refuseOptionsOfInput(const CLI::App& app) {
   }
 }
 
-/// The first view: that of --state, or the default one, with the given options.
+/// Sets the first view: that of --state, or the default one, changed by the given options.
 void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
   playback::ViewState& view = options.view;
   if (!typed.state.empty()) {
@@ -125,7 +125,7 @@ void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
   take("--set", [&] { view.edits.insert(view.edits.end(), typed.edits.begin(), typed.edits.end()); });
 }
 
-/// The parser, and what it fills.
+/// The parser, and the variables it fills.
 struct CommandLine {
   CLI::App app{"Shows a scenario or volumes in a window.", "emscape view"};
   ViewOptions options;

@@ -1,4 +1,4 @@
-/// The parser of emscape-view's command line, to be described.
+/// The parser of emscape-view's command line, for generating its documentation.
 #pragma once
 
 #include <memory>

@@ -214,7 +214,7 @@ void Window::forward(const InputEvent& event) {
     case InputEvent::Kind::key:
       if (event.code >= 0 && event.code < 512) keys_[event.code] = event.action != GLFW_RELEASE;
       ImGui_ImplGlfw_KeyCallback(window_, event.code, event.scancode, event.action, event.modifiers);
-      // The backend queries GLFW for modifiers, which does not include keys that a script presses.
+      // The backend queries GLFW for modifiers, which misses keys pressed by a script.
       ImGui::GetIO().KeyCtrl = (event.modifiers & GLFW_MOD_CONTROL) != 0;
       ImGui::GetIO().KeyShift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
       break;
@@ -242,7 +242,7 @@ std::vector<InputEvent> Window::beginFrame() {
   for (const InputEvent& event : events) forward(event);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // The backend has the present state of the mouse; this is that of the events.
+  // The backend sets the present state of the mouse; this sets the state in the events.
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(cursor_x_), static_cast<float>(cursor_y_)};
   for (int i = 0; i < 5; ++i) io.MouseDown[i] = buttons_[i];

@@ -12,26 +12,26 @@ struct GLFWwindow;
 
 namespace emscape::view {
 
-/// One at a time. Only the thread that constructs it uses it, except for wake().
+/// At most one object exists at a time. For use by the thread that constructs it, except for wake().
 class Window {
  public:
-  /// @param scale  of texts and controls; 0: that of the screen
+  /// @param scale  of text and controls; 0: the screen's scale
   /// @throws Error (device) with the reason
   Window(const std::string& title, render::ImageSize size, double scale);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  /// Makes waitEvents() return; from any thread, also before and after the window's life.
+  /// Makes waitEvents() return. May be called from any thread, also before and after the window's lifetime.
   static void wake();
-  /// Waits for an event, at most so long. @param timeout_s  0: does not wait; < 0: without end
+  /// Waits for an event. @param timeout_s  maximum wait; 0: does not wait; < 0: unlimited
   void waitEvents(double timeout_s);
-  /// True if the user or the display asked for a new frame since the last call.
+  /// True if the user or the display requested a new frame since the last call.
   bool takeDirty();
   void markDirty() { dirty_ = true; }
-  /// True if the user wants to close the window, since the last call.
+  /// True if the user has asked to close the window since the last call.
   bool takeCloseRequest();
-  /// Files that were dropped on the window since the last call.
+  /// Files dropped on the window since the last call.
   std::vector<std::string> takeDropped();
 
   /// 0x0 while it is minimised.

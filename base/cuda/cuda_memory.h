@@ -1,5 +1,4 @@
-/// CUDA calls with errors as exceptions, and device memory that frees itself. For .cu files and their
-/// neighbours.
+/// CUDA calls that throw on errors, and owned device memory. For .cu files and the .cpp files next to them.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -13,7 +12,7 @@
 
 namespace emscape::cuda {
 
-/// The kernel that this thread launched last: a failure inside a kernel is reported by a later call.
+/// The last kernel that this thread launched; a failure inside a kernel is reported by a later call.
 inline thread_local const char* last_kernel = nullptr;
 
 /// @throws Error (device) that names the call, and the kernel launched before it, unless it succeeded
@@ -25,7 +24,8 @@ inline void check(cudaError_t status, const char* call) {
   throw Error(ErrorCode::device, message);
 }
 
-/// After a kernel's launch. @param kernel  its name, a literal. @throws Error (device) that names the kernel
+/// Called after the launch of a kernel. @param kernel its name, a literal. @throws Error (device) that names
+/// the kernel
 inline void checkLaunch(const char* kernel) {
   last_kernel = kernel;
   check(cudaGetLastError(), kernel);
@@ -46,8 +46,7 @@ class Buffer {
   Buffer& operator=(const Buffer&) = delete;
   ~Buffer() { cudaFree(data_); }
 
-  /// The contents are lost unless the size stays the same. @throws Error (device) with the size that was
-  /// asked for
+  /// The contents are lost unless the size stays the same. @throws Error (device) with the requested size
   void resize(std::size_t count) {
     if (count == count_) return;
     cudaFree(std::exchange(data_, nullptr));
@@ -58,13 +57,13 @@ class Buffer {
     count_ = count;
   }
 
-  /// Makes it at least so long; the contents are lost if it grows. For sizes that vary little: it grows by a
-  /// quarter and never shrinks, as to free memory makes every stream wait.
+  /// Grows to at least this length; the contents are lost if it grows. For sizes that vary little: it grows
+  /// by a quarter and never shrinks, because freeing memory makes every stream wait.
   T* atLeast(std::size_t count) {
     if (count_ < count) resize(count_ == 0 ? count : count + count / 4);
     return data_;
   }
-  /// Copies all of a vector into atLeast() its length.
+  /// Copies a vector; grows as by atLeast().
   T* send(const std::vector<T>& from, cudaStream_t stream) {
     atLeast(from.size());
     if (!from.empty()) {
@@ -116,7 +115,7 @@ class Stream {
   enum class Priority { normal, high };
 
   Stream() : Stream(Priority::normal) {}
-  /// @param priority  blocks of threads of `high` are begun before those that wait in other streams
+  /// @param priority  thread blocks of `high` start before those that wait in other streams
   explicit Stream(Priority priority) {
     int least = 0, greatest = 0;
     check(cudaDeviceGetStreamPriorityRange(&least, &greatest), "cudaDeviceGetStreamPriorityRange");
@@ -156,7 +155,7 @@ class Event {
     check(status, "cudaEventQuery");
     return true;
   }
-  /// Work put on the stream after this call waits for the event.
+  /// Work enqueued on the stream after this call waits for the event.
   void holdBack(cudaStream_t stream) const {
     check(cudaStreamWaitEvent(stream, event_, 0), "cudaStreamWaitEvent");
   }
@@ -174,7 +173,7 @@ class Readback {
   Readback(const Readback&) = delete;
   Readback& operator=(const Readback&) = delete;
 
-  /// Starts a read of the value after the work that is on the stream so far. An earlier read is discarded.
+  /// Starts a read of the value after the work enqueued so far. An earlier read is discarded.
   void request(const T* from, cudaStream_t stream) {
     check(cudaMemcpyAsync(value_, from, sizeof(T), cudaMemcpyDeviceToHost, stream),
           "cudaMemcpyAsync from the GPU");
@@ -206,7 +205,7 @@ class TimeMark {
   TimeMark& operator=(const TimeMark&) = delete;
 
   void record(cudaStream_t stream) { check(cudaEventRecord(event_, stream), "cudaEventRecord"); }
-  /// Waits until the stream has reached it. @param earlier  was recorded before, on the same stream
+  /// Waits until the stream has reached the mark. @param earlier recorded before, on the same stream
   double since_ms(const TimeMark& earlier) const {
     float ms = 0;
     check(cudaEventSynchronize(event_), "cudaEventSynchronize");

@@ -5,7 +5,7 @@
 namespace emscape {
 namespace {
 
-/// A GPU that can run this kernel can run the others: all are compiled for the same architectures.
+/// A GPU that can run this kernel can run all others, which are compiled for the same architectures.
 __global__ void answer() {}
 
 std::string whyNot(cudaError_t status) {

@@ -16,7 +16,7 @@ DatasetCheck checkSpecificGasAttenuation(const std::filesystem::path& folder) {
   FigureCheck total{"gamma_db_km", 1e-5, "relative"}, oxygen{"gamma_oxygen_db_km", 1e-5, "relative"},
       vapour{"gamma_water_db_km", 1e-5, "relative"};
   for (int i = 0; i < cases.rows(); ++i) {
-    // pressure_hpa is the dry air's
+    // pressure_hpa is that of dry air
     const GasAttenuation gamma =
         gasAttenuation(cases.number(i, "f_ghz") * 1e9, cases.number(i, "pressure_hpa"),
                        cases.number(i, "temperature_k"), cases.number(i, "vapour_g_m3"));
@@ -37,7 +37,7 @@ DatasetCheck checkSlantGasAttenuation(const std::filesystem::path& folder) {
     surface.temperature_k = cases.number(i, "temperature_k");
     surface.vapour_g_m3 = cases.number(i, "vapour_g_m3");
     surface.pressure_hpa =
-        cases.number(i, "pressure_hpa") + surface.vapourPressure_hpa();  // given: dry air's
+        cases.number(i, "pressure_hpa") + surface.vapourPressure_hpa();  // given: that of dry air
     attenuation.compare(slantGasAttenuationDb(cases.number(i, "f_ghz") * 1e9,
                                               degToRad(cases.number(i, "elevation_deg")), surface),
                         cases.number(i, "attenuation_db"), cases.location(i).line);

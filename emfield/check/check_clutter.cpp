@@ -1,4 +1,4 @@
-/// Reflectivity of the sea, filters against clutter, and figures of a pulse train.
+/// Reflectivity of the sea, Doppler filters, and figures of a pulse train.
 #include <cmath>
 #include <map>
 
@@ -20,8 +20,8 @@ double seaDb(const ReferenceTable& cases, int row, double frequency_hz) {
 
 }  // namespace
 
-/// The sea's model is fitted to Nathanson's tables; published is its mean deviation from them: 2.64 dB
-/// (horizontal) and 2.54 dB (vertical), up to 60 degrees.
+/// The sea model is fitted to Nathanson's tables, with a published mean deviation of 2.64 dB (horizontal) and
+/// 2.54 dB (vertical), up to 60 degrees.
 DatasetCheck checkSeaClutter(const std::filesystem::path& file) {
   const ReferenceTable cases(file,
                              {"polarization", "frequency_ghz", "sea_state", "grazing_deg", "sigma0_db"});

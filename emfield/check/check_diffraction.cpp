@@ -40,7 +40,7 @@ DatasetCheck checkDeltaBullington(const std::filesystem::path& folder) {
     const Terrain terrain =
         readTerrain(folder / ("path" + std::to_string(cases.integer(i, "path")) + ".csv"));
     DiffractionParameters parameters;
-    // the reference takes c as 3e8 m/s: the same wavelength at another frequency
+    // the reference uses c = 3e8 m/s: the same wavelength at another frequency
     parameters.frequency_hz = cases.number(i, "f_mhz") * 1e6 * (kSpeedOfLight / 3e8);
     parameters.effective_earth_radius_m = 8.5e6;
     const auto model = diffractionModel<double>(parameters);

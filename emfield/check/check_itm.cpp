@@ -1,4 +1,4 @@
-/// ITM against NTIA's implementation: computed cases, and those it was published with.
+/// ITM against NTIA's implementation: computed cases, and the cases published with it.
 #include <fmt/core.h>
 
 #include "emfield/check/datasets.h"

@@ -1,4 +1,4 @@
-/// P.1812 against the validation set of ITU-R Study Group 3: every intermediate value that it gives.
+/// P.1812 against the validation set of ITU-R Study Group 3: every intermediate value that it contains.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -68,7 +68,7 @@ P1812Posts readP1812Posts(const fs::path& file) {
   throw Error(ErrorCode::bad_input, {file.string(), 0, 0}, "holds no terrain profile");
 }
 
-/// Values of a log by name and, where there is one, equation: "hst (m) Eq (85)".
+/// Values of a log by name and, if given, equation: "hst (m) Eq (85)".
 class Log {
  public:
   explicit Log(const fs::path& file) : file_(file.string()) {
@@ -128,7 +128,7 @@ void compare(const P1812Model<double>& model, const ClearAirColumn<double>& colu
   check(figures.losses, "Ldb (dB) Eq (39)", ducting.loss_db);
   check(figures.losses, "Ldp (dB) Eq (41)", loss.diffraction.loss_db);
   check(figures.losses, "Lbd50 (dB) Eq (42)", loss.sight.median_db + loss.diffraction.median.loss_db);
-  // The reference's log has L_bda under this name, too, where ducts make that one smaller.
+  // The reference's log also has L_bda under this name, where ducts make it smaller.
   check(
       figures.losses, "Lbd (dB) Eq (43)",
       loss.sight_or_ducting_db <= loss.diffraction_db ? loss.diffraction_or_ducting_db : loss.diffraction_db);

@@ -16,7 +16,7 @@ DatasetCheck checkP528(const std::filesystem::path& folder) {
   const ReferenceTable cases(folder / "cases.csv", {"f_mhz", "time_pct", "h1_m", "h2_m", "d_km", "loss_db"});
   std::map<double, std::shared_ptr<const P528Atmosphere>> atmospheres;
   std::map<std::tuple<double, double, double>, P528Curve> curves;
-  FigureCheck rounded{"loss_db", 0.1, "dB"};  // in tenths, as the tables are
+  FigureCheck rounded{"loss_db", 0.1, "dB"};  // in tenths, as in the tables
   FigureCheck exact{"loss_db, unrounded", 0.1, "dB"};
   for (int i = 0; i < cases.rows(); ++i) {
     const double frequency_hz = cases.number(i, "f_mhz") * 1e6;

@@ -85,7 +85,7 @@ void checkBeam(const ReferenceTable& cases, std::vector<FigureCheck>& figures) {
   FigureCheck centre{inPrecision<Real>("beam_centre_m"), 0.1, "m"};
   FigureCheck radius{inPrecision<Real>("beam_radius_1_e_m"), 0.002, "relative"};
   FigureCheck peak{inPrecision<Real>("peak_rel_source_db"), 0.01, "dB"};
-  constexpr double kOffset_m = 2500;  // the beam stays clear of the surface
+  constexpr double kOffset_m = 2500;  // so that the beam does not reach the surface
   for (const auto& [key, rows] :
        marchesOf(cases, {"frequency_hz", "waist_m", "source_height_m", "dM_dz_per_m", "tilt_deg"})) {
     MarchGrid grid;
@@ -123,7 +123,7 @@ void checkBeam(const ReferenceTable& cases, std::vector<FigureCheck>& figures) {
   figures.insert(figures.end(), {centre, radius, peak});
 }
 
-/// An absorbing edge, high above the ground (free space) and on it.
+/// An absorbing edge, high above the ground (free space) and on the ground.
 template <class Real>
 void checkEdge(const ReferenceTable& cases, std::vector<FigureCheck>& figures) {
   Differences differences;
@@ -150,7 +150,8 @@ void checkEdge(const ReferenceTable& cases, std::vector<FigureCheck>& figures) {
 }
 
 /// Where the reference is above -10 dB, from 2 km on. The march's columns are normal to the slope, those of
-/// the table are vertical: each point is read in the column that it lies in, counted from the source's.
+/// the table are vertical: each point is evaluated in the column of the march that contains it, relative to
+/// the source's.
 template <class Real>
 void checkSlope(const ReferenceTable& cases, std::vector<FigureCheck>& figures) {
   Differences two, five, ten;
@@ -227,7 +228,7 @@ DatasetCheck checkPeSlope(const std::filesystem::path& file) {
   return check;
 }
 
-/// Its angle_error_percent is the square of the angle over 2, a scale that no march gives.
+/// Its column angle_error_percent is half the square of the angle, which is not a result of a march.
 DatasetCheck checkPeNarrowAngle(const std::filesystem::path& file) {
   const ReferenceTable cases(file, {"frequency_hz", "angle_deg", "phase_error_rad_per_10km"});
   FigureCheck phase{"phase_error_rad_per_10km", 1e-5, "relative"};

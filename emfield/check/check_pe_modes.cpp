@@ -34,7 +34,7 @@ RefractivityProfile ductOf(const std::string& name) {
 }
 
 MarchGrid ductGrid(double frequency_hz) {
-  // the logarithm of the evaporation duct wants 0.25 m; the surface-based duct reaches 300 m
+  // the logarithm of the evaporation duct needs 0.25 m; the surface-based duct reaches 300 m
   return frequency_hz > 5e9 ? peGrid(frequency_hz, 4, 500, 1, 100) : peGrid(frequency_hz, 7, 1000, 1, 100);
 }
 
@@ -75,7 +75,7 @@ void checkEarth(const ReferenceTable& cases, std::vector<FigureCheck>& figures) 
   figures.insert(figures.end(), {horizontal, vertical, faint});
 }
 
-/// Attenuation (dB/km) between two ranges far behind the horizon, where the first mode is left.
+/// Attenuation (dB/km) between two ranges far beyond the horizon, where only the first mode is left.
 double decayDbPerKm(PeMarch<double>& march, double from_m, double to_m, double height_m) {
   marchTo(march, from_m);
   const double first = march.amplitude(0, height_m);
@@ -120,7 +120,7 @@ double lfmfEarth_m(double refractivity) {
   return 6370e3 / (1 - 0.04665 * std::exp(0.005577 * refractivity));
 }
 
-/// LFMF's loss is that between antennas on the ground: 6.02 dB more.
+/// LFMF's loss is for antennas on the ground: 6.02 dB more.
 double lfmfLossDb(const ReferenceTable& cases, int row) {
   return cases.number(row, "A_btl__db") - 20 * std::log10(2.0);
 }
@@ -139,7 +139,7 @@ FigureCheck checkLfmfSeries(const ReferenceTable& cases) {
   return loss;
 }
 
-/// @param compared  rows that were
+/// @param compared  rows that were compared
 template <class Real>
 FigureCheck checkLfmf(const ReferenceTable& cases, int& compared) {
   FigureCheck loss{inPrecision<Real>("loss, 30 MHz, F > -80"), 0.5, "dB"};
@@ -181,7 +181,7 @@ DatasetCheck checkPeSmoothEarth(const std::filesystem::path& file) {
   return check;
 }
 
-/// In double alone: where one mode is left the field is below the noise of float.
+/// Only in double: where only one mode is left, the field is below the noise of float.
 DatasetCheck checkPeDecay(const std::filesystem::path& file) {
   const ReferenceTable cases(file, {"frequency_hz", "L_m", "first_mode_db_per_km"});
   FigureCheck decay{"first_mode_db_per_km, double", 0.005, "relative"};

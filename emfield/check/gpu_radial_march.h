@@ -1,4 +1,4 @@
-/// The march of one azimuth on the GPU, read as RadialMarch is.
+/// The march of one azimuth on the GPU, with the interface of RadialMarch.
 #pragma once
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace emscape::emfield {
 
-/// Marches when the field is read: from the start up to the present range.
+/// Marches when the field is read, from the start up to the present range.
 class GpuRadialMarch {
  public:
   GpuRadialMarch(const propagation::MarchGrid& grid, const std::array<propagation::RadialPath, 1>& paths) {
@@ -62,7 +62,7 @@ class GpuRadialMarch {
     }
     return column_;
   }
-  /// Wavelength times range, and the square of slant range over range in the wide form.
+  /// Wavelength times range, in the wide-angle form times the square of slant range over range.
   double spreading(double height_agl_m) const {
     const double source_m =
         march_.source.height_agl_m + (march_.ground_msl_m.empty() ? 0 : double(march_.ground_msl_m.front()));

@@ -1,5 +1,5 @@
-/// Common to the checks of the parabolic equation: grids that have heights of a table as nodes, and figures
-/// of many differences.
+/// Common to the checks of the parabolic equation: grids whose nodes include the heights of a table, and
+/// figures of many differences.
 #pragma once
 
 #include <algorithm>
@@ -16,8 +16,8 @@
 namespace emscape::emfield {
 
 /// A grid whose height step divides node_m.
-/// @param angle_deg  least angle of the band
-/// @param top_m      least height of the domain
+/// @param angle_deg  minimum angle of the band
+/// @param top_m      minimum height of the domain
 inline propagation::MarchGrid peGrid(double frequency_hz, double angle_deg, double top_m, double node_m,
                                      double range_step_m) {
   propagation::MarchGrid grid;
@@ -31,7 +31,7 @@ inline propagation::MarchGrid peGrid(double frequency_hz, double angle_deg, doub
   return grid;
 }
 
-/// In place of double or float: the march on the GPU, in float.
+/// Stands for the march on the GPU, in float, as an alternative to double and float.
 struct OnGpu {};
 
 template <class Real>
@@ -45,13 +45,13 @@ struct PeMarchOf<OnGpu> {
 template <class Real>
 using PeMarch = typename PeMarchOf<Real>::Type;
 
-/// The march on the GPU can take the grid.
+/// True if the march on the GPU supports the grid.
 inline bool fitsGpu(const propagation::MarchGrid& grid) {
   return grid.intervals >= propagation::kMinBlockIntervals &&
          grid.intervals <= propagation::kMaxBlockIntervals;
 }
 
-/// Marches to a range, a multiple of the range step at or behind the present one.
+/// Marches to a range, a multiple of the range step not less than the present range.
 template <class March>
 void marchTo(March& march, double range_m) {
   while (march.range_m() < range_m - 1e-3) march.advance();

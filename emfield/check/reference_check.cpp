@@ -71,7 +71,7 @@ const std::vector<ReferenceDataset>& referenceDatasets() {
 
 namespace {
 
-/// The family of a dataset that shares its folder with others: "radar"; empty for one that does not.
+/// The family of a dataset that shares its folder with others: "radar"; empty for other datasets.
 std::string familyOf(const ReferenceDataset& dataset) {
   return fs::path(dataset.name).parent_path().string();
 }
@@ -81,7 +81,7 @@ ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
   ReferenceFolder found;
   found.root = root;
   std::set<std::string> known;
-  std::set<std::string> families;  // that are there
+  std::set<std::string> families;  // that exist
   for (const ReferenceDataset& dataset : referenceDatasets()) {
     const std::string family = familyOf(dataset);
     if (!only.empty() && family != only) continue;
@@ -97,7 +97,7 @@ ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
   if (only.empty()) {
     for (const fs::directory_entry& entry : fs::directory_iterator(root)) {
       const std::string name = entry.path().filename().string();
-      // files at the top, such as a README, are not datasets
+      // top-level files, such as a README, are not datasets
       if (entry.is_directory() && known.count(name) == 0) found.unknown.push_back(name);
     }
   }

@@ -15,7 +15,7 @@ class ReferenceTable {
  public:
   /// @param columns  required names; the file may have other columns
   /// @throws Error (bad_input) if the file cannot be read, a column is missing, a row has too many or too few
-  /// cells, or there is no row
+  /// cells, or if there is no row
   ReferenceTable(const std::filesystem::path& file, const std::vector<std::string_view>& columns);
 
   bool hasColumn(std::string_view column) const;

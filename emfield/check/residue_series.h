@@ -1,5 +1,5 @@
-/// The field of a ground wave over a smooth earth between antennas on the ground, as a sum of modes: against
-/// LFMF, and independent of the march.
+/// The field of a ground wave over a smooth earth between antennas on the ground, as a sum of modes; for
+/// comparison with LFMF, independent of the march.
 #pragma once
 
 #include <cmath>
@@ -19,9 +19,10 @@ inline double airyDerivativeZero(int s) {
 }
 
 /// Field (dB) over that in free space, vertical polarisation, of the modes of van der Pol and Bremmer: the
-/// roots t of w'(t) = q w(t) are followed from q = 0 by dt/dq = 1 / (t - q^2). Time goes as exp(-i omega t).
+/// roots t of w'(t) = q w(t) are followed from q = 0 by dt/dq = 1 / (t - q^2). Time dependence exp(-i omega
+/// t).
 /// @param earth_m   effective radius of the earth
-/// @param distance_m  behind the horizon: 60 modes are summed
+/// @param distance_m  beyond the horizon: 60 modes are summed
 inline double groundWaveDb(double frequency_hz, const propagation::GroundConstants& ground, double earth_m,
                            double distance_m) {
   using Cx = std::complex<double>;

@@ -1,4 +1,4 @@
-/// Reflectivity of sea, land and rain: mean radar cross section of a unit of area or of volume.
+/// Reflectivity of sea, land and rain: mean radar cross section per unit area or volume.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace emscape::emfield {
 
-/// The five constants of the sea's model for a polarisation.
+/// The five constants of the sea model for a polarisation.
 struct SeaConstants {
   double c1 = 0, c2 = 0, c3 = 0, c4 = 0, c5 = 0;
 };
@@ -18,7 +18,7 @@ EMSCAPE_HD constexpr SeaConstants seaConstants(bool is_horizontal) {
                        : SeaConstants{-50.796, 25.93, 0.7093, 21.588, 0.00211};
 }
 
-/// Mean reflectivity of the sea (dB, m2 per m2), propagation near the surface included:
+/// Mean reflectivity of the sea (dB, m2 per m2), including propagation near the surface:
 ///   c1 + c2 log sin a + (27.5 + c3 a) log f / (1 + 0.95 a) + c4 (1 + s)^(1 / (2 + 0.085 a + 0.033 s)) + c5
 ///   a^2,
 /// a the grazing angle in degrees, f in GHz, s the sea state.
@@ -42,10 +42,11 @@ struct SurfaceEcho {
   bool has_land = false, has_sea = false;
   double gamma = 0;  ///< of land: sigma0 = gamma sin(grazing angle)
   double sea_state = 0, frequency_ghz = 0;
-  double horizontal_part = 0;  ///< of the wave's power, 0..1; the sea's cross section is the mean of the two
+  double horizontal_part = 0;  ///< fraction 0..1 of the wave's power; the cross section of the sea is the
+                               ///< weighted mean of both polarisations
 
-  /// Mean radar cross section of a unit of area.
-  /// @param sine  of the grazing angle; <= 0: a face that is turned away, 0
+  /// Mean radar cross section per unit area.
+  /// @param sine  of the grazing angle; <= 0: a face that is turned away, for which the result is 0
   EMSCAPE_HD double reflectivity(bool is_sea, double sine) const {
     if (!(sine > 0)) return 0;
     if (!is_sea) return has_land ? gamma * sine : 0;
@@ -72,7 +73,7 @@ inline double horizontalPart(propagation::Polarization polarization) {
 /// Reflectivity of rain (m2 per m3): drops much smaller than the wavelength,
 ///   eta = pi^5 |K|^2 Z / lambda^4, |K|^2 = 0.93, Z = 200 R^1.6 mm6/m3.
 /// @param rain_mm_h  R, >= 0
-/// @param frequency_hz  up to some 10 GHz
+/// @param frequency_hz  up to about 10 GHz
 /// @see J. S. Marshall, W. M. Palmer, J. Meteorology 5 (1948), p. 165, for Z; M. I. Skolnik, Introduction to
 /// Radar Systems, 2nd ed., section 13.7, for eta
 inline double rainReflectivity_m2_m3(double rain_mm_h, double frequency_hz) {

@@ -5,7 +5,7 @@
 
 namespace emscape::emfield {
 
-/// Multiplies a row's numbers by the factors of its excess.
+/// Multiplies the values of a row by the factors of its excess.
 /// @param excess  empty: 1
 /// @param first   index of the row's first voxel
 void applyExcess(const ExcessView& excess, std::size_t first, int count, float* row);

@@ -7,7 +7,7 @@ namespace {
 
 using scenario::PatternKind;
 
-/// Row of an emitter whose reflected rays are weighed.
+/// Row of an emitter with weighted reflected rays.
 /// @param reflected  of the row's first voxel
 template <PatternKind kind>
 __attribute__((always_inline)) inline void fillBothRays(const EmitterBeam& emitter,

@@ -8,7 +8,7 @@ namespace {
 using scenario::PatternKind;
 
 /// @param jammer     null: the echo's weights
-/// @param reflected  of the row's first voxel; null: the radar's reflected rays are not weighed
+/// @param reflected  of the row's first voxel; null: the radar's reflected rays are not weighted
 template <PatternKind kind>
 __attribute__((always_inline)) inline void fillWeightsOfBothRays(const RadarPass& pass,
                                                                  const JammerAtRadar* jammer,

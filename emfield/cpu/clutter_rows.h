@@ -1,4 +1,4 @@
-/// Clutter over rows of voxels, in a source file of its own as the loops over reflected rays are.
+/// Clutter over rows of voxels; in a separate source file, as are the loops over reflected rays.
 #pragma once
 
 #include "emfield/cpu/row.h"

@@ -20,8 +20,8 @@ __attribute__((always_inline)) inline void fillPiece(const EmitterBeam& emitter,
   for (int i = 0; i < row.count; ++i) out[i] = powerDensity_wm2<kind>(local, row.column + i, row.t_m);
 }
 
-/// Number of voxels tested together for being outside the lobe, where the pattern need not be evaluated: most
-/// are with a narrow beam.
+/// Number of voxels that are tested together for being outside the lobe, where the pattern need not be
+/// evaluated. With a narrow beam most are.
 constexpr int kPiece = 64;
 
 /// Fills at most kPiece voxels as outside the main lobe. @return true if some may be inside

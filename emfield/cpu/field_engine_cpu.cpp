@@ -17,7 +17,7 @@ namespace {
 /// Buffers of one channel.
 struct ChannelBuffers {
   UnsetVector<float> value, second;                ///< accumulator over all emitters
-  UnsetVector<float> static_value, static_second;  ///< accumulator over the static emitters alone
+  UnsetVector<float> static_value, static_second;  ///< accumulator over the static emitters
   std::vector<std::shared_ptr<volume::DenseVolume>> pool;
 };
 
@@ -61,7 +61,7 @@ class CpuEngine : public FieldEngine {
   std::vector<int> first_row_k_;
   std::optional<TerrainBounds> bounds_;  // of surfaces over terrain
   std::vector<EmitterGeometry> slots_;
-  KeptPower<std::vector<float>> kept_power_;  // without the last slot, which emitters share
+  KeptPower<std::vector<float>> kept_power_;  // except the last slot, which emitters share
   KeptLooks kept_looks_;                      // the same
   std::vector<ChannelBuffers> buffers_;
   StageTimes times_;

@@ -59,7 +59,7 @@ WeightArray KeptLooks::choose(std::vector<Entry>& entries, const scenario::Anten
   const auto oldest = std::min_element(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
     return a.last_pass < b.last_pass;
   });
-  if (oldest->last_pass == pass_) return {};  // its array is that of this pass
+  if (oldest->last_pass == pass_) return {};  // its array is used in this pass
   release(*oldest);
   *oldest = std::move(fresh);
   return {};
@@ -87,7 +87,7 @@ bool KeptLooks::take(Entry& entry) {
   if (taken_ >= limit_) return false;
   try {
     entry.values.resize(voxels_);
-  } catch (const std::exception&) {  // the memory is not available any more
+  } catch (const std::exception&) {  // the memory is no longer available
     limit_ = taken_;
     return false;
   }

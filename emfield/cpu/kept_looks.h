@@ -1,4 +1,4 @@
-/// Cache of what radars' looks weigh the voxels with, while powers change.
+/// Cache of the weights of radars' looks, reused while only powers change.
 #pragma once
 
 #include <optional>
@@ -9,17 +9,17 @@
 
 namespace emscape::emfield {
 
-/// A look that enters a second pass unchanged is computed once more and stored; after that it is read. The
-/// bits of the results do not depend on it.
+/// A look that is unchanged in a second pass is computed once more and stored; afterwards it is read. Results
+/// are bit-identical with and without the cache.
 class KeptLooks {
  public:
-  /// @param slots            emitters with geometry of their own
+  /// @param slots            emitters with their own geometry
   /// @param voxels           of the grid
   /// @param available_bytes  keptBytes() of it are used
   KeptLooks(std::size_t slots, std::size_t voxels, std::size_t available_bytes);
 
   /// The arrays for the next pass, which must be run with them.
-  /// @param slot     of the radar; for others than those of the constructor there are none
+  /// @param slot     of the radar; slots other than those of the constructor have no arrays
   /// @param antenna  of the radar
   LookWeights choose(std::size_t slot, const scenario::AntennaPtr& antenna, const RadarShare& share);
   /// The geometry of a slot has changed.

@@ -1,4 +1,4 @@
-/// Which columns the threads of a kernel take, and what they report; for the device's compiler.
+/// Assignment of columns to the threads of a kernel, and their reports; for nvcc.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -20,7 +20,7 @@ constexpr int kColumnThreads = 128;
                                      std::to_string(bytes));
 }
 
-/// Once for a column; one thread at a time.
+/// Called once per column, by one thread at a time.
 __device__ inline void markUnknown(const ExcessOutputs& to, int column) {
   if (isnan(to.out.shadow_edge_m[column])) return;
   to.out.markUnknown(static_cast<std::size_t>(column));
@@ -33,7 +33,7 @@ __device__ inline void note(const ExcessOutputs& to, int column, unsigned warnin
     atomicOr(&to.counts->warnings, warnings & ~propagation::kMissingTerrain);
 }
 
-/// Columns of a block, and of each of its warps: the columns of a square share more data than those of a row.
+/// Columns of a block and of each of its warps: square, because they share more data than those of a row.
 constexpr int kTileX = 16, kTileY = 8, kWarpX = 8, kWarpY = 4;
 static_assert(kTileX * kTileY == kColumnThreads);
 

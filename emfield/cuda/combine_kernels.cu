@@ -16,7 +16,7 @@ constexpr int kParameterBytes = CUDART_VERSION >= 12010 ? 32000 : 4000;
 /// Channels per launch: an emitter's power density is computed once for all of them.
 constexpr int kMaxChannels = 4;
 
-/// An emitter's part in the channels of a launch.
+/// An emitter's contribution to the channels of a launch.
 template <int kChannels>
 struct Member {
   EmitterBeam beam;
@@ -56,7 +56,7 @@ __device__ void fillLayers(const EmitterBeam& beam, std::size_t column, const fl
   }
 }
 
-/// The same of both rays.
+/// The same for both rays.
 /// @param first   index of the lowest voxel of the column's layers
 /// @param stride  from one layer to the next
 /// @param count   layers that are in the grid
@@ -83,16 +83,15 @@ __device__ void fill(const EmitterBeam& beam, std::size_t column, long long firs
   fillLayers<kind>(beam, column, t_m, power_density_wm2);
 }
 
-/// A warp of a block processes neighbouring columns, the next one the layers above: they share the columns'
-/// numbers in the first-level cache. Few layers per thread also keep the code of the patterns short.
+/// A warp of a block processes neighbouring columns, the next warp the layers above, so that they share the
+/// columns' numbers in the first-level cache. Few layers per thread also keep the code of the patterns short.
 constexpr int kWarp = 32;
 constexpr int kWarps = 8;
 
 /// A thread processes kLayers layers of a column.
-/// @tparam kReduction  that of the channel if it has a second accumulator, else any other: then each channel
+/// @tparam kReduction  that of the channel if it has a second accumulator; else any other, and each channel
 /// has its own
-/// @tparam kReflected  some members' reflected rays are weighed; a kernel of its own, because of its
-/// registers
+/// @tparam kReflected  some members have weighted reflected rays; a separate kernel, because of its registers
 template <int kChannels, int kLayers, Reduction kReduction, bool kReflected>
 __global__ void __launch_bounds__(kWarp* kWarps)
     combineKernel(const __grid_constant__ Launch<kChannels> launch) {
@@ -201,7 +200,7 @@ __global__ void __launch_bounds__(kWarp* kWarps)
   }
 }
 
-/// Runs a pass for some channels of one kind, with as many launches as their members take.
+/// Runs a pass for some channels of one kind, with as many launches as their members need.
 template <int kChannels, int kLayers, Reduction kReduction>
 void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k, const int* channels,
                      cudaStream_t stream) {

@@ -24,7 +24,7 @@ void addRadar(const RadarPass& pass, const std::uint16_t* first_valid_k, cudaStr
 /// @param first_valid_k  as for combine
 void addOccupancy(const OccupancyPass& pass, const std::uint16_t* first_valid_k, cudaStream_t stream);
 
-/// A value range while kernels widen it: floats as integers of the same order.
+/// A value range that kernels extend: floats as integers of the same order.
 struct DeviceRange {
   unsigned lowest = ~0u, highest = 0;
 

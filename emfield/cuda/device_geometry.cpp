@@ -19,7 +19,7 @@ bool isDiffraction(const propagation::ExcessModel& model) {
   return std::holds_alternative<DiffractionExcess>(model);
 }
 
-/// What the GPU marches; 0: nothing.
+/// Work of the march on the GPU; 0: nothing.
 double marchedHeights(const EmitterExcess& excess) {
   return excess.march == nullptr ? 0 : excess.march->heights();
 }
@@ -115,7 +115,7 @@ void DeviceGeometry::planEquation(const GeometryRequest& request, Work& work) co
 
 /// Assigns memory to the tasks.
 void DeviceGeometry::place(std::vector<Work>& works, cudaStream_t stream) {
-  // All lists of ranges begin as the longest.
+  // All lists of ranges are prefixes of the longest.
   const auto longest = std::max_element(works.begin(), works.end(), [](const Work& a, const Work& b) {
     return a.ranges_m.size() < b.ranges_m.size();
   });
@@ -178,7 +178,7 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   for (std::size_t r = 0; r < works.size(); ++r) {
     if (works[r].is_equation) equations.push_back(r);
   }
-  // While the device computes what needs no march, the host plans the marches.
+  // While the device computes the other models, the host plans the marches.
   const auto count_of_equations = static_cast<int>(equations.size());
   parallelFor(1 + count_of_equations, 1, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
@@ -226,7 +226,7 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   return all;
 }
 
-/// All that needs no march, in order.
+/// All models without a march, in order.
 void DeviceGeometry::computeUnmarched(const std::vector<GeometryRequest>& requests, std::vector<Work>& works,
                                       cudaStream_t stream, StageClock& clock) {
   clock.begin(stream);
@@ -276,7 +276,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
     if (work.is_equation && setup_.terrain != nullptr) {
       tasks.push_back(
           {besideEquation(requests[r], work), AirLoss{}, work.task.station, work.ground, work.excess});
-      tasks.back().station.refraction.exponential = false;  // no bent rays: not on the effective earth
+      tasks.back().station.refraction.exponential = false;  // no refraction: not on the effective earth
     } else if (!work.is_equation && work.model && isDiffraction(work.model->model)) {
       tasks.push_back({std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station,
                        work.ground, work.excess});
@@ -290,7 +290,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
                   columns_.row, scratch(), stream);
 }
 
-/// PeOthers::diffraction of an equation that is not planned yet.
+/// PeOthers::diffraction of an equation before its plan.
 DiffractionExcess DeviceGeometry::besideEquation(const GeometryRequest& request, const Work& work) const {
   const scenario::Emitter& emitter = setup_.scenario->emitters[request.emitter];
   return propagation::diffractionExcess(pathInputs(*setup_.scenario, emitter, request.state.beam,
@@ -298,7 +298,7 @@ DiffractionExcess DeviceGeometry::besideEquation(const GeometryRequest& request,
                                                    pathExtent(work.task.station, setup_.columns)));
 }
 
-/// Brings an equation's tables to the device, and begins the march that the host has not done.
+/// Copies an equation's tables to the device, and begins the march if the host has not done it.
 void DeviceGeometry::startMarch(Work& work, Marcher& marcher) {
   placed_.holdBack(marcher.stream);
   marcher.read.holdBack(marcher.stream);

@@ -41,8 +41,8 @@ class DeviceGeometry {
     LocateTask task;
     std::vector<double> ranges_m;
     GroundPosts ground;  ///< on the device, from place() on
-    /// Its tables on the device, from place() on; that of an equation from planEquation() on, its tables
-    /// there when it is marched.
+    /// With its tables on the device, from place() on; for an equation from planEquation() on, with tables
+    /// after the march.
     std::optional<EmitterExcess> model;
     bool is_equation = false;
     std::vector<propagation::BlockInput> march_inputs;  ///< of its march
@@ -51,12 +51,12 @@ class DeviceGeometry {
     bool has_excess = false, has_shadow = false, has_reflected_ray = false, has_mechanisms = false;
   };
 
-  /// Marches of one emitter after the other, on a stream of their own.
+  /// Marches of one emitter after another, on a separate stream.
   struct Marcher {
     emscape::cuda::Stream stream;
     propagation::FieldMarchCuda march;
-    emscape::cuda::Buffer<float> model_tables, air_tables;  ///< those that come from the host
-    emscape::cuda::Event marched;                           ///< its losses are there
+    emscape::cuda::Buffer<float> model_tables, air_tables;  ///< tables from the host
+    emscape::cuda::Event marched;                           ///< its losses are complete
     emscape::cuda::Event read;                              ///< and were read
   };
 
@@ -95,7 +95,7 @@ class DeviceGeometry {
   };
   std::vector<Slot> slots_;
 
-  std::array<Marcher, 8> marchers_;  ///< each waits for the longest of its azimuths: several fill the device
+  std::array<Marcher, 8> marchers_;  ///< each waits for the longest of its azimuths; several fill the device
   emscape::cuda::Event placed_;
 
   // for the emitters being computed; kept for the next update

@@ -16,8 +16,8 @@ struct PostBlock {
   float highest_msl_m, lowered_msl_m;
 };
 
-/// Memory for the profiles of the columns that are computed at a time: of each post or block of posts the
-/// threads one after another.
+/// Memory for the profiles of the columns in progress: for each post or block of posts, the values of
+/// consecutive threads.
 class ProfileMemory {
  public:
   /// @param posts  of the longest profile
@@ -84,7 +84,7 @@ class ColumnPosts {
   __device__ float height_msl_m(int i) const { return memory_.height_msl_m(thread_, i); }
   __device__ float highest_msl_m(int b) const { return memory_.block(thread_, b).highest_msl_m; }
   __device__ float lowered_msl_m(int b) const { return memory_.block(thread_, b).lowered_msl_m; }
-  /// Those before the last block: DiffractionColumn reads no others.
+  /// Sums before the last block, the only ones that DiffractionColumn reads.
   __device__ TerrainSums sumsBefore(int) const { return sums_; }
   __device__ double distance_m() const { return distance_m_; }
   __device__ float ground_msl_m() const { return ground_msl_m_; }
@@ -93,7 +93,7 @@ class ColumnPosts {
         count() + 1, [this](int i) { return i <= before_ ? ranges_m_[i] : distance_m_; },
         [this](int i) { return i <= before_ ? height_msl_m(i) : ground_msl_m_; });
   }
-  /// Ranges are even except for the first ones: an estimate from the end, then a few steps.
+  /// Ranges are equally spaced except for the first ones: an estimate from the end, then a few steps.
   __device__ int lastBefore(double range_m) const {
     if (before_ == 0) return 0;
     const double even_m = ranges_m_[before_] - ranges_m_[before_ - 1];
@@ -114,7 +114,7 @@ class ColumnPosts {
   TerrainSums sums_;
 };
 
-/// A call of its own: its registers are not those of the columns.
+/// A separate call, so that its registers are not part of those of the columns.
 __device__ __noinline__ float effectiveHeight_m(const Station& station, float height_msl_m, double range_m) {
   return static_cast<float>(
       station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));

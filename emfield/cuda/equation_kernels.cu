@@ -11,8 +11,7 @@ using propagation::PeSight;
 using propagation::PeSightWalk;
 using propagation::SightPosts;
 
-/// Memory for the posts of the columns that are computed at a time: of each post the threads one after
-/// another.
+/// Memory for the posts of the columns in progress: for each post, the values of consecutive threads.
 class SightMemory {
  public:
   /// @param posts  before the farthest column

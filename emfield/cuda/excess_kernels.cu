@@ -15,13 +15,13 @@ unsigned blocksFor(int threads) {
   return static_cast<unsigned>((threads + kColumnThreads - 1) / kColumnThreads);
 }
 
-/// Memory of columns that are computed at a time.
+/// Memory of the columns in progress.
 class ColumnMemory {
  public:
   /// State of a column between two kernels.
   struct Begun {
     ExcessColumn column;
-    bool is_open;  ///< there is something to fill
+    bool is_open;  ///< there are voxels to fill
   };
 
   ColumnMemory(const ScratchMemory& memory, int posts, int layers)
@@ -139,7 +139,7 @@ void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const 
                                                                                                 memory);
     checkLaunch("excess");
   } else {
-    const int parts = (grid.firstLayer(1) + kBisectionStep) / kBisectionStep;  // segments differ by a layer
+    const int parts = (grid.firstLayer(1) + kBisectionStep) / kBisectionStep;  // segments differ by one layer
     const int runs = (columns + memory.columns() - 1) / memory.columns();
     for (int segment = 0; segment < grid.segments; ++segment) {
       for (int r = 0; r < runs; ++r) {

@@ -17,7 +17,7 @@ struct ExcessOutputs {
   GeometryCounts* counts = nullptr;
 };
 
-/// Device memory of the columns that are computed at a time; its size bounds their number.
+/// Device memory of the columns in progress; its size limits their number.
 struct ScratchMemory {
   void* data = nullptr;
   std::size_t bytes = 0;
@@ -34,7 +34,7 @@ struct DiffractionTask {
 /// Several emitters at once: one thread per column, which keeps its profile and the maxima of its blocks of
 /// posts.
 /// @param ranges  the largest number of posts of a task
-/// @param grid    of device memory; layers that do not count get no excess
+/// @param grid    in device memory; layers that do not count get no excess
 /// @param row     columns along x
 void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
                      const ScratchMemory& scratch, cudaStream_t stream);

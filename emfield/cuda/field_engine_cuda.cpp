@@ -49,7 +49,7 @@ struct ChannelBuffers {
   volume::DeviceVolumeRing ring;
 };
 
-/// The tables that a radar's part in a channel points to.
+/// The tables to which a radar's contribution to a channel points.
 struct RadarTables {
   Buffer<DetectionCurveView::Knot> knots;
   Buffer<JammerAtRadar> jammers;
@@ -88,7 +88,7 @@ class CudaEngine : public FieldEngine {
   const FieldSetup& setup_;
   std::size_t voxels_;
   volume::VoxelPrecision precision_;
-  /// Marches of fields, on streams of their own, do not hold it up.
+  /// Marches, on separate streams, do not delay it.
   emscape::cuda::Stream stream_{emscape::cuda::Stream::Priority::high};
   cuda::StageClock clock_;
   cuda::DeviceGeometry geometry_;
@@ -109,7 +109,7 @@ CudaEngine::CudaEngine(const FieldSetup& setup, int slots, volume::VoxelPrecisio
   planChanged(true);
 }
 
-/// Copies the tables of an antenna that is new; those of antennas that nobody else holds go.
+/// Copies the tables of a new antenna; frees those of antennas without other owners.
 const scenario::PatternView& CudaEngine::patternOf(const scenario::AntennaPtr& antenna) {
   const auto known = patterns_.find(antenna);
   if (known != patterns_.end()) return known->second.view();

@@ -67,7 +67,7 @@ __global__ void clutterKernel(const __grid_constant__ ClutterMapTask task, Clutt
 }  // namespace
 
 void fillClutterMap(const ClutterMapTask& task, ClutterCell* cells, cudaStream_t stream) {
-  constexpr int kRowsOfBlock = 32;  // few rows: as many multiprocessors as possible
+  constexpr int kRowsOfBlock = 32;  // few rows, to use as many multiprocessors as possible
   const auto blocks = static_cast<unsigned>((task.grid.azimuths + kRowsOfBlock - 1) / kRowsOfBlock);
   clutterKernel<<<blocks, kRowsOfBlock, 0, stream>>>(task, cells);
   checkLaunch("clutterMap");

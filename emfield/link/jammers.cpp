@@ -18,7 +18,7 @@ namespace {
 using scenario::Emitter;
 using scenario::EmitterState;
 
-/// Ground distance (m) below which there is no obstacle between two stations: no path is computed.
+/// Ground distance (m) between two stations below which no path is computed, because there is no obstacle.
 constexpr double kNoPath_m = 2;
 
 double freeSpaceDensity_wm2(const Emitter& emitter, const scenario::BeamPose& beam, const Vec3d& line) {

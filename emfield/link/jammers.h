@@ -11,8 +11,8 @@ namespace emscape::emfield {
 
 /// The active jammers of a snapshot at a radar, each along its own path by its own propagation model.
 /// @param terrain  null: none in the scenario
-/// @param warning receives a message if a path crosses missing terrain, which is then taken as free; null: it
-/// is an error
+/// @param warning receives a message if a path crosses missing terrain, which is then assumed to be
+/// unobstructed; null: it is an error
 /// @throws Error (bad_input) for missing terrain, see warning
 std::vector<JammerPath> jammerPaths(const scenario::Snapshot& snapshot, int radar,
                                     const std::vector<int>& jammers, const scenario::Terrain* terrain,

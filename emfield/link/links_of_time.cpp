@@ -34,7 +34,7 @@ Vec3d inAxesOf(const scenario::BeamPose& pose, const Vec3d& direction) {
   return {dot(direction, pose.forward), dot(direction, pose.right), dot(direction, pose.up)};
 }
 
-/// A receiver with the gain that its antenna has towards a wave.
+/// A receiver with its antenna's gain towards a wave.
 scenario::ReceiverProfile profileOf(const PlacedReceiver& receiver, double pattern_db, double tuned_hz) {
   scenario::ReceiverProfile profile = receiver;
   profile.gain_dbi = receiver.antenna->gain_dbi + pattern_db;
@@ -42,8 +42,8 @@ scenario::ReceiverProfile profileOf(const PlacedReceiver& receiver, double patte
   return profile;
 }
 
-/// What a receiver's antenna changes (dB) in the power of both rays, of which the budget has the emitter's
-/// alone.
+/// Effect (dB) of a receiver's antenna on the power of both rays; the budget includes only the emitter's
+/// antenna.
 /// @param direct, reflected  amplitudes of the receiver's pattern along the rays
 double gainOfBothRays_db(const ReflectedRay& ray, const PathPointing& emitter, double direct,
                          double reflected) {
@@ -52,7 +52,7 @@ double gainOfBothRays_db(const ReflectedRay& ray, const PathPointing& emitter, d
         powerOfBothRays(ray, static_cast<float>(along_direct), static_cast<float>(along_reflected))));
   };
   const double of_emitter_db = power_db(emitter.amplitude, emitter.reflected->amplitude);
-  if (!std::isfinite(of_emitter_db)) return 0;  // it radiates along neither
+  if (!std::isfinite(of_emitter_db)) return 0;  // it radiates along neither ray
   return power_db(emitter.amplitude * direct, emitter.reflected->amplitude * reflected) - of_emitter_db;
 }
 
@@ -68,7 +68,7 @@ double dbm(double power_w) {
   return ratioToDb(power_w) + 30;
 }
 
-/// What a row has of its path.
+/// Fills the columns of a row that describe its path.
 void fillPath(PathRow& row, const Emitter& emitter, const PathBudget* budget) {
   row.has_path = budget != nullptr;
   if (budget == nullptr) {

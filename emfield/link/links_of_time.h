@@ -13,7 +13,7 @@
 
 namespace emscape::emfield {
 
-/// One receiver and all emitters that it hears. One thread at a time may use an object.
+/// One receiver and all emitters in its band. One thread at a time may use an object.
 class ReceiverListener {
  public:
   ReceiverListener(const scenario::Scenario& scenario, int receiver, const LinkOptions& options);

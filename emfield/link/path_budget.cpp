@@ -36,7 +36,7 @@ double elevationOf_rad(const Vec3d& direction) {
   return std::atan2(direction.z, std::hypot(direction.x, direction.y));
 }
 
-/// @param ray  its start, east-north-up
+/// @param ray direction of its start, east-north-up
 RayPointing pointingOf(const Emitter& emitter, const scenario::BeamPose& beam, const Vec3d& ray) {
   const Vec3d unit = ray * (1 / length(ray));
   const Vec3d direction{dot(unit, beam.forward), dot(unit, beam.right), dot(unit, beam.up)};
@@ -64,7 +64,8 @@ PathPointing pointingOf(const Emitter& emitter, const scenario::BeamPose& beam, 
   return pointing;
 }
 
-/// A quantity's value for a power density of one emitter, as by the field's product stage without its floor.
+/// The value of a quantity for a power density of one emitter, as in the field's product stage without the
+/// floor.
 double quantityOf(Quantity quantity, const scenario::Scenario& scenario, int emitter,
                   double power_density_dbwm2) {
   Channel channel;
@@ -81,7 +82,7 @@ double spreading_dbm2(const PathGeometry& geometry) {
   return -ratioToDb(4 * kPi * distance_m * distance_m);
 }
 
-/// Power density at the path's end if the antenna radiated as on its boresight along every ray.
+/// Power density at the path's end with the boresight gain along every ray.
 double boresightDensity_dbwm2(const Emitter& emitter, const PathBudget& budget) {
   return ratioToDb(emitter.power_w) - emitter.losses_db + emitter.antenna->gain_dbi +
          spreading_dbm2(budget.geometry) - budget.excess.loss_db;
@@ -134,7 +135,7 @@ void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, dou
                    "dB", "", Kind::sum});
 }
 
-/// Reasons for which a radar does not detect an echo from a range whatever its strength.
+/// Reasons why a radar does not detect an echo from a range, whatever its strength.
 std::vector<std::string> rangeWarnings(const scenario::Waveform& waveform, double range_m) {
   std::vector<std::string> warnings;
   const double eclipsed = waveform.eclipsedPart(range_m);
@@ -287,7 +288,8 @@ bool isAt(const PathEnd& end, const PathEnd& other) {
          end.position.longitude_deg == other.position.longitude_deg && end.height_msl_m == other.height_msl_m;
 }
 
-/// The budget, with what does not depend on the beam taken from an earlier one if neither end has moved.
+/// The budget; values that do not depend on the beam are taken from an earlier budget if neither end has
+/// moved.
 PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const PathEnd& point,
                     propagation::PropagationModel model, const scenario::Terrain* terrain,
                     bool with_detection, const PathBudget* earlier) {

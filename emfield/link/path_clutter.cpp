@@ -19,7 +19,7 @@ PathClutter::PathClutter(const scenario::Snapshot& snapshot, int radar, double r
                                    makeStation(state.position, state.height_msl_m, scenario.atmosphere));
   if (!task) return;
   task_ = *task;
-  // Cells beyond the point do not change those before.
+  // Cells beyond the point do not affect those before it.
   task_.grid.ranges = static_cast<int>(range_m_ / static_cast<double>(task_.grid.step_m)) + 2;
   post_ranges_m_ = clutterPostRanges(task_.grid, postSpacing_m(terrain));
   task_.ground = groundPosts(terrain, post_ranges_m_);

@@ -9,7 +9,7 @@
 
 namespace emscape::emfield {
 
-/// A radar's map of surface clutter, of which only the rows that are asked for are filled, as far as a point.
+/// A radar's map of surface clutter, of which only the requested rows are filled, up to the range of a point.
 /// One thread at a time may use an object.
 class PathClutter {
  public:

@@ -122,7 +122,7 @@ std::vector<PathObstacle> pathObstacles(const PathProfile& profile, double wavel
   };
   std::vector<PathObstacle> crests;
   int crest = -1;             // highest post since the last valley
-  double valley = -HUGE_VAL;  // lowest value since the last crest that was taken
+  double valley = -HUGE_VAL;  // lowest value since the last accepted crest
   bool rising = true;
   for (int i = 1; i < profile.count() - 1; ++i) {
     const double here = obstruction(i);

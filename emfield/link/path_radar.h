@@ -13,7 +13,7 @@ namespace emscape::emfield {
 /// The values of a voxel at that point, without the volume's floor.
 struct RadarAtPoint {
   double snr_db = 0;                 ///< -infinity without an echo
-  double jammer_to_signal_db = 0;    ///< -infinity without jamming; 100 without an echo that is jammed
+  double jammer_to_signal_db = 0;    ///< -infinity without jamming; 100 with jamming and without an echo
   double detection_probability = 0;  ///< against clutter, noise and jamming
   /// Of a beam that follows the target: its gain towards it, relative to its maximum (dB), <= 0.
   std::optional<double> look_pattern_db;
@@ -24,7 +24,7 @@ struct RadarAtPoint {
     double rain_to_noise_db = 0;     ///< the same of rain
     double surface_improvement_db = 0, rain_improvement_db = 0;  ///< by the filter; 0 without one
     double response_db = 0;  ///< of the filter at the target's radial speed; 0 without one
-    double sclnr_db = 0;     ///< echo over clutter and noise, behind the filter
+    double sclnr_db = 0;     ///< echo over clutter and noise, after the filter
   };
   std::optional<Clutter> clutter;
 };

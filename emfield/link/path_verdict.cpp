@@ -53,8 +53,8 @@ std::string pathText(const PathBudget& budget) {
       distanceText(decisive->range_m) + " away", decisive->clearance_m, radii, costText(loss_db));
 }
 
-/// For a direction in which the antenna's gain is far below its maximum. Of a radar that looks at the target
-/// the direction of the scan does not count.
+/// Text for a direction in which the antenna's gain is far below its maximum. For a radar that looks at the
+/// target the direction of the scan is ignored.
 std::string pointingText(const PathBudget& budget) {
   constexpr double kWorthSaying_db = -6;
   const PathPointing& pointing = budget.pointing;
@@ -67,10 +67,9 @@ std::string pointingText(const PathBudget& budget) {
                      radToDeg(pointing.off_axis_rad), -pointing.pattern_db);
 }
 
-/// The probability of detection, with what lowers it: jamming and clutter that come near the echo or above
-/// it.
+/// The probability of detection, with its causes: jamming and clutter near or above the level of the echo.
 std::string detectionText(const PathBudget& budget) {
-  constexpr double kWorthSaying_db = -20;  // of jamming over the echo
+  constexpr double kWorthSaying_db = -20;  // jamming over the echo, from which it is mentioned
   const BudgetTerm* probability = budget.find("detection_probability");
   if (probability == nullptr) return "";
   const double snr_db = budget.find("snr_db")->value;

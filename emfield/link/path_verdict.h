@@ -1,4 +1,4 @@
-/// A path's budget in one plain sentence.
+/// A path's budget summarised in one sentence.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace emscape::emfield {
 
-/// Names the dominant cause: the emitter is silent, an obstacle, the antenna's pattern, or the distance.
+/// Names the dominant cause: inactive emitter, obstacle, antenna pattern, or distance.
 std::string verdictOf(const PathBudget& budget);
 
 /// The same without the antenna's pattern and without detection.

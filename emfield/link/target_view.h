@@ -1,4 +1,4 @@
-/// A target as a radar sees it.
+/// Cross section and radial speed of a target for a radar.
 #pragma once
 
 #include "emscape/scenario/snapshot.h"
@@ -6,16 +6,16 @@
 
 namespace emscape::emfield {
 
-/// Radar cross section (m2) of a target from where an emitter stands.
+/// Radar cross section (m2) of a target in the direction of an emitter.
 double rcsTowards_m2(const scenario::Snapshot& snapshot, const scenario::Target& target, int radar);
 
-/// Speed (m/s) at which a platform moves away from a radar, from the next tenth of a second, at the end of
-/// the scenario from the last one.
+/// Speed (m/s) at which a platform moves away from a radar, computed over the next tenth of a second, at the
+/// end of the scenario over the last one.
 /// @param terrain  as for instantAt()
 double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platform,
                        const scenario::Terrain* terrain);
 
-/// Looks of a radar from a first time, at which it looks, to another.
+/// Number of looks of a radar from the time of its first look until another time.
 /// @param period_s  between looks, > 0
 long long looksUntil(double first_s, double time_s, double period_s);
 

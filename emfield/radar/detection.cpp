@@ -41,15 +41,15 @@ double logFactorial(double n) {
          inverse * (1.0 / 12 - square * (1.0 / 360 - square * (1.0 / 1260 - square / 1680))) - shift;
 }
 
-/// Probability of n events where `mean` > 0 are expected.
+/// Poisson probability of n events with mean `mean` > 0.
 double poisson(double mean, double n) {
   return std::exp(n * std::log(mean) - mean - logFactorial(n));
 }
 
-/// Q(n, t), the regularised upper gamma function of a whole n >= 1: the probability of fewer than n events
-/// where t > 0 are expected.
+/// Q(n, t), the regularised upper gamma function of a whole n >= 1: the Poisson probability of fewer than n
+/// events with mean t > 0.
 double upperGamma(int n, double t) {
-  // The terms fall away from the largest, which is at n - 1 or, for small t, at t.
+  // The terms decrease on both sides of the largest, which is at n - 1 or, for small t, at t.
   const int top = std::min(n - 1, int(t));
   const double largest = poisson(t, top);
   double sum = 0;
@@ -131,8 +131,8 @@ double detectionThreshold(const Detector& detector) {
   check(detector);
   const int n = detector.pulses;
   const double wanted = std::log(detector.false_alarm_probability);
-  // log Q falls and is concave over T: from below, Newton's steps fall short no more than they overshoot and
-  // end above, from above they come down without passing the root.
+  // log Q is decreasing and concave in T: from below, a Newton step ends above the root; from above, the
+  // steps decrease without passing it.
   double threshold = n + std::sqrt(-2.0 * n * wanted) - wanted;
   for (int i = 0; i < 100; ++i) {
     const double q = upperGamma(n, threshold);
@@ -150,7 +150,7 @@ double detectionProbability(const Detector& detector, double threshold, double s
   double event = poisson(threshold, detector.pulses);  // Q(N + k + 1, T) - Q(N + k, T)
   SignalCounts counts(shapeOf(detector), detector.pulses * snr);
   double detected = 0, seen = 0;
-  // Once Q is 1 to the last digit, all remaining terms are detections.
+  // Once Q is 1 to machine precision, all remaining terms are detections.
   for (int n = detector.pulses; n <= threshold || event > 1e-17; ++n) {
     const double p = counts.probability();
     detected += p * over;
@@ -221,7 +221,7 @@ double albersheimProbability(const Detector& detector, double snr_db) {
 }
 
 double shnidmanProbability(const Detector& detector, double snr_db) {
-  // In logits, which resolve both ends.
+  // In logits, for accuracy at both ends.
   const auto probabilityOf = [](double logit) { return 1 / (1 + std::exp(-logit)); };
   const double pfa = detector.false_alarm_probability;
   double low = std::log(pfa / (1 - pfa)) + 1e-9, high = 30;

@@ -1,4 +1,4 @@
-/// Detection of a target by a radar: probabilities from signal-to-noise, exactly, for Swerling's cases.
+/// Detection of a target by a radar: exact probabilities from signal-to-noise ratio, for Swerling's cases.
 ///
 /// A square-law detector adds N pulses and compares with a threshold T (in units of the noise power of one
 /// pulse). Given the signal energy X of all pulses (in the same unit), the sum exceeds T with probability
@@ -32,7 +32,7 @@ Swerling swerlingOfCase(int swerling_case);
 /// The detector.
 struct Detector {
   Swerling swerling = Swerling::slow_exponential;
-  int pulses = 1;                         ///< N, added up; 1..kMaxPulses
+  int pulses = 1;                         ///< N, summed; 1..kMaxPulses
   double false_alarm_probability = 1e-6;  ///< per decision; kMinFalseAlarm..0.5
 };
 inline bool operator==(const Detector& a, const Detector& b) {
@@ -43,8 +43,8 @@ inline bool operator==(const Detector& a, const Detector& b) {
 constexpr int kMaxPulses = 1000000;
 constexpr double kMinFalseAlarm = 1e-15;
 
-/// Threshold T with Q(N, T) = Pfa: the noise alone exceeds it with the probability of false alarm.
-/// @throws Error (bad_input) for a detector outside the ranges stated
+/// Threshold T with Q(N, T) = Pfa: noise alone exceeds it with the probability of false alarm.
+/// @throws Error (bad_input) for a detector outside the stated ranges
 /// @accuracy 1e-12 relative, 1 to 1000 pulses
 double detectionThreshold(const Detector& detector);
 
@@ -70,12 +70,12 @@ double albersheimSnrDb(const Detector& detector, double probability);
 /// @see D. A. Shnidman, IEEE Trans. AES-38 (2002), p. 1059
 double shnidmanSnrDb(const Detector& detector, double probability);
 
-/// Probability of detection by the inverse of Albersheim's formula. Between its Pd of 0.1 and 0.9 within 0.05
-/// of the exact one; below it ends at 0.01 to 0.03, the formula's minimum.
+/// Probability of detection by the inverse of Albersheim's formula. Within 0.05 of the exact probability for
+/// 0.1 to 0.9; its minimum is 0.01 to 0.03, that of the formula.
 double albersheimProbability(const Detector& detector, double snr_db);
 
-/// The same by Shnidman's: the largest probability whose required ratio is not above the given one. It is
-/// constant where the formula jumps, at Pd = 0.872.
+/// The same by Shnidman's formula: the largest probability whose required ratio is at most the given one. It
+/// is constant where the formula jumps, at Pd = 0.872.
 double shnidmanProbability(const Detector& detector, double snr_db);
 
 /// Probability of detection over signal-to-noise in dB, for inner loops: monotone cubics between exact
@@ -90,8 +90,8 @@ struct DetectionCurveView {
   float first_snr_db = 0;
   float steps_per_db = 0;
 
-  /// Rises with snr_db; without branches, for SIMD. Below the first knot its value, beyond the last its
-  /// value; NaN for NaN.
+  /// Increases with snr_db; without branches, for SIMD. Constant below the first and above the last knot; NaN
+  /// for NaN.
   /// @accuracy 1e-4 absolute of detectionProbability; 2e-3 of the formulas
   EMSCAPE_HD float operator()(float snr_db) const {
     const float index = (snr_db - first_snr_db) * steps_per_db;
@@ -102,7 +102,7 @@ struct DetectionCurveView {
     const float t = beyond < 1 ? beyond : 1.0f;
     const Knot a = knots[i], b = knots[i + 1];
     const float rise = b.probability - a.probability;
-    // Hermite's cubic; its slopes are limited so that it never falls.
+    // Hermite cubic with slopes limited so that it never decreases.
     const float probability =
         a.probability +
         t * (a.rise + t * (3 * rise - 2 * a.rise - b.rise + t * (a.rise + b.rise - 2 * rise)));
@@ -113,8 +113,8 @@ struct DetectionCurveView {
 /// Holds the knots of a curve.
 class DetectionCurve {
  public:
-  /// @param loss_db  by which the curve is shifted to larger signal-to-noise ratios
-  /// @throws Error (bad_input) for a detector outside the ranges stated
+  /// @param loss_db  shift of the curve to larger signal-to-noise ratios
+  /// @throws Error (bad_input) for a detector outside the stated ranges
   explicit DetectionCurve(const Detector& detector,
                           scenario::DetectionMethod method = scenario::DetectionMethod::exact,
                           double loss_db = 0);

@@ -14,7 +14,7 @@ constexpr double kReferencePd = 0.5;
 /// CFAR: with more pulses the loss no longer changes.
 constexpr int kMaxCfarPulses = 10000;
 
-/// The argument between `low` and `high` at which a function, which falls, reaches a value. Geometric
+/// The argument between `low` and `high` at which a decreasing function reaches a value, by geometric
 /// bisection.
 template <class Function>
 double whereItFallsTo(double value, double low, double high, const Function& function) {
@@ -54,7 +54,7 @@ double atLeast(int needed, int n, double p) {
   return std::min(sum, 1.0);
 }
 
-/// The probability of one event for which at least `needed` of n have a probability.
+/// The probability of a single event for which at least `needed` of n events have a given probability.
 double perEvent(int needed, int n, double probability) {
   return 1 / whereItFallsTo(probability, 1, 1e300,
                             [&](double inverse) { return atLeast(needed, n, 1 / inverse); });

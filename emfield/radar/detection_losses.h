@@ -1,4 +1,4 @@
-/// Losses of a radar's detection against an ideal detector of `pulses` pulses at the beam's peak.
+/// Losses of a radar's detection relative to an ideal detector of `pulses` pulses at the beam's peak.
 #pragma once
 
 #include "emfield/radar/detection.h"
@@ -6,7 +6,7 @@
 
 namespace emscape::emfield {
 
-/// Signal-to-noise ratio (dB) that detection needs beyond the ideal detector's, by cause; each >= 0.
+/// Additional signal-to-noise ratio (dB) required for detection, by cause; each >= 0.
 struct DetectionLosses {
   double beam_shape_db = 0;
   double cfar_db = 0;
@@ -15,20 +15,19 @@ struct DetectionLosses {
   double total_db() const { return beam_shape_db + cfar_db + binary_db; }
 };
 
-/// The losses of a radar, as its receiver states them; all 0 unless it does.
+/// The losses of a radar, as stated for its receiver; 0 if not stated.
 DetectionLosses detectionLosses(const scenario::Emitter& radar);
 
-/// Loss (dB) of the pulses that a beam receives off its peak as it scans past the target.
-/// blake: 1.6 dB for each plane; L. V. Blake, The effective number of pulses per beamwidth for a scanning
-/// radar, Proc. IRE 41 (1953): 0.47 of the pulses within the half-power beamwidth count, 5 log(1 / 0.47) dB.
-/// barton: (8 ln 2 / pi)^(1/2), 1.23 dB, for each plane: a Gaussian beam, pulses counted between the one-way
-/// half-power points and dense; D. K. Barton and S. A. Leonov, Radar Technology Encyclopedia, 1998, "loss,
-/// beamshape": 1.2 dB.
+/// Beam-shape loss (dB): loss of pulses that a scanning beam receives off its peak. blake: 1.6 dB per plane;
+/// L. V. Blake, The effective number of pulses per beamwidth for a scanning radar, Proc. IRE 41 (1953): 0.47
+/// of the pulses within the half-power beamwidth count, 5 log(1 / 0.47) dB. barton: (8 ln 2 / pi)^(1/2), 1.23
+/// dB, per plane: a Gaussian beam, dense pulses counted between the one-way half-power points; D. K. Barton
+/// and S. A. Leonov, Radar Technology Encyclopedia, 1998, "loss, beamshape": 1.2 dB.
 /// @param planes  scanned, 0..2
 double beamShapeLossDb(scenario::BeamShapeLoss rule, int planes);
 
 /// Loss (dB) of a cell-averaging CFAR detector at a probability of detection of 1/2. Exact for Swerling's
-/// case 2, and for case 1 of one pulse; taken for the other cases.
+/// case 2, and for case 1 with one pulse; also used for the other cases.
 ///   Pfa = sum over k < N of C(M N + k - 1, k) a^k / (1 + a)^(M N + k),
 /// and Pd the same with a / (1 + S): N pulses, M reference cells, threshold a times the cells' sum.
 /// @param cells  M, >= 1
@@ -36,7 +35,8 @@ double beamShapeLossDb(scenario::BeamShapeLoss rule, int planes);
 double cfarLossDb(const Detector& detector, int cells);
 
 /// Loss (dB) at a probability of detection of 1/2, for a steady target, of a detector that decides on each
-/// pulse and declares a target from `needed` detections in Detector::pulses, against the sum of the pulses.
+/// pulse and declares a target from `needed` detections in Detector::pulses, relative to the sum of the
+/// pulses.
 /// @param needed  1..Detector::pulses
 /// @see M. Schwartz, IRE Trans. IT-2 (1956), p. 135 (citation not checked); derived here
 double binaryIntegrationLossDb(const Detector& detector, int needed);

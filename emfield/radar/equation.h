@@ -1,8 +1,8 @@
 /// The radar range equation, jamming and noise: closed forms for one radar, one target and one jammer.
 ///
-/// A path's excess over free space is one-way, in dB, and enters twice for an echo: with the one-way
-/// voltage factor F it is -20 log10 F, and an echo has F^4. Gases and rain enter in the same way. Jamming is
-/// one-way.
+/// The excess of a path over free space is one-way (dB) and enters twice for an echo: with the one-way
+/// voltage factor F it is -20 log10 F, and an echo has the factor F^4. The same holds for gases and rain.
+/// Jamming is one-way.
 #pragma once
 
 #include <cmath>
@@ -22,18 +22,18 @@ struct RadarLink {
   double noise_temperature_k = kReferenceTemperature_K;  ///< of the system, > 0
 };
 
-/// A jammer of noise that fills its band evenly.
+/// A jammer of noise with uniform spectral density in its band.
 struct JammerLink {
   double eirp_w = 0;                   ///< toward the radar, > 0
   double frequency_hz = 0;             ///< middle of its band; 0: the radar's
   double bandwidth_hz = 0;             ///< >= 0
   double radar_gain_dbi = 0;           ///< of the radar's antenna toward the jammer
   double polarization_loss_db = 0;     ///< between jammer and radar
-  double radar_receive_losses_db = 0;  ///< the radar's, on receiving
+  double radar_receive_losses_db = 0;  ///< of the radar's receive path
 };
 
-/// Part (0..1) of a signal's power within a receiver's band. The signal fills its band evenly; one of zero
-/// width is inside or outside.
+/// Part (0..1) of a signal's power within a receiver's band. The signal has uniform density in its band; a
+/// signal of zero width is inside or outside.
 EMSCAPE_HD inline double bandOverlap(double signal_hz, double signal_width_hz, double receiver_hz,
                                      double receiver_width_hz) {
   const double begin_hz = std::fmax(receiver_hz - receiver_width_hz / 2, signal_hz - signal_width_hz / 2);
@@ -60,7 +60,8 @@ EMSCAPE_HD inline double echoPower_w(const RadarLink& radar, double rcs_m2, doub
 
 /// Jamming power (W) in the radar's band, at its receiver:
 ///   J = EIRP Gr lambda^2 / ((4 pi R)^2 L A) b
-/// with b the part of the jammer's band within the radar's: Br / Bj for a wider one in tune.
+/// with b the part of the jammer's band within the radar's: Br / Bj for a wider jammer at the same centre
+/// frequency.
 /// @see Skolnik, Radar Handbook, 3rd ed., chapter 24; D. L. Adamy, EW 101, 2001, chapter 9
 EMSCAPE_HD inline double jammingPower_w(const RadarLink& radar, const JammerLink& jammer, double range_m,
                                         double excess_db = 0) {
@@ -118,8 +119,8 @@ EMSCAPE_HD inline double jammerToSignalDb(const RadarLink& radar, double rcs_m2,
                          echoPower_w(radar, rcs_m2, range_m, excess_db));
 }
 
-/// Range (m) below which a target shows through the jamming of a jammer that it carries itself: where J/S
-/// reaches the value at which the radar still detects, in free space. J/S grows with R^2.
+/// Burn-through range (m) in free space for a self-screening jammer: the range at which J/S reaches the value
+/// at which the radar still detects. J/S grows with R^2.
 /// @param bearable_db  J/S at which the radar still detects
 EMSCAPE_HD inline double selfScreeningBurnThrough_m(const RadarLink& radar, double rcs_m2,
                                                     const JammerLink& jammer, double bearable_db) {

@@ -11,12 +11,12 @@
 
 namespace emscape::emfield {
 
-/// Means by which a beam follows a target. Directions are (forward, right, up) in a frame that `turned` and
-/// `steered` take from the antenna's mount and `held` from the beam itself.
+/// Method by which a beam follows a target. Directions are (forward, right, up): for `turned` and `steered`
+/// in the frame of the antenna's mount, for `held` in the frame of the beam.
 enum class LookKind {
-  held,    ///< not at all
-  turned,  ///< the antenna turns onto the target: azimuth about the mount's up, then elevation
-  steered  ///< the array is steered onto it; the antenna stays
+  held,    ///< it does not follow
+  turned,  ///< the antenna turns to the target: azimuth about the mount's up axis, then elevation
+  steered  ///< the array is steered to the target; the antenna does not turn
 };
 
 /// A look as plain data.
@@ -31,15 +31,15 @@ struct RadarLook {
   float steer_u = 0, steer_v = 0;
 };
 
-/// How often a beam passes a direction in an interval, as plain data.
+/// Number of passes of a beam over a direction in an interval, as plain data.
 struct LookCount {
   static constexpr int kMaxArcs = 4;
-  float everywhere = 1;  ///< times
-  int arc_count = 0;     ///< azimuths that are passed once more
+  float everywhere = 1;  ///< number of passes
+  int arc_count = 0;     ///< azimuths with one more pass
   /// Of each arc: the azimuth of its middle in the look's frame, and the cosine of half its width.
   float cos_middle[kMaxArcs] = {}, sin_middle[kMaxArcs] = {}, cos_half[kMaxArcs] = {};
 
-  /// At least 1: beside all arcs the beam is seen as it is at the nearest one.
+  /// At least 1: outside all arcs the beam is that of the nearest arc.
   EMSCAPE_HD float towards(const Vec3f& direction) const {
     const float level = std::sqrt(direction.x * direction.x + direction.y * direction.y);
     float times = everywhere;
@@ -51,13 +51,13 @@ struct LookCount {
   }
 };
 
-/// When a beam last passed each azimuth of the look's frame in an interval, as plain data.
+/// Time of the last pass of a beam over each azimuth of the look's frame in an interval, as plain data.
 struct LastPasses {
   static constexpr int kMaxArcs = 8;
   static constexpr float kNever_s = 1e30f;
   int arc_count = 0;
   /// Of each arc: the azimuth of its middle and half its width (rad), the time (s) from the pass of its
-  /// middle to the interval's end, and how much longer it is per azimuth (s/rad).
+  /// middle to the interval's end, and its increase with azimuth (s/rad).
   float middle_rad[kMaxArcs] = {}, half_width_rad[kMaxArcs] = {}, age_s[kMaxArcs] = {},
         age_s_rad[kMaxArcs] = {};
 
@@ -82,8 +82,8 @@ struct Aim {
   float steer_u = 0, steer_v = 0;
 };
 
-/// The aim at a target, or the nearest that the look permits. Without branches, for SIMD.
-/// @param target  direction in the look's frame, of any length; 0: the aim is ahead
+/// The aim at a target, or the nearest aim that the look permits. Without branches, for SIMD.
+/// @param target  direction in the look's frame, of any length; 0: the aim is forward
 EMSCAPE_HD inline Aim aimAt(const RadarLook& look, const Vec3f& target) {
   const bool turns = look.kind == LookKind::turned, steers = look.kind == LookKind::steered;
   const float level = std::sqrt(target.x * target.x + target.y * target.y);
@@ -109,7 +109,7 @@ EMSCAPE_HD inline Aim aimAt(const RadarLook& look, const Vec3f& target) {
   return aim;
 }
 
-/// A direction of the look's frame in the frame of the antenna so aimed.
+/// A direction of the look's frame in the frame of the aimed antenna.
 EMSCAPE_HD inline Vec3f turnedBy(const Aim& aim, const Vec3f& direction) {
   const float ahead = direction.x * aim.cos_azimuth + direction.y * aim.sin_azimuth;
   return {ahead * aim.cos_elevation + direction.z * aim.sin_elevation,
@@ -117,7 +117,7 @@ EMSCAPE_HD inline Vec3f turnedBy(const Aim& aim, const Vec3f& direction) {
           direction.z * aim.cos_elevation - ahead * aim.sin_elevation};
 }
 
-/// Amplitude (relative voltage, 0..1) of an antenna so aimed.
+/// Amplitude (relative voltage, 0..1) of the aimed antenna.
 /// @param direction  in the look's frame, a unit vector
 /// @tparam kSigned   true: with the field's sign, -1..1
 template <scenario::PatternKind kind, bool kSigned = false>

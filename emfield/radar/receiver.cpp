@@ -23,7 +23,7 @@ RadarLink radarLinkOf(const Emitter& radar) {
   link.frequency_hz = radar.frequency_hz;
   link.losses_db = radar.losses_db + receiver.losses_db - receiver.processing_gain_db;
   link.bandwidth_hz = receiver.bandwidth_hz;
-  // After the line's losses, the reference point of the echo too.
+  // After the line's losses, which is also the reference point of the echo.
   link.noise_temperature_k = systemNoiseTemperature_k(receiver.antenna_temperature_k, kReferenceTemperature_K,
                                                       receiver.losses_db, receiver.noise_figure_db) /
                              dbToRatio(receiver.losses_db);

@@ -107,7 +107,7 @@ void addSteered(double steer_u, double steer_v, double share, BeamPositions& pos
 const PatternReach& PatternReaches::of(const scenario::AntennaPtr& antenna, double elevation_deg) {
   const auto known = known_.find({antenna, elevation_deg});
   if (known != known_.end()) return known->second;
-  for (auto it = known_.begin(); it != known_.end();) {  // of antennas that nobody else holds
+  for (auto it = known_.begin(); it != known_.end();) {  // of antennas without other owners
     it = it->first.first.use_count() == 1 ? known_.erase(it) : std::next(it);
   }
   return known_.emplace(std::pair(antenna, elevation_deg), reachOf(*antenna, elevation_deg)).first->second;
@@ -142,7 +142,7 @@ void setPositions(const scenario::Scenario& scenario, const scenario::Emitter& e
     const double turns = std::floor(arc.width_deg / kTurn_deg + 1e-9);
     const double rest_deg = std::max(arc.width_deg - turns * kTurn_deg, 0.0);
     const double of_turns = turns > 0 ? arc.share * turns * kTurn_deg / arc.width_deg : 0;
-    if (turns > 0) add(0, kTurn_deg, of_turns);  // the same from wherever they begin
+    if (turns > 0) add(0, kTurn_deg, of_turns);  // the same wherever they begin
     if (turns == 0 || rest_deg > 1e-6 * arc.width_deg) {
       add(arc.first_deg - frame_deg, rest_deg, arc.share - of_turns);
     }

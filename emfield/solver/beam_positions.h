@@ -1,4 +1,4 @@
-/// The positions of a beam in an interval, which stand for it in the channels of occupancy.
+/// The positions that represent a beam in an interval, for channels of occupancy.
 #pragma once
 
 #include <map>
@@ -10,7 +10,7 @@
 
 namespace emscape::emfield {
 
-/// How far patterns reach, by antenna and elevation (deg) of the beam: kept from update to update.
+/// PatternReach by antenna and elevation (deg) of the beam, kept between updates.
 class PatternReaches {
  public:
   /// @accuracy levels are 1 dB too low, azimuths a step of the table too large, so that no position above a

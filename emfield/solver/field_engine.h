@@ -51,12 +51,12 @@ struct CombinePass {
     /// Without the views of geometry and pattern, which belong to the engine. Channels are those of the
     /// setup.
     CombineEmitter emitter;
-    std::vector<RadarShare> radars;           ///< its parts in channels of echoes
-    std::vector<OccupancyShare> occupancies;  ///< its parts in channels of occupancy
+    std::vector<RadarShare> radars;           ///< its contributions to channels of echoes
+    std::vector<OccupancyShare> occupancies;  ///< its contributions to channels of occupancy
   };
   std::vector<Member> members;
   std::vector<bool> channels;     ///< true for those of the pass
-  bool into_static_sums = false;  ///< true: computes the sums of static emitters, from nothing
+  bool into_static_sums = false;  ///< true: computes the sums of static emitters from their initial values
   bool keep =
       false;  ///< true: continues with the present sums; false: starts from the sums of static emitters
 };
@@ -108,21 +108,21 @@ constexpr std::size_t kDeviceScratchBytes = std::size_t{1} << 30;
 std::size_t postBytes(const scenario::TerrainView& terrain);
 
 /// Upper bound of the host memory of a CPU engine.
-/// @param slot_bytes  what the emitters keep
+/// @param slot_bytes  bytes cached for the emitters
 std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes);
 
 /// Upper bound of the GPU memory of a CUDA engine.
-/// @param slot_bytes  what the emitters keep
+/// @param slot_bytes  bytes cached for the emitters
 std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
                             volume::VoxelPrecision precision);
 
-/// Value range of a volume in which nothing is above the floor: the floor.
+/// Sets the value range of a volume; the floor if nothing is above it.
 inline void setRange(volume::VolumeInfo& info, const volume::ValueRange& range) {
   info.range_min = range.empty() ? info.floor : range.min;
   info.range_max = range.empty() ? info.floor : range.max;
 }
 
-/// Voxels of a column nearer to the emitter than a distance.
+/// Number of voxels of a column closer to the emitter than a distance.
 EMSCAPE_HD inline int nearVoxels(const ColumnGeometryView& geometry, std::size_t column, const float* t_m,
                                  int layers, float limit2_m2) {
   int count = 0;

@@ -101,7 +101,7 @@ bool sameShare(const RadarShare& a, const RadarShare& b) {
 }
 
 bool sameArc(const BeamArc& a, const BeamArc& b) {
-  // The azimuths follow from the arc, how far the pattern reaches from the pattern.
+  // The azimuths follow from the arc, the reach from the pattern.
   const auto& [aim, first_rad, step_rad, begin, count, reach, share] = a;
   const auto& [cos_azimuth, sin_azimuth, cos_elevation, sin_elevation, steer_u, steer_v] = aim;
   return first_rad == b.first_rad && step_rad == b.step_rad && begin == b.begin && count == b.count &&

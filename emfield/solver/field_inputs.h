@@ -21,19 +21,19 @@ struct GeometryInputs {
   double far_field_m = 0;
   propagation::EmitterInputs propagation;
   std::optional<ElevationCut> elevation_cut;
-  std::optional<ClutterMapInputs> clutter;  ///< none: no channel is against it, and there is no map of it
+  std::optional<ClutterMapInputs> clutter;  ///< none: no channel includes clutter, and there is no map
   bool mechanisms = false;                  ///< GeometryNeeds::mechanisms
 };
 
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter, const scenario::EmitterState& state);
 
-/// True if a geometry serves other inputs: all except the position is equal, and it has the map of clutter
-/// and the mechanisms if they need them. Source locations are ignored.
+/// True if a geometry is valid for other inputs: everything except the position is equal, and it has the
+/// clutter map and the mechanisms if they are needed. Source locations are ignored.
 bool haveSameSettings(const GeometryInputs& computed, const GeometryInputs& needed);
 /// True if the position is also equal, to the last bit.
 bool areSame(const GeometryInputs& computed, const GeometryInputs& needed);
 
-/// Inputs of an emitter's part in the channels (stage 3), without its geometry.
+/// Inputs of an emitter's contribution to the channels (stage 3), without its geometry.
 struct CombineInputs {
   CombinePass::Member member;
   scenario::AntennaPtr antenna;  ///< the emitter's own
@@ -44,18 +44,18 @@ bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b);
 /// True if two cuts, or none, are the same; the antennas' gains may differ.
 bool areSame(const std::optional<ElevationCut>& a, const std::optional<ElevationCut>& b);
 
-/// True if two radars' shares weigh voxels alike where the radars' patterns are the same: the same look in
-/// the same frame. Powers, jammers and channels may differ.
+/// True if two radars with equal patterns have the same weights of voxels: the same look in the same frame.
+/// Powers, jammers and channels may differ.
 bool sameLook(const RadarShare& a, const RadarShare& b);
 
-/// True if two jammers are seen along the same rays. Their powers may differ.
+/// True if two jammers are received along the same rays. Their powers may differ.
 bool sameRays(const JammerAtRadar& a, const JammerAtRadar& b);
 
-/// Marks the channels in which an emitter's part has changed.
+/// Marks the channels in which an emitter's contribution has changed.
 /// @param before    of the last update; null: it was not active
 /// @param now       null: it is not active
 /// @param channels  one per channel; those that differ are set
-/// @return whether any channel was marked
+/// @return true if any channel was marked
 bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, std::vector<bool>& channels);
 
 /// True if two channels compute their products (stage 4) from their sums in the same way.

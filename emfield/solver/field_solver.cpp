@@ -28,7 +28,8 @@ bool sameTerrainFiles(const scenario::Scenario& a, const scenario::Scenario& b) 
   return a.terrain->files == b.terrain->files && a.terrain->vertical_datum == b.terrain->vertical_datum;
 }
 
-/// Columns come before the estimate of all else, and a grid of many of them takes gigabytes.
+/// Checked first, because columns are made before the estimate of everything else, and many columns take
+/// gigabytes.
 void requireColumnsMemory(Dims dims, const std::string& file) {
   const auto columns = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
   requireMemory({fmt::format("a field of {} x {} x {} voxels, without its values,", dims.x, dims.y, dims.z),

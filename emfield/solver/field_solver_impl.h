@@ -23,7 +23,7 @@ using WarningCounts = std::map<std::string, long long>;
 struct EmitterCache {
   scenario::EmitterState state;            ///< at the last update
   std::optional<GeometryInputs> geometry;  ///< of geometry_result, and of the slot if the emitter is cached
-  std::optional<CombineInputs> combined;   ///< its part in the sums; none: not active
+  std::optional<CombineInputs> combined;   ///< its contribution to the sums; none: not active
   std::optional<IntervalBeam> interval;    ///< none: not active, or the output is of an instant
   bool is_cached = true;                   ///< false: its geometry is discarded after each use
   GeometryResult geometry_result;
@@ -63,11 +63,11 @@ struct FieldSolver::Impl {
   struct Changes {
     FieldChanged report;
     bool all = false;                   ///< everything is recomputed
-    bool is_edited = false;             ///< the scenario is another one
+    bool is_edited = false;             ///< the scenario is a different object
     const FieldPlan* before = nullptr;  ///< the plan before an edit
-    std::vector<bool> emitters;         ///< true if its part in some channel changed
+    std::vector<bool> emitters;         ///< true if its contribution to some channel changed
     std::vector<bool> sums;             ///< channels whose sums change
-    std::vector<bool> products;         ///< channels of which at least the product changes
+    std::vector<bool> products;         ///< channels whose product changes
   };
 
   bool canKeep(const FieldPlan& plan, const scenario::TerrainPtr& terrain) const;

@@ -9,7 +9,7 @@
 namespace emscape::emfield {
 
 /// Updates the jamming at the radars of channels that depend on it: for radars that changed or whose jammers
-/// changed; after an edit for all, since paths depend on much of a scenario.
+/// changed; after an edit for all radars, because paths depend on many values of a scenario.
 void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Changes& changes) {
   std::vector<bool> jammer_changed(emitters.size(), changes.all || changes.is_edited);
   for (const std::vector<int>* list : {&changes.report.moved, &changes.report.turned}) {
@@ -35,7 +35,7 @@ void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Ch
   }
 }
 
-/// An emitter's parts in channels of radar echoes.
+/// An emitter's contributions to channels of radar echoes.
 std::vector<RadarShare> FieldSolver::Impl::radarShares(int e) const {
   std::vector<RadarShare> shares;
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {

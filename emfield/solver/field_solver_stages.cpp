@@ -19,14 +19,14 @@ using scenario::EmitterState;
 
 namespace {
 
-/// Peak EIRP less losses.
+/// Peak EIRP minus losses.
 double eirpOf_w(const Emitter& emitter) {
   return emitter.power_w * dbToRatio(emitter.antenna->gain_dbi - emitter.losses_db);
 }
 
 }  // namespace
 
-/// Computes the geometry of some emitters, into their own slots or into that of emitters that are not cached.
+/// Computes the geometry of some emitters, into their own slots or the slot of uncached emitters.
 void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool into_scratch) {
   if (chosen.empty()) return;
   std::vector<GeometryRequest> requests;
@@ -71,9 +71,9 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   }
 }
 
-/// Emitters that do not change are summed once: those before the first that changed, so that every sum is
-/// added up in the order of the scenario and does not depend on earlier updates. The static sum is recomputed
-/// when the number of unchanged emitters combined since it was last computed reaches its cost.
+/// The unchanged emitters before the first changed one are summed once. Every sum is therefore in the order
+/// of the scenario and does not depend on earlier updates. The static sum is recomputed when the number of
+/// unchanged emitters combined since it was last computed reaches its cost.
 void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
   const auto first_changed =
       static_cast<int>(std::find(changed.begin(), changed.end(), true) - changed.begin());
@@ -97,7 +97,7 @@ void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
   if (resting > 0) combine(0, resting, has_static_sums, true);
 }
 
-/// An emitter's part in the channels.
+/// An emitter's contributions to the channels.
 CombineInputs FieldSolver::Impl::combineInputs(int e, double t_s) {
   const Emitter& emitter = setup.scenario->emitters[e];
   const EmitterState& state = emitters[e].state;
@@ -127,7 +127,7 @@ CombineInputs FieldSolver::Impl::combineInputs(int e, double t_s) {
   return inputs;
 }
 
-/// An emitter's parts in channels of occupancy.
+/// An emitter's contributions to channels of occupancy.
 std::vector<OccupancyShare> FieldSolver::Impl::occupancyShares(int e, double t_s) {
   std::vector<OccupancyShare> shares;
   const Emitter& emitter = setup.scenario->emitters[e];
@@ -145,8 +145,8 @@ std::vector<OccupancyShare> FieldSolver::Impl::occupancyShares(int e, double t_s
   return shares;
 }
 
-/// Combines the active emitters begin..end - 1: cached ones in one pass over the grid, as
-/// many as follow each other, each of the others in a pass of its own.
+/// Combines the active emitters begin..end - 1: consecutive cached emitters in one pass over the grid, each
+/// of the others in a separate pass.
 void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& channel_chosen,
                                 bool into_static_sums) {
   CombinePass pass;
@@ -198,7 +198,7 @@ const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& chann
   return own.empty() ? above_ground : own;
 }
 
-/// Makes the volumes of channels that changed. After an edit the others get the name, time and metadata of
+/// Makes the volumes of changed channels. After an edit the other volumes get the name, time and metadata of
 /// the edited scenario.
 void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes) {
   if (changes.report.channels) {

@@ -1,4 +1,4 @@
-// An update: finds what the time or an edited scenario changed, and computes it.
+// An update: finds and computes the changes by the time or an edited scenario.
 
 #include <algorithm>
 #include <utility>
@@ -32,7 +32,7 @@ bool isAny(const std::vector<bool>& flags) {
 
 }  // namespace
 
-/// @param edited  plan of an edited scenario, with which the engine can continue; none: only the time changed
+/// @param edited  plan of an edited scenario that the engine can use; null: only the time changed
 FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::optional<FieldPlan> edited) {
   engine->resetTimes();
   Changes changes;
@@ -99,7 +99,7 @@ void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& cha
   makeVolumes(snapshot, changes);
 }
 
-/// Emitters whose geometry is to be computed, and those whose beam or activity changed.
+/// Finds the emitters whose geometry must be computed, and those whose beam or activity changed.
 void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& changes) {
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     const EmitterState& now = snapshot.emitters[e];
@@ -127,7 +127,7 @@ void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& c
   }
 }
 
-/// Beams over the interval of the output.
+/// Finds the beams over the interval of the output.
 void FieldSolver::Impl::findIntervals(const scenario::Snapshot& snapshot) {
   const bool is_instant = setup.scenario->output.interval.kind == scenario::IntervalKind::instant;
   for (std::size_t e = 0; e < emitters.size(); ++e) {
@@ -145,7 +145,7 @@ void FieldSolver::Impl::findIntervals(const scenario::Snapshot& snapshot) {
   }
 }
 
-/// Emitters whose part in some channel changed, and those channels.
+/// Finds the emitters whose contribution to some channel changed, and those channels.
 void FieldSolver::Impl::findCombined(const scenario::Snapshot& snapshot, Changes& changes) {
   FieldChanged& report = changes.report;
   const bool is_all = changes.all || report.channels;
@@ -172,7 +172,7 @@ void FieldSolver::Impl::findCombined(const scenario::Snapshot& snapshot, Changes
   std::sort(report.turned.begin(), report.turned.end());
 }
 
-/// Channels whose volume is to be made.
+/// Finds the channels whose volume must be made.
 void FieldSolver::Impl::findProducts(Changes& changes) {
   changes.products = changes.sums;
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {

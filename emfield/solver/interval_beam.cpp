@@ -20,9 +20,8 @@ using scenario::ScanSweep;
 using scenario::SweptArc;
 using scenario::SweptPattern;
 
-/// The azimuths that a beam passes, each once: those of sweeps there and back join. The largest values depend
-/// on them alone, so that intervals of a sweep there and back or more have the same pattern whenever they
-/// begin.
+/// Joins the azimuths that a beam passes, so that each occurs once. The largest values depend only on these,
+/// so that intervals of at least one sweep there and back have the same pattern whenever they begin.
 void joinArcs(std::vector<SweptArc>& arcs) {
   if (arcs.size() < 2) return;
   constexpr double kPerDegree = 1e9, kRounding_deg = 1 / kPerDegree;
@@ -43,7 +42,7 @@ void joinArcs(std::vector<SweptArc>& arcs) {
 }
 
 /// Turns the sweep into a frame in which it does not depend on the time, if there is one: the middle of a
-/// part of a turn is ahead.
+/// partial turn is forward.
 /// @return the azimuth of that frame's forward
 double turnIntoFrame(ScanSweep& sweep, double frame_deg) {
   if (sweep.arcs.size() == 1 && !sweep.arcs.front().isRound()) {
@@ -58,7 +57,7 @@ double turnIntoFrame(ScanSweep& sweep, double frame_deg) {
   return 0;
 }
 
-/// Looks of a sweep whose azimuths are those of the look's frame.
+/// Number of looks of a sweep whose azimuths are in the look's frame.
 /// @param bars  of a raster: each passes its own elevations
 LookCount countLooks(const ScanSweep& sweep, double whole_deg, int bars) {
   LookCount looks;
@@ -79,7 +78,7 @@ LookCount countLooks(const ScanSweep& sweep, double whole_deg, int bars) {
 }
 
 /// The last passes in a frame whose forward is at an azimuth, before an interval's end.
-/// @param is_still  the beam stays: it looks at all directions that it can all the time
+/// @param is_still  the beam does not move: it looks continuously in all possible directions
 LastPasses lastPasses(std::vector<scenario::TimedPass> passes, double frame_deg, bool is_still,
                       double end_s) {
   std::sort(passes.begin(), passes.end(), [](const auto& a, const auto& b) { return a.end_s > b.end_s; });
@@ -98,7 +97,7 @@ LastPasses lastPasses(std::vector<scenario::TimedPass> passes, double frame_deg,
   return last;
 }
 
-/// Cycles of the dwells in an interval: a look in every direction is one of each cycle.
+/// Number of cycles of the dwells in an interval; each cycle is one look in every direction.
 float dwellLooks(const scenario::ScanSpec& scan, double duration_s) {
   return static_cast<float>(std::max(1.0, std::floor(duration_s / scenario::scanCycle_s(scan) + 1e-9)));
 }
@@ -172,7 +171,8 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
   }
   if (!needs_pattern) return beam;
   for (SweptArc& arc : sweep.arcs) {
-    if (is_max_hold && arc.isRound()) arc.first_deg = 0;  // the largest are the same from wherever it begins
+    if (is_max_hold && arc.isRound())
+      arc.first_deg = 0;  // the largest values are the same wherever it begins
   }
 
   const bool is_known = before != nullptr && before->antenna != before->of_antenna &&

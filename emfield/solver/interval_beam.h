@@ -1,5 +1,5 @@
-/// An emitter's beam over the interval that a volume covers: a pattern and a pose in place of those of an
-/// instant, and how often a radar looks in each direction.
+/// An emitter's beam over the interval of a volume: a pattern and a pose that replace those of an instant,
+/// and the number of a radar's looks in each direction.
 #pragma once
 
 #include "emfield/radar_product.h"
@@ -12,15 +12,17 @@ namespace emscape::emfield {
 constexpr double kTurn_deg = 360;
 
 struct IntervalBeam {
-  scenario::AntennaPtr antenna;  ///< its pattern is that of the interval; the emitter's own if not asked for
+  scenario::AntennaPtr
+      antenna;  ///< its pattern is that of the interval; the emitter's own antenna if not needed
   scenario::BeamPose pose;
-  double power_share = 1;            ///< of the emitter's power: the mean of one that is not always active
-  scenario::BeamPose look_frame;     ///< of a radar's looks at targets, in place of EmitterState::mount
+  double power_share =
+      1;  ///< factor of the emitter's power, for the mean of an emitter that is not always active
+  scenario::BeamPose look_frame;     ///< of a radar's looks at targets; replaces EmitterState::mount
   double look_half_width_deg = 180;  ///< azimuths to both sides of its forward that the beam passes
   LookCount looks;
   LastPasses last_passes;  ///< of the kind cumulative, of scans with passes (scenario::lastPassesOf)
 
-  /// From what the antenna was made.
+  /// Inputs from which the antenna was made.
   scenario::AntennaPtr of_antenna;
   scenario::IntervalKind of_kind = scenario::IntervalKind::instant;
   scenario::ScanSweep of_sweep;
@@ -28,8 +30,8 @@ struct IntervalBeam {
 
 /// @param interval  not of kind instant
 /// @param state     active in the interval that begins at t_s
-/// @param needs_pattern  false: for looks alone
-/// @param before    its beam at an earlier time, whose antenna is reused where it is the same; may be null
+/// @param needs_pattern  false: only looks are needed
+/// @param before    its beam at an earlier time, whose antenna is reused if equal; may be null
 IntervalBeam intervalBeam(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                           const scenario::EmitterState& state, double t_s, bool needs_pattern,
                           const IntervalBeam* before);
@@ -37,7 +39,7 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const scenario::Em
 /// True if a beam has the same direction all the time.
 bool stays(const scenario::ScanSweep& sweep);
 
-/// The frame about whose up the arcs of a sweep turn, or in which its dwells are steered.
+/// The frame about whose up axis the arcs of a sweep turn, or in which its dwells are steered.
 scenario::BeamPose sweepFrame(const scenario::Emitter& emitter, const scenario::EmitterState& state);
 
 /// Replaces a radar's look at targets by its looks in the interval.

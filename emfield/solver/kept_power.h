@@ -10,11 +10,11 @@
 
 namespace emscape::emfield {
 
-/// True if two emitters have the same power density everywhere if their geometry is the same.
+/// True if two emitters with the same geometry have the same power density everywhere.
 bool samePower(const scenario::AntennaPtr& antenna_a, const EmitterBeam& a,
                const scenario::AntennaPtr& antenna_b, const EmitterBeam& b);
 
-/// Bytes that a cache may take: an eighth of those available, but not more than 1 GiB.
+/// Limit (bytes) of a cache: an eighth of the available memory, at most 1 GiB.
 constexpr std::size_t keptBytes(std::size_t available_bytes) {
   constexpr std::size_t kMaxBytes = std::size_t{1} << 30;
   constexpr std::size_t kPartOfMemory = 8;
@@ -22,13 +22,13 @@ constexpr std::size_t keptBytes(std::size_t available_bytes) {
   return bytes < kMaxBytes ? bytes : kMaxBytes;
 }
 
-/// An emitter that enters a second sum unchanged is computed once more and stored; after that it is read,
+/// An emitter that is unchanged in a second sum is computed once more and stored; afterwards it is read,
 /// which is many times faster and bit-identical.
 /// @tparam Array  of floats: std::vector<float> or a GPU's buffer
 template <class Array>
 class KeptPower {
  public:
-  /// @param slots            emitters with geometry of their own
+  /// @param slots            emitters with their own geometry
   /// @param voxels           of the grid
   /// @param available_bytes  keptBytes() of it are used
   KeptPower(std::size_t slots, std::size_t voxels, std::size_t available_bytes)
@@ -81,7 +81,7 @@ class KeptPower {
     if (taken_ >= limit_) return false;
     try {
       slot.power_wm2.resize(voxels_);
-    } catch (const std::exception&) {  // the memory is not available any more
+    } catch (const std::exception&) {  // the memory is no longer available
       limit_ = taken_;
       return false;
     }

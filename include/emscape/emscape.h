@@ -1,4 +1,4 @@
-/// All of the public headers.
+/// Includes all public headers.
 #pragma once
 
 #include "emscape/base/backend.h"

@@ -35,7 +35,7 @@ struct GasProfile {
       air.pressure_hpa *= at_sea_level.pressure_hpa / sea.pressure_hpa;
       air.temperature_k *= at_sea_level.temperature_k / sea.temperature_k;
       const double vapour_hpa = std::min(air.vapourPressure_hpa(), air.pressure_hpa);
-      // The line-by-line sum also below 1 GHz, where the value of P.676 at 1 GHz would be too large.
+      // The line-by-line sum is also used below 1 GHz, where the value of P.676 at 1 GHz would be too large.
       const double per_km = lineByLineGasAttenuation(frequency_hz, air.pressure_hpa - vapour_hpa,
                                                      air.temperature_k, air.vapour_g_m3)
                                 .total_db_per_km();
@@ -44,7 +44,7 @@ struct GasProfile {
   }
 };
 
-/// The profile up to a height. Those used last are kept: emitters that move need theirs again at each step.
+/// The profile up to a height. The last profiles are kept, because moving emitters need theirs at each step.
 std::shared_ptr<const GasProfile> gasProfile(double frequency_hz, const Atmosphere& atmosphere,
                                              double highest_msl_m) {
   struct Kept {
@@ -52,9 +52,9 @@ std::shared_ptr<const GasProfile> gasProfile(double frequency_hz, const Atmosphe
     std::shared_ptr<const GasProfile> profile;
   };
   static std::mutex mutex;
-  static std::list<Kept> kept;  // the last used first
+  static std::list<Kept> kept;  // last used first
   constexpr std::size_t kMostKept = 256;
-  constexpr double kRounding_m = 2000;  // so that small changes of height find a profile
+  constexpr double kRounding_m = 2000;  // so that a profile is reused after small changes of height
   const double top_m = std::clamp(kRounding_m * std::ceil(highest_msl_m / kRounding_m), 0.0,
                                   kGasesHeight.max * kGasesHeight.si_per_unit);
   const auto count = static_cast<std::size_t>((top_m - static_cast<double>(GasProfile::kLowest_m)) /
@@ -80,7 +80,7 @@ std::shared_ptr<const GasProfile> gasProfile(double frequency_hz, const Atmosphe
   return made;
 }
 
-/// Means along rays that are straight over the effective earth, from a station to points of one range.
+/// Means along rays that are straight over the effective earth, from a station to points at one range.
 /// @param to_msl_m, means  `count` numbers each
 void meansAlong(const GasProfile& profile, float from_msl_m, const float* to_msl_m, int count, float sag_m,
                 float* means) {

@@ -9,11 +9,11 @@
 
 namespace emscape::propagation {
 
-/// Paths from one emitter through the air, as plain data.
+/// Atmospheric losses of the paths from one emitter, as plain data.
 ///
-/// Gases: their mean specific attenuation along the ray, which is straight over the effective earth, in a
-/// table over ground range and height, and the path's length. Rain: the same everywhere from the ground up
-/// to a height; its part of the ray is exact.
+/// Gases: the mean specific attenuation along the ray, which is straight over the effective earth, is
+/// tabulated over ground range and height, and multiplied by the path's length. Rain: uniform from the ground
+/// up to a height; the part of the ray in rain is exact.
 /// @accuracy gases within 0.2 % of an integral along the ray (or 1e-3 dB), for regions up to 20 km high
 struct AirLoss {
   float station_msl_m = 0;
@@ -25,7 +25,7 @@ struct AirLoss {
   float ranges_per_m = 0;
   float lowest_msl_m = 0, heights_per_m = 0;
 
-  /// Specific attenuation (dB/m) of rain along level and upright rays; 0: no rain.
+  /// Specific attenuation (dB/m) of rain along horizontal and vertical rays; 0: no rain.
   float level_rain = 0, upright_rain = 0;
   float rain_top_msl_m = 0;
 
@@ -57,7 +57,7 @@ struct AirLoss {
   }
 };
 
-/// The paths to the points above one place.
+/// The paths to the points above one position.
 class AirColumn {
  public:
   /// @param air      must outlive this object
@@ -92,7 +92,7 @@ class AirColumn {
   }
 
  private:
-  /// Splits a position among `count` nodes into the node below and the part beyond it.
+  /// Splits a position among `count` nodes into the node below and the fraction beyond it.
   static EMSCAPE_HD float place(float position, int count, int& node) {
     const float last = static_cast<float>(count - 1);
     position = position < 0 ? 0.0f : position > last ? last : position;
@@ -120,13 +120,13 @@ EMSCAPE_HD inline float AirLoss::lossDb(float range_m, float height_msl_m) const
   return AirColumn(*this, range_m).lossDb(height_msl_m);
 }
 
-/// Height (m above mean sea level) up to which it rains, in the mean year.
+/// Height (m above mean sea level) of the top of the rain, in the mean year.
 /// @see ITU-R P.839-2, by latitude; later editions have maps
 double rainHeight_m(double latitude_deg);
 
-/// Attenuation by the air on an emitter's paths.
+/// Atmospheric attenuation on an emitter's paths.
 /// @param with_gases  true: adds the gases; rain is always added
-/// @param gases       receives the table that the result points to
+/// @param gases       receives the table to which the result points
 AirLoss airLoss(const PathInputs& inputs, bool with_gases, std::vector<float>& gases);
 
 }  // namespace emscape::propagation

@@ -1,5 +1,5 @@
-/// Model `gases`: attenuation by oxygen and water vapour, ITU-R P.676-13, and the standard atmosphere that
-/// gives their state at a height, ITU-R P.835-6.
+/// Model `gases`: attenuation by oxygen and water vapour, ITU-R P.676-13, and the standard atmosphere, ITU-R
+/// P.835-6.
 #pragma once
 
 #include "propagation/limits.h"
@@ -61,9 +61,9 @@ inline GasAttenuation gasAttenuation(double frequency_hz, const AirState& air) {
 GasAttenuation lineByLineGasAttenuation(double frequency_hz, double dry_pressure_hpa, double temperature_k,
                                         double vapour_g_m3);
 
-/// The mean annual global reference atmosphere at a height above mean sea level (m); the vapour falls by e
-/// each 2 km, its mixing ratio no lower than 2e-6.
-/// @param surface_vapour_g_m3  at mean sea level; the reference has 7.5
+/// The mean annual global reference atmosphere at a height above mean sea level (m); the vapour falls by a
+/// factor of e per 2 km; its mixing ratio is at least 2e-6.
+/// @param surface_vapour_g_m3  at mean sea level; 7.5 in the reference
 /// @see P.835-6 Annex 1: eq. (2) and (3) up to 86 km of geometric height, (4) and (5) up to 100 km, (6) to
 /// (8)
 AirState standardAtmosphere(double height_msl_m, double surface_vapour_g_m3 = 7.5);

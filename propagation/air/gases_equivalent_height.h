@@ -1,4 +1,5 @@
-/// Heights (km) of uniform air, with its state at the surface, that attenuate like the whole atmosphere.
+/// Equivalent heights (km): uniform air with the surface's state and this height attenuates like the whole
+/// atmosphere.
 #pragma once
 
 #include "propagation/air/gases.h"

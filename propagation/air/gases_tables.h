@@ -1,4 +1,4 @@
-/// The published figures behind gases.cpp.
+/// The published tables for gases.cpp.
 #pragma once
 
 #include "propagation/air/gases.h"

@@ -26,7 +26,7 @@ struct RainCoefficients {
   }
 };
 
-/// @param frequency_hz   1 to 1000 GHz; outside the nearest
+/// @param frequency_hz   1 to 1000 GHz; clamped outside
 /// @param elevation_rad  of the path
 /// @param tilt_rad       of the polarisation: 0 horizontal, pi/2 vertical, pi/4 circular
 /// @see P.838-3 eq. (2) to (5)

@@ -10,13 +10,13 @@ namespace emscape::propagation {
 /// man-made noise.
 /// Galaxy: P.372-16 eq. (13), Fam = 52 - 23 log f, up to 100 MHz; above by (f / 100 MHz)^-2.75 (P.372 Part
 /// 4). Gases: P.676-13 line by line.
-/// @param frequency_hz   1e6..1e12; below 10 MHz the ionosphere, which is not taken into account, shields
-/// @param elevation_rad  0..pi/2 from sea level; below the horizon it is the ground: 290 K
+/// @param frequency_hz   1e6..1e12; below 10 MHz the shielding by the ionosphere is not taken into account
+/// @param elevation_rad  0..pi/2 from sea level; below the horizon the result is that of the ground, 290 K
 double skyTemperature_k(double frequency_hz, double elevation_rad, const Atmosphere& atmosphere);
 
-/// Noise temperature (K) of an antenna whose main beam has an elevation: the sky there, and the ground at 290
-/// K in 0.124 of its pattern. The share is that of Blake's T_a = (0.876 T_sky - 254) / L + 290, quoted here
-/// without the publication at hand.
+/// Noise temperature (K) of an antenna by the elevation of its main beam: the sky there, and the ground at
+/// 290 K with a fraction of 0.124 of its pattern. The fraction is that of Blake's T_a = (0.876 T_sky - 254) /
+/// L + 290 (citation not checked).
 double antennaTemperature_k(double frequency_hz, double elevation_rad, const Atmosphere& atmosphere);
 
 }  // namespace emscape::propagation

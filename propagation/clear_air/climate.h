@@ -1,4 +1,4 @@
-/// Radio climate of a path in ITU-R P.1812 and P.452: how much rays bend, and how often ducts form.
+/// Radio climate of a path in ITU-R P.1812 and P.452: curvature of rays, and time percentage of ducts.
 #pragma once
 
 #include <cmath>
@@ -22,17 +22,16 @@ constexpr ModelLimit kClearAirHeight{"antenna height above ground",
 /// Mean radius of the earth in both recommendations (m).
 constexpr double kClearAirEarthRadius_m = 6371e3;
 
-/// Effective earth radius a_e (m) that is exceeded in half of the time.
+/// Effective earth radius a_e (m) that is exceeded 50 % of the time.
 /// @param lapse_rate  Delta N (N-units/km), positive, < 157
 /// @see P.1812-8 eq. (6), (7a); P.452-18 eq. (5), (6a)
 inline double medianEarthRadius_m(double lapse_rate) {
   return kClearAirEarthRadius_m * 157 / (157 - lapse_rate);
 }
-/// Effective earth radius a_beta (m) that is exceeded in beta_0 of the time: P.1812-8 eq. (7b), P.452-18
-/// (6b).
+/// Effective earth radius a_beta (m) that is exceeded beta_0 of the time: P.1812-8 eq. (7b), P.452-18 (6b).
 constexpr double kDuctingEarthRadius_m = 3 * kClearAirEarthRadius_m;
 
-/// tau: how far inland a path goes, 0..1.
+/// tau: parameter of the longest inland section of a path, 0..1.
 /// @param longest_inland_m  d_lm, longest continuous inland section
 /// @see P.1812-8 eq. (3); P.452-18 eq. (3)
 template <class Real>
@@ -40,7 +39,7 @@ EMSCAPE_HD Real inlandPart(Real longest_inland_m) {
   return 1 - std::exp(Real(-4.12e-4) * std::pow(longest_inland_m / 1000, Real(2.41)));
 }
 
-/// beta_0: percentage of time in which the refractivity falls by more than 100 N-units/km in the lowest 100 m
+/// beta_0: percentage of time in which the refractivity lapse rate exceeds 100 N-units/km in the lowest 100 m
 /// of the atmosphere.
 /// @param latitude_deg      of the path's middle
 /// @param longest_land_m    d_tm, longest continuous section over land, coastal land included

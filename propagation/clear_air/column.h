@@ -1,5 +1,5 @@
 /// A terrain profile with its transmitter in ITU-R P.1812 and P.452: all quantities that do not depend on the
-/// receiver's height, computed once for all receivers above the profile's end.
+/// receiver's height, computed once for all receivers above the end of the profile.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 namespace emscape::propagation {
 
 /// The posts of a profile, with tables of values that do not depend on the receiver's height. Heights are
-/// relative to the ground at the first post, to keep digits in single precision.
+/// relative to the ground at the first post, for precision in float.
 template <class Real>
 struct ClearAirPosts {
   TerrainProfile profile;      ///< at least two posts
@@ -57,14 +57,14 @@ struct ClearAirColumn {
   Real trend_m[2] = {};                  ///< ends of the line fitted to the terrain
   Real steepest = -Real(HUGE_VAL);       ///< slope from the transmitter to a post, without the earth's bulge
   Real horizon_slope = -Real(HUGE_VAL);  ///< tangent of the elevation of the transmitter's horizon, over a_e
-  int horizon = 0;                       ///< post of the horizon; 0: there is no post between the ends
+  int horizon = 0;                       ///< post of the horizon; 0: no post between the ends
   Real median_slope = -Real(HUGE_VAL);   ///< Bullington's slope S_tim over a_e
   Real ducting_slope = -Real(HUGE_VAL);  ///< the same over a_beta
   bool is_unknown = false;               ///< terrain is missing
 };
 
 /// @param posts     filled; the profile and the tables must outlive the result
-/// @param tx_msl_m  of the antenna, no lower than DiffractionModel::raised_m allows
+/// @param tx_msl_m  of the antenna, at least DiffractionModel::raised_m
 template <class Real>
 EMSCAPE_HD ClearAirColumn<Real> clearAirColumn(const ClearAirModel<Real>& model,
                                                const ClearAirPosts<Real>& posts, const PathZones& zones,

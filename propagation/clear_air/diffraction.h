@@ -1,5 +1,5 @@
-/// Diffraction not exceeded in a percentage of time: delta-Bullington over the effective earths of half of
-/// the time and of beta_0 of it, and between them.
+/// Diffraction loss not exceeded for a percentage of time: delta-Bullington over the effective earths for 50
+/// % and beta_0 of the time, and interpolation between them.
 #pragma once
 
 #include "emscape/base/host_device.h"
@@ -13,7 +13,7 @@ template <class Real>
 struct ClearAirDiffraction {
   DeltaBullington<Real> median;   ///< over a_e: L_d50
   DeltaBullington<Real> ducting;  ///< over a_beta: L_dbeta
-  Real interpolation = 1;         ///< F_i: 0 at half of the time, 1 from beta_0 down
+  Real interpolation = 1;         ///< F_i: 0 at 50 % of the time, 1 at beta_0 and below
   Real loss_db = 0;               ///< L_dp
 };
 

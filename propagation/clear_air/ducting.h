@@ -1,4 +1,4 @@
-/// Propagation by ducts and reflection from layers: ITU-R P.1812-8 section 4.5, P.452-18 section 4.4.
+/// Ducting and layer reflection: ITU-R P.1812-8 section 4.5, P.452-18 section 4.4.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ EMSCAPE_HD Real seaCouplingDb(Real coast_km, Real horizon_km, Real sea_fraction,
   return -3 * std::exp(Real(-0.25) * coast_km * coast_km) * (1 + std::tanh(Real(0.07) * (50 - height_msl_m)));
 }
 
-/// beta (%): how often there are ducts, with the path's geometry and roughness; eq. (54) to (56).
+/// beta (%): time percentage of ducting, with the path's geometry and roughness; eq. (54) to (56).
 template <class Real>
 EMSCAPE_HD Real ductingPathTime_percent(const ClearAirColumn<Real>& column, const ClearAirPath<Real>& path,
                                         Real earth_radius_km) {

@@ -47,7 +47,7 @@ EMSCAPE_HD inline PathZones zonesOf(ClearAirZone setting, const TerrainProfile& 
   return sums.zones();
 }
 
-/// Whether a post is nearer than a distance to either end of a path.
+/// True if a post is within a distance of either end of a path.
 EMSCAPE_HD inline bool isNearTerminal(const TerrainProfile& profile, int post, double distance_m) {
   const double range_m = profile.range_m[post];
   return range_m < distance_m || profile.range_m[profile.count - 1] - range_m < distance_m;

@@ -1,4 +1,4 @@
-/// Free space, and what focusing and multipath do to a line of sight: ITU-R P.1812-8 section 4.2, P.452-18
+/// Free-space loss, with focusing and multipath in line of sight: ITU-R P.1812-8 section 4.2, P.452-18
 /// section 4.1.
 #pragma once
 

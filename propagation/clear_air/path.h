@@ -14,7 +14,7 @@ struct ClearAirPath {
   Real rx_m = 0;   ///< antenna; heights are from the ground at the transmitter
   Real slope = 0;  ///< of the line of sight, (h_rs - h_ts) / d
   bool is_transhorizon = false;
-  /// d_lt, d_lr: of the horizons; on a line of sight, of the post nearest to it
+  /// d_lt, d_lr: of the horizons; in line of sight, of the post closest to the ray
   Real horizon_distance_m[2] = {};
   Real horizon_angle_mrad[2] = {};               ///< theta_t, theta_r
   Real angle_mrad = 0;                           ///< theta: path angular distance

@@ -45,7 +45,7 @@ std::vector<std::string> clearAirPathWarnings(const ModelLimit& distance, const 
 /// Messages for ClearAirWarning bits.
 std::vector<std::string> clearAirWarningMessages(unsigned warnings);
 
-/// False if the path has no loss to explain, or an unknown one; the explanation then gives the reason.
+/// False if the path has no loss or an unknown loss; the explanation then gives the reason.
 bool isExplainable(double excess_db, const ExcessColumn& column, Explanation& explanation);
 /// Adds the parts of a loss, up to L_bc, and the circumstances.
 void explainClearAir(const ClearAirColumn<double>& column, const ClearAirPath<double>& path,

@@ -8,8 +8,8 @@
 
 namespace emscape::propagation {
 
-/// Holds the tables of a ClearAirColumn<double>. Not copied: the column points into them. The profile stays
-/// alive.
+/// Holds the tables of a ClearAirColumn<double>. Not copyable: the column points into them. The profile must
+/// outlive this object.
 class ClearAirProfile {
  public:
   /// @param profile    at least two posts

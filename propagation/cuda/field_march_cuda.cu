@@ -38,7 +38,7 @@ __global__ void finishMember(float* losses_db, const float* other_db, std::size_
   });
 }
 
-/// The loss of `place` in ascending order.
+/// The loss at rank `place` in ascending order.
 __device__ float ofPlace_db(const float* losses_db, std::size_t pitch, int members, int place) {
   for (int m = 0; m < members; ++m) {
     const float loss_db = losses_db[m * pitch];
@@ -53,7 +53,7 @@ __device__ float ofPlace_db(const float* losses_db, std::size_t pitch, int membe
 }
 
 /// @param losses_db  of the members, `count` each
-/// @param place      of the quantile; -1: the mean power
+/// @param place      rank of the quantile; -1: the mean power
 __global__ void ofMembers(const float* losses_db, std::size_t count, int members, int place,
                           float* ensemble_db) {
   each(count, [&](std::size_t i) {
@@ -67,7 +67,7 @@ __global__ void ofMembers(const float* losses_db, std::size_t count, int members
   });
 }
 
-/// NaN in cells that are not known.
+/// Sets NaN in unknown cells.
 __global__ void forgetUnknown(float* losses_db, const int* known_ranges, int ranges, int heights,
                               std::size_t count) {
   each(count, [&](std::size_t i) {

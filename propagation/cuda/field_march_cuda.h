@@ -1,4 +1,4 @@
-/// All marches of an emitter's field on a GPU; the losses stay there.
+/// All marches of an emitter's field on a GPU; the losses stay in its memory.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,16 @@
 
 namespace emscape::propagation {
 
-/// Device memory of the marches, for one emitter after the other on the same stream. Not for several threads
-/// at once.
+/// Device memory of the marches, for one emitter after another on the same stream. For one thread at a time.
 class FieldMarchCuda {
  public:
-  /// What the marches begin with, each member's polarisations one after another: milliseconds of the host.
+  /// Initial data of the marches, each member's polarisations one after another; takes milliseconds on the
+  /// host.
   /// @throws Error as marchAzimuthsOnGpu()
   static std::vector<BlockInput> inputs(FieldMarch& field);
 
-  /// Starts the marches of marchField(); they agree with it as marchAzimuthsOnGpu() with marchAzimuths().
+  /// Starts the marches of marchField(); the results agree with it as those of marchAzimuthsOnGpu() with
+  /// marchAzimuths().
   /// @param field   isForGpu(); may change after the call
   /// @param inputs  of the field
   /// @param warnings  device memory; the bits that marchField() returns are added at the end
@@ -28,7 +29,7 @@ class FieldMarchCuda {
 
  private:
   AzimuthMarchCuda march_;
-  /// Of the members one after another, then of the second polarisation, or the ensemble's.
+  /// Losses of the members one after another, then of the second polarisation, or of the ensemble.
   cuda::Buffer<float> losses_db_;
   cuda::Buffer<int> known_ranges_;
 };

@@ -38,7 +38,7 @@ struct BlockTeam {
   }
 };
 
-/// Blocks that a multiprocessor is to hold: 360 azimuths on 132 of them want three.
+/// Blocks per multiprocessor: 360 azimuths on 132 multiprocessors need three.
 template <class Shape>
 constexpr int kBlocks = Shape::kIntervals <= 2048   ? 3
                         : Shape::kIntervals <= 4096 ? 2
@@ -68,7 +68,7 @@ __global__ void planKernel(const __grid_constant__ MarchBlockTask task, PlannedS
   if (azimuth < task.azimuths) planSteps<Shape>(task, planned, azimuth);
 }
 
-/// By one block of kTableThreads threads.
+/// Run by one block of kTableThreads threads.
 __global__ void addStaircases(const MarchState* states, int azimuths, unsigned* warnings) {
   __shared__ int staircases;
   if (threadIdx.x == 0) staircases = 0;

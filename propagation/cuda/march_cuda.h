@@ -1,4 +1,5 @@
-/// The parabolic equation marched over all azimuths around an emitter on a GPU, one block of threads each.
+/// The march of the parabolic equation over all azimuths around an emitter on a GPU, with one block of
+/// threads per azimuth.
 #pragma once
 
 #include <cuda_runtime_api.h>
@@ -10,10 +11,10 @@
 
 namespace emscape::propagation {
 
-/// Device memory of a march, for one emitter after the other. Not for several threads at once.
+/// Device memory of a march, for one emitter after another. For one thread at a time.
 class AzimuthMarchCuda {
  public:
-  /// Starts a march. Host and device may still be busy with the one before, if it was on the same stream.
+  /// Starts a march. The previous one may still be in progress, if it is on the same stream.
   /// @param excess_db  device memory, march.cellCount() elements; written as by marchAzimuths()
   /// @param columns_at  steps whose columns are kept; see columnsOnGpu()
   /// @throws Error as marchAzimuthsOnGpu()
@@ -24,7 +25,7 @@ class AzimuthMarchCuda {
              const std::vector<int>& columns_at = {});
   /// Waits for the march.
   MarchNotes notes();
-  /// Adds staircaseWarning() of the march to bits in device memory, behind it on its stream.
+  /// Adds staircaseWarning() of the march to bits in device memory, after the march on its stream.
   void addWarnings(unsigned* warnings);
   std::vector<FieldColumn> columns();
   std::size_t bytes() const;

@@ -12,8 +12,8 @@ namespace {
 
 using cuda::check;
 
-/// The functions of libcufft that are called; the library is opened when they are, so that no program depends
-/// on it. Handles and results are plain integers in its interface.
+/// The functions of libcufft that are called; the library is opened at the first call, so that no program is
+/// linked with it. Handles and results are plain integers in its interface.
 struct Cufft {
   int (*plan1d)(int* plan, int points, int type, int batch) = nullptr;
   int (*setStream)(int plan, cudaStream_t stream) = nullptr;
@@ -59,7 +59,7 @@ std::vector<GpuMarchTime> timeMarchesOnGpu(const std::vector<AzimuthMarch>& emit
 }
 
 std::optional<double> timeCufft(int points, int batch, int steps) {
-  check(cudaFree(nullptr), "cudaFree");  // without a GPU this says so
+  check(cudaFree(nullptr), "cudaFree");  // fails without a GPU
   Cufft cufft;
   if (!cufft.open()) return std::nullopt;
   cuda::Stream stream;

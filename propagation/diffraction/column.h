@@ -1,13 +1,12 @@
 /// Delta-Bullington for one column of receivers at the end of one terrain profile, on CPU and GPU.
 ///
-/// Gives the losses of deltaBullington (diffraction.h) in a fraction of its time:
-/// - Posts are visited in blocks. The maxima of a block, computed beforehand, bound every slope and nu in it;
-///   most blocks cannot exceed what a few peaks reach and are skipped.
-/// - Several receivers share each visit, which vectorises on a CPU.
-/// - As receivers rise, the post of the largest slope or nu only moves toward the transmitter: the posts
-///   beyond it are not visited again.
-/// - Once a receiver has no loss with the greatest margin, those above it have none.
-/// Memory per column: two numbers per block.
+/// Computes the losses of deltaBullington (diffraction.h) in a fraction of its time: - Posts are visited in
+/// blocks. The maxima of a block, computed beforehand, bound every slope and nu in it;
+///   most blocks cannot exceed the values of a few peaks and are skipped.
+/// - Several receivers share each visit, which vectorises on a CPU. - With increasing height of the receiver,
+/// the post of the largest slope or nu only moves toward the transmitter: the posts beyond it are not visited
+/// again. - If a receiver has no loss with the largest margin, those above it have none. Memory per column:
+/// two numbers per block.
 #pragma once
 
 #include <cmath>
@@ -19,23 +18,22 @@
 
 namespace emscape::propagation {
 
-/// Receivers that share a visit of the posts.
+/// Number of receivers that are processed together at each post.
 constexpr int kDiffractionReceivers = 8;
 
-/// @tparam Posts  the profile:
-///     int count() const                      number of posts before the receivers, the transmitter's
-///                                            included, >= 1
+/// @tparam Posts  the profile: int count() const                      number of posts before the receivers,
+/// including the transmitter's, >= 1
 ///     double range_m(int) const              range of a post, rising strictly from 0
 ///     float height_msl_m(int) const          height of the terrain there; NaN: missing
 ///     float highest_msl_m(int block) const   upper bound of the heights in a block
 ///     float lowered_msl_m(int block) const   the same for heights less the earth's bulge d^2 / (2 a)
 ///     TerrainSums sumsBefore(int block) const  sums over the intervals that end before the block; heights
-///                                              relative to the first post. Read for the last block alone
+///                                              relative to the first post. Only read for the last block
 ///     double distance_m() const              range of the receivers, beyond the last post
 ///     float ground_msl_m() const             height of the ground below them
 ///     double sea_m() const                   length over sea up to the receivers (lengthOverSea_m); read if
-///                                            the model asks for it
-///     int lastBefore(double range_m) const   last post nearer than a range; 0 if there is none
+///     the model needs it int lastBefore(double range_m) const   last post nearer than a range; 0 if there is
+///     none
 template <class Real, class Posts>
 class DiffractionColumn {
  public:
@@ -43,17 +41,17 @@ class DiffractionColumn {
   /// @param tx_msl_m  height of the antenna; see kDiffractionAboveGround
   EMSCAPE_HD DiffractionColumn(const DiffractionModel<Real>& model, const Posts& posts, Real tx_msl_m);
 
-  /// Whether terrain is missing along the profile: the losses are unknown.
+  /// True if terrain is missing along the profile, so that the losses are unknown.
   EMSCAPE_HD bool isUnknown() const { return std::isnan(unknown_); }
 
   /// Losses (dB) of some receivers, which must be above those of the last call.
   /// @param rx_msl_m  heights (m), rising; see kDiffractionAboveGround
-  /// @return whether all receivers above the last one have no loss
+  /// @return true if all receivers above the last one have no loss
   template <int kReceivers>
   EMSCAPE_HD bool losses(const Real (&rx_msl_m)[kReceivers], Real (&loss_db)[kReceivers]);
 
  private:
-  /// The obstacles of a block: its posts without the transmitter's.
+  /// The obstacles of a block: its posts except the transmitter's.
   struct Block {
     int first, last;
     Real first_m, last_m;  ///< ranges
@@ -94,8 +92,8 @@ class DiffractionColumn {
   Real steepest_ = -Real(HUGE_VAL);  ///< max slope from the transmitter to a lowered obstacle
   Real steepest_plain_ = -Real(HUGE_VAL);        ///< the same to a plain one
   int steepest_at_ = 0, steepest_plain_at_ = 0;  ///< their posts; 0: no obstacle
-  /// Posts of the last receiver's maxima. Posts beyond them do not matter to receivers above; 0: none does.
-  /// They are visited first, as their values let most blocks be skipped.
+  /// Posts of the last receiver's maxima; 0: none. Posts beyond them are irrelevant for higher receivers.
+  /// They are visited first, so that most blocks can be skipped.
   int slope_at_, plain_at_, highest_at_, nu_at_;
   int smooth_clear_ = 0;  ///< see smoothEarthNu; 0: not yet found
 };
@@ -169,8 +167,8 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findSteepest() {
   }
 }
 
-/// Whether the smooth earth has no loss for this receiver and those above. Obstacles above the line of sight
-/// only lower the smooth surface and so raise both antennas above it.
+/// True if the smooth earth has no loss for this receiver and those above. Obstacles above the line of sight
+/// only lower the smooth surface and so increase the heights of both antennas above it.
 template <class Real, class Posts>
 EMSCAPE_HD bool DiffractionColumn<Real, Posts>::isClearOfEarth(Real rx_m) const {
   const EffectiveHeights<Real> least = effectiveHeights(trend_, tx_, rx_m);
@@ -302,7 +300,7 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findNu(Receiver (&receivers)[kRe
   for (int b = before > 0 ? before / kDiffractionBlock : -1; b >= 0; --b) {
     const Block block = blockAt(b);
     const Real lowered = Real(posts_.lowered_msl_m(b)) - base_ - tx_;
-    // the range in the block where the first Fresnel zone is widest
+    // the range in the block with the widest first Fresnel zone
     const Real half = d / 2;
     const Real widest = half < block.first_m ? block.first_m : half > block.last_m ? block.last_m : half;
     const Real width2 = widest * (d - widest);
@@ -320,7 +318,7 @@ EMSCAPE_HD void DiffractionColumn<Real, Posts>::findNu(Receiver (&receivers)[kRe
   for (int j = 0; j < kReceivers; ++j) receivers[j].nu = nu[j];
 }
 
-/// Smooth-earth correction (dB): the spherical earth's loss less Bullington's, at least 0.
+/// Smooth-earth correction (dB): the spherical earth's loss minus Bullington's, at least 0.
 /// @see P.526-15 eq. (68)
 template <class Real, class Posts>
 EMSCAPE_HD Real DiffractionColumn<Real, Posts>::smoothEarthCorrectionDb(const Receiver& at) {
@@ -358,7 +356,8 @@ EMSCAPE_HD bool DiffractionColumn<Real, Posts>::losses(const Real (&rx_msl_m)[kR
     const Real rx_m = model_.raised_m(rx_msl_m[j] - base_, trend_.rx_ground_msl_m);
     receivers[j] = {rx_m, (rx_m - tx_) / distance_m_, -infinity, -infinity, -infinity, -infinity};
   }
-  // Slopes and clearance rise with the receiver's height: the lowest or the highest receiver decides for all.
+  // Slopes and clearance increase with the receiver's height, so the lowest or the highest receiver decides
+  // for all.
   const bool has_earth = !isClearOfEarth(receivers[0].rx_m);
   if (steepest_at_ > 0) {
     if (isBlocked(receivers[0].slope)) findRxSlopes(receivers);

@@ -1,12 +1,12 @@
 /// Model `diffraction`: loss over terrain and the earth's bulge, ITU-R P.526-15 section 4.5 ("delta-
 /// Bullington"), also used by P.1812 and P.452. edges.h has the options single edge and Deygout.
 ///
-/// Bullington replaces the terrain by one knife edge, where the steepest rays from the two antennas meet.
-/// Over a smooth earth its loss is too small; the smooth-earth correction is added:
+/// Bullington replaces the terrain by one knife edge at the intersection of the steepest rays from the two
+/// antennas. Over a smooth earth its loss is too small; the smooth-earth correction is added:
 ///   L = L_bulla + max(L_dsph - L_bulls, 0)
-/// with L_bulls Bullington's loss and L_dsph the spherical earth's, both for a smooth earth under antennas
-/// that are as high above it as the real ones above the terrain's trend. The loss is continuous in range,
-/// height and frequency.
+/// with L_bulls Bullington's loss and L_dsph the spherical earth's, both for a smooth earth, with antenna
+/// heights above it equal to those above the terrain's trend. The loss is continuous in range, height and
+/// frequency.
 #pragma once
 
 #include <cmath>
@@ -66,7 +66,7 @@ struct DiffractionModel {
   Real half_curvature;  ///< 1 / (2 a): the earth's bulge is this times d1 d2
   bool sea_by_height;   ///< see DiffractionParameters
 
-  /// Height of an antenna, no lower above its ground than kDiffractionAboveGround.
+  /// Height of an antenna, at least kDiffractionAboveGround above its ground.
   static EMSCAPE_HD Real raised_m(Real antenna_m, Real ground_m) {
     const Real lowest = ground_m + Real(kDiffractionAboveGround.min);
     return antenna_m > lowest ? antenna_m : lowest;
@@ -99,8 +99,9 @@ EMSCAPE_HD Real bullingtonLossDb(Real nu, Real distance_m) {
   return edge_db + (1 - std::exp(-edge_db / 6)) * (10 + Real(2e-5) * distance_m);
 }
 
-/// nu of the edge where the steepest rays meet. With slopes t and r of the rays relative to the line of sight
-/// the edge is at range d r / (t + r) and t times that above it: nu = sqrt(2 d t r / lambda).
+/// nu of the edge at the intersection of the steepest rays. With slopes t and r of the rays relative to the
+/// line of sight, the edge is at range d r / (t + r) and t times this range above the line: nu = sqrt(2 d t r
+/// / lambda).
 /// @param slope_to_rx  (h_rs - h_ts) / d
 /// @param tx_slope     largest slope from the transmitter to an obstacle, >= slope_to_rx
 /// @param rx_slope     the same from the receiver, >= -slope_to_rx
@@ -143,7 +144,7 @@ EMSCAPE_HD EffectiveHeights<Real> effectiveHeights(const TerrainTrend<Real>& tre
   return {tx_msl_m - start, rx_msl_m - end};
 }
 
-/// Length (m) of a path over sea: the parts at or below mean sea level, to half way between posts.
+/// Length (m) of a path over sea: parts at or below mean sea level, with boundaries half way between posts.
 /// @param count       posts, the last of which is below the receiver
 /// @param rangeOf     range (m) of a post
 /// @param heightOf    height (m above mean sea level) of a post
@@ -196,7 +197,7 @@ struct DeltaBullington {
   EffectiveHeights<Real> effective{};  ///< above the smooth surface
 };
 
-/// Bullington's nu over heights of obstacles: terrain, or a smooth earth where all are 0.
+/// Bullington's nu over heights of obstacles: terrain, or a smooth earth if all are 0.
 /// @param heightOf  height (m) of post i, 0 < i < count - 1
 /// @return -infinity without a post between
 /// @see P.526-15 eq. (50) to (55)
@@ -238,7 +239,7 @@ EMSCAPE_HD DeltaBullington<Real> deltaBullington(const DiffractionModel<Real>& m
   const double distance_m = profile.range_m[last];
   const Real d = Real(distance_m);
   const Real base = Real(profile.height_msl_m[0]);
-  // Heights relative to the first post keep the precision of float.
+  // Heights are relative to the first post, for precision in float.
   TerrainTrend<Real> trend;
   trend.tx_ground_msl_m = 0;
   trend.rx_ground_msl_m = Real(profile.height_msl_m[last]) - base;

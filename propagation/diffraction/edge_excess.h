@@ -1,4 +1,4 @@
-/// Excess of the model `diffraction` by its options: the single largest edge, or Deygout's three.
+/// Excess of the model `diffraction` with the options single edge and Deygout (three edges).
 #pragma once
 
 #include "emscape/base/host_device.h"

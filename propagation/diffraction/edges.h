@@ -1,8 +1,8 @@
-/// Options of the model `diffraction` that take terrain as knife edges one by one: the single largest edge,
-/// and Deygout's construction with three edges or more.
+/// Options of the model `diffraction` with separate knife edges: the single largest edge, and Deygout's
+/// construction with three or more edges.
 ///
-/// Both miss the smooth earth's own diffraction: on flat ground they depend on how densely the profile is
-/// sampled. Deygout's overstates the loss where edges stand close together.
+/// Both omit the diffraction of the smooth earth: over flat ground they depend on the sampling of the
+/// profile. Deygout's construction overestimates the loss of edges that are close together.
 #pragma once
 
 #include <cmath>
@@ -62,8 +62,8 @@ EMSCAPE_HD Real deygoutLossDb(const DiffractionModel<Real>& model, const Terrain
   return main_db + (1 - std::exp(-main_db / 6)) * (side_db + empirical_db);
 }
 
-/// Loss (dB) of all edges of Deygout's construction down to a depth, as he gave it: their losses added up.
-/// @param depth  1 the main edge alone, 2 three edges, 3 seven, ...; 1..kDeepestDeygout
+/// Loss (dB) of all edges of Deygout's construction down to a depth, as published: the sum of their losses.
+/// @param depth  1 only the main edge, 2 three edges, 3 seven, ...; 1..kDeepestDeygout
 /// @see J. Deygout, IEEE Trans. AP-14 (1966), p. 480
 constexpr int kDeepestDeygout = 6;
 template <class Real>
@@ -74,7 +74,7 @@ EMSCAPE_HD Real recursiveDeygoutLossDb(const DiffractionModel<Real>& model, cons
     Real first_msl_m, last_msl_m;
     int depth;
   };
-  // Depth first: for each level at most one section waits.
+  // Depth first: at most one section per level is pending.
   Section waiting[kDeepestDeygout + 1];
   int count = 0;
   waiting[count++] = {0, profile.count - 1, tx_msl_m, rx_msl_m,

@@ -16,9 +16,8 @@ constexpr Real kDbPerNeper = Real(8.685889638065037);
 template <class Real>
 constexpr Real kKnifeEdgeClear = Real(-0.78);
 
-/// J(nu), the loss (dB) of a knife edge over free space: the approximation that every other method here
-/// takes. Rises from 0 at nu = -0.78 (a step of 0.02 dB) and is within 0.13 dB of knifeEdgeExactDb from -0.5
-/// up.
+/// J(nu), the loss (dB) of a knife edge over free space: the approximation that all other methods here use.
+/// Rises from 0 at nu = -0.78 (a step of 0.02 dB) and is within 0.13 dB of knifeEdgeExactDb from -0.5 up.
 /// @param nu  height of the edge above the line of sight in first Fresnel radii, times sqrt(2)
 /// @accuracy float within 1e-5 dB of double up to nu = 100
 /// @see P.526-15 eq. (31)
@@ -44,7 +43,7 @@ struct FresnelAuxiliary {
 /// @accuracy 1e-9 for x >= 1
 /// @see Abramowitz and Stegun 7.3.5, 7.3.6 with 7.4.22, 7.4.23
 EMSCAPE_HD inline FresnelAuxiliary fresnelAuxiliary(double x) {
-  // as fine as the poles and the bell's width ask
+  // step as required by the poles and the width of the bell
   const double step = x > 2.5 ? 0.5 / x : 0.2;
   double f = 0.5, g = 0;
   for (int i = 1; i <= 24; ++i) {
@@ -93,7 +92,8 @@ EMSCAPE_HD inline FresnelIntegrals fresnelIntegrals(double x) {
   return x < 0 ? FresnelIntegrals{-c, -s} : FresnelIntegrals{c, s};
 }
 
-/// J(nu) exactly (dB): below nu = -0.78 it swings about 0, the field's interference with the edge's.
+/// J(nu) exactly (dB). Below nu = -0.78 it oscillates about 0 because of the interference with the diffracted
+/// field.
 /// @accuracy 1e-6 dB
 /// @see P.526-15 eq. (7), (30)
 EMSCAPE_HD inline double knifeEdgeExactDb(double nu) {

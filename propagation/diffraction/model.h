@@ -15,7 +15,7 @@ InputFaults checkDiffraction(const EmitterInputs& inputs);
 std::vector<std::string> diffractionPathWarnings(const PathInputs& inputs);
 Explanation explainDiffraction(const PathInputs& inputs, PathColumn& path);
 
-/// By the method delta_bullington, whatever the settings say.
+/// By the method delta_bullington, whatever the settings.
 DiffractionExcess diffractionExcess(const PathInputs& inputs);
 /// By the methods single_edge and deygout.
 EdgeExcess edgeExcess(const PathInputs& inputs);

@@ -1,4 +1,4 @@
-/// One terrain profile as DiffractionColumn reads it.
+/// One terrain profile, for DiffractionColumn.
 #pragma once
 
 #include "emscape/base/host_device.h"
@@ -42,7 +42,7 @@ class ProfilePosts {
   EMSCAPE_HD float lowered_msl_m(int block) const {
     return maxima_.lowered_msl_m[block];
   }
-  /// Those before the last block: DiffractionColumn reads no others.
+  /// Sums before the last block, the only ones that DiffractionColumn reads.
   EMSCAPE_HD TerrainSums sumsBefore(int) const {
     return before_last_;
   }

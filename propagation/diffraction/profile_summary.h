@@ -1,4 +1,5 @@
-/// What DiffractionColumn asks of a profile beside its posts: maxima of blocks, and sums over all intervals.
+/// Values of a profile for DiffractionColumn besides its posts: maxima of blocks, and sums over all
+/// intervals.
 #pragma once
 
 #include "emscape/base/host_device.h"

@@ -1,5 +1,5 @@
 /// Diffraction loss of a smooth spherical earth: the first term of the residue series, ITU-R P.526-15 section
-/// 3.1.1, and its interpolation up to a clear path, section 3.2.
+/// 3.1.1, and its interpolation to a path with sufficient clearance, section 3.2.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace emscape::propagation {
 
-/// What the first term needs of frequency, polarisation and ground; P.526 writes km, MHz and GHz, here are
-/// metres.
+/// Parameters of the first term that depend on frequency, polarisation and ground. P.526 uses km, MHz and
+/// GHz; here lengths are in metres.
 template <class Real>
 struct FirstTermGround {
   Real admittance;    ///< K a^(1/3), m^(1/3): eq. (15), (16)
@@ -48,7 +48,7 @@ EMSCAPE_HD Real heightGainDb(Real b, Real admittance) {
   return gain > least ? gain : least;
 }
 
-/// First term (dB), eq. (13): negative well within the horizon, where it does not hold.
+/// First term (dB), eq. (13): negative well within the horizon, where it is not valid.
 /// @param distance_m, height1_m, height2_m  >= 0, heights above the smooth surface
 /// @param earth_radius_m  effective
 template <class Real>
@@ -91,11 +91,11 @@ struct SphericalEarth {
 template <class Real>
 constexpr Real kRequiredClearance = Real(0.5520071);
 
-/// Range (m) from the lower of two antennas to where a smooth earth reflects a ray to the higher.
+/// Range (m) from the lower of two antennas to the reflection point on a smooth earth.
 ///
 /// P.526 gives the point by b, which solves m b^3 - (m + 1) b + c = 0, through an arc cosine. Here 1 - b is
-/// found from the lower antenna's side, by two of Halley's steps from the quadratic that small ones solve: it
-/// keeps its digits there, also in single precision, and takes a quarter of the time.
+/// computed by two Halley steps from the solution of the quadratic equation for small values: this is
+/// accurate near the lower antenna, also in single precision, and takes a quarter of the time.
 /// @param low_m, high_m  heights, 0 < low_m <= high_m, within their common horizon
 /// @accuracy 2e-7 relative at the horizon, 4e-9 to 7/10 of the way there, 4e-15 to a third
 /// @see P.526-15 eq. (25)
@@ -114,7 +114,7 @@ EMSCAPE_HD Real reflectionFromLower_m(Real distance_m, Real low_m, Real high_m, 
   return distance_m * u / 2;
 }
 
-/// The clearance of a line of sight over a smooth earth where a ray would be reflected.
+/// The clearance of a line of sight over a smooth earth at the reflection point.
 template <class Real>
 struct LeastClearance {
   Real clearance_m;
@@ -137,12 +137,12 @@ EMSCAPE_HD LeastClearance<Real> leastClearance(const SphericalEarth<Real>& earth
           kRequiredClearance<Real> * std::sqrt(earth.wavelength_m * d_low * d_high * inverse_distance)};
 }
 
-/// What decides over a line of sight, from the antennas' heights h1 and h2.
+/// Terms that determine the clearance of a line of sight, from the antennas' heights h1 and h2.
 template <class Real>
 struct SightLine {
   Real sum_m;     ///< (sqrt(h1) + sqrt(h2))^2
   Real middle_m;  ///< sqrt(h1 h2)
-  Real bulge_m;   ///< d^2 / (2 a): the line meets no smooth earth as long as this is below sum_m
+  Real bulge_m;   ///< d^2 / (2 a): the line does not intersect the smooth earth if this is below sum_m
 };
 
 template <class Real>
@@ -152,12 +152,14 @@ EMSCAPE_HD SightLine<Real> sightLine(const SphericalEarth<Real>& earth, Real dis
   return {height1_m + height2_m + 2 * middle, middle, distance_m * distance_m / (2 * earth.earth_radius_m)};
 }
 
-/// Whether the clearance is everywhere at least the required one. If so, it is for every greater height too.
-/// True of most paths on which it is where the ray would be reflected, which is what P.526 asks for.
+/// True if the clearance is everywhere at least the required one; then it is also for every greater height.
+/// This holds for most paths with the required clearance at the reflection point, which is the condition of
+/// P.526.
 ///
-/// The part x of the way needs R sqrt(x (1 - x)), R = 0.552 sqrt(lambda d), which is no more than R/2 (x / s
-/// + s (1 - x)) for any s: a straight line. Under the line of sight less this one, with s = sqrt(h1 / h2),
-/// that is one between heights reduced by the factor 1 - R / (2 sqrt(h1 h2)), the earth must not stand.
+/// At the fraction x of the path the required clearance is R sqrt(x (1 - x)), R = 0.552 sqrt(lambda d), which
+/// is at most R/2 (x / s + s (1 - x)) for any s: a straight line. With s = sqrt(h1 / h2), the line of sight
+/// minus this line is a line between heights reduced by the factor 1 - R / (2 sqrt(h1 h2)), which the earth
+/// must not intersect.
 template <class Real>
 EMSCAPE_HD bool isClearThroughout(const SphericalEarth<Real>& earth, Real distance_m,
                                   const SightLine<Real>& line) {

@@ -1,4 +1,4 @@
-/// Excess of free_space and horizon, which have none of their own: the attenuation by the air.
+/// Excess of free_space and horizon, which consists only of the atmospheric attenuation.
 #pragma once
 
 #include "emscape/base/host_device.h"

@@ -1,9 +1,9 @@
 /// Model `horizon`: terrain and earth masking along straight rays over an earth of effective radius k a.
 ///
-/// A point is lit if no terrain between it and the emitter reaches above the ray that joins them; behind
-/// terrain there is no field at all (no diffraction: an upper bound of shadow). The refractivity gradient is
-/// taken as linear in height, which makes rays straight over the enlarged earth (ITU-R P.834; k from the
-/// gradient of P.453, 4/3 by default).
+/// A point is in sight if no terrain between it and the emitter is above the ray between them. Behind terrain
+/// there is no field (no diffraction: an upper bound of shadow). Refractivity is assumed to be linear in
+/// height, so that rays are straight over the effective earth (ITU-R P.834; k from the gradient of P.453, 4/3
+/// by default).
 #pragma once
 
 #include <cmath>
@@ -49,8 +49,8 @@ struct HorizonGeometry {
   }
 };
 
-/// Slope of the ray that grazes the terrain along one azimuth: the largest to its samples. A point beyond
-/// them is lit if the slope to it is not below.
+/// Slope of the ray that grazes the terrain along one azimuth: the largest slope to its samples. A point
+/// beyond them is in sight if the slope to it is at least this.
 template <class Real>
 struct GrazingSlope {
   Real highest = -Real(HUGE_VAL), unknown = 0;
@@ -64,7 +64,8 @@ struct GrazingSlope {
   EMSCAPE_HD Real value() const { return highest + unknown; }
 };
 
-/// The slope of that ray over a smooth earth at mean sea level, in closed form.
+/// The slope of that ray over a smooth earth at mean sea level, in closed form. Nearer than the horizon it is
+/// that to a centimetre below the surface, so that rounding does not put places on the surface in shadow.
 /// @param range_m  of the point
 template <class Real>
 EMSCAPE_HD Real smoothGrazingSlope(const HorizonGeometry<Real>& geometry, double range_m) {
@@ -72,7 +73,9 @@ EMSCAPE_HD Real smoothGrazingSlope(const HorizonGeometry<Real>& geometry, double
   const double height_m = double(geometry.station_height_msl_m);
   if (height_m < 0) return Real(HUGE_VAL);
   const double tangent = std::sqrt(height_m * (2 * radius_m + height_m)) / radius_m;  // of the dip
-  if (range_m < radius_m * std::atan(tangent)) return geometry.slopeTo(Real(0), geometry.termsAt(range_m));
+  constexpr double kBelow_m = 0.01;
+  if (range_m < radius_m * std::atan(tangent))
+    return geometry.slopeTo(Real(-kBelow_m), geometry.termsAt(range_m));
   return Real(-tangent);
 }
 

@@ -10,13 +10,13 @@
 
 namespace emscape::propagation {
 
-/// Warning bit, besides those of ItmWarning: ITM refused a path within its zone, and diffraction was used.
+/// Warning bit, besides those of ItmWarning: ITM refused a path within its limits, and diffraction was used.
 constexpr unsigned kItmRefused = 1u << 30;
 
-/// ITM is for antennas near the ground: a voxel's loss (dB) is a weighted mean of ITM and diffraction.
-/// The weight of ITM is 1 up to kItmFull_m above the ground, from there linear down to 0 at the model's
-/// limit, for either end; and from 0 at kItmNearest_m along the ground, where the model's data begin, it
-/// rises linearly to 1 at twice that distance.
+/// ITM is for antennas near the ground: a voxel's loss (dB) is a weighted mean of ITM and diffraction. For
+/// the height of either end, the weight of ITM is 1 up to kItmFull_m above the ground and falls linearly to 0
+/// at the model's limit. Along the ground it increases linearly from 0 at kItmNearest_m, where the model's
+/// data begin, to 1 at twice that distance.
 constexpr double kItmFull_m = 2000;
 constexpr double kItmNearest_m = kItmDistance.min * kItmDistance.si_per_unit;
 
@@ -39,9 +39,10 @@ struct ItmExcess {
   ItmQuantiles<float> quantiles;
   bool is_area = false;
   ItmArea<float> area;  ///< without the distance
-  double step_m = 0;    ///< of profiles, or somewhat less: whole steps
+  double step_m = 0;    ///< of profiles; reduced to give whole steps
 
-  /// Loss over free space along the ground; the field uses it as the loss over free space along the path.
+  /// Loss relative to free space along the ground; the field applies it relative to free space along the
+  /// path.
   /// @accuracy heights between evaluations: 99 % within 0.1 dB of the model, except at its jumps
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch,
                                  float* excess_db) const {
@@ -99,7 +100,7 @@ struct ItmExcess {
   EMSCAPE_HD float pathWeight(const ExcessColumn& column) const {
     return itmHeightWeight(static_cast<double>(txAgl(column))) * itmRangeWeight(column.range_m);
   }
-  /// Height above ground, no lower than the model allows.
+  /// Height above ground, at least the model's minimum.
   static EMSCAPE_HD float above(float height_msl_m, float ground_msl_m) {
     const float above_m = height_msl_m - ground_msl_m, least_m = static_cast<float>(kItmHeight.min);
     return above_m > least_m ? above_m : least_m;
@@ -114,11 +115,11 @@ struct ItmExcess {
     intervals = intervals < last ? intervals : last;
     return intervals > 2 ? intervals : 2;
   }
-  /// Distance between the posts of a path. It has so few digits that multiples and tenths of it are exact:
-  /// the method truncates such distances to whole posts, and in the last digit of a path's length two
-  /// computations of it may differ.
+  /// Distance between the posts of a path. It has so few digits that multiples and tenths of it are exact,
+  /// because the method truncates such distances to whole posts, and two computations of a path's length may
+  /// differ in the last digit.
   static EMSCAPE_HD double evenStep_m(double range_m, int intervals) {
-    constexpr double kParts = 1 << 24;  // of a metre
+    constexpr double kParts = 1 << 24;  // parts of a metre
     return std::floor(range_m / intervals * kParts + 0.5) / kParts;
   }
   EMSCAPE_HD void spaceEvenly(const TerrainProfile& profile, float* heights_msl_m) const {

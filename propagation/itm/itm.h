@@ -1,6 +1,6 @@
 /// Model `itm`: Irregular Terrain Model (Longley-Rice), version 1.2.2; point-to-point and area mode.
 ///
-/// Gives the basic transmission loss between two antennas near the ground that is not exceeded for
+/// Computes the basic transmission loss between two antennas near the ground that is not exceeded for
 /// percentages of time, of locations and of situations. The loss is not continuous over distance: it may jump
 /// where a horizon moves from one post of the profile to another. This is a property of the model.
 ///
@@ -113,7 +113,7 @@ struct ItmLink {
   Real relative_permittivity = 15;
   Real conductivity_s_m = Real(0.005);
   Real sea_level_refractivity =
-      301;  ///< N_0 (N-units); gives the curvature of the rays, in place of a k factor
+      301;  ///< N_0 (N-units); determines the curvature of the rays, instead of a k factor
   ItmClimate climate = ItmClimate::continental_temperate;
   int variability_mode = 12;  ///< 0..3, 10..13, 20..23: see itmQuantileDb
 };
@@ -275,7 +275,7 @@ EMSCAPE_HD ItmResult<Real> itmPointToPoint(const ItmProfile<Height>& profile, co
   return result;
 }
 
-/// Loss over terrain of which only the irregularity is known.
+/// Loss over terrain that is described only by its irregularity.
 template <class Real>
 EMSCAPE_HD ItmResult<Real> itmAreaMode(const ItmArea<Real>& area, const ItmLink<Real>& link,
                                        const ItmQuantiles<Real>& quantiles) {

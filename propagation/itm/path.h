@@ -61,7 +61,7 @@ struct ItmPath {
   EMSCAPE_HD Real horizonAngle_rad() const {
     return terminal[0].horizon_angle_rad + terminal[1].horizon_angle_rad;
   }
-  /// theta: angle by which a path of some length bends behind the horizons [Alg 3.8, 4.12].
+  /// theta: angle by which a path of this length bends beyond the horizons [Alg 3.8, 4.12].
   EMSCAPE_HD Real beyondHorizon_rad(Real path_length_m) const {
     return itm_detail::larger(horizonAngle_rad(), -horizonDistance_m() / effective_earth_radius_m) +
            path_length_m / effective_earth_radius_m;
@@ -96,7 +96,7 @@ EMSCAPE_HD void itmSetMedium(ItmPath<Real>& path, Real frequency_hz, bool vertic
   if (vertical_polarization) path.ground_impedance = path.ground_impedance / permittivity;
 }
 
-/// Horizon distance and angle of a terminal of known effective height, from the terrain's irregularity alone
+/// Horizon distance and angle of a terminal of known effective height, only from the terrain's irregularity
 /// [Alg 3.3, 3.4].
 template <class Real>
 EMSCAPE_HD void itmEstimateHorizon(ItmTerminal<Real>& terminal, Real smooth_horizon_distance_m,

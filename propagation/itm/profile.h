@@ -12,8 +12,8 @@
 
 namespace emscape::propagation {
 
-/// A product with its own rounding. Fused with an addition, as compilers may do, it would sometimes select
-/// other posts than the reference does, and change the loss by a tenth of a dB.
+/// A product with separate rounding. If a compiler fused it with an addition, other posts than in the
+/// reference might be selected, which changes the loss by a tenth of a dB.
 EMSCAPE_HD inline double itmProduct(double a, double b) {
   volatile double product = a * b;
   return product;
@@ -31,7 +31,7 @@ struct ItmProfile {
 
 namespace itm_detail {
 
-/// Four partial sums, so that additions do not wait for each other.
+/// Four partial sums, for independent additions.
 constexpr int kLanes = 4;
 
 /// Sum over the posts first..last of the heights above `base_m`.
@@ -127,8 +127,8 @@ struct HorizonDistances {
   double distance_m[2];
 };
 
-/// Sets the horizons of both terminals: the posts at the largest elevation as seen from each. A terminal
-/// without an obstacle sees the other one.
+/// Sets the horizons of both terminals: the posts at the largest elevation from each. Without an obstacle the
+/// horizon is the other terminal.
 template <class Real, class Height>
 EMSCAPE_HD HorizonDistances findHorizons(const ItmProfile<Height>& profile, ItmPath<Real>& path) {
   const double length_m = profile.length_m();
@@ -188,7 +188,7 @@ template <int kMost, class Real>
 EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
   constexpr int kBuckets = 128;
   static_assert(kMost <= 255, "places and counts are bytes");
-  // in lanes, so that comparisons do not wait for each other
+  // in lanes, for independent comparisons
   Real lane_least[kLanes] = {values[0], values[0], values[0], values[0]};
   Real lane_most[kLanes] = {values[0], values[0], values[0], values[0]};
   for (int i = 0; i < count; i += kLanes) {
@@ -205,8 +205,7 @@ EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
 
   unsigned char bucket[kMost];
   unsigned char members[kBuckets] = {};
-  unsigned char more_members[kBuckets] =
-      {};  // used alternately, so that equal buckets do not wait for each other
+  unsigned char more_members[kBuckets] = {};  // used alternately, so that equal buckets are independent
   const Real scale = (kBuckets - 1) / (most - least);
   for (int i = 0; i < count; ++i)
     bucket[i] = static_cast<unsigned char>(static_cast<int>((values[i] - least) * scale));
@@ -268,7 +267,7 @@ EMSCAPE_HD Real irregularityBetween_m(const ItmProfile<Height>& profile, double 
   return range_m / (1 - Real(0.8) * Real(std::exp(-(end_m - begin_m) / 50e3)));
 }
 
-/// Effective heights where the terminals see each other; their horizons are then estimated from the
+/// Effective heights if the terminals are in line of sight; their horizons are then estimated from the
 /// irregularity.
 template <class Real, class Height>
 EMSCAPE_HD void setLineOfSight(const ItmProfile<Height>& profile, double begin_m, double end_m,
@@ -294,7 +293,7 @@ EMSCAPE_HD void setLineOfSight(const ItmProfile<Height>& profile, double begin_m
   }
 }
 
-/// Effective heights where each terminal has its own horizon.
+/// Effective heights if each terminal has its own horizon.
 template <class Real, class Height>
 EMSCAPE_HD void setBeyondHorizon(const ItmProfile<Height>& profile, double begin_m, double end_m,
                                  const HorizonDistances& horizons, ItmPath<Real>& path) {
@@ -323,7 +322,8 @@ EMSCAPE_HD void itmSetTerrain(ItmPath<Real>& path, const ItmProfile<Height>& pro
   path.profile_is_known = true;
   path.distance_m = Real(profile.length_m());
   const HorizonDistances horizons = findHorizons(profile, path);
-  // terrain near a terminal is left out: 15 structural heights or a tenth of its horizon distance, if less
+  // terrain near a terminal is left out: up to 15 structural heights or a tenth of its horizon distance,
+  // whichever is less
   const auto foreground_m = [&](int end) {
     const double near_m = itmProduct(15, static_cast<double>(path.terminal[end].height_agl_m));
     const double tenth_m = itmProduct(0.1, horizons.distance_m[end]);

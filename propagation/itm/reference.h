@@ -1,8 +1,8 @@
 /// ITM: the reference attenuation, the median excess over free space [Hufford 1995, sec. 4].
 ///
 /// Beyond the smooth-earth horizon it is a straight line in distance through the diffraction losses at two
-/// distances far behind it, or the one through two scatter losses where that is lower; before it, a curve
-/// through two-ray losses that meets the first line at the horizon.
+/// distances far beyond it, or the line through two scatter losses where that is lower; before the horizon, a
+/// curve through two-ray losses that meets the diffraction line at the horizon.
 #pragma once
 
 #include <cmath>
@@ -90,7 +90,7 @@ class Diffraction {
         itmTerrainDeviation_m(itmIrregularityWithin_m(path.smoothHorizonDistance_m(), path.irregularity_m));
     clutter_db_ =
         smaller(Real(15), 5 * std::log10(1 + Real(1e-5) * product_m2 * path.frequency_mhz * deviation_m));
-    // 10 m2 more if the profile is known: low antennas are then not among clutter
+    // 10 m2 more if the profile is known: low antennas are then not in clutter
     const Real known_m2 = product_m2 + (path.profile_is_known ? 10 : 0);
     height_ratio_ = std::sqrt(1 + (effective_m2 - product_m2) / known_m2);
   }
@@ -140,8 +140,7 @@ class Diffraction {
   Real height_x_, height_gains_db_, clutter_db_, height_ratio_;
 };
 
-/// Two rays over rough ground, blended with the diffraction line as the terrain grows rougher
-/// [Alg 4.46-4.50].
+/// Two rays over rough ground, blended with the diffraction line with increasing roughness [Alg 4.46-4.50].
 template <class Real>
 EMSCAPE_HD Real lineOfSightDb(const ItmPath<Real>& path, Real distance_m, const LossLine<Real>& diffraction) {
   const Real wave_number = path.waveNumber();

@@ -13,7 +13,7 @@ std::vector<Setting> p1812Settings();
 InputFaults checkP1812(const EmitterInputs& inputs);
 std::vector<std::string> p1812PathWarnings(const PathInputs& inputs);
 P1812Excess p1812Excess(const PathInputs& inputs);
-/// By the path's own loss in double; the field draws lines between some of its heights.
+/// Computes the loss of the path in double; the field interpolates linearly between some heights.
 Explanation explainP1812(const PathInputs& inputs, PathColumn& path);
 
 }  // namespace emscape::propagation

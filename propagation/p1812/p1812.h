@@ -1,4 +1,4 @@
-/// Model `p1812`: paths over terrain between 30 MHz and 6 GHz, for percentages of time and of places, ITU-R
+/// Model `p1812`: paths over terrain between 30 MHz and 6 GHz, for percentages of time and locations, ITU-R
 /// P.1812-8. propagation/clear_air has the parts in common with P.452.
 #pragma once
 
@@ -35,7 +35,7 @@ struct P1812Model {
   Real location_deviate = 0;          ///< standard normal deviate of the percentage of locations; 0: median
   Real clutter_height_m = 0;          ///< R at the receiver
 
-  /// Loss (dB) of a path over that of free space.
+  /// Loss (dB) of a path relative to free space.
   /// @param rx_msl_m  of the antenna; see p1812Path
   EMSCAPE_HD Real excessDb(const ClearAirColumn<Real>& column, Real rx_msl_m) const;
 };
@@ -70,11 +70,11 @@ template <class Real>
 struct P1812Path {
   ClearAirPath<Real> geometry;
   ClearAirLoss<Real> median;  ///< of locations
-  Real location_db = 0;       ///< what the percentage of locations adds
+  Real location_db = 0;       ///< additional loss for the percentage of locations
   Real loss_db = 0;           ///< L_b: basic transmission loss
 };
 
-/// @param rx_msl_m  of the antenna; no lower than 1 m above the ground
+/// @param rx_msl_m  of the antenna; at least 1 m above the ground
 /// @see P.1812-8 sections 4.7 and 4.9, eq. (69), outdoors
 template <class Real>
 EMSCAPE_HD P1812Path<Real> p1812Path(const P1812Model<Real>& model, const ClearAirColumn<Real>& column,

@@ -13,7 +13,7 @@ std::vector<Setting> p452Settings();
 InputFaults checkP452(const EmitterInputs& inputs);
 std::vector<std::string> p452PathWarnings(const PathInputs& inputs);
 P452Excess p452Excess(const PathInputs& inputs);
-/// By the path's own loss in double; the field draws lines between some of its heights.
+/// Computes the loss of the path in double; the field interpolates linearly between some heights.
 Explanation explainP452(const PathInputs& inputs, PathColumn& path);
 
 }  // namespace emscape::propagation

@@ -41,7 +41,7 @@ struct P452Model {
     const Real* const g = gases_db_per_km;
     return g[0] + sea_fraction * (4 * g[1] - 3 * g[0] - g[2] + sea_fraction * 2 * (g[0] - 2 * g[1] + g[2]));
   }
-  /// Loss (dB) of a path over that of free space.
+  /// Loss (dB) of a path relative to free space.
   /// @param rx_msl_m  of the antenna; see p452Path
   EMSCAPE_HD Real excessDb(const ClearAirColumn<Real>& column, Real rx_msl_m) const;
 };
@@ -78,7 +78,7 @@ struct P452Path {
   ClearAirLoss<Real> loss;
 };
 
-/// @param rx_msl_m  of the antenna; no lower than 1 m above the ground
+/// @param rx_msl_m  of the antenna; at least 1 m above the ground
 /// @see P.452-18 section 4.5
 template <class Real>
 EMSCAPE_HD P452Path<Real> p452Path(const P452Model<Real>& model, const ClearAirColumn<Real>& column,

@@ -85,7 +85,7 @@ P528Ray P528Atmosphere::traceUp(double lower_km, double upper_km, double elevati
 double P528Atmosphere::grazingHeight_km(double height_km, double elevation_rad) const {
   const double invariant_km =
       airAt(height_km).refractive_index * (kP528EarthRadius_km + height_km) * std::cos(elevation_rad);
-  // By bisection to 1 m, as in the published figures: near grazing the path's length depends on it.
+  // By bisection to 1 m, as in the published figures, on which the path's length depends near grazing.
   constexpr double kTolerance_km = 0.001;
   double grazing_km = height_km;
   double step_km = height_km / 2;

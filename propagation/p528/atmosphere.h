@@ -26,8 +26,8 @@ class P528Atmosphere {
   explicit P528Atmosphere(double frequency_hz);
 
   /// A ray from a height up to another.
-  /// @param elevation_rad  at the lower end; below 0 the ray first descends to where it grazes. A ray that
-  ///                       would meet the ground is taken as one that grazes it.
+  /// @param elevation_rad  at the lower end; below 0 the ray first descends to its grazing point. A ray that
+  /// would meet the ground is replaced by one that grazes it.
   /// @pre 0 <= lower_km <= upper_km <= 20
   P528Ray trace(double lower_km, double upper_km, double elevation_rad) const;
 

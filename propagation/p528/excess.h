@@ -12,9 +12,10 @@
 
 namespace emscape::propagation {
 
-/// A table of the loss less free space and of the horizon's distance. Heights go by their square root, in
-/// which the horizon's distance is almost linear; ranges by their ratio to that of the horizon, so that lobes
-/// and horizon of neighbouring curves are at the same ratio; the nodes are densest near the horizon.
+/// A table of the loss minus free space and of the horizon's distance. Heights are tabulated by their square
+/// root, in which the horizon's distance is almost linear; ranges by their ratio to that of the horizon, so
+/// that lobes and horizon of neighbouring curves are at the same ratio. The nodes are densest near the
+/// horizon.
 struct P528Excess {
   static constexpr bool kNeedsTerrain = false;
   static constexpr bool kInParts = false;
@@ -24,10 +25,10 @@ struct P528Excess {
   const float* tables = nullptr;
   int height_count = 0, range_count = 0;
   float lowest_root = 0, heights_per_root = 0;
-  float farthest_ratio = 0;  ///< of range to the horizon's
+  float farthest_ratio = 0;  ///< of range to that of the horizon
   double surface_msl_m = 0;
-  /// Of a surface: the tables are the excess (dB) of each point, places x heights, place fastest; 0: as
-  /// above.
+  /// For a surface: the tables are the excess (dB) of each point, positions x heights, position fastest; 0:
+  /// tables as above.
   std::size_t place_count = 0;
 
   /// @accuracy see docs/models.md
@@ -44,7 +45,7 @@ struct P528Excess {
   }
 
   /// Position of a ratio of ranges among the nodes, 0..1: half of them are before the horizon, and they are
-  /// densest at it on either side.
+  /// densest on both sides of it.
   static EMSCAPE_HD float positionOf(float ratio, float farthest_ratio) {
     if (ratio <= 1) return 0.5f * (1 - std::sqrt(1 - ratio));
     const float beyond = (ratio - 1) / (farthest_ratio - 1);
@@ -77,9 +78,9 @@ struct P528Excess {
   }
 };
 
-/// @param tables  receives the tables that the result points to
+/// @param tables  receives the tables to which the result points
 P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables);
-/// The same over a surface, every point by its own curve.
+/// The same over a surface, with a separate curve for every point.
 P528Excess p528ExcessAt(const PathInputs& inputs, const PathPoints& points, std::vector<float>& tables);
 
 }  // namespace emscape::propagation

@@ -17,7 +17,7 @@ constexpr double kEffectiveEarth_km = 9257;
 constexpr double kSurfaceRefractivity = 341;
 constexpr double kPermittivity = 15;
 constexpr double kConductivity_s_m = 0.005;
-/// Length of the shortest ray: free space ends there.
+/// Length of the shortest ray, the lower limit of free space.
 constexpr double kNearest_km = 0.001;
 
 double square(double x) {
@@ -48,10 +48,10 @@ double diffractionHeightGain_db(double x, double k) {
   return std::max(low_db, -117.0);
 }
 
-/// Root of a rising function of the grazing angle, 0..pi/2; the nearer end where it has none.
+/// Root of an increasing function of the grazing angle, 0..pi/2; the nearer end if it has none.
 /// @accuracy 1e-15
 /// @see Chandrupatla 1997, Advances in Engineering Software 28: inverse quadratic interpolation where that is
-/// known to converge, else halves
+/// known to converge, else bisection
 template <class Rising>
 double grazingAngleWhere(Rising rising) {
   constexpr double kWithin_rad = 1e-15;
@@ -94,7 +94,7 @@ double grazingAngleWhere(Rising rising) {
 struct P528Curve::TwoRays {
   double grazing_rad;
   double distance_km;          ///< along the ground
-  double earth_radius_km;      ///< a_a: effective, for rays as steep as these
+  double earth_radius_km;      ///< a_a: effective, for rays of this steepness
   double to_reflection_km[2];  ///< D: from each terminal, horizontally
   double direct_km;            ///< r_0
   double reflected_km;         ///< r_12
@@ -105,7 +105,7 @@ struct P528Curve::TwoRays {
 /// Scatter by the troposphere [11].
 struct P528Curve::Scatter {
   double loss_db = 0;
-  double crossing_height_km = 0;  ///< h_v: of the volume that both horizon rays see
+  double crossing_height_km = 0;  ///< h_v: of the common volume of both horizon rays
   double angle_rad = 0;           ///< theta_s
 };
 
@@ -236,7 +236,7 @@ double P528Curve::twoRayGain_db(const TwoRays& rays) const {
 /// Limits of the lobing region [6, 8].
 void P528Curve::setLobing() {
   last_lobe_rad_ = raysAtDelay(wavelength_km_ / 2).grazing_rad;
-  // the farthest distance at which two rays in opposition give the free-space level
+  // the farthest distance at which two rays in phase opposition give the free-space level
   const double last_free_km = raysAtDelay(wavelength_km_ / 6).distance_km;
   const double no_diffraction_km = -diffraction_.at_zero_db / diffraction_.slope_db_km;  // (3-7)
   const double near_km = terminal_[0].horizon_km;
@@ -313,7 +313,7 @@ P528Curve::Scatter P528Curve::scatterAt(double distance_km) const {
   const double half_km = (distance_km - horizon_km_) / 2;  // (11-2), (11-6)
   if (half_km <= 0) return scatter;
 
-  // how the horizon rays bend on their way to the volume (11-7) to (11-19)
+  // bending of the horizon rays on their way to the volume (11-7) to (11-19)
   const double curvature = 1 / kP528EarthRadius_km;
   const double gradient = curvature - 1 / kEffectiveEarth_km;
   const double scale_km = kSurfaceRefractivity * 1e-6 / gradient;
@@ -372,8 +372,8 @@ P528Curve::Scatter P528Curve::scatterAt(double distance_km) const {
   return scatter;
 }
 
-/// Distance at which scatter takes over from diffraction: the first kilometre over which its loss grows more
-/// slowly [3, step 6].
+/// Distance at which scatter replaces diffraction: the first kilometre over which its loss grows more slowly
+/// [3, step 6].
 void P528Curve::setBeyondHorizon() {
   constexpr int kSearched_km = 100;
   constexpr double kMinLoss_db = 20;  // below, the scatter model does not hold
@@ -396,7 +396,7 @@ void P528Curve::setBeyondHorizon() {
     }
     before_db = loss_db;
   }
-  // diffraction alone, unless scatter is less
+  // only diffraction, unless scatter is less
 }
 
 /// [3, steps 7 to 10]
@@ -412,7 +412,7 @@ P528Loss P528Curve::transhorizon(double distance_km, double time_percent) const 
   const auto slowAt = [&](double percent) {
     return p528SlowVariability(horizon_km_, distance_km, frequency_mhz_, percent, 1, -excess_db).gain_db;
   };
-  // fading grows from that at the horizon to Rayleigh's at 1.5 degrees
+  // fading increases from that at the horizon to Rayleigh fading at 1.5 degrees
   constexpr double kRayleigh_db = 20;
   const double share = std::clamp(scatter.angle_rad / degToRad(1.5), 0.0, 1.0);
   const double k_db = horizon_k_db_ + share * (kRayleigh_db - horizon_k_db_);

@@ -1,7 +1,7 @@
-/// Model `p528`: air-ground paths over a smooth earth, ITU-R P.528-5 (equations cited by its Annex 2,
-/// section-number).
+/// Model `p528`: air-ground paths over a smooth earth, ITU-R P.528-5 (equations are cited as section-number
+/// of its Annex 2).
 ///
-/// Gives the basic transmission loss that is not exceeded for a percentage of time, from the line of sight
+/// Computes the basic transmission loss that is not exceeded for a percentage of time, from the line of sight
 /// through diffraction to scatter, in a mean continental atmosphere, over land of average constants: neither
 /// terrain nor the k factor is used.
 #pragma once
@@ -36,7 +36,7 @@ struct P528Terminal {
   double effective_height_km = 0;   ///< over the effective earth
   double height_difference_km = 0;  ///< of the two
   P528Ray horizon_ray;              ///< that grazes the ground
-  double horizon_km = 0;            ///< distance along the ground to where it does
+  double horizon_km = 0;            ///< distance along the ground to the grazing point
 };
 
 /// Loss against distance for one pair of heights. The terms that do not depend on the distance are computed
@@ -90,13 +90,13 @@ class P528Curve {
   double horizon_km_;         ///< d_ML: both horizons' distances, summed
   Line diffraction_;
   double horizon_loss_db_;  ///< A_dML: by diffraction, at the horizon
-  double lobing_end_km_;    ///< d_0: end of the two-ray region; from there a line to the horizon
+  double lobing_end_km_;    ///< d_0: end of the two-ray region, followed by a line to the horizon
   double lobing_end_gain_db_;
   double last_lobe_rad_;    ///< psi_limit: rays steeper than this have the free-space level, no lobes
   double horizon_k_db_;     ///< of the fading at the horizon
-  Line beyond_;             ///< the diffraction line, turned to meet the scatter curve if need be
+  Line beyond_;             ///< the diffraction line, turned to meet the scatter curve if necessary
   double scatter_from_km_;  ///< d_crx
-  bool lesser_counts_;      ///< from there on: the lesser loss of both; else scatter alone
+  bool lesser_counts_;      ///< from scatter_from_km_ on: the smaller loss of both; else only scatter
 };
 
 }  // namespace emscape::propagation

@@ -38,7 +38,7 @@ constexpr double kFading_db[kCurves][kPercentages] = {
 };
 // clang-format on
 
-/// Position of a value between two entries of a rising list; values outside the list take its ends.
+/// Position of a value between two entries of an ascending list; values outside are clamped to its ends.
 struct ListPosition {
   int below;  ///< the entry below; the next one exists
   double fraction;

@@ -1,4 +1,4 @@
-/// The models that have an excess loss per column, as the field sees them.
+/// The models that have an excess loss per column, with the interface for the field.
 ///
 /// A model is a plain struct with
 ///     static constexpr bool kNeedsTerrain;  // true: it reads the column's profile
@@ -7,17 +7,18 @@
 /// which fills the excess (dB) of a column's voxels and returns warnings (bits). It runs on host and device.
 /// On a device with more threads than columns that fit into its memory, begin() runs once per column, and
 /// fill(), which also takes a ColumnPart, in several threads per column, each for some of its heights.
-/// begin() returns 0, or kMissingTerrain with NaN for every voxel; then there is nothing to fill. A model
-/// with a member `tables` (const float*) has that point to its tables, on the host or on the device. A model
-/// with a reflected ray, whose row of the registry says so, also has
+/// begin() returns 0, or kMissingTerrain with NaN for every voxel; then there is nothing to fill. The member
+/// `tables` (const float*), if there is one, points to the model's tables, on the host or on the device. A
+/// model with a reflected ray, whose row of the registry says so, also has
 ///     static constexpr bool kReflects = true;
 ///     EMSCAPE_HD ReflectedRay reflectedRay(double range_m, float height_msl_m, float& excess_db) const;
-/// for one voxel, which gives the ray and the excess between isotropic antennas.
-/// A model whose row says on_effective_earth has
+/// for one voxel, which returns the ray and the excess between isotropic antennas. A model whose row says
+/// on_effective_earth has
 ///     static constexpr bool kOnEffectiveEarth = true;
 /// A model whose row names several mechanisms has
 ///     static constexpr bool kHasMechanisms = true;
-/// and a last parameter (const MechanismStore&), which takes the mechanism of each height; fill() too.
+/// and a last parameter (const MechanismStore&), which receives the mechanism of each height; also for
+/// fill().
 #pragma once
 
 #include <type_traits>
@@ -44,7 +45,7 @@ struct Reflects : std::false_type {};
 template <class Model>
 struct Reflects<Model, std::void_t<decltype(Model::kReflects)>> : std::true_type {};
 
-/// True for models whose rays are straight over the effective earth: their heights are those on it.
+/// True for models whose rays are straight over the effective earth, and whose heights are on it.
 template <class Model, class = void>
 struct OnEffectiveEarth : std::false_type {};
 template <class Model>

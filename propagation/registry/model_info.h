@@ -1,5 +1,5 @@
-/// The registry of propagation models: one row per model, which the scenario schema, validation, warnings,
-/// explanations and the field read.
+/// The registry of propagation models: one row per model, used by the scenario schema, validation, warnings,
+/// explanations and the field.
 #pragma once
 
 #include <string>
@@ -21,9 +21,9 @@ namespace emscape::propagation {
 
 /// Treatment of oxygen and water vapour by a model.
 enum class GasRole {
-  on_request,  ///< the model is a bound: added only if the atmosphere's `gases` is `always`
+  on_request,  ///< the model is a lower bound of the loss: added only if the atmosphere's `gases` is `always`
   added,       ///< added unless the atmosphere's `gases` is `never`
-  included     ///< in the model's own loss
+  included     ///< part of the model's loss
 };
 
 /// CPU time of an emitter's losses on one core, to an order of magnitude. Measured with the four emitters of
@@ -31,7 +31,7 @@ enum class GasRole {
 /// and 100 x 100 x 50 voxels.
 struct ModelCost {
   double voxel_ns = 0;   ///< at one voxel
-  double emitter_s = 0;  ///< of its tables and marches, on a grid of any size
+  double emitter_s = 0;  ///< of its tables and marches, independent of the grid
 };
 
 /// The excess of a model that marches outwards, and the march that makes its tables.
@@ -44,22 +44,22 @@ struct ModelInfo {
   PropagationModel model = PropagationModel::free_space;
   std::string name;       ///< as in scenario files
   std::string reference;  ///< the publication that the model follows
-  std::string accuracy;   ///< as measured, with the names of the tests; README's table quotes it
+  std::string accuracy;  ///< measured accuracy, with the names of the tests; quoted in the table of README.md
   ModelCost cost;
-  /// Keys of the model's own section in an emitter, and its description; none: no section.
+  /// Keys and description of the model's section in an emitter; empty: no section.
   std::vector<Setting> settings;
   std::string settings_description;
   std::vector<PropagationModel> also_uses;  ///< other models whose settings are read
   std::vector<const ModelLimit*> limits;
   std::vector<std::string> reference_datasets;  ///< of `emscape check` that test the model
 
-  std::vector<Mechanism> mechanisms;  ///< those that may determine its loss; of most models itself
+  std::vector<Mechanism> mechanisms;  ///< those that may determine its loss; for most models only its own
 
   GasRole gases = GasRole::added;
   bool casts_shadow = false;        ///< no field behind terrain
-  bool on_effective_earth = false;  ///< rays by k_factor or the atmosphere's refraction, not its own
+  bool on_effective_earth = false;  ///< refraction by k_factor or the atmosphere, not by the model
   bool on_smooth_surface = false;   ///< PathInputs::surface_msl_m is read
-  bool has_reflected_ray = false;   ///< its excess has one: Reflects in excess_model.h
+  bool has_reflected_ray = false;   ///< see Reflects in excess_model.h
   bool needs_extent = false;        ///< PathInputs::extent is read to make the excess
 
   /// Checks before anything is computed.
@@ -72,17 +72,16 @@ struct ModelInfo {
   std::vector<std::string> (*warningMessages)(unsigned warnings) = [](unsigned) {
     return std::vector<std::string>{};
   };
-  /// The parts of the loss of one path, without the air.
+  /// The parts of the loss of one path, without atmospheric attenuation.
   Explanation (*explain)(const PathInputs&, PathColumn&) = nullptr;
-  /// Makes the excess model; null: there is none. `tables` receives the data that the result points to.
+  /// Makes the excess model; null: none. `tables` receives the data to which the result points.
   ExcessModel (*excess)(const PathInputs&, std::vector<float>& tables) = nullptr;
-  /// The same over a surface, of a model whose `excess` interpolates where the surface's points must equal
-  /// `explain`; null: `excess` does not.
+  /// The same over a surface, for models whose `excess` interpolates, because the surface's points must equal
+  /// `explain`; null: `excess` does not interpolate.
   ExcessModel (*excess_at)(const PathInputs&, const PathPoints&, std::vector<float>& tables) = nullptr;
-  /// The same of a model that marches outwards, in place of `excess`. @throws Error (bad_input) for what
-  /// `choices` refuses
+  /// The same for a model that marches outwards, instead of `excess`. @throws Error (bad_input) as `choices`
   RadialExcess (*radial)(const PathInputs&, const RadialInputs&) = nullptr;
-  /// What such a model chooses by itself. @throws Error (bad_input) with the value and what is allowed
+  /// The automatic choices of such a model. @throws Error (bad_input) with the value and the allowed range
   std::vector<ModelChoice> (*choices)(const PathInputs&, const RadialInputs&) = nullptr;
 };
 
@@ -104,7 +103,7 @@ bool settingsEnter(const ModelInfo& settings_of, const ModelInfo& chosen);
 bool hasGases(const EmitterInputs& inputs);
 /// True if attenuation by gases or rain is added.
 bool hasAirLoss(const EmitterInputs& inputs);
-/// True if the paths have an excess loss, of the model or of the air.
+/// True if the paths have an excess loss, from the model or the atmosphere.
 bool hasExcess(const EmitterInputs& inputs);
 /// True if PathInputs::extent is read.
 bool needsExtent(const EmitterInputs& inputs);

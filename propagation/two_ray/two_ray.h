@@ -1,4 +1,4 @@
-/// Model `two_ray`: the direct ray and the one that a smooth spherical earth or sea reflects, and their
+/// Model `two_ray`: the direct ray, the ray reflected by a smooth spherical earth or sea, and their
 /// interference (lobing).
 ///
 /// The reflected ray has Fresnel's coefficient of its ground and polarisation, reduced by roughness and by
@@ -6,12 +6,12 @@
 /// radii the loss changes to diffraction, linearly in the remaining clearance; beyond the horizon it is that
 /// of the spherical earth alone:
 ///   L = q L_two-ray + (1 - q) L_first-term(a_m), q = clearance / required clearance, 0..1
-/// which is P.526's interpolation (section 3.2) with the interference in place of 0 dB. It is continuous in
+/// which is P.526's interpolation (section 3.2) with the interference instead of 0 dB. It is continuous in
 /// range, heights and frequency.
 ///
-/// No terrain: heights are above one smooth surface. The loss is that between isotropic antennas; TwoRayPath
-/// has the reflected ray's amplitude and direction, with which the field weighs the two rays by the antennas'
-/// gains (emfield/two_rays.h).
+/// There is no terrain: heights are above one smooth surface. The loss is for isotropic antennas; TwoRayPath
+/// has the reflected ray's amplitude and direction, with which the field weights the two rays by the
+/// antennas' gains (emfield/two_rays.h).
 #pragma once
 
 #include <cmath>
@@ -50,7 +50,7 @@ struct TwoRayParameters {
 };
 
 /// Fresnel's reflection coefficient of a plane ground.
-/// @param permittivity  eps' - i eps''; time goes as exp(+i omega t)
+/// @param permittivity  eps' - i eps''; time dependence exp(+i omega t)
 /// @param sine          of the grazing angle, 0..1
 /// @return -1 at grazing for both polarisations
 /// @see P.526-15 section 4.1, eq. (9), (10) of P.2040
@@ -129,7 +129,7 @@ TwoRayModel<Real> twoRayModel(const TwoRayParameters& parameters) {
 /// The two rays over a spherical earth.
 template <class Real>
 struct ReflectedPath {
-  Real path_difference_m;  ///< reflected less direct
+  Real path_difference_m;  ///< reflected minus direct
   Real length_ratio;       ///< direct over reflected, 0..1
   Real sine;               ///< of the grazing angle
   Real divergence;         ///< 0..1
@@ -180,7 +180,7 @@ EMSCAPE_HD Real depressionSine(Real earth_radius_m, Real height_m, Real point_m)
   return drop_m / std::sqrt(drop_m * drop_m + level_m * level_m);
 }
 
-/// Amplitude of the reflected ray over that of the direct one, both between isotropic antennas; for the
+/// Amplitude of the reflected ray relative to the direct ray, both between isotropic antennas; for the
 /// envelope its magnitude.
 template <class Real>
 EMSCAPE_HD Complex<Real> reflectedAmplitude(const TwoRayModel<Real>& model, const ReflectedPath<Real>& path) {
@@ -194,7 +194,7 @@ EMSCAPE_HD Complex<Real> reflectedAmplitude(const TwoRayModel<Real>& model, cons
   return reflection * (Complex<Real>{std::cos(phase), -std::sin(phase)} * amplitude);
 }
 
-/// Propagation factor of the two rays: the field's amplitude over that in free space.
+/// Propagation factor of the two rays: the field's amplitude relative to free space.
 template <class Real>
 EMSCAPE_HD Real interferenceFactor(const TwoRayModel<Real>& model, const ReflectedPath<Real>& path) {
   return abs(Complex<Real>{1, 0} + reflectedAmplitude(model, path));
@@ -205,7 +205,7 @@ template <class Real>
 struct TwoRayPath {
   Real excess_db = 0;        ///< loss over free space between isotropic antennas
   Complex<Real> reflected;   ///< reflectedAmplitude(); 0 beyond the horizon
-  Real weight = 0;           ///< q: part of the interference in the loss, 0..1
+  Real weight = 0;           ///< q: weight of the interference in the loss, 0..1
   Real depression_sine = 0;  ///< of the reflected ray at end 1
 };
 
@@ -221,7 +221,7 @@ EMSCAPE_HD TwoRayPath<Real> twoRayPath(const TwoRayModel<Real>& model, Real dist
   const Real lowest = Real(kTwoRayHeight.min);
   const Real h1 = height1_m > lowest ? height1_m : lowest, h2 = height2_m > lowest ? height2_m : lowest;
   const Real radius_m = model.earth.earth_radius_m;
-  distance_m = distance_m < 1 ? Real(1) : distance_m;  // straight above: finite
+  distance_m = distance_m < 1 ? Real(1) : distance_m;  // vertically above: finite
   const Real roots = std::sqrt(h1) + std::sqrt(h2);
   TwoRayPath<Real> path;
   if (distance_m >= std::sqrt(2 * radius_m) * roots) {
@@ -249,7 +249,7 @@ EMSCAPE_HD TwoRayPath<Real> twoRayPath(const TwoRayModel<Real>& model, Real dist
   return path;
 }
 
-/// The loss alone (dB).
+/// Only the loss (dB).
 template <class Real>
 EMSCAPE_HD Real twoRayExcessDb(const TwoRayModel<Real>& model, Real distance_m, Real height1_m,
                                Real height2_m) {

@@ -1,4 +1,4 @@
-"""Emscape: the electromagnetic environment of a scenario, computed, as arrays.
+"""Emscape: computes the electromagnetic environment of a scenario as arrays.
 
     import emscape as em
 

@@ -1,4 +1,4 @@
-"""Fields as labelled arrays: xarray with units, times, and the projection, by the CF conventions."""
+"""Fields as labelled arrays: xarray objects with units, times and projection by the CF conventions."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _UDUNITS = {
     "dBm": "0.1 lg(re 1 mW)",
     "dBuV/m": "0.05 lg(re 1e-6 V m-1)",
 }
-"""Units as UDUNITS writes them, where it differs: it has no symbols for logarithmic ones."""
+"""Units in UDUNITS notation where it differs: UDUNITS has no symbols for logarithmic units."""
 
 _SPATIAL_REF = "spatial_ref"
 CONVENTIONS = {"Conventions": "CF-1.8", "source": "emscape", "history": "emscape"}
@@ -39,12 +39,12 @@ NO_FILL = {"_FillValue": None}
 
 
 def udunit_of(unit: str) -> str:
-    """A unit of the quantities as UDUNITS writes it."""
+    """A unit of the quantities in UDUNITS notation."""
     return _UDUNITS.get(unit, unit)
 
 
 def flags(labels: Sequence[str], none: bool) -> dict[str, Any]:
-    """Attributes that say what whole numbers mean. ``none``: -1 means nothing."""
+    """Attributes that define the meaning of integer values. ``none``: -1 means no value."""
     first = -1 if none else 0
     words = (["none"] if none else []) + ["".join(c if c.isalnum() or c in "-." else "_" for c in label) for label in labels]
     return {"flag_values": np.arange(first, len(labels), dtype=np.float32), "flag_meanings": " ".join(words)}
@@ -82,8 +82,8 @@ def _local_crs(latitude_deg: float, longitude_deg: float) -> xarray.Variable:
 
 
 def wkt_crs(wkt: str) -> xarray.Variable:
-    """A projection by its WKT as the variable spatial_ref, which rioxarray reads; with the parameters of the CF conventions
-    where pyproj (of the extra "gis") is installed."""
+    """A projection, given as WKT, as the variable spatial_ref, which rioxarray reads; with the parameters of the CF conventions
+    if pyproj (extra "gis") is installed."""
     attributes: dict[str, Any] = {"long_name": "projection"}
     try:
         from pyproj import CRS
@@ -95,7 +95,7 @@ def wkt_crs(wkt: str) -> xarray.Variable:
 
 
 def time_coordinate(times_s: Sequence[float], epoch: datetime.datetime | None, dims: tuple[str, ...]) -> xarray.Variable:
-    """Times as datetime64[ns]; without an epoch as seconds."""
+    """Times as datetime64[ns]; in seconds without an epoch."""
     values = np.asarray(times_s, dtype=np.float64)
     shaped = values if dims else values[0]
     if epoch is None:
@@ -107,7 +107,7 @@ def time_coordinate(times_s: Sequence[float], epoch: datetime.datetime | None, d
 
 
 def _space(grid: dict[str, Any]) -> dict[Hashable, Any]:
-    """Coordinates x, y, z and, of the frame "altitude", spatial_ref."""
+    """Coordinates x, y, z and, in the frame "altitude", spatial_ref."""
     frame = grid.get("frame")
     names = ("east", "north", "up")
     attributes: list[dict[str, Any]] = [
@@ -147,7 +147,7 @@ def _attributes(channel: str, grid: dict[str, Any], scenario: Scenario | None) -
 
 
 def _masked(field: Field, channel: str) -> npt.NDArray[np.float32]:
-    """The values with NaN where there is none."""
+    """The values, NaN where there is none."""
     values = field.numpy(channel)
     return values if field.first_valid(channel) is None else np.where(field.mask(channel), np.float32(np.nan), values)
 
@@ -183,8 +183,8 @@ def dataset_of(field: Field, quantities: Sequence[str] = ()) -> xarray.Dataset:
 
 
 class _Frames:
-    """Fields of a series as they are asked for; the last one is kept, for its other quantities. Threads may share it. A
-    pickled one makes a solver of its own."""
+    """Fields of a series, computed on request; the last one is kept for its other quantities. Thread-safe. A pickled object makes
+    its own solver."""
 
     def __init__(self, scenario: Scenario, times_s: list[float], options: dict[str, Any]) -> None:
         self.scenario, self.times_s, self.options = scenario, times_s, options
@@ -205,7 +205,7 @@ class _Frames:
 
 
 class _SeriesArray(BackendArray):
-    """One quantity of a series: (time, z, y, x), computed where it is indexed."""
+    """One quantity of a series: (time, z, y, x); indexing computes the values."""
 
     def __init__(self, frames: _Frames, channel: str, shape: tuple[int, ...]) -> None:
         self.frames, self.channel, self.shape, self.dtype = frames, channel, shape, np.dtype(np.float32)
@@ -233,15 +233,15 @@ def open_series(
     threads: int = 0,
     allow_missing_terrain: bool = False,
 ) -> xarray.Dataset:
-    """A scenario's field over time as a dataset of (time, z, y, x), float32, NaN below ground; computed where it is read.
+    """A scenario's field over time as a dataset of (time, z, y, x), float32, NaN below ground; computed when read.
 
     Coordinates are ``time`` (datetime64 if the scenario has an epoch, else s), ``z``, ``y``, ``x`` (m) and ``spatial_ref``;
     variables are the quantities, with units. Times are computed one after another, fastest in their order.
 
     :param times: as ``Scenario.times``
     :param quantities: empty: those of the scenario
-    :param chunks: of dask; "auto": one per time, if dask is installed; None: without dask
-    Raises UsageError for times that are none, InputError for quantities that the scenario cannot have.
+    :param chunks: chunks for dask; "auto": one per time if dask is installed; None: without dask
+    Raises UsageError for invalid times, InputError for quantities that the scenario cannot have.
     """
     times_s = scenario.times(times)
     grid = scenario._handle.grid()

@@ -6,7 +6,7 @@ from typing import ClassVar, NamedTuple
 
 
 class Problem(NamedTuple):
-    """A fault in a document, or something worth a warning."""
+    """An error or a warning about a document."""
 
     file: str
     """File, or the edit ("PATH=VALUE") that causes it; empty if unknown."""
@@ -15,13 +15,13 @@ class Problem(NamedTuple):
     column: int
     """Counts from 1; 0: unknown."""
     message: str
-    """Names the value, the allowed range and its unit."""
+    """Message: the value, the allowed range and its unit."""
 
 
 class Error(Exception):
     """Base of all errors of Emscape.
 
-    ``str(error)`` starts with the place, "file:line:column: ", if it is known.
+    ``str(error)`` starts with the location, "file:line:column: ", if it is known.
     """
 
     status: ClassVar[int] = 1
@@ -29,7 +29,7 @@ class Error(Exception):
 
     def __init__(self, message: str, file: str = "", line: int = 0, column: int = 0) -> None:
         self.message = message
-        """The message without the place."""
+        """The message without the location."""
         self.file = file
         """File, or the edit that causes the error; empty if unknown."""
         self.line = line
@@ -44,7 +44,7 @@ class Error(Exception):
 
 
 class OtherError(Error):
-    """A file that cannot be written, memory that does not suffice, or anything else (status 1)."""
+    """A file that cannot be written, too little memory, or any other error (status 1)."""
 
 
 class UsageError(Error, ValueError):
@@ -54,19 +54,19 @@ class UsageError(Error, ValueError):
 
 
 class InputError(Error, ValueError):
-    """A file whose contents are faulty, or that is missing (status 3)."""
+    """A file that is missing or has invalid contents (status 3)."""
 
     status = 3
 
 
 class ScenarioError(InputError):
-    """A scenario with faults; all of them at once (status 3)."""
+    """A scenario with errors, all reported together (status 3)."""
 
     def __init__(self, problems: list[Problem]) -> None:
         lines = [":".join(filter(None, (p.file, str(p.line or ""), str(p.column or "")))) + f": {p.message}" for p in problems]
         super().__init__("\n".join(lines))
         self.problems = problems
-        """The faults, in the order of the file."""
+        """The errors, in the order of the file."""
         if problems:
             self.file, self.line, self.column = problems[0].file, problems[0].line, problems[0].column
 
@@ -75,7 +75,7 @@ class ScenarioError(InputError):
 
 
 class DeviceError(Error, RuntimeError):
-    """A GPU that is missing, lost, or lacks memory (status 4)."""
+    """A GPU that is missing, was lost, or has too little memory (status 4)."""
 
     status = 4
 
@@ -90,5 +90,5 @@ _CLASSES: dict[int, type[Error]] = {cls.status: cls for cls in (OtherError, Usag
 
 
 def make(code: int, message: str, file: str, line: int, column: int) -> Error:
-    """The exception for an error of the extension, which calls this."""
+    """Returns the exception for an error of the extension; called by the extension."""
     return _CLASSES.get(code, OtherError)(message, file, line, column)

@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 class Field:
     """The field of one instant: a volume per quantity, on one grid.
 
-    Arrays have the axes (z, y, x), in C order: x runs fastest, towards east; y towards north; z upwards. Made by
-    ``Solver.at`` and ``read``. Later updates of the solver do not change it, and it outlives the solver.
+    Arrays have the axes (z, y, x), in C order: x (east) varies fastest, then y (north), then z (up). Made by ``Solver.at`` and
+    ``read``. Later updates of the solver do not change it, and it may outlive the solver.
     """
 
     __slots__ = ("_handle", "_grid")
@@ -45,7 +45,7 @@ class Field:
 
     @property
     def quantities(self) -> list[str]:
-        """Names of the volumes: the quantity, with ":" and the emitter or band where it is not of all together."""
+        """Names of the volumes: the quantity, followed by ":" and the emitter or band unless it covers all emitters."""
         return self._handle.names
 
     @property
@@ -102,7 +102,7 @@ class Field:
     def numpy(self, quantity: str | None = None) -> npt.NDArray[np.float32]:
         """The values: (z, y, x) float32, in the quantity's unit; read-only, without a copy, kept alive by the array.
 
-        Voxels below ground or without a known field hold the floor (``info``); ``mask`` tells which.
+        Voxels below ground or without a known field hold the floor (``info``); ``mask`` marks them.
 
         :param quantity: None: the first
         Raises UsageError for a quantity that the field does not have.
@@ -113,8 +113,8 @@ class Field:
         """The values as an object with ``__dlpack__``, for ``torch.from_dlpack``, ``cupy.from_dlpack`` and the like: (z, y, x)
         float32, read-only, kept alive by the array.
 
-        In the host's memory that of ``numpy``. On a GPU the values are brought into its linear memory once per field, by a copy on
-        the GPU: every call gives the same pointer.
+        In host memory it is the memory of ``numpy``. On a GPU the values are copied into linear memory once per field, on the
+        GPU: every call returns the same pointer.
         """
         return self._handle.dlpack(self._name(quantity))
 
@@ -123,13 +123,13 @@ class Field:
         return self.dlpack().__dlpack__(**arguments)
 
     def __dlpack_device__(self) -> tuple[int, int]:
-        """DLPack's type and number of the device of ``dlpack``."""
+        """DLPack device type and number of ``dlpack``."""
         device: tuple[int, int] = self.dlpack().__dlpack_device__()
         return device
 
     def first_valid(self, quantity: str | None = None) -> npt.NDArray[np.uint16] | None:
-        """The lowest z index that holds a field, per column: (y, x) uint16; the number of voxels along z: none does. None: no
-        voxel is masked.
+        """The lowest z index that holds a field, per column: (y, x) uint16; the number of voxels along z if there is none. None
+        if no voxel is masked.
         """
         return self._handle.first_valid(self._name(quantity))
 
@@ -141,27 +141,27 @@ class Field:
         return np.asarray(np.arange(self.shape[0])[:, np.newaxis, np.newaxis] < first[np.newaxis])
 
     def ground_msl_m(self) -> npt.NDArray[np.float32] | None:
-        """Height of the ground above mean sea level (m) below the columns' centres: (y, x); NaN where it is unknown. None
+        """Height of the ground above mean sea level (m) at the columns' centres: (y, x); NaN where it is unknown. None
         without terrain, and for fields from files.
         """
         return self._handle.ground()
 
     def info(self, quantity: str | None = None) -> dict[str, Any]:
-        """What the values are: quantity, unit, time_s, time_utc, floor, range_min, range_max, categorical, extra."""
+        """Description of the values: quantity, unit, time_s, time_utc, floor, range_min, range_max, categorical, extra."""
         return self._handle.info(self._name(quantity))
 
     def geodetic(self, x_m: float, y_m: float, z_m: float) -> tuple[float, float, float]:
-        """Latitude (deg), longitude (deg) and height above the WGS84 ellipsoid (m) of a position of the grid's frame (m).
+        """Latitude (deg), longitude (deg) and height above the WGS84 ellipsoid (m) of a position in the grid's frame (m).
 
         Raises UsageError for a grid without a position on the earth.
         """
         return self._handle.geodetic(x_m, y_m, z_m)
 
     def write(self, file: str | os.PathLike[str], quantities: Sequence[str] = ()) -> None:
-        """Writes a volume file, by its ending: .vdb, .nvdb, .vti, .raw. It appears when it is complete.
+        """Writes a volume file in the format of its extension: .vdb, .nvdb, .vti, .raw. The file appears when it is complete.
 
-        :param quantities: empty: all; formats of one volume take one
-        Raises InputError for an unknown ending or too many quantities, OtherError if it cannot be written.
+        :param quantities: empty: all; formats for a single volume take one
+        Raises InputError for an unknown extension or too many quantities, OtherError if the file cannot be written.
         """
         self._handle.write(os.fspath(file), list(quantities))
 
@@ -187,7 +187,7 @@ class Field:
         grid = self.grid
         image = pyvista.ImageData(dimensions=grid["dims"], spacing=grid["spacing_m"], origin=grid["first_center_m"])
         for name in quantities or self.quantities:
-            image.point_data[name] = self.numpy(name).ravel()  # VTK's order of points is ours: x fastest
+            image.point_data[name] = self.numpy(name).ravel()  # VTK has the same order of points: x fastest
         return image
 
     def __repr__(self) -> str:
@@ -196,9 +196,9 @@ class Field:
 
 
 class Solver:
-    """Computes the field of a scenario at any time; what neither time nor edits change is kept.
+    """Computes the field of a scenario at any time; keeps what neither time nor edits change.
 
-    Threads may share it: calls follow one another, and Python is not held up by them.
+    Thread-safe: calls are serialised, and release Python's global interpreter lock.
     """
 
     __slots__ = ("_handle",)
@@ -217,12 +217,12 @@ class Solver:
         """Reads the terrain and prepares the grid.
 
         :param backend: "auto" (a GPU if there is a usable one), "cpu" or "cuda"
-        :param threads: of the CPU; 0: one per core, or as many as the caller's oneTBB arena has
+        :param threads: CPU threads; 0: one per core, or as many as the caller's oneTBB arena has
         :param quantities: names; empty: those of the scenario
-        :param allow_missing_terrain: columns over holes of the terrain are masked instead of an error
-        :param cache_mib: bound on what is kept of the emitters (MiB); 0: none
-        :param move_tolerance_m: an emitter that moved less than this (m) with time keeps its geometry
-        Raises InputError where terrain is missing, DeviceError for a GPU that is not there or lacks memory.
+        :param allow_missing_terrain: columns over holes in the terrain are masked instead of raising an error
+        :param cache_mib: limit of the memory for kept results of emitters (MiB); 0: none is kept
+        :param move_tolerance_m: an emitter that moves less than this (m) over time keeps its geometry
+        Raises InputError for missing terrain, DeviceError for a GPU that is missing or has too little memory.
         """
         self._handle = native.Solver(
             scenario._handle, backend, threads, list(quantities), allow_missing_terrain, cache_mib, move_tolerance_m
@@ -245,18 +245,18 @@ class Solver:
 
     @property
     def warnings(self) -> list[str]:
-        """Warnings of the models so far, each once with its count."""
+        """Warnings of the models so far, each listed once with its count."""
         return self._handle.warnings()
 
     def at(self, time_s: float, scenario: Scenario | None = None) -> Field:
         """The field at a time.
 
-        Only what changed since the last call is computed: an emitter that has moved, a beam that has turned, or what an edit
-        concerns.
+        Only what has changed since the last call is computed: an emitter that has moved, a beam that has turned, or what an edit
+        affects.
 
         :param time_s: seconds since the epoch
         :param scenario: an edited scenario (``Scenario.with_set``), from now on; None: the last one
-        Raises InputError for a platform below ground, missing terrain, or a value that a model refuses; DeviceError.
+        Raises InputError for a platform below ground, missing terrain, or a value that a model rejects; DeviceError.
         """
         return Field(self._handle.at(time_s, scenario._handle if scenario is not None else None))
 

@@ -1,4 +1,4 @@
-"""Maps of coverage as labelled arrays."""
+"""Coverage maps as labelled arrays."""
 
 from __future__ import annotations
 
@@ -75,23 +75,22 @@ def coverage(
     backend: str = "auto",
     progress: Progress = None,
 ) -> xarray.DataArray | xarray.Dataset:
-    """Maps of coverage at heights above ground or sea, as ``emscape coverage`` computes them.
+    """Coverage maps at heights above ground or sea level, as computed by ``emscape coverage``.
 
-    A place is covered where the quantity is at or above the threshold; radars look at the target, wherever their scan points.
+    A position is covered if the quantity is at or above the threshold; radars look at the target, wherever their scan points.
 
     :param heights: "agl:30,150;msl:1000:3000:500" (m)
-    :param product: one name or several; ``products()`` lists them
+    :param product: a name, or a sequence of names; ``products()`` lists them
     :param quantity: a quantity of the field
-    :param threshold: in the quantity's unit; None: the usual one
+    :param threshold: in the quantity's unit; None: the quantity's default
     :param times: as ``Scenario.times``
-    :param cell_m: side of a pixel (m); None: that of the voxels
+    :param cell_m: side of a pixel (m); None: side of a voxel
     :param area: "LATITUDE,LONGITUDE,RADIUS_M" or "bbox:WEST,SOUTH,EAST,NORTH" (deg); empty: the scenario's region
     :param crs: "utm", "local" (azimuthal equidistant) or "EPSG:NUMBER"
-    :return: of one product a DataArray of (time, height, y, x), float32, NaN where there is no value; an axis of one time or
-        height is a coordinate without an axis. Of a sequence of products a Dataset of such arrays; with heights above ground
-        and above sea, of arrays PRODUCT_agl and PRODUCT_msl. The projection is in ``spatial_ref``: with rioxarray
-        imported, ``.rio.crs``
-    Raises UsageError, InputError and DeviceError as the command line does.
+    :return: for a single name a DataArray (time, height, y, x), float32, NaN where there is no value; a single time or height is a
+        scalar coordinate. For a sequence of names a Dataset of such arrays, named PRODUCT_agl and PRODUCT_msl if heights are above
+        ground and above sea level. The projection is in ``spatial_ref``; with rioxarray imported, ``.rio.crs``
+    Raises UsageError, InputError and DeviceError, as on the command line.
     """
     names = [product] if isinstance(product, str) else list(product)
     maps, grid, warnings = native.coverage(
@@ -158,7 +157,7 @@ def _array_of(group: list[dict[str, Any]], coordinates: dict[Hashable, Any], sce
         attributes |= flags(first["labels"], none=first["kind"] == "category")
     else:
         attributes["units"] = udunit_of(first["unit"])
-    # Each array has coordinates of its own names, so that arrays over other times and heights stand beside it.
+    # Each array's coordinates have unique names, so that arrays with different times and heights fit into one dataset.
     own = dict(coordinates)
     dims = ["time", "height", "y", "x"]
     if times_s:

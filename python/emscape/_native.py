@@ -1,4 +1,4 @@
-"""The extension module, loaded when it is first needed: it brings GDAL and OpenVDB with it."""
+"""The extension module, loaded on first use, since it loads GDAL and OpenVDB."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ def _load_gdal() -> None:
     folder = pathlib.Path(__file__).parent / "gdal"
     if not folder.is_dir():
         return  # the module is linked with GDAL
-    links = sorted(folder.glob("*.so"), reverse=True)  # one for each version, the newest first
+    links = sorted(folder.glob("*.so"), reverse=True)  # one per version, newest first
     for link in links:
         try:
             ctypes.CDLL(str(link))

@@ -13,8 +13,8 @@ from ._field import Field
 from ._native import native
 
 Camera = Union[str, Mapping[str, float]]
-"""A camera as the command line takes it ("orbit:azimuth_deg=200,elevation_deg=35", "lookat:eye_x_m=..."), or the keys of an
-orbit (``{"azimuth_deg": 200}``) or, with ``eye_x_m`` among them, of a lookat."""
+"""A camera in the command line's syntax ("orbit:azimuth_deg=200,elevation_deg=35", "lookat:eye_x_m=..."), or the keys of an orbit
+(``{"azimuth_deg": 200}``) or, if they include ``eye_x_m``, of a lookat."""
 
 
 def _camera(camera: Camera) -> str:
@@ -41,7 +41,7 @@ def render(
     exaggeration: float = 0.0,
     note: str = "",
 ) -> npt.NDArray[np.uint8]:
-    """Draws a field by the ray caster, with ground, emitters, legend and time; every ray is cast.
+    """Draws a field with the ray caster, with ground, emitters, legend and time; casts every ray.
 
     :param quantity: None: the first
     :param size: width and height in pixels
@@ -50,10 +50,10 @@ def render(
     :param transfer: file of a transfer function; empty: fitted
     :param theme: "dark" or "light"
     :param iso_value: of the isosurface, in the quantity's unit; None: the middle of the colours
-    :param exaggeration: of heights; 0: chosen by the shape of the region
+    :param exaggeration: of heights; 0: chosen from the shape of the region
     :param note: small text at the bottom
     :return: (height, width, 4) uint8: red, green, blue and opacity, rows from the top
-    Raises UsageError for a camera, mode or theme that is none, InputError for a transfer file.
+    Raises UsageError for an invalid camera, mode or theme, InputError for an invalid transfer function file.
     """
     return native.render(
         field._handle,

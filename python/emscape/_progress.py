@@ -6,12 +6,12 @@ from collections.abc import Callable
 from typing import Any, Union
 
 Progress = Union[Callable[[str, float], None], bool, None]
-"""Called with the name of the step and the fraction done, 0..1, at most ten times a second, by any thread. True: a bar of
-tqdm, nothing where that is not installed. None or False: nothing."""
+"""A function called with the name of the step and the completed fraction, 0..1, at most ten times a second, by any thread. True:
+a tqdm bar if tqdm is installed. None or False: no progress is reported."""
 
 
 class _Bar:
-    """A bar of tqdm per step."""
+    """A tqdm bar per step."""
 
     def __init__(self, tqdm: Any) -> None:
         self._tqdm = tqdm
@@ -34,7 +34,7 @@ class _Bar:
 
 
 def callback(progress: Progress) -> Callable[[str, float], None] | None:
-    """The function that the extension calls."""
+    """Returns the function that the extension calls."""
     if progress is None or progress is False:
         return None
     if progress is not True:

@@ -13,8 +13,8 @@ from ._errors import Problem, ScenarioError
 from ._native import native
 
 Times = Union[str, float, Sequence[float]]
-"""Times in seconds since the epoch: "BEGIN:END:STEP", "BEGIN:END" (the scenario's step), one number, or a rising sequence of
-numbers. An empty string: all of the scenario's clock."""
+"""Times in seconds since the epoch: "BEGIN:END:STEP", "BEGIN:END" (the scenario's step), one number, or an ascending sequence of
+numbers. An empty string: all steps of the scenario's clock."""
 
 
 def _yaml(value: Any) -> str:
@@ -27,9 +27,9 @@ def _yaml(value: Any) -> str:
 
 
 class Scenario:
-    """A scenario: emitters, platforms, terrain and time. It does not change; ``with_set`` gives another one.
+    """A scenario: emitters, platforms, terrain and time. Immutable; ``with_set`` returns a changed copy.
 
-    Made by ``load``. It can be pickled: it is read again from its file, with its edits.
+    Made by ``load``. It can be pickled: unpickling reads its file again and applies its edits.
     """
 
     __slots__ = ("_handle",)
@@ -49,12 +49,12 @@ class Scenario:
 
     @property
     def hash(self) -> str:
-        """FNV-1a (64 bits, hex) of its text with the edits and of the files that it names."""
+        """FNV-1a hash (64 bits, hex) of its text with the edits, and of the files that it names."""
         return self._handle.hash
 
     @property
     def epoch(self) -> datetime.datetime | None:
-        """Time 0 (UTC); None: the scenario has no epoch."""
+        """Time 0 (UTC); None if the scenario has no epoch."""
         text = self._handle.epoch_utc
         return datetime.datetime.fromisoformat(text.replace("Z", "+00:00")) if text else None
 
@@ -81,7 +81,7 @@ class Scenario:
 
     @property
     def quantities(self) -> list[str]:
-        """Names of the quantities that the scenario asks for; each ends in its unit."""
+        """Names of the scenario's output quantities; each ends in its unit."""
         return self._handle.quantities
 
     @property
@@ -106,18 +106,18 @@ class Scenario:
 
     @property
     def edits(self) -> dict[str, str]:
-        """What ``with_set`` changed since the file was read: path to value (YAML)."""
+        """Changes by ``with_set`` since the file was read: path to value (YAML)."""
         return dict(self._handle.edits)
 
     @property
     def files(self) -> list[str]:
-        """The files that it was read from: its own, tracks, antennas, elevation."""
+        """The files from which it was read: its own, tracks, antennas, elevation."""
         return self._handle.files
 
     def times(self, times: Times = "") -> list[float]:
         """Times as a list of seconds since the epoch.
 
-        Raises UsageError for a text that is no time.
+        Raises UsageError for invalid times.
         """
         if isinstance(times, str):
             return self._handle.times(times)
@@ -129,13 +129,13 @@ class Scenario:
         return dict(self._handle.positions(time_s))
 
     def with_set(self, edits: Mapping[str, Any]) -> Scenario:
-        """A scenario with other values; this one is not changed.
+        """Returns a scenario with other values; this one is not changed.
 
-        Paths are those of the command line's ``--set``: keys of the scenario format with points between them, items of lists
-        by name or index: ``{"emitters.jammer.power_w": 500, "region.dims": [100, 100, 50]}``. None removes an optional key.
-        All edits are made before the result is checked.
+        Paths are those of the command line's ``--set``: keys of the scenario format separated by dots, items of lists by name or
+        index: ``{"emitters.jammer.power_w": 500, "region.dims": [100, 100, 50]}``. None removes an optional key.
+        The result is checked after all edits.
 
-        Raises ScenarioError, with the edit as the place of a fault.
+        Raises ScenarioError; the location of an error is the edit.
         """
         return _checked(*self._handle.edit([(path, _yaml(value)) for path, value in edits.items()]))
 
@@ -171,14 +171,14 @@ def _load_text(file: str, edits: list[tuple[str, str]]) -> Scenario:
 
 
 def load(file: str | os.PathLike[str], edits: Mapping[str, Any] | None = None) -> Scenario:
-    """Reads a scenario (YAML or JSON) and the files that it names; elevation files are read when they are needed.
+    """Reads a scenario (YAML or JSON) and the files that it names; elevation files are read when needed.
 
-    :param edits: as of ``Scenario.with_set``
-    Raises ScenarioError, whose ``problems`` lists all faults with file, line and column.
+    :param edits: as for ``Scenario.with_set``
+    Raises ScenarioError, whose ``problems`` lists all errors with file, line and column.
     """
     return _load_text(os.fspath(file), [(path, _yaml(value)) for path, value in (edits or {}).items()])
 
 
 def path_step(name: str) -> str:
-    """A name as a part of a path of edits: in quotes where it needs them, as in ``emitters."a=b".power_w``."""
+    """A name as an element of an edit path, quoted if necessary, as in ``emitters."a=b".power_w``."""
     return native.path_step(name)

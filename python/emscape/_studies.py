@@ -1,4 +1,4 @@
-"""What-if and explanations: the command line's subcommands as functions. Results are the JSON of the command line."""
+"""The command line's subcommands for what-if analysis and explanation as functions. Results are the command line's JSON."""
 
 from __future__ import annotations
 
@@ -24,15 +24,15 @@ def command(*arguments: str, progress: Progress = None) -> Any:
     """Runs a subcommand in this process and returns the JSON that ``emscape SUBCOMMAND ... --json`` prints.
 
     :param arguments: as on the command line: ``command("info", "out/jacksboro_0001.vdb")``
-    Raises Error: UsageError for arguments that cannot be parsed, else as the command's exit status says. A check that fails
-    is a result.
+    Raises UsageError for arguments that cannot be parsed, otherwise the Error of the command's exit status. A failed check is a
+    result, not an error.
     """
     _, text = native.command(list(arguments), callback(progress))
     return json.loads(text) if text.strip() else None
 
 
 def _options(options: Mapping[str, _Option]) -> list[str]:
-    """Options of the command line; None and False are left out, lists have commas."""
+    """Options of the command line; None and False are omitted, list items are separated by commas."""
     words: list[str] = []
     for name, value in options.items():
         if value is None or value is False or value == "" or (isinstance(value, (list, tuple)) and not value):
@@ -47,7 +47,7 @@ def _options(options: Mapping[str, _Option]) -> list[str]:
 
 
 def _times(scenario: Scenario, times: Times | None) -> str | None:
-    """Times as a text of the command line, which takes evenly spaced ones."""
+    """Times in the command line's syntax, which requires even spacing."""
     if times is None or isinstance(times, str):
         return times
     values = scenario.times(times)
@@ -60,7 +60,7 @@ def _times(scenario: Scenario, times: Times | None) -> str | None:
 
 
 def _subject(scenario: Scenario) -> list[str]:
-    """A scenario as arguments: its file, which must still be what was loaded, and its edits."""
+    """A scenario as arguments: its file, which must not have changed since it was loaded, and its edits."""
     edits = scenario._handle.edits
     current, _ = native.load(scenario.file, edits)
     if current is None or current.hash != scenario.hash:
@@ -76,7 +76,7 @@ def _run(verb: str, scenario: Scenario, options: Mapping[str, _Option], progress
 
 
 def _run_into_file(verb: str, scenario: Scenario, options: Mapping[str, _Option], progress: Progress) -> Json:
-    """The JSON file that a subcommand writes."""
+    """The contents of a JSON file that a subcommand writes."""
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, verb + ".json")
         _run(verb, scenario, {**options, "output": file}, progress)
@@ -98,7 +98,7 @@ def profile(
 
     :param to: latitude (deg), longitude (deg), height (m above mean sea level, with ``agl`` above the ground)
     :param models: propagation models to compare with the emitter's own
-    :return: geometry, terms, obstacles and ``verdict``, a sentence with the dominant cause; lengths in m, angles in deg
+    :return: geometry, terms, obstacles and ``verdict``, a sentence that states the dominant cause; lengths in m, angles in deg
     Raises UsageError for an unknown emitter or a point outside the earth, InputError for one below ground.
     """
     place = ",".join(repr(float(value)) for value in to)
@@ -117,7 +117,7 @@ def link(
     model: str = "",
     progress: Progress = None,
 ) -> Json:
-    """Emitters at receivers, and targets in the view of radars, over time.
+    """Signals of emitters at receivers, and detection of targets by radars, over time.
 
     :param times: as ``Scenario.times``; None: the scenario's clock
     :return: ``links`` and ``detections``, each with rows by time (powers in dBm, ratios in dB)
@@ -139,12 +139,12 @@ def exposure(
     backend: str = "auto",
     progress: Progress = None,
 ) -> Json:
-    """A platform on its track through the field, by time and emitter.
+    """Exposure of a platform along its track, by time and emitter.
 
     :param threshold: in the quantity's unit; None: the usual one
     :param times: as ``Scenario.times``; None: the scenario's clock
-    :param look: "target": beams on the platform; "scan": where the scans point
-    :param rcs_target: target whose cross section radars see; "none": that which they assume
+    :param look: "target": beams point at the platform; "scan": beams point along the scans
+    :param rcs_target: target whose cross section radars see; "none": the one assumed by each radar
     :return: ``rows`` by time (position in deg and m, value of each emitter), ``each`` and ``together`` over all times
     """
     options: dict[str, _Option] = {"platform": platform, "quantity": quantity, "threshold": threshold, "look": look}
@@ -171,10 +171,10 @@ def vertical(
 
     :param azimuths_deg: clockwise from true north
     :param height_axis: heights above mean sea level ("msl") or ground ("agl")
-    :param blake: over a smooth earth instead of the terrain
-    :param range_m: to the right edge, over the ground; None: the instrumented range, or to the region's edge
+    :param blake: use a smooth earth instead of the terrain
+    :param range_m: ground range of the right edge; None: the instrumented range, or that of the region's edge
     :return: the quantity (azimuth, height, range), NaN below ground, and ``ground_msl`` (azimuth, range) in m; attributes hold
-        station, threshold, and for each azimuth what ``emscape vertical --json`` says, contours (range m, height m) included
+        station, threshold, and for each azimuth the output of ``emscape vertical --json``, including contours (range m, height m)
     """
     import numpy as np
     import xarray
@@ -225,13 +225,13 @@ def compare(
     backend: str = "auto",
     progress: Progress = None,
 ) -> Json:
-    """What the second scenario wins and loses against the first, on maps, in figures, and why.
+    """Gains and losses of the second scenario against the first: maps, figures and explanations.
 
-    :param output: folder for the maps and the report; None: none is kept
-    :param heights: and the other parameters of maps: as of ``coverage``
+    :param output: folder for the maps and the report; None: they are not kept
+    :param heights: this and the other parameters of maps: as for ``coverage``
     :param formats: of the maps in the folder
-    :param explain: number of changed areas that are explained, of each sign
-    :return: report.json of the folder: areas in km2, differences, changed areas with the paths that decide
+    :param explain: number of explained areas of gain, and of loss
+    :return: report.json of the folder: areas in km2, differences, changed areas with the decisive paths
     """
     options: dict[str, _Option] = {"heights": heights, "products": list(products), "quantity": quantity}
     options |= {"threshold": threshold, "times": _times(a, times), "cell": cell_m, "area": area, "crs": crs}
@@ -245,9 +245,9 @@ def compare(
 
 
 def _subjects(a: Scenario, b: Scenario, folder: str) -> list[str]:
-    """Two scenarios as arguments of ``compare``, whose --set changes both and --set-b the second.
+    """Two scenarios as arguments of ``compare``, whose --set changes both and whose --set-b changes the second.
 
-    :param folder: for copies of scenarios that the options cannot tell apart
+    :param folder: for copies of scenarios that the options cannot express
     """
     words_a, words_b, common = _subject(a), _subject(b), a.edits
     if a.file == b.file and common.keys() <= b.edits.keys():
@@ -274,12 +274,12 @@ def study(
     backend: str = "auto",
     progress: Progress = None,
 ) -> Json:
-    """Many variants of a scenario, measured; results.csv, results.nc and report.html lie in the folder then.
+    """Measures many variants of a scenario; writes results.csv, results.nc and report.html into the folder.
 
     :param file: the study (YAML or JSON)
     :param jobs: processes that compute at the same time
-    :param resume: computes the parts that are missing
-    :param edits: of the scenario, before those of the variants
+    :param resume: computes only the missing parts
+    :param edits: of the scenario, applied before those of the variants
     :return: numbers of variants and parts, and the extremes of each measure
     """
     words = ["study", os.fspath(file)]
@@ -291,7 +291,7 @@ def study(
 
 
 def check(folder: str | os.PathLike[str]) -> Json:
-    """The propagation models against a folder of reference figures.
+    """Compares the propagation models with a folder of reference figures.
 
     :return: ``datasets`` with the largest difference, tolerance and unit of each, and ``pass``
     """

@@ -1,11 +1,12 @@
 """Labelled volumes of random scenarios, for training networks.
 
-A sample is a random scenario, its field as a volume, and what the scenario holds. Sample ``i`` of a seed is always the same, in
-any order, to the byte on one kind of processor. Nothing here needs PyTorch; ``VolumeDataset`` is what its DataLoader takes::
+A sample is a random scenario, its field as a volume, and a label that describes the scenario. Sample ``i`` of a seed is always
+the same, in any order, to the byte on one kind of processor. This module does not need PyTorch; its DataLoader takes a
+``VolumeDataset``::
 
     loader = torch.utils.data.DataLoader(emscape.datasets.VolumeDataset(1000, seed=1), batch_size=8)
 
-Emitters stand over a smooth earth or, with an elevation file, on terrain. Distributions, each independent:
+Emitters are over a smooth earth or, with an elevation file, on terrain. Distributions, each independent:
 
 =================  ==========================================================================================
 emitters           1 to ``max_emitters``, uniform; the first is a radar, others radar, jammer or transmitter alike
@@ -34,7 +35,7 @@ from ._native import native
 from ._scenario import Scenario, load
 
 KINDS = ("radar", "jammer", "transmitter")
-"""Kinds of emitters, in the order of their numbers in labels."""
+"""Kinds of emitters; the index is the number in labels."""
 
 FEATURES = ("kind", "x_m", "y_m", "height_agl_m", "log10_frequency_hz", "power_dbw", "beamwidth_deg", "azimuth_deg", "elevation_deg")
 """Columns of a label. Positions are metres from the region's centre; azimuth is clockwise from north;
@@ -47,15 +48,16 @@ class Sample(NamedTuple):
     volume: npt.NDArray[np.float32]
     """Values in the quantity's unit, floor where there is no field: (z, y, x)."""
     label: npt.NDArray[np.float32]
-    """A row per emitter, columns as FEATURES; rows of NaN up to the largest number of emitters: (emitter, feature)."""
+    """A row per emitter, columns as FEATURES; padded with rows of NaN up to the maximum number of emitters: (emitter,
+    feature)."""
     document: dict[str, Any]
-    """The scenario, as a JSON file holds it."""
+    """The scenario as the contents of a JSON file."""
 
 
 class VolumeDataset:
-    """Samples by number: what PyTorch calls a map-style dataset, of (volume (1, z, y, x), label (emitter, feature)).
+    """Samples by number, a map-style dataset for PyTorch of (volume (1, z, y, x), label (emitter, feature)).
 
-    With workers of a DataLoader give it ``multiprocessing_context="spawn"``: forked processes cannot compute.
+    With workers, pass ``multiprocessing_context="spawn"`` to the DataLoader: forked processes cannot compute.
     """
 
     def __init__(
@@ -105,7 +107,7 @@ class VolumeDataset:
         """A sample with its scenario. Raises IndexError."""
         document, label = self.describe(index)
         values = self.field(index).numpy(self.quantity)
-        return Sample(values.copy(), label, document)  # a copy that may be written, as PyTorch expects
+        return Sample(values.copy(), label, document)  # a writable copy, as PyTorch expects
 
     def scenario(self, index: int) -> Scenario:
         """The scenario of a sample."""
@@ -124,7 +126,7 @@ class VolumeDataset:
         return self._solver.at(0.0, scenario)
 
     def describe(self, index: int) -> tuple[dict[str, Any], npt.NDArray[np.float32]]:
-        """Scenario and label of a sample, without its field. Raises IndexError."""
+        """The scenario and label of a sample, without its field. Raises IndexError."""
         if not 0 <= index < self.count:
             raise IndexError(f"sample {index}: there are {self.count}")
         rng = np.random.default_rng([self.seed, index])

@@ -1,7 +1,7 @@
 """Studies on a cluster of Dask: each part is computed by ``python -m emscape study ... --part I/N`` on a worker.
 
-The folder of the results must be one that all workers see. Parts that are there are not computed again, so that a study that
-was interrupted is continued by the same call.
+All workers must have access to the folder of the results. Existing parts are not computed again, so the same call continues an
+interrupted study.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ._studies import Json, command
 
 
 def _compute_part(arguments: list[str], part: int, parts: int) -> str:
-    """Runs on a worker. The messages of a part that fails, with its exit status before them; else an empty text."""
+    """Runs on a worker. Returns the exit status and messages of a failed part, otherwise an empty text."""
     words = [sys.executable, "-m", "emscape", *arguments, "--part", f"{part}/{parts}", "--quiet"]
     result = subprocess.run(words, capture_output=True, text=True)
     return "" if result.returncode == 0 else f"{result.returncode} {result.stderr.strip()}"
@@ -34,12 +34,12 @@ def study(
     backend: str = "auto",
     threads: int = 0,
 ) -> Json:
-    """As ``emscape.study``, with parts on the workers of a ``dask.distributed.Client``.
+    """Runs a study like ``emscape.study``, with parts on the workers of a ``dask.distributed.Client``.
 
-    :param parts: number of parts, at most that of the variants; the same at each call for a folder
-    :param threads: of each part; 0: all that the worker's machine has
+    :param parts: number of parts, at most the number of variants; must be the same in each call for a folder
+    :param threads: threads per part; 0: all of the worker's machine
     :return: as ``emscape.study``
-    Raises the error of the first part that fails, when all others are done.
+    Raises the error of the first failed part once all others are done.
     """
     arguments = ["study", os.path.abspath(file), "-o", os.path.abspath(output), "--backend", backend, "--threads", str(threads)]
     for path, value in (edits or {}).items():

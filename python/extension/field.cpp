@@ -75,10 +75,10 @@ std::vector<std::string> namesOf(const emfield::FieldSolver& solver) {
   return names;
 }
 
-/// FieldSolver for several threads, one at a time. The lock is taken with the interpreter unlocked: who holds
-/// it may wait for the interpreter, to log.
+/// FieldSolver for several threads, one at a time. The lock is taken with the interpreter unlocked, since its
+/// holder may wait for the interpreter in order to log.
 class Solver {
-  /// The answer to a question, between updates.
+  /// The result of a query, made between updates.
   template <class Question>
   auto asked(const Question& question) {
     const nb::gil_scoped_release unlocked;
@@ -143,7 +143,7 @@ class Solver {
   }
 
  private:
-  /// Within the arena of this solver's threads; exceptions reach the caller.
+  /// Runs work within the arena of this solver's threads; rethrows its exceptions.
   template <class Work>
   void within(const Work& work) {
     if (is_limited_) {
@@ -184,7 +184,7 @@ nb::object numpyOf(const nb::handle_t<Field>& self, const std::string& quantity)
   return hostArray<nb::numpy>(self, nb::cast<const Field&>(self).indexOf(quantity));
 }
 
-/// The values where they are: in host memory, or in a GPU's. Keeps the field alive.
+/// The values in their present memory, the host's or a GPU's. Keeps the field alive.
 nb::object dlpackOf(const nb::handle_t<Field>& self, const std::string& quantity) {
   const Field& field = nb::cast<const Field&>(self);
   const std::size_t index = field.indexOf(quantity);
@@ -221,7 +221,7 @@ void write(const Field& field, const std::string& file, const std::vector<std::s
   std::vector<std::shared_ptr<const volume::DenseVolume>> held;
   std::vector<const volume::DenseVolume*> volumes;
   for (const std::string& name : quantities.empty() ? field.names : quantities) {
-    // A copy only if a caller has changed the description.
+    // Copied only if a caller has changed the description.
     held.push_back(field.volumes[field.indexOf(name)].host());
     volumes.push_back(held.back().get());
   }

@@ -1,4 +1,4 @@
-/// The field of one instant, as Python holds it.
+/// The Python object of the field at one instant.
 #pragma once
 
 #include <memory>
@@ -13,24 +13,24 @@
 namespace emscape::python {
 
 /// Volumes of one instant, in the order of their names. Shares their values, which later updates do not
-/// change. Threads may share it.
+/// change. Thread-safe.
 struct Field {
   std::vector<std::string> names;
   std::vector<volume::Volume> volumes;
   double time_s = 0;
-  std::optional<playback::LoadedScenario> scene;           ///< none: read from a file
-  std::shared_ptr<const std::vector<float>> ground_msl_m;  ///< one per column; null: none
+  std::optional<playback::LoadedScenario> scene;           ///< empty: read from a file
+  std::shared_ptr<const std::vector<float>> ground_msl_m;  ///< one per column; may be null
   mutable std::vector<std::shared_ptr<const volume::DenseVolume>>
-      on_host;  ///< one per volume; null: not asked for yet
+      on_host;  ///< one per volume; null: not yet requested
   mutable std::vector<std::shared_ptr<const float>>
-      on_device;             ///< in linear memory; one per volume; null: not asked for yet
-  mutable std::mutex mutex;  ///< of on_host and on_device
+      on_device;             ///< in linear memory; one per volume; null: not yet requested
+  mutable std::mutex mutex;  ///< protects on_host and on_device
 
   /// @param name  empty: the first. @throws Error (usage) that lists the names
   std::size_t indexOf(const std::string& name) const;
-  /// The values in host memory; copied from a GPU once.
+  /// The values in host memory; copied from a GPU at most once.
   const std::shared_ptr<const volume::DenseVolume>& host(std::size_t index) const;
-  /// The values of a volume on a GPU in its linear memory, in the order of host(); copied there once.
+  /// The values of a volume on a GPU in its linear memory, in the order of host(); copied there at most once.
   const std::shared_ptr<const float>& device(std::size_t index) const;
 };
 

@@ -1,4 +1,4 @@
-/// Parts of the extension module, and what they share.
+/// Parts of the extension module, and their shared functions.
 #pragma once
 
 #include <nanobind/nanobind.h>
@@ -28,7 +28,7 @@ using Edits = std::vector<std::pair<std::string, std::string>>;  ///< path, valu
 using ProgressCall = std::optional<nb::typed<nb::callable, void(std::string, double)>>;  ///< step, fraction
 using Dict = nb::typed<nb::dict, nb::str, nb::any>;
 
-/// A scenario as Python holds it; nanobind classes hold no pointers to const.
+/// The Python object of a scenario; nanobind classes cannot hold pointers to const.
 struct ScenarioHandle {
   std::shared_ptr<const scenario::Scenario> scenario;
 };
@@ -41,13 +41,13 @@ void bindCoverage(nb::module_& module);
 void bindPicture(nb::module_& module);
 void bindCommand(nb::module_& module);
 
-/// To be called at the begin of work that uses threads or a GPU.
+/// To be called at the start of work that uses threads or a GPU.
 /// @throws Error (usage) in a process that was forked from one that had called it: neither oneTBB nor CUDA
 /// survives fork()
 void refuseForkedProcess();
 
 /// Calls a Python function with the interpreter locked, at most ten times a second and at the end of each
-/// step; between, signals are handled, so that Ctrl-C ends the work with KeyboardInterrupt.
+/// step; signals are handled in between, so that Ctrl-C ends the work with KeyboardInterrupt.
 ProgressSink progressSink(const ProgressCall& call);
 
 std::vector<scenario::Edit> editsOf(const Edits& edits);
@@ -56,7 +56,7 @@ std::vector<scenario::Edit> editsOf(const Edits& edits);
 /// has a position on the earth.
 Dict describeGrid(const volume::Grid& grid);
 
-/// An array that owns its values. @param shape  as many axes as the values have
+/// An array that owns its values. @param shape  of all axes
 template <class Value>
 nb::object ownedArray(std::vector<Value> values, std::initializer_list<std::size_t> shape) {
   auto owner = std::make_unique<std::vector<Value>>(std::move(values));

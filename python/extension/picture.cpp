@@ -11,7 +11,7 @@ namespace {
 
 using playback::ComputeTarget;
 
-/// A frame of a field's volume, with the scenario's emitters and the ways of its platforms.
+/// A frame of a field's volume, with the scenario's emitters and the tracks of its platforms.
 playback::Frame frameOf(const Field& field, std::size_t index,
                         const std::optional<std::pair<float, float>>& range) {
   playback::Frame frame;

@@ -1,4 +1,4 @@
-/// Scenarios: reading, editing, and what they hold.
+/// Scenarios: reading, editing, contents.
 #include "emscape/emfield/categories.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/scenario/quantities.h"

@@ -56,7 +56,7 @@ Canvas::Canvas(ImageSize size, cairo_surface_t* surface)
                                       std::to_string(size.height) +
                                       " pixels: " + cairo_status_to_string(cairo_status(cairo_.get())));
   }
-  // Glyphs stand where they belong, not on whole pixels: even spacing at small sizes.
+  // Glyphs are not aligned to whole pixels, for uniform spacing at small sizes.
   const std::unique_ptr<cairo_font_options_t, void (*)(cairo_font_options_t*)> font(
       cairo_font_options_create(), cairo_font_options_destroy);
   cairo_font_options_set_hint_metrics(font.get(), CAIRO_HINT_METRICS_OFF);
@@ -197,7 +197,7 @@ Rect Canvas::textBox(const std::string& text, double size_px, Weight weight) con
 }
 
 void Canvas::moveTo(const std::string& text, const Point2& at, Align align, double angle_rad) const {
-  // Half the height of capitals, so that a text's middle lies at the point.
+  // Half the height of capitals, so that a text is centred at the point.
   constexpr double kBaseline = 0.36;
   cairo_matrix_t font;
   cairo_get_font_matrix(cairo_.get(), &font);

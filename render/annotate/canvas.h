@@ -41,21 +41,20 @@ struct Ink {
 };
 
 enum class Weight { normal, bold };
-/// Where a text's box lies relative to the point that it is put at.
+/// Alignment of a text's box relative to its point.
 enum class Align { left, center, right };
 
-/// An RGBA picture to draw on; pixels start transparent. Or a drawing that is kept as lines and written as
-/// SVG.
+/// An RGBA picture to draw on, initially transparent, or a vector drawing that is written as SVG.
 class Canvas {
  public:
   explicit Canvas(ImageSize size);
-  /// On pixels of the caller's: size.count() of them, 0xAARRGGBB, premultiplied, row by row. They are
-  /// complete when the canvas is gone.
+  /// Draws on the caller's pixels: size.count() of them, 0xAARRGGBB, premultiplied, row by row. They are
+  /// complete after the destruction of the canvas.
   Canvas(ImageSize size, std::uint32_t* pixels);
   static Canvas forSvg(ImageSize size);
 
   ImageSize size() const { return size_; }
-  /// Pixels as drawn so far, premultiplied.
+  /// The pixels drawn so far, premultiplied.
   /// @pre not forSvg
   Image8 pixels() const;
   /// Changes pixels one by one.
@@ -75,7 +74,7 @@ class Canvas {
   void arc(const Point2& center, double radius, double begin_rad, double end_rad, const Ink& ink,
            double width);
   void rectangle(const Rect& rect, const Ink& ink, double corner_radius = 0);
-  /// Fills the picture from top to bottom.
+  /// Fills the picture with a vertical gradient.
   void gradient(const Rgb& top, const Rgb& bottom);
 
   /// Size of a text in a font of `size_px` pixels; the height is that of the font, the same for every text.
@@ -83,7 +82,7 @@ class Canvas {
   /// Draws a text whose box begins, ends or is centred at `at` horizontally and is centred there vertically.
   void text(const std::string& text, const Point2& at, double size_px, const Ink& ink,
             Align align = Align::left, Weight weight = Weight::normal, double angle_rad = 0);
-  /// The same with a rim of another colour, readable on any ground.
+  /// The same with an outline in another colour, readable on any background.
   void textWithRim(const std::string& text, const Point2& at, double size_px, const Ink& ink, const Ink& rim,
                    Align align = Align::left, Weight weight = Weight::normal, double angle_rad = 0);
 
@@ -92,12 +91,12 @@ class Canvas {
   void setInk(const Ink& ink) const;
   void setFont(double size_px, Weight weight) const;
   void path(const std::vector<Point2>& points, bool closed) const;
-  /// Puts the current point so that a text stands as asked for, in turned coordinates; call inside save and
+  /// Sets the current point for a text with this alignment, in rotated coordinates; call between save and
   /// restore.
   void moveTo(const std::string& text, const Point2& at, Align align, double angle_rad) const;
 
   ImageSize size_;
-  std::shared_ptr<std::string> svg_;  ///< what the surface has written so far; null with pixels
+  std::shared_ptr<std::string> svg_;  ///< output of the surface so far; null with pixels
   std::shared_ptr<_cairo_surface> surface_;
   std::shared_ptr<_cairo> cairo_;
 };

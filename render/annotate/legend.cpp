@@ -20,7 +20,7 @@ constexpr double kOpacityWidth = 34;
 constexpr double kPixelsPerTick = 60;
 constexpr double kSwatch = 15;
 constexpr double kRowHeight = 25;
-constexpr double kBarTop = 0.2;  // parts of the picture's height
+constexpr double kBarTop = 0.2;  // fraction of the picture's height
 constexpr double kBarBottom = 0.8;
 
 std::string lowerAlphanumeric(const std::string& text) {
@@ -55,7 +55,7 @@ BarTicks ticksOf(const Legend& legend, int count) {
   return ticks;
 }
 
-/// Text is measured without the picture that it will stand on.
+/// Text is measured independently of the picture.
 double widestText(const std::vector<std::string>& texts, double size_px) {
   const Canvas measure({1, 1});
   double widest = 0;
@@ -63,7 +63,7 @@ double widestText(const std::vector<std::string>& texts, double size_px) {
   return widest;
 }
 
-/// A long name on lines of at most about `most` characters.
+/// Breaks a long name into lines of at most about `most` characters.
 std::vector<std::string> linesOf(const std::string& text, std::size_t most) {
   std::vector<std::string> lines;
   std::size_t begin = 0;
@@ -90,13 +90,13 @@ std::vector<std::string> headingOf(const Legend& legend) {
 
 constexpr double kLine = 1.3;  // line height in text sizes
 
-/// Height of all that stands above the bar or the categories at least.
+/// Minimum height above the bar or the categories.
 double leastTop(const Style& style, const Legend& legend) {
   const double heading = kLine * style.text_px * static_cast<double>(headingOf(legend).size());
   return headerHeight(style) + heading + 10 * style.unit;
 }
 
-/// Upper end of what stands below the heading.
+/// Upper end of the contents below the heading.
 double topOf(const Canvas& canvas, const Style& style, const Legend& legend) {
   return std::max(kBarTop * canvas.size().height, leastTop(style, legend));
 }
@@ -155,7 +155,7 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
     const double value = function.highest() - (row + 0.5) / rows * range;
     const Ink ink{function.color(value), 1};
     canvas.rectangle({bar_left, y, bar_width, 1.5}, ink);
-    // The square root shows the faint part, which is most of a volume.
+    // The square root makes small opacities visible, which are most of a volume.
     const double opacity = largest > 0 ? std::sqrt(function.opacity(value) / largest) : 0;
     const double width = opacity * (kOpacityWidth - 5) * style.unit;
     canvas.rectangle({bar_left - 3 * style.unit - width, y, width, 1.5}, {ink.color, 0.55});

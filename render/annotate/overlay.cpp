@@ -24,7 +24,7 @@ constexpr double kTitle = 23;
 constexpr double kCompassRadius = 40;
 constexpr double kMinUnit = 0.62;
 
-/// Puts a cast picture over what is drawn; the only quantisation of what was cast.
+/// Composites a cast picture over the drawing; the only quantisation of the cast picture.
 void drawCast(Canvas& canvas, const Image& cast) {
   canvas.changeRows([&](int y, std::uint32_t* row) {
     const Rgba* pixels = &cast.pixels[static_cast<std::size_t>(y) * cast.size.width];
@@ -38,7 +38,7 @@ void drawCast(Canvas& canvas, const Image& cast) {
   });
 }
 
-/// The same of a picture that is quantised.
+/// The same for a quantised picture.
 void drawCast(Canvas& canvas, const Image8& cast) {
   canvas.changeRows([&](int y, std::uint32_t* row) {
     const std::uint8_t* pixels = &cast.rgba[static_cast<std::size_t>(y) * cast.size.width * 4];
@@ -117,7 +117,7 @@ Image8 composed(const AnyImage& cast, const Camera& camera, const SceneBox& box,
   return canvas.pixels();
 }
 
-/// Where Cairo draws: the two layers are independent of each other.
+/// Draws the two layers, which are independent of each other.
 template <class Draw>
 void drawLayer(std::vector<std::uint32_t>& pixels, ImageSize size, const Draw& draw) {
   pixels.assign(static_cast<std::size_t>(size.count()), 0);

@@ -19,7 +19,7 @@ constexpr double kPixelsPerEdgeTick = 85;
 /// An edge of the box along one axis; the other two coordinates are at their lower (0) or upper (1) ends.
 struct Edge {
   int axis = 0;
-  std::array<int, 3> end{};  // of the own axis: unused
+  std::array<int, 3> end{};  // unused for its own axis
 };
 
 double component(const Vec3d& v, int axis) {
@@ -45,7 +45,7 @@ std::vector<Edge> allEdges() {
   return edges;
 }
 
-/// The point of an edge where its own coordinate is `value`.
+/// The point of an edge at which its own coordinate is `value`.
 Vec3d pointOf(const Edge& edge, const SceneBox& box, double value) {
   Vec3d point;
   for (int axis = 0; axis < 3; ++axis) {
@@ -63,7 +63,8 @@ bool facesCamera(const Camera& camera, const SceneBox& box, int axis, int end) {
          0;
 }
 
-/// How many of an edge's two faces the camera sees: 0 behind the volume, 1 its silhouette, 2 before it.
+/// Number of an edge's two faces that face the camera: 0 behind the volume, 1 on its silhouette, 2 in front
+/// of it.
 int seenFaces(const Projector& p, const Edge& edge) {
   int seen = 0;
   for (int other : {(edge.axis + 1) % 3, (edge.axis + 2) % 3}) {
@@ -77,8 +78,8 @@ bool ends(const Projector& p, const Edge& edge, Point2& a, Point2& b) {
          p.project(pointOf(edge, p.box, component(p.box.upper_m, edge.axis)), b);
 }
 
-/// The edge that bears an axis' ticks: on the silhouette; along the ground the lowest in the picture, upright
-/// the leftmost.
+/// The edge with the ticks of an axis: on the silhouette; for horizontal axes the lowest in the picture, for
+/// the vertical axis the leftmost.
 bool labelledEdge(const Projector& p, int axis, Edge& chosen) {
   double best = -1e300;
   for (const Edge& edge : allEdges()) {
@@ -97,7 +98,7 @@ bool labelledEdge(const Projector& p, int axis, Edge& chosen) {
 
 struct AxisWords {
   const char* title;
-  double scale;  // what one unit on the label is in frame metres
+  double scale;  // frame metres per unit of the label
 };
 AxisWords wordsOf(int axis, bool georeferenced) {
   if (!georeferenced) return {axis == 0 ? "x" : (axis == 1 ? "y" : "z"), 1};
@@ -105,7 +106,7 @@ AxisWords wordsOf(int axis, bool georeferenced) {
   return {axis == 0 ? "east, km" : "north, km", 1000};
 }
 
-/// The unit vector in the picture that leads away from the box at an edge.
+/// The unit vector in the picture that points away from the box at an edge.
 Point2 outwardOf(const Point2& a, const Point2& b, const Point2& center) {
   const Point2 along = b - a;
   const double size = std::max(length(along), 1e-9);
@@ -115,7 +116,7 @@ Point2 outwardOf(const Point2& a, const Point2& b, const Point2& center) {
   return outward;
 }
 
-/// What a text at a point covers.
+/// Rectangle covered by a text at a point.
 Rect rectOf(const Point2& at, const Rect& extent, Align align) {
   const double shift = align == Align::left ? 0.0 : (align == Align::center ? 0.5 : 1.0);
   return {at.x - shift * extent.width, at.y - extent.height / 2, extent.width, extent.height};
@@ -191,8 +192,8 @@ void drawNearEdges(Canvas& canvas, const Style& style, const Projector& projecto
 
 void drawCompass(Canvas& canvas, const Style& style, const Camera& camera, const Point2& center,
                  double radius) {
-  // A point of the ground plane, east and north in radii, as an orthographic camera with the same axes sees
-  // it.
+  // Projection of a point of the ground plane, east and north in radii, by an orthographic camera with the
+  // same axes.
   const auto at = [&](double east, double north) {
     return center + Point2{east * camera.right.x + north * camera.right.y,
                            -(east * camera.up.x + north * camera.up.y)} *

@@ -1,4 +1,4 @@
-/// Emitters and the like: where they are, which way they look, what they are called.
+/// Markers of emitters and platforms: positions, beams and names.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -89,7 +89,7 @@ void drawBeam(Canvas& canvas, const Style& style, const Projector& p, const Mark
   canvas.polygon({tip, neck + side * (0.45 * head), neck - side * (0.45 * head)}, ink);
 }
 
-/// Places where a name may stand, best first: beside, above, below, then further out.
+/// Tries positions for a name, best first: beside, above, below, then further out.
 Rect placeLabel(const Point2& at, const Rect& extent, double gap, ImageSize size,
                 const std::vector<Rect>& taken) {
   Rect best{at.x + gap, at.y - extent.height / 2, extent.width, extent.height};

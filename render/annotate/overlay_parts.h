@@ -10,7 +10,7 @@ namespace emscape::render {
 
 /// Sizes and colours of a picture's annotations.
 struct Style {
-  double unit = 1;  ///< pixels that a length of one at 1200 x 900 takes
+  double unit = 1;  ///< pixels per unit of length at 1200 x 900
   double text_px = 15;
   double small_px = 12.5;
   Rgb background_top, background_bottom;
@@ -28,31 +28,31 @@ struct Projector {
   const SceneBox& box;
   ImageSize size;
 
-  /// @return whether the position lies before the camera
+  /// @return true if the position is in front of the camera
   bool project(const Vec3d& frame_m, Point2& point) const;
 };
 
-/// Edges of the box behind the volume, drawn before it.
+/// Edges of the box behind the volume, drawn first.
 void drawFarEdges(Canvas& canvas, const Style& style, const Projector& projector);
 /// The other edges, ticks and axis titles. Adds the boxes of all texts to `taken`.
 void drawNearEdges(Canvas& canvas, const Style& style, const Projector& projector,
                    const Annotations& annotations, std::vector<Rect>& taken);
 /// Height of the two lines of text at the top, with their distance from the picture's edge (pixels).
 double headerHeight(const Style& style);
-/// Width of the column that a legend takes, with its distance from the picture's edge (pixels).
+/// Width of the legend's column, with its distance from the picture's edge (pixels).
 double legendWidth(const Style& style, const Legend& legend);
-/// Height of a picture that has room for all entries of a categorical legend; 0 for others, which fit any.
+/// Minimum height of a picture with room for all entries of a categorical legend; 0 for other legends.
 double legendHeight(const Style& style, const Legend& legend);
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend);
-/// Ways, as far as they lie above the box's bottom face and within its sides.
+/// Tracks, within the sides of the box and above its bottom face.
 void drawTracks(Canvas& canvas, const Style& style, const Projector& projector,
                 const std::vector<Track>& tracks, const HiddenTest& hidden);
 /// Stems, beams, symbols and names. Names avoid `taken`.
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
                  const std::vector<Marker>& markers, const HiddenTest& hidden, std::vector<Rect>& taken);
-/// Colour of a symbol and of what belongs to it.
+/// Colour of a symbol and of its parts.
 Rgb colorOf(MarkerKind kind);
-/// A compass rose lying on the ground as the camera sees it, centred at a point.
+/// A compass rose on the ground in the camera's perspective, centred at a point.
 void drawCompass(Canvas& canvas, const Style& style, const Camera& camera, const Point2& center,
                  double radius);
 

@@ -1,4 +1,4 @@
-/// Ways of what moves.
+/// Tracks of moving platforms.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -15,7 +15,7 @@ Vec3d between(const Vec3d& a, const Vec3d& b, double part) {
   return a + (b - a) * part;
 }
 
-/// The part of a leg within the box's sides. @return whether there is any
+/// Clips a leg to the box's sides. @return false if nothing is left
 bool clip(const SceneBox& box, Vec3d& from, Vec3d& to) {
   double begin = 0, end = 1;
   const auto cut = [&](double at, double along, double lower, double upper) {
@@ -45,7 +45,7 @@ class TrackLine {
   TrackLine(const TrackLine&) = delete;
   TrackLine& operator=(const TrackLine&) = delete;
 
-  /// Adds a part of the way, in points as Track::travelled counts them.
+  /// Adds a part of the track, in units of Track::travelled.
   void add(double from, double to, bool is_hidden, bool is_travelled) {
     if (!(from < to)) return;
     Vec3d a = at(from), b = at(to);

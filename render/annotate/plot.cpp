@@ -96,6 +96,11 @@ void PlotPanel::drawGround(const std::vector<Point2>& heights) const {
   drawPiece();
 }
 
+void PlotPanel::drawBand(double x_begin, double x_end, const Ink& ink) const {
+  const double left = at(x_begin, y_.lowest).x;
+  canvas_.rectangle({left, frame_.y, at(x_end, y_.lowest).x - left, frame_.height}, ink);
+}
+
 void PlotPanel::drawLine(const PlotLine& line) {
   for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
     const PlotLine::Point &a = line.points[i], &b = line.points[i + 1];
@@ -109,7 +114,7 @@ void PlotPanel::drawNames(const std::vector<PlotLine>& lines, double top) {
   for (const PlotLine& line : lines) {
     if (!line.name.empty()) named.push_back(&line);
   }
-  constexpr double kRow = 22, kBelow = 30;  // room below the frame, of an axis's numbers and title
+  constexpr double kRow = 22, kBelow = 30;  // space below the frame for an axis's numbers and title
   const auto rows = static_cast<std::size_t>(std::max((frame_.height / unit_ + kBelow - top) / kRow, 4.0));
   const bool fits = named.size() <= rows;
   const std::size_t tail = 2, head = fits ? named.size() : rows - 1 - tail;

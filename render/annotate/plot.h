@@ -16,7 +16,7 @@ constexpr Ink kPlotFaintText{{0.40F, 0.43F, 0.47F}};
 constexpr Ink kPlotGrid{{0.45F, 0.50F, 0.58F}, 0.28};
 constexpr Ink kPlotGround{{0.62F, 0.56F, 0.45F}};
 constexpr Ink kPlotSurface{{0.36F, 0.31F, 0.22F}};
-/// Okabe and Ito's colours, which readers with colour blindness tell apart; indices beyond them repeat.
+/// Okabe and Ito's colours, which are distinguishable with colour blindness; indices beyond them repeat.
 const Ink& plotInk(std::size_t index);
 
 struct PlotTick {
@@ -26,9 +26,9 @@ struct PlotTick {
 
 struct PlotAxis {
   double lowest = 0, highest = 1;    ///< lowest < highest
-  int ticks = 8;                     ///< about as many, at round values
+  int ticks = 8;                     ///< approximate number, at round values
   std::string title;                 ///< with the unit; empty: none
-  std::vector<PlotTick> marks = {};  ///< in place of round values, for scales that are not linear
+  std::vector<PlotTick> marks = {};  ///< instead of round values, for scales that are not linear
 };
 
 struct PlotLine {
@@ -36,35 +36,38 @@ struct PlotLine {
     double x, y;            ///< y infinite or NaN: a gap
     bool is_strong = true;  ///< drawn wide
   };
-  std::string name;  ///< empty: not among the names
+  std::string name;  ///< empty: not listed among the names
   std::vector<Point> points;
   Ink ink;
   bool is_dashed = false;
 };
 
-/// A frame with axes. Nothing is drawn until it is asked for, so that a caller decides on the order.
+/// A frame with axes. The caller draws its parts in the desired order.
 class PlotPanel {
  public:
-  /// @param unit  pixels of the picture in one of a 1400 x 800 one
+  /// @param unit  pixels per pixel of a 1400 x 800 picture
   PlotPanel(Canvas& canvas, const Rect& frame, double unit, const PlotAxis& x, const PlotAxis& y)
       : canvas_(canvas), frame_(frame), unit_(unit), x_(x), y_(y) {}
 
   const Rect& frame() const { return frame_; }
-  /// Place in the picture of a point; y is limited to its axis.
+  /// Position of a point in the picture; y is limited to its axis.
   Point2 at(double x, double y) const;
 
   void drawTitle(const std::string& title);
   /// Lines at round values, their numbers, and the titles of the axes.
   void drawGrid();
+  /// A band over the whole height.
+  void drawBand(double x_begin, double x_end, const Ink& ink) const;
   void drawLine(const PlotLine& line);
   /// The ground below a line of heights, in pieces with gaps where a height is NaN.
   /// @param heights  x, y on the axes
   void drawGround(const std::vector<Point2>& heights) const;
-  /// Names to the right of the frame, in the lines' colours: the first ones and the last two if there are
-  /// more than stand beside the frame.
-  /// @param top  of the first name, below the frame's upper edge (pixels of a 1400 x 800 picture)
+  /// Names to the right of the frame, in the lines' colours: the first ones and the last two if not all fit
+  /// beside the frame.
+  /// @param top  of the first name, measured down from the frame's upper edge (pixels of a 1400 x 800
+  /// picture)
   void drawNames(const std::vector<PlotLine>& lines, double top = 8);
-  /// Width of the longest name (pixels), of which drawNames() needs 60 pixels of a 1400 x 800 picture more.
+  /// Width of the longest name (pixels); drawNames() needs 60 pixels of a 1400 x 800 picture more.
   static double namesWidth(const Canvas& canvas, const std::vector<PlotLine>& lines, double unit);
 
  private:
@@ -74,18 +77,18 @@ class PlotPanel {
   PlotAxis x_, y_;
 };
 
-/// The size of a text that is to fit into a room: size_px, or less.
+/// The size of a text that must fit into a given width: size_px, or less.
 double fittedSize_px(const Canvas& canvas, const std::string& text, double size_px, double room_px,
                      Weight weight = Weight::normal);
 
-/// The lines of a text that is broken between words.
+/// Breaks a text between words into lines.
 std::vector<std::string> wrappedText(const Canvas& canvas, const std::string& text, double width_px,
                                      double size_px);
 
-/// True for names of plots: .png and .svg.
+/// True for file names of plots: .png and .svg.
 bool isPlotFile(const std::string& file);
 
-/// Writes what `draw` draws, atomically. @throws Error (other) naming the file
+/// Writes the drawing of `draw`, atomically. @throws Error (other) naming the file
 void drawPlot(ImageSize size, const std::string& file, const std::function<void(Canvas&)>& draw);
 
 }  // namespace emscape::render

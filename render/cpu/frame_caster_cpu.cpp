@@ -39,10 +39,10 @@ class CpuFrameCaster : public FrameCaster {
   PreparedVolume volume_;
   SkipLevels skip_;
   bool skip_current_ = false;
-  Scene::Versions seen_;  ///< what the members here were derived from
+  Scene::Versions seen_;  ///< versions from which the members here were derived
 
   GroundLayer ground_layer_;  ///< of the camera; its size is 0 x 0 when it must be computed again
-  Image volume_layer_;        ///< the volume alone, cut off by the ground
+  Image volume_layer_;        ///< only the volume, ended by the ground
   Image picture_;
   Pattern drawn_ = Pattern::full;  ///< of the last frame
   AdaptiveFrame adaptive_;
@@ -74,7 +74,7 @@ RaycastTask CpuFrameCaster::prepare(const Scene& scene, ImageSize size) {
   return task;
 }
 
-/// @param shows_ground  false: the volume alone, cut off by the ground
+/// @param shows_ground  false: only the volume, ended by the ground
 CpuCast CpuFrameCaster::castOf(const Scene& scene, const RaycastTask& prepared, bool shows_ground) {
   CpuCast cast{prepared, scene.settings().mode, scene.categorical(), scene.settings().plain};
   cast.ground = scene.ground() ? &ground_layer_ : nullptr;
@@ -133,7 +133,7 @@ FrameReport CpuFrameCaster::draw(const Scene& scene, const FramePlan& plan, Imag
   drawn_ = plan.pattern;
   FrameReport report;
   report.pattern = plan.pattern;
-  // Where the ground is known everywhere, only the volume is interpolated: the ground stays sharp.
+  // If the ground is known everywhere, only the volume is interpolated, so that the ground stays sharp.
   const bool in_layers =
       scene.ground() && ground_layer_.size == size && ground_layer_.complete && plan.pattern != Pattern::full;
   if (in_layers && volume_layer_.size != size) volume_layer_ = Image(size);
@@ -158,7 +158,7 @@ FrameReport CpuFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   return report;
 }
 
-/// Casts what the last frame left out. @return false if it was stopped
+/// Casts the pixels that the last frame left out. @return false if it was stopped
 bool CpuFrameCaster::castMissing(const Scene& scene, FrameReport& report, const StopFlag* stop) {
   if (drawn_ != Pattern::adaptive) {
     return cast(scene, missingLattices(drawn_, picture_.size), true, picture_, report, stop);

@@ -1,5 +1,5 @@
-/// Vectors of rays and what they read: volume, transfer function, bricks. Included once for each kind of
-/// vector register by packets.cpp, after hwy/highway.h.
+/// Vectors of rays and their inputs: volume, transfer function, bricks. Included once for each instruction
+/// set by packets.cpp, after hwy/highway.h.
 #if defined(EMSCAPE_RENDER_CPU_PACKET_SAMPLING_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef EMSCAPE_RENDER_CPU_PACKET_SAMPLING_INL_H_
 #undef EMSCAPE_RENDER_CPU_PACKET_SAMPLING_INL_H_
@@ -27,7 +27,7 @@ using M = hn::Mask<TagF>;
 constexpr TagF kF;
 constexpr TagI kI;
 
-/// A position or direction a lane.
+/// One position or direction per lane.
 struct Vec3F {
   F x, y, z;
 
@@ -37,7 +37,7 @@ struct Vec3F {
   }
 };
 
-/// A premultiplied colour a lane.
+/// One premultiplied colour per lane.
 struct Color {
   F r, g, b, a;
 
@@ -69,13 +69,13 @@ struct Color {
 
 /// Rays of a packet, in the volume's index space.
 struct Rays {
-  Vec3F start;      ///< where they enter the box
+  Vec3F start;      ///< position at which they enter the box
   Vec3F direction;  ///< of unit length
-  F length;         ///< in the box and before the limit; 0 where a ray meets no sample
+  F length;         ///< in the box and before the limit; 0 if a ray has no sample
   M enters;         ///< rays that begin outside the box
 };
 
-/// The segments that rays are sampled in; see RaySegments. Counts are whole numbers.
+/// The segments in which rays are sampled; see RaySegments. Counts are whole numbers.
 struct Segments {
   F step, per_step, length;
   F whole, count;
@@ -111,7 +111,7 @@ class PairReader {
   std::int32_t index_;
 };
 #else
-/// Reads two neighbouring floats a lane with one 64-bit load each.
+/// Reads two neighbouring floats per lane with one 64-bit load.
 class PairReader {
  public:
   /// @param index  in floats
@@ -135,8 +135,8 @@ class PairReader {
 };
 #endif
 
-/// Reads pairs of neighbouring codes, and weighs them: code times QuantizedValues::kWeights where both are
-/// one.
+/// Reads pairs of neighbouring codes and interpolates them: code times QuantizedValues::kWeights if both are
+/// equal.
 class CodePairs {
  public:
   /// @param index     in codes
@@ -167,7 +167,7 @@ class CodePairs {
   I offset_, second_;
 };
 
-/// One axis of a cell: its low corner and how far a position lies from it, 0..1.
+/// One axis of a cell: its low corner, and the position relative to it, 0..1.
 struct CellAxis {
   I low;
   F fraction;
@@ -202,7 +202,7 @@ struct ValueReader {
   }
 };
 
-/// Reads its codes, which must be there.
+/// Reads the volume's codes, which must exist.
 struct CodedReader {
   static HWY_INLINE F cell(const VolumeView& volume, long long row, long long layer, I low, F x, F y, F z) {
     const CodePairs pairs(low, x);
@@ -213,7 +213,7 @@ struct CodedReader {
   }
 };
 
-/// See TrilinearSampler. @param shown  lanes whose nearest voxel is masked are taken out
+/// See TrilinearSampler. @param shown  lanes whose nearest voxel is masked are removed
 template <class Reader>
 HWY_INLINE F sampleVolume(const VolumeView& volume, const Vec3F& position, M& shown) {
   const Dims dims = volume.dims;
@@ -250,7 +250,7 @@ HWY_INLINE Color lookUp(const Rgba* table, I index) {
   return color;
 }
 
-/// What rays find of the bricks around them; see SkipView::at().
+/// The bricks around rays; see SkipView::at().
 class BrickWalk {
  public:
   HWY_INLINE BrickWalk(const RaycastTask& task, const Vec3F& direction)
@@ -261,7 +261,7 @@ class BrickWalk {
         rows_(hn::Set(kI, task.skip.dims.y)) {}
 
   /// @param brick  receives the index of the brick around a position
-  /// @return voxels along the ray that surely stay in it
+  /// @return voxels along the ray that are certainly in the brick
   HWY_INLINE F look(const Vec3F& position, I& brick) const {
     I x, y, z;
     const F leave =
@@ -273,7 +273,7 @@ class BrickWalk {
  private:
   struct Axis {
     F last, voxels_per_unit;
-    I ahead;  ///< 1 where the ray leaves a brick by its upper face
+    I ahead;  ///< 1 if the ray leaves a brick by its upper face
 
     HWY_INLINE Axis(F direction, int voxels)
         : last(hn::Set(kF, static_cast<float>(voxels - 1))),

@@ -1,5 +1,5 @@
-/// Light on packets of rays, lane by lane; see render/shading.h. Included once for each kind of vector
-/// register by packets.cpp.
+/// Shading of packets of rays, lane by lane; see render/shading.h. Included once for each instruction set by
+/// packets.cpp.
 #if defined(EMSCAPE_RENDER_CPU_PACKET_SHADING_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef EMSCAPE_RENDER_CPU_PACKET_SHADING_INL_H_
 #undef EMSCAPE_RENDER_CPU_PACKET_SHADING_INL_H_
@@ -14,9 +14,9 @@ HWY_BEFORE_NAMESPACE();
 namespace emscape::render {
 namespace HWY_NAMESPACE {
 
-/// See differenceAlong(). @param center  with its component along the axis held inside the outer voxels'
+/// See differenceAlong(). @param center  with its component along the axis clamped to the outer voxels'
 /// centres
-/// @param component  that component, which is moved along the axis and put back
+/// @param component  that component, which is changed and restored
 HWY_INLINE F differenceAlong(const VolumeView& volume, Vec3F center, F Vec3F::*component, int voxels, F value,
                              M lanes) {
   const F last = hn::Set(kF, static_cast<float>(voxels - 1));

@@ -1,5 +1,5 @@
-/// The isosurface in packets of rays, lane by lane; see render/isosurface.h. Included once for each kind of
-/// vector register by packets.cpp.
+/// The isosurface in packets of rays, lane by lane; see render/isosurface.h. Included once for each
+/// instruction set by packets.cpp.
 #if defined(EMSCAPE_RENDER_CPU_PACKET_SURFACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef EMSCAPE_RENDER_CPU_PACKET_SURFACE_INL_H_
 #undef EMSCAPE_RENDER_CPU_PACKET_SURFACE_INL_H_
@@ -20,7 +20,7 @@ struct Points {
   M known;
 };
 
-/// Looks for the first crossing of the isosurface on each ray of a packet.
+/// Searches the first crossing of the isosurface on each ray of a packet.
 class SurfaceSearch {
  public:
   HWY_INLINE SurfaceSearch(const RaycastTask& task, const Rays& rays)
@@ -80,7 +80,7 @@ class SurfaceSearch {
             hn::Or(hn::And(mask, a.known), hn::AndNot(mask, b.known))};
   }
 
-  /// The joint to look at after n: the last one of a brick that does not hold the surface.
+  /// The joint to examine after n: the last one of a brick without the surface.
   HWY_INLINE F next(F n, F distance, M active, F& next_brick) const {
     const F one = hn::Set(kF, 1.0F);
     F ahead = one;

@@ -123,7 +123,7 @@ class LanesAhead {
         highest_(hn::Zero(kF)),
         until_(hn::Zero(kF)) {}
 
-  /// Those of some lanes on whose ray a sample from `next` on can have a larger f.
+  /// The lanes on whose ray a sample from `next` on can have a larger f.
   HWY_INLINE M exceeds(M lanes, F next, F f) {
     const M stale = hn::And(lanes, hn::Ge(next, until_));
     if (!hn::AllFalse(kF, stale)) walk(stale, next);
@@ -153,8 +153,8 @@ class LanesAhead {
   F highest_, until_;
 };
 
-/// The modes, lane by lane; see render/compositing.h for what they are. live() gives the lanes for which a
-/// sample from `next` on can matter; add() those that the sample changed.
+/// The modes, lane by lane; see render/compositing.h. live() returns the lanes for which a sample from `next`
+/// on can matter, add() those that the sample changed.
 struct DvrLanes {
   static constexpr bool kNeedsColor = true;
   Color sum;
@@ -228,7 +228,7 @@ HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long
   const Light light(task.shading, rays.direction);
   LanesAhead ahead(task, rays, segments, bricks);
   Lanes lanes;
-  // The sample of some lanes; returns those that it changed.
+  // Adds the sample of some lanes; returns those that it changed.
   const auto take = [&](const Vec3F& position, M shown, bool last) HWY_ATTR {
     const F value = sampleVolume<Reader>(task.volume, position, shown);
     const F f = normalized(task.transfer, value);
@@ -251,8 +251,8 @@ HWY_INLINE Color castPacket(const RaycastTask& task, const Rays& rays, long long
   M active = hn::Lt(n, segments.whole);
   M unchanged = active;  // lanes whose last sample changed nothing
   while (true) {
-    // Lanes in a new brick look whether they can pass over it, and over those behind it. While most lanes
-    // find something to show this would be in vain.
+    // Lanes in a new brick test whether they can skip it and those behind it. While most lanes have visible
+    // samples, this is not worthwhile.
     M look = hn::And(hn::And(active, unchanged), hn::Ge(n, next_brick));
     if (task.skip.levels != nullptr && 2 * hn::CountTrue(kF, look) >= hn::CountTrue(kF, active)) {
       while (!hn::AllFalse(kF, look)) {
@@ -304,7 +304,7 @@ HWY_NOINLINE long long castAll(const RaycastTask& task, const Pixel* pixels, con
   return samples;
 }
 
-/// The modes whose samples are taken as they are.
+/// The modes without shading.
 template <class Lanes>
 HWY_INLINE long long castPlain(const RaycastTask& task, const Pixel* pixels, const RayBounds* bounds,
                                int count, Rgba* fronts) {
@@ -313,7 +313,7 @@ HWY_INLINE long long castPlain(const RaycastTask& task, const Pixel* pixels, con
              : castAll<castPacket<Lanes, ValueReader, false>>(task, pixels, bounds, count, fronts);
 }
 
-/// With light on them: it follows from small differences, which codes would round.
+/// The modes with shading, which needs small differences that codes would round.
 template <class Lanes>
 HWY_INLINE long long castFog(const RaycastTask& task, const Pixel* pixels, const RayBounds* bounds, int count,
                              Rgba* fronts) {
@@ -352,9 +352,9 @@ bool packetsCanCast(const VolumeView& volume) {
 }
 
 namespace {
-/// Whether a volume's codes are as good as its values: what they round is hidden by the transfer table.
+/// True if a volume's codes are as accurate as its values for the transfer table.
 bool codesServe(const QuantizedValues& coded, const Dims& dims, const TransferView& transfer) {
-  constexpr long long kMaxCodes = 1LL << 30;  // their places in bytes are 32-bit numbers
+  constexpr long long kMaxCodes = 1LL << 30;  // their byte offsets are 32-bit numbers
   constexpr float kCoarsest = 1.0F / 4096;    // of the transfer function's interval
   return coded.codes != nullptr && dims.count() < kMaxCodes && coded.step() * transfer.scale <= kCoarsest;
 }

@@ -11,8 +11,8 @@
 namespace emscape::render {
 namespace {
 
-/// Pixels of a lattice along a tile's side: small enough that neighbouring rays share what they read, and
-/// that a stop is heeded soon.
+/// Pixels of a lattice along a tile's side: small enough for neighbouring rays to share data, and for a quick
+/// stop.
 constexpr int kTile = 16;
 constexpr int kTilePixels = kTile * kTile;
 
@@ -78,7 +78,7 @@ class GroupCaster {
         plain_(cast.nearest ? plainOf<NearestSampler>(cast.mode) : plainOf<TrilinearSampler>(cast.mode)),
         cut_(cast.nearest ? cutOf<NearestSampler> : cutOf<TrilinearSampler>) {}
 
-  /// @return samples taken, as far as they are counted
+  /// @return number of samples, if counted
   long long operator()(const Pixel* pixels, int count, Image& image) const {
     std::array<Rgba, kTilePixels> fronts;
     std::array<CutRay, kTilePixels> cut;

@@ -11,20 +11,20 @@
 
 namespace emscape::render {
 
-/// What is cast, and how.
+/// Inputs of a cast.
 struct CpuCast {
   const RaycastTask& task;
   CompositingMode mode = CompositingMode::dvr;
   bool nearest = false;  ///< indices: the value of the nearest voxel instead of trilinear interpolation
-  bool plain = false;    ///< the plain form instead of packets, for comparison
-  GroundLayer* ground = nullptr;  ///< of the picture's size; its unknown pixels are filled as they are cast
-  bool shows_ground = true;       ///< false: pixels show the volume alone, cut off where the ground is
+  bool plain = false;    ///< the scalar form instead of packets, for comparison
+  GroundLayer* ground = nullptr;  ///< of the picture's size; unknown pixels are filled when they are cast
+  bool shows_ground = true;       ///< false: pixels show only the volume, ended by the ground
 };
 
-/// Casts the pixels of a lattice into an image of task.camera.size; the others are not touched. Tiles run in
-/// parallel; each pixel is the same whichever lattice or list it belongs to.
-/// @param stop     set from elsewhere: returns false soon, the lattice unfinished. May be null
-/// @param samples  is increased by the samples that were taken
+/// Casts the pixels of a lattice into an image of task.camera.size; other pixels are not changed. Tiles run
+/// in parallel; a pixel does not depend on the lattice or list to which it belongs.
+/// @param stop     set by another thread: returns false soon, with the lattice unfinished. May be null
+/// @param samples  is increased by the number of samples
 bool castCpu(const CpuCast& cast, const Lattice& lattice, Image& image, const StopFlag* stop,
              long long& samples);
 /// The same for a list of pixels; those at its front are cast first.

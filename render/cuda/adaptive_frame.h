@@ -1,8 +1,8 @@
-/// A frame of the pattern `adaptive` in one kernel: the lattice, then pass after pass what cannot be
-/// predicted from the pixels known by then. For .cu files.
+/// A frame of the pattern `adaptive` in one kernel: the lattice, then in each pass the pixels that cannot be
+/// predicted from those known so far. For .cu files.
 ///
-/// Each block takes tiles from all over the picture and casts those of their pixels that need it, so that
-/// blocks have about the same work without a common queue. They wait for each other only between passes.
+/// Each block processes tiles distributed over the picture and casts the pixels that cannot be predicted, so
+/// that blocks have about the same work without a common queue. They synchronise only between passes.
 #pragma once
 
 #include <cooperative_groups.h>
@@ -15,14 +15,14 @@
 
 namespace emscape::render::cuda {
 
-/// Threads per ray of the lattice, which has many rays: as few as fill the GPU, since neighbouring rays share
-/// texture cache lines and parts of a ray do not. Passes have few rays: one thread per part.
-/// Either 2 or as many as a ray has parts.
+/// Threads per ray of the lattice, which has many rays: as few as fill the GPU, because neighbouring rays
+/// share texture cache lines but parts of a ray do not. Passes have few rays: one thread per part. Either 2
+/// or as many as a ray has parts.
 constexpr unsigned kLatticeThreads = 2;
 
-/// The tiles of a grid of pixels that a block takes: one of each run of as many tiles as there are blocks.
-/// Its position in the run moves on by a golden section, so that its tiles are not aligned for any width of
-/// picture.
+/// The tiles of a grid of pixels that a block processes: one of each run of as many tiles as there are
+/// blocks. Its position in the run advances by the golden section, so that its tiles are not aligned for any
+/// width of the picture.
 class BlockTiles {
  public:
   /// @param columns, rows  of pixels; width_log2, height_log2  of a tile
@@ -36,8 +36,8 @@ class BlockTiles {
   __device__ unsigned pixelsOfBlock() const {
     return ((count_ + gridDim.x - 1) / gridDim.x) << (width_log2_ + height_log2_);
   }
-  /// Where pixel n of the block is in the grid, or beyond its last column or row. @return false: there is
-  /// none
+  /// Position of pixel n of the block in the grid, or beyond its last column or row. @return false if there
+  /// is none
   __device__ bool locate(unsigned n, int& column, int& row) const {
     const unsigned run = n >> (width_log2_ + height_log2_), shift = gridDim.x * 5 / 13 + 1;
     const unsigned tile = run * gridDim.x + (blockIdx.x + run * shift) % gridDim.x;
@@ -65,7 +65,7 @@ struct KnownLayer {
   }
 };
 
-/// What decides which pixels of a pass are cast; of an AdaptiveLaunch.
+/// Criteria that select the pixels of a pass to be cast; from an AdaptiveLaunch.
 struct Criteria {
   Layer layer;
   const Span* inside;
@@ -75,7 +75,7 @@ struct Criteria {
   bool is_lattice;  ///< instead of a pass
 };
 
-/// Leaves a pixel transparent, or as it is predicted. @return whether it must be cast instead
+/// Sets a pixel to transparent or to its prediction. @return true if it must be cast instead
 __device__ inline bool mustBeCast(const Criteria& frame, int x, int y) {
   const Span inside = frame.inside[y];
   const bool is_inside = inside.contains(x);
@@ -93,7 +93,7 @@ __device__ inline bool mustBeCast(const Criteria& frame, int x, int y) {
   return must_be_cast;
 }
 
-/// Pixels that a block is to cast, in its shared memory.
+/// Pixels to be cast by a block, in its shared memory.
 struct BlockQueue {
   static constexpr unsigned kMax = 6144;
   Pixel pixels[kMax];
@@ -119,9 +119,9 @@ struct BlockQueue {
   }
 };
 
-/// Predicts the block's pixels from the first one on, or queues them, as many as the queue holds. Not
-/// inlined, so that it takes no registers from the rest of the kernel.
-/// @return how many pixels the block has
+/// Predicts the block's pixels from the first one on, or queues them, as many as fit into the queue. Not
+/// inlined, to save registers in the rest of the kernel.
+/// @return number of pixels of the block
 __device__ __noinline__ inline unsigned classifyPixels(Criteria frame, unsigned first) {
   __builtin_assume(__isGlobal(frame.layer.pixels));
   __builtin_assume(__isGlobal(frame.inside));
@@ -170,8 +170,9 @@ __device__ Value fromLane(const Value& value, unsigned lane) {
   return other;
 }
 
-/// Casts one ray by several threads, `rays` lanes apart, each of which takes as many of its parts. The pixel
-/// is that of RaycastTask::castVolume() for any number of threads. All threads of a warp call it.
+/// Casts one ray with several threads, `rays` lanes apart, each of which casts the same number of its parts.
+/// For any number of threads the pixel equals that of RaycastTask::castVolume(). All threads of a warp call
+/// it.
 /// @param threads  2, or as many as there are parts
 /// @return the ray's colour for the first of its threads
 template <class RayKind>
@@ -194,7 +195,7 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
       ray.join(next);
     }
     if (again) break;
-    // Only the first of a ray's threads knew what is in front of its parts: nothing.
+    // Only the first of a ray's threads had no parts in front of its own.
     const Compositor own = ray.whole();
     bool is_sure = true;
 #pragma unroll 1
@@ -211,7 +212,7 @@ __device__ Rgba castByThreads(const CastLaunch& launch, const typename RayKind::
       }
     }
     if (done || is_sure || lane >= rays) break;
-    end = kParts;  // the rest is cast again, now that it is known what is in front
+    end = kParts;  // the rest is cast again, with the known parts in front
   }
   return ray.whole().result(launch.task.transfer);
 }
@@ -222,7 +223,7 @@ __device__ void castQueued(const CastLaunch& launch, const typename RayKind::Col
                            const BlockQueue& queue, bool is_lattice) {
   const unsigned warp = threadIdx.x / 32, lane = threadIdx.x % 32;
   if constexpr (RayKind::kParts == 1) {
-    // Rays of a warp wait for each other: as few per warp as give every warp some.
+    // Rays of a warp wait for each other, so each warp gets as few as possible.
     const unsigned count = queue.length;
     const unsigned rays = min(max((count + kCastWarps - 1) / kCastWarps, 1U), 32U);
     for (unsigned n = warp * rays + lane; n < count; n += kCastWarps * rays) {
@@ -260,7 +261,7 @@ __global__ void __launch_bounds__(kCastThreads, 1)
       if (threadIdx.x == 0) queue.length = 0;
       __syncthreads();
       looked_at = classifyPixels(criteria, first);
-      waitForCopies();  // of the colours, too
+      waitForCopies();  // also of the colours
       if (threadIdx.x == 0) atomicAdd(launch.rays, queue.length);
       castQueued<RayKind>(launch, colors, queue, pass < 0);
       __syncthreads();

@@ -14,7 +14,7 @@ __global__ void brickLevels(SkipRule rule, volume::BricksView bricks, float* hig
     highest[brick] = level.highest;
     levels[brick] = level.level;
     skippable = level.level < SkipView::kNever;
-    // Floats that are not negative are in the order of their bits.
+    // Non-negative floats have the same order as their bits.
     if (!range.empty()) {
       atomicMax(reinterpret_cast<int*>(&summary->highest_f),
                 __float_as_int(rule.table.normalized(range.max)));

@@ -8,7 +8,7 @@
 
 namespace emscape::render::cuda {
 
-/// Threads of a block, one block per multiprocessor. Warps take pixels independently of each other.
+/// Threads of a block, one block per multiprocessor. Warps process pixels independently of each other.
 constexpr int kCastThreads = 768;
 constexpr unsigned kCastWarps = kCastThreads / 32;
 
@@ -24,7 +24,7 @@ __device__ inline bool isToBeCast(const CastLaunch& launch, const Pixel& pixel) 
          launch.predicted[pixelIndex(launch.task.camera.size, pixel.x, pixel.y)];
 }
 
-/// Where the samples of a pixel's ray begin and end.
+/// Beginning and end of the samples on a pixel's ray.
 __device__ inline RayBounds boundsOf(const CastLaunch& launch, const Pixel& pixel) {
   RayBounds bounds;
   if (launch.limits == nullptr) return bounds;

@@ -7,13 +7,13 @@
 namespace emscape::render::cuda {
 namespace {
 
-/// The table in shared memory, as halves: their 11 bits are far below what 8 bits of a picture show.
+/// The table in shared memory, as halves, whose 11 bits are sufficient for 8 bits of a picture.
 class SharedColors {
  public:
   static unsigned sharedBytes(const CastLaunch& launch) {
     return static_cast<unsigned>(pairs(launch) * sizeof(uint4));
   }
-  /// Begins to copy the table: waitForCopies() is to follow.
+  /// Begins to copy the table; waitForCopies() must follow.
   __device__ explicit SharedColors(const CastLaunch& launch) {
     const uint4* from = reinterpret_cast<const uint4*>(launch.half_colors);
     uint4* to = reinterpret_cast<uint4*>(table());

@@ -54,8 +54,8 @@ struct SurfaceRay {
 };
 
 /// Hands out 0, 1, 2, ... to warps, all threads of which call it.
-/// @param next   0, as it is again after the last number
-/// @param count  of numbers that are asked for in all
+/// @param next   0 before the first and after the last number
+/// @param count  total number of requests
 __device__ inline unsigned nextNumber(unsigned* next, unsigned count) {
   unsigned number = 0;
   if (threadIdx.x % 32 == 0) {
@@ -65,13 +65,13 @@ __device__ inline unsigned nextNumber(unsigned* next, unsigned count) {
   return __shfl_sync(~0U, number, 0);
 }
 
-/// One thread per ray. Warps take the tiles one by one, as each of them is done with the last.
+/// One thread per ray. Each warp takes the next tile when it has finished one.
 template <class RayKind>
 __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__ CastLaunch launch) {
   const typename RayKind::Colors colors(launch);
   const unsigned lane = threadIdx.x % 32, warps = gridDim.x * kCastWarps, tiles = launch.tiles.count();
   waitForCopies();
-  unsigned tile = threadIdx.x / 32 * gridDim.x + blockIdx.x;  // the first one needs no asking
+  unsigned tile = threadIdx.x / 32 * gridDim.x + blockIdx.x;  // the first tile needs no request
   while (tile < tiles) {
     Pixel pixel;
     if (launch.tiles.pixelOf(tile, lane, pixel) && isToBeCast(launch, pixel)) {
@@ -82,10 +82,10 @@ __global__ void __launch_bounds__(kCastThreads) castRays(const __grid_constant__
   }
 }
 
-/// What the largest table takes of a block's shared memory.
+/// Shared memory per block of the largest table.
 constexpr int kMaxSharedBytes = (kMaxHalfColors + 1) * static_cast<int>(sizeof(HalfColor));
 
-/// Allows a kernel the shared memory that the largest table takes. @return its blocks that run at a time
+/// Sets a kernel's limit of shared memory for the largest table. @return number of its concurrent blocks
 template <class Launch>
 unsigned residentBlocks(void (*kernel)(Launch)) {
   emscape::cuda::check(

@@ -1,4 +1,4 @@
-/// A scene in the memory of the GPU, as kernels read it.
+/// A scene in GPU memory, for kernels.
 #pragma once
 
 #include <vector>
@@ -10,18 +10,18 @@
 
 namespace emscape::render::cuda {
 
-/// Copies what has changed, on a stream.
+/// Copies changed data, on a stream.
 class DeviceScene {
  public:
-  /// The volume's values have changed.
+  /// Reports that the volume's values have changed.
   void volumeChanged() { levels_current_ = false; }
-  /// Whether update() has nothing to do. @param scene  prepared
+  /// True if update() has nothing to do. @param scene  prepared
   bool isCurrent(const Scene& scene) const;
   /// @param storage  of the volume, which may be read on the stream
   void update(const Scene& scene, const volume::DeviceStorage& storage, cudaStream_t stream);
 
-  /// The scene as it was updated, for launches; pixels and layer are left open. Whether skipping bricks pays
-  /// is known one frame late.
+  /// The updated scene, for launches; pixels and layer are not set. Whether skipping bricks is worthwhile is
+  /// known one frame later.
   CastLaunch launch(const Scene& scene, const volume::DeviceStorage& storage, Sampling sampling,
                     ImageSize size) const;
 
@@ -40,7 +40,7 @@ class DeviceScene {
   emscape::cuda::Buffer<BrickSummary> summary_;
   bool levels_current_ = false;
   emscape::cuda::Readback<BrickSummary> found_;  ///< arrives after the frame for which it was computed
-  double skippable_share_ = 1;                   ///< of the bricks, as far as is known
+  double skippable_share_ = 1;                   ///< of the bricks, latest known value
 
   emscape::cuda::Buffer<float> heights_;
   emscape::cuda::Buffer<Rgba> ground_colors_;

@@ -21,8 +21,8 @@ using cuda::Sampling;
 using emscape::cuda::Buffer;
 using emscape::cuda::check;
 
-/// Approximate number of samples of one launch: a stop waits for one launch at most. A restoration, for which
-/// nobody waits, is cast in smaller steps.
+/// Approximate number of samples of one launch: a stop waits for one launch at most. A restoration is cast in
+/// smaller steps, so that it can be stopped quickly.
 constexpr double kFrameSamples = 1 << 30;
 constexpr double kRestorationSamples = 1 << 27;
 
@@ -65,7 +65,7 @@ class CudaFrameCaster : public FrameCaster {
   emscape::cuda::TimeMark begin_, end_;  ///< of the last frame, or restoration
   bool is_begun_ = false;                ///< begin_ is recorded
   long long max_rays_ = 0;               ///< of a launch
-  bool is_cast_ = false;                 ///< a launch of the frame, at least in part
+  bool is_cast_ = false;                 ///< some launch of the frame was made
 
   volume::DeviceVolumeRing copies_;  ///< of volumes from the host's memory
   std::shared_ptr<const volume::DeviceVolume> volume_;
@@ -73,13 +73,13 @@ class CudaFrameCaster : public FrameCaster {
   CompositingMode mode_ = CompositingMode::dvr;
   Sampling sampling_ = Sampling::filtered;
 
-  cuda::Layers layers_;  ///< of the picture that was drawn last
+  cuda::Layers layers_;  ///< of the last drawn picture
   Buffer<unsigned> next_tile_;
   Buffer<float4> layer_;
   Buffer<float4> picture_;
   Buffer<uchar4> picture8_;
   Buffer<std::uint32_t> behind_, front_;  ///< layers of labels
-  /// Composed pictures, those in use elsewhere among them.
+  /// Composed pictures, including those in use elsewhere.
   std::vector<std::shared_ptr<cuda::PictureMemory>> finished_;
 
   /// Results for one view: the ground, and the pixels whose rays meet the box.
@@ -102,7 +102,7 @@ class CudaFrameCaster : public FrameCaster {
   ToleranceController hold_;
   double tolerance_levels_ = 0;  ///< of the last adaptive frame
   Buffer<bool> predicted_;       ///< pixels of the last adaptive frame
-  Buffer<unsigned> rays_;        ///< one: how many all adaptive frames have cast, modulo 2^32
+  Buffer<unsigned> rays_;        ///< one number: rays of all adaptive frames, modulo 2^32
   unsigned rays_before_ = 0;     ///< the same before the last frame
   long long missing_rays_ = 0;   ///< those that the last adaptive frame predicted
 };
@@ -122,7 +122,7 @@ void CudaFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volu
   scene_.volumeChanged();
 }
 
-/// Number of rays that take at most so many samples, even if each crosses the volume along its diagonal.
+/// Number of rays with at most this number of samples, even if each crosses the volume along its diagonal.
 long long raysFor(const CastLaunch& launch, double samples) {
   const Dims& dims = launch.task.volume.dims;
   const double longest =
@@ -130,14 +130,15 @@ long long raysFor(const CastLaunch& launch, double samples) {
   return std::max<long long>(static_cast<long long>(samples * launch.task.step_voxels / longest), 1);
 }
 
-/// The time of a frame, or restoration, begins with the first work that the GPU is given for it, but for
-/// findInside()'s few kilobytes.
+/// The time of a frame or restoration begins with its first work on the GPU, except the few kilobytes of
+/// findInside().
 void CudaFrameCaster::beginTime() {
   if (!is_begun_) begin_.record(stream_);
   is_begun_ = true;
 }
 
-/// Before each launch that casts: waits for the one before, so that a stop waits for one launch at most.
+/// Called before each casting launch: waits for the previous one, so that a stop waits for at most one
+/// launch.
 bool CudaFrameCaster::isStopped(const StopFlag* stop) {
   if (stop == nullptr) return false;
   if (is_cast_) stream_.wait();
@@ -202,7 +203,7 @@ void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
   ground_view_ = {version, size};
 }
 
-/// Found for every frame, as sections show the volume's values.
+/// Computed for every frame, because sections show the volume's values.
 void CudaFrameCaster::findSections(CastLaunch& launch) {
   const std::size_t pixels = picture8_.size();
   cut_begins_.resize(pixels);
@@ -221,8 +222,9 @@ void CudaFrameCaster::findSections(CastLaunch& launch) {
   layers_.ground_colors = cut_colors_.data();
 }
 
-/// By the host, before a frame's time begins, as the GPU would wait for it. Wide, as the GPU's quotients are
-/// not exact in the last two bits of a double: a ray may meet the box on one side alone.
+/// Computed by the host before a frame's time begins, because the GPU would wait for it. Widened, because the
+/// GPU's quotients are not exact in the last two bits of a double, so that a ray may meet the box on only one
+/// processor.
 void CudaFrameCaster::findInside(const Scene& scene, ImageSize size) {
   const unsigned version = scene.versions().view;
   if (inside_view_.holds(version, size)) return;
@@ -270,7 +272,7 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   return report;
 }
 
-/// After the last launch: makes the picture and waits for it.
+/// Called after the last launch: makes the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
   beginTime();
   if (report.complete) showPicture8(layers_, picture8_.data(), stream_);

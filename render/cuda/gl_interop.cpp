@@ -1,6 +1,6 @@
 /// Pictures from CUDA to OpenGL, on one GPU.
 #include <GL/gl.h>
-// before what needs its types
+// before the header that needs its types
 #include <cuda_gl_interop.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ bool openGlSharesGpu() {
   const bool is_known = cudaGetDevice(&own) == cudaSuccess &&
                         cudaGLGetDevices(&count, devices.data(), static_cast<unsigned>(devices.size()),
                                          cudaGLDeviceListAll) == cudaSuccess;
-  cudaGetLastError();  // takes it back: no GPU, or not of this context
+  cudaGetLastError();  // clears the error: no GPU, or not that of this context
   const auto* end = devices.begin() + std::min<std::size_t>(count, devices.size());
   return is_known && std::find(devices.cbegin(), end, own) != end;
 }
@@ -56,11 +56,11 @@ void GlPixelBuffer::fill(const DevicePicture& picture) {
     status = cudaMemcpyAsync(to, memory->pixels(), std::min(bytes, memory->bytes()), cudaMemcpyDeviceToDevice,
                              impl_->stream);
   }
-  // In any case: OpenGL may not use what is mapped.
+  // In any case, because OpenGL must not use mapped buffers.
   const cudaError_t unmapped = cudaGraphicsUnmapResources(1, &impl_->resource, impl_->stream);
   check(status, "copying a picture to OpenGL");
   check(unmapped, "cudaGraphicsUnmapResources");
-  impl_->stream.wait();  // the picture's memory may be used again then
+  impl_->stream.wait();  // then the picture's memory may be reused
 }
 
 }  // namespace emscape::render

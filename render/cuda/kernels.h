@@ -1,4 +1,4 @@
-/// The ray caster's kernels as the host starts them. All pointers are to device memory.
+/// Launches of the ray caster's kernels. All pointers are to device memory.
 /// @throws Error (device) that names the kernel
 #pragma once
 
@@ -17,8 +17,8 @@
 
 namespace emscape::render::cuda {
 
-/// The volume alone as it is cast: a colour per pixel of the picture, in four planes by odd and even x and y.
-/// So the source pixels of a pattern are contiguous.
+/// The cast volume without ground: a colour per pixel of the picture, in four planes by odd and even x and y,
+/// so that the source pixels of a pattern are contiguous.
 struct Layer {
   float4* pixels = nullptr;
   ImageSize size;
@@ -76,27 +76,27 @@ struct CastLaunch {
   LatticeTiles tiles;
   const HalfColor* half_colors = nullptr;   ///< of task.transfer.samples; for Sampling::filtered
   const float* volume_highest_f = nullptr;  ///< one
-  const float* limits = nullptr;  ///< one per pixel: where the ground is, or a section; null: nowhere
-  const float* begins = nullptr;  ///< one per pixel: where planes let its ray begin; null: not cut
-  /// One per pixel: false if it is not to be cast; null: all are.
+  const float* limits = nullptr;  ///< one per pixel: distance of the ground or a section; null: none
+  const float* begins = nullptr;  ///< one per pixel: beginning of its ray at planes; null: not cut
+  /// One per pixel: false if it is not cast; null: all are cast.
   const bool* predicted = nullptr;
   unsigned* next_tile = nullptr;  ///< queue counter: zero between launches; one per stream
   Layer layer;
 };
 void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
-/// The same for a sparse sampling alone.
+/// The same, only for a sparse sampling.
 void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 
-/// Where every pixel's ray meets the ground (infinity: nowhere), and its colour there.
+/// Distance at which every pixel's ray meets the ground (infinity: none), and the colour there.
 void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream);
 
-/// The part of every pixel's ray that planes leave; arrays with one element per pixel.
+/// The part of every pixel's ray that planes keep; arrays with one element per pixel.
 struct CutLayer {
   const float* ground_distances = nullptr;  ///< null: no ground
   const float4* ground_colors = nullptr;
   float* begins = nullptr;     ///< of the samples
   float* limits = nullptr;     ///< of the samples
-  float* distances = nullptr;  ///< of the section or the ground that is seen; infinity: of none
+  float* distances = nullptr;  ///< of the visible section or ground; infinity: none
   float4* colors = nullptr;    ///< of it
 };
 /// @param task  its texture does not filter
@@ -107,7 +107,7 @@ void castCut(const RaycastTask& task, Sampling sampling, const CutLayer& layer, 
 /// The volume's layer, and the ground or a section behind it.
 struct Layers {
   ImageSize size;
-  Pattern pattern = Pattern::full;  ///< of the layer: which of its pixels count; adaptive: all
+  Pattern pattern = Pattern::full;  ///< selects the valid pixels of the layer; adaptive: all
   Interpolation interpolation = Interpolation::float32;
   Layer volume;
   const float* ground_distances = nullptr;  ///< null: no ground
@@ -125,7 +125,8 @@ void composeOverlay(unsigned count, const std::uint32_t* behind, const uchar4* c
 
 // --- Adaptive ---
 
-/// A frame: what is cast, its `tiles` and `predicted` aside, and what decides which pixels are.
+/// An adaptive frame: inputs of the cast, except `tiles` and `predicted`, and the criteria that select
+/// pixels.
 struct AdaptiveLaunch : CastLaunch {
   static constexpr int kPassCount = static_cast<int>(std::size(kPasses));
   Pass passes[kPassCount] = {kPasses[0], kPasses[1], kPasses[2], kPasses[3]};
@@ -135,9 +136,9 @@ struct AdaptiveLaunch : CastLaunch {
   unsigned* rays = nullptr;      ///< is increased by the number of rays cast
 };
 static_assert(sizeof(AdaptiveLaunch) <= 4096, "what a kernel's parameters may take");
-/// Casts the frame and predicts what it does not cast; the whole layer is written.
+/// Casts the frame and predicts the other pixels; the whole layer is written.
 void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
-/// The same for a sparse sampling alone.
+/// The same, only for a sparse sampling.
 void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 
 // --- Bricks ---
@@ -145,7 +146,7 @@ void castSparse(const AdaptiveLaunch& launch, CompositingMode mode, Sampling sam
 /// Summary of a volume's bricks.
 struct BrickSummary {
   float highest_f = 0;     ///< the largest f of all
-  unsigned skippable = 0;  ///< how many have a level below SkipView::kNever
+  unsigned skippable = 0;  ///< number of bricks with a level below SkipView::kNever
 };
 /// SkipView's entries of all bricks. @param rule  pointers to device memory; summary  all 0
 void findLevels(const SkipRule& rule, const volume::BricksView& bricks, float* highest, float* levels,

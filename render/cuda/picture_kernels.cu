@@ -8,10 +8,10 @@
 namespace emscape::render::cuda {
 namespace {
 
-/// Of a block: a thread makes a cell of 2 x 2 pixels.
+/// Cells of a block: a thread makes a cell of 2 x 2 pixels.
 constexpr unsigned kCellColumns = 32, kCellRows = 8;
 
-/// Two pixels of a row, written at a time.
+/// Two pixels of a row, which are written together.
 template <class Pixel>
 struct alignas(2 * sizeof(Pixel)) PixelPair {
   Pixel left, right;
@@ -29,10 +29,10 @@ __global__ void __launch_bounds__(kCellColumns* kCellRows)
     return static_cast<unsigned>(py) * static_cast<unsigned>(size.width) + static_cast<unsigned>(px);
   };
 
-  Rgba ground[2][2];  // transparent where there is none
+  Rgba ground[2][2];  // transparent if there is none
   if constexpr (kHasGround) {
     unsigned indices[4];
-    float distances[4];  // all at a time: they are waited for once
+    float distances[4];  // loaded together, to wait only once
     EMSCAPE_UNROLL
     for (int n = 0; n < 4; ++n) {
       indices[n] = indexOf(min(x + n % 2, size.width - 1), min(y + n / 2, size.height - 1));

@@ -1,4 +1,4 @@
-/// Which pixel a thread takes, and conversions of colours. For .cu files.
+/// Assignment of pixels to threads, and conversions of colours. For .cu files.
 #pragma once
 
 #include "render/reconstruction.h"
@@ -6,8 +6,8 @@
 
 namespace emscape::render::cuda {
 
-/// Threads of a block; they take a square of kTile x kTile pixels, a warp 8 x 4 of them, so that the rays of
-/// a warp are close together.
+/// Threads of a block: they process a square of kTile x kTile pixels, a warp 8 x 4 of them, so that the rays
+/// of a warp are close together.
 constexpr int kTile = 16;
 constexpr int kTileThreads = kTile * kTile;
 
@@ -17,7 +17,7 @@ inline unsigned tileCount(ImageSize size) {
          static_cast<unsigned>((size.height + kTile - 1) / kTile);
 }
 
-/// The pixel of this thread, of blocks whose squares are numbered row by row. @return false: there is none
+/// The pixel of this thread, in blocks whose squares are numbered row by row. @return false if there is none
 __device__ inline bool pixelOfThread(ImageSize size, int& x, int& y) {
   const int tile_columns = (size.width + kTile - 1) / kTile;
   const int tile = static_cast<int>(blockIdx.x);

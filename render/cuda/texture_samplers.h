@@ -13,11 +13,11 @@ EMSCAPE_HD inline float texelAt([[maybe_unused]] std::uint64_t texture, [[maybe_
 #if defined(__CUDA_ARCH__)
   return tex3D<float>(texture, x, y, z);
 #else
-  return NAN;  // never called: there is no such memory on the host
+  return NAN;  // never called: the host has no such memory
 #endif
 }
 
-/// Trilinear as the texture unit does it: fractions of 8 bits. VolumeView::texture filters.
+/// Trilinear interpolation by the texture unit, with fractions of 8 bits. VolumeView::texture filters.
 struct FilteredSampler : SamplerOf<FilteredSampler> {
   static constexpr float kShift = 0.5F;  // texels are counted from the corner of the first one
   EMSCAPE_HD static float fetch(const VolumeView& volume, const Vec3f& texel) {

@@ -24,7 +24,7 @@ struct MeasuredGrid {
   double valueAt(const AxisSample& at_azimuth, const AxisSample& at_elevation) const;
 };
 
-/// The rows of a file with exactly the columns azimuth_deg, elevation_deg and `value`, in any order.
+/// Reads a file with exactly the columns azimuth_deg, elevation_deg and `value`, in any order.
 /// @throws Error (bad_input) with line and column
 MeasuredGrid readMeasuredGrid(const std::string& file, const ColumnSpec& value);
 

@@ -1,4 +1,4 @@
-/// Measured patterns: the angles at which they were taken, and cuts.
+/// Measured patterns: angles of measurement, and cuts.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +21,7 @@ struct AxisSample {
 /// -90..90.
 class MeasuredAxis {
  public:
-  /// Largest gap (deg) between neighbours that is interpolated.
+  /// Largest interpolated gap (deg) between neighbours.
   static constexpr double kMaxGap_deg = 90;
 
   /// @param angles_deg  in any order and number, each as returned by normalized()
@@ -55,7 +55,7 @@ class MeasuredCut {
  public:
   /// @param rows  in any order
   /// @param file, what  name the cut in errors
-  /// @throws Error (bad_input): an angle twice with different attenuations, or as MeasuredAxis
+  /// @throws Error (bad_input): for an angle with two attenuations, or as MeasuredAxis
   MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const SourceLocation& file, const char* what);
 
   /// Amplitude (relative voltage, 0..1) at any angle of the axis.
@@ -75,7 +75,7 @@ constexpr double kMaxAttenuation_db = 300;
 /// Relative voltage of an attenuation.
 double amplitudeOfAttenuation(double attenuation_db);
 
-/// @throws Error (bad_input) unless the smallest attenuation is within 1 dB of 0, which holds for values
+/// @throws Error (bad_input) unless the smallest attenuation is within 1 dB of 0, as it must be for values
 /// relative to the maximum
 void requireMaximum(double smallest_attenuation_db, const SourceLocation& file, const char* what);
 

@@ -12,8 +12,7 @@
 namespace emscape::scenario {
 namespace {
 
-/// Powers of one variable, sorted, so that the mean over it of max(factor * power, floor) takes a binary
-/// search.
+/// Sorted powers of one variable: the mean of max(factor * power, floor) then needs only a binary search.
 class SortedPowers {
  public:
   explicit SortedPowers(std::vector<double> powers) : powers_(std::move(powers)), sums_{0} {
@@ -50,7 +49,7 @@ double tablePower(const float* table, int count, double x, double half_span) {
   return amplitude * amplitude;
 }
 
-/// Powers by azimuth times powers by elevation, not below a floor.
+/// Powers by azimuth times powers by elevation, at least a floor.
 double separableIntegral_sr(std::vector<double> azimuth, const std::vector<double>& elevation, double floor) {
   const SortedPowers round(std::move(azimuth));
   const auto rows = static_cast<int>(elevation.size());
@@ -70,12 +69,12 @@ int samplesOf(int count) {
 }
 
 /// A planar aperture in direction cosines, v = sin(elevation) and u = cos(elevation) sin(azimuth); unsteered
-/// it is symmetrical in both. Elevations are taken in blocks with one cos(elevation) each, over which the
-/// pattern in azimuth hardly changes.
+/// it is symmetrical in both. Elevations are processed in blocks with one cos(elevation) each, over which the
+/// azimuth pattern is almost constant.
 double planarIntegral_sr(const PatternView& pattern, double floor) {
   constexpr int kBlocks = 32;
   constexpr double kSpan = 2, kQuarter = kPi / 2, kBlock = kQuarter / kBlocks;
-  // Tables have hundreds of entries to a lobe: some ten samples to each are enough.
+  // Tables have hundreds of entries per lobe; about ten samples per lobe are sufficient.
   const int columns = std::clamp(pattern.azimuth_count / 128, 256, 1 << 13);
   const int rows = std::clamp(pattern.elevation_count / (80 * kBlocks), 8, 1 << 8);
   double integral = 0;
@@ -97,10 +96,10 @@ double planarIntegral_sr(const PatternView& pattern, double floor) {
     }
   }
   return 2 * integral * kPi * kBlock / rows +
-         2 * kPi * floor;  // both halves ahead, and the half space behind
+         2 * kPi * floor;  // the forward half space, and the half space behind
 }
 
-/// Each row of samples from the grid's two rows beside it.
+/// Each row of samples is between two rows of the grid.
 double gridIntegral_sr(const PatternView& pattern) {
   using antenna_detail::atCell;
   using antenna_detail::cellInTable;

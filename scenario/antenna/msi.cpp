@@ -2,14 +2,14 @@
 ///
 /// The file gives the attenuation in the horizontal plane, H(azimuth), and in the vertical plane through
 /// boresight, V(angle), whose angle runs from the horizon ahead (0) downwards to the nadir (90), the horizon
-/// behind (180) and the zenith (270). In between, horizontal projection interpolation is used:
+/// behind (180) and the zenith (270). Between them, horizontal projection interpolation is used:
 ///
 ///     A(az, el) = max(0, H(az) + (1 - w) (V(-el) - H(0)) + w (V(180 + el) - H(180))),   w = |az| / 180
 ///
-/// It gives back both cuts in their planes, and near the beam the usual sum of the two attenuations; towards
-/// the rear the back of the vertical cut takes over from its front. Limits: away from both planes, and above
-/// all to the sides and behind, it is an estimate that may be some 10 dB wrong; at the zenith and the nadir
-/// it depends on azimuth.
+/// It reproduces both cuts in their planes, and gives the usual sum of the two attenuations near the beam;
+/// towards the rear the back of the vertical cut replaces its front. Limits: away from both planes,
+/// particularly to the sides and behind, it is an estimate with errors of about 10 dB; at the zenith and the
+/// nadir it depends on azimuth.
 ///
 /// @see F. Gil, A. R. Claro, J. M. Ferreira, C. Pardelinha, L. M. Correia, "A 3D interpolation method for
 /// base-station-antenna radiation patterns", IEEE Antennas and Propagation Magazine 43(2), 2001
@@ -115,7 +115,7 @@ class MsiReader {
     return *value;
   }
 
-  /// "17.5 dBi", "15.35dBd" or "15.35", which is in dBd.
+  /// "17.5 dBi", "15.35dBd" or "15.35" (in dBd).
   double gainIn(const TextField& field) const {
     const std::size_t digits = std::min(field.text.find_first_not_of("+-.0123456789"), field.text.size());
     const TextField unit = restOf(field, digits);

@@ -12,7 +12,7 @@
 namespace emscape::scenario {
 namespace antenna_detail {
 
-/// Azimuth and elevation (rad) of a direction (forward, right, up). By arc tangents, which stay exact near
+/// Azimuth and elevation (rad) of a direction (forward, right, up). By arc tangents, which are accurate near
 /// boresight.
 struct PatternAngles {
   float azimuth_rad;
@@ -29,8 +29,8 @@ struct TableCell {
   float fraction;  ///< 0..1
 };
 /// The position of x in a uniform table of `count` entries, odd, over -half_span..half_span. Counted from the
-/// middle, so that small x keep their precision. Outside the table: its last interval, extrapolated; NaN: an
-/// interval of the table.
+/// middle, so that small x keep their precision. Outside the table the last interval is extrapolated; NaN
+/// gives any interval of the table.
 EMSCAPE_HD inline TableCell cellInTable(float x, float half_span, int count) {
   const int middle = count / 2;
   const float t = x * (static_cast<float>(middle) / half_span);
@@ -48,7 +48,7 @@ EMSCAPE_HD inline float larger(float a, float b) {
   return a < b ? b : a;
 }
 
-/// A table's value without its sign, or with it; not below a magnitude.
+/// A table's value with or without its sign; at least a given magnitude.
 template <bool kSigned>
 EMSCAPE_HD inline float bounded(float value, float smallest) {
   const float magnitude = larger(std::fabs(value), smallest);

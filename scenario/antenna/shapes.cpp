@@ -14,7 +14,7 @@
 namespace emscape::scenario {
 namespace {
 
-/// Beamwidth (rad) times side over wavelength of a narrow evenly illuminated aperture.
+/// Beamwidth (rad) times side over wavelength of a narrow, uniformly illuminated aperture.
 constexpr double kEvenApertureFactor = 0.885892941;
 /// Table steps as fractions of the beamwidth: within 1e-3 dB down to -40 dB, where the error of linear
 /// interpolation is largest relative to the amplitude; finer where the shape has a corner.
@@ -118,7 +118,7 @@ ShapeTable apertureTable(const Taper& taper, double beamwidth_deg) {
   return tabulate(pattern, kDirectionCosineSpan, kEvenApertureFactor / side_wavelengths / kStepsPerBeamwidth);
 }
 
-/// Half-power width in direction cosine of an unsteered array of even weights.
+/// Half-power width in direction cosine of an unsteered array with uniform weights.
 double arrayWidth(int elements, double spacing_wavelengths) {
   return kEvenApertureFactor / (elements * spacing_wavelengths);
 }

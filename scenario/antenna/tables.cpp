@@ -67,8 +67,8 @@ double halfPowerWidth(const std::vector<float>& values, double half_span, bool c
     if (amplitude(i) > amplitude(peak)) peak = i;
   }
   const double half_power = amplitude(peak) * std::sqrt(0.5);
-  // Intervals from the peak to the crossing on one side; to the end of the table, or all round, where there
-  // is none.
+  // Intervals from the peak to the crossing on one side; if there is none, to the end of the table, or the
+  // whole circle.
   const auto walk = [&](int direction) -> double {
     const int limit = closed ? intervals : (direction > 0 ? intervals - peak : peak);
     for (int n = 1; n <= limit; ++n) {
@@ -87,7 +87,7 @@ Angles patternAngles(const Vec3d& direction) {
 }
 
 float lobeTangent(double edge_azimuth_rad) {
-  // Near a right angle the tangent is too steep to be of use; the margin covers its rounding.
+  // Near a right angle the tangent is too steep to be useful; the margin covers its rounding.
   constexpr double kWidest_rad = 1.4, kMargin = 1e-4;
   return edge_azimuth_rad < kWidest_rad
              ? static_cast<float>(std::tan(edge_azimuth_rad) * (1 + kMargin) + kMargin)

@@ -15,7 +15,7 @@ using Shape = std::function<double(double)>;
 /// Largest number of intervals of a table of one variable: 1 MiB of floats.
 constexpr int kMaxIntervals = 1 << 18;
 
-/// A shape sampled evenly over -half_span..half_span, both ends and 0 among the samples.
+/// A shape sampled uniformly over -half_span..half_span, including both ends and 0.
 struct ShapeTable {
   Shape shape;
   double half_span = 0;
@@ -23,15 +23,15 @@ struct ShapeTable {
 
   int count() const { return static_cast<int>(values.size()); }
 };
-/// @param largest_step  > 0; larger if more than kMaxIntervals intervals were needed
+/// @param largest_step  > 0; increased if more than kMaxIntervals intervals would be needed
 ShapeTable tabulate(Shape shape, double half_span, double largest_step);
 /// The same with samples at every one of the angles (deg), if they are multiples of 0.0001 degree and the
 /// intervals suffice.
 ShapeTable tabulate(Shape shape, double half_span, const std::vector<double>& angles_deg);
 
-/// Intervals, an even number up to `most`, that divide a span (deg) so that every angle is an end of one.
-/// If that needs too many, or angles are not multiples of 0.0001 degree: at least eight per smallest distance
-/// of two angles.
+/// The number of intervals, even and at most `most`, that divides a span (deg) so that every angle is an end
+/// of an interval. If that needs too many, or angles are not multiples of 0.0001 degree: at least eight
+/// intervals per smallest distance of two angles.
 /// @param angles_deg  counted from the span's middle, ascending
 int intervalsThatMeet(const std::vector<double>& angles_deg, double span_deg, int most);
 
@@ -51,7 +51,7 @@ Angles patternAngles(const Vec3d& direction);
 /// sides.
 float lobeTangent(double edge_azimuth_rad);
 
-/// azimuth shape * elevation shape, not below side_lobe_amplitude.
+/// azimuth shape * elevation shape, at least side_lobe_amplitude.
 class SeparableAntenna : public Antenna {
  public:
   SeparableAntenna(ShapeTable azimuth, ShapeTable elevation, double side_lobe_amplitude);
@@ -68,7 +68,7 @@ class SeparableAntenna : public Antenna {
 class GridAntenna : public Antenna {
  public:
   /// @param amplitudes  azimuth_count * elevation_count, both odd and at least 3
-  /// @param side_lobe_amplitude  below which the pattern does not fall
+  /// @param side_lobe_amplitude  lower limit of the pattern
   GridAntenna(std::vector<float> amplitudes, int azimuth_count, int elevation_count,
               float side_lobe_amplitude = 0);
   PatternView view() const override;
@@ -83,7 +83,7 @@ class GridAntenna : public Antenna {
 /// Largest number of intervals of a grid in azimuth, twice that in elevation: 0.1 degree, 26 MB.
 constexpr int kMaxGridIntervals = 3600;
 
-/// Angles (deg) of a grid's entries: azimuths from -180 to 180, elevations from -90 to 90, evenly.
+/// Angles (deg) of a grid's entries: azimuths from -180 to 180, elevations from -90 to 90, evenly spaced.
 struct GridNodes {
   std::vector<double> azimuths_deg, elevations_deg;
 };

@@ -14,7 +14,7 @@ double sinc(double u) {
   return std::abs(x) < 1e-8 ? 1.0 : std::sin(x) / x;
 }
 
-/// Array factor sin(N x) / (N sin x) of N evenly weighted elements.
+/// Array factor sin(N x) / (N sin x) of N uniformly weighted elements.
 double evenArray(int elements, double x) {
   // At the main and the grating lobes the limit is the ratio of the derivatives.
   if (std::abs(std::sin(x)) < 1e-9) return std::cos(elements * x) / std::cos(x);
@@ -50,7 +50,8 @@ Taper::Taper(TaperKind kind, double side_lobe_db) : kind_(kind) {
     requireWithin("taper_side_lobe_db", side_lobe_db, -60, -15, "dB");
     harmonics_ = taylorHarmonics(side_lobe_db);
   }
-  // From 1 at u = 0 each of these patterns falls steadily beyond half power, which it passes before 1.5.
+  // Each of these patterns falls monotonically from 1 at u = 0 beyond half power, which it reaches before
+  // 1.5.
   double inside = 0, outside = 1.5;
   for (int i = 0; i < 60; ++i) {
     const double middle = (inside + outside) / 2;
@@ -61,7 +62,7 @@ Taper::Taper(TaperKind kind, double side_lobe_db) : kind_(kind) {
 
 double Taper::pattern(double u) const {
   if (kind_ == TaperKind::cosine) {
-    // cos(pi u) / (1 - 4 u^2), as two shifted even apertures: without its 0 / 0 at u = 1/2.
+    // cos(pi u) / (1 - 4 u^2), as two shifted uniform apertures, which avoids 0 / 0 at u = 1/2.
     return kPi / 4 * (sinc(u - 0.5) + sinc(u + 0.5));
   }
   double sum = sinc(u);

@@ -6,7 +6,7 @@
 namespace emscape::scenario {
 
 enum class TaperKind {
-  uniform,  ///< the same amplitude everywhere: first side lobe -13.26 dB
+  uniform,  ///< constant amplitude: first side lobe -13.26 dB
   taylor,   ///< n-bar side lobes at a chosen level, lower ones beyond
   cosine    ///< half a cosine, 0 at the edges: first side lobe -23.0 dB
 };
@@ -32,7 +32,7 @@ class Taper {
   double arrayPattern(int elements, double phase_rad) const;
   /// u at which pattern() has fallen to half power; 0.443 for `uniform`.
   double halfPower() const { return half_power_; }
-  /// Directivity of `elements` weighted so over that of even weights, (sum w)^2 / (N sum w^2): 0..1.
+  /// Directivity of `elements` with these weights relative to uniform weights, (sum w)^2 / (N sum w^2): 0..1.
   double arrayEfficiency(int elements) const;
   int nBar() const { return static_cast<int>(harmonics_.size()) + 1; }  ///< Taylor's n-bar; else 1
 
@@ -40,7 +40,7 @@ class Taper {
   double weight(double x) const;
 
   TaperKind kind_;
-  std::vector<double> harmonics_;  ///< F_1 .. F_(n-bar - 1); Taylor alone
+  std::vector<double> harmonics_;  ///< F_1 .. F_(n-bar - 1); only for Taylor
   double half_power_;
 };
 

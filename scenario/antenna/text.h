@@ -17,9 +17,9 @@ struct TextField {
   int column = 0;
 };
 
-/// The text of an antenna file, read whole, up to 64 MiB. Antenna files have any encoding, and only their
-/// ASCII characters matter: other bytes, and control characters, are read as '?', so that quotations in
-/// messages are safe to print.
+/// The text of an antenna file, read whole, up to 64 MiB. Antenna files may have any encoding, and only their
+/// ASCII characters are used: other bytes and control characters are read as '?', so that messages can quote
+/// the text.
 class AntennaText {
  public:
   /// @throws Error (bad_input) if the file cannot be read or is not text (holds a zero byte)

@@ -1,4 +1,4 @@
-// Sections of receivers: a radar's own, and those at places and platforms; targets.
+// Sections of receivers: of radars, at every voxel, and on platforms; targets.
 #include "emscape/scenario/scenario.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"

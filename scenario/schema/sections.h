@@ -19,7 +19,7 @@ const ObjectSpec& targetSpec();
 const ObjectSpec& bandSpec();
 const ObjectSpec& outputSpec();
 
-/// Latitude and longitude of a place.
+/// Latitude and longitude of a position.
 KeySpec latitudeKey();
 KeySpec longitudeKey();
 

@@ -10,7 +10,7 @@
 
 namespace emscape::scenario {
 
-/// The names of an enumeration that counts from 0 to `last`.
+/// The names of an enumeration with values from 0 to `last`.
 template <class Enum>
 ValueSpec choiceUpTo(Enum last) {
   std::vector<std::string> names;

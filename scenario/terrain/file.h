@@ -1,4 +1,4 @@
-/// One elevation file, as GDAL reads it, in the terms of terrain: posts, metres, voids.
+/// One elevation file, read by GDAL: posts, heights in metres, voids.
 #pragma once
 
 #include <functional>
@@ -32,19 +32,20 @@ class TerrainFile {
   const PostLattice& lattice() const;
   int columns() const;
   int rows() const;
-  /// The heights stand for areas (the file reaches half a post beyond its posts), not for points.
+  /// True if heights represent areas (the file extends half a post beyond its posts), not points.
   bool isArea() const;
 
-  /// Takes a row of heights (m above the file's datum; NaN where void), counted from the window's southern
-  /// one.
+  /// Receives a row of heights (m above the file's datum; NaN for voids); rows are counted from the window's
+  /// southern edge.
   using RowSink = std::function<void(long long row, const float* heights_m)>;
-  /// Reads a window of the file, a strip of rows at a time; hands over each row once.
+  /// Reads a window of the file, a strip of rows at a time; passes each row once.
   /// @throws Error (bad_input) if reading fails
   void read(const PostWindow& window, const RowSink& take) const;
 
-  /// True: the lattice is of WGS84 longitudes and latitudes (deg). False: of the file's own plane.
+  /// True: the lattice is of WGS84 longitudes and latitudes (deg). False: of the plane of the file's
+  /// projection.
   bool isGeographic() const;
-  /// A text that is equal for files whose lattices are in the same plane.
+  /// A name that is equal for files whose lattices are in the same plane.
   const std::string& planeName() const;
   /// Transforms points of the plane to longitude and latitude (deg) in place; NaN where that fails.
   void toGeographic(std::vector<double>& x, std::vector<double>& y) const;

@@ -21,7 +21,7 @@ namespace {
 
 /// Values that mean void in HGT and DTED whatever a file's header says.
 constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
-/// Largest height or depth on earth (m), with a margin: beyond it a height is an undeclared void.
+/// Largest height or depth on earth (m), with a margin; values beyond are undeclared voids.
 constexpr float kMaxHeightOnEarth_m = 20000.0f;
 /// Positions of another datum count as WGS84 if they are closer than this (posts).
 constexpr double kSameDatum_posts = 0.05;
@@ -124,7 +124,8 @@ struct TerrainFile::Impl {
   double scale = 1.0, offset = 0.0, unit_m = 1.0;
 
   double pixel_to_crs[6] = {0, 1, 0, 0, 0, 1};
-  bool turned = false;  ///< rows or columns do not run along the CRS's axes: the plane is that of the pixels
+  bool turned =
+      false;  ///< rows or columns are not parallel to the axes of the CRS: the plane is that of the pixels
   bool north_first = true;  ///< order of the file's rows
   PostLattice lattice;
   bool is_area = true;

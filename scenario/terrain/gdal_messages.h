@@ -10,9 +10,9 @@
 
 namespace emscape::scenario {
 
-/// Keeps GDAL from printing and stores the first line of its first failure, in the scope and thread of this
-/// object. There GDAL fetches nothing either: a GML file names its schema by URL, a GeoJSON file its
-/// coordinate system. Names that begin with /vsi are not covered; callers open none.
+/// In the scope and thread of this object, suppresses GDAL's output and stores the first line of its first
+/// failure. It also prevents downloads: a GML file names its schema by URL, a GeoJSON file its coordinate
+/// system. Names that begin with /vsi are not covered; callers do not open such files.
 class GdalMessages {
  public:
   GdalMessages() {

@@ -8,7 +8,7 @@
 namespace emscape::scenario {
 namespace {
 
-/// Posts of the geographic lattice to one of the plane, in each direction.
+/// Posts of the geographic lattice per post of the plane, in each direction.
 constexpr double kOversampling = 2.0;
 /// Points per side of a box whose outline is transformed by a projection.
 constexpr int kOutline = 65;
@@ -43,7 +43,7 @@ PlaneBox boundsOf(const std::vector<double>& x, const std::vector<double>& y) {
   return {box.x_min - x_margin, box.y_min - y_margin, box.x_max + x_margin, box.y_max + y_margin};
 }
 
-/// The area of columns and rows of posts: half a post further if they stand for areas.
+/// The area of columns and rows of posts: half a post larger on each side if they represent areas.
 PlaneBox extentOf(const PostLattice& lattice, int columns, int rows, bool is_area) {
   const double rim = is_area ? 0.5 : 0.0;
   return {lattice.x(-rim), lattice.y(-rim), lattice.x(columns - 1 + rim), lattice.y(rows - 1 + rim)};
@@ -62,7 +62,7 @@ GeoBox geographicBox(const TerrainFile& file, const PlaneBox& box) {
   for (double& longitude : x) longitude = middle + wrapLongitude_deg(longitude - middle);
   const PlaneBox bounds = boundsOf(x, y);
   GeoBox result{std::max(bounds.y_min, -90.0), std::min(bounds.y_max, 90.0), bounds.x_min, bounds.x_max};
-  // If a pole is inside the rectangle, all longitudes are.
+  // If a pole is inside the rectangle, the box has all longitudes.
   for (double pole_deg : {-90.0, 90.0}) {
     std::vector<double> pole_x{0.0}, pole_y{pole_deg};
     file.toPlane(pole_x, pole_y);
@@ -125,7 +125,7 @@ PostLattice geographicLattice(const GeoBox& part, double spacing_m) {
   PostLattice lattice;
   lattice.step_x = 1.0 / per_degree_lon;
   lattice.step_y = 1.0 / per_degree;
-  // With the ring that every sheet has.
+  // Includes the outer ring that every sheet has.
   lattice.x0 = (std::floor(part.west_deg * per_degree_lon) - 1.0) / per_degree_lon;
   lattice.y0 = (std::floor(part.south_deg * per_degree) - 1.0) / per_degree;
   return lattice;

@@ -1,4 +1,5 @@
-/// Georeferencing of elevation files: the parts that a box needs, and resampling to longitude and latitude.
+/// Georeferencing of elevation files: selection of the parts within a box, and resampling to longitude and
+/// latitude.
 #pragma once
 
 #include <vector>
@@ -10,8 +11,8 @@ namespace emscape::scenario {
 /// The longitudes and latitudes (deg) that a file covers; east may exceed 180.
 GeoBox geographicBoxOf(const TerrainFile& file);
 
-/// The posts of a file that a box needs, as tiles: none if they do not meet, several if the box meets the
-/// file again a turn further. Longitudes are shifted to those of the box.
+/// The posts of a file that a box needs, as tiles: none if they do not overlap, several if the box overlaps
+/// the file again 360 degrees further. Longitudes are shifted to those of the box.
 std::vector<RasterTile> tilesWithin(const TerrainFilePtr& file, const GeoBox& box);
 
 /// Resamples a sheet in its own plane to longitudes and latitudes within the box: bilinear, on a lattice

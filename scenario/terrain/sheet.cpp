@@ -73,7 +73,7 @@ bool touch(const Patch& a, const Patch& b) {
          b.row_begin <= a.row_end;
 }
 
-/// Distant tiles must not become one sheet that is mostly empty.
+/// Joins adjacent tiles; distant tiles must not become one sheet that is mostly empty.
 std::vector<Patch> joinTouching(const std::vector<PlacedTile>& tiles) {
   std::vector<Patch> patches;
   for (const PlacedTile& tile : tiles) {
@@ -90,7 +90,7 @@ std::vector<Patch> joinTouching(const std::vector<PlacedTile>& tiles) {
       joined.column_end = std::max(joined.column_end, other.column_end);
       joined.row_begin = std::min(joined.row_begin, other.row_begin);
       joined.row_end = std::max(joined.row_end, other.row_end);
-      k = 0;  // the grown patch may touch others that it did not touch before
+      k = 0;  // the larger patch may touch further tiles
     }
     patches.push_back(std::move(joined));
   }
@@ -180,7 +180,7 @@ std::vector<RimPost> rimFromOthers(const std::vector<TerrainSheet>& sheets, std:
   return rim;
 }
 
-/// Extends the sheet's limits to the ring where that is filled.
+/// Extends the sheet's limits to the ring where it is filled.
 void fillRim(TerrainSheet& sheet, const std::vector<RimPost>& rim) {
   for (const RimPost& post : rim) {
     sheet.heights_m[sheet.index(post.column, post.row)] = post.height_m;

@@ -21,15 +21,15 @@ struct RasterTile {
 };
 
 enum class PostKind : std::uint8_t {
-  absent,  ///< of no file
-  empty,   ///< void in every file that has it
+  absent,  ///< in no file
+  empty,   ///< void in every file that has the post
   known,
 };
 
-/// One lattice of posts, filled from files. The outermost ring of posts is from no file: it takes the heights
-/// of neighbouring sheets, so that heights are continuous across the seam.
+/// One lattice of posts, filled from files. The outermost ring of posts is not from a file: it has the
+/// heights of neighbouring sheets, so that heights are continuous across the seam.
 struct TerrainSheet {
-  TerrainFilePtr file;  ///< one of the sheet's, for its plane
+  TerrainFilePtr file;  ///< one of the sheet's files, for its plane
   PostLattice lattice;
   int columns, rows;
   bool is_area = false;  ///< reaches half a post beyond the files' posts
@@ -42,7 +42,7 @@ struct TerrainSheet {
 
   /// All posts absent.
   /// @throws Error (bad_input) if the sheet has more than kMaxSheetPosts posts; (other) if they do not fit
-  /// into the memory
+  /// into memory
   TerrainSheet(const TerrainFilePtr& of_file, const PostLattice& of_lattice, long long with_columns,
                long long with_rows);
 
@@ -65,8 +65,8 @@ constexpr long long kMaxSheetPosts = 1LL << 31;
 /// @throws Error (bad_input) if reading fails
 std::vector<TerrainSheet> readSheets(const std::vector<RasterTile>& tiles);
 
-/// Continues sheets of longitudes and latitudes over their seams: the ring of a sheet takes its heights from
-/// the first other sheet that has them; at the outer edge of pixel-is-area files the heights are held for
+/// Continues sheets of longitudes and latitudes over their seams: the ring of a sheet gets its heights from
+/// the first other sheet that has them; at the outer edge of pixel-is-area files the heights are extended by
 /// half a post.
 void closeSeams(std::vector<TerrainSheet>& sheets);
 

@@ -58,7 +58,7 @@ void toMeanSeaLevel(TerrainSheet& sheet, VerticalDatum datum, const SourceLocati
   });
 }
 
-/// Sheets of longitudes and latitudes, the finest first, continued into each other.
+/// Sheets of longitudes and latitudes, the finest first, with closed seams.
 std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& box) {
   std::vector<RasterTile> tiles;
   for (std::size_t k = 0; k < spec.files.size(); ++k) {

@@ -40,7 +40,7 @@ struct TerrainRaster {
     row = (latitude_rad - south_rad) * posts_per_rad_lat;
     column = (longitude_rad - west_rad) * posts_per_rad_lon;
     if (limit(column, row)) return true;
-    // The same meridian in another turn.
+    // The same meridian, shifted by 360 degrees.
     const double turn = 2.0 * kPi * posts_per_rad_lon;
     column -= turn * std::floor((column - first_column + kSlack) / turn);
     return limit(column, row);
@@ -67,7 +67,7 @@ struct TerrainRaster {
   }
 
  private:
-  /// The same if a post is void: it is ignored if it has no weight.
+  /// The same if a post is void, which is ignored if it has no weight.
   EMSCAPE_HD static float besideVoid(const float* south, const float* north, float x, float y) {
     const float weights[4] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
     const float posts[4] = {south[0], south[1], north[0], north[1]};
@@ -79,13 +79,14 @@ struct TerrainRaster {
   }
 };
 
-/// All rasters of a terrain, the finest first. Valid as long as the Terrain that gave it. On a device: copy
-/// the rasters' heights there and point a copy of the array at them.
+/// All rasters of a terrain, the finest first. Valid as long as the Terrain that returned it. For a device,
+/// copy the rasters' heights there and set the pointers in a copy of the array.
 struct TerrainView {
   const TerrainRaster* rasters = nullptr;
   int count = 0;
 
-  /// Height above mean sea level (m): of the finest raster that has one here; NaN if none has.
+  /// Height above mean sea level (m): of the finest raster with a height at the position; NaN if there is
+  /// none.
   /// @param latitude_rad  -pi/2..pi/2, longitude_rad any
   EMSCAPE_HD float heightAt(double latitude_rad, double longitude_rad) const {
     float height = NAN;

@@ -57,7 +57,7 @@ std::string faultOfElements(const CPLXMLNode* first, const fs::path& vrt, int ne
 }
 
 std::string foreignSource(const fs::path& file, int nesting) {
-  std::error_code ignored;  // a name that is too long, for one, is GDAL's to refuse
+  std::error_code ignored;  // invalid names, for example too long ones, are refused by GDAL
   if (!fs::is_regular_file(file, ignored) || !looksLikeVrt(file)) return "";
   if (nesting > kMaxNesting)
     return "names VRTs that name VRTs, more than " + std::to_string(kMaxNesting) + " deep";

@@ -15,7 +15,8 @@ namespace {
 
 using scenario::EmitterKind;
 
-/// The pixels that are joined to one along their sides and have its class; they are taken out of `open`.
+/// The pixels of the same class that are connected to a pixel along their sides; they are removed from
+/// `open`.
 std::vector<std::size_t> takeArea(const MapGrid& grid, std::vector<bool>& open, std::size_t first) {
   const auto width = static_cast<std::size_t>(grid.width);
   std::vector<std::size_t> pixels{first};

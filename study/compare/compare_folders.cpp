@@ -11,7 +11,7 @@
 namespace emscape::study {
 namespace {
 
-/// @param what  of B differs from that of A
+/// @param what  name of the property in which B differs from A
 [[noreturn]] void failDiffer(const CoverageFolder& a, const CoverageFolder& b, const std::string& what,
                              const std::string& of_a, const std::string& of_b, const char* hint = "") {
   throw Error(ErrorCode::bad_input, {b.path.string(), 0, 0},
@@ -57,7 +57,7 @@ bool isChosen(const CoverageMap& map, const MapChoice& choice) {
          (!map.time_s || holds(choice.times_s, [&](double time_s) { return time_s == *map.time_s; }));
 }
 
-/// Index of the map that is the same; -1: none.
+/// Index of the corresponding map; -1: none.
 std::ptrdiff_t indexOf(const CoverageFolder& folder, const CoverageMap& map) {
   const auto found = std::find_if(folder.maps.begin(), folder.maps.end(),
                                   [&](const CoverageMap& other) { return isSameMap(other, map); });
@@ -77,14 +77,15 @@ void requireMapsOf(const CoverageFolder& one, const CoverageFolder& other, const
 }
 
 /// @param has    the values of the folder's maps, as text
-/// @param asked  what was chosen and none of them is
+/// @param asked  the choice, which matches none of them
 [[noreturn]] void failNotThere(const CoverageFolder& folder, const char* option, const std::string& asked,
                                const std::set<std::string>& has) {
   throw Error(ErrorCode::usage, fmt::format("{}: {} has no map {}; it has {}", option, folder.path.string(),
                                             asked, fmt::join(has, ", ")));
 }
 
-/// Maps for all heights or times belong to every choice: alone they would hide a choice that is not there.
+/// Maps for all heights or times match every choice, so they are ignored: otherwise a missing choice would
+/// not be noticed.
 /// @throws Error (usage) if the folder has no map of a chosen product or height, or of any chosen time
 void requireChoice(const CoverageFolder& folder, const MapChoice& choice) {
   std::set<std::string> products, heights, times;

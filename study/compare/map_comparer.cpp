@@ -9,7 +9,7 @@
 namespace emscape::study {
 namespace {
 
-/// The map of what changed, and its figures.
+/// The map of changes, and its figures.
 class Pair {
  public:
   Pair(const MapGrid& grid, const CoverageMap& a, const CoverageMap& b) : grid_(grid), a_(a), b_(b) {

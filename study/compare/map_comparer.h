@@ -1,4 +1,4 @@
-/// What changed between maps of A and of B, whoever computed them.
+/// Changes between maps of A and of B, computed or read from files.
 #pragma once
 
 #include <functional>
@@ -8,13 +8,13 @@
 
 namespace emscape::study {
 
-/// Takes pairs of maps of one product, height and time each; collects their figures and the largest areas
-/// that changed.
+/// Takes pairs of maps of one product, height and time each; collects their figures and the largest changed
+/// areas.
 class MapComparer {
  public:
-  /// @param products  of the maps; areas are collected of the first one that marks an area
-  /// @param areas     changed areas to keep, of gained and lost each
-  /// @param take      the maps, PRODUCT_change and PRODUCT_difference
+  /// @param products  of the maps; areas are collected for the first product that marks an area
+  /// @param areas     number of changed areas to keep, for gained and lost each
+  /// @param take      receives the maps PRODUCT_change and PRODUCT_difference
   MapComparer(const MapGrid& grid, const std::vector<Product>& products, int areas,
               std::function<void(const Map&)> take);
 

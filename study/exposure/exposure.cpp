@@ -10,7 +10,6 @@
 #include "emscape/scenario/snapshot.h"
 #include "emscape/scenario/waveform.h"
 #include "emscape/volume/dense_volume.h"
-#include "study/maps/time_figures.h"
 #include "study/maps/warnings.h"
 
 namespace emscape::study {
@@ -38,6 +37,12 @@ void checkRequest(const scenario::Scenario& scenario, const ExposureRequest& req
                     scenario.platforms[scenario.targets[*request.target].platform].name,
                     scenario.platforms[request.platform].name));
   }
+}
+
+ExposureState stateOf(double value, double threshold) {
+  return std::isnan(value)    ? ExposureState::unknown
+         : value >= threshold ? ExposureState::reached
+                              : ExposureState::below;
 }
 
 class Track {
@@ -149,6 +154,7 @@ class Track {
                             : static_cast<double>(terrain_->heightMsl_m(row.latitude_deg, row.longitude_deg));
     row.height_agl_m = state.height_msl_m - ground_m;
     row.value = valueOf(0);
+    row.state = stateOf(row.value, request_.threshold);
     const double floor = scenario_->output.floor;
     double largest = -HUGE_VAL;
     for (std::size_t n = 0; n < emitters.size(); ++n) {
@@ -202,26 +208,31 @@ void accumulate(const scenario::Scenario& scenario, Exposure& exposure) {
 /// Figures of a value over time.
 template <class ValueOf>
 ExposureSummary summaryOf(const std::string& name, const Exposure& exposure, const ValueOf& valueOf) {
-  const ExposureRequest& request = exposure.request;
+  const std::vector<ExposureRow>& rows = exposure.rows;
   ExposureSummary summary;
   summary.name = name;
   summary.max = NAN;
-  TimeFigures figures(1, request.times_s);
-  for (const ExposureRow& row : exposure.rows) {
-    const double value = valueOf(row);
-    figures.add(row.time_s, [&](std::size_t) { return value >= request.threshold; });
+  double reached_s = 0, unknown_s = 0, all_s = 0, gap_s = 0;
+  for (std::size_t t = 0; t < rows.size(); ++t) {
+    const double value = valueOf(rows[t]);
     if (std::isfinite(value) && !(value <= summary.max)) {
       summary.max = value;
-      summary.max_time_s = row.time_s;
+      summary.max_time_s = rows[t].time_s;
     }
-    if (value >= request.threshold && !summary.first_s) summary.first_s = row.time_s;
+    const bool is_alone = rows.size() == 1;  // one time is all of it
+    const double length_s = is_alone ? 1 : t + 1 < rows.size() ? rows[t + 1].time_s - rows[t].time_s : 0;
+    all_s += length_s;
+    const ExposureState state = stateOf(value, exposure.request.threshold);
+    if (state == ExposureState::reached) {
+      reached_s += length_s;
+      if (!summary.first_s) summary.first_s = rows[t].time_s;
+    }
+    if (state == ExposureState::unknown) unknown_s += length_s;
+    gap_s = state == ExposureState::below && !is_alone ? gap_s + length_s : 0;
+    summary.longest_gap_s = std::max(summary.longest_gap_s, gap_s);
   }
-  if (exposure.rows.size() > 1) {
-    summary.fraction = static_cast<double>(figures.figure(Product::fraction, 0));
-    summary.longest_gap_s = static_cast<double>(figures.figure(Product::longest_gap, 0));
-  } else {
-    summary.fraction = summary.first_s ? 1 : 0;
-  }
+  summary.unknown_fraction = unknown_s / all_s;
+  summary.fraction = unknown_s < all_s ? reached_s / (all_s - unknown_s) : NAN;
   return summary;
 }
 
@@ -246,6 +257,18 @@ std::optional<std::string> scanWarning(const scenario::Scenario& scenario, const
 }
 
 }  // namespace
+
+const char* toString(ExposureState state) {
+  switch (state) {
+    case ExposureState::reached:
+      return "reached";
+    case ExposureState::below:
+      return "below";
+    case ExposureState::unknown:
+      break;
+  }
+  return "unknown";
+}
 
 Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenario,
                          const scenario::TerrainPtr& terrain, const ExposureRequest& request,

@@ -19,6 +19,7 @@ using render::Rect;
 
 constexpr render::Ink kTogether{{0.10F, 0.11F, 0.13F}};
 constexpr render::Ink kThreshold{{0.76F, 0.12F, 0.13F}};
+constexpr render::Ink kUnknown{{0.87F, 0.87F, 0.89F}};
 
 /// The values of each emitter, of all, and the threshold.
 std::vector<PlotLine> linesOf(const Exposure& exposure) {
@@ -48,7 +49,21 @@ std::vector<PlotLine> linesOf(const Exposure& exposure) {
   addLine(fmt::format("{:g} {}", threshold, render::unitText(exposure.unit)), kThreshold,
           [&](const ExposureRow&) { return threshold; })
       .is_dashed = true;
+  if (exposure.together.unknown_fraction > 0) lines.push_back({"unknown", {}, kUnknown});
   return lines;
+}
+
+/// Bands between the known times where the value of all emitters together is unknown.
+void drawUnknown(const Exposure& exposure, const PlotPanel& panel) {
+  const std::vector<ExposureRow>& rows = exposure.rows;
+  std::size_t begin = 0;
+  for (std::size_t t = 1; t <= rows.size(); ++t) {
+    const bool goes_on = t < rows.size() && (rows[t - 1].state == ExposureState::unknown ||
+                                             rows[t].state == ExposureState::unknown);
+    if (goes_on) continue;
+    if (t - 1 > begin) panel.drawBand(rows[begin].time_s, rows[t - 1].time_s, kUnknown);
+    begin = t;
+  }
 }
 
 /// Limits of the values: 0..1 of probabilities, else tens, at most 100 below the highest.
@@ -94,6 +109,7 @@ void plotExposure(const Exposure& exposure, render::ImageSize size, const std::s
     Rect frame{92 * unit, 84 * unit, width - right - 152 * unit, 0.62 * height - 100 * unit};
     PlotPanel values(canvas, frame, unit, times, axisOf(lines, exposure.unit));
     values.drawTitle(quantity + in_unit + "; wide where it reaches the threshold");
+    drawUnknown(exposure, values);
     values.drawGrid();
     for (const PlotLine& line : lines) values.drawLine(line);
     values.drawNames(lines);
@@ -114,6 +130,7 @@ void plotExposure(const Exposure& exposure, render::ImageSize size, const std::s
     heights.drawTitle("Height above mean sea level (m)");
     std::vector<render::Point2> surface;
     for (const PlotLine::Point& point : ground.points) surface.push_back({point.x, point.y});
+    drawUnknown(exposure, heights);
     heights.drawGround(surface);
     heights.drawGrid();
     heights.drawLine(ground);

@@ -21,7 +21,7 @@ void join(Joints& joints, Side a, Side b) {
   }
 }
 
-/// Takes a line out of the joints, from one of its sides on.
+/// Removes a line from the joints, from one of its sides on.
 std::vector<Side> take(Joints& joints, Side begin) {
   std::vector<Side> sides{begin};
   for (Side before = -1, side = begin;;) {
@@ -45,7 +45,7 @@ std::vector<GridLine> contourLines(const std::vector<float>& values, int width, 
   for (int j = 0; j + 1 < height; ++j) {
     for (int i = 0; i + 1 < width; ++i) {
       const Side n = static_cast<Side>(j) * width + i;
-      // Round the cell: corners, and the sides from each to the next.
+      // Around the cell: corners, and the sides from each to the next.
       const std::array<float, 4> corners{values[n], values[n + 1], values[n + width + 1], values[n + width]};
       const std::array<Side, 4> sides{2 * n, 2 * (n + 1) + 1, 2 * (n + width), 2 * n + 1};
       if (!std::all_of(corners.begin(), corners.end(), [](float v) { return std::isfinite(v); })) continue;
@@ -54,7 +54,7 @@ std::vector<GridLine> contourLines(const std::vector<float>& values, int width, 
         if ((corners[c] >= level) != (corners[(c + 1) % 4] >= level)) crossed.push_back(sides[c]);
       }
       const float mean = (corners[0] + corners[1] + corners[2] + corners[3]) / 4;
-      // Of a saddle, the corners that are unlike the middle are cut off.
+      // At a saddle, the corners that differ from the middle are cut off.
       if (crossed.size() == 4 && (corners[0] >= level) != (mean >= level)) {
         std::rotate(crossed.begin(), crossed.begin() + 3, crossed.end());
       }

@@ -11,7 +11,7 @@ struct GridPoint {
 };
 using GridLine = std::vector<GridPoint>;  ///< closed if its first point is its last
 
-/// Marching squares, with values linear along the sides of the cells; a saddle is parted by its mean. Cells
+/// Marching squares, with values linear along the sides of the cells; a saddle is resolved by its mean. Cells
 /// with a value that is not finite have no line.
 /// @param values  width x height, x fastest
 /// @return lines in the order of their first cell, no line shorter than two points

@@ -5,8 +5,8 @@
 
 namespace emscape::study {
 
-/// A class of a time is available until the next of the study's times; those of heights above mean sea level
-/// float at their height. The first product at its first height is shown.
+/// A class of a time is available until the next of the study's times; those for heights above mean sea level
+/// are at their height. The first product at its first height is shown.
 /// @throws Error (other) naming the file
 std::unique_ptr<MapCollection> makeCzml(const std::filesystem::path& file, const MapStudy& study);
 

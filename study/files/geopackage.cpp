@@ -291,7 +291,7 @@ class GeoPackage : public MapCollection {
     }
   }
 
-  /// The table in which QGIS looks for a layer's style.
+  /// The table from which QGIS reads a layer's style.
   void addStyles(const Scope& scope) {
     OGRLayerH table = addLayer(scope, "layer_styles", nullptr, wkbNone,
                                {{"f_table_catalog", OFTString},

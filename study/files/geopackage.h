@@ -6,7 +6,7 @@
 namespace emscape::study {
 
 /// Layers `bands` and `contours` in the grid's projection, `emitters` and `tracks` in WGS84, `layer_styles`.
-/// The same maps give the same bytes: dates of change are the study's time 0.
+/// The same maps give the same bytes: modification dates are the study's time 0.
 /// @throws Error (other) naming the file
 std::unique_ptr<MapCollection> makeGeoPackage(const std::filesystem::path& file, const MapStudy& study);
 

@@ -11,9 +11,9 @@ namespace emscape::study {
 namespace {
 
 constexpr int kNoIndex = 255;
-constexpr float kLargestIndex = 254;  ///< of counts it stands for more, too
+constexpr float kLargestIndex = 254;  ///< for counts also larger values
 
-/// Colours of counts and indices: none for 0, then hues that differ.
+/// Colours of counts and indices: none for 0, then distinct hues.
 gdal::ColorTable coloursOf(MapKind kind, int count) {
   // Okabe and Ito's colours for colour-blind readers.
   static constexpr GDALColorEntry kColours[] = {{230, 159, 0, 255},  {86, 180, 233, 255}, {0, 158, 115, 255},
@@ -30,7 +30,8 @@ gdal::ColorTable coloursOf(MapKind kind, int count) {
   return table;
 }
 
-/// The labels of a band's values, as programs look for them: names of categories and a table of attributes.
+/// The labels of a band's values, in the forms that programs read: names of categories and an attribute
+/// table.
 void setLabels(GDALRasterBandH band, const std::vector<std::string>& labels) {
   const gdal::AttributeTable table(GDALCreateRasterAttributeTable());
   GDALRATCreateColumn(table.get(), "VALUE", GFT_Integer, GFU_MinMax);
@@ -90,7 +91,7 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
   if (written != CE_None) failWriting(messages, file);
 
   UnfinishedFile unfinished(file);
-  // COG makes its overviews beside the output.
+  // The COG driver writes overviews next to the output.
   const char* const options[] = {
       "COMPRESS=DEFLATE", is_index ? "PREDICTOR=NO" : "PREDICTOR=YES", "OVERVIEWS=AUTO",
       is_index ? "OVERVIEW_RESAMPLING=NEAREST" : "OVERVIEW_RESAMPLING=AVERAGE", nullptr};

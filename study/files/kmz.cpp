@@ -44,7 +44,7 @@ Overlay overlayOf(const MapGrid& grid, const Map& map, const render::Legend& leg
                           grid.height, GDT_Byte, 4, nullptr, 4, 4 * grid.width, 1) != CE_None) {
     failWriting(messages, file);
   }
-  // Longitudes within half a turn of the map, so that one across the antimeridian is not torn.
+  // Longitudes within 180 degrees of the map, so that a map across the antimeridian is not split.
   const std::size_t middle = grid.pixels() / 2;
   const std::string earth =
       fmt::format("+proj=longlat +datum=WGS84 +no_defs +lon_wrap={:.6f}", grid.places[middle].longitude_deg);

@@ -5,8 +5,8 @@
 
 namespace emscape::study {
 
-/// The maps are brought to longitudes and latitudes, each pixel the nearest of the map. A map of a time is
-/// shown until the next; the first product at its first height is switched on.
+/// The maps are resampled to longitudes and latitudes with the nearest pixel. A map of a time is shown until
+/// the next; the first product at its first height is switched on.
 /// @throws Error (other) naming the file
 std::unique_ptr<MapCollection> makeKmz(const std::filesystem::path& file, const MapStudy& study);
 

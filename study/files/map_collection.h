@@ -1,4 +1,4 @@
-/// A file that holds all maps of a folder.
+/// A file that contains all maps of a folder.
 #pragma once
 
 #include <filesystem>
@@ -8,14 +8,14 @@
 
 namespace emscape::study {
 
-/// Takes the maps one by one. The file is written under a temporary name; destroyed before finish(), it is
-/// removed.
+/// Receives the maps one by one. The file is written under a temporary name; it is removed if the object is
+/// destroyed before finish().
 class MapCollection {
  public:
   virtual ~MapCollection() = default;
   /// @throws Error (other) naming the file
   virtual void add(const Map& map) = 0;
-  /// Completes the file and gives it its name. @throws Error (other) naming the file
+  /// Completes the file and renames it. @throws Error (other) naming the file
   virtual void finish() = 0;
 };
 

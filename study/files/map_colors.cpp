@@ -9,7 +9,7 @@
 namespace emscape::study {
 namespace {
 
-constexpr float kNoPart = 0.005f;  ///< probabilities and fractions below it leave the ground as it is
+constexpr float kNoPart = 0.005f;  ///< probabilities and fractions below it are transparent
 
 /// Index of a colour of render::categoryColor().
 int categoryOf(const Map& map, int value) {
@@ -38,7 +38,7 @@ render::Legend legendOf(const Map& map) {
     int last = std::isfinite(largest) ? static_cast<int>(largest) : 0;
     if (map.kind == MapKind::classes) last = static_cast<int>(map.labels.size()) - 1;
     const bool has_absent =
-        map.kind == MapKind::classes || last < first + 16;  // of many only those on the map
+        map.kind == MapKind::classes || last < first + 16;  // if there are many, only those on the map
     for (int n = first; n <= last; ++n) {
       if (!has_absent && present.count(n) == 0) continue;
       const std::string label = n < static_cast<int>(map.labels.size()) ? map.labels[n] : std::to_string(n);

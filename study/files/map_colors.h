@@ -11,8 +11,8 @@ namespace emscape::study {
 /// Colours and legend of a map, over the range of its values; 0..1 for parts.
 render::Legend legendOf(const Map& map);
 
-/// The colour of a value by the map's legend; none where the ground stays as it is: no value, nothing
-/// counted, a part below half a percent.
+/// The colour of a value by the map's legend; none if it is transparent: no value, a count of 0, a fraction
+/// below half a percent.
 std::optional<render::Rgb> colorOf(const Map& map, const render::Legend& legend, float value);
 
 }  // namespace emscape::study

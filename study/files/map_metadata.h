@@ -1,4 +1,4 @@
-/// What the files of maps say about them.
+/// Metadata in the files of maps.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace emscape::study {
 
-/// Items that every map's file carries, EMSCAPE_NAME and value.
+/// Items of every map's file, EMSCAPE_NAME and value.
 std::vector<std::pair<std::string, std::string>> metadataOf(const scenario::Scenario& scenario,
                                                             scenario::Quantity quantity, double threshold,
                                                             const Map& map);

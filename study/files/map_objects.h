@@ -1,4 +1,4 @@
-/// Emitters and moving platforms of a scenario, as files of maps show them.
+/// Emitters and moving platforms of a scenario, for files of maps.
 #pragma once
 
 #include <optional>
@@ -19,15 +19,15 @@ struct MapPosition {
 struct MapEmitter {
   const scenario::Emitter* emitter = nullptr;
   std::string platform;
-  std::vector<MapPosition> positions;  ///< one if it stands; else one for each of the study's times
+  std::vector<MapPosition> positions;  ///< one if it is fixed; else one for each of the study's times
 };
 
-/// A platform and what it carries, by name.
+/// A platform and its loads, by name.
 struct MapSite {
   std::string platform;
   bool is_moving = false;
   std::vector<std::string> emitters, receivers, targets;
-  std::vector<MapPosition> positions;  ///< one if it stands; else one for each of the study's times
+  std::vector<MapPosition> positions;  ///< one if it is fixed; else one for each of the study's times
 };
 
 struct MapTrack {
@@ -44,13 +44,13 @@ std::vector<MapSite> sitesOf(const MapStudy& study);
 std::vector<MapTrack> tracksOf(const MapStudy& study);
 
 /// The parts of a track between its crossings of the antimeridian, which end and begin at +-180 degrees: a
-/// line in longitudes would go round the earth.
+/// line in longitudes would go around the earth.
 std::vector<MapTrack> cutAtAntimeridian(const MapTrack& track);
 
 /// ISO 8601 UTC of a time, with milliseconds. Time 0 of a scenario without an epoch is 1970-01-01T00:00:00Z.
 std::string utcOf(const MapStudy& study, double time_s);
-/// End of the interval for which the map of a time stands: the next of the study's times; after the last, as
-/// far as the one before; one second for a single time.
+/// End of the interval that the map of a time represents: the next of the study's times; for the last time,
+/// after the same interval as the previous one; one second for a single time.
 double endOf(const MapStudy& study, double time_s);
 
 }  // namespace emscape::study

@@ -26,14 +26,15 @@ using render::Weight;
 
 constexpr double kMapOpacity = 0.72;  ///< of the colours over the ground
 
-/// Slope of three posts at distances of cell_m: central where all are known, one-sided at an edge, else NaN.
+/// Slope of three posts at distances of cell_m: central if all are known, one-sided at an edge, else NaN.
 float slopeOf(float before, float here, float after, float cell_m) {
   if (std::isnan(before)) return (after - here) / cell_m;
   if (std::isnan(after)) return (here - before) / cell_m;
   return (after - before) / (2 * cell_m);
 }
 
-/// Lambert's shading, from the north-west, 45 degrees high. 0..1; 0.7 where the slope is unknown.
+/// Lambert's shading, from the north-west at an elevation of 45 degrees. 0..1; 0.7 where the slope is
+/// unknown.
 std::vector<float> shadesOf(const MapGrid& grid, const std::vector<float>& ground_msl_m) {
   std::vector<float> shades(grid.pixels(), 0.7f);
   if (ground_msl_m.empty()) return shades;
@@ -120,7 +121,7 @@ class MapPicture {
     if (is_left_out) color = {1, 1, 1};
     if (const std::optional<Rgb> over_ground = colorOf(map_, legend_, value)) {
       const Rgb over = *over_ground;
-      // Multiplied by the shade, so that hills show through.
+      // Multiplied by the shade, so that hills are visible.
       const auto mix = [&](float ground, float colour) {
         return static_cast<float>((1 - kMapOpacity) * static_cast<double>(ground) +
                                   kMapOpacity * static_cast<double>(colour) * (0.45 + 0.6 * shade));
@@ -186,8 +187,8 @@ class MapPicture {
     }
   }
 
-  /// Where a marker's label stands: right of it, else left, above or below, where it neither leaves the map
-  /// nor lies on what is there; else where the least of it does.
+  /// Position of a marker's label: right of it, else left, above or below, where it is inside the map and
+  /// overlaps nothing; else where it overlaps least.
   Rect labelBox(const Rect& text, const Point2& at, const std::vector<Rect>& taken) const {
     const double gap = 10 * style_.unit, width = text.width, height = 1.2 * style_.small_px;
     const Rect candidates[] = {{at.x + gap, at.y - height / 2, width, height},

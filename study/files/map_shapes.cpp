@@ -22,7 +22,7 @@ double logOddsOf(double probability) {
   return std::log(clamped / (1 - clamped));
 }
 
-/// 1, 2, 2.5 or 5 times a power of ten, at least a step.
+/// 1, 2, 2.5 or 5 times a power of ten, not less than a step.
 double roundStep(double step) {
   const double power = std::pow(10, std::floor(std::log10(step)));
   for (const double factor : {1.0, 2.0, 2.5, 5.0}) {
@@ -111,7 +111,7 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
     std::stable_sort(shapes.lines.begin(), shapes.lines.end(),
                      [](const MapLine& a, const MapLine& b) { return a.level < b.level; });
   } else {
-    fixed += "1e300";  // one band of all
+    fixed += "1e300";  // one band for all values
   }
   const std::string field = fmt::format("ELEV_FIELD_MAX={}", max_field);
   const char* const options[] = {fixed.c_str(), field.c_str(), "POLYGONIZE=YES", "NODATA=nan", nullptr};
@@ -120,7 +120,7 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
   const render::Legend legend = legendOf(map);
   bands.rewind();
   while (const gdal::Feature feature = bands.next()) {
-    // GDAL 3.6 gives the bands below the first and above the last level no limit of their own.
+    // GDAL 3.6 sets no limit for the bands below the first and above the last level.
     const double max = OGR_F_GetFieldAsDouble(feature.get(), max_field);
     const bool is_last = levels.empty() || max > scaled(levels.back()) + 1e-6;
     const std::size_t above = is_last ? levels.size() : nearestLevel(max);

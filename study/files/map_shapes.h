@@ -12,8 +12,8 @@
 
 namespace emscape::study {
 
-/// The levels of a map's contours, rising: 0.1, 0.5 and 0.9 of probabilities and fractions; multiples of 10
-/// of decibels; of other units, round steps of about a quarter of the range. None for whole numbers.
+/// The levels of a map's contours, ascending: 0.1, 0.5 and 0.9 of probabilities and fractions; multiples of
+/// 10 of decibels; of other units, round steps of about a quarter of the range. None for whole numbers.
 std::vector<double> levelsOf(const Map& map);
 
 struct MapLine {
@@ -22,9 +22,9 @@ struct MapLine {
 };
 
 struct MapBand {
-  double min = 0, max = 0;           ///< values; of whole numbers both the same
+  double min = 0, max = 0;           ///< values; equal for whole numbers
   std::string label;                 ///< of a class or category
-  std::optional<render::Rgb> color;  ///< by the map's legend; none: nothing to show there
+  std::optional<render::Rgb> color;  ///< by the map's legend; none: transparent
   gdal::Geometry geometry;           ///< multipolygon
 };
 
@@ -33,11 +33,11 @@ struct MapShapes {
   std::vector<MapBand> bands;
 };
 
-/// Contours are linear between the centres of pixels; those of probabilities are linear in their log-odds
-/// (clamped to 1e-6 .. 1 - 1e-6). Bands between levels tile the pixels that have a value. Whole numbers have
-/// no contours; their bands have the outlines of the pixels, one for each number but that for nothing.
+/// Contours are interpolated linearly between the centres of pixels; probabilities by their log-odds (clamped
+/// to 1e-6 .. 1 - 1e-6). Bands between levels tile the pixels that have a value. Whole numbers have no
+/// contours; their bands have the outlines of the pixels, one for each number except the one for no value.
 /// Coordinates are those of the grid's projection.
-/// @throws Error (other) naming the file for which they are made
+/// @throws Error (other) naming the destination file
 MapShapes shapesOf(const MapGrid& grid, const Map& map, const std::filesystem::path& file);
 
 }  // namespace emscape::study

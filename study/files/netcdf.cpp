@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int16_t kNoNumber = -32768;
 
-/// A unit as UDUNITS writes it; logarithmic units have no symbol there.
+/// A unit in the notation of UDUNITS, which has no symbols for logarithmic units.
 std::string udunitOf(const std::string& unit) {
   static const std::map<std::string, std::string> kUnits{{"", "1"},
                                                          {"dB", "0.1 lg(re 1)"},
@@ -168,7 +168,7 @@ class NetCdf : public MapCollection {
                   {{"standard_name", "projection_y_coordinate"}, {"long_name", "northing"}, {"axis", "Y"}});
     addCoordinate(messages, "x", GDAL_DIM_TYPE_HORIZONTAL_X, x, "m",
                   {{"standard_name", "projection_x_coordinate"}, {"long_name", "easting"}, {"axis", "X"}});
-    // Single precision, for half the size: to 2 m. x and y are exact.
+    // Single precision, for half the size; accurate to 2 m. x and y are exact.
     std::vector<float> latitudes, longitudes;
     for (const emfield::Surface::Place& place : grid.places) {
       latitudes.push_back(static_cast<float>(place.latitude_deg));
@@ -228,7 +228,7 @@ class NetCdf : public MapCollection {
     return variable;
   }
 
-  /// What the numbers of classes or categories mean.
+  /// Meaning of the numbers of classes or categories.
   static void addFlags(const gdal::Array& variable, const Map& map) {
     if (map.kind == MapKind::count) return;
     std::vector<std::int16_t> values;

@@ -1,4 +1,4 @@
-/// Maps as netCDF by the conventions CF-1.8.
+/// Maps as netCDF according to CF-1.8.
 #pragma once
 
 #include "study/files/map_collection.h"
@@ -6,7 +6,7 @@
 namespace emscape::study {
 
 /// One variable for each product and reference of heights, such as covered_agl, over time, height, y and x,
-/// as far as the product has them. Decibels have units that UDUNITS knows: "0.1 lg(re 1 W m-2)".
+/// as far as the product has these dimensions. Decibels have units of UDUNITS: "0.1 lg(re 1 W m-2)".
 /// @throws Error (other) naming the file
 std::unique_ptr<MapCollection> makeNetCdf(const std::filesystem::path& file, const MapStudy& study);
 

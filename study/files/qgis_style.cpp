@@ -7,8 +7,8 @@
 namespace emscape::study {
 namespace {
 
-/// @param options  the layer's settings  @param color_property  of it, that the field "color" gives; empty:
-/// none
+/// @param options  the layer's settings  @param color_property  setting that the field "color" provides;
+/// empty: none
 std::string symbol(const std::string& name, const char* type, const char* layer, double alpha,
                    const std::string& options, const std::string& color_property) {
   std::string data_defined;
@@ -30,7 +30,7 @@ std::string option(const char* name, const char* value) {
   return fmt::format(R"(<Option name="{}" value="{}" type="QString"/>)", name, value);
 }
 
-/// @param symbol_of  gives the symbol of a name
+/// @param symbol_of  returns the symbol of a name
 template <class SymbolOf>
 std::string ruleRenderer(const std::vector<StyleRule>& rules, const SymbolOf& symbol_of) {
   std::string list, symbols;

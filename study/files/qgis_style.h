@@ -1,4 +1,4 @@
-/// Styles of the layers of a GeoPackage, as QGIS reads them from its table layer_styles.
+/// Styles of the layers of a GeoPackage, which QGIS reads from the table layer_styles.
 #pragma once
 
 #include <string>
@@ -14,11 +14,11 @@ struct StyleRule {
 
 /// Polygons filled with the colour of their field "color"; shown from "time" to "time_end".
 std::string bandStyle(const std::vector<StyleRule>& rules);
-/// Lines with their field "level" beside them.
+/// Lines labelled with their field "level".
 std::string contourStyle(const std::vector<StyleRule>& rules);
 /// Points with their field "name", coloured by "color".
 std::string emitterStyle();
-/// Small squares; their labels, the names, are off: emitters have labels.
+/// Small squares without labels, because emitters have labels.
 std::string siteStyle();
 std::string trackStyle();
 

@@ -8,6 +8,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/snapshot.h"
+#include "scenario/scan_sampling.h"
 #include "study/maps/least_heights.h"
 #include "study/maps/surface_maps.h"
 
@@ -34,6 +35,20 @@ std::shared_ptr<const scenario::Scenario> atTargets(const scenario::Scenario& sc
     at_targets->output.combine = scenario::CombineMode::sum;
   }
   return at_targets;
+}
+
+/// Of products over time where the beams of scans pass between the times.
+std::optional<std::string> scanWarning(const scenario::Scenario& at_targets,
+                                       const std::vector<CoverageRequest>& requests) {
+  const bool is_over_time =
+      std::any_of(requests.begin(), requests.end(), [](const CoverageRequest& r) { return isOverTime(r); });
+  const std::vector<double>& times_s = requests.front().times_s;
+  if (!is_over_time || times_s.size() < 2) return std::nullopt;
+  const double duration_s = times_s.back() - times_s.front();
+  const scenario::Clock clock{"", duration_s, duration_s / static_cast<double>(times_s.size() - 1)};
+  const std::optional<scenario::UnlitAzimuths> unlit = scenario::unlitAzimuths(at_targets, clock);
+  if (!unlit) return std::nullopt;
+  return unlit->warning;
 }
 
 emfield::FieldOptions withoutQuantities(emfield::FieldOptions options) {
@@ -97,7 +112,7 @@ struct CoverageSolver::Impl {
   const std::vector<CoverageRequest> requests;
   emfield::FieldOptions options;
   std::vector<OfReference> references;
-  std::vector<std::size_t> with_least;  ///< requests of least heights
+  std::vector<std::size_t> with_least;  ///< requests with minimum heights
   std::optional<LeastHeights> least_heights;
 
   /// @param of_maps  without quantities
@@ -175,6 +190,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
   }
   std::vector<std::vector<std::string>> warnings(scenarios.size());
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
+    if (const auto warning = scanWarning(*at_targets[s], requests)) warnings[s].push_back(*warning);
     for (Impl::OfReference& of : impl_->references) {
       for (std::size_t r = 0; r < requests.size(); ++r)
         of.maps[r].finish(s, [&](CoverageMap map) { take(s, r, std::move(map)); });

@@ -10,7 +10,7 @@
 namespace emscape::study {
 namespace {
 
-/// What a format of GDAL's cannot hold is in a file beside it.
+/// Data that a format of GDAL does not support is in a file beside it.
 constexpr const char* kAuxiliary = ".aux.xml";
 
 }  // namespace

@@ -16,14 +16,14 @@ GDALDriverH driverOf(const char* name);
 
 /// Opens a file of points or polygons: GeoPackage, GeoJSON, shapefile, FlatGeobuf, KML, GML or CSV. No other
 /// format and none of GDAL's virtual file systems: they read further files, databases and network services.
-/// @param messages  in whose scope the data set is also read: it keeps GDAL from the network
+/// @param messages  in whose scope the data set is also read: it prevents network access of GDAL
 /// @throws Error (bad_input) that names the file and GDAL's reason
 gdal::Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file);
 
 /// @throws Error (other) that names the file and GDAL's reason
 [[noreturn]] void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file);
 
-/// A file that GDAL writes under a temporary name. Removed with what GDAL keeps beside it, unless it was
+/// A file that GDAL writes under a temporary name. Removed with GDAL's auxiliary file, unless it was
 /// published.
 class UnfinishedFile {
  public:
@@ -34,7 +34,7 @@ class UnfinishedFile {
 
   const std::filesystem::path& file() const { return file_; }
   const char* temporary() const { return temporary_.c_str(); }
-  /// Gives the file its name, and FILE.aux.xml if GDAL made one. @throws Error (other) naming it
+  /// Renames the file, and FILE.aux.xml if GDAL made one. @throws Error (other) naming it
   void publish();
 
  private:
@@ -43,8 +43,8 @@ class UnfinishedFile {
   const std::filesystem::path file_, temporary_;
 };
 
-/// A raster of one band in memory, of a grid's pixels and in its place.
-/// @throws Error (other) naming the file for which it is made
+/// A raster of one band in memory, with a grid's pixels and georeference.
+/// @throws Error (other) naming the destination file
 gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file);
 
 /// As WKT2:2019.
@@ -53,7 +53,7 @@ std::string wkt2Of(OGRSpatialReferenceH reference);
 gdal::SpatialReference referenceOf(const MapGrid& grid);
 /// WGS84: longitude, latitude.
 gdal::SpatialReference wgs84Reference();
-/// @throws Error (other) with PROJ's reason if it knows no way
+/// @throws Error (other) with PROJ's reason if there is no transformation
 gdal::Transformation transformationBetween(const gdal::SpatialReference& from,
                                            const gdal::SpatialReference& to);
 

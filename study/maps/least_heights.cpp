@@ -11,7 +11,7 @@ namespace emscape::study {
 namespace {
 
 constexpr int kFirstSteps = 64, kLaterSteps = 16;
-/// Voxels at a time, which bounds the memory.
+/// Number of voxels at a time, which limits the memory.
 constexpr int kMostVoxels = 1 << 25;
 
 /// Some rows of a map.
@@ -31,15 +31,15 @@ class Strip {
                        [](const auto& place) { return !std::isnan(place.latitude_deg); });
   }
 
-  /// The places with heights of so many steps above their offsets.
+  /// The positions, with this number of steps of height above their offsets.
   const emfield::Surface& surfaceOf(double step_m, int steps) {
     surface_.heights_m.clear();
     for (int k = 0; k <= steps; ++k) surface_.heights_m.push_back(k * step_m);
     return surface_;
   }
 
-  /// Looks for the threshold above each place's offset, and sets the offset to the step below it. Places
-  /// without one, and those that have it at once, are left out from now on.
+  /// Searches the threshold above each position's offset, and sets the offset to the step below it. Positions
+  /// that do not reach it, or reach it at the first height, are left out from now on.
   /// @param volume  over surfaceOf(step_m, steps)
   void search(double step_m, int steps, double threshold, const volume::DenseVolume& volume) {
     const std::size_t places = surface_.places.size();

@@ -1,4 +1,4 @@
-/// The least heights above ground at which a quantity reaches thresholds, place by place.
+/// The minimum heights above ground at which a quantity reaches thresholds, at each position.
 #pragma once
 
 #include <memory>
@@ -11,12 +11,12 @@
 namespace emscape::study {
 
 /// Heights are searched from the ground to kHighestSearched_m in 64 steps, which all thresholds share, then
-/// below the first step that reaches a threshold in 16 steps, again and again down to kLeastHeightAccuracy_m.
-/// A lower height at which the threshold is reached over less than a first step (160 m) may be missed.
+/// below the first step that reaches a threshold in 16 steps, repeatedly down to kLeastHeightAccuracy_m.
+/// Lower intervals of heights thinner than a first step (160 m) may be missed.
 constexpr double kHighestSearched_m = 10240;
 constexpr double kLeastHeightAccuracy_m = 0.625;
 
-/// Finds least heights on a map. One thread at a time.
+/// Finds minimum heights on a map. For one thread at a time.
 class LeastHeights {
  public:
   /// @param grid        must outlive this object
@@ -24,11 +24,11 @@ class LeastHeights {
   /// @param options     the rest is set here
   LeastHeights(const MapGrid& grid, std::vector<double> thresholds, const emfield::FieldOptions& options);
 
-  /// The field of the first steps is kept for the next scenario or time, of which only what has changed is
-  /// computed, unless the map is larger than what is computed at once.
+  /// The field of the first steps is kept for the next scenario or time, so that only changes are computed,
+  /// unless the map is larger than one strip.
   /// @param scenario  with the quantity as its only output
-  /// @return for each threshold heights (m) that reach it, at most kLeastHeightAccuracy_m above the least; 0
-  /// on the ground; NaN: none does, or the place has no value
+  /// @return for each threshold, heights (m) that reach it, at most kLeastHeightAccuracy_m above the minimum;
+  /// 0 on the ground; NaN: none does, or the position has no value
   std::vector<std::vector<float>> compute(const std::shared_ptr<const scenario::Scenario>& scenario,
                                           const scenario::TerrainPtr& terrain, double time_s);
 

@@ -15,7 +15,7 @@ std::string fileNameOf(const Map& map) {
 
 std::string figureText(double value, const std::string& unit) {
   if (!std::isfinite(value)) return "none";
-  // As many digits as the figure is good for.
+  // Digits that the accuracy of the figure justifies.
   if (unit == "km2") return fmt::format("{:.3f}", value);
   if (unit == "percent" || unit.rfind("dB", 0) == 0) return fmt::format("{:.2f}", value);
   if (unit == "m") return fmt::format("{:.1f}", value);

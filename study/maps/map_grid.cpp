@@ -17,8 +17,8 @@ namespace emscape::study {
 namespace {
 
 constexpr double kMaxPixels = 1 << 26;
-/// Longest side of the patches on which places are interpolated: they are within a millimetre of the
-/// projection's to 85 degrees of latitude. Beyond, where meridians meet, no place is interpolated.
+/// Longest side of the patches on which positions are interpolated: they are within a millimetre of the exact
+/// ones up to 85 degrees of latitude. Beyond, no position is interpolated.
 constexpr double kPatch_m = 3000;
 /// Longest side of a map: once around the earth.
 constexpr double kLargestSide_m = 4.1e7;
@@ -43,7 +43,7 @@ int utmZone(const Middle& at) {
   return std::clamp(static_cast<int>(std::floor((lon + 180) / 6)) + 1, 1, 60);
 }
 
-/// @param name  receives the name by which the reference is known
+/// @param name  receives the name of the reference
 gdal::SpatialReference referenceOf(const std::string& crs, const Middle& middle, std::string& name) {
   const scenario::GdalMessages messages;
   gdal::SpatialReference reference(OSRNewSpatialReference(nullptr));
@@ -76,7 +76,7 @@ gdal::SpatialReference referenceOf(const std::string& crs, const Middle& middle,
   return reference;
 }
 
-/// Between longitude, latitude and a projection.
+/// Transformation between longitude and latitude and a projection.
 class Projection {
  public:
   Projection(const gdal::SpatialReference& from, const gdal::SpatialReference& to)
@@ -96,7 +96,8 @@ class Projection {
   gdal::Transformation transform_;
 };
 
-/// Points along the border of a box, by longitude and latitude.
+/// Points along the border of a box, by longitude and latitude: those at one part of the southern, northern,
+/// western and eastern side, from part to part.
 void addBorder(const scenario::GeoBox& box, std::vector<double>& longitudes, std::vector<double>& latitudes) {
   constexpr int kPerSide = 32;
   for (int n = 0; n <= kPerSide; ++n) {
@@ -110,6 +111,22 @@ void addBorder(const scenario::GeoBox& box, std::vector<double>& longitudes, std
     for (const double side : {box.west_deg, box.east_deg}) {
       longitudes.push_back(side);
       latitudes.push_back(latitude);
+    }
+  }
+}
+
+/// Refuses a projection that is cut along a meridian of the area, as most are opposite to their middle: the
+/// pixels would run around the earth.
+/// @param x  of the points of addBorder()  @param width_m  of all
+/// @throws Error (usage)
+void checkUncut(const std::vector<double>& x, double width_m, const std::string& crs) {
+  for (std::size_t n = 4; n < x.size(); ++n) {
+    const bool is_on_parallel = n % 4 < 2;
+    if (is_on_parallel && std::abs(x[n] - x[n - 4]) > width_m / 2) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("crs '{}' is cut within the area: places beside each other are {:.0f} km apart "
+                              "on its plane; utm and local have no cut there",
+                              crs, std::abs(x[n] - x[n - 4]) / 1000));
     }
   }
 }
@@ -176,10 +193,10 @@ struct Parabola {
   double slope(double x) const { return c1 + 2 * x * c2; }
 };
 
-/// The patch through 3 x 3 nodes of which each row and each column is a parabola.
+/// The patch through 3 x 3 nodes; each row and each column is a parabola.
 class Patch {
  public:
-  /// @param turn  nodes are taken in the same turn of so much as the first; 0: as they are
+  /// @param turn  period with which nodes are shifted near the first; 0: none
   Patch(const std::vector<double>& at, std::size_t node, int nodes_x, double turn) : origin_(at[node]) {
     const auto fromOrigin = [&](int i, int j) {
       const double difference = at[node + static_cast<std::size_t>(j) * nodes_x + i] - origin_;
@@ -210,10 +227,10 @@ class Patch {
   Parabola columns_[3];
 };
 
-/// Where the pixels of a patch are.
+/// Position of the pixels of a patch relative to the area.
 enum class PatchPart { inside, outside, across };
 
-/// Whether places are in a map's area.
+/// Tests whether positions are in a map's area.
 class AreaTest {
  public:
   explicit AreaTest(const MapArea& area) : area_(area) {
@@ -228,7 +245,7 @@ class AreaTest {
            east_deg - 360 * std::floor((east_deg + kMargin_deg) / 360) <=
                area_.box.east_deg - area_.box.west_deg + kMargin_deg;
   }
-  /// Marks those of a patch's row of places that are inside. A circle is convex.
+  /// Marks the positions of a patch's row that are inside. A circle is convex.
   void markInside(const emfield::Surface::Place* row, int count, bool* is_inside) const {
     const auto isIn = [&](int i) { return isInside(row[i]); };
     const bool begin_is_in = isIn(0), end_is_in = isIn(count - 1);
@@ -236,7 +253,7 @@ class AreaTest {
       for (int i = 0; i < count; ++i) is_inside[i] = isIn(i);
       return;
     }
-    int low = 0, high = count - 1;  // if one of them is inside: also so from step to step
+    int low = 0, high = count - 1;  // if one of them is inside, this holds in every step
     while (begin_is_in != end_is_in && high - low > 1) {
       const int middle = low + (high - low) / 2;
       (isIn(middle) == begin_is_in ? low : high) = middle;
@@ -245,7 +262,7 @@ class AreaTest {
     std::fill(is_inside + high, is_inside + count, end_is_in);
   }
   /// Of a patch.
-  /// @param radius_m  no place of it is farther from its middle
+  /// @param radius_m  upper bound of the distance of its positions from its middle
   PatchPart partOf(const emfield::Surface::Place& middle, double radius_m) const {
     if (!area_.circle) return PatchPart::across;
     const double middle_m = distance_m(middle);
@@ -263,13 +280,13 @@ class AreaTest {
   FastGeodesy middle_{};
 };
 
-/// Farthest that a place of a patch is from its middle (m).
+/// Largest distance of a patch's positions from its middle (m).
 double radiusOf(const Lattice& lattice, std::size_t node) {
   const auto at = [&](int i, int j) {
     const std::size_t n = node + static_cast<std::size_t>(j) * lattice.nodesX() + i;
     return toEcef({lattice.latitudes_deg[n], lattice.longitudes_deg[n], 0});
   };
-  constexpr double kMargin = 1.05;  // for bent sides
+  constexpr double kMargin = 1.05;  // for curved sides
   const Vec3d middle = at(1, 1);
   double chord_m = 0;
   for (const int i : {0, 2}) {
@@ -278,7 +295,7 @@ double radiusOf(const Lattice& lattice, std::size_t node) {
   return kMargin * chord_m;
 }
 
-/// Sets the places and areas of a patch's row of pixels.
+/// Sets the positions and areas of a patch's row of pixels.
 /// @param per_degree2  m2 per square degree, over areas of the patch
 EMSCAPE_SIMD_CLONES void fillRow(const Patch::Row& latitude, const Patch::Row& longitude,
                                  const Parabola& per_degree2, double step, int pixels,
@@ -298,8 +315,8 @@ EMSCAPE_SIMD_CLONES void fillRow(const Patch::Row& latitude, const Patch::Row& l
   for (int i = 0; i < pixels; ++i) places[i].longitude_deg = wrapLongitude_deg(places[i].longitude_deg);
 }
 
-/// Area of the pixel at a node of a lattice with one for each pixel (m2): that of the parallelogram to the
-/// next ones.
+/// Area (m2) of the pixel at a node of a lattice with one node per pixel: that of the parallelogram to the
+/// neighbours.
 double areaAt(const Lattice& lattice, std::size_t node) {
   const auto at = [&](std::size_t n) {
     return toEcef({lattice.latitudes_deg[n], lattice.longitudes_deg[n], 0});
@@ -308,7 +325,7 @@ double areaAt(const Lattice& lattice, std::size_t node) {
   return length(cross(at(node + 1) - corner, at(node + lattice.nodesX()) - corner));
 }
 
-/// Sets places and areas, on patches between the nodes of a lattice.
+/// Sets positions and areas, on patches between the nodes of a lattice.
 void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
   grid.places.resize(static_cast<std::size_t>(grid.width) * grid.height);
   grid.areas_m2.resize(grid.places.size());
@@ -380,6 +397,7 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   }
   const auto [least_x, largest_x] = std::minmax_element(x.begin(), x.end());
   const auto [least_y, largest_y] = std::minmax_element(y.begin(), y.end());
+  checkUncut(x, *largest_x - *least_x, crs);
   constexpr double kRounding = 1e-6;  // cells
   const double first_column = std::floor(*least_x / cell_m + kRounding),
                end_column = std::ceil(*largest_x / cell_m - kRounding);

@@ -59,6 +59,11 @@ bool isOfJamming(Product product) {
   return product == Product::jam_loss || product == Product::burn_through;
 }
 
+bool isOverTime(const CoverageRequest& request) {
+  return std::any_of(request.products.begin(), request.products.end(),
+                     [](Product product) { return info(product).over_time; });
+}
+
 CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& request, Product product,
                      const std::optional<MapHeight>& height) {
   const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
@@ -109,7 +114,7 @@ SurfaceField::SurfaceField(const MapGrid& grid, const std::vector<CoverageReques
   surface->heights_m.erase(std::unique(surface->heights_m.begin(), surface->heights_m.end()),
                            surface->heights_m.end());
   options_.surface = surface;
-  options_.allow_missing_terrain = true;  // masked, and reported by the maps' known area
+  options_.allow_missing_terrain = true;  // masked, and reported as the maps' known area
 }
 
 std::size_t SurfaceField::layerOf(const MapHeight& height) const {
@@ -152,7 +157,7 @@ SurfaceMaps::SurfaceMaps(const MapGrid& grid, const CoverageRequest& request, He
 void SurfaceMaps::begin(std::size_t scenarios) {
   states_.assign(scenarios, {});
   for (State& state : states_) {
-    state.figures.assign(layers_.size(), {isOverTime() ? grid_.pixels() : 0, request_.times_s});
+    state.figures.assign(layers_.size(), {isOverTime(request_) ? grid_.pixels() : 0, request_.times_s});
   }
 }
 
@@ -160,10 +165,10 @@ void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenari
                           const SurfaceValues& values, double time_s, const MapSink& take) {
   State& state = states_[index];
   state.scenario = scenario;
-  state.last = isOverTime() ? values.all : nullptr;
+  state.last = isOverTime(request_) ? values.all : nullptr;
   for (std::size_t n = 0; n < layers_.size(); ++n) {
     const std::size_t k = layers_[n].k;
-    if (isOverTime()) {
+    if (isOverTime(request_)) {
       state.figures[n].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); });
     }
     for (const Product product : request_.products) {

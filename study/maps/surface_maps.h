@@ -15,10 +15,13 @@
 
 namespace emscape::study {
 
-/// True for products of what each emitter does by itself.
+/// True for products that depend on each emitter separately.
 bool isPerEmitter(Product product);
-/// True for products of what jamming changes.
+/// True for products of the effect of jamming.
 bool isOfJamming(Product product);
+
+/// True if a product of the request is over all times.
+bool isOverTime(const CoverageRequest& request);
 
 /// A map without values.
 /// @param height  none: for all heights
@@ -35,11 +38,11 @@ struct SurfaceValues {
     FastGeodesy geodesy;  ///< from its position
   };
   std::shared_ptr<const volume::DenseVolume> all;
-  std::vector<OfOne> each;                              ///< if a product asks for them
-  std::shared_ptr<const volume::DenseVolume> unjammed;  ///< if a product asks for it
+  std::vector<OfOne> each;                              ///< if a product needs them
+  std::shared_ptr<const volume::DenseVolume> unjammed;  ///< if a product needs it
 };
 
-/// The field of one reference of height, which is kept from time to time and from scenario to scenario.
+/// The field of one reference of height, which is kept between times and scenarios.
 class SurfaceField {
  public:
   /// @param requests  of one quantity
@@ -57,8 +60,8 @@ class SurfaceField {
 
  private:
   emfield::FieldOptions options_;
-  /// Its channels: all emitters together; each alone, if a product asks for it; all without jamming, if a
-  /// product asks for it.
+  /// Its channels: all emitters together; each alone, if a product needs it; all without jamming, if a
+  /// product needs it.
   std::unique_ptr<emfield::FieldSolver> solver_;
 };
 
@@ -90,10 +93,6 @@ class SurfaceMaps {
     std::shared_ptr<const volume::DenseVolume> last;
   };
 
-  bool isOverTime() const {
-    return std::any_of(request_.products.begin(), request_.products.end(),
-                       [](Product product) { return info(product).over_time; });
-  }
   bool isCovered(float value) const { return static_cast<double>(value) >= request_.threshold; }
 
   float valueAt(const volume::DenseVolume& volume, std::size_t k, std::size_t p) const {

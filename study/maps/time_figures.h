@@ -1,4 +1,4 @@
-/// Figures of coverage over time, place by place.
+/// Figures of coverage over time, at each position.
 #pragma once
 
 #include <cstdint>
@@ -9,33 +9,33 @@
 
 namespace emscape::study {
 
-/// A time stands for the interval up to the next one; the last for none. Gaps at the beginning and at the end
-/// count. A coverage begins at the first time if the place is covered then; one that goes on at the last time
-/// ends there, as does a gap.
+/// A time represents the interval up to the next one; the last time represents none. Gaps at the beginning
+/// and at the end count. A coverage begins at the first time if the position is covered then; a coverage or
+/// gap at the last time ends there.
 class TimeFigures {
  public:
-  /// @param places   0: nothing is kept
-  /// @param times_s  rising
+  /// @param places   0: nothing is computed
+  /// @param times_s  ascending
   TimeFigures(std::size_t places, std::vector<double> times_s);
 
   /// Adds the next of the times.
   void add(double time_s, const std::function<bool(std::size_t place)>& isCovered);
 
-  /// A product that is over time, after the last of the times. NaN: first_detection of a place that is never
-  /// covered, revisit of one that is covered less than twice.
+  /// A product over time, after the last of the times. NaN: first_detection of a position that is never
+  /// covered, revisit of a position that is covered less than twice.
   float figure(Product product, std::size_t place) const;
 
  private:
   struct Place {
     float first_s;        ///< NaN: not yet
     float covered_s = 0;  ///< time so far
-    float gap_s = 0;      ///< of the gap that goes on
+    float gap_s = 0;      ///< of the present gap
     float longest_gap_s = 0, all_gaps_s = 0;
     float gaps_squared_s2 = 0;  ///< sum of the squares of the gaps
-    float last_begin_s = 0;     ///< of the coverage that began last
+    float last_begin_s = 0;     ///< of the latest coverage
     std::uint32_t gaps = 0;
     std::uint32_t coverages = 0;
-    bool is_covered = false;  ///< at the time before
+    bool is_covered = false;  ///< at the previous time
   };
   std::vector<double> times_s_;
   std::size_t next_ = 0;

@@ -6,10 +6,10 @@
 
 namespace emscape::study {
 
-/// A warning of FieldSolver without " (N times)": how often depends on what was computed before.
+/// A warning of FieldSolver without " (N times)", because the count depends on previous computations.
 std::string withoutCount(const std::string& warning);
 
-/// Adds the warnings that are not there yet, without their counts.
+/// Adds new warnings, without their counts.
 void addOnce(std::vector<std::string>& all, const std::vector<std::string>& more);
 
 }  // namespace emscape::study

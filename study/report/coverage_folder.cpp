@@ -24,14 +24,14 @@ using Json = nlohmann::ordered_json;
   throw Error(ErrorCode::bad_input, {file.string(), 0, 0}, why);
 }
 
-/// Calls a function that takes values out of a report; what is missing or of another type is named.
+/// Calls a function that reads values from a report; errors name missing or wrong values.
 template <class Read>
 void readFrom(const fs::path& file, const Read& read) {
   readJson<Json>(readWholeText(file), file.string(), read, ": no report of emscape coverage");
 }
 
-/// The scenario of a folder, if it and its elevation files still have their content; else one with its name
-/// alone.
+/// The scenario of a folder, if it and its elevation files still have their content; else a scenario with
+/// only its name.
 void findInputs(const Json& record, CoverageFolder& folder) {
   auto known = std::make_shared<scenario::Scenario>();
   const Json& of = record.at("scenarios").at(0);
@@ -44,7 +44,7 @@ void findInputs(const Json& record, CoverageFolder& folder) {
   std::map<std::string, std::string> digests;
   for (const Json& file : record.at("terrain")) digests[file.at("file")] = file.at("crc32");
   try {
-    const auto scenario = scenario::loadScenario(known->file, edits);
+    const auto scenario = scenario::loadScenario(known->file, edits, scenario::ReadFor::chosen_times);
     if (scenario->hash != known->hash) return;
     if (scenario->terrain) {
       for (const std::string& file : scenario->terrain->files) {

@@ -106,8 +106,8 @@ void HtmlReport::picture(const render::Image8& image, const std::string& caption
 }
 
 void HtmlReport::drawing(const std::string& svg, const std::string& caption) {
-  // As a picture, so that the names of its parts are its own: drawings of Cairo have the same names, besides
-  // a number that counts the drawings of the process.
+  // As a picture, because drawings of Cairo use the same names of parts, with a number that counts the
+  // drawings of the process.
   static const std::regex kNumber("\\bid=\"surface[0-9]+\"");
   body_ += fmt::format(
       "<figure><img alt=\"{0}\" "

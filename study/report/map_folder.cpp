@@ -22,7 +22,7 @@
 namespace emscape::study {
 namespace {
 
-/// Pictures in report.html; each takes some hundred kilobytes.
+/// Pictures in report.html; each takes several hundred kilobytes.
 constexpr std::size_t kMaxPictures = 24;
 
 struct Format {
@@ -45,8 +45,8 @@ const std::vector<Format>& formatTable() {
   return kTable;
 }
 
-/// Makes a folder and those above it. Those that were not there before are removed at the end of life if
-/// they are empty: after an error before the first file.
+/// Creates a folder and its parents. On destruction, created folders that are empty are removed: after an
+/// error before the first file.
 class MadeFolder {
  public:
   explicit MadeFolder(const std::filesystem::path& folder) {

@@ -79,7 +79,7 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-/// The active emitter next to a place, of those that the quantity is of; -1: there is none.
+/// The closest active emitter of those for the quantity; -1: none.
 int nearestEmitter(const MapStudy& study, const scenario::Snapshot& snapshot,
                    const emfield::Surface::Place& place) {
   const FastGeodesy from = fastGeodesy(place.latitude_deg, place.longitude_deg);

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxCandidates = 10000;
 
-/// To a centimetre, so that names of places stay short.
+/// To a centimetre, so that values are short.
 double rounded(double degrees) {
   return std::round(degrees * 1e7) / 1e7;
 }

@@ -5,7 +5,7 @@
 namespace emscape::study {
 namespace {
 
-/// How many of some sites cover each pixel, and what another site would change.
+/// Number of sites that cover each pixel, and the gain of another site.
 class Cover {
  public:
   Cover(const std::vector<std::vector<std::uint8_t>>& pixels, const std::vector<float>& weights)

@@ -6,13 +6,13 @@
 
 namespace emscape::study {
 
-/// Chooses sites of which the union covers the most: one after another, each the one that adds the most
-/// (greedy), then exchanges of one chosen site for another while that adds (1-exchange). For greedy alone,
-/// the result is at least 1 - 1/e of the best (Nemhauser, Wolsey, Fisher 1978).
+/// Chooses sites whose union covers the most: one after another, each the one that adds the most (greedy),
+/// then exchanges of a chosen site for another while they improve the result (1-exchange). The greedy result
+/// is at least 1 - 1/e of the optimum (Nemhauser, Wolsey, Fisher 1978).
 /// @param pixels   of each site: 1 where it covers
 /// @param weights  of the pixels
 /// @param count    1 to the number of sites
-/// @return indices, rising
+/// @return indices, ascending
 std::vector<std::size_t> chooseSites(const std::vector<std::vector<std::uint8_t>>& pixels,
                                      const std::vector<float>& weights, std::size_t count);
 

@@ -10,7 +10,7 @@
 
 namespace emscape::study {
 
-/// The pixels whose centres lie in the polygons of a file, in any CRS: 1, others 0.
+/// The pixels whose centres are in the polygons of a file, in any CRS: 1, others 0.
 /// @throws Error (bad_input) that names the file: not readable, no polygon, none of the map's pixels
 std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& grid);
 
@@ -20,7 +20,7 @@ class MeasureOverTime {
   /// @param pixels  1: counts; empty: all count
   void add(const StudyMeasure& measure, const CoverageMap& map, const MapGrid& grid,
            const std::vector<std::uint8_t>& pixels);
-  /// The mean over the maps; of the figures min and max, the smallest and the largest. NaN without a value.
+  /// The mean over the maps; for min and max, the smallest and the largest. NaN without a value.
   double value(const StudyMeasure& measure) const;
 
  private:

@@ -78,7 +78,8 @@ class Plot {
     high += more;
   }
 
-  /// Up to kMaxValues values, else as many equal intervals; none where almost every point has its own value.
+  /// Up to kMaxValues values, else the same number of equal intervals; none if almost every point has its own
+  /// value.
   std::vector<Bin> binned() const {
     std::map<double, Bin> by_value;
     for (const Point2& point : points_) {
@@ -104,7 +105,7 @@ class Plot {
     return bins;
   }
 
-  /// Of labels and of logarithms; of numbers none.
+  /// Marks of labels and of logarithmic axes; none for numbers.
   std::vector<render::PlotTick> marks() const {
     std::vector<render::PlotTick> marks;
     if (!plot_.labels.empty()) {

@@ -22,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kBetweenTouches{30};
-/// A claim that looks as young as that by the own clock is not compared with the clock of the file system.
+/// A claim that is younger than this by this machine's clock is not compared with the clock of the file
+/// system.
 constexpr double kRecent_s = 60;
 
 [[noreturn]] void fail(const fs::path& file) {
@@ -83,11 +84,12 @@ bool isAbandoned(const fs::path& file, const std::string& holder) {
   return hasEnded(holder) || age_s(file) > PartClaim::kAbandoned_s;
 }
 
-/// Takes an abandoned claim away. Of several processes that try, one succeeds.
+/// Removes an abandoned claim. Of several processes that try, one succeeds.
 void removeAbandoned(const fs::path& file, const std::string& holder) {
   const fs::path taken = temporaryFor(file);
   if (::rename(file.c_str(), taken.c_str()) != 0) return;
-  // Another process may have removed the claim and made its own: that one goes back, unless there is a third.
+  // Another process may have removed the claim and made its own: that one is restored, unless there is a
+  // third.
   if (holderOf(taken) != holder) static_cast<void>(::link(taken.c_str(), file.c_str()) == 0);
   std::error_code ignored;
   fs::remove(taken, ignored);

@@ -46,7 +46,7 @@ std::string bytesOf(std::string_view hex) {
   return bytes;
 }
 
-/// @throws Error (bad_input) without a place
+/// @throws Error (bad_input) without a location
 std::vector<std::uint8_t> pixelsOf(const Json& record) {
   const std::string bytes = bytesOf(record.at("bits").get_ref<const std::string&>());
   const Json& pixels = record.at("pixels");
@@ -126,7 +126,7 @@ void PartJournal::add(VariantResult result, const std::set<std::string>& warning
     record["bits"] = hexOf(packedPixels(result.pixels));
   }
   const std::string content = record.dump();
-  // The line before may have been torn: this one has a beginning of its own.
+  // The previous line may be incomplete, so this one begins with a line end.
   const std::string line = '\n' + checksumOf(content) + ' ' + content + '\n';
   for (std::size_t done = 0; done < line.size();) {
     const ssize_t written = ::write(descriptor_, line.data() + done, line.size() - done);

@@ -11,7 +11,7 @@ namespace emscape::study {
 /// "3,1.5,,2": the variant and its measures; NaN is empty. Without the end of the line.
 std::string rowOf(const VariantResult& result);
 /// Reads a row, without its pixels.
-/// @throws Error (bad_input) without a place, for a text that is no row of so many measures
+/// @throws Error (bad_input) without a location, for a text that is not a row with this number of measures
 VariantResult readRow(std::string_view row, std::size_t measures);
 
 /// Pixels of a search for sites, eight in a byte.

@@ -63,8 +63,8 @@ class NetcdfWriter {
     return is_letter || (!is_first && ((c >= '0' && c <= '9') || c == '_'));
   }
 
-  /// A name of letters, digits and underscores, as CF wants it, that is not among those before; a coordinate
-  /// gets that of its dimension.
+  /// A unique name of letters, digits and underscores, as CF requires; a coordinate has the name of its
+  /// dimension.
   static std::string unique(const std::string& name, std::set<std::string>& before) {
     std::string own = name;
     for (char& c : own) {
@@ -100,12 +100,12 @@ class NetcdfWriter {
   bool fail_ = false;
 };
 
-/// The unit of a measure as UDUNITS writes it.
+/// The unit of a measure in the notation of UDUNITS.
 std::string udunit(const std::string& unit) {
   return unit == "km2" ? "km2" : unit.empty() ? "1" : unit;
 }
 
-/// The unit of a parameter as UDUNITS writes it, from the end of its path, such as power_w.
+/// The unit of a parameter in the notation of UDUNITS, from the end of its path, such as power_w.
 std::string unitOfPath(const std::string& path) {
   constexpr std::pair<const char*, const char*> kUnits[] = {{"hz", "Hz"},
                                                             {"w", "W"},
@@ -127,7 +127,7 @@ std::string unitOfPath(const std::string& path) {
   return "1";
 }
 
-/// A parameter's values: numbers where all that are given are.
+/// A parameter's values, as numbers if all given values are numbers.
 void writeParameter(NetcdfWriter& writer, const std::string& path, const ArrayDimensions& dimensions,
                     const std::vector<std::string>& values) {
   std::vector<double> numbers;

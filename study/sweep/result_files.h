@@ -1,4 +1,4 @@
-/// The results of a study as tables of other programs.
+/// The results of a study as files for other programs.
 #pragma once
 
 #include <filesystem>
@@ -8,17 +8,17 @@
 
 namespace emscape::study {
 
-/// A text as a cell of a CSV file (RFC 4180), in quotes where it needs them.
+/// A text as a cell of a CSV file (RFC 4180), in quotes if necessary.
 std::string csvCell(const std::string& text);
 /// The shortest text from which the number is read back; empty for NaN.
 std::string csvNumber(double value);
 
-/// One row per variant that was computed: number, name, parameters, measures.
+/// One row per computed variant: number, name, parameters, measures.
 /// @throws Error (other) that names the file
 void writeResultsCsv(const std::filesystem::path& file, const StudySpec& study, const StudyResults& results);
 
-/// netCDF-4: of a study of sweeps alone, one dimension per parameter with its values as coordinates; else one
-/// dimension `variant`. Values that are missing are NaN.
+/// netCDF-4: one dimension per parameter with its values as coordinates if the study only sweeps; else one
+/// dimension `variant`. Missing values are NaN.
 /// @throws Error (other) that names the file and GDAL's reason
 void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& study,
                         const StudyResults& results);

@@ -17,7 +17,7 @@ struct SamplePoints {
   }
 };
 
-/// Latin hypercube: of each dimension, every one of `count` equal intervals holds one point.
+/// Latin hypercube: in each dimension, each of `count` equal intervals has one point.
 SamplePoints latinHypercube(int count, int dimensions, std::uint64_t seed);
 
 constexpr int kMaxSobolDimensions = 21;

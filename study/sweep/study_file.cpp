@@ -63,7 +63,7 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
   if (!fs::exists(base)) {
     throw Error(ErrorCode::bad_input, root.locationOf("scenario"), base + ": no such file; a scenario");
   }
-  spec.base = scenario::loadScenario(base, edits);
+  spec.base = scenario::loadScenario(base, edits, scenario::ReadFor::chosen_times);
   readMaps(reading, root);
   readMeasures(reading, root);
   readVariants(reading, root);

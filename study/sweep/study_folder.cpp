@@ -44,7 +44,7 @@ auto readRecord(const fs::path& file, const Read& read) {
                           found, expected));
 }
 
-/// What a manifest or the command line says of kept files.
+/// The kept files according to a manifest or the command line.
 KeptFiles keptOf(const Json& manifest) {
   const std::string name = manifest.value("kept", toString(KeptFiles::nothing));
   for (const KeptFiles kept : {KeptFiles::maps, KeptFiles::volumes}) {
@@ -53,7 +53,7 @@ KeptFiles keptOf(const Json& manifest) {
   return KeptFiles::nothing;
 }
 
-/// @throws Error (bad_input) without a place
+/// @throws Error (bad_input) without a location
 std::uint64_t countOf(const Json& record, const char* key, std::uint64_t most) {
   const Json count = record.value(key, Json(0u));
   if (!count.is_number_unsigned() || count.get<std::uint64_t>() > most) {
@@ -93,7 +93,7 @@ void StudyFolder::begin(int parts, std::optional<KeptFiles> kept) {
   removeStaleTemporaries(folder_);
   removeStaleTemporaries(folder_ / "parts");
   parts_ = parts;
-  // Of processes that begin at the same time one makes the manifest, and the others take it.
+  // Of processes that begin at the same time one writes the manifest, and the others use it.
   const fs::path file = folder_ / "manifest.json";
   std::unique_ptr<FolderLock> lock;
   while (lock == nullptr && !fs::exists(file)) {

@@ -15,7 +15,7 @@ namespace {
 
 using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 
-/// A field at one place, which is asked what edits invalidate.
+/// A field at one position, used to determine what edits invalidate.
 class ChangeProbe {
  public:
   ChangeProbe(const StudySpec& study, scenario::TerrainPtr terrain)
@@ -39,7 +39,7 @@ class ChangeProbe {
 
   ChangeClass classOf(const scenario::Edit& edit) const {
     const scenario::ParseResult edited = scenario::editScenario(*study_.base, {edit});
-    // Where the edit is possible only together with others, it may change anything.
+    // If the edit is possible only together with others, it may change anything.
     if (!edited.scenario) return ChangeClass::geometry;
     const ScenarioPtr variant = withOutput(*edited.scenario);
     ChangeClass strongest = ChangeClass::product;
@@ -74,7 +74,7 @@ class ChangeProbe {
            a.steer_v == b.steer_v;
   }
 
-  /// Edited antennas are other objects; those that an edit leaves stay the same.
+  /// Edited antennas are new objects; unchanged antennas stay the same objects.
   static bool isTurned(const scenario::Snapshot& before, const scenario::Snapshot& after) {
     for (std::size_t e = 0; e < before.emitters.size(); ++e) {
       if (before.scenario->emitters[e].antenna != after.scenario->emitters[e].antenna ||

@@ -1,4 +1,4 @@
-/// What the readers of a study's parts share.
+/// Common data of the readers of a study's parts.
 #pragma once
 
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace emscape::study {
 
-/// A study while it is read. Faults are collected.
+/// A study being read. Faults are collected.
 struct StudyReading {
   std::string file;
   document::ProblemList problems;
-  /// The document as it is, whose maps from paths to values checkable() rewrites.
+  /// The original document; checkable() rewrites its maps from paths to values.
   document::DocumentNodePtr original;
   std::vector<std::string> files;  ///< named by the study, besides the scenario
   StudySpec spec;

@@ -15,7 +15,7 @@ namespace {
 
 using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 
-/// Bound on what variants that are computed together keep.
+/// Limit of the memory of variants that are computed together.
 constexpr std::size_t kMaxKeptBytes = std::size_t{512} << 20;
 constexpr std::size_t kKeptBytesPerValue = 48;
 
@@ -25,7 +25,7 @@ struct MeasureGroup {
   CoverageRequest request;
 };
 
-/// Measures of one quantity: of one field.
+/// Measures of one quantity, from one field.
 struct QuantityGroup {
   std::vector<MeasureGroup> thresholds;
   std::unique_ptr<CoverageSolver> solver;
@@ -94,7 +94,7 @@ struct StudyRunner::Impl {
     if (study.times_s.size() > 1) together = std::max<std::size_t>(1, kMaxKeptBytes / kept_bytes);
   }
 
-  /// The terrain of a scenario, which depends on nothing but the scenario.
+  /// The terrain of a scenario, which depends only on the scenario.
   const scenario::TerrainPtr& terrainFor(const ScenarioPtr& scenario) {
     const bool is_same =
         scenario->terrain == terrain_of->terrain &&
@@ -188,7 +188,7 @@ StudyRunner::StudyRunner(const StudySpec& study, const StudyPlan& plan, scenario
                      study.base,
                      terrain,
                      files}) {
-  options.move_tolerance_m = 0;  // results must not depend on what was computed before
+  options.move_tolerance_m = 0;  // results must not depend on previous computations
   impl_->addGroups(options);
 }
 

@@ -20,10 +20,10 @@ using document::DocumentNode;
 using document::Section;
 using Factor = VariantFactor;
 
-/// Values of a parameter up to which each is tried in the scenario.
+/// Number of values of a parameter up to which each is checked in the scenario.
 constexpr std::size_t kMaxTried = 200;
 
-/// "20.000000000000004" would be an honest end of a range of decimals; twelve digits are what was meant.
+/// Twelve digits, so that the end of a decimal range is not "20.000000000000004".
 std::string numberText(double value) {
   return fmt::format("{}", std::stod(fmt::format("{:.12g}", value)));
 }
@@ -59,7 +59,7 @@ class VariantReader {
   }
 
  private:
-  /// Tries edits in the scenario.
+  /// Checks edits in the scenario.
   void tryEdits(const std::vector<scenario::Edit>& edits, const SourceLocation& location) {
     if (!reading_.tries_values) return;
     for (const scenario::Problem& problem : scenario::editScenario(*reading_.spec.base, edits).problems) {
@@ -70,7 +70,7 @@ class VariantReader {
     }
   }
 
-  /// Tries the values of one column of a factor, each by itself.
+  /// Checks the values of one column of a factor, each separately.
   void tryColumn(const Factor& factor, std::size_t column, const SourceLocation& location) {
     std::set<std::size_t> chosen;
     if (factor.count <= kMaxTried) {
@@ -175,7 +175,7 @@ class VariantReader {
     return factor;
   }
 
-  /// The value of a distribution below which it lies with a probability.
+  /// The quantile of a distribution at a probability.
   static double drawn(const Section& distribution, double probability) {
     if (distribution.has("uniform")) {
       const Section uniform = distribution.section("uniform");

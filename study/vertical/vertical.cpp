@@ -18,7 +18,7 @@ namespace {
 using emfield::HeightReference;
 using scenario::Quantity;
 
-/// Log-odds of a probability, which is nearly linear where the probability is a step.
+/// Log-odds of a probability, which are nearly linear where the probability has a step.
 float logOdds(float probability) {
   const float p = std::clamp(probability, 1e-9f, 1 - 1e-7f);
   return std::isnan(probability) ? NAN : std::log(p / (1 - p));
@@ -33,7 +33,7 @@ void checkRange(double value, double lowest, double highest, const char* what) {
 void checkRequest(const scenario::Scenario& scenario, const VerticalRequest& request) {
   checkRange(request.range_m, VerticalRequest::kLeastRange_m, VerticalRequest::kLargestRange_m, "range");
   const bool is_above_sea = request.axis == HeightReference::mean_sea_level && !request.smooth_earth;
-  checkRange(request.max_height_m, is_above_sea ? -500 : 10, 1e5, "height");  // ground may lie below the sea
+  checkRange(request.max_height_m, is_above_sea ? -500 : 10, 1e5, "height");  // ground may be below sea level
   if (std::min(request.ranges, request.heights) < 2 || std::max(request.ranges, request.heights) > 10000) {
     throw Error(ErrorCode::usage,
                 fmt::format("grid: {} x {}; 2 to 10000 points a side", request.ranges, request.heights));
@@ -151,9 +151,9 @@ std::vector<VerticalCut::Line> contoursOf(const std::vector<float>& values, cons
   return lines;
 }
 
-/// Takes the terrain away: the smooth surface comes to mean sea level, and all emitters down with it.
+/// Removes the terrain: the smooth surface is moved to mean sea level, and all emitters with it.
 /// @param station  the emitter below which the ground is the surface
-/// @return the surface's height (m) before
+/// @return the previous height (m) of the surface
 double putOnSmoothEarth(scenario::Snapshot& snapshot, scenario::Scenario& scenario,
                         const scenario::EmitterState& station, const scenario::TerrainPtr& terrain) {
   double surface_msl_m = scenario.ground.surface_msl_m.value_or(0);
@@ -170,7 +170,7 @@ double putOnSmoothEarth(scenario::Snapshot& snapshot, scenario::Scenario& scenar
   return surface_msl_m;
 }
 
-/// Height (m) of the lower edge above mean sea level: the lowest ground of all cuts, on the hundred below.
+/// Height (m) of the lower edge above mean sea level: the lowest ground of all cuts, rounded down to 100 m.
 double lowestGround_m(const VerticalRequest& request, const VerticalDiagram& diagram,
                       const scenario::Terrain* terrain) {
   if (terrain == nullptr) return 0;

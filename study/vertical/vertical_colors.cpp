@@ -22,7 +22,7 @@ VerticalColors::VerticalColors(const VerticalDiagram& diagram)
   }
   std::sort(known.begin(), known.end());
   if (!is_part_ && !known.empty()) {
-    // Next to the emitter the values rise without bound: the uppermost hundredth is left out.
+    // Close to the emitter the values increase without limit: the uppermost hundredth is left out.
     const auto strong = static_cast<double>(known[known.size() * 99 / 100]);
     high_ = 10 * std::ceil(strong / 10);
     low_ = std::max(10 * std::floor(static_cast<double>(known.front()) / 10), high_ - kSpan_db);

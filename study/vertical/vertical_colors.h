@@ -7,14 +7,14 @@
 
 namespace emscape::study {
 
-/// A scale of shades: of probabilities from 0 to 1, of other quantities down to 80 dB below the strongest
+/// A scale of shades: for probabilities from 0 to 1, for other quantities down to 80 dB below the strongest
 /// values.
 class VerticalColors {
  public:
   explicit VerticalColors(const VerticalDiagram& diagram);
 
   const render::TransferFunction& function() const { return function_; }
-  /// The shade of a value; -1: blank, where there is no field.
+  /// The shade of a value; -1: blank, without a field.
   int shadeOf(float value) const;
   render::Ink inkOf(int shade) const;
 

@@ -80,7 +80,7 @@ class VerticalPlot {
                                                       : "height above mean sea level (m)";
   }
 
-  /// True if the title of the heights has room beside a frame.
+  /// True if there is room for the title of the heights beside a frame.
   bool hasRoomForTitle(const Rect& frame) const {
     return canvas_.textBox(heightTitle(), 14 * unit_).width <= frame.height + kPanelMargins_px * unit_;
   }
@@ -138,7 +138,7 @@ class VerticalPlot {
     }
   }
 
-  /// Between the grid's values linear; the nearest where one of them is missing.
+  /// Linear between the grid's values; the nearest value if one of them is missing.
   float valueAt(const VerticalCut& cut, double range_m, double height_m) const {
     const auto indexOf = [](const std::vector<double>& axis, double at) {
       const double index = (at - axis.front()) / (axis[1] - axis.front());
@@ -168,7 +168,7 @@ class VerticalPlot {
     panel.drawGround(heights);
   }
 
-  /// Lines of constant elevation, which rise from the station.
+  /// Lines of constant elevation from the station.
   void drawRays(const PlotPanel& panel, double end_m) {
     constexpr int kPieces = 200;
     const double top_m = diagram_.heights_m.back();
@@ -195,7 +195,7 @@ class VerticalPlot {
       const std::string text = fmt::format("{:g}°", elevation_deg);
       const Point2 end = line.back();
       const bool is_at_top = end.y <= frame.y + 0.5;
-      // Numbers that would lie on each other are left out.
+      // Numbers that would overlap are left out.
       if (is_at_top ? std::abs(end.x - last_x) < 34 * unit_ : std::abs(end.y - last_y) < 16 * unit_) continue;
       if (is_at_top) {
         last_x = end.x;

@@ -1,4 +1,4 @@
-// emscape bench: what it measures, and the JSON that other programs rely on.
+// emscape bench: its measurements, and the JSON on which other programs rely.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,7 @@ std::string ballDat(int edge) {
   return file;
 }
 
-/// The result of a bench on standard output.
+/// JSON result of a benchmark on standard output.
 json bench(const Arguments& arguments) {
   Arguments with_json{"bench"};
   with_json.insert(with_json.end(), arguments.begin(), arguments.end());
@@ -42,7 +42,7 @@ json bench(const Arguments& arguments) {
   return json::parse(result.out);
 }
 
-/// What `--backend auto` comes to on this machine.
+/// The device that `--backend auto` selects on this machine.
 std::string deviceName() {
   const std::string version = run({"--version"}).out;
   const std::size_t gpu = version.find("GPU: ") + 5;

@@ -1,4 +1,4 @@
-// emscape check: tables, exit status, what is passed over. The models' own figures are emfield's tests.
+// emscape check: tables, exit status, skipped datasets. The models' figures are tested in tests/emfield.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

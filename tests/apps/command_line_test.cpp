@@ -1,4 +1,4 @@
-// What every subcommand has in common: usage, exit status, standard output.
+// Common behaviour of all subcommands: usage, exit status, standard output.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -133,7 +133,7 @@ TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {
   EXPECT_TRUE(folder.files().empty()) << testing::PrintToString(folder.files());
 }
 
-/// What the program says of the GPU; empty where it can use one.
+/// The program's reason for not using a GPU; empty if it can use one.
 std::string whyNoGpu() {
   const std::string version = run({"--version"}).out;
   const std::size_t none = version.find("GPU: none");

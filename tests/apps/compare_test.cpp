@@ -1,4 +1,5 @@
-// emscape compare: files, the keys that others rely on, and what is refused. The figures are study's tests.
+// emscape compare: files, JSON keys on which other programs rely, and errors. The figures are tested in
+// tests/study.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,6 +14,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 Arguments compare(const std::string& folder, const Arguments& more) {
   Arguments arguments{"compare",   shippedScenario("jacksboro.yaml"),
@@ -54,6 +56,7 @@ TEST(Compare, TwoRunsWriteTheSameBytes) {
     const ProgramResult result =
         run(compare(*folder / "out", {"--set-b", "emitters.jammer.power_w=1", "--format", "png"}));
     ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_THAT(result.out, StartsWith("B (A with emitters.jammer.power_w=1) against A (jacksboro): "));
   }
   ASSERT_EQ(first.files(), second.files());
   for (const std::string& file : first.files())
@@ -79,7 +82,7 @@ TEST(Compare, RefusesWhatItCannotDo) {
 }
 
 /// `emscape coverage` into a folder.
-/// @param more  options, also in place of those that are set here
+/// @param more  options; they override those set here
 void cover(const std::string& folder, const Arguments& more) {
   Arguments arguments{"coverage", shippedScenario("jacksboro.yaml"), "-o", folder, "--quiet"};
   const Arguments usual{"--cell",    "1000",    "--times",  "80", "--products", "covered,value,best",

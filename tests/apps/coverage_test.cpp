@@ -1,4 +1,5 @@
-// emscape coverage: files, the keys that others rely on, and what is refused. The figures are study's tests.
+// emscape coverage: files, JSON keys on which other programs rely, and errors. The figures are tested in
+// tests/study.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// emscape link: the keys that others rely on, files, and what is refused. The figures are emfield's tests.
+// emscape link: JSON keys on which other programs rely, files, and errors. The figures are tested in
+// tests/emfield.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

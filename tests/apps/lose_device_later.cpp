@@ -1,4 +1,4 @@
-// To be preloaded into a program: loses its GPU as soon as a file is there.
+// To be preloaded into a program: makes it lose its GPU as soon as a file exists.
 #include <chrono>
 #include <cstdlib>
 #include <filesystem>
@@ -10,7 +10,7 @@
 namespace emscape::test {
 namespace {
 
-/// The program's work is in the same context: CUDA has one of each device and process.
+/// The program uses the same context, as CUDA has one per device and process.
 void loseDeviceAt(const std::string& sign) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::minutes(1);
   std::error_code ignored;
@@ -26,7 +26,7 @@ bool watch() {
   const char* const sign = std::getenv(kSign);
   if (sign == nullptr) return false;
   std::thread(loseDeviceAt, std::string(sign)).detach();
-  unsetenv(kSign);  // programs that this one starts are left alone
+  unsetenv(kSign);  // not for programs that this one starts
   return true;
 }
 

@@ -1,4 +1,4 @@
-// A GPU that is lost in the middle of a whole command: one error, and nothing but whole files.
+// A GPU that is lost while a command runs: one error, and only complete files.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,8 +20,7 @@ using testing::IsSupersetOf;
 using testing::MatchesRegex;
 using testing::Not;
 
-/// What a program says of itself: without the words of the library that draws labels about a machine that has
-/// no fonts.
+/// A program's messages, without those of the label library on a machine without fonts.
 std::string withoutFontconfig(const std::string& text) {
   return std::regex_replace(text, std::regex("Fontconfig [^\n]*\n"), "");
 }
@@ -38,7 +37,7 @@ void runAndLoseDevice(Arguments arguments, const std::string& sign) {
                            "(; the last kernel launched was [^\n]+)?\n"));
 }
 
-/// What lies in a folder, by name.
+/// Contents of the files of a folder, by name.
 std::map<std::string, std::string> contentsOf(const TemporaryFolder& folder) {
   std::map<std::string, std::string> contents;
   for (const std::string& file : folder.files()) contents[file] = readFile(folder.path() / file);
@@ -49,7 +48,7 @@ void expectNoTemporaries(const TemporaryFolder& folder) {
   EXPECT_THAT(folder.files(), Not(Contains(HasSubstr(".part-"))));
 }
 
-/// How many steps of a series the CPU can draw; it reads every voxel of each.
+/// Number of steps of a series that the CPU can draw; it reads every voxel of each.
 int stepsThatCanBeRead(const std::string& series) {
   const TemporaryFolder pictures;
   const ProgramResult result = run(

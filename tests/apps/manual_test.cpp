@@ -1,4 +1,5 @@
-// Manual pages and shell completion against --help; licences against what the programs are linked with.
+// Manual pages and shell completion against --help; licences against the libraries to which the programs are
+// linked.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -26,7 +27,7 @@ std::string shareFile(const std::string& name) {
   return text;
 }
 
-/// Standard output of a shell's command.
+/// Standard output of a shell command.
 std::string outputOf(const std::string& command) {
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
   std::string text;
@@ -40,7 +41,7 @@ bool hasWindow() {
   return std::filesystem::exists(besideThisProgram("emscape-view"));
 }
 
-/// What --help of a command lists: its options' names, and its subcommands.
+/// The contents of a command's --help: names of options, and subcommands.
 struct Help {
   std::vector<std::string> options, subcommands;
 };
@@ -110,7 +111,7 @@ TEST(Manual, PagesAndCompletionHaveEveryOptionOfHelp) {
   EXPECT_GT(expectDescribed({}), 200);
 }
 
-/// What bash offers for the last of some words.
+/// Bash's completions for the last word.
 std::string completed(const std::string& words) {
   return outputOf(
       "bash -c 'source \"$0\"; COMP_WORDS=(\"$@\"); COMP_CWORD=$(($# - 1)); _emscape; echo -n "
@@ -163,7 +164,8 @@ TEST(Licences, NameEveryLibraryThatTheProgramsLoadAndNoOther) {
   }
   std::set<std::string> seen;
   for (const std::string& file : loaded) {
-    // Parts of the C library, what the sanitizers add, and what OpenVDB's headers name without optimization.
+    // Parts of the C library, libraries of the sanitizers, and those that OpenVDB's headers need without
+    // optimisation.
     if (std::regex_match(
             file, std::regex("ld-linux.*|lib(m|dl|pthread|rt|asan|ubsan|tsan|boost_iostreams)\\.so.*")))
       continue;

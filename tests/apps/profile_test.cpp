@@ -1,5 +1,5 @@
-// emscape profile: the keys that others rely on, pictures, and what is refused. The figures are emfield's
-// tests.
+// emscape profile: JSON keys on which other programs rely, pictures, and errors. The figures are tested in
+// tests/emfield.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ const std::string& jacksboro() {
   return file;
 }
 
-/// The point lies behind the ridge as the jammer sees it at 40 s.
+/// The point is behind the ridge as seen from the jammer at 40 s.
 Arguments blockedPath(const Arguments& more = {}) {
   Arguments arguments{"profile", jacksboro(), "--emitter",          "jammer", "--time",
                       "40",      "--to",      "36.27,-84.24167,15", "--agl"};
@@ -61,6 +61,19 @@ TEST(Profile, ATableEndsWithTheVerdict) {
        {"Geometry", "Obstacles", "Budget by '", "EIRP along the ray", "decides", "Blocked: "})
     EXPECT_THAT(result.out, HasSubstr(part));
   EXPECT_EQ(result.out.find('\n', result.out.find("\nBlocked: ") + 1), result.out.size() - 1);
+}
+
+TEST(Profile, WithoutAnEpochATimeIsInSecondsAlone) {
+  const TemporaryFolder folder;
+  const std::string epoch = "epoch: 2026-06-01T06:00:00Z\n";
+  std::string text = readFile(quick());
+  const auto firstLine = [&](const std::string& scenario) {
+    const ProgramResult result =
+        run({"profile", folder.write("a.yaml", scenario), "--emitter", "radar", "--to", "52.05,5,500"});
+    return result.out.substr(0, result.out.find('\n'));
+  };
+  EXPECT_EQ(firstLine(text), "Path from 'radar' at t = 0 s (2026-06-01T06:00:00.000Z), 3 GHz");
+  EXPECT_EQ(firstLine(text.erase(text.find(epoch), epoch.size())), "Path from 'radar' at t = 0 s, 3 GHz");
 }
 
 TEST(Profile, OfARadarTellsItsDetection) {

@@ -19,10 +19,10 @@ struct ProgramResult {
 
 using Arguments = std::vector<std::string>;
 
-/// A program that runs in the background. Its output goes to files of its own.
+/// A program that runs in the background. Its output goes to its own files.
 class RunningProgram {
  public:
-  /// @param shell_prefix  shell commands that stand before it, for example limits; may be empty
+  /// @param shell_prefix  shell commands that precede it, such as limits; may be empty
   explicit RunningProgram(const Arguments& arguments, const std::string& shell_prefix = "");
   void signal(int number) const;
   ProgramResult wait();
@@ -32,15 +32,15 @@ class RunningProgram {
   pid_t process_ = -1;
 };
 
-/// What was built beside this test's program.
+/// Path of a file that was built next to this test program.
 std::string besideThisProgram(const std::string& name);
 
 /// Runs `emscape ARGUMENTS` to its end.
 ProgramResult run(const Arguments& arguments, const std::string& shell_prefix = "");
 
-/// scenarios/quick.yaml, the smallest of them.
+/// scenarios/quick.yaml, the smallest scenario.
 const std::string& quick();
-/// The same with more voxels and a step a second, written into a folder: it can be interrupted.
+/// The same with more voxels and one step per second, written into a folder; slow enough to be interrupted.
 std::string longScenario(const TemporaryFolder& folder, int duration_s);
 
 }  // namespace emscape::test

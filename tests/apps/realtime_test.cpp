@@ -1,5 +1,5 @@
-// emscape render --realtime, end to end. What happens when is tested against a clock of the tests' own in
-// tests/playback/real_time_loop_test.cpp; no test asserts speed: the machine may be busy with others.
+// emscape render --realtime, end to end. The timing is tested with a simulated clock in
+// tests/playback/real_time_loop_test.cpp; no test asserts speed, since the machine may be busy.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -19,7 +19,7 @@ using testing::Each;
 using testing::HasSubstr;
 using testing::IsSupersetOf;
 
-/// Plays the quick scenario, small and with every settled picture verified; returns what it reports.
+/// Plays the quick scenario in a small window, with every settled picture verified; returns the report.
 json play(const Arguments& more, const std::string& input = quick(), const std::string& size = "97x75") {
   Arguments arguments{"render", input, "--realtime", "--size", size, "--verify", "--json"};
   arguments.insert(arguments.end(), more.begin(), more.end());

@@ -1,4 +1,4 @@
-// Files do not depend on the number of threads, and hold neither the time of day nor anything random.
+// Files do not depend on the number of threads, and contain neither the time of day nor anything random.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -8,7 +8,7 @@
 namespace emscape::test {
 namespace {
 
-/// Runs a command in one thread and in three, into a folder of its own each, and compares all files.
+/// Runs a command with one thread and with three, into separate folders, and compares all files.
 /// @param arguments  "OUT" in them becomes the folder
 void expectSameBytes(const Arguments& arguments) {
   const TemporaryFolder one, three;

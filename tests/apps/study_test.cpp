@@ -1,4 +1,4 @@
-// emscape study: processes, parts, interruption, and what is refused. The figures are study's tests.
+// emscape study: processes, parts, interruption, and errors. The figures are tested in tests/study.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -129,7 +129,7 @@ TEST(Study, AKilledProcessIsReplacedAndNothingIsLost) {
   expectSameResults(folder, "whole", "out");
 }
 
-/// How often the journals of a folder have each variant.
+/// Number of times that each variant is in the journals of a folder.
 std::map<int, int> variantsInJournals(const std::filesystem::path& parts) {
   std::map<int, int> counts;
   std::error_code ignored;

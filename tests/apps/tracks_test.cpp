@@ -1,5 +1,5 @@
-// emscape vertical and exposure: files, the keys that others rely on, and what is refused. The figures are
-// study's tests.
+// emscape vertical and exposure: files, JSON keys on which other programs rely, and errors. The figures are
+// tested in tests/study.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -91,7 +91,7 @@ TEST(Vertical, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", file, "--threshold", "1.5"}, 2),
               HasSubstr("between 0 and 1"));
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", file, "--range", "5"}, 2),
-              HasSubstr("--range: '5' must be a number from 100 to 1.99e+06\n"));
+              HasSubstr("--range: '5' must be a number from 100 to 1990000\n"));
   EXPECT_THAT(errorOf({"--emitter", "search radar", "-o", folder / "none/a.png"}, 1),
               HasSubstr("none/a.png"));
   EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
@@ -105,14 +105,14 @@ TEST(Exposure, WritesFilesOfEachKindAndTheSameOnesAgain) {
   });
   EXPECT_THAT(readFile(folder / "one/a.csv"),
               StartsWith("time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,detection_probability,"
-                         "search radar,best,cumulative_probability\n0,"));
+                         "search radar,best,cumulative_probability,state\n0,"));
   const json report = json::parse(readFile(folder / "one/a.json"));
   for (const char* key : {"scenario", "platform", "quantity", "threshold", "radar_look", "cross_section",
                           "emitters", "together", "each", "rows", "warnings"})
     EXPECT_TRUE(report.contains(key)) << key;
   ASSERT_EQ(report["rows"].size(), 7u);
-  for (const char* key :
-       {"max", "max_time_s", "first_s", "fraction", "longest_gap_s", "cumulative_probability"})
+  for (const char* key : {"max", "max_time_s", "first_s", "fraction", "unknown_fraction", "longest_gap_s",
+                          "cumulative_probability"})
     EXPECT_TRUE(report["together"].contains(key)) << key;
 }
 

@@ -1,5 +1,5 @@
-// emscape validate on broken scenarios. The parser's own tests go through every kind of fault; here the
-// program's part.
+// emscape validate on broken scenarios. The parser's tests cover every kind of error; these tests cover the
+// program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

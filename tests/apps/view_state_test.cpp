@@ -1,4 +1,4 @@
-// emscape render --state and --save-state: a view as a file gives the picture that the options gave.
+// emscape render --state and --save-state: a view saved as a file gives the same picture as the options.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ TEST(ViewState, DrawsThePictureThatTheOptionsDrew) {
   EXPECT_EQ(state["transfer"]["unit"], "dBW/m2");
   EXPECT_TRUE(state.contains("range"));
 
-  // A state of a state is the same state.
+  // Saving a loaded state gives the same state.
   ASSERT_EQ(render({"--state", folder / "a.view.json", "--save-state", folder / "b.view.json"}).status, 0);
   EXPECT_EQ(readFile(folder / "a.view.json"), readFile(folder / "b.view.json"));
 }

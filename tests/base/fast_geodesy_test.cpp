@@ -21,12 +21,12 @@ double azimuthDifference_deg(double a_rad, double b_rad) {
 
 /// Largest differences from GeographicLib over random stations and paths.
 struct Differences {
-  double inverse_distance = 0, inverse_azimuth_deg = 0;  ///< distances relative to themselves
+  double inverse_distance = 0, inverse_azimuth_deg = 0;  ///< relative errors of distances
   double direct_distance = 0, direct_azimuth_deg = 0;
   double direct_position_m = 0;
 };
 
-/// Stations all over the earth, with more than their share near the poles, the antimeridian and the prime
+/// Stations all over the earth, with an increased density near the poles, the antimeridian and the prime
 /// meridian.
 Differences compare(double distance_m, int paths) {
   std::mt19937 random(7);

@@ -11,7 +11,7 @@
 namespace emscape {
 namespace {
 
-/// Collects what is logged while it lives.
+/// Collects the messages logged during its lifetime.
 class LogTest : public testing::Test {
  protected:
   LogTest() {

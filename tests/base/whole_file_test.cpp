@@ -95,7 +95,7 @@ TEST_F(WholeFile, IsGoneWhenTheDiskIsFull) {
     EXPECT_THAT(errorOf([&] { writeWhole(folder_ / "a", [&](std::ostream& stream) { stream << text; }); }),
                 HasSubstr("a: cannot write: File too large"));
   }
-  // Small writes fail when the buffer is emptied at the end.
+  // Small writes fail when the buffer is flushed at the end.
   EXPECT_THROW(writeWhole(folder_ / "a",
                           [](std::ostream& stream) {
                             for (int i = 0; i < 100001; ++i) stream.put('x');
@@ -115,7 +115,7 @@ TEST_F(WholeFile, TemporariesOfKilledRunsAreKnownAndRemoved) {
   EXPECT_TRUE(isTemporary("a.part-12"));
   EXPECT_FALSE(isTemporary("a.part-12-host"));
   std::ofstream(mine) << "running";
-  std::ofstream(folder_ / "a.vdb.part-999999999") << "killed";  // beyond the greatest process number
+  std::ofstream(folder_ / "a.vdb.part-999999999") << "killed";  // above the largest process number
   const fs::path elsewhere = folder_ / "a.vdb.part-999999999-00000000";
   ASSERT_NE(machineName(), "00000000");
   std::ofstream(elsewhere) << "of another machine, where it may run";

@@ -51,7 +51,7 @@ TEST(JsonText, ShortNumbersAreTheSameFloatAgain) {
   EXPECT_EQ(shortNumber(0.1F).dump(), "0.1");
 }
 
-/// The faults of a document with one key, and what is read of it.
+/// The errors in a document with one key, and the value that is read.
 std::pair<std::string, std::optional<bool>> readBoolean(const std::string& value) {
   const ObjectSpec spec{"thing", "", {spec::optional("on", spec::simple(ValueType::boolean), "")}};
   ProblemList problems;

@@ -1,4 +1,4 @@
-// The frame of `emscape check`: tables of reference figures, and what it makes of a folder.
+// The frame of `emscape check`: tables of reference figures, and its report on a folder.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -144,7 +144,7 @@ TEST_P(Reference, IsMet) {
   }
 }
 
-/// Indices of the datasets that a model answers to.
+/// Indices of the datasets that a model implements.
 std::vector<int> checkedDatasets() {
   std::vector<int> indices;
   for (std::size_t i = 0; i < referenceDatasets().size(); ++i) {
@@ -179,7 +179,7 @@ TEST(ModelLimits, GiveTheMessageAndTheTable) {
               EndsWith("| frequency | MHz | 20 | 20000 | refused | of the model's data |\n"));
 }
 
-/// docs/models.md, word for word.
+/// The tables of limits in docs/models.md are up to date.
 TEST(ModelLimits, StandInTheDocumentation) {
   const std::string text = test::readFile(test::sourceFile("docs/models.md"));
   for (const ModelInfo& model : models()) {

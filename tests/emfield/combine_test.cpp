@@ -90,7 +90,7 @@ TEST(Combine, RowsGiveWhatThePlainFunctionGives) {
         for (int column = 0; column < grid.dims.x * grid.dims.y; ++column) {
           const float plain = plainPowerDensity(combined.beam, column, columns.t_m[k]);
           const float row = sum[static_cast<std::size_t>(k) * grid.dims.x * grid.dims.y + column];
-          // Fused multiply-adds round otherwise: the amplitude differs by a few parts in a million of its
+          // Fused multiply-adds round differently: the amplitude differs by a few parts in a million of its
           // maximum.
           const float boresight =
               powerDensity_wm2<PatternKind::isotropic>(combined.beam, column, columns.t_m[k]);

@@ -45,7 +45,7 @@ scenario::AntennaPtr antennaOf(int kind) {
   }
 }
 
-/// Emitters at random places of a region 40 km wide, with all antennas and the given models in turn.
+/// Emitters at random positions in a region 40 km wide, with all antennas and the given models in turn.
 std::shared_ptr<scenario::Scenario> randomScenario(std::mt19937& random, FrameKind frame,
                                                    const std::vector<PropagationModel>& models,
                                                    double height_m, int count = 8) {
@@ -67,7 +67,7 @@ std::shared_ptr<scenario::Scenario> randomScenario(std::mt19937& random, FrameKi
   return scenario;
 }
 
-/// How far two volumes are apart, voxel by voxel.
+/// Differences of two volumes, voxel by voxel.
 struct Difference {
   long long voxels = 0, beyond_tenth_off_edges = 0;
   std::vector<float> apart_db;
@@ -96,7 +96,7 @@ struct Difference {
     EXPECT_NEAR(cpu.info.range_max, gpu.info.range_max, 0.01);
   }
 
-  /// On a shadow's edge a voxel may be lit or dark: it then is as one of those above and below it.
+  /// At a shadow's edge a voxel may be illuminated or dark: it then equals the one above or the one below it.
   static bool isBetweenNeighbours(const volume::DenseVolume& cpu, int i, int j, int k, double value) {
     double lowest = valueAt(cpu, i, j, k), highest = lowest;
     for (int n : {k - 1, k + 1}) {
@@ -119,7 +119,7 @@ struct Difference {
   }
 };
 
-/// Two solvers of one scenario, which go through the same snapshots.
+/// Two solvers of one scenario that compute the same snapshots.
 class Pair {
  public:
   Pair(std::shared_ptr<scenario::Scenario> scenario, scenario::TerrainPtr terrain, FieldOptions options = {})
@@ -279,7 +279,7 @@ TEST_F(CudaField, MarchesAreTheCpus) {
   }
 }
 
-// Columns that lean have places between the layers.
+// Tilted columns have positions between the layers.
 TEST_F(CudaField, MarchesThroughLeaningColumnsAreTheCpus) {
   const auto scenario = marchedScenario(propagation::Polarization::horizontal);
   scenario->region.origin.kind = FrameKind::enu;
@@ -288,7 +288,7 @@ TEST_F(CudaField, MarchesThroughLeaningColumnsAreTheCpus) {
   pair.difference().expectSmall(0.05);
 }
 
-// More heights than a block of threads holds: the CPU marches.
+// With more heights than a thread block can hold, the CPU marches.
 TEST_F(CudaField, MarchesOfManyHeightsAreTheCpus) {
   const auto scenario = marchedScenario(propagation::Polarization::horizontal);
   scenario->region.size_m = {6e3, 6e3, 1500};
@@ -321,7 +321,7 @@ TEST_F(CudaField, MarchesOfAnEnsembleAreTheCpus) {
 }
 
 TEST_F(CudaField, ReflectedRaysInEveryPatternAreTheCpus) {
-  // The reflected rays' codes may differ by a step: nulls 40 dB deep by 0.02 dB.
+  // The codes of reflected rays may differ by one step, which changes nulls 40 dB deep by 0.02 dB.
   std::mt19937 random(12);
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
     for (const auto look : {scenario::RadarLook::scan, scenario::RadarLook::target}) {

@@ -1,4 +1,4 @@
-// Probabilities of detection through the whole pipeline against closed forms; what is computed anew.
+// Probabilities of detection through the whole pipeline against closed forms; recomputation after changes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

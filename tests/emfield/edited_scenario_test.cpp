@@ -1,5 +1,5 @@
-// A solver that is given edited scenarios: it computes what the edit invalidates, and the result is that of a
-// new solver to the last bit.
+// A solver that is given edited scenarios recomputes what an edit invalidates; the result is bit-identical to
+// that of a new solver.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -56,7 +56,7 @@ scenario::AntennaPtr someAntenna(Random& random) {
   }
 }
 
-/// One kind of edit by the key that it changes. It may ask for what a solver refuses.
+/// One kind of edit, named by the key that it changes. Solvers may refuse the result.
 struct Edit {
   const char* key;
   std::function<void(Scenario&, Emitter&, Random&)> apply;
@@ -326,11 +326,10 @@ std::string editValue(Scenario& scenario, Random& random) {
   return edit.key;
 }
 
-/// Makes an edited scenario of another one. @return the edit in words
+/// Makes an edited scenario of another one. @return description of the edit
 using Editor = std::function<std::string(Scenario&, Random&)>;
 
-/// A radar that rotates, a jammer on a track, a radar that stands, and two transmitters, of one model or of
-/// all.
+/// A rotating radar, a jammer on a track, a fixed radar, and two transmitters, with one model or all models.
 std::shared_ptr<Scenario> battlefield(Random& random, FrameKind frame, std::vector<PropagationModel> models) {
   auto scenario = emptyScenario(frame, kLatitude_deg, kLongitude_deg, {15e3, 14e3, 4000}, {12, 11, 5});
   scenario->output.floor = -150;
@@ -386,7 +385,7 @@ void expectEqualSolvers(const FieldSolver& updated, const FieldSolver& fresh) {
 }
 
 /// Gives a solver one edit after the other, and compares each result with that of a new solver. Edits that a
-/// new solver refuses must be refused by the update too, and leave it as it was.
+/// new solver refuses must also be refused by the update, and leave the solver unchanged.
 void checkEdits(std::shared_ptr<const Scenario> scenario, std::vector<scenario::TerrainPtr> terrains,
                 int count, const Editor& edit, Random& random, const FieldOptions& options = {}) {
   scenario::TerrainPtr terrain = terrains.front();
@@ -403,7 +402,7 @@ void checkEdits(std::shared_ptr<const Scenario> scenario, std::vector<scenario::
     try {
       snapshot = scenario::snapshotAt(edited, ground.get(), t_s);
     } catch (const Error&) {
-      continue;  // stands below the ground: no solver sees it
+      continue;  // below the ground: refused before a solver gets it
     }
     try {
       fresh = std::make_unique<FieldSolver>(edited, ground, options);
@@ -485,7 +484,7 @@ TEST(EditedScenario, EqualsANewSolverWithABoundOnTheCaches) {
       {nullptr}, 40, editValue, random, options);
 }
 
-/// Edits that compute echoes alone, and then one for which the power of all emitters is added up again.
+/// Edits that only recompute echoes, followed by one that requires the sum over all emitters again.
 class EditedEchoes : public test::OnBackends {};
 EMSCAPE_ON_BACKENDS(EditedEchoes);
 

@@ -1,4 +1,4 @@
-// Models in the field against their functions, and the errors of what is interpolated.
+// Models in the field against their functions, and interpolation errors.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,7 +42,7 @@ AirLoss airOf(const scenario::Scenario& scenario, double station_msl_m, const Pa
   return airLoss(inputs, hasGases(inputs.emitter), table);
 }
 
-/// An emitter's excess, and one column of it at a time.
+/// An emitter's excess loss, column by column.
 class Columns {
  public:
   Columns(const scenario::Scenario& scenario, double tx_msl_m, const PathExtent& extent, double step_m = 45)
@@ -55,7 +55,7 @@ class Columns {
   std::vector<float> fill(const ProfileData& profile, const std::vector<float>& heights_msl_m) const {
     return filled(profile, heights_msl_m, [](const auto& model, const auto&... of) { return model(of...); });
   }
-  /// The same in parts, the highest first; of models that have parts.
+  /// The same in parts, highest first, for models with parts.
   std::vector<float> fillInParts(const ProfileData& profile, const std::vector<float>& heights_msl_m) const {
     return filled(
         profile, heights_msl_m,
@@ -293,7 +293,7 @@ TEST(ExcessModels, TwoRayInTheFieldIsTheModelAtEveryVoxel) {
                                   : polarization == propagation::Polarization::vertical
                                       ? v
                                       : -ratioToDb((dbToRatio(-h) + dbToRatio(-v)) / 2);
-          // In nulls a hair's breadth of path counts for much.
+          // In nulls tiny differences of path length have a large effect.
           EXPECT_NEAR(excessIn(*volume, i, 4, k, from), expected, 0.05 + 0.05 * std::max(0.0, expected));
         }
       }

@@ -1,4 +1,4 @@
-/// What the tests of excess losses share: fields of a lone emitter, and paths read one by one.
+/// Helpers for the tests of excess losses: fields of a single emitter, and individual paths.
 #pragma once
 
 #include <algorithm>
@@ -65,7 +65,7 @@ inline ProfileData profileTo(const scenario::Terrain& terrain, const GeodeticPos
   return profile;
 }
 
-/// The excess (dB) that a voxel of a lone emitter of 1 kW holds.
+/// Excess loss (dB) at a voxel of the field of a single 1 kW emitter.
 inline double excessIn(const volume::DenseVolume& volume, int i, int j, int k, const GeodeticPosition& from) {
   const GeodeticPosition to = GeoFrame(volume.grid.frame).toGeodetic(volume.grid.center_m(i, j, k));
   const double distance_m = length(toEcef(to) - toEcef(from));

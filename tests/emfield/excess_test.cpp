@@ -1,4 +1,4 @@
-// The excess loss in the field: how it is kept, and diffraction against the model path by path.
+// Excess loss in the field: storage, and diffraction compared with the model path by path.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What the solver computes anew, what it keeps, and what it says of it.
+// What the solver recomputes and keeps, and how it reports this.
 
 #include "emscape/emfield/field_solver.h"
 
@@ -65,7 +65,7 @@ std::vector<float> freshValues(const std::shared_ptr<scenario::Scenario>& scenar
   return solver.volumes().front().host()->values;
 }
 
-/// To the last bit.
+/// Expects bit-identical fields.
 void expectSameField(const std::vector<float>& a, const std::vector<float>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t v = 0; v < a.size(); ++v) ASSERT_EQ(a[v], b[v]) << "voxel " << v;

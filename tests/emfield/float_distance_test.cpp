@@ -1,5 +1,5 @@
-// How far the models in single precision, as a GPU runs them, are from double; those of the terrain profile
-// and of ITM, two rays and rain stand in the models' own tests.
+// Differences between the models in single precision, as on a GPU, and in double precision. The differences
+// for terrain profiles, ITM, two rays and rain are in the tests of these models.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -74,7 +74,7 @@ TEST(FloatDistance, OfTheEdgesOverMadeUpTerrain) {
   EXPECT_LT(largest_db, kGoal_db);
 }
 
-/// A shadow's edge: metres, for the horizon gives all or nothing.
+/// Position of a shadow's edge in metres, as `horizon` gives either no loss or no field.
 TEST(FloatDistance, OfTheShadowsEdge) {
   std::mt19937 random(9);
   double largest_m = 0;

@@ -191,7 +191,8 @@ class FieldAtPosts : public test::OnBackends {
     scenario.platforms[0].track[0].position.height_agl_m = 10;
   }
 
-  /// The voxel is lit as the path is, unless its edge is within 0.1 m. @return 1 if it is in shadow
+  /// The voxel is illuminated if the path is, unless the shadow's edge is within 0.1 m. @return 1 if it is in
+  /// shadow
   int expectTheShadowOfThePath(const std::shared_ptr<scenario::Scenario>& scenario,
                                const scenario::TerrainPtr& terrain, const PathEnd& end) const {
     const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), 0);
@@ -215,7 +216,7 @@ TEST_P(FieldAtPosts, IsThatOfThePathInGridsOfAllVoxelSizesOverTheRepositorysTerr
   expectTheSameInEveryGrid(test::sourceFile("scenarios/data/jacksboro.tif"));
 }
 
-// And over a tile of posts of two distances, where it is there.
+// The same over a tile with two post spacings, if the file exists.
 TEST_P(FieldAtPosts, IsThatOfThePathInGridsOfAllVoxelSizesOverWholeDegrees) {
   expectTheSameInEveryGrid(test::sourceFile("tests/data/dem/N44W072.tif"));
   if (const auto file = test::referenceFile("dem/n00_e006_3arc_v2.dt1")) expectTheSameInEveryGrid(*file);

@@ -223,7 +223,7 @@ TEST_P(Intervals, CumulateTheLooksOfATurn) {
   EXPECT_GT(most, 0.3) << "the scenario must have probabilities between 0 and 1";
 }
 
-// Looks are counted by walking through the time: a look is a passage of the beam's azimuth.
+// Looks are counted by stepping through time: a look is a passage of the beam's azimuth.
 TEST_P(Intervals, CumulateTheLooksOfEachAzimuth) {
   for (const ScanSpec& scan : {rotating(10), rotating(-8), sweeping(ScanKind::sector, 90, 50)}) {
     for (const double seconds : {2.0, 9.5}) {
@@ -259,7 +259,7 @@ TEST_P(Intervals, CumulateTheLooksOfEachAzimuth) {
   }
 }
 
-// The last detection is found by walking back through the time in steps of a twentieth of the beam.
+// The last detection is found by stepping back in time in steps of a twentieth of the beam.
 TEST_P(Intervals, KnowTheAgeOfTheLastDetection) {
   for (const ScanSpec& scan : {rotating(10), rotating(-8), sweeping(ScanKind::sector, 90, 50)}) {
     for (const double seconds : {2.0, 9.5}) {
@@ -302,7 +302,7 @@ TEST_P(Intervals, KnowTheAgeOfTheLastDetection) {
               before_deg = isActive(t_s) ? off_deg : 180;
             }
             if (std::abs(once[v] - 0.3f) < 0.01f) continue;
-            // At the edges of what was passed, and of the times of activity, a step decides.
+            // At the edges of the swept sector and of active intervals, single steps decide.
             const bool is_same =
                 (age_s < 0) == (found[v] < 0) &&
                 (age_s < 0 || std::abs(static_cast<double>(found[v]) - age_s) <= 1.01 * step_s);

@@ -186,7 +186,7 @@ TEST(BurnThrough, OfASelfScreeningJammerIsAtItsClosedFormRange) {
   scenario::Emitter radar = trackingRadar();
   radar.receiver.required_signal_to_jammer_db = 6;
   scenario::Emitter jammer = jammerOf(1);
-  // So strong that the target shows from 10 km inwards.
+  // So strong that the target is detected within 10 km.
   jammer.power_w = std::pow(
       selfScreeningBurnThrough_m(linkTowardsTarget(radar), 5, linkTowardsRadar(jammer, kGain_dbi), -6) / 10e3,
       2);
@@ -212,7 +212,7 @@ TEST(BurnThrough, AsksByDefaultForWhatHalfTheDetectionsTake) {
   scenario::Emitter radar = trackingRadar();
   radar.receiver.pulses = 8;
   EXPECT_DOUBLE_EQ(requiredSignalToJammerDb(radar), requiredSnrDb(detectorOf(radar.receiver), 0.5));
-  // Against jamming far above the noise both say the same: where the margin is 0, Pd is 1/2.
+  // If jamming is far above the noise both agree: where the margin is 0, Pd is 1/2.
   scenario::Emitter jammer = jammerOf(1e6);
   const auto scenario = duel(radar, jammer, 0, 60e3);
   scenario->output.radar_look = scenario::RadarLook::target;

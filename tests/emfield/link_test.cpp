@@ -130,7 +130,7 @@ TEST(Link, AReceiversAntennaHasItsGainTowardsTheEmitter) {
   EXPECT_NEAR(gain_db(90), -10, 1e-6);
 }
 
-// Reciprocity: a pattern weighs the two rays alike at either end.
+// Reciprocity: a pattern weights the two rays equally at either end.
 TEST(Link, OfTwoRaysIsTheSameFromEitherEnd) {
   const auto received_dbm = [](bool is_at_receiver, const scenario::AntennaPtr& antenna, double height_m) {
     const auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);

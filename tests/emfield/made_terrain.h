@@ -13,7 +13,7 @@
 
 namespace emscape::emfield::testing {
 
-/// Hills of several sizes over a square about a point, posts some 90 m apart; a hole where asked for.
+/// Hills of several sizes over a square about a point, posts about 90 m apart; optionally with a hole.
 class MadeTerrain : public scenario::Terrain {
  public:
   /// @param side_deg  of the square

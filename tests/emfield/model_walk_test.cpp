@@ -1,5 +1,5 @@
-// Jumps: models are walked over range, height and azimuth in small steps over real terrain. Where a loss
-// changes much over a step, the step is halved again and again: a slope flattens, a jump stays.
+// Discontinuities: models are evaluated over range, height and azimuth in small steps over real terrain.
+// Where a loss changes much over a step, the step is halved repeatedly: a slope flattens, a jump stays.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,11 +29,11 @@ constexpr double kMastAgl_m = 15;
 constexpr double kMinJump_db = 0.1;
 
 struct Jump {
-  double before = 0, after = 0;  ///< places next to each other
+  double before = 0, after = 0;  ///< adjacent positions
   double size_db = 0;
 };
 
-/// The jumps of more than `least_db` of a loss between two places.
+/// The jumps of more than `least_db` of a loss between two positions.
 std::vector<Jump> jumpsOf(const std::function<double(double)>& loss_db, double begin, double end, int steps,
                           double least_db) {
   std::vector<Jump> jumps;
@@ -89,7 +89,7 @@ class Walk {
             {"azimuth", [=](double bearing) { return to(bearing, 14000, 1000); }, 0, 2 * kPi, 700}};
   }
 
-  /// Walks every way; `explain` is told of each jump and says whether it is the model's own.
+  /// Walks every way; `explain` gets each jump and returns whether it is inherent to the model.
   template <class Loss, class Explain>
   void expectJumpsAreOnly(const Loss& loss_db, const Explain& explain) const {
     for (const Way& way : ways()) {
@@ -155,7 +155,7 @@ TEST_F(ModelWalk, TheSingleEdgeHasNoJumps) {
   }
 }
 
-/// Where another post becomes the main edge, the edges on either side are others too.
+/// Where another post becomes the main edge, the edges on both sides change, too.
 TEST_F(ModelWalk, DeygoutJumpsOnlyWhereAnotherPostIsTheMainEdge) {
   const Walk walk(terrain_);
   for (const double frequency_hz : kFrequencies_hz) {
@@ -198,8 +198,8 @@ ItmResult<double> itmOver(const PathProfile& profile, double frequency_hz) {
                          ItmQuantiles<double>());
 }
 
-/// True if ITM takes another course on two paths next to each other: another mode, another post as a horizon,
-/// horizons seen and estimated in each other's place, or the irregularity from another number of posts.
+/// True if ITM branches differently on two adjacent paths: another mode, another post as a horizon, found
+/// instead of estimated horizons, or an irregularity from another number of posts.
 bool takesAnotherCourse(const ItmResult<double>& a, const ItmResult<double>& b) {
   bool other = a.mode != b.mode ||
                std::abs(a.path.irregularity_m - b.path.irregularity_m) > 1e-3 * a.path.irregularity_m;
@@ -238,8 +238,8 @@ TEST(ModelWalkOverTheSea, TwoRaysHaveNoJumps) {
   }
 }
 
-/// P.528 hands over from one way to the next with steps of its own: between an antenna near the ground and an
-/// aircraft less than a decibel.
+/// P.528 has steps at its own transitions: less than a decibel between an antenna near the ground and an
+/// aircraft.
 TEST(ModelWalkOverTheSea, P528StepsByLessThanADecibel) {
   for (const double frequency_hz : {2e8, 1e9, 1e10}) {
     const auto atmosphere = std::make_shared<const P528Atmosphere>(frequency_hz);
@@ -257,7 +257,7 @@ TEST(ModelWalkOverTheSea, GasesHaveNoJumpsOverHeight) {
     const auto loss = [&](double height_m) {
       return gasAttenuation(frequency_hz, standardAtmosphere(height_m)).total_db_per_km();
     };
-    // the vapour's least mixing ratio, and the layers of the standard atmosphere, bend it
+    // the minimum mixing ratio of vapour, and the layers of the standard atmosphere, cause kinks
     EXPECT_TRUE(jumpsOf(loss, 0, 30e3, 3000, 1e-4 * loss(0)).empty()) << frequency_hz;
   }
 }

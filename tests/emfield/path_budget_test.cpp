@@ -29,7 +29,7 @@ constexpr PropagationModel kModels[] = {PropagationModel::free_space,  Propagati
                                         PropagationModel::itm,         PropagationModel::p528,
                                         PropagationModel::p1812,       PropagationModel::p452};
 
-/// The field takes p528 from a table, and these others at some heights only.
+/// The field interpolates p528 in a table, and these models between heights.
 bool isInterpolated(PropagationModel model) {
   return model == PropagationModel::p528 || model == PropagationModel::itm ||
          model == PropagationModel::p1812 || model == PropagationModel::p452;
@@ -56,7 +56,7 @@ PathEnd endAt(const volume::Grid& grid, int i, int j, int k) {
 
 struct Compared {
   int voxels = 0;
-  int other_shadow = 0;  ///< one of both in shadow
+  int other_shadow = 0;  ///< exactly one of both in shadow
   std::vector<double> errors_db;
 
   double quantile(double part) {
@@ -65,7 +65,7 @@ struct Compared {
   }
 };
 
-/// Budgets at random voxels above the ground against what the field holds there.
+/// Budgets at random voxels above the ground against the field's values.
 Compared compareWithField(const std::shared_ptr<scenario::Scenario>& scenario,
                           const scenario::TerrainPtr& terrain, int count) {
   scenario->output.floor = -300;
@@ -275,7 +275,7 @@ TEST(PathBudget, VerdictOfARadarThatLooksAtTheTargetDoesNotTellWhereTheScanPoint
   EXPECT_GT(*at_target.look_pattern_db, -3);
   EXPECT_THAT(at_target.verdict, ::testing::Not(HasSubstr("but the ")));
   EXPECT_THAT(at_target.verdict, HasSubstr("a target there is detected with probability"));
-  // Beyond the sector the beam stays at its end.
+  // Outside the sector the beam stays at the sector's end.
   const PathBudget beside = budget(north, scenario::RadarLook::target);
   EXPECT_NEAR(*beside.look_pattern_db, -40, 0.1);
   EXPECT_THAT(beside.verdict, HasSubstr("but the scan does not reach there, which costs 40.0 dB"));

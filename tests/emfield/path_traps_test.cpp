@@ -1,4 +1,4 @@
-// What is commonly got wrong about paths and heights, a test each.
+// Common errors about paths and heights, one test each.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

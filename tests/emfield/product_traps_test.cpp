@@ -1,4 +1,4 @@
-// Losses and the traps of the products, each through the pipeline.
+// Losses, and common errors in products, each tested through the pipeline.
 
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ TEST(Losses, OfTheChainCountOnceEach) {
 
 TEST(Losses, OfTheLineAddNoiseAsBlakeHasIt) {
   // An antenna at 290 K: the line's losses add to the noise figure. A cold one gains less than the ratio of
-  // the temperatures, for line and receiver stay warm.
+  // the temperatures, as line and receiver stay warm.
   scenario::Emitter radar = trackingRadar();
   radar.receiver.losses_db = 2;
   radar.receiver.noise_figure_db = 3;

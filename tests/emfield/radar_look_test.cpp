@@ -13,7 +13,7 @@ namespace {
 
 using namespace emscape::emfield::testing;
 
-/// Values along the line for a radar that looks at targets, over those where its beam is right on them.
+/// Values along the line for a radar that looks at targets, over those with the beam exactly on them.
 double lookGain_db(scenario::Emitter radar, double east_m, double up_m) {
   auto scenario = emptyScenario(FrameKind::enu, 44.3, -71.4, {40.5e3, 1500, 20500}, {81, 3, 41});
   scenario->atmosphere.k_factor = 1;
@@ -182,7 +182,7 @@ TEST(RadarRows, GiveWhatTheVoxelFunctionGives) {
           }
         }
         for (std::size_t v = 0; v < voxels; ++v) {
-          // Fused multiply-adds round otherwise, which tells next to a pattern's nulls.
+          // Fused multiply-adds round differently, which matters near a pattern's nulls.
           const float bound = measure == RadarMeasure::detection ? 2e-5f : 3e-3f * plain[v];
           ASSERT_NEAR(rows[v], plain[v], bound) << antenna->description << ", measure " << int(measure);
         }

@@ -16,7 +16,7 @@ namespace emscape::emfield::testing {
 
 using propagation::TerrainProfile;
 
-/// Owns what a TerrainProfile points to.
+/// Owns the data to which a TerrainProfile points.
 struct ProfileData {
   std::vector<double> range_m;
   std::vector<float> height_msl_m;
@@ -33,7 +33,7 @@ inline scenario::TerrainPtr whiteMountainsTile() {
   return scenario::Terrain::load(spec, {44.01, 44.99, -71.99, -71.01});
 }
 
-/// A profile from a random place in the tile toward a random place, posts evenly spaced.
+/// A profile between two random positions in the tile, with evenly spaced posts.
 inline ProfileData randomProfile(const scenario::Terrain& terrain, std::mt19937& random, int posts) {
   std::uniform_real_distribution<double> part(0, 1);
   double latitude[2], longitude[2];

@@ -1,4 +1,4 @@
-// Quantities of a receiver at every voxel against links to a receiver that stands there.
+// Quantities of a receiver at every voxel against links to a receiver at that voxel.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -23,8 +23,8 @@ using ::testing::HasSubstr;
 
 constexpr double kGainOfReceiver_dbi = 4;
 
-/// A mast that is listened to, a neighbour half in the receiver's band, a jammer over all of it and a radio
-/// beside it.
+/// A wanted mast, a neighbour half in the receiver's band, a jammer over all of the band, and a radio outside
+/// it.
 std::shared_ptr<Scenario> jammedMast(PropagationModel model) {
   auto scenario = emptyScenario(FrameKind::altitude, 44.3, -71.4, {20e3, 20e3, 2000}, {9, 8, 4});
   const auto add = [&](const char* name, double frequency_hz, double bandwidth_hz, double power_w,

@@ -71,8 +71,8 @@ struct Tally {
   int lit = 0, dark = 0, near_edge = 0, wrong = 0;
 };
 
-/// Holds every voxel of the solved volume against the walk, but those within half a voxel of the shadow's
-/// edge: where the walk's answer is not the same half a voxel up, down, or to the sides.
+/// Compares every voxel of the solved volume with the walk, except within half a voxel of the shadow's edge,
+/// where the walk's result changes half a voxel up, down, or to the sides.
 Tally compareWithWalk(const volume::DenseVolume& volume, const scenario::Terrain* terrain,
                       const GeodeticPosition& site, double site_msl_m) {
   const volume::Grid& grid = volume.grid;

@@ -1,4 +1,4 @@
-// The field over a surface equals the budgets of the paths to its places.
+// The field over a surface equals the budgets of the paths to its positions.
 
 #include "emscape/emfield/surface.h"
 
@@ -63,9 +63,9 @@ class SurfaceField : public test::OnBackends {
     return surface;
   }
 
-  /// Compares a quantity at all places and heights above ground.
+  /// Compares a quantity at all positions and heights above ground.
   /// @param term   of the budget
-  /// @param every  compare every so many places
+  /// @param every  compare every n-th position
   /// @return the number of points compared
   int expectTheBudgets(const std::shared_ptr<scenario::Scenario>& scenario,
                        const std::shared_ptr<Surface>& surface, const char* term, double tolerance,
@@ -123,7 +123,7 @@ TEST_P(SurfaceField, IsThatOfThePathsAtHeightsAboveGroundWithEveryModel) {
   }
 }
 
-// Over so many places the searches for obstacles use bounds of the terrain and, on the CPU, of rays.
+// With this many positions the searches for obstacles use bounds of the terrain and, on the CPU, of rays.
 TEST_P(SurfaceField, IsThatOfThePathsAtManyPlaces) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
   const auto surface = places(HeightReference::ground, {5, 40, 150, 600}, 300, 200);
@@ -131,7 +131,8 @@ TEST_P(SurfaceField, IsThatOfThePathsAtManyPlaces) {
   scenario->output.quantities = {"detection_probability"};
   scenario->output.radar_look = scenario::RadarLook::target;
   expectTheBudgets(scenario, surface, "detection_probability", 1e-4, 60);
-  // An emitter in a valley, whose near slopes hide most places, and rays bent by an exponential atmosphere.
+  // An emitter in a valley, whose near slopes hide most positions, and rays bent by an exponential
+  // atmosphere.
   scenario->platforms[0].track[0].position.latitude_deg = 36.33;
   scenario->platforms[0].track[0].position.height_agl_m = 3;
   scenario->atmosphere.refraction = propagation::RefractionProfile::exponential;
@@ -139,7 +140,7 @@ TEST_P(SurfaceField, IsThatOfThePathsAtManyPlaces) {
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
 }
 
-// Few places are computed from their whole profiles, many by a search that reads parts of them.
+// Few positions are computed from their whole profiles, many by a search that reads parts of them.
 TEST_P(SurfaceField, ManyPlacesAroundAVoidAreThoseOfFew) {
   terrain_ = std::make_shared<MadeTerrain>(36.303, -84.246, 0.3, 0.04);
   const auto scenario = radarOnRidge(PropagationModel::diffraction);

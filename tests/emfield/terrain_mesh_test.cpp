@@ -132,7 +132,7 @@ TEST_F(JacksboroMesh, ColumnsOverHolesAreLeftOut) {
   EXPECT_GT(volume::facesOf(mesh, {}).boundary.size(), 2U * 2 * (19 * 19 + 2 * 19 * 4) - 2U * 2 * 40);
   EXPECT_LT(mesh.points_m.size(), 20U * 20 * 5);
   EXPECT_GT(mesh.points_m.size(), 20U * 20 * 5 - 5U * 40);
-  // Each point has the value of its place and height.
+  // Each point has the value of its position and height.
   volume::DenseVolume values;
   for (int n = 0; n < 20 * 20 * 5; ++n) values.values.push_back(static_cast<float>(n));
   const volume::MeshField field = made.field(values);

@@ -1,4 +1,4 @@
-// The reflected ray of `two_ray`, weighed by the antennas' patterns.
+// The reflected ray of `two_ray`, weighted by the antennas' patterns.
 #include "emfield/two_rays.h"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(ReflectedDirection, LiesInThePlaneOfTheDirectRay) {
 constexpr double kShip_msl_m = 20;
 constexpr GeodeticPosition kShip{52, 5, 0};
 
-/// The point on a parallel this far east of the ship.
+/// The point on a parallel at a distance east of the ship.
 GeodeticPosition eastOfShip(double range_m) {
   const GeodeticPosition there = geodesicDirect(kShip.latitude_deg, kShip.longitude_deg, kPi / 2, range_m);
   return {there.latitude_deg, there.longitude_deg, 0};
@@ -99,7 +99,7 @@ void placeOver(scenario::Scenario& scenario, scenario::Emitter emitter, const Ge
   point.position.height_msl_m = height_msl_m;
 }
 
-/// Voxels over the sea, in clear air, around a point this far east of the ship.
+/// Voxels over the sea, in clear air, around a point at a distance east of the ship.
 std::shared_ptr<scenario::Scenario> overTheSea(double range_m, double lowest_m, Vec3d size_m, Dims dims) {
   const GeodeticPosition middle = eastOfShip(range_m);
   auto scenario = emptyScenario(FrameKind::altitude, middle.latitude_deg, middle.longitude_deg, size_m, dims);
@@ -131,7 +131,7 @@ class TwoRays : public test::OnBackends {
       const std::shared_ptr<scenario::Scenario>& scenario) {
     return solve(scenario, nullptr, options());
   }
-  /// Largest less smallest difference (dB) between a scenario's volume by two_ray and in free space.
+  /// Largest minus smallest difference (dB) between a scenario's volume by two_ray and in free space.
   static double ripple_db(const std::shared_ptr<scenario::Scenario>& scenario) {
     scenario->emitters[0].propagation.model = PropagationModel::two_ray;
     const auto lobes = field(scenario);

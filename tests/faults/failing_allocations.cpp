@@ -1,9 +1,8 @@
-// To be preloaded into a program: one allocation by `operator new` fails. Counted are those of
-// EMSCAPE_FAILING_BYTES or more from the beginning of main() to its end; the EMSCAPE_FAILING_ALLOCATION-th of
-// them fails (1, 2, ...; without it none), or the next one that is not within GDAL, a library that it calls,
-// or Mesa's driver: those leave out what they have no memory for, or crash. If EMSCAPE_ALLOCATIONS names a
-// file, the count is written into it. Memory that C libraries take from malloc() is left alone, as they end
-// the program when there is none.
+// To be preloaded into a program: makes one allocation by `operator new` fail. Counts allocations of
+// EMSCAPE_FAILING_BYTES or more during main(); the EMSCAPE_FAILING_ALLOCATION-th one fails (1, 2, ...; unset:
+// none), or the next one outside GDAL, its libraries and Mesa's driver, which omit results for lack of
+// memory, or crash. If EMSCAPE_ALLOCATIONS names a file, the count is written into it. malloc() is not
+// affected, since C libraries end the program when it fails.
 #include <dlfcn.h>
 #include <execinfo.h>
 
@@ -21,7 +20,7 @@ using Main = int (*)(int, char**, char**);
 
 std::atomic<long long> allocations{0};
 std::atomic<bool> is_counting{false};
-std::atomic<long long> failing{0};  ///< 0: none, or it has failed
+std::atomic<long long> failing{0};  ///< 0: none, or it has already failed
 std::size_t least_bytes = 1;
 Main program;
 
@@ -128,7 +127,8 @@ void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept {
   std::free(memory);
 }
 
-/// The C library's, which the program's first instructions call: main() is counted.
+/// Replaces the C library's function, called by the program's first instructions, in order to count within
+/// main().
 extern "C" int __libc_start_main(Main main, int count, char** arguments, void (*begin)(), void (*end)(),
                                  void (*unload)(), void* stack) {
   using Start = int (*)(Main, int, char**, void (*)(), void (*)(), void (*)(), void*);

@@ -9,7 +9,7 @@
 
 namespace {
 
-/// Pipes and sockets are left alone.
+/// Pipes and sockets are not affected.
 bool isFile(int file) {
   struct stat status {};
   return fstat(file, &status) == 0 && S_ISREG(status.st_mode);
@@ -42,7 +42,7 @@ ssize_t pwrite(int file, const void* bytes, std::size_t count, off_t offset) {
   return pwrite64(file, bytes, count, offset);
 }
 
-/// Of several parts only the first is written, half of it.
+/// Writes only half of the first part.
 ssize_t writev(int file, const iovec* parts, int count) {
   static auto* const original = next<ssize_t(int, const iovec*, int)>("writev");
   if (!isFile(file)) return original(file, parts, count);

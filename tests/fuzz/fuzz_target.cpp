@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kLongestLine = 1000;
 constexpr std::size_t kDictionaryWords = 1000;
 
-/// What is being read; messages may quote it.
+/// The input being read; messages may quote it.
 const std::string* input = nullptr;
 
 std::vector<FuzzTarget>& targets() {

@@ -1,4 +1,4 @@
-/// Readers of files and texts as targets of fuzzing: what each does with arbitrary bytes.
+/// Fuzz targets: readers of files and texts, applied to arbitrary bytes.
 #pragma once
 
 #include <filesystem>
@@ -32,14 +32,14 @@ struct FuzzTargetsAdded {
 };
 
 /// Reads an input and checks what the reader reports.
-/// @throws std::logic_error for a message that is no clear line of text: longer than 1000 characters, with
-/// control characters, or in the words of a library; any exception of the reader that is no Error
+/// @throws std::logic_error for an unclear message (longer than 1000 characters, with control characters, or
+/// in the words of a library), and for any exception of the reader other than Error
 void runFuzzInput(const FuzzTarget& target, const std::string& bytes);
 
 /// The check of runFuzzInput() for messages that are returned, not thrown.
 void checkFuzzMessage(const std::string& message);
 
-/// For FuzzTarget::prepare: copies the shipped scenarios and what they name.
+/// For FuzzTarget::prepare: copies the shipped scenarios and the files they name.
 void copyScenarios(const std::filesystem::path& folder);
 
 /// Words of the target's seeds and vocabulary, in the form of libFuzzer's dictionaries; at most 1000.

@@ -1,4 +1,4 @@
-// Texts that say how a picture is drawn.
+// Texts that describe how a picture is drawn.
 #include "emscape/render/camera.h"
 #include "emscape/render/cut_plane.h"
 #include "emscape/render/image.h"

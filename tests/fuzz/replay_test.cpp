@@ -1,4 +1,4 @@
-// Replays what fuzzing has found, and reads valid and damaged files, through the functions that are fuzzed.
+// Replays findings of fuzzing, and reads valid and damaged files, with the fuzzed functions.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Damaged inputs per target; EMSCAPE_DAMAGED_INPUTS says another number.
+/// Damaged inputs per target; EMSCAPE_DAMAGED_INPUTS overrides it.
 int damagedInputs() {
   const char* const number = std::getenv("EMSCAPE_DAMAGED_INPUTS");
   return number == nullptr ? 60 : std::atoi(number);

@@ -21,7 +21,7 @@ void checkProblems(const scenario::ParseResult& result) {
   for (const scenario::Problem& problem : result.problems) checkFuzzMessage(problem.message);
 }
 
-/// What a program does next: the instant at the first step. Without ground.
+/// The program's next operation: the instant at the first step, without ground.
 void useScenario(const std::shared_ptr<const scenario::Scenario>& scenario) {
   if (scenario) scenario::snapshotAt(scenario, nullptr, scenario::timesOf(scenario->clock).front());
 }

@@ -1,4 +1,4 @@
-// Studies, what is read again of their folders and of folders of maps, and texts of the options of maps.
+// Studies, files read back from their folders and from folders of maps, and texts of map options.
 #include <fmt/format.h>
 #include <zlib.h>
 
@@ -43,7 +43,7 @@ void readPartRecord(const fs::path& file, const std::string& bytes) {
   study::PartJournal(file, {0, 1}, 1);
 }
 
-/// What `emscape coverage` writes of a small map into FOLDER/map.
+/// Writes the output of `emscape coverage` for a small map into FOLDER/map.
 void writeMaps(const fs::path& folder) {
   app::commandResult({"coverage", shippedScenario("quick.yaml"), "--quantity", "power_density_dbwm2",
                       "--threshold", "-60", "--cell", "5000", "--format", "cog", "-o", folder / "map"},

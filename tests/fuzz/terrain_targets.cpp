@@ -35,7 +35,7 @@ std::string converted(const std::string& driver, const std::string& raster, cons
   return readFile(folder / wanted);
 }
 
-/// Describes the file and reads its heights about the seeds' place.
+/// Describes the file and reads its heights around the seeds' location.
 void readElevation(const fs::path& file, const std::string&) {
   scenario::TerrainSpec spec;
   spec.files = {file.string()};

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Calls a reader that the one before shall not keep from being called.
+/// Calls a reader even if the previous one has thrown.
 template <class Read>
 void always(const Read& read) {
   try {
@@ -44,7 +44,8 @@ void readMeshFile(const fs::path& file, const std::string&) {
   volume::setMeshRange(file, {{"density", -1, 1}});
 }
 
-/// What writeVolumes() writes. @param name  with the format's ending  @param wanted  of the files written
+/// The output of writeVolumes(). @param name  with the format's extension  @param wanted  one of the files
+/// written
 std::string written(const volume::DenseVolume& volume, const std::string& name, const std::string& wanted) {
   const TemporaryFolder folder;
   volume::writeVolumes(folder / name, {&volume});

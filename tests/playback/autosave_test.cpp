@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// XDG_STATE_HOME in a folder of the test's.
+/// XDG_STATE_HOME in a folder of the test.
 class Autosave : public testing::Test {
  protected:
   Autosave() { setenv("XDG_STATE_HOME", (folder_ / "state").c_str(), 1); }
@@ -75,7 +75,7 @@ TEST_F(Autosave, ADamagedOneIsAnErrorThatNamesIt) {
   EXPECT_THAT(errorOf([&] { saves_.find(input); }), HasSubstr(autosaveFileOf(input).string() + ":1:"));
 }
 
-/// A program that keeps a view and ends when it is told to, without leaving anything in order.
+/// A program that autosaves a view and is killed on request, without cleaning up.
 class OtherProgram {
  public:
   OtherProgram(const std::string& input, const ViewState& state) {
@@ -121,7 +121,7 @@ TEST_F(Autosave, IsNotOfferedWhileItsProgramRuns) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->state.time_s, 3);
   Autosaves third;
-  EXPECT_FALSE(third.find(input));  // who found it has it
+  EXPECT_FALSE(third.find(input));  // taken by the one that found it
 }
 
 TEST_F(Autosave, ProgramsThatRunAtTheSameTimeHaveOneEach) {

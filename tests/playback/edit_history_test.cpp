@@ -49,7 +49,7 @@ TEST(EditHistory, UndoAndRedoOfRandomEditsGiveTheSameTexts) {
   while (texts.size() <= 100) {
     history.set({randomEdit(random)});
     std::string text = textOf(folder, *history.scenario());
-    if (text == texts.back()) continue;  // such as removing what is not there: no step
+    if (text == texts.back()) continue;  // such as removing a missing key: no step
     texts.push_back(std::move(text));
     edits.push_back(history.edits());
   }

@@ -88,6 +88,21 @@ TEST(FrameSource, ReadsVolumesNearestToTheTimesThatAreAskedFor) {
   EXPECT_EQ(source->frame(1).volume.info().range_min, -5);
 }
 
+TEST(FrameSource, AQuantityThatAFolderLacksIsRefusedWithThoseThatItHas) {
+  const TemporaryFolder folder;
+  volume::DenseVolume volume = *MadeFrames(seconds(1)).frame(0).volume.host();
+  for (const char* quantity : {"snr_db", "power_density_dbwm2"}) {
+    volume.info.quantity = quantity;
+    volume::writeVolumes(folder / (std::string(quantity) + "_0001.vti"), {&volume});
+  }
+  FrameSelection selection;
+  selection.input = folder.path().string();
+  selection.quantity = "emitter_count";
+  EXPECT_THAT(errorOf([&] { openFrameSource(selection, {}); }),
+              HasSubstr("there is no volume of 'emitter_count'; there are volumes of power_density_dbwm2, "
+                        "snr_db"));
+}
+
 TEST(FrameSource, WhatIsNoInputIsRefusedByName) {
   FrameSelection selection;
   selection.input = "/nowhere/there.vdb";

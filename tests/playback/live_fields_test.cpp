@@ -11,7 +11,7 @@ namespace {
 using testing::Contains;
 using testing::ElementsAre;
 
-/// Made-up frames of scenarios that are nothing but objects: an edit is another object.
+/// Made-up frames of dummy scenarios: an edit is another object.
 class EditableFrames : public MadeFrames {
  public:
   using MadeFrames::MadeFrames;
@@ -29,7 +29,7 @@ std::shared_ptr<const scenario::Scenario> scenarioNamed(const std::string& name)
   return scenario;
 }
 
-/// A LiveFields over made-up frames, and what it delivered.
+/// A LiveFields over made-up frames, and its results.
 class Fields {
  public:
   explicit Fields(int steps, const LiveFields::Options& options = defaults(),
@@ -79,7 +79,7 @@ class Fields {
     const std::lock_guard<std::mutex> lock(mutex_);
     return delivered_.back().frame.volume.info().time_s;
   }
-  /// With the lock.
+  /// Must be called with the lock.
   long long lastRevision() const {
     return std::max(delivered_.empty() ? 0 : delivered_.back().revision, fields->status().failed_revision);
   }
@@ -93,7 +93,7 @@ class Fields {
   std::vector<FieldDelivery> delivered_;
 
  public:
-  std::unique_ptr<LiveFields> fields;  // the first to go
+  std::unique_ptr<LiveFields> fields;  // destroyed first
 };
 
 TEST(LiveFields, TwoHundredSeeksInABurstComputeAtMostFortyFieldsAndTheLastIsShown) {
@@ -126,7 +126,7 @@ TEST(LiveFields, AStepThatWasShownIsNotComputedAgain) {
 
 TEST(LiveFields, AnEditEmptiesTheCacheAndIsComputedAtOnce) {
   LiveFields::Options options = Fields::defaults();
-  options.min_seek_interval_ms = 1e9;  // holds back what is no edit, for ever
+  options.min_seek_interval_ms = 1e9;  // delays everything except edits forever
   Fields live(10, options);
   live.wait();
   live.ask([](FieldRequest& request) {

@@ -30,7 +30,7 @@ LiveOptions quarterOptions() {
   return options;
 }
 
-/// A LiveView, and the states that it went through.
+/// A LiveView, and the sequence of its states.
 class Live {
  public:
   explicit Live(const std::string& input, const LiveOptions& options = quarterOptions(),
@@ -52,7 +52,7 @@ class Live {
     std::unique_lock<std::mutex> lock(mutex_);
     while (!condition(view->status())) changed_.wait_for(lock, std::chrono::milliseconds(5));
   }
-  /// The picture in which all is settled.
+  /// The settled picture.
   std::shared_ptr<const LivePicture> settled() {
     waitUntil([](const LiveStatus& status) { return status.isSettled(); });
     return view->picture();
@@ -62,7 +62,7 @@ class Live {
     waitUntil([](const LiveStatus& status) { return !status.error.empty(); });
     return view->status().error;
   }
-  /// States since the last call, each once in a row.
+  /// States since the last call, without repetitions in a row.
   std::vector<ControllerState> states() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(states_, {});
@@ -78,7 +78,7 @@ class Live {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [this] { return held_ > 0; });
   }
-  /// Those that wait go on. @param next  they wait again in this state
+  /// Resumes waiting threads. @param next  state in which they wait again
   void pass(std::optional<ControllerState> next = {}) {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++passed_;
@@ -115,7 +115,7 @@ class Live {
   std::unique_ptr<LiveView> view;
 };
 
-/// What Painter casts in full of a scenario that nobody else computes.
+/// The picture that a separate Painter casts in full.
 struct Expected {
   explicit Expected(std::string file) : input(std::move(file)) {}
 
@@ -161,7 +161,7 @@ std::shared_ptr<const scenario::Scenario> edited(const LiveView& view, const std
 
 constexpr auto kBusyRestoreIdle = {ControllerState::busy, ControllerState::restore, ControllerState::idle};
 
-/// What is told of tetrahedra while something changes: OpenGL projects them where it has a GPU.
+/// Status text for tetrahedra while something changes: they are projected if OpenGL has a GPU.
 std::string busyText() {
   try {
     return render::CellRenderer().projectsOnCpu() ? "marched" : "projected by centroids";
@@ -386,7 +386,7 @@ TEST(LiveView, WhatIsAskedForAndWhatIsShownAreToldApartAndThePictureStays) {
   const auto before = live.settled();
   live.hold();
   live.view->setCamera({});
-  live.waitUntilHeld();  // the thread that casts cannot go on
+  live.waitUntilHeld();  // the casting thread is blocked
   live.view->seek(3.1);
   const LiveStatus status = live.view->status();
   EXPECT_EQ(status.asked_s, 3);
@@ -408,7 +408,7 @@ TEST(LiveView, SettingsOutOfTheirRangeAreToldAndThePictureStays) {
   render::RenderSettings settings;
   settings.step_voxels = 99;
   live.view->setSettings(settings);
-  EXPECT_EQ(live.error(), "step (voxels) 99: expected 0.05..10");
+  EXPECT_EQ(live.error(), "step_voxels 99: expected a number 0.05..10");
   EXPECT_EQ(live.settled(), before);
   live.view->setCamera({});
   live.settled();
@@ -420,7 +420,7 @@ TEST(LiveView, AnEditThatCannotBeComputedLeavesThePictureUntilItIsUndone) {
   Live live(quickScenario(folder));
   const auto before = live.settled();
   const auto good = live.view->scenario();
-  // By hand, past the checks of a file.
+  // Changed directly, bypassing the checks of a file.
   auto bad = std::make_shared<scenario::Scenario>(*good);
   bad->output.quantities = {"no_such_quantity"};
   bad->terrain.emplace();

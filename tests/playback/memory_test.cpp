@@ -1,5 +1,4 @@
-// Memory of long playbacks: nothing is kept of a step that has passed. EMSCAPE_UPDATES sets their number of
-// steps.
+// Memory of long playbacks: nothing is kept of past steps. EMSCAPE_UPDATES sets their number of steps.
 #include <malloc.h>
 
 #include <algorithm>

@@ -26,7 +26,7 @@ using emscape::test::readFile;
 using emscape::test::TemporaryFolder;
 using emscape::test::writeFile;
 
-/// scenarios/quick.yaml with each text `from` replaced by `to`, in a folder of the test's. @return the file
+/// scenarios/quick.yaml with each text `from` replaced by `to`, in a folder of the test. @return the file
 inline std::string quickScenario(const TemporaryFolder& folder,
                                  const std::vector<std::pair<std::string, std::string>>& replaced = {}) {
   std::string text = readFile(emscape::test::shippedScenario("quick.yaml"));
@@ -94,7 +94,7 @@ inline std::vector<double> seconds(int count) {
   return times_s;
 }
 
-/// Time that passes only where the loop waits. Work of other threads takes none of it, or does not end before
+/// Time that passes only while the loop waits. Work of other threads takes no time, or does not end before
 /// the loop needs its result.
 class ManualClock : public Clock {
  public:

@@ -9,7 +9,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// Holds frame() until it is let go on.
+/// Blocks frame() until it is released.
 class Gate {
  public:
   void pass(int /*index*/) {
@@ -18,7 +18,7 @@ class Gate {
     changed_.notify_all();
     changed_.wait(lock, [this] { return open_; });
   }
-  /// Waits until so many frames have been begun.
+  /// Waits until a number of frames have been started.
   void waitForArrivals(int count) {
     std::unique_lock<std::mutex> lock(mutex_);
     changed_.wait(lock, [&] { return arrived_ >= count; });
@@ -45,7 +45,7 @@ PrefetchOptions optionsOf(int steps_ahead, int frames) {
   return options;
 }
 
-/// Waits until nothing more is computed ahead.
+/// Waits until prefetching is finished.
 void waitUntilCached(const PrefetchingSource& frames, const std::vector<int>& indices) {
   while (frames.cached() != indices) std::this_thread::yield();
 }
@@ -85,7 +85,7 @@ TEST(PrefetchingSource, TwoHundredSeeksInTwoSecondsComputeAtMostFortyFrames) {
 
 TEST(PrefetchingSource, StepsInOrderAreNotHeldBack) {
   MadeFrames source(seconds(30));
-  ManualClock clock;  // time that stands still: a seek would wait for ever
+  ManualClock clock;  // time does not advance: a seek would wait forever
   PrefetchOptions options = optionsOf(0, 30);
   PrefetchingSource frames(source, options, clock);
   for (int index = 0; index < 30; ++index) EXPECT_EQ(frames.wait(index).volume.info().time_s, index);

@@ -48,7 +48,7 @@ TEST(SampleVolume, SaysWhatIsNoValue) {
   volume.first_valid_k.assign(100, 3);
   EXPECT_EQ(sampleVolume(volume, {500, 500, 250}).kind, Kind::masked);
   EXPECT_EQ(sampleVolume(volume, {500, 500, 350}).kind, Kind::value);
-  // A masked neighbour does not enter: the voxel's own value.
+  // A masked neighbour does not contribute: the voxel's own value.
   EXPECT_EQ(sampleVolume(volume, volume.grid.center_m(4, 4, 3) - Vec3d{0, 0, 40}).value, 344);
   volume.values[static_cast<std::size_t>(volume.grid.index(1, 1, 8))] = -1;
   EXPECT_EQ(sampleVolume(volume, volume.grid.center_m(1, 1, 8)).kind, Kind::at_floor);
@@ -157,7 +157,7 @@ TEST(Pick, FindsTheSectionsOfPlanesAndNothingThatTheyRemove) {
   const PickedPoint above = pickedAt(in_air, {"horizontal:altitude_m=600,keep=above"});
   EXPECT_EQ(above.on, PickedPoint::On::section);
   EXPECT_LT(length(above.position_m - in_air), 0.01);
-  // A plane below the ground does not show; one that is off does nothing.
+  // A plane below the ground is not visible; one that is off has no effect.
   EXPECT_EQ(pickedAt(on_ground, {"horizontal:altitude_m=100,keep=above"}).on, PickedPoint::On::ground);
   EXPECT_EQ(pickedAt(on_ground, {"horizontal:altitude_m=600,keep=below,on=false"}).on,
             PickedPoint::On::ground);
@@ -247,7 +247,7 @@ TEST(Probe, KnowsHeightsOverRealGroundAndSaysWhatIsBelowIt) {
     return probe(picked->position_m + Vec3d{0, 0, above_m}, *solved.volume, solved.input.scenario,
                  solved.input.terrain.get());
   };
-  // The height field has posts of its own: the ground between them is not quite the terrain's.
+  // The height field has its own posts: between them the ground differs slightly from the terrain.
   EXPECT_NEAR(*readingAt(0).height_agl_m, 0, 15);
   EXPECT_NEAR(*readingAt(500).height_agl_m - *readingAt(0).height_agl_m, 500, 1e-6);
   EXPECT_EQ(readingAt(1000).sample.kind, Kind::value) << readingAt(1000).text;
@@ -255,7 +255,7 @@ TEST(Probe, KnowsHeightsOverRealGroundAndSaysWhatIsBelowIt) {
   EXPECT_THAT(readingAt(-200).text, HasSubstr("masked: below the ground"));
   const ProbeReading reading = readingAt(1000);
   ASSERT_EQ(reading.emitters.size(), solved.input.scenario->emitters.size());
-  // As `emscape profile` has it: a platform at the point.
+  // As in `emscape profile`: a platform at the point.
   auto with_point = std::make_shared<scenario::Scenario>(*solved.input.scenario);
   scenario::Platform platform;
   platform.name = "--to";

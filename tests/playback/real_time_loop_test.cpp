@@ -13,7 +13,7 @@ namespace {
 using render::ControllerState;
 using render::Pattern;
 
-/// What a played loop reported and put on display.
+/// The report and the displayed pictures of a played loop.
 struct Played {
   RealTimeReport report;
   std::vector<int> slots;  // of each picture that was displayed
@@ -120,7 +120,7 @@ TEST(RealTimeLoop, EveryStepIsShownWhenItsTimeHasCome) {
   for (const RealTimeEvent& event : played.report.events) {
     if (event.state == ControllerState::busy) shown.emplace_back(event.time_ms, event.scenario_s);
   }
-  // Of slots of 100 ms, the first in which each is due at twice the speed: 250 ms lies in the one that begins
+  // The first slot of 100 ms in which each is due at twice the speed: 250 ms is due in the slot that begins
   // at 300.
   EXPECT_EQ(shown, (std::vector<std::pair<double, double>>{{0, 0}, {300, 0.5}, {1000, 2}}));
   EXPECT_EQ(played.report.due, 3);

@@ -1,4 +1,4 @@
-/// Pictures against those of tests/data/pictures. Written anew, to be looked at before they are committed:
+/// Pictures against those of tests/data/pictures. To rewrite them, and inspect them before committing:
 ///     EMSCAPE_WRITE_PICTURES=1 ctest --preset release -R ReferencePicture
 #include <cstdlib>
 #include <ostream>
@@ -84,7 +84,7 @@ TEST_P(ReferencePicture, IsDrawnAgain) {
   long long far_apart = 0;
   for (std::size_t pixel = 0; pixel < picture.rgba.size(); pixel += 4)
     far_apart += levelsApart(picture, expected, pixel) > 16 ? 1 : 0;
-  // Room for other fonts and for the last bits of other compilers.
+  // Tolerance for other fonts, and for rounding by other compilers.
   const double allowed = GetParam().labelled ? 0.02 : 0.002;
   EXPECT_LE(difference.mean_all, 0.5);
   EXPECT_LE(static_cast<double>(far_apart), allowed * static_cast<double>(picture.size.count()));

@@ -39,7 +39,7 @@ class SeriesWriter : public testing::Test {
 
   FieldSeries series(int steps, const std::vector<std::pair<std::string, std::string>>& replaced = {},
                      const StopFlag* stop = nullptr, std::vector<std::string> quantities = {}) const {
-    // The strong transmitter comes on late, so that the range over the series is known late.
+    // The strong transmitter is switched on late, so the range over the series is known late.
     std::vector<std::pair<std::string, std::string>> all{
         {"[40, 40, 20]", "[8, 9, 6]"}, {"power_w: 1000\n", "power_w: 1.0e9\n    active_s: [[3.5, 100]]\n"}};
     all.insert(all.end(), replaced.begin(), replaced.end());
@@ -59,7 +59,7 @@ class SeriesWriter : public testing::Test {
     FieldSeries field = series(steps);
     return writeSeries(field, options);
   }
-  /// Stops as soon as so many steps have been computed and the writer has finished one of them.
+  /// Stops as soon as a number of steps have been computed and the writer has finished one of them.
   void writeAndStopAfter(int stop_after, int steps, const SeriesOptions& options) const {
     StopFlag stop{false};
     FieldSeries field = series(steps, {}, &stop);
@@ -120,7 +120,7 @@ TEST_F(SeriesWriter, EveryFileStatesTheRangeOfTheSeriesAsIfItHadBeenKnownFromThe
   known.range = found.ranges[0];
   write(5, known);
   std::map<std::string, std::string> a = volumes("found"), b = volumes("known");
-  a.erase("series.json");  // it says whether the range was given
+  a.erase("series.json");  // it records whether the range was given
   b.erase("series.json");
   EXPECT_EQ(a.size(), 5U * 6 + 1);
   EXPECT_TRUE(a == b);
@@ -175,7 +175,7 @@ TEST_F(SeriesWriter, AnInterruptedPassOverTheRangesIsCompleted) {
 TEST_F(SeriesWriter, ADeathBetweenAFilesNewRangeAndItsRecordIsMended) {
   write(4, into("whole"));
   write(4, into("s"));
-  // As if the process had died after it had put another range into a file.
+  // As if the process had died after changing the range in a file.
   volume::setStoredRange(*this / "s/quick_0002.vdb", {{"power_density_dbwm2", -100, 1}});
   const SeriesResult resumed = write(4, into("s", allFormats(), Existing::resume));
   EXPECT_EQ(resumed.steps_computed, 1);

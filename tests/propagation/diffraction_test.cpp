@@ -190,7 +190,7 @@ TEST(SphericalEarth, ReflectionPointSolvesItsCubic) {
       const double horizon_m = std::sqrt(2 * kEarth_m) * (std::sqrt(h1) + std::sqrt(h2));
       for (const double part : {1e-3, 0.1, 0.5, 0.9, 0.999999}) {
         const double d = part * horizon_m;
-        // P.526-15 eq. (25) as it stands
+        // P.526-15 eq. (25), unmodified
         const double c = (h1 - h2) / (h1 + h2), m = d * d / (4 * kEarth_m * (h1 + h2));
         const double argument = 1.5 * c * std::sqrt(3 * m / std::pow(m + 1, 3));
         const double b = 2 * std::sqrt((m + 1) / (3 * m)) *

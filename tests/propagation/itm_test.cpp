@@ -1,4 +1,4 @@
-// ITM beside its reference cases, which check_test.cpp runs: what it refuses, warns of, and gives in float.
+// ITM apart from its reference cases (check_test.cpp): errors, warnings, and results in float.
 #include "propagation/itm/itm.h"
 
 #include <gmock/gmock.h>

@@ -150,7 +150,7 @@ void setSea(AzimuthMarch& march) {
   march.surface.ground = {70, 5};
 }
 
-/// What every march has to meet.
+/// Requirements for every march.
 struct Case {
   const char* name;
   AzimuthMarch march;

@@ -1,5 +1,5 @@
-// The march against a plain one of a few lines, and against the same with a fault in it: figures that cannot
-// tell a plausible fault would prove nothing.
+// The march against a simple one of a few lines, and against the same with a fault: figures that do not
+// reveal a plausible fault would prove nothing.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

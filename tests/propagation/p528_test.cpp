@@ -1,4 +1,4 @@
-// P.528 beside its reference figures, which check_test.cpp runs.
+// P.528 apart from its reference figures (check_test.cpp).
 #include "propagation/p528/p528.h"
 
 #include <gmock/gmock.h>

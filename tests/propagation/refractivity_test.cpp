@@ -136,7 +136,7 @@ BulkInputs bulk(double air_minus_sea_k, double humidity_percent, double wind_m_s
 }
 
 // Sea at 15 C, wind 5 m/s, sensors at 10 m, 1013.25 hPa. Figures of NAVSLaM 2.0's equations and constants,
-// evaluated by a program of its own (Python, levels of 0.1 m, its own saturation and refractivity formulas).
+// evaluated by a separate program (Python, levels of 0.1 m, with other saturation and refractivity formulas).
 TEST(BulkDuct, HasTheHeightsOfNavslam) {
   struct Case {
     double humidity_percent, air_minus_sea_k, duct_height_m, friction_m_s, strength;
@@ -168,7 +168,7 @@ TEST(BulkDuct, OfNeutralAirIsLogarithmicWithTheDragOfSmith) {
   const BulkAir neutral = bulkAir(bulk(-0.0976, 97, 10));
   EXPECT_GT(std::fabs(neutral.obukhov_length_m), 1000);
   EXPECT_NEAR(std::pow(neutral.friction_velocity_m_s / 10, 2), 1.3e-3, 0.03e-3);
-  // Neutral and drier: M = M0 + c z - b ln z with the same b at all heights; the least M at b / c.
+  // Neutral and drier: M = M0 + c z - b ln z with the same b at all heights; the minimum of M at b / c.
   const BulkAir air = bulkAir(bulk(0.55, 70, 15));
   ASSERT_GT(std::fabs(air.obukhov_length_m), 500);
   const auto slope = [&](double z) {

@@ -26,7 +26,7 @@ Silhouette whole(ImageSize size) {
   return silhouette;
 }
 
-/// Draws frames of a picture that is known, and counts how often each pixel was cast.
+/// Draws frames of a known picture, and counts how often each pixel was cast.
 struct Drawing {
   Picture picture;
   Image image;
@@ -165,7 +165,7 @@ TEST(Adaptive, PredictsAsTheFunctionForHostAndDevice) {
                 static_cast<float>(ripple(2 * x, y)), 0.9F};
   };
   Drawing drawing({64, 64}, color);
-  drawing.draw(1e6);  // the lattice alone is cast
+  drawing.draw(1e6);  // only the lattice is cast
   const Image& image = drawing.image;
   const auto along = [&](int x, int y, int dx, int dy) {
     return predictAlong(image.at(x - dx, y - dy), image.at(x + dx, y + dy), image.at(x - 3 * dx, y - 3 * dy),
@@ -282,7 +282,7 @@ TEST(Adaptive, IsFarBetterThanQuarterOnAnEmeVolumeWithFewerRays) {
 }
 
 TEST(Adaptive, PassesOverWhatIsTransparentAndRestoresIt) {
-  // A small ball in a large empty box, seen from around and from within.
+  // A small ball in a large empty box, seen from outside and inside.
   const auto volume = testing::makeVolume({64, 48, 40}, {1, 1, 1}, [](int i, int j, int k) {
     return std::hypot(i - 40, j - 20, k - 12) < 6 ? 0.8F : 0.1F;
   });

@@ -136,7 +136,7 @@ TEST(Compositing, DvrEndsEarlyUnlessExact) {
   EXPECT_FALSE(exact.done(more, 1));
 }
 
-/// A ray of a sample per part, cast by some threads that take as many parts each.
+/// A ray with one sample per part, cast by several threads with equal numbers of parts.
 template <class Compositor>
 Compositor joined(const std::vector<Rgba>& samples, int threads) {
   const Compositor begin(kNeverOpaqueEnough, 0, 1);

@@ -14,7 +14,7 @@ using testing::onGpu;
 
 constexpr ImageSize kSize{120, 90};
 
-/// A volume of which what is below a value is at the floor, which does not show.
+/// A volume in which values below a limit are replaced by the floor, which is transparent.
 std::shared_ptr<volume::DenseVolume> cutVolume(float least) {
   auto volume = makeEmeVolume({64, 64, 32}, 3);
   for (float& value : volume->values) {
@@ -25,7 +25,7 @@ std::shared_ptr<volume::DenseVolume> cutVolume(float least) {
 constexpr float kMostIsLeft = -1000;
 constexpr float kLittleIsLeft = 10;
 
-/// Opaque from just above the floor on.
+/// Opaque above the floor.
 TransferFunction functionOf(const volume::DenseVolume& volume) {
   TransferFunction function = defaultTransferFunction(volume.info);
   const double floor = volume.info.floor;
@@ -44,7 +44,7 @@ double skippableShare(const SkipLevels& levels) {
   return static_cast<double>(skippable) / static_cast<double>(levels.levels.size());
 }
 
-/// A scene on the GPU without what draws it.
+/// A scene on the GPU without a renderer.
 struct Launcher {
   std::shared_ptr<volume::DeviceVolume> volume;
   Scene scene;
@@ -63,7 +63,7 @@ struct Launcher {
     scene.setCamera(makeCamera({}, scene.box(), kSize));
     scene.prepare();
   }
-  /// As for a frame, which is waited for. @return whether bricks are looked for
+  /// Launches as for a frame, and waits. @return true if bricks are searched
   bool looksForBricks() {
     volume->storage().beginReading(stream);
     device.update(scene, volume->storage(), stream);
@@ -128,7 +128,7 @@ TEST(CudaBricks, DoNotChangeThePictureWhetherLookedForOrNot) {
       renderer.setVolume(std::shared_ptr<const volume::DenseVolume>(volume));
       renderer.setTransferFunction(functionOf(*volume));
       renderer.setCamera(makeCamera({}, renderer.sceneBox(), kSize));
-      const Image first = renderer.render(kSize);  // looks for bricks: it knows nothing of them
+      const Image first = renderer.render(kSize);  // searches for bricks: nothing is known yet
       EXPECT_TRUE(renderer.render(kSize).pixels == first.pixels) << toString(mode) << " " << least;
       settings.skip_empty = false;
       renderer.setSettings(settings);

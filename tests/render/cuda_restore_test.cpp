@@ -37,7 +37,7 @@ TEST(CudaRestore, CanBeStoppedInBetweenAndBegunAnew) {
     renderer.draw(plan, size);
     StopFlag stop{true};
     EXPECT_FALSE(renderer.restore(&stop).complete);
-    // What was launched before the stop is few.
+    // Few launches precede the stop.
     stop = false;
     std::thread stopper([&] {
       std::this_thread::sleep_for(std::chrono::milliseconds(2));

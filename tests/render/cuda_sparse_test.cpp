@@ -21,7 +21,7 @@ RendererOptions sparseOnGpu() {
   return options;
 }
 
-/// A volume of which little is above the floor.
+/// A volume with few values above the floor.
 std::shared_ptr<volume::DenseVolume> cutVolume(float least) {
   auto volume = makeEmeVolume({100, 100, 50}, 3);
   for (float& value : volume->values) {

@@ -33,7 +33,7 @@ void show(Renderer& renderer, const std::shared_ptr<volume::DenseVolume>& volume
   renderer.setTransferFunction(function);
 }
 
-/// What the one pixel of a camera shows that looks along an axis through the middle of a volume.
+/// Colour of a one-pixel picture by a camera that looks along an axis through the middle of a volume.
 Rgba look(Renderer& renderer, const std::string& camera, const std::vector<std::string>& planes,
           CompositingMode mode = CompositingMode::dvr, double exaggeration = 1) {
   RenderSettings settings;

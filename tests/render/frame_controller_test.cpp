@@ -22,7 +22,7 @@ ControllerOptions with(Pattern pattern, double epsilon_ms = 100) {
   return options;
 }
 
-/// Has an event at `now_ms` and draws the frame that it asks for; the frame takes no time of the script.
+/// Sends an event at `now_ms` and draws the requested frame; the frame takes no simulated time.
 void eventAndFrame(FrameController& controller, double now_ms, double draw_ms = 20) {
   controller.event(SceneEvent::field, now_ms);
   ASSERT_EQ(controller.next(now_ms).kind, Kind::draw);
@@ -263,7 +263,7 @@ TEST(FrameController, RefusesTheEndOfWhatWasNotBegun) {
   EXPECT_THROW(controller.restoreDone(true), Error);
 }
 
-// Whatever happens: a picture settles only if nothing has changed since its frame was begun, and only after
+// In all cases a picture settles only if nothing has changed since its frame was begun, and only after
 // epsilon.
 TEST(FrameController, ArbitraryScriptsNeverSettleOnAnotherScene) {
   std::mt19937 random(11);

@@ -18,7 +18,7 @@ Image randomImage(ImageSize size) {
   return image;
 }
 
-/// Source pixels of a pattern; the others are NaN, which shows in what is made of them.
+/// Source pixels of a pattern; the others are NaN, which would propagate to the result.
 Image sourcesOf(Pattern pattern, const Image& image) {
   Image sources(image.size);
   for (Rgba& pixel : sources.pixels) pixel = {NAN, NAN, NAN, NAN};

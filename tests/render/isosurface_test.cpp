@@ -43,7 +43,7 @@ struct SphereField {
   }
 };
 
-/// A volume as a ray caster sees it.
+/// A volume prepared for the ray caster.
 struct Scene {
   PreparedVolume ready;
   VolumeView view;
@@ -194,7 +194,7 @@ TEST(IsoValue, OutsideTheValuesIsRefusedWithTheirRange) {
 
 class IsoPicture : public ::testing::Test {
  protected:
-  /// The one pixel of a camera that looks along an axis through the middle of the volume.
+  /// Colour of a one-pixel picture by a camera that looks along an axis through the middle of the volume.
   Rgba look(const std::shared_ptr<volume::DenseVolume>& volume, const std::string& camera) {
     Renderer renderer;
     renderer.setVolume(volume);

@@ -20,7 +20,7 @@ double shareOf(Pattern pattern) {
   return 1;
 }
 
-/// A scene whose full frame takes so long; every frame has the same other work.
+/// A scene with a given time of a full frame; other work takes the same time in every frame.
 FrameCost costOf(Pattern pattern, double full_ms, double other_ms = 0) {
   return {full_ms * shareOf(pattern), other_ms};
 }

@@ -1,4 +1,4 @@
-/// Scenes by chance for the renderer's properties.
+/// Random scenes for property tests of the renderer.
 #pragma once
 
 #include <random>

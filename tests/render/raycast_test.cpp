@@ -18,7 +18,7 @@ using testing::makeVolume;
 
 constexpr ImageSize kOnePixel{1, 1};
 
-/// What the one pixel of a camera shows that looks along an axis through the middle of a volume.
+/// Colour of a one-pixel picture by a camera that looks along an axis through the middle of a volume.
 Rgba lookAlong(const std::shared_ptr<volume::DenseVolume>& volume, const TransferFunction& function,
                const std::string& camera, RenderSettings settings = {}) {
   settings.exact = true;
@@ -195,8 +195,8 @@ TEST(Categories, AreDrawnInTheirOwnColoursWithoutOthersBetween) {
 constexpr CompositingMode kModes[] = {CompositingMode::dvr, CompositingMode::mida, CompositingMode::mip,
                                       CompositingMode::iso};
 
-/// Draws a scene with and without skipping, one renderer kept for each: nothing of an earlier scene may
-/// remain.
+/// Draws a scene with and without skipping; both renderers are reused, so that nothing of an earlier scene
+/// may remain.
 class SkippingPair {
  public:
   template <class Change>

@@ -14,7 +14,7 @@ bool meets(const CameraView& camera, const Vec3d& upper, int x, int y) {
   return inside.end > inside.begin;
 }
 
-/// Holds a silhouette to the test of every single ray.
+/// Compares a silhouette with a test of every single ray.
 void expectExact(const CameraView& camera, const Vec3d& upper, const std::string& name) {
   Silhouette silhouette;
   findSilhouette(camera, kLower, upper, silhouette);
@@ -32,7 +32,7 @@ void expectExact(const CameraView& camera, const Vec3d& upper, const std::string
   EXPECT_EQ(silhouette.count(), hits) << name;
 }
 
-/// A view whose axes are scaled as voxels that are no cubes scale them.
+/// A view whose axes are scaled by voxels that are not cubes.
 CameraView viewFrom(const Vec3d& eye, const Vec3d& target, const Vec3d& scale, ImageSize size) {
   const auto scaled = [&](const Vec3d& v) { return Vec3d{v.x * scale.x, v.y * scale.y, v.z * scale.z}; };
   CameraView view;
@@ -54,7 +54,7 @@ TEST(Silhouette, IsThatOfEveryRayForAnyCamera) {
   };
   for (int n = 0; n < 400; ++n) {
     const Vec3d upper{between(0.5, 60), between(0.5, 60), between(0.5, 40)};
-    const double far = n % 3 == 0 ? 20 : 150;  // a third of the eyes lie in the box or close to it
+    const double far = n % 3 == 0 ? 20 : 150;  // a third of the eyes are in the box or close to it
     const Vec3d eye{between(-far, far), between(-far, far), between(-far, far)};
     const Vec3d target{between(0, upper.x), between(0, upper.y), between(0, upper.z)};
     const ImageSize size{1 + static_cast<int>(random() % 70), 1 + static_cast<int>(random() % 70)};

@@ -1,4 +1,4 @@
-/// Antenna files written by tests, and what reading broken ones must say.
+/// Antenna files written by tests, and the expected errors of broken ones.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@
 
 namespace emscape::scenario {
 
-/// A file in a folder of its own, removed at the end of its scope.
+/// A file in a separate folder, removed at the end of its scope.
 class TemporaryFile {
  public:
   TemporaryFile(const std::string& name, const std::string& content) : path_(folder_.write(name, content)) {}
@@ -37,8 +37,8 @@ inline void expectFault(const std::function<void()>& read, const std::string& fi
   EXPECT_THAT(error.message(), testing::HasSubstr(part));
 }
 
-/// Reads a file cut off after each of its bytes, and with each byte replaced by one that hurts, another at
-/// each place: an Error or an antenna, never anything else.
+/// Reads a file truncated after each of its bytes, and with each byte replaced by a harmful one that varies:
+/// the result must be an Error or an antenna.
 inline void surviveDamage(const TemporaryFile& file, const std::string& content,
                           const std::function<void()>& read) {
   const auto attempt = [&](const std::string& damaged) {

@@ -45,7 +45,7 @@ double worstOfView_db(const AntennaPtr& antenna, double az_range_deg, double el_
   double worst = 0;
   const auto check = [&](double azimuth_deg, double elevation_deg) {
     const Vec3f direction = vecCast<float>(towards(azimuth_deg, elevation_deg));
-    // The direction as the loops have it: the rounding of its components is not the pattern's error.
+    // The direction as rounded in the loops: the rounding of its components is not an error of the pattern.
     const double exact = antenna->amplitudeTowards(vecCast<double>(direction), steer_u, steer_v);
     if (exact < 0.01) return;
     const double got = patternAmplitude(view, direction, float(steer_u), float(steer_v));

@@ -1,5 +1,4 @@
-// Hand-broken scenarios: each says in its first lines what must be found in it and where, nothing more and
-// nothing less.
+// Broken scenarios: the first lines of each list exactly the errors that must be found, with their locations.
 #include <algorithm>
 #include <ostream>
 #include <random>
@@ -24,7 +23,7 @@ std::vector<std::string> brokenScenarios() {
   return names;
 }
 
-/// "[file:]line:column fragment", as the first lines of a broken scenario have it behind "# expect: ".
+/// "[file:]line:column fragment", from the first lines of a broken scenario, after "# expect: ".
 struct Expectation {
   std::string location, fragment;
 };
@@ -92,7 +91,7 @@ class DamagedScenario : public ::testing::Test {
   DamagedScenario() {
     std::filesystem::copy_file(test::testData() / "track.csv", folder_.path() / "track.csv");
   }
-  /// Valid, short, and written in as many ways as YAML has.
+  /// Valid, short, and written with many features of YAML.
   const std::string text_ = R"(---
 schema_version: 1
 name: "d\u00e4mag\x65d"   # remark
@@ -125,7 +124,7 @@ output: {quantities: [snr_db], combine: per_emitter}
 )";
   test::TemporaryFolder folder_;
 
-  /// Whatever the damage, there is either a scenario or an error that says where.
+  /// Any damage must give either a scenario or an error with a location.
   void parse(const std::string& text) {
     const ParseResult result = parseScenario(folder_.write("damaged.yaml", text));
     if (result.scenario) return;

@@ -25,7 +25,7 @@ void DemFile::write(const std::filesystem::path& path) const {
   std::unique_ptr<GDALDataset> dataset(
       driver->Create(path.c_str(), columns, rows, bands, GDT_Float32, nullptr));
   if (!dataset) throw std::runtime_error("cannot write " + path.string());
-  // Before the transform: GDAL writes the latter as the former asks for.
+  // Set before the transform, since GDAL writes the transform accordingly.
   if (is_point) dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_POINT);
   if (!crs.empty()) {
     const OGRSpatialReference reference = spatialReference(crs);

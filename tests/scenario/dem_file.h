@@ -29,7 +29,7 @@ struct DemFile {
 /// centres.
 DemFile geographicDem(double west_deg, double north_deg, double step_deg, int columns, int rows,
                       const std::function<double(double latitude_deg, double longitude_deg)>& height);
-/// The same as pixel-is-point: the outer posts lie on the corner given.
+/// The same as pixel-is-point: the outer posts are at the given corner.
 DemFile geographicPointDem(double west_deg, double north_deg, double step_deg, int columns, int rows,
                            const std::function<double(double latitude_deg, double longitude_deg)>& height);
 

@@ -399,7 +399,7 @@ std::vector<std::string> messagesOf(const std::vector<Problem>& problems) {
   return messages;
 }
 
-/// That two documents have their values at the same places of a text.
+/// Expects that two documents have their values at the same locations of a text.
 void expectSamePlaces(const DocumentNode& a, const DocumentNode& b) {
   const auto numbersOf = [](const document::TextPosition& at) {
     return std::make_tuple(at.line, at.column, at.offset);
@@ -414,7 +414,7 @@ void expectSamePlaces(const DocumentNode& a, const DocumentNode& b) {
   }
 }
 
-/// An edit and a file that is written anew with the value must mean the same, for every key of the table.
+/// An edit and a file written with the new value must be equivalent, for every key of the table.
 TEST(EditEveryKey, EqualsAFileWithThatValue) {
   TemporaryFolder folder;
   for (const char* data : {"track.csv", "sector.msi", "valid.yaml"})
@@ -448,7 +448,7 @@ TEST(EditEveryKey, EqualsAFileWithThatValue) {
       }
     });
   }
-  // Settings of models that are not chosen are refused, and refractivity beside k_factor.
+  // Refused are settings of models that are not chosen, and refractivity together with k_factor.
   EXPECT_GT(sound, all / 3) << "of " << all;
 }
 

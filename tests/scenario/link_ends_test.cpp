@@ -1,4 +1,4 @@
-// Receivers and targets on platforms: reading, faults and edits.
+// Receivers and targets on platforms: reading, errors and edits.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

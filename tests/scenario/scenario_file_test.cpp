@@ -16,6 +16,7 @@ using namespace propagation;
 using test::replaced;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class ScenarioYaml : public ::testing::Test {
  protected:
@@ -294,7 +295,17 @@ TEST_F(ScenarioYaml, WarnsOfABeamThatStepsOverAzimuths) {
               AllOf(HasSubstr("the beams of 'search radar', 'twin', 1.6 deg wide, sweep 36 deg"),
                     HasSubstr("of their azimuths")));
   EXPECT_EQ(both.problems[0].location.line, 32);
-  // Where radars look at each voxel in turn their scans do not show.
+  // One warning names all of them.
+  const std::string slower = replaced(twin, "rate_rpm: 12", "rate_rpm: 6");
+  const ParseResult unlike =
+      parseScenario(folder_.write("scenario.yaml", replaced(text, "receivers:\n", slower + "receivers:\n")));
+  ASSERT_EQ(unlike.problems.size(), 1u);
+  EXPECT_THAT(unlike.problems[0].message,
+              AllOf(HasSubstr("; the beam of 'twin', 1.6 deg wide, sweeps 18 deg"), Not(HasSubstr("\n"))));
+  // Chosen times do not depend on the steps.
+  const std::string file = folder_.write("scenario.yaml", text);
+  EXPECT_TRUE(parseScenario(file, {}, ReadFor::chosen_times).problems.empty());
+  // If radars look at every voxel, their scans have no effect.
   const std::string coverage =
       replaced(replaced(text, "[power_density_dbwm2, received_power_dbm, snr_db]", "[snr_db]"),
                "combine: per_band", "combine: per_band\n  radar_look: target");

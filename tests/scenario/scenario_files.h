@@ -23,7 +23,7 @@ inline std::filesystem::path testData() {
   return sourceFile("tests/scenario/data");
 }
 
-/// `text` with the one place where `from` stands replaced.
+/// `text` with the only occurrence of `from` replaced.
 inline std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const std::size_t at = text.find(from);
   EXPECT_NE(at, std::string::npos) << from;

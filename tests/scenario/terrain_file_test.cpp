@@ -1,4 +1,4 @@
-/// What elevation files hold and how they fail: units, projections, faults.
+/// Elevation files: units, projections, errors.
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ TEST_F(TerrainFileTest, OfSeveralBandsTheFirstHoldsHeights) {
 
 // --- projections
 
-/// Easting and northing as a height: what lies at the wrong place shows.
+/// A height that encodes easting and northing, so that misplaced heights are detected.
 double ramp(double east_m, double north_m) {
   return 0.01 * (east_m - 500e3) + 0.02 * (north_m - 5500e3) + 1000;
 }
@@ -148,7 +148,7 @@ TEST_F(TerrainFileTest, HeightsGoOnBetweenZones) {
     DemFile file = rampDem(crs, 0, 0, 100, 400, 400);
     const bool western = std::string(crs) == "EPSG:32632";
     file.transform = {x - (western ? 38e3 : 2e3), 100, 0, y + 20e3, 0, -100};
-    // Linear in the plane, and so close to linear in degrees that a seam would show: taken at the border's
+    // Linear in the plane, and close enough to linear in degrees to reveal a seam: taken at the border's
     // scale.
     const auto [x_east, y_east] = test::projected(crs, 50, 12.1);
     const auto [x_north, y_north] = test::projected(crs, 50.1, 12);
@@ -249,7 +249,7 @@ TEST_F(TerrainFileTest, AVirtualMosaicWithoutItsTilesIsAnError) {
   EXPECT_THAT(problemOf(folder_ / "m.vrt"), AllOf(HasSubstr("m.vrt"), HasSubstr("gone.tif")));
 }
 
-// --- what a file says of itself
+// --- descriptions of files
 
 TEST_F(TerrainFileTest, DescribeTellsWhatTheFileHolds) {
   DemFile file = geographicDem(10, 50, 0.1, 20, 10, flat);

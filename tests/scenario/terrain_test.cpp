@@ -1,4 +1,4 @@
-/// Heights of mosaics: where posts lie, what is void, which of several files decides.
+/// Heights of mosaics: positions of posts, voids, precedence of files.
 #include "emscape/scenario/terrain.h"
 
 #include <gmock/gmock.h>
@@ -26,11 +26,11 @@ using test::DemFile;
 using test::geographicDem;
 using test::geographicPointDem;
 
-/// What bilinear interpolation reproduces exactly.
+/// A surface that bilinear interpolation reproduces exactly.
 double slope(double latitude_deg, double longitude_deg) {
   return 500 + 20 * latitude_deg + 10 * longitude_deg;
 }
-/// The same where the slope must go on across the antimeridian.
+/// The same for a slope that continues across the antimeridian.
 double slopeAcross180(double latitude_deg, double longitude_deg) {
   return slope(latitude_deg, longitude_deg < 0 ? longitude_deg + 360 : longitude_deg);
 }
@@ -165,7 +165,7 @@ TEST_F(ReferenceDem, ABoxHoldsItsOwnPostsOnlyAndTheSameHeights) {
   }
 }
 
-// --- where posts lie
+// --- positions of posts
 
 TEST_F(TerrainTest, AreaPostsLieAtPixelCentresAndReachHalfAPostFurther) {
   const auto file = write("a.tif", geographicDem(10, 50, 0.1, 10, 10, slope));

@@ -1,4 +1,4 @@
-// Which files a study's points and polygons are read from.
+// Files from which a study's points and polygons are read.
 #include "study/sweep/candidate_sites.h"
 
 #include <arpa/inet.h>
@@ -16,7 +16,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// A server on this machine that answers nobody and knows whether somebody connected.
+/// A local server that never answers and records whether a client has connected.
 class Listener {
  public:
   Listener() {
@@ -48,7 +48,7 @@ class Listener {
 TEST(CandidateSites, AreNotReadFromTheNetwork) {
   const test::TemporaryFolder folder;
   const Listener listener;
-  CPLSetThreadLocalConfigOption("GDAL_HTTP_TIMEOUT", "1");  // where this fails, it shall not wait for ever
+  CPLSetThreadLocalConfigOption("GDAL_HTTP_TIMEOUT", "1");  // limits the wait if the test fails
   const std::string gml = folder.write("a.gml", R"(<?xml version="1.0" encoding="utf-8"?>
 <wfs:FeatureCollection xmlns:wfs="http://www.opengis.net/wfs" xmlns:gml="http://www.opengis.net/gml"
 xmlns:a="http://a/" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:schemaLocation="http://a/ )" +

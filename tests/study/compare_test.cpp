@@ -71,7 +71,7 @@ TEST(Compare, WithoutJammersGainsTheAreaOfJamLoss) {
   EXPECT_NEAR(covered.gained_m2 / jam_loss_m2, 1, 1e-9);
   EXPECT_EQ(covered.lost_m2, 0);
   EXPECT_NEAR(covered.area_b_m2 - covered.area_a_m2, covered.gained_m2, 1);
-  // The other way round it is lost.
+  // In the other direction it is lost.
   const Compared on(quiet, jammed, {Product::covered});
   EXPECT_EQ(on.comparison.rows[0].lost_m2, covered.gained_m2);
   EXPECT_EQ(on.comparison.rows[0].gained_m2, 0);

@@ -30,8 +30,8 @@ class CoverageOf {
         area(areaOf(scenario->region)),
         grid(makeMapGrid(area, cell_m, "utm")),
         terrain(loadTerrain(*scenario, area)) {
-    computeCoverage(scenario, terrain, grid, request, {},
-                    [&](CoverageMap map) { maps.push_back(std::move(map)); });
+    warnings = computeCoverage(scenario, terrain, grid, request, {},
+                               [&](CoverageMap map) { maps.push_back(std::move(map)); });
   }
 
   const CoverageMap& find(Product product, const MapHeight& height, std::optional<double> time_s = {}) const {
@@ -49,10 +49,22 @@ class CoverageOf {
   MapGrid grid;
   scenario::TerrainPtr terrain;
   std::vector<CoverageMap> maps;
+  std::vector<std::string> warnings;
 };
 
 const MapHeight kLow{emfield::HeightReference::ground, 100},
     kHigh{emfield::HeightReference::mean_sea_level, 1500};
+
+TEST(Coverage, WarnsOfBeamsBetweenItsTimesWhereAProductIsOverThem) {
+  const auto warningsOf = [](scenario::Quantity quantity, Product product) {
+    return CoverageOf("jacksboro.yaml", 3000, {{kLow}, {product}, quantity, 0.5, {0, 6, 12}}).warnings;
+  };
+  const auto unlit = ::testing::Contains(HasSubstr("of its azimuths"));
+  EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, Product::fraction), unlit);
+  EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, Product::covered), ::testing::Not(unlit));
+  EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, Product::fraction), ::testing::Not(unlit))
+      << "radars look at the target";
+}
 
 TEST(Coverage, APixelIsThePathOfProfileThere) {
   CoverageRequest request{
@@ -91,7 +103,7 @@ TEST(Coverage, APixelIsThePathOfProfileThere) {
   EXPECT_GT(compared, 80);
 }
 
-// Large pixels, on slopes that the beam passes over: two metres beside are 0.05 dB.
+// Large pixels on slopes below the beam: an offset of two metres changes the value by 0.05 dB.
 TEST(Coverage, ALargePixelIsThePathToItsCentreInTheProjection) {
   const CoverageOf coverage("jamming.yaml", 2000,
                             {{kLow}, {Product::value}, scenario::Quantity::snr_db, 10, {40}});
@@ -185,7 +197,7 @@ TEST(Coverage, ProductsFollowFromTheValues) {
 }
 
 TEST(Coverage, TheLeastHeightIsTheLowestThatIsCovered) {
-  // Beside ridges there are places where a lower height is seen and a higher one is not; few.
+  // Near ridges there are a few positions where a lower height is visible and a higher one is not.
   const CoverageOf coverage(
       "jacksboro.yaml", 1000,
       {{kLow}, {Product::min_height}, scenario::Quantity::detection_probability, 0.5, {10}});

@@ -11,10 +11,12 @@
 #include "emscape/scenario/snapshot.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::study {
 namespace {
 
+using test::TemporaryFolder;
 using ::testing::HasSubstr;
 
 /// A shipped scenario and its terrain.
@@ -116,6 +118,35 @@ TEST(Exposure, AWarningComesOnceForAllTimes) {
               ::testing::Contains(::testing::AllOf(HasSubstr("'search radar'"), HasSubstr("frequency"),
                                                    ::testing::Not(HasSubstr("times)"))))
                   .Times(1));
+}
+
+TEST(Exposure, TimesOverMissingTerrainAreUnknown) {
+  // To the east, out of the elevation file, and back.
+  const TemporaryFolder folder;
+  const std::string track = folder.write("track.csv",
+                                         "t_s,latitude_deg,longitude_deg,height_msl_m\n"
+                                         "0,36.30,-84.20,1500\n"
+                                         "100,36.30,-83.95,1500\n"
+                                         "200,36.30,-84.20,1500\n");
+  auto scenario =
+      std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("links.yaml")));
+  scenario->set("platforms.drone.track.file", track);
+  ExposureRequest request;
+  request.platform = 4;
+  for (int t = 0; t <= 200; t += 5) request.times_s.push_back(t);
+  const Exposure exposure = computeExposure(scenario, scenario::loadTerrain(*scenario), request, {});
+  double unknown_s = 0, reached_s = 0;
+  for (std::size_t t = 0; t + 1 < exposure.rows.size(); ++t) {
+    const ExposureRow& row = exposure.rows[t];
+    EXPECT_EQ(row.state == ExposureState::unknown, row.longitude_deg > -84.078) << row.time_s;
+    EXPECT_EQ(row.state == ExposureState::unknown, std::isnan(row.value)) << row.time_s;
+    unknown_s += row.state == ExposureState::unknown ? 5 : 0;
+    reached_s += row.state == ExposureState::reached ? 5 : 0;
+  }
+  EXPECT_DOUBLE_EQ(exposure.together.unknown_fraction, unknown_s / 200);
+  EXPECT_DOUBLE_EQ(exposure.together.fraction, reached_s / (200 - unknown_s));
+  EXPECT_LT(exposure.together.longest_gap_s, 50) << "unknown times are no gap";
+  EXPECT_GT(unknown_s, 90);
 }
 
 TEST(Exposure, RefusesWhatItCannotDo) {

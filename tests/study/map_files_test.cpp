@@ -1,4 +1,4 @@
-// Files of maps, read back by GDAL: shapes on their levels, bands that tile, what each format holds.
+// Map files, read back by GDAL: contours at their levels, bands without gaps, contents of each format.
 #include <gdal_priv.h>
 #include <gdal_rat.h>
 #include <gmock/gmock.h>
@@ -53,7 +53,7 @@ struct Fixture {
             0.5,        {70, 80},
             {height}};
   }
-  /// Values that rise and fall over the grid; none beyond the area and in one pixel in it.
+  /// Values that rise and fall over the grid; none outside the area and at one pixel inside.
   Map map(MapKind kind, double time_s, double low, double high) const {
     Map map;
     map.name = kind == MapKind::classes ? "covered" : kind == MapKind::category ? "best" : "value";
@@ -73,7 +73,7 @@ struct Fixture {
     }
     return map;
   }
-  /// The value at a place, linear between the centres of four pixels; NaN if one is missing.
+  /// The value at a position, linear between the centres of four pixels; NaN if one is missing.
   double valueAt(const Map& map, double x, double y, double (*scaled)(double)) const {
     const double column = (x - grid->left_m) / grid->cell_m - 0.5,
                  row = (grid->top_m - y) / grid->cell_m - 0.5;
@@ -108,7 +108,7 @@ TEST(MapShapes, ContoursLieOnTheirLevels) {
       for (int n = 0; n < OGR_G_GetPointCount(points); ++n) {
         const double value = fixture.valueAt(map, OGR_G_GetX(points, n), OGR_G_GetY(points, n), scaled);
         if (std::isnan(value)) continue;  // beside a pixel without a value
-        // A thousandth of a cell, by the steepest slope there is.
+        // A thousandth of a cell, for the steepest slope.
         const double slope = (scaled(high) - scaled(low)) / 5;
         EXPECT_NEAR(value, scaled(line.level), 1e-3 * slope);
         ++compared;

@@ -20,7 +20,7 @@ struct GeographicPoint {
   double latitude_deg, longitude_deg;
 };
 
-/// Compares every so many pixels with GeographicLib's projection. @return the number compared
+/// Compares every n-th pixel with GeographicLib's projection. @return the number compared
 int expectPlacesOfUtm(const GeographicPoint& middle, double radius_m, double cell_m, int every) {
   const auto [latitude_deg, longitude_deg] = middle;
   const MapGrid grid = makeMapGrid(circularArea({latitude_deg, longitude_deg, radius_m}), cell_m, "utm");
@@ -111,6 +111,19 @@ TEST(MapGrid, ABoxMayCrossTheAntimeridian) {
   EXPECT_GE(grid.pixelAt(-17.1, 179.95), 0);
   EXPECT_GE(grid.pixelAt(-17.1, -179.95), 0);
   EXPECT_EQ(grid.pixelAt(-17.1, 178), -1);
+}
+
+TEST(MapGrid, RefusesProjectionsThatAreCutWithinTheArea) {
+  const auto messageOf = [](double longitude_deg, const char* crs) {
+    return test::errorOf([&] { makeMapGrid(circularArea({-17, longitude_deg, 10e3}), 500, crs); });
+  };
+  EXPECT_THAT(messageOf(179.96, "EPSG:3857"), HasSubstr("'EPSG:3857' is cut within the area"));
+  EXPECT_THAT(messageOf(-179.99, "EPSG:3395"), HasSubstr("40074 km apart"));
+  EXPECT_NO_THROW(makeMapGrid(circularArea({-17, 179.9, 10e3}), 500, "EPSG:3857"));
+  EXPECT_NO_THROW(makeMapGrid(circularArea({-17, 179.96, 10e3}), 500, "EPSG:3832"));
+  MapArea earth;
+  earth.box = {-70, 70, -180, 180};
+  EXPECT_EQ(makeMapGrid(earth, 100e3, "EPSG:3857").width, 402);
 }
 
 TEST(MapGrid, RefusesWhatIsNoMap) {

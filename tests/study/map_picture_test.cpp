@@ -1,4 +1,4 @@
-// The picture of a map: what holds whatever its values are.
+// Properties of a map's picture that do not depend on its values.
 #include "emscape/study/map_picture.h"
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ bool isPlain(const render::Image8& image, int left, int top, int right, int bott
   return true;
 }
 
-/// 20 x 10 pixels, none left out.
+/// 20 x 10 pixels, all in the area.
 MapGrid smallGrid() {
   MapGrid grid;
   grid.width = 20;

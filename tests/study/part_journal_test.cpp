@@ -150,7 +150,7 @@ TEST(PartClaim, OfAnotherMachineIsTakenOverWhenItWasNotTouchedForFiveMinutes) {
   EXPECT_FALSE(PartClaim::isHeld(file));
   const auto claim = PartClaim::tryClaim(file);
   ASSERT_NE(claim, nullptr);
-  // The other one comes back, and takes it for its own again.
+  // The other process returns and claims it again.
   test::writeFile(file, "host other\nprocess 1\nmachine 00000000\nclaim 1\n");
   EXPECT_EQ(folder.files(), std::vector<std::string>{"part.claim"});
 }

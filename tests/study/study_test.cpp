@@ -1,4 +1,4 @@
-// Studies: the file, the order of the variants, and what each of them is measured at.
+// Studies: the file, the order of the variants, and the measures of each.
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -135,7 +135,7 @@ measures:
   for (const std::size_t v : {0u, 3u, 6u}) EXPECT_EQ(study.run({v})[v], in_order[v]) << v;
   EXPECT_NE(in_order[0], in_order[4]) << "the jammer takes coverage away";
 
-  // The same as maps of the edited scenario by themselves.
+  // Equal to maps of the edited scenario computed separately.
   const auto edited = scenario::editScenario(*study.spec().base, study.spec().variants.edits(5)).scenario;
   const MapGrid grid = makeMapGrid(study.spec().area, 1000, "utm");
   emfield::FieldOptions options;

@@ -45,7 +45,7 @@ VerticalRequest small(int emitter, HeightReference axis) {
   return request;
 }
 
-/// Place below the values of a cut at its i-th range, at height 0.
+/// Position below the values of a cut at its i-th range, at height 0.
 GeodeticPosition placeOf(const VerticalDiagram& diagram, const VerticalCut& cut, std::size_t i) {
   return geodesicDirect(diagram.latitude_deg, diagram.longitude_deg, degToRad(cut.azimuth_deg),
                         diagram.ranges_m[i]);
@@ -223,7 +223,7 @@ TEST(Vertical, HasTheLobesOfTwoRaysOverTheSea) {
     };
     double largest_db = 0;
     for (double height_m = 20; height_m <= 600; height_m += 0.5) {
-      // In the nulls, where the rays' amplitudes all but cancel, the place counts.
+      // In the nulls, where the rays' amplitudes nearly cancel, only the position is compared.
       if (lobesAt(height_m) < ratioToDb(1000 / (4 * kPi * std::pow(diagram.ranges_m[i], 2))) - 15) continue;
       largest_db = std::max(largest_db, std::abs(diagramAt(height_m) - lobesAt(height_m)));
     }

@@ -1,4 +1,4 @@
-// Least heights of the model `horizon` against a walk along each line of sight and against GDAL's viewshed,
+// Minimum heights of the model `horizon` against a walk along each line of sight and against GDAL's viewshed,
 // on the same pixels.
 #include <gdal_alg.h>
 #include <gdal_priv.h>
@@ -58,7 +58,7 @@ TEST(MinHeight, OfTheHorizonIsThatOfTheLineOfSight) {
   const MapGrid grid = makeMapGrid(area, kCell_m, "utm");
   const scenario::TerrainPtr terrain = loadTerrain(*scenario, area);
   const std::vector<float> ground_msl_m = groundOf(grid, *terrain);
-  // From a valley the ground beside the antenna decides, whose pixels differ from its posts; from the top it
+  // In a valley the ground near the antenna decides, and its pixels differ from its posts; on a summit it
   // does not.
   long long observer = 0;
   float highest_m = -1;
@@ -68,7 +68,8 @@ TEST(MinHeight, OfTheHorizonIsThatOfTheLineOfSight) {
     observer = static_cast<long long>(p);
   }
 
-  // A transmitter at the centre of the observer's pixel, bright enough to be lit wherever it is in sight.
+  // A transmitter at the centre of the observer's pixel, strong enough to exceed the threshold wherever it is
+  // in sight.
   scenario::Emitter emitter = scenario->emitters.front();
   emitter.kind = scenario::EmitterKind::transmitter;
   emitter.antenna = scenario::makeIsotropic(0);
@@ -122,7 +123,7 @@ TEST(MinHeight, OfTheHorizonIsThatOfTheLineOfSight) {
     for (int i = 1; i + 1 < grid.width; i += 5) {
       const std::size_t p = static_cast<std::size_t>(j) * grid.width + i;
       if (std::isnan(least_m[p]) || std::isnan(seen_m[p])) continue;
-      // Half a post's slope: what the ground rises from a pixel to its neighbours.
+      // Half a post's slope: the rise of the ground from a pixel to its neighbours.
       double rise_m = 0;
       for (const int step : {-1, 1, -grid.width, grid.width}) {
         const double neighbour_m = static_cast<double>(ground_msl_m[p + step]);
@@ -142,7 +143,7 @@ TEST(MinHeight, OfTheHorizonIsThatOfTheLineOfSight) {
   EXPECT_GT(compared, 10000);
   EXPECT_GT(hidden, 5000);
   EXPECT_GE(of_walk, 0.95 * compared) << of_walk << " of " << compared;
-  // GDAL's viewshed interpolates from pixel to pixel on its way out, and is as far from the walk.
+  // GDAL's viewshed interpolates from pixel to pixel outwards, and differs from the walk by as much.
   EXPECT_GE(of_viewshed, 0.65 * compared) << of_viewshed << " of " << compared;
   EXPECT_NEAR(of_viewshed, viewshed_of_walk, 0.05 * compared);
 }

@@ -1,4 +1,4 @@
-/// What a call throws, for tests of bad input.
+/// The errors that a call throws, for tests of bad input.
 #pragma once
 
 #include <gtest/gtest.h>

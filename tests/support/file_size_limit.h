@@ -6,7 +6,7 @@
 
 namespace emscape::test {
 
-/// While it lives, no file of this process grows beyond a size: writes fail with "File too large".
+/// During its lifetime no file of this process grows beyond a size: writes fail with "File too large".
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : handler_(signal(SIGXFSZ, SIG_IGN)) {

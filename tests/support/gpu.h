@@ -1,11 +1,11 @@
-/// For tests that need a GPU: skipped by name where there is none.
+/// For tests that need a GPU: skipped, and listed by name, if there is none.
 #pragma once
 
 #include <gtest/gtest.h>
 
 #include "emscape/base/device.h"
 
-/// At the start of a test's body.
+/// To be used at the start of a test's body.
 #define EMSCAPE_NEEDS_GPU()                                             \
   do {                                                                  \
     const emscape::Device emscape_device = emscape::findDevice();       \

@@ -1,6 +1,6 @@
-// To be preloaded into a program: memory of 4 KiB and more ends at a page that cannot be read, and is never
-// given out again. An access beyond its end, or after it was freed, ends the program, also one by
-// instructions that sanitizers do not see, such as gathers.
+// To be preloaded into a program: blocks of 4 KiB and more end at an inaccessible page, and are never reused.
+// An access beyond the end, or after the block was freed, ends the program, even by instructions that
+// sanitizers do not see, such as gathers.
 #include <sys/mman.h>
 
 #include <atomic>

@@ -44,7 +44,7 @@ inline void append(volume::TetrahedralMesh& mesh, const volume::TetrahedralMesh&
   }
 }
 
-/// A field on a mesh by a function of the place.
+/// A field on a mesh, given by a function of the position.
 inline volume::MeshField fieldOn(volume::TetrahedralMesh mesh,
                                  const std::function<double(const Vec3d&)>& value) {
   volume::MeshField field;

@@ -18,7 +18,7 @@ inline void PrintTo(Backend backend, std::ostream* out) {
 
 namespace emscape::test {
 
-/// GetParam() is the backend; the tests on the GPU are skipped where there is none.
+/// GetParam() is the backend; the tests on the GPU are skipped if there is none.
 class OnBackends : public testing::TestWithParam<Backend> {
  protected:
   void SetUp() override {

@@ -7,7 +7,7 @@
 
 namespace emscape::test {
 
-/// A new, empty folder; it is removed with all that it holds at the end of its scope.
+/// A new, empty folder; it is removed with its contents at the end of its scope.
 class TemporaryFolder {
  public:
   TemporaryFolder();
@@ -15,7 +15,7 @@ class TemporaryFolder {
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;
 
-  /// Leaves the folder where it is, for somebody to look at.
+  /// Keeps the folder, for inspection.
   void keep() { is_kept_ = true; }
 
   const std::filesystem::path& path() const { return path_; }

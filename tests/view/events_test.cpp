@@ -79,7 +79,7 @@ TEST_P(Events, AreBusyThenRestoredThenExact) {
 INSTANTIATE_TEST_SUITE_P(Window, Events, testing::ValuesIn(kEvents),
                          [](const auto& event) { return std::string(event.param.name); });
 
-/// A step whose field is another one.
+/// A step with a different field.
 TEST_F(WindowEvents, AStepIsBusyThenRestoredThenExact) {
   const ProgramResult result =
       run(viewOf(shippedScenario("jacksboro.yaml"), scriptOf(R"({"do":"seek","time_s":20})")), environment());
@@ -116,7 +116,7 @@ TEST_F(Window, AnEventInRestoreIsAnsweredWithinTwentyMilliseconds) {
     marked = -1;
   }
   ASSERT_EQ(times_ms.size(), 5U);
-  // The machine of the tests may be busy with others: one of the five in time shows that nothing is waited
+  // The machine of the tests may be busy with others: one of the five in time proves that nothing is waited
   // for.
   EXPECT_LT(*std::min_element(times_ms.begin(), times_ms.end()), 20);
 }

@@ -21,14 +21,14 @@ class WatchedFolder : public testing::Test {
  protected:
   WatchedFolder() { writeFile(file_, "a"); }
 
-  /// What is told within a moment.
+  /// The changes reported within a short time.
   std::vector<std::string> changes() {
     for (int i = 0; i < 1000 && wakes_ == told_; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     told_ = wakes_;
     return watch_.takeChanged();
   }
-  /// After some looks.
+  /// The changes after several polls.
   std::vector<std::string> changesSoon() {
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     return watch_.takeChanged();

@@ -1,4 +1,4 @@
-/// A user who does anything at any time.
+/// A simulated user who makes random input at random times.
 #include <algorithm>
 #include <cstdlib>
 #include <random>
@@ -9,7 +9,7 @@
 namespace emscape::test {
 namespace {
 
-/// How long it goes on (s): EMSCAPE_MONKEY_S, else 30.
+/// Duration (s): EMSCAPE_MONKEY_S, otherwise 30.
 double duration_s() {
   const char* text = std::getenv("EMSCAPE_MONKEY_S");
   return text == nullptr ? 30 : std::strtod(text, nullptr);
@@ -76,7 +76,7 @@ class Monkey {
 TEST_F(Window, AMonkeyBreaksNothingAndMemoryStaysFlat) {
   const double seconds = duration_s();
   Monkey monkey(7);
-  // The largest picture first: its memory counts as that of the beginning.
+  // The largest picture first, so that its memory is part of the initial amount.
   std::string script = R"({"do":"wait_frame"}
 {"do":"resize","width":1920,"height":1080}
 {"do":"panel","name":"all","open":false}
@@ -112,7 +112,7 @@ TEST_F(Window, AMonkeyBreaksNothingAndMemoryStaysFlat) {
   const ProgramResult result = program.wait();
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.err.find("Sanitizer"), std::string::npos) << result.err;
-  // All volumes and caches have been there after the first 20 s.
+  // All volumes and caches have been created after the first 20 s.
   const double middle_s = (std::min(20.0, seconds / 2) + seconds) / 2;
   double early_mib = 0, late_mib = 0;
   for (const Json& line : log("frame")) {

@@ -1,4 +1,4 @@
-/// Opening, recent files, autosave, recording: what a session does with files, without a window.
+/// Opening, recent files, autosave, recording: file operations of a session, without a window.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -248,14 +248,14 @@ TEST_F(Opener, EditsAreKeptAMomentLaterAndRestored) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   ASSERT_TRUE(waitForAutosave(shown_, true));
-  // A window beside it is not asked.
+  // A second window does not ask.
   {
     SessionSample beside(optionsFor(shippedScenario("quick.yaml")));
     beside->shown("");
     ASSERT_TRUE(beside.settle());
     EXPECT_FALSE(beside->keptView());
   }
-  // The program ends before its time; another one opens the input.
+  // The program ends irregularly; another one opens the input.
   shown_.session.reset();
   shown_.files->autosaves.reset();
   SessionSample again(optionsFor(shippedScenario("quick.yaml")));

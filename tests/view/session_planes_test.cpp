@@ -1,4 +1,4 @@
-/// Cutting planes and comparison, as keys, panels and scripts ask for them.
+/// Cutting planes and comparison, as requested by keys, panels and scripts.
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {

@@ -55,7 +55,7 @@ TEST(SessionProbe, FollowsTheCursorUntilItIsHeld) {
   prober.hover(render::Projected{110, 110});
   sample.settle();
   const double latitude_deg = sample->report()["probe_latitude_deg"].get<double>();
-  // Above the ground, where a receiver would stand, in a voxel that holds a field.
+  // Above the ground, at a receiver's height, in a voxel with a field.
   EXPECT_GT(sample->report()["probe_height_agl_m"].get<double>(), 9);
   EXPECT_LT(sample->report()["probe_height_agl_m"].get<double>(), 200);
   EXPECT_THAT(sample->report()["probe_text"].get<std::string>(), testing::Not(testing::HasSubstr("masked")));
@@ -72,7 +72,7 @@ TEST(SessionProbe, FollowsTheCursorUntilItIsHeld) {
   sample.perform(R"({"do":"lock_probe"})");
   sample.settle();
   EXPECT_FALSE(prober.isLocked());
-  EXPECT_FALSE(prober.result()->reading);  // the corner lies beside the volume
+  EXPECT_FALSE(prober.result()->reading);  // the corner is outside the volume
   sample.perform(R"({"do":"probe","x":110,"y":110})");
   EXPECT_NEAR(sample->report()["probe_latitude_deg"].get<double>(), latitude_deg, 1e-9);
   EXPECT_TRUE(prober.locked_m());

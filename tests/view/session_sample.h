@@ -28,7 +28,7 @@ using emscape::test::shippedScenario;
 using emscape::test::TemporaryFolder;
 using emscape::test::writeFile;
 
-/// Notes what a session asks for.
+/// Records what a session requests.
 class NoWindow : public WindowControl {
  public:
   void resize(int, int) override {}
@@ -62,7 +62,7 @@ inline ViewOptions optionsFor(const std::string& input, render::ImageSize size =
   return options;
 }
 
-/// A session and all that it needs. Its time passes only while something is waited for.
+/// A session with everything it needs. Its time passes only during waits.
 class SessionSample {
  public:
   explicit SessionSample(const ViewOptions& options) : session(make(options)) {
@@ -95,12 +95,12 @@ class SessionSample {
     }
     return true;
   }
-  /// Waits until the picture shows all that was asked for.
+  /// Waits until the picture shows everything requested.
   bool settle() {
     return waitUntil(
         [this] { return session->settled() && session->report()["asked_s"] == session->status().shown_s; });
   }
-  /// Carries a command out and waits for its edits. @return its fault; empty if there is none
+  /// Executes a command and waits for its edits. @return its error; may be empty
   std::string perform(const std::string& command) {
     session->perform(parseCommand(command));
     waitUntil([this] { return !session->isAnswering(); });
@@ -127,7 +127,7 @@ class SessionSample {
   NoWindow window;
   EventLog log;
   std::shared_ptr<Files> files = std::make_shared<Files>();
-  std::unique_ptr<Session> session;  // the first to go
+  std::unique_ptr<Session> session;  // destroyed first
 };
 
 /// A session on scenarios/quick.yaml.

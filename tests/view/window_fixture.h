@@ -69,7 +69,7 @@ class Window : public testing::Test {
   }
 
   std::string environment() const {
-    // The OpenGL driver is unloaded before its leaks could be told from the program's.
+    // The OpenGL driver is unloaded before its leaks can be distinguished from the program's.
     return "export DISPLAY=" + display_->name() +
            " LP_NUM_THREADS=1 LIBGL_ALWAYS_SOFTWARE=1 ASAN_OPTIONS=detect_leaks=0 XDG_STATE_HOME=" +
            (folder_ / "state") + ";";

@@ -10,7 +10,7 @@
 namespace emscape::volume {
 namespace {
 
-/// True if a sample in the air takes in a voxel: it or a neighbour is not masked.
+/// True if a sample in the air reads a voxel: it or a neighbour is not masked.
 bool isReached(const DenseVolume& volume, int i, int j, int k) {
   const Dims& dims = volume.grid.dims;
   for (int w = std::max(k - 1, 0); w <= std::min(k + 1, dims.z - 1); ++w) {
@@ -23,7 +23,8 @@ bool isReached(const DenseVolume& volume, int i, int j, int k) {
   return false;
 }
 
-/// The value of a voxel, or of the first above it that is not masked; the topmost one counts for all.
+/// The value of a voxel, or of the first above it that is not masked; the topmost one is used if all are
+/// masked.
 float filledValue(const DenseVolume& volume, int i, int j, int k) {
   while (volume.isMasked(i, j, k) && k + 1 < volume.grid.dims.z) ++k;
   return volume.values[static_cast<std::size_t>(volume.grid.index(i, j, k))];

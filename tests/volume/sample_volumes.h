@@ -79,7 +79,7 @@ inline DenseVolume categoricalVolume(Dims dims = {9, 10, 11}) {
   return volume;
 }
 
-/// A scan that lies nowhere and has no mask.
+/// A scan without a position on the earth and without a mask.
 inline DenseVolume plainVolume(Dims dims = {5, 4, 3}) {
   DenseVolume volume;
   volume.grid.dims = dims;
@@ -125,8 +125,8 @@ inline void putByte(const std::filesystem::path& path, std::size_t at, std::uint
   stream.put(static_cast<char>(byte));
 }
 
-/// Reads the file truncated at many lengths, each of which must end in an Error, and with bytes damaged all
-/// over it, which must end in an Error or a volume.
+/// Reads the file truncated at many lengths, which must give an Error, and with damaged bytes all over it,
+/// which must give an Error or a volume.
 inline void survivesDamage(const std::filesystem::path& path, const std::function<void()>& read) {
   const std::vector<std::uint8_t> whole = readWhole(path);
   const std::size_t step = whole.size() / 70 + 1;
@@ -141,7 +141,7 @@ inline void survivesDamage(const std::filesystem::path& path, const std::functio
     putByte(path, at, whole[at]);
   }
   EXPECT_NO_THROW(read());
-  // A text is whole without the end of its last line.
+  // A text is complete without its last newline.
   for (std::size_t size = whole.size() - 2; size > 0; size -= std::min(size, size > 400 ? step : 13)) {
     std::filesystem::resize_file(path, size);
     EXPECT_THROW(read(), Error) << "truncated to " << size << " of " << whole.size() << " bytes";

@@ -113,7 +113,7 @@ __device__ float warpLeast(float value) {
   return value;
 }
 
-/// A warp finds the range of one brick; see Bricks.
+/// Each warp computes the range of one brick; see Bricks.
 template <class Source>
 __global__ void findBricks(Source source, Dims dims, Dims brick_dims, const std::int32_t* first_valid_k,
                            ValueRange* ranges) {

@@ -1,4 +1,5 @@
-/// A DeviceVolume as kernels write and read it. For .cu files and their neighbours.
+/// The storage of a DeviceVolume, for kernels that write and read it. For .cu files and the .cpp files next
+/// to them.
 #pragma once
 
 #include <cuda_fp16.h>
@@ -17,7 +18,7 @@
 
 namespace emscape::volume {
 
-/// Voxels for kernels to write. Each masked voxel takes the value of the first above it that is not.
+/// Voxels for kernels to write. Each masked voxel takes the value of the first unmasked voxel above it.
 struct VoxelWriter {
   cudaSurfaceObject_t surface = 0;
   Dims dims;
@@ -41,8 +42,8 @@ struct VoxelWriter {
 #endif
 };
 
-/// The memory of a DeviceVolume, and the order of its readers and writers: the calls below only order work on
-/// streams, they do not wait. Several threads may read at a time; one writes.
+/// The memory of a DeviceVolume, and the order of its readers and writers. The calls below only order work on
+/// streams and do not wait. Several threads may read at a time; one thread writes.
 class DeviceStorage {
  public:
   /// @throws Error (device) that names the bytes needed and free
@@ -52,9 +53,9 @@ class DeviceStorage {
   DeviceStorage& operator=(const DeviceStorage&) = delete;
 
   /// Kernels launched on the stream after this call may write: they wait for readers. Kernels write every
-  /// voxel, masked ones too; no voxel of a sparse volume.
+  /// voxel, including masked ones, but no voxel of a sparse volume.
   VoxelWriter beginWriting(cudaStream_t stream);
-  /// All writing kernels are launched: computes the bricks, then readers may begin.
+  /// Called after the launch of all writing kernels: computes the bricks; then readers may begin.
   void endWriting(cudaStream_t stream);
 
   /// Kernels launched on the stream after this call may read: they wait for the writer.
@@ -77,12 +78,12 @@ class DeviceStorage {
 
   /// Waits for readers. @param first_valid_k  one per column, or none
   void setMask(const std::vector<std::uint16_t>& first_valid_k);
-  /// On the stream: writes all voxels from values in dense order, masked ones are not read.
+  /// Writes all voxels on the stream, from values in dense order; masked values are not read.
   void writeFrom(const float* host_values, cudaStream_t stream);
-  /// Of a sparse volume: replaces all voxels, on the stream. @param grid  as returned by readyForSampling()
+  /// Replaces all voxels of a sparse volume, on the stream. @param grid  as returned by readyForSampling()
   /// @throws Error (device) that names the bytes needed and free
   void setSparse(const std::uint8_t* grid, std::size_t bytes, cudaStream_t stream);
-  /// On the stream; waits for it. Masked voxels get the floor.
+  /// Copies to host memory and waits for the stream. Masked voxels get the floor.
   void readTo(float* host_values, float floor, cudaStream_t stream) const;
   /// The same into device memory; does not wait.
   void copyTo(float* device_values, float floor, cudaStream_t stream) const;

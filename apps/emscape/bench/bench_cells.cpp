@@ -68,7 +68,7 @@ class CellScene {
   std::size_t tetrahedra() const { return frame_.cells->field.mesh->cells.size(); }
   std::size_t points() const { return frame_.cells->field.values.size(); }
 
-  /// The n-th view: the camera goes on by 20 degrees.
+  /// Moves to the n-th view: each turns the camera by another 20 degrees.
   void turn(int n) {
     renderer_.setCamera(render::makeCamera(turned(camera_, 20.0 * n), renderer_.sceneBox(), size_));
   }
@@ -90,7 +90,7 @@ class CellScene {
     return times;
   }
 
-  /// The first view, and from where it is seen.
+  /// The first view: drawn box, camera and transfer function.
   Json json() {
     turn(0);
     const render::SceneBox box = renderer_.sceneBox();
@@ -237,7 +237,7 @@ Example:
                       "Colours and opacities (JSON); default: scenarios/transfer/paper.json");
   command
       ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(within(render::kExaggerationLimits));
   command->add_option("--picture", options->picture, "NAME.png: writes the first view, marched, on black");
   command->add_option("--quantity", options->selection.quantity, "Quantity or channel; default: the first");
   command->add_option("--time", options->selection.times, "Instant, in seconds; default: the first");

@@ -1,4 +1,4 @@
-/// emscape bench coverage: the time of a map of coverage.
+/// emscape bench coverage: time of computing coverage maps.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ struct BenchCoverageOptions {
   std::string quantity = "detection_probability";
 };
 
-/// Medians of the steps to the maps of some heights (ms).
+/// Median times of the steps that compute maps at some heights (ms).
 struct MapTimes {
   double places_ms = 0, update_ms = 0;
   emfield::StageTimes stages;
@@ -148,7 +148,7 @@ Example:
   addSetOption(*command, options->edits);
   command->add_option(
       "--area", options->area,
-      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: the scenario's region");
+      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: the box around the region");
   command->add_option("--cell", options->cell_m, "Side of a pixel (m)");
   command->add_option("--height", options->height_m, "First height above ground (m)")
       ->check(CLI::Range(0.0, 100e3));

@@ -27,7 +27,7 @@ struct BenchFieldOptions {
   std::vector<scenario::Edit> edits;
   int repeats = 5;
   std::string device_volume = "float";
-  std::vector<std::string> emitters;  ///< that move and turn; empty: all
+  std::vector<std::string> emitters;  ///< emitters that move and turn; empty: all
 };
 
 /// Indices of the emitters that an option names. @throws Error (usage) for an unknown name
@@ -71,12 +71,12 @@ Measured mediansOf(const std::vector<Measured>& runs) {
            of([](const Measured& run) { return run.stages.marched_heights; })}};
 }
 
-/// What an H100 needs at least for a step at one height over smooth earth, by its arithmetic and its shared
-/// memory alone: 5 ms for 360 azimuths, 1000 steps and 2048 heights.
+/// Lower bound of an H100's time for a step at one height over smooth earth, from its arithmetic and shared
+/// memory throughput: 5 ms for 360 azimuths, 1000 steps and 2048 heights.
 constexpr double kFloor_ns = 5e6 / (360.0 * 1000 * 2048);
 
-/// Moves an emitter north by more than the solver's tolerance, and back at the next call: it stays near its
-/// position.
+/// Moves an emitter north by more than the solver's tolerance, and back at the next call, so that it stays
+/// near its position.
 void move(scenario::EmitterState& emitter, double tolerance_m, int repeat) {
   constexpr double kMetresPerDegree = 111000;
   const double shift_deg = 2 * tolerance_m / kMetresPerDegree;
@@ -95,7 +95,7 @@ void turn(scenario::EmitterState& emitter, double angle_rad) {
 
 class FieldBench {
  public:
-  /// @throws Error (device) if the field does not fit there
+  /// @throws Error (device) if the field does not fit into the GPU's memory
   FieldBench(const playback::LoadedScenario& input, int repeats, const ComputeTarget& target)
       : target_(target),
         options_(target.fieldOptions()),

@@ -32,15 +32,16 @@ struct BenchMarchOptions {
 struct MarchCase {
   std::string name, what;
   std::vector<AzimuthMarch> emitters;
-  double floor_ms = 0;  ///< on an H100: arithmetic and shared memory alone
+  double floor_ms = 0;  ///< lower bound on an H100, from arithmetic and shared memory
   int steps = 0;
 
   const AzimuthMarch& first() const { return emitters.front(); }
-  /// Heights of all steps, at the N of the start.
+  /// Number of heights over all steps, with the initial N.
   double heights() const {
     return double(emitters.size()) * first().azimuths * steps * first().grid.intervals;
   }
-  /// Two complex transforms of N points, and screens, propagator and passes around the transforms.
+  /// Floating-point operations: two complex transforms of N points, screens, propagator, and passes around
+  /// the transforms.
   double operations() const { return heights() * (10 * std::log2(double(first().grid.intervals)) + 18); }
 };
 

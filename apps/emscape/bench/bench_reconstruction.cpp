@@ -57,7 +57,7 @@ class MeanDifference {
     return mean;
   }
   double ratioPercent() const { return ratio_sum_ / pictures_; }
-  /// Over the pixels of all pictures; infinity if all are equal.
+  /// Peak signal-to-noise ratio over the pixels of all pictures; infinity if all are equal.
   double psnr_db() const { return -10 * std::log10(square_sum_ / pictures_); }
 
   Json json() const {
@@ -82,7 +82,7 @@ class MeanDifference {
 struct Measured {
   render::FramePlan plan;
   std::vector<double> busy_ms, busy_cpu_ms, restore_ms;
-  std::vector<double> ratios;  ///< busy_ms to that of the full picture of the same view
+  std::vector<double> ratios;  ///< of busy_ms to busy_ms of the full picture of the same view
   double rays = 0, rays_in_box = 0;
   MeanDifference error;
   bool restored_equals_full = true;
@@ -108,7 +108,7 @@ std::vector<Measured> plansFor(const BenchReconstructionOptions& options) {
 
 class ReconstructionBench {
  public:
-  /// @param repeats  draws of each view in each way; the median is reported
+  /// @param repeats  number of times each view is drawn in each way; the median is reported
   ReconstructionBench(BenchScene& scene, std::vector<Measured> plans, int repeats)
       : scene_(scene), plans_(std::move(plans)), repeats_(repeats) {}
 
@@ -116,7 +116,7 @@ class ReconstructionBench {
   double pixels() const { return pixels_; }
   double pixelsInBox() const { return pixels_in_box_; }
 
-  /// Adaptive rays need some frames to converge to their limit.
+  /// Adaptive rays need some frames to reach their limit.
   void warmUp() {
     constexpr int kFrames = 6;
     render::FrameReport report;
@@ -126,7 +126,7 @@ class ReconstructionBench {
     }
   }
 
-  /// Draws one view in every way, in turn, so that other load of the machine affects all of them.
+  /// Draws one view in each way in turn, so that other load on the machine affects all of them.
   void measureView(double angle_deg) {
     scene_.turnTo(angle_deg);
     const render::RayLoad all = scene_.loadOf(render::sourceLattices(Pattern::full, scene_.size()));
@@ -153,7 +153,7 @@ class ReconstructionBench {
 
  private:
   long long raysInBox(Pattern pattern, const render::FrameReport& report) const {
-    if (pattern == Pattern::adaptive) return report.rays;  // it casts no others
+    if (pattern == Pattern::adaptive) return report.rays;  // it casts only these
     return scene_.loadOf(render::sourceLattices(pattern, scene_.size())).rays;
   }
 

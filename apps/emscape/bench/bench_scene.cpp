@@ -171,16 +171,16 @@ void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
   command.add_option("--size", options.size, "Picture size in pixels, WxH");
   command.add_option("--mode", options.mode, "Compositing mode, as for render");
   command.add_option("--step", options.step_voxels, "Distance of samples, in voxels")
-      ->check(CLI::Range(0.05, 10.0));
+      ->check(within(render::kStepLimits));
   command.add_option("--mida-gamma", options.mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
-      ->check(CLI::Range(-1.0, 1.0));
+      ->check(within(render::kMidaGammaLimits));
   command.add_flag("--exact", options.exact, "No early termination of rays");
   command.add_flag("!--no-skip", options.skip_empty, "Sample empty bricks too");
   command.add_option("--camera", options.camera, "As for render");
   command.add_option("--transfer", options.transfer,
                      "Colours and opacities (JSON); default: scenarios/transfer/paper.json");
   command.add_option("--exaggeration", options.exaggeration, "Vertical exaggeration; 0: chosen from the box")
-      ->check(CLI::Range(0.0, 100.0));
+      ->check(within(render::kExaggerationLimits));
   command.add_option("--quantity", options.selection.quantity, "Quantity or channel; default: the first");
   command.add_option("--time", options.selection.times, "Instant, in seconds; default: the first");
   addDeviceVolumeOption(command, options.device_volume);

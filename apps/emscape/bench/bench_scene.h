@@ -27,15 +27,16 @@ struct BenchSceneOptions {
   bool skip_empty = true;
 };
 
-/// scenarios/transfer/paper.json for all fields, so that measurements can be compared, or that of a file.
+/// The transfer function of a file, or scenarios/transfer/paper.json for all fields, so that measurements can
+/// be compared.
 render::TransferFunction benchFunction(const volume::VolumeInfo& info, const std::string& file);
 /// A camera rotated clockwise, as seen from above, about the vertical through its target.
 render::CameraSpec turned(render::CameraSpec spec, double angle_deg);
-/// With the picture on black.
+/// Writes the image over black.
 void writeOnBlack(const std::string& file, const render::Image& image);
 
 Json triple(const Vec3d& v);
-/// In drawn coordinates, as in render::Camera.
+/// The camera in drawn coordinates, as in render::Camera.
 Json cameraJson(const render::Camera& camera);
 Json transferJson(const render::TransferFunction& function);
 
@@ -77,7 +78,7 @@ class BenchScene {
 
   /// Description of the scene: device, threads, volume, size, mode, step_voxels, ...
   Json json() const;
-  /// The same on one line.
+  /// The description of json() on one line.
   std::string summary() const;
 
  private:
@@ -91,7 +92,7 @@ class BenchScene {
   render::Renderer renderer_;
 };
 
-/// Opened on the processor of --backend. @throws Error (usage, bad_input, device)
+/// Opens a scene on the processor of --backend. @throws Error (usage, bad_input, device)
 std::unique_ptr<BenchScene> openBenchScene(const BenchSceneOptions& options, const GlobalOptions& global);
 
 }  // namespace emscape::app

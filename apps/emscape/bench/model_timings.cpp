@@ -180,7 +180,7 @@ void timeP528(int repeats, std::vector<ModelTiming>& timings) {
                      ""});
 }
 
-/// A column of 100 heights to 6 km at the end of the hills.
+/// Times a column of 100 heights up to 6 km at the end of the hills.
 template <class Excess>
 void timeClearAirColumn(const char* name, int repeats, const Excess& excess,
                         std::vector<ModelTiming>& timings) {

@@ -11,7 +11,7 @@ struct ModelTiming {
   std::string model;
   std::string what;  ///< description of one evaluation
   double evaluations_per_s = 0;
-  double ratio = 0;  ///< to `ratio_to`, from the same run; 0: none
+  double ratio = 0;  ///< of this speed to that of `ratio_to`, in the same run; 0: none
   std::string ratio_to;
 };
 
@@ -30,9 +30,9 @@ struct ColumnTiming {
 constexpr int kColumnCount = 200, kColumnHeights = 100;
 constexpr int kItmPosts = 300;
 
-/// All models, CPU time of the calling thread, fastest of `repeats` runs.
+/// Times all models: CPU time of the calling thread, fastest of `repeats` runs.
 std::vector<ModelTiming> timeModels(int repeats);
-/// In single precision.
+/// Times the columns in single precision.
 std::vector<ColumnTiming> timeColumns(int repeats);
 
 }  // namespace emscape::app

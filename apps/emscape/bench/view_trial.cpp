@@ -67,7 +67,7 @@ void addEditTrial(ScriptText& script, const ViewTrial& trial) {
   }
 }
 
-/// @param time_s  of step n of a permutation that leaps
+/// @param time_s  time of step n of a permutation with large jumps
 void addSeekTrial(ScriptText& script, const std::vector<double>& times_s) {
   const auto steps = times_s.size();
   const auto leap = [&](int n) { return times_s[(static_cast<std::size_t>(n) * 7 + 3) % steps]; };
@@ -115,7 +115,7 @@ bool isFrame(const Json& line) {
   return line["event"] == "frame";
 }
 
-/// Calls a function for each mark with the index of its line.
+/// Calls a function with the index of the line of each mark.
 template <class Call>
 void forMarks(const Lines& lines, const char* text, const Call& call) {
   for (std::size_t n = 0; n < lines.size(); ++n) {
@@ -123,7 +123,7 @@ void forMarks(const Lines& lines, const char* text, const Call& call) {
   }
 }
 
-/// From a mark to the first frame after it that holds.
+/// Time from a mark to the first frame after it that passes a test.
 template <class Test>
 void addTime(const Lines& lines, std::size_t mark, const Test& test, std::vector<double>& times_ms) {
   const std::size_t n = find(lines, mark, [&](const Json& line) { return isFrame(line) && test(line); });

@@ -1,4 +1,4 @@
-/// A fixed script for the window that covers everything that is timed, and the evaluation of its log.
+/// A fixed script for the window that covers everything that is timed, and evaluation of its log.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace emscape::app {
 struct ViewTrial {
   std::vector<double> times_s;  ///< of the steps; fewer than two: no seeking
   std::optional<scenario::Edit>
-      edit;               ///< a value of the scenario, doubled and set back again; none: no edits
+      edit;               ///< a value of the scenario that is doubled and restored; none: no edits
   double edit_value = 0;  ///< the present value
   double idle_s = 10;     ///< duration of the idle phase
 };
@@ -25,12 +25,12 @@ std::string trialScript(const ViewTrial& trial);
 /// Times in ms; empty: not measured.
 struct ViewTimes {
   std::string device, gl_renderer;
-  bool shares_gpu = false;    ///< pictures went from CUDA to OpenGL on the GPU
+  bool shares_gpu = false;    ///< pictures were passed from CUDA to OpenGL on the GPU
   int width = 0, height = 0;  ///< of the picture
   double first_picture_ms = 0, first_exact_ms = 0;
   std::vector<double> ui;                      ///< frames of the window: events, panels, drawing commands
-  std::vector<double> ui_computing;            ///< of those, while a field was computed
-  std::vector<double> frame, frame_computing;  ///< the same, until the display has them
+  std::vector<double> ui_computing;            ///< `ui` while a field was computed
+  std::vector<double> frame, frame_computing;  ///< `ui`, until the frame is displayed
   double orbit_fps = 0;                        ///< pictures per second while the camera turns
   std::vector<double> input_to_picture, input_to_exact, abort;
   std::vector<double> edit_to_picture, edit_to_exact;

@@ -10,6 +10,7 @@
 #include "emscape/base/progress.h"
 #include "emscape/playback/painter.h"
 #include "emscape/render/cut_plane.h"
+#include "emscape/render/render_settings.h"
 #include "emscape/scenario/edit.h"
 
 namespace emscape::app {
@@ -23,29 +24,34 @@ struct GlobalOptions {
   ProgressSink progress = {};  ///< of a host program; empty: standard error
 };
 
-/// An option with several values, with commas between them: a word after a blank may be the subcommand's
-/// input.
+/// Adds an option with several values, separated by commas, since a word after a blank may be the
+/// subcommand's input.
 inline CLI::Option* addListOption(CLI::App& command, const std::string& name,
                                   std::vector<std::string>& values, const std::string& description) {
   return command.add_option(name, values, description)->delimiter(',')->allow_extra_args(false);
 }
 
-/// The option that a hint proposes, as " (...)"; empty for Hint::none.
+/// The check of an option that is a setting of pictures.
+inline CLI::Range within(const render::SettingLimits& limits) {
+  return {limits.min, limits.max};
+}
+
+/// The option that a hint suggests, as " (...)"; empty for Hint::none.
 std::string optionText(Hint hint);
 
-/// --set PATH=VALUE, which may be given several times. @throws Error (usage) when it is parsed, for a text
-/// without '='
+/// Adds --set PATH=VALUE, which may be given several times. Parsing it throws Error (usage) for a text
+/// without '='.
 void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits, const std::string& name = "--set",
                   const std::string& what = "changes a value of the scenario");
 
-/// --compare original|FILE. @param what  the command makes, for the help
+/// Adds --compare original|FILE. @param what  result of the command, for the help
 void addCompareOption(CLI::App& command, std::string& compare, const std::string& what);
-/// --plane, which may be given several times; replaces what `planes` holds. @throws Error (usage) when it is
-/// parsed, for a text that is not a plane and for too many
+/// Adds --plane, which may be given several times and replaces the contents of `planes`. Parsing it throws
+/// Error (usage) for a text that is not a plane and for too many planes.
 void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes);
 
-/// --mesh, --cells, --cell-rasterizer, --cell-order and --cell-perspective, of pictures.
-/// @throws Error (usage) when they are parsed
+/// Adds --mesh, --cells, --cell-rasterizer, --cell-order and --cell-perspective, for pictures.
+/// Parsing them throws Error (usage).
 void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& cells);
 
 /// Runs the subcommand that was chosen; returns the exit status.

@@ -39,7 +39,7 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
   app.add_flag("--quiet,-q", global.quiet, "Neither progress nor messages, only warnings and errors");
 }
 
-/// After the global options: it follows --json.
+/// To be called after the global options are added, since it depends on --json.
 void addLicences(CLI::App& app, const GlobalOptions& global) {
   const auto print_licences = [&global] {
     throw CLI::CallForVersion(global.json ? billOfMaterials().dump(2) : licencesText(), 0);
@@ -87,14 +87,14 @@ int run(const Action& action) {
   }
 }
 
-/// A number as users write it: CLI11 writes 360.000000.
+/// A number without trailing zeros: CLI11 writes 360.000000.
 std::string shortNumber(const std::string& text) {
   double value = 0;
-  return CLI::detail::lexical_cast(text, value) ? fmt::format("{:g}", value) : text;
+  return CLI::detail::lexical_cast(text, value) ? fmt::format("{:.10g}", value) : text;
 }
 
 /// "whole number" for options of integers, else "number".
-/// @param app  the subcommand that the option belongs to, or one of its parents does
+/// @param app  subcommand; the option belongs to it or to one of its parents
 std::string numberName(const CLI::App& app, const std::string& option) {
   const CLI::Option* found = nullptr;
   for (const CLI::App* of = &app; of != nullptr && found == nullptr; of = of->get_parent())
@@ -103,7 +103,7 @@ std::string numberName(const CLI::App& app, const std::string& option) {
   return is_whole ? "whole number" : "number";
 }
 
-/// CLI11's messages on values, as the program's own are: the option, the value and what is allowed.
+/// Rewrites CLI11's message about a value in the form of the program's own: option, value, allowed values.
 /// @param app  the subcommand that the options belong to
 std::string plainMessage(const CLI::App& app, const std::string& message) {
   const auto startsWith = [](const std::string& text, const std::string& start) {
@@ -135,7 +135,7 @@ std::string plainMessage(const CLI::App& app, const std::string& message) {
   return fmt::format("{}: '{}' must be one of {}", name, rest.substr(0, names), allowed);
 }
 
-/// The parser's message. Where CLI11 asks for a subcommand, it names the word that is none.
+/// The parser's message. Where CLI11 asks for a subcommand, it names the unknown word.
 std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* last = &app;
   while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
@@ -146,7 +146,7 @@ std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
   return plainMessage(*last, error.what());
 }
 
-/// CLI11 takes 'nan' and 'inf' for numbers; no option does.
+/// Rejects 'nan' and 'inf', which CLI11 accepts as numbers.
 /// @throws CLI::ValidationError naming the first such option of the program or its subcommands
 void checkNumbers(const CLI::App& app) {
   for (const CLI::Option* option : app.get_options()) {
@@ -160,7 +160,7 @@ void checkNumbers(const CLI::App& app) {
   for (const CLI::App* subcommand : app.get_subcommands()) checkNumbers(*subcommand);
 }
 
-/// Parses; returns an exit status if there is nothing to run.
+/// Parses the command line; returns an exit status if there is nothing to run.
 int parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
@@ -175,7 +175,7 @@ int parse(CLI::App& app, int argc, char** argv) {
   }
 }
 
-/// Parses for a host program, whose own texts are help and version.
+/// Parses for a host program, which has its own help and version texts.
 /// @throws Error (usage)
 void parse(CLI::App& app, const std::vector<std::string>& arguments) {
   try {
@@ -188,7 +188,7 @@ void parse(CLI::App& app, const std::vector<std::string>& arguments) {
   }
 }
 
-/// The parser with all subcommands, and what it fills.
+/// The parser with all subcommands, and the variables it fills.
 struct CommandLine {
   CLI::App app{
       "Computes the electromagnetic environment of a scenario as a volume that changes with time, and shows "

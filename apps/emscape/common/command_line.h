@@ -19,30 +19,31 @@ namespace emscape::app {
 /// @return the exit status
 int runCommandLine(int argc, char** argv);
 
-/// The parser of the command line, to be described.
+/// The parser of the command line, for generating its documentation.
 std::shared_ptr<const CLI::App> commandLineParser();
 
-/// Parses a command line and runs nothing.
-/// @param arguments  subcommand and its options, without the program's name
-/// @throws Error (usage) for arguments that cannot be parsed, and for those that ask for help or version
+/// Parses a command line without running it.
+/// @param arguments  the subcommand and its options, without the program's name
+/// @throws Error (usage) for arguments that cannot be parsed or that request help or version
 void checkCommandLine(const std::vector<std::string>& arguments);
 
 /// Result of a subcommand.
 struct CommandResult {
-  int status = 0;    ///< exit status, 0 or that of a check that failed
-  std::string json;  ///< text that the program prints with --json; JSON
+  int status = 0;    ///< exit status: 0, or that of a failed check
+  std::string json;  ///< output of the program with --json
 };
 
 /// Runs one subcommand with --json within a program. Prints nothing, leaves signals and the log as they are,
 /// and removes the limit of threads that a subcommand has set.
-/// @param arguments  subcommand and its options, without the program's name
+/// @param arguments  the subcommand and its options, without the program's name
 /// @param progress   may be empty; an exception that it throws ends the work and reaches the caller
-/// @throws Error with the code that the program exits with: (usage) for arguments that cannot be parsed, else
-/// as the subcommand's functions
+/// @throws Error with the code that the program exits with: (usage) for arguments that cannot be parsed,
+/// otherwise as thrown by the subcommand's functions
 CommandResult commandResult(const std::vector<std::string>& arguments, const ProgressSink& progress);
 
-/// Command that starts this program as another process, for `study --jobs`; without it, the file of the
-/// running process. For hosts whose process is not emscape. @param words  program and first arguments
+/// Sets the command that starts this program as another process, for `study --jobs`; the default is the
+/// executable of the running process. For hosts whose process is not emscape. @param words  program and first
+/// arguments
 void setProgramCommand(const std::vector<std::string>& words);
 const std::vector<std::string>& programCommand();
 

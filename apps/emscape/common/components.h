@@ -1,4 +1,4 @@
-/// What of others is in the programs: versions and licences, as text and as a bill of materials.
+/// Third-party components of the programs: versions and licences, as text and as a bill of materials.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -8,16 +8,16 @@ namespace emscape::app {
 
 enum class Linkage { shared, static_, headers };
 
-/// A component of others that is linked or compiled in.
+/// A third-party component that is linked or compiled in.
 struct Component {
   const char* name;
-  const char* version;  ///< at build time; of a shared library another may be loaded
+  const char* version;  ///< at build time; a shared library of another version may be loaded
   const char* licence;  ///< SPDX expression
   Linkage linkage;
-  const char* library;  ///< beginning of the library's file name; empty: headers alone
+  const char* library;  ///< beginning of the library's file name; empty: header-only
 };
 
-/// Version, compiler, CUDA, instruction sets and the GPU that answers.
+/// Version, compiler, CUDA, instruction sets and available GPU.
 std::string versionText();
 
 /// The licence of Emscape, and one line per component: name, version, licence, linkage.

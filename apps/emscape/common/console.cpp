@@ -157,7 +157,7 @@ ProgressSink progressSink(const GlobalOptions& global) {
   };
   return [&global, current = std::make_shared<Current>()](const std::string& step, double fraction) {
     if (!current->progress || current->step != step) {
-      current->progress.reset();  // clears its line before the next one draws its own
+      current->progress.reset();  // erases its line before the next object draws its own
       current->step = step;
       current->progress = std::make_unique<Progress>(global, step);
     }

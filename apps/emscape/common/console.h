@@ -20,13 +20,14 @@ using Json = nlohmann::ordered_json;
 void installLog(const GlobalOptions& global);
 
 /// Opens standard streams that are closed at the start, so that no other file gets their numbers and writing
-/// to them fails. To be called first.
+/// to them fails. To be called before any other file is opened.
 void openStandardStreams();
 
 /// Writes text to standard output, which carries the result. @throws Error (other) if it cannot be written
 void printResult(const std::string& text);
 
-/// While it lives, results of the calling thread go into a text instead of standard output.
+/// While an object lives, results of the calling thread are collected in a text instead of being written to
+/// standard output.
 class CapturedResult {
  public:
   CapturedResult();
@@ -48,9 +49,9 @@ void print(fmt::format_string<Arguments...> format, Arguments&&... arguments) {
 /// A finite number, or null.
 Json number(double value);
 Json number(const std::optional<double>& value);
-/// The result as JSON, alone on standard output. @throws Error (other)
+/// Prints JSON as the only content of standard output. @throws Error (other)
 void printJson(const Json& result);
-/// A cell of a CSV file: in quotes if it has a comma or a quote.
+/// A cell of a CSV file, quoted if it contains a comma or a quote.
 std::string csvText(const std::string& text);
 /// Flushes standard output. @throws Error (other) if any part of the result could not be written
 void finishResult();
@@ -62,8 +63,9 @@ void printMessage(fmt::format_string<Arguments...> format, Arguments&&... argume
   writeMessage(fmt::format(format, std::forward<Arguments>(arguments)...));
 }
 
-/// Reports the work, its progress and the remaining time on standard error: on a terminal in a line that is
-/// rewritten, below the log; elsewhere in one line every ten seconds. Not with --quiet. One thread uses it.
+/// Reports the task, its progress and the remaining time on standard error: on a terminal in a line that is
+/// rewritten below the log, elsewhere as one line every ten seconds. Silent with --quiet. For use by one
+/// thread.
 class Progress {
  public:
   Progress(const GlobalOptions& global, std::string task);
@@ -71,7 +73,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// @param fraction  of the work that is done, 0..1
+  /// @param fraction  completed fraction of the work, 0..1
   void show(double fraction);
 
  private:
@@ -81,16 +83,16 @@ class Progress {
   const bool on_terminal_;
   const bool visible_;
   const Clock::time_point start_;
-  Clock::time_point told_;  // of the last line that is not rewritten
+  Clock::time_point told_;  // time of the last line that is not rewritten
 };
 
-/// A progress sink for a library: that of the options, else a new Progress for each step. Owned by the sink.
+/// A progress sink for a library: that of the options, otherwise one that owns a new Progress for each step.
 ProgressSink progressSink(const GlobalOptions& global);
 
 /// Logs warnings. Warnings that differ only in the emitter and in numbers are merged into one that names all
 /// emitters.
 void logWarnings(const std::vector<std::string>& warnings);
-/// The lines of logWarnings().
+/// The lines that logWarnings() writes.
 std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings);
 
 }  // namespace emscape::app

@@ -12,7 +12,7 @@ volatile std::sig_atomic_t signal_caught = 0;
 volatile std::sig_atomic_t ends_at_once = 0;
 static_assert(StopFlag::is_always_lock_free, "a signal handler may set only lock-free atomics");
 
-/// Without what a signal handler must not call.
+/// Ends the process; calls only functions that a signal handler may call.
 [[noreturn]] void endAtOnce(int signal) {
   constexpr char kText[] = "emscape: stopped by signal ";
   const char number[] = {static_cast<char>('0' + signal / 10), static_cast<char>('0' + signal % 10), '\n'};

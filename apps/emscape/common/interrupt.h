@@ -1,4 +1,4 @@
-/// Stopping in an orderly way on SIGINT, SIGTERM and SIGHUP.
+/// Orderly shutdown on SIGINT, SIGTERM and SIGHUP.
 #pragma once
 
 #include "emscape/playback/stop.h"
@@ -9,13 +9,13 @@ namespace emscape::app {
 /// that is ignored at the start stays ignored.
 void catchInterrupts();
 
-/// For commands that write no files and may be in a library's reader for long: from now on the first signal
-/// that catchInterrupts() catches ends the program at once, with status 128 + N.
+/// For commands that write no files and may spend a long time in a library's reader: from now on the first
+/// signal that catchInterrupts() catches ends the program at once, with status 128 + N.
 void endAtInterrupts();
 
-/// Set once the user wants the program to stop.
+/// Is set when the user stops the program.
 const StopFlag& stopFlag();
-/// The signal that set it; 0 before.
+/// The signal that set stopFlag(); 0 before.
 int caughtSignal();
 
 /// @throws playback::Stopped if stopFlag() is set

@@ -25,7 +25,7 @@ void addMapOptions(CLI::App& command, MapOptions& options) {
       ->default_str("");
   command.add_option(
       "--area", options.area,
-      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: the scenario's region");
+      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: the box around the region");
   command.add_option(
       "--crs", options.crs,
       "Projection: utm (zone of the area's middle), local (azimuthal equidistant) or EPSG:NUMBER");

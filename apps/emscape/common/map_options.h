@@ -1,4 +1,4 @@
-/// The options of subcommands that draw maps of coverage, and what follows from them.
+/// Options of the subcommands that draw coverage maps.
 #pragma once
 
 #include <cmath>
@@ -15,9 +15,9 @@ struct MapOptions {
   std::string heights = "agl:150";
   std::vector<std::string> products{"covered", "value"};
   std::string quantity = "detection_probability";
-  double threshold = NAN;  ///< NaN: the usual one of the quantity
+  double threshold = NAN;  ///< NaN: default of the quantity
   std::string times = "0";
-  double cell_m = NAN;  ///< NaN: that of the scenario's voxels
+  double cell_m = NAN;  ///< NaN: the scenario's voxel size
   std::string area;     ///< empty: the scenario's region
   std::string crs = "utm";
   std::vector<std::string> formats{"cog", "png"};
@@ -26,7 +26,7 @@ struct MapOptions {
 /// @param options  must live as long as the command
 void addMapOptions(CLI::App& command, MapOptions& options);
 
-/// @throws Error (usage) that names the option and what it allows
+/// @throws Error (usage) that names the option and its allowed values
 std::vector<study::Product> productsOf(const MapOptions& options);
 study::CoverageRequest requestOf(const MapOptions& options, const scenario::Clock& clock);
 study::MapArea areaOf(const MapOptions& options, const scenario::Scenario& scenario);

@@ -1,4 +1,4 @@
-/// Options and look-ups that several what-if subcommands share.
+/// Options and look-ups shared by the what-if subcommands.
 #pragma once
 
 #include <fmt/core.h>
@@ -15,7 +15,7 @@
 
 namespace emscape::app {
 
-/// Index of a named item of a scenario. @throws Error (usage) that lists the names that there are
+/// Index of a named item of a scenario. @throws Error (usage) that lists the existing names
 template <class Item>
 int namedIndex(const std::vector<Item>& items, const std::string& name, const char* option, const char* kind,
                const std::string& file) {
@@ -28,21 +28,21 @@ int namedIndex(const std::vector<Item>& items, const std::string& name, const ch
                                             known.empty() ? "none" : known));
 }
 
-/// -o FILE.png|.svg|.csv|.json, which may be given several times.
+/// Adds -o FILE.png|.svg|.csv|.json, which may be given several times.
 void addStudyOutputs(CLI::App& command, std::vector<std::string>& files);
 
-/// What is written into such files.
+/// Contents of these files.
 struct StudyOutputs {
   std::function<void(const std::string&file)> plot, csv;
   std::function<std::string()> json;
 };
-/// Writes each file by its ending. @throws Error
+/// Writes each file in the format of its extension. @throws Error
 void writeStudyOutputs(const std::vector<std::string>& files, const StudyOutputs& outputs);
 
-/// --threshold. @param threshold  NAN: not given
+/// Adds --threshold. @param threshold  NAN: not given
 void addThresholdOption(CLI::App& command, double& threshold);
-/// The threshold, or the usual one of the quantity.
-/// @throws Error (usage) where neither is there, and for a probability beyond 0..1
+/// The threshold, or the default of the quantity.
+/// @throws Error (usage) if there is neither, and for a probability outside 0..1
 double thresholdOf(double threshold, scenario::Quantity quantity);
 
 }  // namespace emscape::app

@@ -12,7 +12,7 @@ namespace emscape::app {
 
 using playback::ComputeTarget;
 
-/// --device-volume float|half|sparse
+/// Adds --device-volume float|half|sparse.
 void addDeviceVolumeOption(CLI::App& command, std::string& device_volume);
 /// The value of that option.
 volume::VoxelPrecision precisionOf(const std::string& device_volume);

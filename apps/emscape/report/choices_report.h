@@ -1,4 +1,4 @@
-/// What models choose by themselves, as JSON.
+/// Automatic choices of models, as JSON.
 #pragma once
 
 #include <vector>

@@ -22,7 +22,7 @@ std::string decimals(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
 }
 
-/// Areas of products that mark one, and differences of the others; either may be empty.
+/// Areas of the products that mark an area, and differences of the other products; either may be empty.
 std::pair<study::ReportTable, study::ReportTable> tablesOf(const study::Comparison& comparison) {
   std::pair<study::ReportTable, study::ReportTable> tables;
   tables.first.columns = {"product",    "height",   "time s",   "A km2", "B km2",
@@ -71,7 +71,7 @@ std::string titleOf(const study::ChangedArea& area) {
                      area.time_s);
 }
 
-/// Values of the emitter that decides, in A and B.
+/// Values of the decisive emitter in A and B.
 std::string valuesText(const study::ChangedArea& area, const std::string& quantity) {
   if (area.emitter.empty()) return "No emitter radiates there in either scenario.";
   const auto text = [](const std::optional<double>& value) {

@@ -9,10 +9,10 @@
 
 namespace emscape::app {
 
-/// What report.json has beside the maps.
+/// The entries of report.json other than the maps.
 Json comparisonJson(const study::Comparison& comparison, const study::ComparedScenario& a,
                     const study::ComparedScenario& b);
-/// "Gained and lost" and "Why". @param quantity  its name
+/// Adds the sections "Gained and lost" and "Why". @param quantity  its name
 void addSections(study::HtmlReport& report, const study::Comparison& comparison, const std::string& quantity);
 void printComparison(const study::Comparison& comparison, const std::string& quantity);
 

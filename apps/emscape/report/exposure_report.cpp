@@ -17,7 +17,8 @@ Json summaryJson(const ExposureSummary& summary, bool is_emitter) {
             {"max", number(summary.max)},
             {"max_time_s", std::isfinite(summary.max) ? Json(summary.max_time_s) : Json(nullptr)},
             {"first_s", number(summary.first_s)},
-            {"fraction", summary.fraction},
+            {"fraction", number(summary.fraction)},
+            {"unknown_fraction", summary.unknown_fraction},
             {"longest_gap_s", summary.longest_gap_s},
             {"cumulative_probability", number(summary.cumulative_probability)}};
   if (is_emitter) json["best_fraction"] = summary.best_fraction;
@@ -53,6 +54,7 @@ Json exposureJson(const Exposure& exposure) {
                             {"height_msl_m", row.height_msl_m},
                             {"height_agl_m", number(row.height_agl_m)},
                             {"value", number(row.value)},
+                            {"state", study::toString(row.state)},
                             {"each", each},
                             {"best", bestName(exposure, row)},
                             {"cumulative_probability", number(row.cumulative_probability)}});
@@ -71,15 +73,18 @@ void printExposure(const Exposure& exposure) {
           request.look == scenario::RadarLook::target ? "at the platform" : "as their scan points",
           exposure.cross_section);
   }
-  print("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>14} {:>8} {:>14}\n", "emitter", "max", "at s", "first s",
-        "reached", "longest gap s", "best", "in any look");
+  print("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>9} {:>14} {:>8} {:>14}\n", "emitter", "max", "at s", "first s",
+        "reached", "unknown", "longest gap s", "best", "in any look");
   const auto row = [](const ExposureSummary& summary, const std::string& best) {
     const bool has_value = std::isfinite(summary.max);
-    print("  {:<22} {:>9} {:>8} {:>8} {:>7.1f} % {:>14g} {:>8} {:>14}\n", summary.name,
+    const auto percents = [](double part) {
+      return std::isnan(part) ? "-" : fmt::format("{:.1f} %", 100 * part);
+    };
+    print("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>9} {:>14g} {:>8} {:>14}\n", summary.name,
           has_value ? fmt::format("{:.4g}", summary.max) : "-",
           has_value ? fmt::format("{:g}", summary.max_time_s) : "-",
-          summary.first_s ? fmt::format("{:g}", *summary.first_s) : "never", 100 * summary.fraction,
-          summary.longest_gap_s, best,
+          summary.first_s ? fmt::format("{:g}", *summary.first_s) : "never", percents(summary.fraction),
+          percents(summary.unknown_fraction), summary.longest_gap_s, best,
           std::isfinite(summary.cumulative_probability)
               ? fmt::format("{:.4f}", summary.cumulative_probability)
               : "-");
@@ -88,6 +93,9 @@ void printExposure(const Exposure& exposure) {
     row(summary, fmt::format("{:.0f} %", 100 * summary.best_fraction));
   }
   row(exposure.together, "");
+  if (exposure.together.unknown_fraction > 0) {
+    print("Unknown where a path crosses missing terrain; 'reached' is of the known time.\n");
+  }
 }
 
 void writeExposureCsv(const Exposure& exposure, const std::string& file) {
@@ -98,7 +106,7 @@ void writeExposureCsv(const Exposure& exposure, const std::string& file) {
     out << "time_s,latitude_deg,longitude_deg,height_msl_m,height_agl_m,"
         << scenario::info(exposure.request.quantity).name;
     for (const std::string& name : exposure.names) out << "," << csvText(name);
-    out << ",best,cumulative_probability\n";
+    out << ",best,cumulative_probability,state\n";
     for (const ExposureRow& row : exposure.rows) {
       out << fmt::format("{:.10g},{:.7f},{:.7f},{:.2f},{},{}", row.time_s, row.latitude_deg,
                          row.longitude_deg, row.height_msl_m,
@@ -106,7 +114,8 @@ void writeExposureCsv(const Exposure& exposure, const std::string& file) {
                          text(row.value));
       for (const double value : row.each) out << "," << text(value);
       const std::string best = row.best < 0 ? "" : exposure.names[static_cast<std::size_t>(row.best)];
-      out << "," << csvText(best) << "," << text(row.cumulative_probability) << "\n";
+      out << "," << csvText(best) << "," << text(row.cumulative_probability) << ","
+          << study::toString(row.state) << "\n";
     }
   });
 }

@@ -30,7 +30,7 @@ std::vector<PlotLine> linkLines(const NamedLinks& links) {
   return lines;
 }
 
-/// Two lines per pair: of one look and of all looks so far.
+/// Two lines per pair: for a single look, and for all looks so far.
 std::vector<PlotLine> detectionLines(const NamedLinks& links) {
   std::vector<PlotLine> lines;
   for (const Detection& detection : links.report.detections) {
@@ -50,7 +50,7 @@ std::vector<PlotLine> detectionLines(const NamedLinks& links) {
   return lines;
 }
 
-/// Limits of the ratios, in tens of dB, not below -60 dB.
+/// Limits of the ratios, multiples of 10 dB, not below -60 dB.
 std::pair<double, double> limitsOf(const std::vector<PlotLine>& lines) {
   double lowest = HUGE_VAL, highest = -HUGE_VAL;
   for (const PlotLine& line : lines) {

@@ -16,7 +16,7 @@ using emfield::LinkRow;
 using emfield::PathRow;
 using scenario::Scenario;
 
-/// Rows that a table shows of one pair.
+/// Maximum rows of a table per pair.
 constexpr std::size_t kTableRows = 21;
 
 /// A value in a table; "-" without one.
@@ -71,8 +71,8 @@ Json rowsJson(const std::vector<Row>& rows) {
   return json;
 }
 
-/// Calls print(row, path) for evenly spaced rows, the last among them, and says how many there are.
-/// @param print_row  gets an empty path where it is that of the row above
+/// Calls print(row, path) for evenly spaced rows including the last one, and prints their total number.
+/// @param print_row  gets an empty path if it equals that of the row above
 template <class Row, class Print>
 void printThinned(const std::vector<Row>& rows, const Print& print_row) {
   const std::size_t step = std::max<std::size_t>((rows.size() + kTableRows - 2) / (kTableRows - 1), 1);

@@ -17,9 +17,9 @@ struct NamedLinks {
 
 /// The keys are documented in docs/command-line.md. null: no power, no jamming.
 Json toJson(const NamedLinks& links);
-/// A summary of all pairs, and a table over time for each, of at most some twenty of its times.
+/// Prints a summary of all pairs, and a table over time for each pair with about twenty rows at most.
 void printAsTable(const NamedLinks& links);
-/// One row per pair and time. @throws Error (other) if the file cannot be written
+/// Writes one row per pair and time. @throws Error (other) if the file cannot be written
 void writeCsv(const NamedLinks& links, const std::string& file);
 
 }  // namespace emscape::app

@@ -140,7 +140,7 @@ class ProfilePlot {
     if (line.size() > 1) canvas_.outline(line, ink, width, false);
   }
 
-  /// The first Fresnel zone: as wide at any range as its radius there.
+  /// Draws the first Fresnel zone, with its radius at each range.
   void drawZone() {
     constexpr int kPieces = 200;
     const Point2 begin = at(0.0, profile_.begin.height_msl_m),
@@ -188,7 +188,7 @@ class ProfilePlot {
                              end.height_msl_m - groundAt(post))});
   }
 
-  /// A title and a remark, drawn over the plot.
+  /// A title and a remark over the plot.
   void label(double x, Align align, const Ink& ink, const std::array<std::string, 2>& words) {
     const double row = 20 * unit_, gap = 12 * unit_;
     const double width = std::max(canvas_.textBox(words[0], 15 * unit_, Weight::bold).width,
@@ -269,7 +269,7 @@ class ProfilePlot {
   const PathBudget& budget_;
   const PathProfile& profile_;
   Canvas& canvas_;
-  double unit_;  ///< pixels of the picture in one of an 1200 x 800 one
+  double unit_;  ///< pixels per pixel of a 1200 x 800 picture
   Rect frame_;
   double bottom_m_ = 0, top_m_ = 0;  ///< over the chord between the ends' sea levels
   std::vector<Rect> labels_;         ///< areas of labels

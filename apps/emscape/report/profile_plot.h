@@ -1,4 +1,4 @@
-/// The picture of a path: terrain on the effective earth, the ray over it, its first Fresnel zone, obstacles.
+/// Picture of a path: terrain on the effective earth, the ray above it, its first Fresnel zone, obstacles.
 #pragma once
 
 #include <string>

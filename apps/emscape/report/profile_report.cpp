@@ -164,8 +164,8 @@ Json toJson(const ProfileReport& report) {
 
 void printAsTable(const ProfileReport& report) {
   const PathBudget& budget = report.budget;
-  print("Path from '{}' at t = {:g} s ({}), {}\n\n", budget.emitter, budget.time_s, report.time_utc,
-        quantityText(budget.frequency_hz, "Hz"));
+  print("Path from '{}' at t = {:g} s{}, {}\n\n", budget.emitter, budget.time_s,
+        report.time_utc.empty() ? "" : " (" + report.time_utc + ")", quantityText(budget.frequency_hz, "Hz"));
   printGeometry(budget);
   printWaveform(report.emitter);
   printObstacles(budget);

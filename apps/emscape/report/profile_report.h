@@ -12,7 +12,7 @@ namespace emscape::app {
 /// The path by another model, or the reason of its refusal.
 struct Comparison {
   propagation::PropagationModel model = propagation::PropagationModel::free_space;
-  std::string refusal;  ///< empty: the budget holds
+  std::string refusal;  ///< empty: the budget is valid
   emfield::PathBudget budget;
 };
 
@@ -24,7 +24,7 @@ struct ProfileReport {
   std::vector<Comparison> compared;
 };
 
-/// The keys are documented in docs/command-line.md. null: no field at all (the shadow of `horizon`).
+/// The keys are documented in docs/command-line.md. null: no field (shadow of `horizon`).
 Json toJson(const ProfileReport& report);
 void printAsTable(const ProfileReport& report);
 

@@ -10,7 +10,7 @@ namespace {
 
 using render::ControllerState;
 
-/// Microseconds are enough to read.
+/// Rounds to microseconds.
 double rounded(double value) {
   return std::round(value * 1000) / 1000;
 }
@@ -25,7 +25,7 @@ double heldPerSecond(const RealTimeReport& report) {
   return report.due > 0 ? report.frames_per_s * frames / static_cast<double>(report.due) : 0;
 }
 
-/// Fraction of the busy frames.
+/// Fraction of the busy frames with this pattern.
 double fractionOf(render::Pattern pattern, const playback::RealTimeTotals& totals) {
   const auto found = totals.frames_of.find(pattern);
   if (found == totals.frames_of.end()) return 0;

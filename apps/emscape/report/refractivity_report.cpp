@@ -34,7 +34,7 @@ RefractivityProfile profileAt(const RefractivityField& field, std::size_t index)
   return withEvaporationDuct(field.profiles[index], field.evaporation_duct_m);
 }
 
-/// "40 km" or "50.1, -4.2"; empty of a single profile.
+/// "40 km" or "50.1, -4.2"; empty for a single profile.
 std::string nameAt(const RefractivityField& field, std::size_t index) {
   if (!field.ranges_m.empty()) return fmt::format("{:.4g} km", field.ranges_m[index] / 1000);
   if (field.places.empty()) return "";
@@ -57,7 +57,7 @@ Json ductJson(const Duct& duct, const std::vector<double>& frequencies_hz) {
   return json;
 }
 
-/// The duct with the largest deficit; none without ducts.
+/// The duct with the largest deficit; empty without ducts.
 std::vector<Duct> strongest(const RefractivityProfile& profile) {
   std::vector<Duct> ducts = ductsOf(profile);
   const auto largest = std::max_element(ducts.begin(), ducts.end(), [](const Duct& a, const Duct& b) {
@@ -87,7 +87,7 @@ Json membersJson(const Refractivity& refractivity) {
   return json;
 }
 
-/// Heights of the plot: up to twice the highest duct below 3 km, else to 1 km.
+/// Heights of the plot: up to twice the height of the highest duct below 3 km, otherwise up to 1 km.
 std::pair<double, double> heightsOf(const RefractivityField& field) {
   const double bottom_m = field.profiles.front().levels.front().height_msl_m;
   double top_m = bottom_m;
@@ -100,7 +100,7 @@ std::pair<double, double> heightsOf(const RefractivityField& field) {
   return {bottom_m, top_m > bottom_m ? top_m : bottom_m + 1000};
 }
 
-/// M, or N, over the height.
+/// M or N over height.
 PlotLine lineOf(const RefractivityProfile& profile, const std::pair<double, double>& heights_m, bool is_n) {
   std::set<double> heights;
   for (int i = 0; i <= 300; ++i)

@@ -1,4 +1,4 @@
-/// Refractivity for people and programs: what profiles trap, as JSON and as a plot.
+/// Refractivity profiles, their ducts and trapped modes, as JSON and as a plot.
 #pragma once
 
 #include <string>
@@ -10,13 +10,14 @@
 
 namespace emscape::app {
 
-/// Each profile with its ducts, and the modes that they trap at frequencies (Hz).
+/// Each profile with its ducts and the modes that they trap at the given frequencies (Hz).
 Json profilesJson(const propagation::RefractivityField& field, const std::vector<double>& frequencies_hz);
-/// The same of a scenario, with the ranges over the members of its ensemble.
+/// The same for a scenario, with the ranges over the members of its ensemble.
 Json refractivityJson(const propagation::Refractivity& refractivity,
                       const std::vector<double>& frequencies_hz);
 
-/// M and N against height, with the layers in which M falls; of several profiles the first's layers.
+/// Plots M and N over height, with the layers in which M decreases; for several profiles, the layers of the
+/// first one.
 /// @throws Error (other) naming the file
 void plotRefractivity(const propagation::Refractivity& refractivity, const std::string& title,
                       render::ImageSize size, const std::string& file);

@@ -29,14 +29,15 @@ constexpr Ink kAir{{0.76F, 0.12F, 0.13F}};
 constexpr Ink kEnd{{0.10F, 0.12F, 0.16F}};
 constexpr double kMaxSpan_db = 100;
 
-/// Colours of losses: the smallest are the brightest.
+/// Colours of losses; smaller losses are brighter.
 render::TransferFunction colorsOf(const PathSection& section) {
   std::vector<float> known;
   std::copy_if(section.loss_db.begin(), section.loss_db.end(), std::back_inserter(known),
                [](float loss_db) { return std::isfinite(loss_db); });
   std::sort(known.begin(), known.end());
   double low = 0, high = 10;
-  if (!known.empty()) {  // without the hundredth next to the antenna, and that of the deepest nulls
+  if (!known.empty()) {  // without the smallest hundredth (next to the antenna) and the largest one (deepest
+                         // nulls)
     low = 10 * std::floor(static_cast<double>(known[known.size() / 100]) / 10);
     high = 10 * std::ceil(static_cast<double>(known[known.size() * 99 / 100]) / 10);
     high = std::clamp(high, low + 10, low + kMaxSpan_db);
@@ -110,8 +111,8 @@ class SectionPlot {
     panel.drawTitle(fmt::format("Loss by {}", toString(budget_.model)));
   }
 
-  /// Each sample is a rectangle of whole pixels, as the paper would show through the smoothed edges of
-  /// others; those of equal colour in a row are one.
+  /// Draws each sample as a rectangle of whole pixels, since the background would show through smoothed
+  /// edges; adjacent ones of equal colour in a row are drawn as one.
   void drawCells(const PlotPanel& panel) {
     constexpr int kShades = 64;
     const Rect& frame = panel.frame();
@@ -190,7 +191,7 @@ class SectionPlot {
   const PathSection& section_;
   Canvas& canvas_;
   render::Style style_;
-  double unit_;  ///< pixels of the picture in one of a 1400 x 800 one
+  double unit_;  ///< pixels per pixel of a 1400 x 800 picture
   double bottom_m_, top_m_;
   render::Legend legend_;
 };

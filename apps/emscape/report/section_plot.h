@@ -1,4 +1,4 @@
-/// The picture of a path's loss over range and height, with the air's profile beside it.
+/// Picture of a path's loss over range and height, with the refractivity profile next to it.
 #pragma once
 
 #include <string>

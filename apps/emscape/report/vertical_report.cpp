@@ -131,7 +131,7 @@ void writeVerticalCsv(const VerticalDiagram& diagram, const std::string& file) {
       const auto ground = [&](std::size_t post) {
         return cut.ground_msl_m.empty() ? 0 : static_cast<double>(cut.ground_msl_m[post]);
       };
-      // A neighbour that counts for nothing may be unknown.
+      // A neighbour with weight 0 may be unknown.
       const double ground_m = part == 0 ? ground(i) : (1 - part) * ground(i) + part * ground(i + 1);
       const double msl_m = isAboveGround(diagram) ? height_m + ground_m : height_m;
       const auto text = [](double number, int decimals) {

@@ -8,18 +8,19 @@
 
 namespace emscape::app {
 
-/// Farthest and, there, lowest point of the grid at which the threshold is reached, and the part that is.
+/// Farthest grid point at which the threshold is reached, the lowest one if there are several, and the
+/// fraction of points at which it is reached.
 struct VerticalReach {
   bool is_any = false;
   double range_m = 0, height_m = 0;
-  double covered_part = 0;  ///< of the points with a value
+  double covered_part = 0;  ///< fraction of the points with a value
 };
 VerticalReach reachOf(const study::VerticalDiagram& diagram, const study::VerticalCut& cut);
 
-/// @param with_grid  false: contours and reach alone
+/// @param with_grid  false: only contours and reach
 Json verticalJson(const study::VerticalDiagram& diagram, bool with_grid);
 void printVertical(const study::VerticalDiagram& diagram);
-/// Rows of the grid, then of the contours. @throws Error (other) naming the file
+/// Writes the rows of the grid, then those of the contours. @throws Error (other) naming the file
 void writeVerticalCsv(const study::VerticalDiagram& diagram, const std::string& file);
 
 }  // namespace emscape::app

@@ -19,11 +19,11 @@ double mebibytes(std::size_t bytes) {
   return static_cast<double>(bytes) / kMebibyte;
 }
 
-/// CPU time (ns) of a voxel and emitter in each step once its losses are known: antenna, sum, file. Measured
-/// as propagation::ModelCost, over 20 steps.
+/// CPU time (ns) per voxel, emitter and step once the losses are known: antenna, sum, file. Measured like
+/// propagation::ModelCost, over 20 steps.
 constexpr double kCombine_ns = 5;
 
-/// Time of a computation on all threads. Losses are computed once, those of moving emitters at each step.
+/// Time of a computation on all threads. Losses are computed once; those of moving emitters at each step.
 double timeOf(const scenario::Scenario& scenario, double voxels, double steps) {
   double time_s = 0;
   for (const scenario::Emitter& emitter : scenario.emitters) {
@@ -35,7 +35,7 @@ double timeOf(const scenario::Scenario& scenario, double voxels, double steps) {
   return time_s / threadCount();
 }
 
-/// One digit, in the largest unit that it reaches.
+/// One digit, in the largest unit with a value of at least 1.
 std::string roughly(double time_s) {
   if (time_s < 1) return "below 1 s";
   struct Unit {

@@ -1,4 +1,4 @@
-/// Memory, time and disk space that a scenario takes.
+/// Memory, time and disk space that a scenario needs.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,15 @@ namespace emscape::app {
 /// Upper bounds for `simulate` on the CPU with all quantities and steps of the scenario.
 struct WorkEstimate {
   emfield::MemoryEstimate memory;
-  std::size_t terrain_bytes = 0;  ///< heights of the elevation data, beside `memory`
-  /// Of the host's memory, with the elevation data read; none: not known.
+  std::size_t terrain_bytes = 0;  ///< heights of the elevation data; not included in `memory`
+  /// Available host memory once the elevation data are read; empty: unknown.
   std::optional<std::size_t> available_bytes;
   double time_s = 0;  ///< of the field at all steps, to an order of magnitude
   std::size_t steps = 0;
-  std::size_t step_bytes = 0;  ///< of the files of a step without compression, as .raw
+  std::size_t step_bytes = 0;  ///< of the uncompressed files of a step (.raw)
 };
 
-/// @param terrain  of the scenario; null: none
+/// @param terrain  of the scenario; may be null
 WorkEstimate workEstimateOf(const emfield::FieldSolver& solver, const scenario::Scenario& scenario,
                             const scenario::Terrain* terrain);
 

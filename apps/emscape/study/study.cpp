@@ -1,4 +1,4 @@
-/// emscape study: many variants of a scenario, measured.
+/// emscape study: measures of many variants of a scenario.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -122,7 +122,7 @@ int mergeParts(const LoadedStudy& loaded, study::StudyFolder& folder, bool parti
   return 0;
 }
 
-/// Computes the parts whose numbers come in on standard input.
+/// Computes the parts whose numbers are read from standard input.
 int work(const LoadedStudy& loaded, study::StudyFolder& folder, const GlobalOptions& global) {
   PartComputer computer(loaded, folder, global);
   for (int part; std::cin >> part;) {
@@ -133,7 +133,7 @@ int work(const LoadedStudy& loaded, study::StudyFolder& folder, const GlobalOpti
   return 0;
 }
 
-/// What --keep asks for; none: it was not given.
+/// The files that --keep names; empty if it was not given.
 std::optional<study::KeptFiles> keptFiles(const StudyCommand& command) {
   if (command.kept.empty()) return std::nullopt;
   return command.kept == "maps" ? study::KeptFiles::maps : study::KeptFiles::volumes;
@@ -155,7 +155,7 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   Stopwatch watch;
   const int threads = global.threads > 0 ? global.threads : allowedProcessors();
   setThreadLimit(threads);
-  if (command.worker) setLogSink([](LogLevel, const std::string&) {});  // the other process tells
+  if (command.worker) setLogSink([](LogLevel, const std::string&) {});  // the parent process logs
   if (!command.plan && command.folder.empty()) {
     throw Error(ErrorCode::usage, "--output is required, except with --plan");
   }

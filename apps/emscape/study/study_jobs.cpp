@@ -28,8 +28,8 @@ extern char** environ;
 namespace emscape::app {
 namespace {
 
-/// Times that a part may end its process without a finished variant in between, before it is taken for the
-/// cause.
+/// Number of times that a process may die in a part without finishing a variant, before the part is taken as
+/// the cause.
 constexpr int kMaxDeaths = 5;
 constexpr int kPoll_ms = 200;
 
@@ -81,11 +81,11 @@ class Worker {
   void compute(int part) {
     part_ = part;
     const std::string line = fmt::format("{}\n", part);
-    // A process that has ended is noticed by the end of its output.
+    // An ended process is detected by the end of its output.
     static_cast<void>(!write(to_, line.data(), line.size()));
   }
 
-  /// Reads what the process has written.
+  /// Reads the output of the process.
   /// @return 1: its part is complete; 0: not yet; -1: its output has ended
   int read() {
     char bytes[256];
@@ -95,7 +95,7 @@ class Worker {
     return std::find(bytes, bytes + count, '\n') != bytes + count ? 1 : 0;
   }
 
-  /// Ends the process, which has no part to compute. @return its status, as of waitpid()
+  /// Ends the process, which must have no part to compute. @return its status, as of waitpid()
   int finish() {
     if (to_ >= 0) close(to_);
     to_ = -1;
@@ -112,7 +112,7 @@ class Worker {
   int part_ = 0;
 };
 
-/// Parts that are left, in one stretch per worker, so that the parts of a worker follow each other.
+/// The remaining parts, in one contiguous range per worker, so that a worker computes successive parts.
 class Stretches {
  public:
   Stretches(const std::vector<int>& parts, std::size_t count) {
@@ -123,7 +123,7 @@ class Stretches {
     }
   }
 
-  /// The next part of a worker: of its own stretch, or from the end of the longest; 0: none is left.
+  /// The next part of a worker: from its own range, or from the end of the longest one; 0: none is left.
   int next(std::size_t worker) {
     std::deque<int>& own = stretches_[worker];
     if (!own.empty()) {
@@ -134,7 +134,7 @@ class Stretches {
     const auto longest = std::max_element(stretches_.begin(), stretches_.end(),
                                           [](const auto& a, const auto& b) { return a.size() < b.size(); });
     if (longest->empty()) return 0;
-    // Half of it, so that the thief's parts follow each other, too.
+    // Takes half of it, so that the parts taken are successive, too.
     const auto half = longest->end() - static_cast<std::ptrdiff_t>((longest->size() + 1) / 2);
     own.assign(half, longest->end());
     longest->erase(half, longest->end());
@@ -155,7 +155,7 @@ void computeInProcesses(const std::vector<int>& parts, int jobs, const std::vect
   std::vector<std::unique_ptr<Worker>> workers(count);
   struct Deaths {
     int count = 0;
-    std::uintmax_t finished_bytes = 0;  ///< at the last one
+    std::uintmax_t finished_bytes = 0;  ///< at the last death
   };
   std::map<int, Deaths> deaths;
   std::size_t done = 0;

@@ -24,9 +24,10 @@ const char* instructionSet() {
 #endif
 }
 
-/// The part that a process should try next: the one after its last, so that its parts follow each other; else
-/// the first of the longest stretch that nobody works on, or its middle where somebody comes from before it.
-/// @param missing  rising  @param is_free  of each: nobody works on it
+/// The part that a process should try next: the one after its last, so that it computes successive parts;
+/// otherwise the first part of the longest range on which no process works, or its middle if another process
+/// is approaching it.
+/// @param missing  ascending  @param is_free  for each: no process works on it
 /// @return index into missing; -1: none is free
 std::ptrdiff_t nextPart(const std::vector<int>& missing, const std::vector<bool>& is_free, int last) {
   std::size_t longest = 0, length = 0;
@@ -49,7 +50,7 @@ std::ptrdiff_t nextPart(const std::vector<int>& missing, const std::vector<bool>
   return static_cast<std::ptrdiff_t>(longest + (comes_another ? length / 2 : 0));
 }
 
-/// Between two looks for parts whose process has ended.
+/// Waits between two checks for parts whose process has ended.
 void waitAMoment() {
   for (int n = 0; n < 10; ++n) {
     stopIfInterrupted();

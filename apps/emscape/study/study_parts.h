@@ -1,4 +1,4 @@
-/// Parts of a study computed in this process.
+/// Computing parts of a study in this process.
 #pragma once
 
 #include <memory>
@@ -11,13 +11,13 @@
 
 namespace emscape::app {
 
-/// Computes parts one after another; the fields stay from part to part.
+/// Computes parts one after another; keeps the fields between parts.
 class PartComputer {
  public:
   /// @param loaded, folder  must outlive the object; the folder has begun
   PartComputer(const LoadedStudy& loaded, const study::StudyFolder& folder, const GlobalOptions& global);
 
-  /// Computes what is missing of a part.
+  /// Computes the missing variants of a part.
   /// @throws Error, playback::Stopped; finished variants are kept
   void compute(int part, const ProgressSink& progress);
 
@@ -28,11 +28,11 @@ class PartComputer {
   std::string machine_;
 };
 
-/// Computes parts one after another. @param progress  of all of them
+/// Computes parts one after another. @param progress  over all of them
 void computeParts(PartComputer& computer, const std::vector<int>& parts, const ProgressSink& progress);
 
-/// Computes parts that no other process works on until all are there, and waits for those that others
-/// compute: a part whose process has ended is taken over.
+/// Computes parts on which no other process works until all are complete, and waits for those that others
+/// compute. A part whose process has ended is taken over.
 void computeAnyParts(PartComputer& computer, const study::StudyFolder& folder, const ProgressSink& progress);
 
 }  // namespace emscape::app

@@ -15,7 +15,8 @@
 namespace emscape::app {
 namespace {
 
-/// Times (s) of a variant by what differs from the one before, measured; 0 for classes that do not occur.
+/// Measured times (s) of a variant, by its difference from the preceding one; 0 for classes that do not
+/// occur.
 struct VariantTimes {
   double first_s = 0;  ///< with nothing kept
   std::array<double, study::kChangeClasses> by_class{};

@@ -1,4 +1,4 @@
-/// A study as the command line has it, and its plan.
+/// A loaded study and its plan.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace emscape::app {
 
-/// A study with all that follows from its file.
+/// A study with everything derived from its file.
 struct LoadedStudy {
   study::StudySpec spec;
   scenario::TerrainPtr terrain;
@@ -25,11 +25,11 @@ struct LoadedStudy {
   LoadedStudy& operator=(const LoadedStudy&) = delete;
 };
 
-/// @throws Error (usage) unless there are 1 part to as many as variants
+/// @throws Error (usage) unless the number of parts is between 1 and the number of variants
 void checkParts(int parts, std::size_t variants);
 
-/// Prints the plan, with the time of one variant of each kind, measured.
-/// @param loading_s  that the study took to load
+/// Prints the plan, with the measured time of one variant of each kind.
+/// @param loading_s  time that loading the study took
 /// @return the exit status
 int showPlan(const LoadedStudy& loaded, int parts, int jobs, double loading_s, const GlobalOptions& global);
 

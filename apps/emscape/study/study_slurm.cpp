@@ -36,7 +36,7 @@ void writeScript(const fs::path& file, const std::string& text) {
                   fs::perm_options::add);
 }
 
-/// The number of the job that sbatch answers.
+/// Submits a job; returns the number that sbatch prints.
 std::string submit(const std::string& command) {
   const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
   std::string answer;
@@ -64,7 +64,7 @@ int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& 
   std::string command = "emscape";
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--worker") continue;
-    if (arguments[i] == "--threads") {  // that of the allocation
+    if (arguments[i] == "--threads") {  // the allocation's number is used
       ++i;
       continue;
     }

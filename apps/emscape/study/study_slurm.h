@@ -1,4 +1,4 @@
-/// Jobs of Slurm that compute the parts of a study.
+/// Slurm jobs that compute the parts of a study.
 #pragma once
 
 #include <string>
@@ -10,14 +10,14 @@ namespace emscape::app {
 
 struct SlurmOptions {
   std::string script;  ///< file to write; empty: none
-  int chunks = 0;      ///< parts; 0: the usual number
+  int chunks = 0;      ///< parts; 0: default number
   std::string time = "01:00:00";
   int gpus = 0;
   bool submit = false;
 };
 
-/// Writes the script of an array of one task per part, and NAME.merge.sh beside it, which joins them; both
-/// work in the present folder.
+/// Writes the script of a job array with one task per part, and next to it NAME.merge.sh, which merges them;
+/// both run in the current folder.
 /// @param arguments  of a process that computes parts: study, FILE, -o, DIR, --worker, ...
 /// @return the exit status
 /// @throws Error (other)

@@ -36,7 +36,7 @@ void openFile(Session& session, const std::optional<std::string>& file) {
                    {{"file", *file}}});
 }
 
-/// Up, down, page keys, home and end move; Enter and Right open; Left and Backspace go up.
+/// Up, Down, page keys, Home and End move the selection; Enter and Right open it; Left and Backspace go up.
 void handleKeys(Session& session, bool typing) {
   FileBrowser& browser = session.files().browser;
   constexpr int kPage = 12;
@@ -94,7 +94,7 @@ void drawPathBar(PanelContext& context) {
   ImGui::TextUnformatted(browser.folder().c_str());
 }
 
-/// @return whether the text field has the keyboard
+/// @return true if the text field has the keyboard focus
 bool drawTypedPath(PanelContext& context) {
   Session& session = context.session;
   FileBrowser& browser = session.files().browser;

@@ -59,8 +59,8 @@ bool isEnabled(const Session& session, const std::string& name) {
   return true;
 }
 
-/// Description of the picture, its pattern and its times; the last parts are left out if the width (pixels)
-/// does not suffice.
+/// Description of the picture, its pattern and its times; the last parts are omitted if the width (pixels) is
+/// too small.
 std::string statusText(const Session& session, float room) {
   const playback::LiveStatus& status = session.status();
   std::vector<std::string> parts;
@@ -178,7 +178,7 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   const bool is_opening = session.hasInput() || session.files().is_opening;
   const char* name = session.picture() ? render::toString(status.state) : is_opening ? "OPENING" : "EMPTY";
   const ImVec4 color = session.picture() ? stateColor(status.state) : mutedColor(session.theme());
-  // The badge: state on its colour.
+  // The badge: the state's name on its colour.
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const ImVec2 text = ImGui::CalcTextSize(name);
   const float badge_width = ImGui::CalcTextSize("RESTORE").x + 16 * s;

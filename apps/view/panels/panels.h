@@ -34,10 +34,10 @@ struct PanelContext {
 
 /// Remaining width of the line after the last item (pixels).
 float roomInLine(float spacing);
-/// Continues in the line of the last item if the width (pixels) suffices, else in the next one.
+/// Continues on the line of the last item if the width (pixels) fits, otherwise on the next line.
 void sameLineIfRoom(float width, float spacing = 0);
 
-/// Runs the command of an action, as its key would.
+/// Runs the command of an action, like its key.
 void perform(PanelContext& context, const char* command);
 
 void drawMenuBar(PanelContext& context);
@@ -45,12 +45,12 @@ void drawScenarioPanel(PanelContext& context);
 /// Colours and opacities: transfer_panel.cpp.
 void drawColorsPanel(PanelContext& context);
 void drawPlanesPanel(PanelContext& context);
-/// Colours, planes and scenario, one above the other.
+/// Panels of colours, planes and scenario, stacked.
 void drawSidePanel(PanelContext& context, const Area& area);
 void drawTimeline(PanelContext& context, const Area& area);
-/// Height that its rows need (pixels).
+/// Height that the timeline's rows need (pixels).
 float timelineHeight(const Session& session, float scale);
-/// Its buttons: transport_panel.cpp.
+/// The timeline's buttons: transport_panel.cpp.
 void drawTransport(PanelContext& context);
 void drawStatusBar(PanelContext& context, const Area& area);
 /// Shown in place of the picture while nothing is open.

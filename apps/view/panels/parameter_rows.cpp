@@ -58,9 +58,9 @@ constexpr std::array<SliderRange, 33> kSliderRanges{{
     {"floor", -200, 0},
     {"count_threshold_dbwm2", -150, 0},
 }};
-/// Significant digits of numbers that are typed, and of those that a slider gives.
+/// Significant digits of typed numbers, and of numbers set by a slider.
 constexpr int kTypedDigits = 10, kDraggedDigits = 5;
-/// Values with wider ranges than this are typed, and coordinates.
+/// Values with wider ranges, and coordinates, are typed.
 constexpr double kMaxSliderWidth = 1000;
 
 std::optional<SliderRange> sliderRangeOf(const Parameter& parameter) {
@@ -219,7 +219,7 @@ std::optional<std::string> ParameterRows::drawField(const Parameter& parameter, 
   std::strncpy(text.data(), shown.c_str(), text.size() - 1);
   ImGui::InputTextWithHint("##value", hint, text.data(), text.size());
   if (ImGui::IsItemActive()) typing_ = {parameter.path, text.data()};
-  // A field that has lost the focus does not return its text any more.
+  // A field without the focus no longer returns its text.
   if (!ImGui::IsItemDeactivatedAfterEdit() || typing_.path != parameter.path) return std::nullopt;
   const bool is_taken_back = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
   if (is_taken_back || typing_.text == shown) return std::nullopt;
@@ -242,7 +242,7 @@ void ParameterRows::drawTypedNumber(const Parameter& parameter) {
   if (!typed) return;
   const std::optional<double> number =
       parseQuantity(*typed, parameter.unit, prefixedUnit(value, parameter.unit, kTypedDigits).factor);
-  // The check of the scenario reports the fault of any other text.
+  // Any other text is rejected by the scenario's check.
   set(parameter.path, typed->empty() ? "null" : number ? numberText(*number) : *typed);
 }
 
@@ -250,7 +250,7 @@ void ParameterRows::drawRejection(const std::string& path) {
   const std::optional<Rejection>& rejection = context_.session.rejection();
   if (!rejection || rejection->edits.empty() || rejection->edits.front().path != path) return;
   ImGui::PushStyleColor(ImGuiCol_Text, errorColor(context_.session.theme()));
-  // The row already names the value.
+  // The row already shows the value's name.
   const std::string location = scenario::toString(rejection->edits.front()) + ": ";
   const bool has_location = rejection->message.compare(0, location.size(), location) == 0;
   ImGui::TextWrapped("%s", rejection->message.c_str() + (has_location ? location.size() : 0));

@@ -1,4 +1,4 @@
-/// Values of a scenario as rows of a name and a control, each an edit at its path.
+/// Rows of a name and a control; each edits the scenario's value at a path.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace emscape::view {
 
-/// The text of the field that is being edited.
+/// Text of the field being edited.
 struct Typing {
   std::string path, text;
 };
@@ -23,9 +23,10 @@ class ParameterRows {
   ParameterRows(PanelContext& context, const std::set<std::string>& edited, Typing& typing)
       : context_(context), edited_(edited), typing_(typing) {}
 
-  /// A table of the group's values, and of its subgroups below collapsible headings.
+  /// Draws a table of the group's values, and its subgroups below collapsible headings.
   void draw(const scenario::ParameterGroup& group);
-  /// One more row of such a table. @return true if it is drawn: then call end() after the control
+  /// Begins one more row of such a table. @return true if it is drawn; end() must then be called after the
+  /// control
   bool begin(const char* id);
   static void end();
   /// Begins a row; its control is drawn next.
@@ -39,7 +40,7 @@ class ParameterRows {
   void drawChoice(const scenario::Parameter& parameter);
   void drawText(const scenario::Parameter& parameter);
   void drawTypedNumber(const scenario::Parameter& parameter);
-  /// A text field. @return the text when Enter is pressed or the focus is lost
+  /// Draws a text field. @return the text when Enter is pressed or the focus is lost
   std::optional<std::string> drawField(const scenario::Parameter& parameter, const std::string& shown,
                                        const char* hint);
   void drawRejection(const std::string& path);

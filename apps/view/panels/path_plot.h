@@ -1,4 +1,4 @@
-/// A small plot of a path's profile, like that of `emscape profile --plot`.
+/// A small plot of a path's profile, as by `emscape profile --plot`.
 #pragma once
 
 #include <imgui.h>
@@ -8,8 +8,8 @@
 
 namespace emscape::view {
 
-/// Ground on the effective earth, the ray over it, its first Fresnel zone, obstacles. Occupies `size` at the
-/// cursor.
+/// Draws the ground on the effective earth, the ray above it, its first Fresnel zone, and obstacles. Occupies
+/// `size` at the cursor.
 void drawPathPlot(const emfield::PathBudget& budget, const ImVec2& size, render::Theme theme, float scale);
 
 }  // namespace emscape::view

@@ -12,7 +12,7 @@ namespace {
 
 using render::CutPlane;
 
-/// A number that is dragged between limits; Ctrl + click types it. @return whether it was changed
+/// A number that is dragged between limits, or typed after Ctrl + click. @return true if it was changed
 bool slide(const char* id, double& value, double min, double max, const char* format) {
   const double low = std::min(min, value), high = std::max(max, value);
   ImGui::SetNextItemWidth(-1);

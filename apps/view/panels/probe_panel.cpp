@@ -1,4 +1,4 @@
-/// The probe: the values at a point and their explanation.
+/// The probe: values at a point, with their explanation.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxShown = 40;  // emitters
 
-/// Two columns: a name in a muted colour, and a text that is wrapped.
+/// Two columns: a name in a muted colour, and wrapped text.
 class Table {
  public:
   Table(const char* id, float name_width, render::Theme theme)

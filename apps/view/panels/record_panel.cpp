@@ -1,4 +1,4 @@
-/// The dialog of recording, and the progress of a recording.
+/// The recording dialog, and the progress of a recording.
 #include <fmt/format.h>
 
 #include <cstring>
@@ -34,13 +34,13 @@ void drawProgress(PanelContext& context, const Area& picture) {
   ImGui::PopStyleVar();
 }
 
-/// The text of the fields.
+/// Text of the dialog's fields.
 struct Typed {
   char file[1024] = "";
   double begin_s = 0, end_s = 0, step_s = 0, frames_per_s = 10;
 };
 
-/// The whole series into a video in the input's folder.
+/// Default: the whole series as a video in the input's folder.
 void fillIn(Typed& typed, const Session& session) {
   const std::vector<double>& times_s = session.timeline().times_s();
   if (times_s.empty()) return;

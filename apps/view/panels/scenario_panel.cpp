@@ -1,4 +1,4 @@
-/// Editor of the scenario's values, by the same edits as --set.
+/// Editor of the scenario's values; makes the same edits as --set.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using scenario::ParameterGroup;
 
-constexpr std::size_t kSearchFrom = 8;  // emitters: with more than these, there is a search field
+constexpr std::size_t kSearchFrom = 8;  // with more emitters there is a search field
 
 /// A section of the scenario with a collapsible heading.
 struct Section {
@@ -27,7 +27,7 @@ struct Section {
 
 /// State of the panel between frames.
 struct PanelState {
-  playback::ScenarioPtr scenario;  // of what follows
+  playback::ScenarioPtr scenario;  // source of the following
   std::vector<Section> emitters, platforms, others;
   std::map<std::string, ParameterGroup> groups;
   std::set<std::string> edited;
@@ -80,7 +80,7 @@ bool transmitsAtAll(const scenario::Emitter& emitter, double duration_s) {
                      [&](const scenario::TimeInterval& interval) { return interval.begin_s <= duration_s; });
 }
 
-/// A switch of the emitter; off sets an active interval beyond the last step.
+/// Switches the emitter on or off; off sets an active interval after the last step.
 void drawSwitch(PanelContext& context, ParameterRows& rows, const PanelState& state, const Section& section) {
   const std::vector<scenario::Emitter>& emitters = state.scenario->emitters;
   const auto emitter = std::find_if(emitters.begin(), emitters.end(),
@@ -101,7 +101,7 @@ void drawSwitch(PanelContext& context, ParameterRows& rows, const PanelState& st
   ParameterRows::end();
 }
 
-/// Names for the verb `quantity`: channels if a quantity has several.
+/// Names for the verb `quantity`: channels, if a quantity has several.
 std::vector<std::string> quantitiesOf(const scenario::Scenario& scenario) {
   std::vector<std::string> parts{""};
   if (scenario.output.combine == scenario::CombineMode::per_emitter) {
@@ -174,7 +174,7 @@ void drawHeading(PanelState& state, const Section& section, render::Theme theme,
   }
 }
 
-/// Only what is visible is drawn: runs of closed sections are clipped.
+/// Draws only visible sections: runs of closed sections are clipped.
 void drawSections(PanelContext& context, PanelState& state, const std::vector<Section>& sections) {
   const render::Theme theme = context.session.theme();
   std::vector<const Section*> shown;

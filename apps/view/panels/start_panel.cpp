@@ -1,4 +1,4 @@
-/// The panel that is shown while nothing is open.
+/// The panel shown while nothing is open.
 #include <algorithm>
 #include <filesystem>
 

@@ -12,8 +12,8 @@ namespace emscape::view {
 
 /// @param scale  of all lengths
 ImGuiStyle styleOf(render::Theme theme, float scale);
-/// Amber while it changes, blue while it is being restored, green when it is settled; the brightness differs
-/// too.
+/// Amber while the picture changes, blue while it is being restored, green when settled; the brightness
+/// differs, too.
 ImVec4 stateColor(render::ControllerState state);
 /// The colours of the picture's overlay; darker on a light background.
 ImVec4 emitterColor(scenario::EmitterKind kind, render::Theme theme);

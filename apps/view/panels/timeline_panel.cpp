@@ -1,4 +1,4 @@
-/// The time line: its layout and mouse handling.
+/// The timeline: layout and mouse handling.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -23,7 +23,7 @@ bool typed(const char* id, double& value, const char* format, float width) {
   return ImGui::IsItemDeactivatedAfterEdit();
 }
 
-/// printf-like format of a value with its unit.
+/// printf format of a value with its unit.
 std::string formatOf(const char* before, const std::string& unit) {
   std::string text = render::unitText(unit);
   for (std::size_t at = 0; (at = text.find('%', at)) != std::string::npos; at += 2) text.insert(at, "%");
@@ -126,7 +126,7 @@ void drawPresets(PanelContext& context) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("of all points (Shift+Up)");
 }
 
-/// A file to be read or written, by its name.
+/// Name of a file to be read or written.
 void drawFile(PanelContext& context) {
   static char file[1024] = "";
   Session& session = context.session;

@@ -12,7 +12,7 @@ namespace emscape::view {
 namespace {
 
 // In pixels at scale 1
-constexpr float kHeight = 132, kBar = 14, kGrip = 9, kReach = 9, kPoint = 4, kSelectedPoint = 6.5F;
+constexpr float kHeight = 132, kBar = 14, kGrip = 9, kPointReach = 9, kPoint = 4, kSelectedPoint = 6.5F;
 /// The plot extends beyond the interval by this fraction, so that its ends can be dragged outwards.
 constexpr double kBeyond = 0.1;
 
@@ -25,7 +25,7 @@ ImU32 inkOf(const ImVec4& color, float alpha = 1) {
 }
 
 /// The item that the mouse drags.
-enum class Grip : int { nothing, point, lowest, highest };
+enum class PlotGrip : int { nothing, point, lowest, highest };
 
 /// Mapping of values and opacities to the screen.
 struct Plot {
@@ -45,7 +45,7 @@ struct Plot {
   double position(float at) const { return static_cast<double>((bottom() - at) / height); }
 };
 
-/// The interval with its margins. While an end is dragged it is that of the begin of the drag.
+/// The interval with its margins. While an end is dragged, the interval at the start of the drag is used.
 Plot plotOf(const playback::TransferEditor& editor, bool held, ImVec2 at, float width, float scale) {
   ImGuiStorage& storage = *ImGui::GetStateStorage();
   const ImGuiID from = ImGui::GetID("from"), to = ImGui::GetID("to");
@@ -65,7 +65,7 @@ Plot plotOf(const playback::TransferEditor& editor, bool held, ImVec2 at, float 
 
 // --- drawing ---
 
-/// Counts on a logarithmic axis: most values of a field are weak.
+/// Counts on a logarithmic axis, since most values of a field are weak.
 void drawHistogram(ImDrawList& list, const Plot& plot, const volume::Histogram& histogram, ImU32 ink) {
   if (histogram.counts.empty()) return;
   const auto bins = static_cast<double>(histogram.counts.size());
@@ -85,7 +85,8 @@ void drawHistogram(ImDrawList& list, const Plot& plot, const volume::Histogram& 
   }
 }
 
-/// Values at which the curve is drawn: evenly spaced, and the points with jumps as jumps.
+/// Points of the drawn curve: evenly spaced values, and the function's points, so that jumps are drawn as
+/// jumps.
 std::vector<render::TransferFunction::OpacityPoint> curveOf(const render::TransferFunction& function,
                                                             const Plot& plot) {
   constexpr int kParts = 120;
@@ -102,7 +103,7 @@ void drawCurve(ImDrawList& list, const Plot& plot, const render::TransferFunctio
   const auto curve = curveOf(function, plot);
   const ImDrawListFlags flags = list.Flags;
   std::vector<ImVec2> line{{plot.x(curve.front().at), plot.y(curve.front().opacity)}};
-  list.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // its rims would show between the parts
+  list.Flags &= ~ImDrawListFlags_AntiAliasedFill;  // antialiased edges would show between the parts
   for (std::size_t i = 1; i < curve.size(); ++i) {
     const ImVec2 a{plot.x(curve[i - 1].at), plot.y(curve[i - 1].opacity)};
     const ImVec2 b{plot.x(curve[i].at), plot.y(curve[i].opacity)};
@@ -172,7 +173,7 @@ void drawTicks(ImDrawList& list, const Plot& plot, const std::string& unit, rend
   list.AddText({plot.right() - unit_width, top + 3 * scale}, ink, unit.c_str());
 }
 
-/// Opacities of the axis, at its left edge.
+/// Labels of the opacity axis, at the left edge.
 void drawOpacityAxis(ImDrawList& list, const Plot& plot, render::Theme theme, float scale) {
   const ImU32 line = inkOf(mutedColor(theme), 0.25F), ink = inkOf(mutedColor(theme));
   const std::vector<double> opacities =
@@ -192,35 +193,35 @@ std::optional<int> pointUnder(const playback::TransferEditor& editor, const Plot
   const double height = static_cast<double>(plot.height);
   const double value_scale = static_cast<double>(plot.width) / (plot.highest - plot.lowest) / height;
   return editor.pointNear(plot.value(mouse.x), plot.position(mouse.y), value_scale,
-                          static_cast<double>(kReach * scale) / height);
+                          static_cast<double>(kPointReach * scale) / height);
 }
 
 /// Starts the drag of a left press: an end, a point, or a new point.
-Grip press(Session& session, const Plot& plot, ImVec2 mouse, float scale) {
+PlotGrip press(Session& session, const Plot& plot, ImVec2 mouse, float scale) {
   const playback::TransferEditor& editor = *session.transfer();
   const auto point = pointUnder(editor, plot, mouse, scale);
   if (point) {
     session.dragTransfer([&](playback::TransferEditor& changed) { changed.select(point); });
-    return Grip::point;
+    return PlotGrip::point;
   }
   const double lowest = editor.function().lowest(), highest = editor.function().highest();
   const auto isNear = [&](double value) { return std::abs(plot.x(value) - mouse.x) <= kGrip * scale; };
   const bool on_grips = mouse.y < plot.top + 1.5F * kGrip * scale || mouse.y > plot.bottom();
-  if (on_grips && isNear(lowest)) return Grip::lowest;
-  if (on_grips && isNear(highest)) return Grip::highest;
-  if (mouse.y > plot.bottom()) return Grip::nothing;
+  if (on_grips && isNear(lowest)) return PlotGrip::lowest;
+  if (on_grips && isNear(highest)) return PlotGrip::highest;
+  if (mouse.y > plot.bottom()) return PlotGrip::nothing;
   session.dragTransfer([&](playback::TransferEditor& changed) {
     changed.add(plot.value(mouse.x), plot.axis.opacity(plot.position(mouse.y)));
   });
-  return Grip::point;
+  return PlotGrip::point;
 }
 
-void drag(Session& session, const Plot& plot, Grip grip, ImVec2 mouse) {
+void drag(Session& session, const Plot& plot, PlotGrip grip, ImVec2 mouse) {
   session.dragTransfer([&](playback::TransferEditor& editor) {
     const double value = plot.value(mouse.x);
-    if (grip == Grip::lowest) editor.setLowest(value);
-    if (grip == Grip::highest) editor.setHighest(value);
-    if (grip == Grip::point) editor.moveSelected(value, plot.axis.opacity(plot.position(mouse.y)));
+    if (grip == PlotGrip::lowest) editor.setLowest(value);
+    if (grip == PlotGrip::highest) editor.setHighest(value);
+    if (grip == PlotGrip::point) editor.moveSelected(value, plot.axis.opacity(plot.position(mouse.y)));
   });
 }
 
@@ -232,7 +233,7 @@ void handleMouse(PanelContext& context, const Plot& plot) {
     *grip = static_cast<int>(press(session, plot, io.MousePos, context.scale));
   } else if ((ImGui::IsItemActive() || ImGui::IsItemDeactivated()) &&
              (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
-    drag(session, plot, static_cast<Grip>(*grip), io.MousePos);
+    drag(session, plot, static_cast<PlotGrip>(*grip), io.MousePos);
   }
   if (ImGui::IsItemDeactivated()) session.endDrag();
   if (!ImGui::IsItemHovered()) return;

@@ -1,4 +1,4 @@
-/// Buttons of playing, rate, and the requested time.
+/// Playback buttons, rate, and requested time.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 enum class Symbol { first, back, play, pause, forward, last };
 
-/// A button with a drawn symbol: not all fonts have them.
+/// A button with a drawn symbol, since not all fonts have these symbols.
 bool symbolButton(const char* id, Symbol symbol, const char* tip, float scale) {
   const float side = ImGui::GetFrameHeight();
   const bool pressed = ImGui::Button(id, {1.35F * side, side});
@@ -73,7 +73,7 @@ void drawButtons(PanelContext& context) {
   if (symbolButton("##last", Symbol::last, "Last step (End)", s)) perform(context, R"({"do":"last"})");
 }
 
-/// Any rate can be typed; the arrow next to it lists the usual ones.
+/// Any rate can be typed; the arrow next to it lists common rates.
 void drawRate(PanelContext& context) {
   Session& session = context.session;
   const float s = context.scale;
@@ -102,7 +102,7 @@ void drawRate(PanelContext& context) {
   if (ImGui::Checkbox("loop", &loop)) session.perform({"loop", {{"on", loop}}});
 }
 
-/// The requested time, and the one on screen while it differs; as far as there is room.
+/// The requested time, and the time on screen while it differs, if there is room.
 void drawTimes(const PanelContext& context) {
   const Session& session = context.session;
   const playback::Timeline& timeline = session.timeline();

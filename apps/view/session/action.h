@@ -12,7 +12,7 @@ namespace emscape::view {
 struct Action {
   const char* menu;  ///< File, Edit, Time, Camera, View or Panels
   const char* name;
-  const char* keys;          ///< chords with blanks between them: "Right .", "Ctrl+Shift+Z"
+  const char* keys;          ///< chords separated by blanks: "Right .", "Ctrl+Shift+Z"
   const char* command;       ///< the same as a script line
   const char* command_line;  ///< the same on the command line
 };
@@ -20,7 +20,7 @@ struct Action {
 const std::vector<Action>& actions();
 std::vector<std::string> menuNames();
 
-/// A key with its modifiers. `key` is the name that the table uses: "Space", "F12", "A", "1", "+".
+/// A key with its modifiers. `key` is a name from the table: "Space", "F12", "A", "1", "+".
 struct KeyChord {
   std::string key;
   bool control = false, shift = false;

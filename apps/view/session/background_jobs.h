@@ -1,4 +1,4 @@
-/// Jobs such as file access in the background of the window's thread.
+/// Background jobs, such as file access, of the window's thread.
 #pragma once
 
 #include <condition_variable>
@@ -12,22 +12,22 @@ namespace emscape::view {
 /// Runs jobs one after another on its own thread. The owner's thread handles their results in finish().
 class BackgroundJobs {
  public:
-  /// Handler of the result, called on the owner's thread.
+  /// Handles the result; called on the owner's thread.
   using Finish = std::function<void()>;
   using Job = std::function<Finish()>;
 
   /// @param wake  called on the thread of the jobs after each
   explicit BackgroundJobs(std::function<void()> wake);
-  /// Waits for the end of all jobs: a file that is being saved is completed. Handlers are not called.
+  /// Waits for all jobs, so that a file being saved is completed. Handlers are not called.
   ~BackgroundJobs();
   BackgroundJobs(const BackgroundJobs&) = delete;
   BackgroundJobs& operator=(const BackgroundJobs&) = delete;
 
   /// Does not wait. @param job  its exceptions are rethrown by finish()
   void run(Job job);
-  /// True if a job waits, runs, or is not finished.
+  /// True if a job is waiting, running, or not yet finished by finish().
   bool busy() const;
-  /// Finishes the oldest job that is done. @return whether there was one
+  /// Finishes the oldest completed job. @return true if there was one
   bool finish();
 
  private:

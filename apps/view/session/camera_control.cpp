@@ -52,7 +52,7 @@ void CameraControl::settle(const Viewport& viewport) {
   orbit.elevation_deg = radToDeg(std::asin(std::clamp(back.z, -1.0, 1.0)));
   orbit.azimuth_deg = wrapped_deg(radToDeg(std::atan2(back.x, back.y)));
   orbit.target_m = viewport.box.toFrame(pose.target_m);
-  // A fitted camera shifts its lens; from now on the target moves instead.
+  // A fitted camera shifts its lens; from here on the target is moved instead.
   const render::Camera unshifted = render::makeCamera(orbit, viewport.box, viewport.size, viewport.margins);
   const double per_half_height_m = pose.metresPerPixel(viewport.size) * viewport.size.height / 2;
   const double right = (pose.camera.shift_x - unshifted.shift_x) * per_half_height_m;

@@ -5,7 +5,7 @@
 
 namespace emscape::view {
 
-/// Geometry of a picture, needed to interpret a movement in pixels.
+/// Geometry of a picture, needed to convert movements from pixels.
 struct Viewport {
   render::SceneBox box;
   render::ImageSize size;
@@ -13,8 +13,8 @@ struct Viewport {
 };
 
 /// Holds a camera and moves it. After the first movement the camera is an orbit with a distance and a target:
-/// a fitted camera does not jump when it is first moved, a lookat camera becomes the orbit with the same eye.
-/// One thread uses it.
+/// a fitted camera does not jump when it is first moved, and a lookat camera becomes the orbit with the same
+/// eye. For use by one thread.
 class CameraControl {
  public:
   explicit CameraControl(const render::CameraSpec& spec = {}) : spec_(spec) {}
@@ -28,15 +28,16 @@ class CameraControl {
   /// Moves the scene with the cursor, parallel to the picture.
   /// @param right_px, down_px  movement of the cursor
   void pan(double right_px, double down_px, const Viewport& viewport);
-  /// Moves towards the target, which itself moves such that the point in its plane under the cursor is fixed.
-  /// @param factor  of the distance, > 0: 0.5 halves it
+  /// Moves towards the target, which itself moves such that the point under the cursor in the target's plane
+  /// stays fixed.
+  /// @param factor  factor of the distance, > 0; 0.5 halves it
   /// @param x, y    cursor in pixels of the picture
   void dolly(double factor, double x, double y, const Viewport& viewport);
   /// Turns the camera about its eye. Angles as for orbit().
   void look(double azimuth_deg, double elevation_deg, const Viewport& viewport);
   /// Moves eye and target. @param forward, right, up  in diagonals of the drawn box, along the camera's axes
   void fly(double forward, double right, double up, const Viewport& viewport);
-  /// Looks at a position from the same direction. @param target_m  frame metres
+  /// Looks at a position from the present direction. @param target_m  frame metres
   void focus(const Vec3d& target_m, double distance, const Viewport& viewport);
 
  private:

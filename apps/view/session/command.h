@@ -23,12 +23,12 @@ inline constexpr ArgumentType kBoolean = ArgumentType::boolean;
 class Session;
 struct Command;
 
-/// One verb: its syntax and its function.
+/// A verb: syntax and function.
 struct Verb {
   const char* name;
   std::vector<Argument> arguments;
   const char* help;
-  /// Throws Error if it cannot be done; null: a verb only for scripts, such as waiting.
+  /// Throws Error if it fails; null for verbs of scripts only, such as waiting.
   void (*run)(Session& session, const Command& command) = nullptr;
 };
 
@@ -49,11 +49,11 @@ struct Command {
 };
 
 /// Reads a command from the object of a script line; "at_s" is ignored.
-/// @throws Error (bad_input) that names the verb or argument that is unknown, missing or of another type
+/// @throws Error (bad_input) that names the verb or argument that is unknown, missing or of a wrong type
 Command parseCommand(const Json& object);
-/// The same from a text.
+/// Parses a text.
 Command parseCommand(const std::string& text);
-/// The text that parseCommand() reads back.
+/// Text that parseCommand() reads.
 std::string toString(const Command& command);
 
 }  // namespace emscape::view

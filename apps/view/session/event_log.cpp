@@ -14,7 +14,7 @@ namespace {
 
 using SteadyClock = std::chrono::steady_clock;
 
-/// Time since this process was started, to the system's tick (10 ms).
+/// Time since this process was started, in units of the system's tick (10 ms).
 SteadyClock::duration processAge() {
   constexpr int kStartTime = 22;  // field of /proc/self/stat, in ticks since the system's start
   std::ifstream stat("/proc/self/stat");
@@ -46,7 +46,8 @@ void EventLog::write(const char* event, const Json& fields) {
   if (!open()) return;
   Json line{{"t_s", std::round(now_s() * 1e4) / 1e4}, {"event", event}};
   line.update(fields);
-  out_ << line.dump(-1, ' ', false, Json::error_handler_t::replace) << std::endl;  // whole after a crash too
+  out_ << line.dump(-1, ' ', false, Json::error_handler_t::replace)
+       << std::endl;  // flushed, so that lines are complete after a crash
 }
 
 double processorTime_s() {

@@ -1,4 +1,4 @@
-/// Log of the window's events, as JSON lines.
+/// Log of the window's events in JSON Lines format.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace emscape::view {
 
-/// One line per frame and one per event, each with the time since the start. One thread uses it.
+/// One line per frame and per event, each with the time since the start. For use by one thread.
 class EventLog {
  public:
   EventLog();

@@ -22,7 +22,7 @@ bool endsWith(const std::string& text, const std::string& ending) {
   return text.size() > ending.size() && text.compare(text.size() - ending.size(), ending.size(), ending) == 0;
 }
 
-/// Folders first, then by name, ignoring case.
+/// Sorts folders first, then by name, ignoring case.
 bool comesBefore(const FolderEntry& a, const FolderEntry& b) {
   const bool a_is_folder = a.kind == FileKind::folder, b_is_folder = b.kind == FileKind::folder;
   if (a_is_folder != b_is_folder) return a_is_folder;

@@ -19,24 +19,23 @@ struct FolderEntry {
   FileKind kind = FileKind::other;
 };
 
-/// The folders of a folder, then the files that can be opened, each by name; names that begin with a point
-/// are left out.
+/// The subfolders of a folder, then the files that can be opened, each sorted by name; names that begin with
+/// a dot are omitted.
 /// @throws Error (other) that names the folder and the cause
 std::vector<FolderEntry> listFolder(const std::filesystem::path& folder);
 
-/// A folder is read on a separate thread, because the disk may be slow. The thread of the window uses
-/// the object.
+/// Reads folders on a separate thread, because the disk may be slow. For use by the window's thread.
 class FileBrowser {
  public:
   /// Kinds of files that may be chosen.
   enum class Purpose { input, view };
 
-  /// Reads the folder of the last visit (at first the given one) again.
+  /// Rereads the last visited folder, at first the given one.
   void open(Purpose purpose, const std::filesystem::path& first_folder);
   Purpose purpose() const { return purpose_; }
   void enter(const std::filesystem::path& folder);
   void goUp() { enter(folder_.parent_path()); }
-  /// Takes the result of the read. @return true if something changed
+  /// Takes the result of a read. @return true if something changed
   bool update();
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -49,9 +48,9 @@ class FileBrowser {
   int selected() const { return selected_; }
   void select(int index);
   void moveSelection(int rows) { select(selected_ + rows); }
-  /// Opens the selected entry: enters a folder, or gives the file.
+  /// Opens the selected entry: enters a folder, or returns the file.
   std::optional<std::string> choose();
-  /// A path as it is typed, from the folder on, with ~ for the home: enters a folder, or gives the file,
+  /// Opens a typed path, relative to the folder, with ~ for the home: enters a folder, or returns the file,
   /// which need not exist.
   std::optional<std::string> choose(const std::string& typed);
 
@@ -65,7 +64,7 @@ class FileBrowser {
 
   Purpose purpose_ = Purpose::input;
   std::filesystem::path folder_;
-  std::string left_;  // name of the folder that goUp() came from: it is selected
+  std::string left_;  // name of the folder that goUp() left, to be selected
   std::vector<FolderEntry> entries_;
   std::string error_;
   int selected_ = 0;

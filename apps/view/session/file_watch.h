@@ -25,11 +25,11 @@ class FileWatch {
   FileWatch(const FileWatch&) = delete;
   FileWatch& operator=(const FileWatch&) = delete;
 
-  /// Sets the files to watch. Changes are reported from now on; for files that are watched already, since
-  /// they were first watched. Folders change when files are added or removed.
+  /// Sets the files to watch. Changes are reported from now on; for files already watched, since they were
+  /// first watched. Folders change when files are added or removed.
   void watch(const std::vector<std::string>& files);
-  /// Files that were written or replaced since they were last reported, in order. A file that is still
-  /// changing, or that is missing, is not reported.
+  /// Files that were written or replaced since the last report, in order. A file that is still changing, or
+  /// that is missing, is not reported.
   std::vector<std::string> takeChanged();
 
  private:
@@ -42,7 +42,7 @@ class FileWatch {
     }
   };
   struct Watched {
-    Stamp known, seen;  ///< last reported or first; at the last poll
+    Stamp known, seen;  ///< at the last report or, before one, at the first poll; at the last poll
   };
   static Stamp stampOf(const std::string& file);
   void run();

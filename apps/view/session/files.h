@@ -1,4 +1,4 @@
-/// State that the sessions of a window share: the files to open and the recording.
+/// State shared by the sessions of a window: files to open, recording.
 #pragma once
 
 #include <memory>
@@ -17,17 +17,17 @@ namespace emscape::view {
 struct OpenRequest {
   std::string file;      ///< input, view file or transfer function
   std::string scenario;  ///< for volumes; may be empty
-  /// View of an input; none: that of the start. Edits that do not apply any more are left out.
+  /// View of an input; empty: that of the start. Edits that no longer apply are omitted.
   std::optional<playback::ViewState> view;
   bool unsaved_edits = false;  ///< the edits of `view` are not saved
 };
 
-/// The thread of the window uses it.
+/// For use by the window's thread.
 struct Files {
   std::vector<std::string> recent;  ///< the newest first
   FileBrowser browser;
   Recorder recorder;
-  /// Of this program; shared with running jobs.
+  /// Autosaves of this program; shared with running jobs.
   std::shared_ptr<playback::Autosaves> autosaves = std::make_shared<playback::Autosaves>();
   std::optional<OpenRequest> request;  ///< pending, for the window
   bool is_opening = false;             ///< a request is not on screen yet

@@ -12,7 +12,7 @@ struct NamedKey {
   const char* name;
   int code;
 };
-/// Of two rows with the same name the first is the one that scripts press.
+/// If two rows have the same name, scripts press the first one.
 constexpr NamedKey kKeys[] = {{"Space", GLFW_KEY_SPACE},
                               {"Right", GLFW_KEY_RIGHT},
                               {"Left", GLFW_KEY_LEFT},

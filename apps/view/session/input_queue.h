@@ -25,7 +25,7 @@ class InputQueue {
   std::deque<InputEvent> events_;
 };
 
-/// The chord of a key event, in the form of the table of actions; an empty key if it has none.
+/// The chord of a key event, in the form used by the table of actions; an empty key if it has none.
 KeyChord chordOf(const InputEvent& event);
 /// Press and release of a chord. @throws Error (bad_input) for an unknown key
 std::array<InputEvent, 2> eventsOf(const KeyChord& chord);

@@ -14,7 +14,7 @@ struct Panels {
   bool changed = false;                   ///< files of the input have changed on the disk
   bool hidden = false;                    ///< all of them, temporarily
 };
-/// The panels by the names that scripts and view files use, but for `hidden`.
+/// The panels, except `hidden`, by the names used in scripts and view files.
 struct PanelName {
   const char* name;
   bool Panels::*open;

@@ -34,10 +34,10 @@ bool applies(const std::string& file, const std::vector<Edit>& edits) {
   return scenario::parseScenario(file, edits).scenario != nullptr;
 }
 
-/// Removes the edits that do not apply to the scenario any more.
+/// Removes edits that no longer apply to the scenario.
 void checkScenario(const std::string& file, std::vector<Edit>& edits, std::string& left_out) {
   if (applies(file, edits)) return;
-  scenario::loadScenario(file);  // throws its faults
+  scenario::loadScenario(file);  // throws its errors
   std::vector<Edit> kept;
   for (const Edit& edit : edits) {
     kept.push_back(edit);

@@ -1,4 +1,4 @@
-/// Preparation of a file to open: its kind, and the view with which it is shown.
+/// Preparation for opening a file: its kind, and the view with which it is shown.
 #pragma once
 
 #include <string>
@@ -12,14 +12,14 @@ namespace emscape::view {
 struct Opening {
   ViewOptions options;  ///< of the new session
   std::string colors;   ///< a transfer function for the present session; else empty
-  /// The edits that do not apply any more, each with the reason; empty if all do.
+  /// Edits that no longer apply, each with the reason; may be empty.
   std::string left_out;
 };
 
-/// Examines the file: its kind by name and content, the faults of a scenario, the edits that still apply.
-/// Reads files: to be called on a background thread.
+/// Examines the file: kind by name and content, errors in a scenario, edits that still apply. Reads files: to
+/// be called on a background thread.
 /// @param present  options of the present session; new inputs are shown with its `view`
-/// @throws Error (bad_input) that lists the faults
+/// @throws Error (bad_input) that lists the errors
 Opening prepareOpening(const OpenRequest& request, const ViewOptions& present);
 
 }  // namespace emscape::view

@@ -11,11 +11,11 @@
 
 namespace emscape::view {
 
-/// Index of the marker under a pixel, which is that of the emitter; none if there is no marker nearby.
+/// Index of the marker under a pixel, equal to the emitter's index; empty if there is no marker nearby.
 std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double x, double y);
 
-/// Starts a drag. A platform whose height is given above the ground follows the ground under the cursor, any
-/// other one keeps its height. The cursor keeps its distance from the marker.
+/// Starts a drag. A platform whose height is given above the ground follows the ground under the cursor; any
+/// other platform keeps its height. The cursor keeps its distance from the marker.
 class PlatformDrag {
  public:
   /// @param emitter  index of its marker
@@ -23,14 +23,14 @@ class PlatformDrag {
   PlatformDrag(const playback::LivePicture& picture, std::size_t emitter, double x, double y);
 
   const std::string& platform() const { return platform_; }
-  /// The edits that move the platform to the cursor; none if there is no position under it.
+  /// The edits that move the platform to the cursor; empty if there is no position under it.
   std::optional<std::vector<scenario::Edit>> moveTo(const playback::LivePicture& picture, double x,
                                                     double y) const;
 
  private:
   std::string platform_;
   bool follows_ground_ = false;
-  Vec3d grip_m_;  // the point that the cursor holds, at its height
+  Vec3d grip_m_;  // the point under the cursor, at its height
   double offset_x_ = 0, offset_y_ = 0;
 };
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kAboveGround_m = 10;  // where the cursor is on the ground
 
-/// True if a point that is held must be read again.
+/// True if a locked point must be read again.
 bool isOtherField(const playback::LivePicture& a, const playback::LivePicture& b) {
   return !sameValues(a, b) || a.info().time_s != b.info().time_s || a.scenario != b.scenario;
 }

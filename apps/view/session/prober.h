@@ -20,13 +20,13 @@ struct Contribution {
   double value = 0;         ///< -infinity without a field
   std::string text;         ///< value with unit, or the reason why there is none
 };
-/// The contributions, the strongest first. @param quantity to list; power density for emitters without such a
-/// term
+/// The contributions, strongest first. @param quantity  to list; power density for emitters without a term of
+/// it
 std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading, const std::string& quantity);
 
 /// One reading and its source.
 struct ProbeResult {
-  std::optional<playback::ProbeReading> reading;  ///< none: there is nothing under the cursor
+  std::optional<playback::ProbeReading> reading;  ///< empty: nothing is under the cursor
   std::vector<Contribution> contributions;
   std::string error;  ///< reason why nothing could be read
   std::shared_ptr<const scenario::Scenario> scenario;
@@ -35,7 +35,7 @@ struct ProbeResult {
 };
 
 /// Reads the picture on screen under the cursor, or at a locked point whenever the field changes. Only the
-/// latest request is served. The window's thread uses it.
+/// latest request is served. For use by the window's thread.
 class Prober {
  public:
   using PicturePtr = std::shared_ptr<const playback::LivePicture>;
@@ -43,10 +43,10 @@ class Prober {
   /// @param wake  called on another thread when update() has a result
   explicit Prober(std::function<void()> wake);
 
-  /// Nothing is read while it is off.
+  /// Nothing is read while it is turned off.
   void turnOn(bool on);
   bool isOn() const { return is_on_; }
-  /// The cursor is over a pixel of the picture; none: elsewhere.
+  /// Reports the pixel of the picture under the cursor; empty: none.
   void hover(std::optional<render::Projected> pixel);
   /// Locks the position under a pixel.
   void lockAtPixel(double x, double y);
@@ -56,14 +56,14 @@ class Prober {
   void toggleLock();
   void unlock();
   bool isLocked() const { return is_locked_; }
-  /// Of the locked point; none before it has been found.
+  /// Position of the locked point; empty before it has been found.
   const std::optional<Vec3d>& locked_m() const { return locked_m_; }
 
-  /// Requests readings that a new picture needs, takes results. @return true if there is a new one
+  /// Requests readings needed by a new picture, and takes results. @return true if there is a new one
   bool update(const PicturePtr& picture);
-  /// Null before the first.
+  /// The latest result; null before the first one.
   const ProbeResult* result() const { return result_ ? &*result_ : nullptr; }
-  /// True if a reading is under way.
+  /// True if a reading is pending.
   bool isBusy() const { return is_on_ && (is_due_ || worker_.isBusy()); }
 
  private:
@@ -72,7 +72,7 @@ class Prober {
   };
   struct Question {
     PicturePtr picture;
-    std::optional<Pixel> pixel;  ///< none: the position
+    std::optional<Pixel> pixel;  ///< empty: the position is used
     Vec3d position_m;
     long long lock = 0;
   };
@@ -85,7 +85,7 @@ class Prober {
   void ask(const PicturePtr& picture);
 
   bool is_on_ = false;
-  bool is_due_ = false;  // another reading than the last request is needed
+  bool is_due_ = false;  // a reading different from the last request is needed
   std::optional<Pixel> pixel_;
   bool is_locked_ = false;
   long long lock_ = 0;  // counts locks: results of requests before the last lock are dropped
@@ -96,7 +96,7 @@ class Prober {
   playback::LatestWorker<Question, Answer> worker_;
 };
 
-/// The command that explains the path of an emitter to the reading's position.
+/// The `emscape profile` command for the path from an emitter to the reading's position.
 /// @throws Error (bad_input) if there is no scenario
 std::string profileCommand(const ProbeResult& result, const std::string& emitter);
 

@@ -1,4 +1,4 @@
-/// The inputs that were opened last.
+/// The most recently opened inputs.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@ inline constexpr std::size_t kMaxRecentFiles = 10;
 std::filesystem::path recentFilesFile();
 /// Absolute paths, the newest first; empty if nothing was opened yet or the file cannot be read.
 std::vector<std::string> readRecentFiles();
-/// Adds an input in front; the file is written atomically. @return all of them
+/// Adds an input at the front; the file is written atomically. @return all inputs
 /// @throws Error (other) if it cannot be written
 std::vector<std::string> addRecentFile(const std::string& input);
 

@@ -17,7 +17,7 @@
 namespace emscape::view {
 namespace {
 
-/// Draws all pictures. @param done  called with the number of pictures so far and that of all
+/// Draws all pictures. @param done  called with the number of pictures so far and the total number
 void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(int, int)>& done) {
   const auto source = playback::openFrameSource(job.selection, job.target, {}, &stop);
   std::vector<std::unique_ptr<playback::PictureSink>> sinks;
@@ -51,7 +51,7 @@ void Recorder::start(const RecordJob& job, std::function<void()> wake) {
   task_.start([this, job, wake = std::move(wake), counter = counter_]() -> Outcome {
     Outcome outcome;
     try {
-      // The window keeps a core.
+      // Leaves one core to the window.
       ThreadArena arena(threadCount() - 1);
       arena.run([&] {
         draw(job, stop_, [&](int pictures, int total) {

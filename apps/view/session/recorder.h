@@ -14,10 +14,10 @@
 
 namespace emscape::view {
 
-/// The times; all fields empty: every step of the series.
+/// Times to record; all fields empty: every step of the series.
 struct RecordRange {
   std::optional<double> begin_s, end_s;
-  std::optional<double> step_s;  ///< none: that of the series
+  std::optional<double> step_s;  ///< empty: that of the series
   double frames_per_s = 10;      ///< of a video, 0.1..240
 };
 
@@ -30,8 +30,8 @@ struct RecordJob {
   std::string output;  ///< NAME.mp4, NAME.png (one time) or a folder
 };
 
-/// One recording at a time, on its own thread and from its own source, as by `emscape render`. The thread
-/// of the window uses it.
+/// Makes one recording at a time, on its own thread and from its own source, as `emscape render` does. For
+/// use by the window's thread.
 class Recorder {
  public:
   Recorder() = default;
@@ -43,7 +43,7 @@ class Recorder {
   /// @param wake  called from the thread of the recording after each picture and at its end
   /// @throws Error (usage) if a recording is running
   void start(const RecordJob& job, std::function<void()> wake);
-  /// Returns at once; the recording ends within a picture.
+  /// Returns at once; the recording ends after the current picture at the latest.
   void cancel() { stop_ = true; }
   bool running() const { return task_.active(); }
 
@@ -59,7 +59,7 @@ class Recorder {
     std::string text;
     bool is_error = false;
   };
-  /// The result of a recording that has ended; once.
+  /// The result of an ended recording; returned once.
   std::optional<Outcome> takeOutcome();
 
  private:

@@ -23,7 +23,7 @@ std::string beginOf(const ViewOptions& options) {
   return text;
 }
 
-/// The colours that `render` fits without a transfer function.
+/// The colours that `render` would fit without a transfer function.
 render::TransferFunction fittedColors(const playback::ViewState& view, const playback::ShownField& shown) {
   if (!view.range) return shown.defaultColors();
   volume::VolumeInfo info = shown.info();
@@ -32,7 +32,7 @@ render::TransferFunction fittedColors(const playback::ViewState& view, const pla
   return render::defaultTransferFunction(info);
 }
 
-/// Equal functions share a file.
+/// Writes the function to a file; equal functions share a file.
 std::string writeColors(const render::TransferFunction& function, const std::string& text) {
   namespace fs = std::filesystem;
   const fs::path folder = playback::stateFolder() / "copied";

@@ -11,8 +11,8 @@ namespace emscape::view {
 /// `emscape render INPUT --state FILE -o picture.png`.
 std::string renderCommand(const ViewOptions& options, const std::string& state_file);
 
-/// The same with the options that describe the view, and --set for its edits. Colours that `render` would not
-/// fit itself are written to a file in stateFolder()/copied.
+/// The same with the options that describe the view, and --set for its edits. Colours different from those
+/// that `render` would fit are written to a file in stateFolder()/copied.
 /// @param shown  the field on screen
 /// @throws Error (other) if that file cannot be written
 std::string renderCommand(const ViewOptions& options, const playback::ViewState& view,

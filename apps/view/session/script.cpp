@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWaitLimit_s = 60;
 constexpr int kFramesAfterInput = 3;
-constexpr int kFramesAfterMouse = 6;  // a drag takes four
+constexpr int kFramesAfterMouse = 6;  // a drag needs four
 
 bool isWait(const std::string& verb) {
   return verb == "wait_s" || verb == "wait_state" || verb == "wait_frame";
@@ -32,7 +32,7 @@ int buttonNamed(const std::string& name) {
   return found->second;
 }
 
-/// A movement of the mouse, a click, a drag in ten parts or a turn of the wheel.
+/// Moves, clicks or drags (in ten parts) the mouse, or turns its wheel.
 void moveMouse(const Command& command, WindowControl& window) {
   constexpr int kParts = 10;
   const double x = command.number("x"), y = command.number("y");

@@ -1,4 +1,4 @@
-/// Runs a script: JSON lines, each a command with the time or the condition that it waits for.
+/// Runs a script in JSON Lines format; each line is a command, or waits for a time or a condition.
 #pragma once
 
 #include <optional>
@@ -19,10 +19,9 @@ class Script {
 
   bool finished() const { return next_ >= lines_.size(); }
   /// Runs the lines that are due. Called once per frame.
-  /// @throws Error (check_failed) with file:line for an expectation that is not met, or a wait that took too
-  /// long
+  /// @throws Error (check_failed) with file:line for an expectation that is not met, or a wait that timed out
   void run(Session& session, WindowControl& window, double now_s);
-  /// Seconds until run() is to be called again; none if the script is finished.
+  /// Seconds until run() is to be called again; empty if the script is finished.
   std::optional<double> nextRun_s(double now_s) const;
 
  private:
@@ -37,7 +36,7 @@ class Script {
 
   std::vector<Line> lines_;
   std::size_t next_ = 0;
-  std::optional<double> waits_since_s_;  // for the line next_
+  std::optional<double> waits_since_s_;  // start of waiting in line next_
   int frames_to_wait_ = 0;               // until the window has processed the injected events
 };
 

@@ -1,4 +1,4 @@
-/// The state and commands of the window, without drawing and input. No OpenGL, no ImGui.
+/// State and commands of the window, without drawing or input: no OpenGL, no ImGui.
 #pragma once
 
 #include <functional>
@@ -28,7 +28,7 @@
 
 namespace emscape::view {
 
-/// A line that reports the result of a command to the user.
+/// One line of text that reports the result of a command.
 struct Notice {
   std::string text;
   bool is_error = false;
@@ -44,7 +44,7 @@ struct Rejection {
 /// The first emscape-NNNN.png that does not exist.
 std::string newPictureName();
 
-/// Runs commands on a LiveView and holds the requested state. The thread of the window uses it.
+/// Runs commands on a LiveView and holds the requested state. For use by the window's thread.
 class Session {
  public:
   /// @param wake   called from any thread when there is something new to show
@@ -65,7 +65,7 @@ class Session {
   void dragValue(const std::string& path, const std::string& value) { drag({{path, value}}); }
   /// Changes colours and opacities while a control is dragged: one undo step.
   void dragTransfer(const std::function<void(playback::TransferEditor&)>& change);
-  /// The same as a separate step.
+  /// The same, as a separate undo step.
   void changeTransfer(const std::function<void(playback::TransferEditor&)>& change);
   /// Ends a drag of either kind.
   void endDrag();
@@ -75,12 +75,12 @@ class Session {
 
   /// Advances time and takes new results. @return true if the window must be drawn
   bool update();
-  /// Seconds until update() must be called again; none: not before an event.
+  /// Seconds until update() must be called again; empty: at the next event.
   std::optional<double> nextUpdate_s() const;
   /// The part of the window that the picture fills.
   void setPictureSize(render::ImageSize size);
   render::ImageSize pictureSize() const { return picture_size_; }
-  /// True if busy pictures that a GPU casts are left there; see LivePicture::on_device.
+  /// Sets whether busy pictures cast on a GPU are kept in its memory; see LivePicture::on_device.
   void keepOnDevice(bool keep) { live_.keepOnDevice(keep); }
 
   // --- state on screen ---
@@ -91,12 +91,12 @@ class Session {
   bool isAnswering() const { return edit_queue_.isBusy() || prober_.isBusy(); }
   /// True if the picture is exact and no request is pending.
   bool settled() const;
-  /// True if its files are being read or written, or will be when it is settled, or another session is being
-  /// opened.
+  /// True if files are being read or written, or will be once the picture is settled, or another session is
+  /// being opened.
   bool working() const;
   /// True if files are being read or written.
   bool writing() const { return jobs_.busy(); }
-  /// For mouse movements; none before the first picture.
+  /// The geometry for mouse movements; empty before the first picture.
   std::optional<Viewport> viewport() const;
   /// Report of a frame, for the log and for script comparisons.
   Json report() const;
@@ -107,7 +107,7 @@ class Session {
   bool hasInput() const { return !options_.input.empty(); }
   Files& files() { return *files_; }
   const Files& files() const { return *files_; }
-  /// The requested state, as a view for a file.
+  /// The requested state, as a view that can be saved.
   playback::ViewState viewState() const;
   bool hasUnsavedEdits() const;
   /// The autosave of an earlier run that did not end regularly.
@@ -116,7 +116,7 @@ class Session {
   const std::vector<std::string>& changedFiles() const { return changed_files_; }
   /// Ends this session. @param keeps_edits  true: unsaved edits are offered when the input is opened again
   void leave(bool keeps_edits);
-  /// Called when the session comes on screen. @param left_out  edits that did not apply; may be empty
+  /// Called when the session is shown. @param left_out  edits that did not apply; may be empty
   void shown(const std::string& left_out);
   void record(const RecordRange& range, const std::string& output);
 
@@ -124,7 +124,7 @@ class Session {
   void cameraMoved();
   const playback::Timeline& timeline() const { return timeline_; }
   const render::RenderSettings& settings() const { return settings_; }
-  /// Those that the field on screen does not have become a notice.
+  /// Sets the settings; a notice reports those that do not apply to the field on screen.
   void setSettings(const render::RenderSettings& settings);
   /// A plane through the middle of the box; a vertical one faces the viewer.
   render::CutPlane newPlane(render::CutPlane::Kind kind) const;
@@ -142,9 +142,9 @@ class Session {
   std::optional<render::Pattern> pattern() const { return pattern_; }
   bool showsTerrain() const { return show_terrain_; }
   bool showsEmitters() const { return show_emitters_; }
-  /// As edited; null for volumes alone, and before the input is open.
+  /// The edited scenario; null for volumes without one, and before the input is open.
   playback::ScenarioPtr scenario() const { return edits_ ? edits_->scenario() : nullptr; }
-  /// The last edits, if they were refused.
+  /// The last edits if they were refused.
   const std::optional<Rejection>& rejection() const { return rejection_; }
   Prober& prober() { return prober_; }
   const Prober& prober() const { return prober_; }
@@ -204,7 +204,7 @@ class Session {
   /// Report of the probe for the log.
   Json probeReport() const;
   void tellRate();
-  /// Runs after the edits that were requested before.
+  /// Undoes or redoes a step after the edits that were requested before.
   void askUndo(bool undo);
   void undoOrRedo(bool undo);
   void noteSteps();
@@ -237,12 +237,12 @@ class Session {
   double advanced_at_s_ = 0;
   render::ImageSize picture_size_;
   render::RenderSettings settings_;
-  render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // that the key I returns to
+  render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // mode to which the key I returns
   std::optional<playback::TransferEditor> transfer_;
-  bool takes_colors_ = true;  // from the next pictures, whose colours are fitted again
+  bool takes_colors_ = true;  // true: takes the colours of the next pictures, which are fitted again
   std::shared_ptr<const ValueSummary> values_;
   bool counting_ = false;
-  std::optional<Fit> fit_;  // requested, but its data are not known yet
+  std::optional<Fit> fit_;  // requested, but its data are not yet available
   render::Theme theme_;
   std::string quantity_;
   std::optional<render::Pattern> pattern_;
@@ -264,11 +264,11 @@ class Session {
   std::string saved_file_;    // view file that ...
   std::string saved_text_;    // ... holds this view
   std::string copied_;        // the command that was copied last
-  std::string picture_file_;  // to be written when the picture is settled
+  std::string picture_file_;  // written when the picture is settled
   bool opened_unsaved_;       // with unsaved edits
-  std::string kept_hash_;     // of the scenario in the autosave, or of one that needs none
+  std::string kept_hash_;     // of the scenario in the autosave, or of one without unsaved edits
   std::optional<double> keep_at_s_;
-  bool has_kept_;  // true: there is an autosave, which a regular end removes
+  bool has_kept_;  // true: there is an autosave; a regular end removes it
   std::optional<playback::AutosavedView> kept_view_;
   FileWatch file_watch_;
   std::vector<std::string> changed_files_;

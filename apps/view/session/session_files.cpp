@@ -1,4 +1,4 @@
-/// Verbs of files: opening, reloading, saving, autosaves, the end.
+/// Verbs of files: opening, reloading, saving, autosaves, quitting.
 #include <fmt/format.h>
 
 #include <algorithm>

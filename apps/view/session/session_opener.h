@@ -1,4 +1,4 @@
-/// Replaces the session on screen by another one, without blocking the window.
+/// Replaces the session on screen without blocking the window.
 #pragma once
 
 #include <functional>
@@ -13,18 +13,18 @@ namespace emscape::view {
 
 /// Serves the request of Files: examines the file and opens it, both in the background; when the first
 /// picture is ready, the new session replaces the old one. If it cannot be opened, the error is reported and
-/// the old session stays. The thread of the window uses it.
+/// the old session is kept. For use by the window's thread.
 class SessionOpener {
  public:
   using Make = std::function<std::unique_ptr<Session>(const ViewOptions&)>;
 
-  /// @param make  a session that shares `files`
+  /// @param make  creates a session that shares `files`
   SessionOpener(std::shared_ptr<Files> files, Make make) : files_(std::move(files)), make_(std::move(make)) {}
 
   /// @param session  replaced when the new one is ready
-  /// @return true if it was
+  /// @return true if it was replaced
   bool update(std::unique_ptr<Session>& session);
-  /// True if update() is to be called often.
+  /// True if update() must be called often.
   bool active() const { return task_.active() || files_->request || next_; }
 
  private:

@@ -46,21 +46,17 @@ std::vector<Verb> Session::pictureVerbs() {
        "Vertical exaggeration; 0: chosen from the box",
        [](Session& session, const Command& command) {
          const double factor = command.number("factor");
-         if (!(factor >= 0 && factor <= 100))
-           throw Error(ErrorCode::bad_input,
-                       fmt::format("exaggeration {:g}: expected a number 0..100", factor));
+         render::kExaggerationLimits.require(factor);
          render::RenderSettings settings = session.settings_;
          settings.vertical_exaggeration = factor;
          session.setSettings(settings);
        }},
       {"step_voxels",
        {{"value"}},
-       "Distance of samples in voxels, 0.05..10",
+       "Distance of samples, in voxels",
        [](Session& session, const Command& command) {
          const double value = command.number("value");
-         if (!(value >= 0.05 && value <= 10))
-           throw Error(ErrorCode::bad_input,
-                       fmt::format("step_voxels {:g}: expected a number 0.05..10", value));
+         render::kStepLimits.require(value);
          render::RenderSettings settings = session.settings_;
          settings.step_voxels = value;
          session.setSettings(settings);

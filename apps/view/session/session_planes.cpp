@@ -25,7 +25,7 @@ void requireRoom(const std::vector<CutPlane>& planes) {
               fmt::format("plane: there are {} already, which is the most", planes.size()));
 }
 
-/// The plane that a command names: by its number, else the last one.
+/// The plane that a command names by number, otherwise the last one.
 std::size_t indexOf(const Command& command, const std::vector<CutPlane>& planes) {
   if (planes.empty())
     throw Error(ErrorCode::bad_input, "plane: there is no plane; `spec` or `kind` adds one");
@@ -146,7 +146,7 @@ std::vector<Verb> Session::planeVerbs() {
          session.compares_ = compares;
          session.takes_colors_ = true;
          render::RenderSettings settings = session.settings_;
-         settings.iso_value = render::RenderSettings{}.iso_value;  // was in the unit of the other
+         settings.iso_value = render::RenderSettings{}.iso_value;  // the old one has another unit
          session.setSettings(settings);
          session.live_.setComparison(compares);
        }},

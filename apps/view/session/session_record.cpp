@@ -21,7 +21,7 @@ void Session::record(const RecordRange& range, const std::string& output) {
   job.selection.range = view.range;
   job.selection.compare = view.compare;
   job.selection.allow_missing_terrain = options_.allow_missing_terrain;
-  job.selection.independent = true;  // each picture is that of the window at its time
+  job.selection.independent = true;  // each picture equals the window's at its time
   job.selection.times = recordTimes(range);
   job.style = playback::pictureStyleOf(view);
   job.style.cells = options_.cells;
@@ -31,7 +31,7 @@ void Session::record(const RecordRange& range, const std::string& output) {
   files_->recorder.start(job, wake_);
 }
 
-/// As --times has them; empty: all steps.
+/// The times in the syntax of --times; empty: all steps.
 std::string Session::recordTimes(const RecordRange& range) const {
   if (!range.begin_s && !range.end_s && !range.step_s) return "";
   const double begin_s = range.begin_s.value_or(timeline_.times_s().front());

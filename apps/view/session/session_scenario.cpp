@@ -1,4 +1,4 @@
-/// The scenario: its edits, undo, and the verbs of both.
+/// Verbs of the scenario: edits and undo.
 #include <fmt/format.h>
 
 #include <utility>
@@ -110,7 +110,7 @@ void Session::showScenario() {
   watchFiles();
   timeline_.setScenario(*shown_scenario_);
   live_.setScenario(shown_scenario_);
-  // Without a choice of the user the first quantity of the scenario is shown, as `render` does.
+  // Without a choice by the user the scenario's first quantity is shown, as in `render`.
   const std::string quantity = quantity_.empty() ? shown_scenario_->output.quantities.front() : quantity_;
   if (std::exchange(shown_quantity_, quantity) == quantity) return;
   takes_colors_ = true;

@@ -1,4 +1,4 @@
-/// The view as a whole: its file, the picture alone, the command that draws it.
+/// The view as a whole: its file, its picture, the command that draws it.
 #include <filesystem>
 #include <utility>
 
@@ -9,7 +9,7 @@
 namespace emscape::view {
 namespace {
 
-/// The view of the picture alone: without values that do not change it.
+/// The view without values that do not change the picture.
 std::string pictureText(playback::ViewState view) {
   view.bookmarks.clear();
   view.open_panels.clear();
@@ -28,7 +28,7 @@ std::string besideInput(const std::string& input, const std::string& ending) {
 
 }  // namespace
 
-/// None: for categories, or if they will be fitted to a quantity that is not on screen yet.
+/// Empty for categories, and if the colours will be fitted to a quantity that is not yet on screen.
 std::optional<render::TransferFunction> Session::colorsInUse() const {
   if (!picture_) return options_.view.transfer;
   if (!transfer_ || takes_colors_) return std::nullopt;
@@ -64,7 +64,7 @@ playback::ViewState Session::viewState() const {
   return view;
 }
 
-/// Applies the parts of a view that the session holds; the live view gets its parts from the options.
+/// Applies the parts of a view that are kept in the session; the live view takes the others from the options.
 void Session::showView(const playback::ViewState& view) {
   camera_.set(view.camera);
   std::size_t next = 0;
@@ -100,7 +100,7 @@ void Session::showView(const playback::ViewState& view) {
 void Session::noteSavedView(const std::string& file) {
   saved_file_ = file;
   playback::ViewState view = viewState();
-  if (file == options_.state) view.size = options_.view.size;  // the window's may not be the file's
+  if (file == options_.state) view.size = options_.view.size;  // the window's size may differ from the file's
   saved_text_ = pictureText(view);
 }
 

@@ -25,7 +25,7 @@ double opacityOf(const Command& command) {
               fmt::format("{}: opacity {:g}: expected a number 0..1", command.verb, opacity));
 }
 
-/// Selects the point that a command names; without a name the selection is kept.
+/// Selects the point that a command names; without one, keeps the selection.
 void selectPoint(playback::TransferEditor& editor, const Command& command) {
   if (!command.has("index")) return;
   const auto count = static_cast<double>(editor.function().opacities.size());
@@ -57,7 +57,7 @@ void setPoint(playback::TransferEditor& editor, const Command& command) {
 // --- source of the colours ---
 
 void Session::takeColors() {
-  takes_colors_ = picture_->status.computing;  // the picture is of an earlier request
+  takes_colors_ = picture_->status.computing;  // then the picture is of an earlier request
   const playback::OpacityAxis axis = transfer_ ? transfer_->axis : playback::OpacityAxis{};
   undo_order_.forget(History::transfer);
   transfer_.reset();

@@ -1,4 +1,4 @@
-/// Undo over several histories: the latest step of any of them comes first.
+/// Undo across several histories, latest step first.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ class UndoOrder {
   }
   bool canUndo() const { return !done_.empty(); }
   bool canRedo() const { return !undone_.empty(); }
-  /// The history whose last step is to be undone, redone; none: there is none.
+  /// The history whose last step is to be undone or redone; empty if there is none.
   std::optional<History> undo() { return move(done_, undone_); }
   std::optional<History> redo() { return move(undone_, done_); }
 

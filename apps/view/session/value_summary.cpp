@@ -11,7 +11,7 @@ ValueSummary summaryOf(const playback::ShownField& field) {
   ValueSummary summary;
   summary.field = field;
   const auto values = field.values();
-  ThreadArena one_thread(1);  // the other threads cast
+  ThreadArena one_thread(1);  // the other threads cast rays
   one_thread.run([&] {
     const volume::VolumeInfo& info = field.info();
     const auto bins = static_cast<int>(std::clamp(values->grid.dims.count() / kValuesPerBin, 32LL, kMaxBins));

@@ -8,12 +8,12 @@
 namespace emscape::view {
 
 struct ValueSummary {
-  playback::ShownField field;       ///< that was counted
-  volume::Histogram histogram;      ///< over info().range_*; no counts if that has no width
-  render::TransferFunction fitted;  ///< the default function for it
+  playback::ShownField field;       ///< the summarised field
+  volume::Histogram histogram;      ///< over info().range_*; no counts if the range is empty
+  render::TransferFunction fitted;  ///< default function for the field
 };
 
-/// Takes as long as reading every value, on one thread. @throws Error (device)
+/// Reads every value, on one thread. @throws Error (device)
 ValueSummary summaryOf(const playback::ShownField& field);
 
 }  // namespace emscape::view

@@ -1,4 +1,4 @@
-/// Operations of the window that commands use.
+/// Operations of the window used by commands.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace emscape::view {
 
-/// One event of keyboard or mouse, in the window's pixels.
+/// A keyboard or mouse event, in the window's pixels.
 struct InputEvent {
   enum class Kind { key, text, button, cursor, wheel, left_window };
   Kind kind = Kind::cursor;
@@ -22,14 +22,14 @@ class WindowControl {
  public:
   virtual ~WindowControl() = default;
   virtual void resize(int width, int height) = 0;
-  /// Size of texts and controls; the present one, and another.
+  /// Scale of text and controls.
   virtual double scale() const = 0;
   virtual void setScale(double factor) = 0;
   /// Writes the next frame. @param file  empty: a new name
   virtual void screenshot(const std::string& file) = 0;
   virtual void setClipboard(const std::string& text) = 0;
   virtual void quit() = 0;
-  /// Injects an event as if from the user.
+  /// Injects an event as if it came from the user.
   virtual void press(const KeyChord& chord) = 0;
   virtual void inject(const InputEvent& event) = 0;
 };

@@ -1,4 +1,4 @@
-/// Backends: the one that was requested, and the one that the request resolves to on this machine.
+/// The requested backend, and the backend that is used for the request on this machine.
 #pragma once
 
 #include <string>
@@ -19,11 +19,11 @@ const char* toString(Backend backend);
 /// @throws Error (usage) for any other name
 Backend parseBackend(const std::string& name);
 
-/// The backend that a request resolves to on this machine.
+/// The backend that is used for a request on this machine.
 struct ResolvedBackend {
   Backend backend = Backend::cpu;  ///< cpu or cuda
-  std::string device = "cpu";      ///< for reports: "cpu", or the name of the GPU
-  std::string note;  ///< automatic was requested: one line that names the chosen backend and the reason
+  std::string device = "cpu";      ///< "cpu", or the name of the GPU; for reports
+  std::string note;  ///< with automatic: one line that names the chosen backend and the reason; else empty
 };
 
 /// @param device  what findDevice() found
@@ -33,8 +33,8 @@ ResolvedBackend resolveBackend(Backend requested, const Device& device);
 /// Calls findDevice(), unless the CPU is requested.
 ResolvedBackend resolveBackend(Backend requested);
 
-/// Calls open() for the requested backend. With Backend::automatic, calls it for the CPU if it fails on the
-/// GPU.
+/// Calls open() for the requested backend. With Backend::automatic, if the GPU fails, calls it again for the
+/// CPU.
 /// @param open  (ResolvedBackend) -> the result
 /// @param tell  (std::string): receives one line for the user; called for Backend::automatic only
 /// @throws as resolveBackend() and `open`

@@ -9,7 +9,7 @@ namespace emscape {
 /// A GPU, and whether it is usable.
 struct Device {
   bool usable = false;
-  std::string why_not;  ///< reason why it is not usable; empty if it is. A phrase to follow a colon
+  std::string why_not;  ///< reason why it is not usable, as a phrase that follows a colon; empty if it is
   std::string name;     ///< product name, as the driver reports it
   std::size_t total_bytes = 0;
   std::size_t free_bytes = 0;  ///< at the time of the call
@@ -18,8 +18,7 @@ struct Device {
 /// CUDA version and target architectures of this build: "CUDA 13.0 for 80-real, 90"; empty without CUDA.
 std::string cudaOfBuild();
 
-/// The first GPU of the system that this program can use. After the first call only free_bytes is queried
-/// again.
+/// The first GPU of the system that this program can use. Later calls query only free_bytes again.
 Device findDevice();
 
 }  // namespace emscape

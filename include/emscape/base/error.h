@@ -1,4 +1,4 @@
-/// The one exception of the project and the location in a file that it points to.
+/// The exception of all libraries, and the location in a file that it refers to.
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace emscape {
 
-/// Kind of failure; its value is the exit status of the programs.
+/// Kind of failure. The value is the exit status of the programs.
 enum class ErrorCode { other = 1, usage = 2, bad_input = 3, device = 4, check_failed = 5 };
 
 /// A location in a text file. line and column count from 1; 0 means unknown.
@@ -19,10 +19,10 @@ struct SourceLocation {
 /// "file:line:column", without the parts that are unknown.
 std::string toString(const SourceLocation& location);
 
-/// A remedy that a program can propose after an error, in terms of its own options.
+/// A remedy for an error, which a program can propose in terms of its own options.
 enum class Hint {
   none,
-  allow_missing_terrain  ///< FieldOptions::allow_missing_terrain computes the field with holes
+  allow_missing_terrain  ///< set FieldOptions::allow_missing_terrain: the field is computed with holes
 };
 
 /// Thrown where input comes in. The message names the value, the allowed range and its unit; what() starts

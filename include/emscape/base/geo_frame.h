@@ -1,5 +1,5 @@
-/// Geodetic positions (WGS84) and the local frames of volumes. The exact form, by GeographicLib;
-/// fast_geodesy.h has the approximation used per voxel.
+/// Geodetic positions (WGS84) and the local frames of volumes, computed exactly by GeographicLib.
+/// fast_geodesy.h has the approximation that is used per voxel.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace emscape {
 
-/// WGS84. The height's datum is the ellipsoid.
+/// A position on WGS84. The datum of the height is the ellipsoid.
 struct GeodeticPosition {
   double latitude_deg = 0;   ///< -90..90
   double longitude_deg = 0;  ///< -180..180
@@ -23,7 +23,7 @@ enum class FrameKind { altitude, enu };
 
 const char* toString(FrameKind kind);
 
-/// Definition of a frame: enough to build it again from a file's metadata.
+/// Definition of a frame, as in the metadata of files.
 struct FrameOrigin {
   FrameKind kind = FrameKind::altitude;
   double latitude_deg = 0;
@@ -41,9 +41,9 @@ class GeoFrame {
   GeoFrame& operator=(const GeoFrame&);
 
   const FrameOrigin& origin() const;
-  /// Local position (m) of a geodetic one.
+  /// Local position (m) of a geodetic position.
   Vec3d toLocal(const GeodeticPosition& position) const;
-  /// Geodetic position of a local one (m).
+  /// Geodetic position of a local position (m).
   GeodeticPosition toGeodetic(const Vec3d& local_m) const;
   /// Height above mean sea level of a local position (m).
   double heightMsl_m(const Vec3d& local_m) const;
@@ -68,7 +68,7 @@ GeodesicInverse geodesicInverse(double latitude1_deg, double longitude1_deg, dou
 GeodeticPosition geodesicDirect(double latitude_deg, double longitude_deg, double azimuth_rad,
                                 double distance_m);
 
-/// Longitude brought to -180..180 (deg).
+/// Longitude wrapped to -180..180 (deg).
 double wrapLongitude_deg(double longitude_deg);
 
 }  // namespace emscape

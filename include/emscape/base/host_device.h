@@ -1,4 +1,4 @@
-/// Macros for functions that run on the host and, compiled by nvcc, on the device, and for their loops.
+/// Macros for functions that run on the host and, if compiled by nvcc, on the device, and for loops in them.
 #pragma once
 
 #if defined(__CUDACC__)
@@ -7,8 +7,8 @@
 #define EMSCAPE_HD
 #endif
 
-/// Put before a loop of few iterations: on the device it is unrolled, so that arrays it indexes stay in
-/// registers.
+/// Unrolls the next loop on the device, so that the arrays that it indexes stay in registers. For loops of
+/// few iterations.
 #if defined(__CUDA_ARCH__)
 #define EMSCAPE_UNROLL _Pragma("unroll")
 #else

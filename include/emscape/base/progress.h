@@ -7,7 +7,7 @@
 
 namespace emscape {
 
-/// Called with the step's name and the fraction done, 0..1. May be called from any thread, one call at a
+/// Receives the step's name and the completed fraction, 0..1. May be called from any thread, one call at a
 /// time.
 using ProgressSink = std::function<void(const std::string& step, double fraction)>;
 

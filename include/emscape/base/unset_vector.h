@@ -1,4 +1,4 @@
-/// Arrays that are written before they are read.
+/// Vectors without initialization, for large arrays that are written before they are read.
 #pragma once
 
 #include <cstddef>
@@ -10,13 +10,13 @@
 
 namespace emscape {
 
-/// Memory that is not set to zero; large blocks in large pages where the system has them, which saves most
+/// Allocates uninitialized memory. Large blocks use huge pages where the system has them, which saves most
 /// page faults.
 /// @throws std::bad_alloc
 void* allocateUnset(std::size_t bytes);
 void freeUnset(void* memory);
 
-/// Leaves new elements without a value: the threads that fill a large array are the first to touch it.
+/// Leaves new elements uninitialized, so that the threads that fill a large array touch its memory first.
 template <class T>
 struct UnsetAllocator {
   static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
@@ -48,7 +48,7 @@ bool operator!=(const UnsetAllocator<A>&, const UnsetAllocator<B>&) {
   return false;
 }
 
-/// A vector whose new elements have no value until they are assigned.
+/// A vector whose new elements are uninitialized.
 template <class T>
 using UnsetVector = std::vector<T, UnsetAllocator<T>>;
 

@@ -1,4 +1,4 @@
-/// What the indices of categorical quantities mean.
+/// Meaning of the indices of categorical quantities.
 #pragma once
 
 #include <string>

@@ -30,7 +30,7 @@ struct Channel {
 /// @throws Error (bad_input)
 std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
                                 const std::vector<std::string>& quantities);
-/// The same with another combination than the scenario's.
+/// The same with a combination other than the scenario's.
 std::vector<Channel> channelsOf(const scenario::Scenario& scenario,
                                 const std::vector<std::string>& quantities, scenario::CombineMode combine);
 
@@ -43,15 +43,15 @@ struct FieldOptions {
   bool also_unjammed = false;
   bool allow_missing_terrain =
       false;  ///< true: columns over holes, and those that are seen only across one, are masked
-  Backend backend = Backend::cpu;  ///< automatic: the GPU if there is one with the memory, else the CPU
-  /// Null: the voxels of the scenario's region. Else these places, whatever the region: volumes then have its
-  /// width x height x heights, in that order, and no position on the earth.
+  Backend backend = Backend::cpu;  ///< automatic: the GPU if there is one with enough memory, else the CPU
+  /// Null: the field is computed at the voxels of the scenario's region. Else at the points of this surface:
+  /// volumes then have the dimensions width x height x number of heights, and no position on the earth.
   std::shared_ptr<const Surface> surface;
   /// cuda: storage of volumes. float16 needs less memory.
   volume::VoxelPrecision device_precision = volume::VoxelPrecision::float32;
   /// An emitter that moved less than this (m) with time keeps its geometry. Edits are exact.
   double move_tolerance_m = 0.5;
-  /// Bound on the per-emitter caches (bytes, of the GPU's memory with cuda), 0: none. Emitters that do not
+  /// Limit of the per-emitter caches (bytes; of the GPU's memory with cuda); 0: none. Emitters that do not
   /// fit are recomputed at each update.
   std::size_t cache_bytes = 0;
 };
@@ -62,17 +62,17 @@ struct FieldChanged {
   bool grid = false;      ///< everything is new: the first update, or another region, terrain or emitter list
   bool channels = false;  ///< channels() may have changed
   std::vector<int> moved;    ///< emitters whose geometry (columns and excess losses) was recomputed
-  std::vector<int> turned;   ///< emitters of which only the beam, the power or the activity changed, or what
-                             ///< else the combine stage reads; those in no channel also if they moved
+  std::vector<int> turned;   ///< emitters of which only inputs of the combine stage changed: beam, power,
+                             ///< activity, ...; also emitters in no channel that moved
   std::vector<int> volumes;  ///< channels whose volume was recomputed
 };
 
-/// Times (ms) of the stages of the last update, and their work; with cuda on the GPU.
+/// Times (ms) and work of the stages of the last update; with cuda by the GPU's clock.
 struct StageTimes {
   double columns_ms = 0;
   double march_ms = 0;  ///< of models that march outwards
   double excess_ms = 0, combine_ms = 0, product_ms = 0;
-  /// What those models marched: azimuths times steps in range times heights at the start.
+  /// Work of those models: azimuths times range steps times heights at the start.
   double marched_heights = 0;
 };
 
@@ -84,8 +84,8 @@ struct MemoryUse {
   int uncached_emitters = 0;
 };
 
-/// Upper bounds of the memory (bytes) of a field, on the host or the GPU on which it is computed. The
-/// constructor refuses a field for which their sum exceeds what is free.
+/// Upper bounds of the memory (bytes) of a field, on the host or GPU that computes it. The constructor
+/// refuses a field if their sum exceeds the free memory.
 struct MemoryEstimate {
   std::size_t volumes = 0;   ///< sums over the emitters and the channels' volumes; with cuda also columns and
                              ///< ground
@@ -112,13 +112,13 @@ class FieldSolver {
   /// without terrain.
   const std::vector<float>& groundHeights_m() const;
 
-  /// Computes the field of a snapshot. If the snapshot's scenario is another object than that of the last
-  /// update, it is taken as an edited scenario: per emitter the geometry is recomputed if its inputs have
-  /// changed, else the combine stage, else the products alone. After a change of region, terrain or list of
-  /// emitters everything is recomputed; memory for both fields is needed for a moment. A scenario must not be
-  /// changed in place while a solver holds it.
-  /// @param terrain  of the snapshot's scenario; the caller loads it. Another object than before is another
-  /// terrain
+  /// Computes the field of a snapshot. If the snapshot's scenario is not the object of the last update, it is
+  /// treated as an edited scenario: for each emitter the geometry is recomputed if its inputs have changed,
+  /// else the combine stage, else only the products. After a change of the region, the terrain or the list of
+  /// emitters everything is recomputed, and memory for both fields is needed for a moment. A scenario must
+  /// not be changed in place while a solver holds it.
+  /// @param terrain  of the snapshot's scenario, loaded by the caller. A different object is treated as a
+  /// different terrain
   /// @throws Error (bad_input) if terrain is missing, unless allowed, and as the constructor. The solver
   /// then still has the scenario of the last successful update, its channels and volumes, and the next update
   /// recomputes everything. After Error (device) volumes may be empty
@@ -129,18 +129,19 @@ class FieldSolver {
 
   /// The channels' volumes after the last update, in the order of channels(), in the memory where they were
   /// computed: host or GPU. Later updates do not change them: a caller may keep one while the next is
-  /// computed. info().range_* are those of each volume; a series sets a common range. A volume that did not
-  /// change with time keeps the time at which it was computed. Empty handles before the first update.
+  /// computed. info().range_* is the range of each volume; a series sets a common range. A volume that did
+  /// not change with time keeps the time at which it was computed. Empty handles before the first update.
   const std::vector<volume::Volume>& volumes() const;
   /// cpu or cuda.
   Backend backend() const;
 
   StageTimes stageTimes() const;
   MemoryUse memoryUse() const;
-  /// Of the scenario that the solver was made with.
+  /// Of the scenario with which the solver was constructed.
   MemoryEstimate memoryEstimate() const;
-  /// Warnings on the current scenario so far, each once with its count: model limits exceeded, near field,
-  /// holes crossed. Those of emitters that have been edited since are dropped.
+  /// Warnings about the current scenario so far, each once with its count: model limits exceeded, voxels in
+  /// the near field, paths across holes of the terrain. Warnings of emitters that have been edited since are
+  /// dropped.
   std::vector<std::string> warnings() const;
 
  private:

@@ -1,6 +1,6 @@
-/// Links over time: emitters at receivers, and targets in the view of radars.
+/// Links over time: emitters received by receivers, and targets observed by radars.
 ///
-/// A row holds what `pathBudget` gives for the same ends at the same time, by the same functions.
+/// A row equals the result of `pathBudget` for the same ends and time; both use the same functions.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,8 @@ struct LinkOptions {
   std::vector<double> times_s;  ///< since the epoch, ascending
   /// Indices into Scenario::emitters, placed_receivers and targets.
   std::vector<int> emitters, receivers, targets;
-  /// Of the selected emitters; none: their own. Interfering emitters and jammers keep theirs.
+  /// Model for the selected emitters; none: their own models. Interfering emitters and jammers keep their
+  /// own.
   std::optional<propagation::PropagationModel> model;
 };
 
@@ -26,7 +27,7 @@ struct LinkOptions {
 struct PathRow {
   double time_s = 0;
   bool active = true;    ///< the emitter radiates; if not, powers are -infinity
-  bool has_path = true;  ///< false: the ends are above one another, and no path is computed
+  bool has_path = true;  ///< false: one end is vertically above the other, and no path is computed
   double range_m = 0;    ///< slant
   double power_density_dbwm2 = 0;
   double pattern_db = 0;    ///< emitter's antenna towards the other end, relative to its maximum
@@ -38,7 +39,7 @@ struct PathRow {
 /// An emitter at a receiver at one time.
 struct LinkRow : PathRow {
   double received_power_dbm = 0;  ///< within the receiver's band, after its losses
-  /// Sum of all other active emitters in the band, those on the receiver's own platform left out.
+  /// Sum of all other active emitters in the band, except those on the receiver's own platform.
   double interference_dbm = 0;
   double noise_dbm = 0;
   double sinr_db = 0;              ///< received power over noise and interference
@@ -52,17 +53,18 @@ struct Link {
 
   std::optional<double> firstReceived_s() const;
   std::optional<double> lastReceived_s() const;
-  /// Part (0..1) of the times at which the signal is received.
+  /// Fraction (0..1) of the times at which the signal is received.
   double receivedShare() const;
 };
 
-/// A target in the view of a radar at one time, with the radar's beam on the target as nearly as its scan
+/// A target observed by a radar at one time, with the radar's beam as close to the target as its scan
 /// permits.
 struct DetectionRow : PathRow {
   double rcs_m2 = 0;    ///< from the radar's aspect
   double snr_db = 0;    ///< one pulse
-  double sclnr_db = 0;  ///< echo over clutter and noise behind the radar's filter; snr_db without clutter
-  std::optional<double> radial_speed_mps;  ///< of the target, positive away from a radar with clutter
+  double sclnr_db = 0;  ///< echo over clutter and noise after the radar's filter; snr_db without clutter
+  std::optional<double>
+      radial_speed_mps;  ///< of the target, positive away from the radar; only for radars with clutter
   double jammer_to_signal_db = 0;
   double detection_probability = 0;   ///< of one look
   int looks = 0;                      ///< since the row before

@@ -1,4 +1,4 @@
-/// What the models of emitters choose by themselves, for reports before anything is computed.
+/// Settings that the emitters' models choose automatically, for reports before the computation.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ struct EmitterChoice {
   std::string text;  ///< value with unit, and the reason: "200 m: ..."
 };
 
-/// The choices for the region's voxels at one time; none of models that choose nothing.
+/// The choices for the region's voxels at one time. Models without automatic settings have none.
 /// @param terrain  null: a smooth earth
 /// @throws Error (bad_input) naming the emitter, if it cannot be computed
 std::vector<EmitterChoice> modelChoices(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain);

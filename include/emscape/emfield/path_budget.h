@@ -1,7 +1,7 @@
 /// The link budget of one path: from the transmitter's power to the power density at a point, term by term.
 ///
-/// It explains missing coverage, and gives the value of a voxel of the field at that point for this emitter,
-/// by the same functions.
+/// It explains missing coverage. The result equals the field's value at that point for this emitter; both use
+/// the same functions.
 #pragma once
 
 #include <optional>
@@ -20,8 +20,9 @@ struct PathGeometry {
   double straight_elevation_rad = 0;  ///< of the straight line, at the emitter
   double launch_elevation_rad = 0;    ///< of the refracted ray's start
   double begin_ground_msl_m = 0, end_ground_msl_m = 0;
-  double horizon_range_m = 0;  ///< distance beyond which a smooth earth at mean sea level hides the end
-  double far_field_m = 0;      ///< 2 D^2 / lambda
+  double horizon_range_m =
+      0;  ///< distance beyond which a smooth earth at mean sea level obstructs the line of sight
+  double far_field_m = 0;  ///< 2 D^2 / lambda
 };
 
 /// Direction of a ray in the antenna's pattern.
@@ -33,7 +34,7 @@ struct RayPointing {
   double pattern_db = 0;  ///< gain relative to the pattern's maximum, <= 0
 };
 
-/// The direct ray in the pattern, and the reflected one of models that have it.
+/// The direct ray in the pattern, and the reflected ray for models that have one.
 struct PathPointing : RayPointing {
   std::optional<RayPointing> reflected;
 };
@@ -58,8 +59,8 @@ struct PathBudget {
   PathProfile profile;
   PathGeometry geometry;
   PathPointing pointing;
-  /// With the terms of detection of a radar whose beam follows the target (RadarLook::target, not fixed):
-  /// gain of that beam towards the end of the path, relative to its maximum (dB), <= 0.
+  /// For the terms of detection of a radar whose beam follows the target (RadarLook::target, not a fixed
+  /// scan): gain of that beam towards the end of the path, relative to its maximum (dB), <= 0.
   std::optional<double> look_pattern_db;
   std::vector<PathObstacle> obstacles;
   propagation::PropagationModel model = propagation::PropagationModel::free_space;
@@ -74,7 +75,8 @@ struct PathBudget {
   const BudgetTerm* find(const std::string& key) const;
 };
 
-/// The budget of a path, the terms of detection of a target at its end included if the emitter is a radar.
+/// The budget of a path. If the emitter is a radar, it includes the terms of detection of a target at the
+/// path's end.
 /// @param emitter  index into the snapshot
 /// @param point    the far end of the path
 /// @param terrain  null: a smooth earth at mean sea level
@@ -83,9 +85,8 @@ PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const Pat
                       propagation::PropagationModel model, const scenario::Terrain* terrain);
 
 /// The same without the terms of detection: for receivers.
-/// @param earlier  null, or a budget from this function of the same emitter, model and terrain: its profile
-/// and
-///                 losses are taken if neither end has moved since
+/// @param earlier  null, or an earlier result for the same emitter, model and terrain: its profile and losses
+/// are reused if neither end has moved since
 PathBudget powerBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
                        propagation::PropagationModel model, const scenario::Terrain* terrain,
                        const PathBudget* earlier = nullptr);

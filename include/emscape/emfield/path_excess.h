@@ -14,9 +14,9 @@ struct PathExcess : propagation::Explanation {
   std::vector<std::string> warnings;
 };
 
-/// By the functions that fill the field's voxels; except p528, which computes its curve instead of reading
-/// the field's table.
-/// @param emitter     with the model to use, at the begin of the profile
+/// Uses the functions that compute the field's voxels, except for p528, which computes its curve instead of
+/// reading the field's table.
+/// @param emitter     with the model to use, at the beginning of the profile
 /// @param beam        of the emitter
 /// @param terrain     null: none
 /// @throws Error (bad_input) if the model refuses an input

@@ -15,8 +15,8 @@ struct PathEnd {
   double height_msl_m = 0;
 };
 
-/// A path from a station: the vertical plane through both ends, on the effective earth, on which the ray
-/// is straight. Arrays run from the station (range 0) to below the far end.
+/// Terrain profile of a path in the vertical plane through both ends, on the effective earth, on which the
+/// ray is straight. Arrays run from the station (range 0) to the point below the far end.
 struct PathProfile {
   double k_factor = 0;                  ///< effective earth radius over earth radius
   double effective_earth_radius_m = 0;  ///< at the station
@@ -39,17 +39,17 @@ struct PathProfile {
   double fresnelRadius_m(int i, double wavelength_m) const;
 };
 
-/// Reads the terrain at its posts, as the field does, and at the path's end.
+/// Reads the terrain along the path with the sampling of the field, and at the path's end.
 /// @param terrain  null: a smooth earth at mean sea level
-/// @throws Error (bad_input) that names the first position without terrain, and for ends that are above one
-/// another (nearer than 1 m along the ground) or more than a quarter of the earth apart
+/// @throws Error (bad_input) that names the first position without terrain, and for ends that are less than 1
+/// m apart along the ground, or more than a quarter of the earth's circumference
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
                             const propagation::Atmosphere& atmosphere, const scenario::Terrain* terrain);
 /// The same in air whose refractivity is linear in height.
 PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end, double k_factor,
                             const scenario::Terrain* terrain);
 
-/// A point where the ground enters the ray's first Fresnel zone, or comes nearest to it.
+/// A point where the ground enters the ray's first Fresnel zone, or is closest to it.
 struct PathObstacle {
   int post = 0;  ///< of the profile
   double range_m = 0;
@@ -64,10 +64,10 @@ struct PathObstacle {
   double clearanceInFresnelRadii() const { return clearance_m / fresnel_radius_m; }
 };
 
-/// The separate obstacles that leave less than 0.6 Fresnel radii, from the station outwards, at most the
-/// eight largest; if there is none, the point with the smallest clearance. Two crests are separate if the
-/// ground between them falls below the ray by half a Fresnel radius, or by a third of the smaller one's
-/// obstruction. Empty without a post between the ends.
+/// The obstacles with a clearance below 0.6 Fresnel radii, at most the eight largest, in order from the
+/// station. If there is none, the point with the smallest clearance. Two crests are separate obstacles if the
+/// ground between them is lower by half a Fresnel radius, or by a third of the smaller crest's obstruction.
+/// Empty if the profile has no sample between the ends.
 std::vector<PathObstacle> pathObstacles(const PathProfile& profile, double wavelength_m);
 
 }  // namespace emscape::emfield

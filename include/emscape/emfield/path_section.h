@@ -1,4 +1,4 @@
-/// The loss over range and height along a path, by any model, and the air beside it.
+/// The loss over range and height along a path, by any model, and the refractivity at the emitter.
 #pragma once
 
 #include <vector>
@@ -11,22 +11,22 @@ namespace emscape::emfield {
 
 struct PathSection {
   std::vector<double> ranges_m;       ///< along the ground from the emitter, evenly spaced
-  std::vector<double> heights_msl_m;  ///< evenly spaced, rising
+  std::vector<double> heights_msl_m;  ///< evenly spaced, ascending
   std::vector<float> ground_msl_m;    ///< at the ranges
   /// Basic transmission loss (dB), heights x ranges, range fastest; NaN below the ground and where the model
   /// gives no field.
   std::vector<float> loss_db;
-  /// Modified refractivity at the emitter, as levels.
+  /// Modified refractivity (M-units) at the emitter, by height.
   struct Level {
     double height_msl_m = 0, m_units = 0;
   };
   std::vector<Level> air;
 };
 
-/// The section up to the end of a path, from its lowest ground to half above its ends, the ground and the
-/// layers of the air that trap.
+/// The section along a path. It begins at the lowest ground; its height is 1.5 times that of the ends, the
+/// ground and the trapping layers above it, at least 50 m.
 /// @param ranges, heights  numbers of samples, each at least 2
-/// @throws Error (bad_input) as the model
+/// @throws Error (bad_input) if the model refuses an input
 PathSection pathSection(const scenario::Snapshot& snapshot, int emitter, propagation::PropagationModel model,
                         const PathProfile& profile, const scenario::Terrain* terrain, int ranges,
                         int heights);

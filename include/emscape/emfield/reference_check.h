@@ -1,6 +1,6 @@
-/// Compares the models with a folder of reference figures, for `emscape check DIR`.
+/// Compares the models with reference data, for `emscape check DIR`.
 ///
-/// A dataset is a row in the table of reference_check.cpp and a function in one of this folder's files.
+/// Each dataset has a row in the table of reference_check.cpp and a function in a file of emfield/check/.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace emscape::emfield {
 
-/// The largest difference of one figure from its reference, over all cases.
+/// The largest difference of one quantity from its reference, over all cases.
 struct FigureCheck {
   std::string figure;  ///< "A_db"
   double tolerance = 0;
@@ -19,7 +19,7 @@ struct FigureCheck {
 
   bool pass() const { return max_abs_error <= tolerance; }
 
-  /// Adds one case. A value that is not a number has an infinite difference.
+  /// Adds one case. A NaN counts as an infinite difference.
   void compare(double computed, double expected, int line);
   /// The difference relative to `expected` (absolute where that is 0).
   void compareRelative(double computed, double expected, int line);
@@ -47,14 +47,14 @@ const std::vector<ReferenceDataset>& referenceDatasets();
 
 /// The datasets of a folder.
 struct ReferenceFolder {
-  std::filesystem::path root;                    ///< below which the names lie
-  std::vector<const ReferenceDataset*> present;  ///< known, with a model or without one
+  std::filesystem::path root;                    ///< to which the names are relative
+  std::vector<const ReferenceDataset*> present;  ///< known; some have no model
   std::vector<std::string> absent;               ///< known, not in the folder
   std::vector<std::string> unknown;              ///< in the folder, not known
 };
 
-/// @param folder  of all datasets, or of one family, such as "reference/radar": then the names begin with the
-/// family
+/// @param folder  the folder of all datasets, or of one family, such as "reference/radar": names then begin
+/// with the family
 /// @throws Error (bad_input) if it is not a folder, or if it contains no known dataset
 ReferenceFolder lookInto(const std::filesystem::path& folder);
 

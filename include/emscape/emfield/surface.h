@@ -1,5 +1,4 @@
-/// Places over which a field is computed instead of in a region's voxels: maps at heights above ground or
-/// sea.
+/// Points at which a field is computed instead of a region's voxels, for maps at heights above ground or sea.
 #pragma once
 
 #include <vector>
@@ -8,11 +7,11 @@
 
 namespace emscape::emfield {
 
-/// Zero of a surface's heights.
+/// Datum of a surface's heights.
 enum class HeightReference { ground, mean_sea_level };
 
-/// width x height places, each with the same heights above it. A place whose latitude is NaN is left out: the
-/// field there is masked, and costs nothing.
+/// width x height positions, each with the same heights above it. A position whose latitude is NaN is left
+/// out: the field there is masked and not computed.
 struct Surface {
   struct Place {
     double latitude_deg = 0, longitude_deg = 0;
@@ -20,9 +19,9 @@ struct Surface {
   int width = 0, height = 0;
   UnsetVector<Place> places;  ///< rows one after another
   HeightReference reference = HeightReference::ground;
-  std::vector<double> heights_m;  ///< rising; above ground >= 0
-  /// Lowest height of each place, added to heights_m; empty: 0. For searches with a bracket of its own at
-  /// each place.
+  std::vector<double> heights_m;  ///< ascending; above ground >= 0
+  /// Offset added to heights_m at each position; empty: 0. For searches with a separate bracket at each
+  /// position.
   std::vector<float> offsets_m;
 };
 

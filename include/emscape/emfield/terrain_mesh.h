@@ -1,4 +1,4 @@
-/// A mesh of tetrahedra that follows the ground: thin layers below, growing above.
+/// A mesh of tetrahedra that follows the ground, with layers that become thicker with height.
 #pragma once
 
 #include <memory>
@@ -38,14 +38,14 @@ class TerrainMesh {
  public:
   /// @param terrain  of the scenario; null: none
   /// @throws Error (usage) as layerHeights_m(); (bad_input) if the region has fewer than 2 columns along an
-  /// axis, for no ground at all, and for more cells than volume::kMaxMeshCells
+  /// axis, if there is terrain in no column, and for more cells than volume::kMaxMeshCells
   TerrainMesh(const scenario::Scenario& scenario, const scenario::Terrain* terrain,
               const TerrainMeshSpec& spec);
 
-  /// For FieldOptions::surface: its volumes are what field() takes.
+  /// For FieldOptions::surface. field() converts the volumes of such a solver.
   const std::shared_ptr<const Surface>& surface() const { return surface_; }
   const std::shared_ptr<const volume::TetrahedralMesh>& mesh() const { return mesh_; }
-  /// The values of a volume over the surface at the points; NaN where it is masked.
+  /// Converts a volume over surface() to values at the mesh's points; NaN where it is masked.
   volume::MeshField field(const volume::DenseVolume& volume) const;
 
  private:

@@ -13,7 +13,7 @@
 
 namespace emscape::playback {
 
-/// An auto-reset event, on which one thread waits for several others. Any thread may set it.
+/// An auto-reset event: one thread waits, any thread may set it.
 class Event {
  public:
   void set() {
@@ -36,8 +36,8 @@ class Event {
     set_ = false;
   }
 
-  /// Reports the begin of work that ends with finish(), so that a simulated clock knows whether there is
-  /// anything to wait for.
+  /// Reports the beginning of work that ends with finish(), so that a simulated clock knows whether work is
+  /// in progress.
   void begin() { ++begun_; }
   /// set(), at the end of work.
   void finish() {
@@ -53,8 +53,8 @@ class Event {
   std::atomic<int> begun_{0};
 };
 
-/// The owner starts a task, polls it, and takes the result. One thread owns it. All tasks run on one thread,
-/// from the first on: for each thread that enters a loop, oneTBB keeps memory until the program ends.
+/// The owner starts a task, polls it, and takes the result. One thread owns it. All tasks run on the same
+/// thread, because oneTBB keeps memory until the program ends for each thread that enters a loop.
 template <class Result>
 class AsyncTask {
  public:
@@ -70,7 +70,7 @@ class AsyncTask {
   AsyncTask(const AsyncTask&) = delete;
   AsyncTask& operator=(const AsyncTask&) = delete;
 
-  /// Only after the last result was taken.
+  /// Starts a task. The previous result must have been taken.
   void start(std::function<Result()> work) {
     active_ = true;
     done_ = false;
@@ -79,7 +79,7 @@ class AsyncTask {
     if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
     begin_.set();
   }
-  /// True if the task runs or its result was not taken.
+  /// True if the task runs or its result has not been taken.
   bool active() const { return active_; }
   bool done() const { return active_ && done_; }
   /// Waits for the end. Rethrows an exception of the work.

@@ -42,11 +42,11 @@ class Autosaves {
   Autosaves(const Autosaves&) = delete;
   Autosaves& operator=(const Autosaves&) = delete;
 
-  /// Stores a view with its edits, in place of the one that was stored or found before. The folder is created
-  /// if necessary. @throws Error (bad_input, other) as writeViewState(), or if no file is free
+  /// Stores a view with its edits; it replaces the one that was stored or found before. Creates the folder if
+  /// necessary. @throws Error (bad_input, other) as writeViewState(), or if no file is free
   void keep(const std::string& input, const ViewState& state);
-  /// This program's stored view of an input; else the newest one of a program that has ended, which this
-  /// program takes over. None if there is neither. @throws Error (bad_input) if it cannot be read
+  /// This program's stored view of an input; else the newest view of a program that has ended, which this
+  /// program takes over. Empty if there is neither. @throws Error (bad_input) if it cannot be read
   std::optional<AutosavedView> find(const std::string& input);
   /// Removes the view that was stored or found.
   void remove(const std::string& input);

@@ -1,4 +1,4 @@
-/// An abstract clock for playing, so that tests can use simulated time.
+/// An abstract clock for playback, so that tests can use simulated time.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,7 @@
 
 namespace emscape::playback {
 
-/// Threads may share one.
+/// Threads may share a clock.
 class Clock {
  public:
   virtual ~Clock() = default;

@@ -18,7 +18,7 @@ struct ComputeTarget {
   bool onGpu() const { return choice.backend == Backend::cuda; }
   /// For reports: "cpu", or the name of the GPU.
   const std::string& device() const { return choice.device; }
-  /// Options for this target. A field with sparse voxels is computed with dense ones.
+  /// Options for this target. Fields are computed on dense voxels, also if sparse ones are requested.
   emfield::FieldOptions fieldOptions() const;
   render::RendererOptions rendererOptions() const;
 };

@@ -12,12 +12,11 @@ namespace emscape::playback {
 
 using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 
-/// A scenario with values changed, checked together; the same object if the edits change no text. Any
-/// thread may call it. @throws Error (bad_input) as Scenario::set()
+/// Applies edits to a scenario and checks them together. Returns the same object if the edits change no text.
+/// Any thread may call it. @throws Error (bad_input) as Scenario::set()
 ScenarioPtr edited(const ScenarioPtr& scenario, const std::vector<scenario::Edit>& edits);
 
-/// Every state is an immutable scenario, so that a solver may still read one that was undone. One thread uses
-/// it.
+/// Every state is an immutable scenario, so that a solver may still read one that was undone. For one thread.
 class EditHistory {
  public:
   /// @param scenario  not null
@@ -27,17 +26,17 @@ class EditHistory {
   /// The edits from the scenario's file to scenario(), as Scenario::edits().
   std::vector<scenario::Edit> edits() const { return scenario()->edits(); }
 
-  /// Changes values, checked together, in one step; edits that change no text are none.
+  /// Applies edits, checked together, as one step. Edits that change no text make no step.
   /// @throws Error (bad_input) as Scenario::set(); nothing is changed then
   void set(const std::vector<scenario::Edit>& edits);
   void set(const std::string& path, const std::string& value) { set({{path, value}}); }
   /// The same with the result of edited() for scenario().
   void adopt(ScenarioPtr edited);
 
-  /// From here to endDrag() all edits are one step; none if the drag ends where it began.
+  /// All edits until endDrag() are one step; no step if the drag ends where it began.
   void beginDrag() { stack_.beginDrag(); }
   void endDrag();
-  /// Reverts to the state at the begin of the drag.
+  /// Reverts to the state at the beginning of the drag.
   void cancelDrag() { stack_.cancelDrag(); }
 
   /// As UndoStack::stepsMade().

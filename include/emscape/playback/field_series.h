@@ -23,7 +23,7 @@ void setRanges(std::vector<volume::Volume>& volumes, const std::vector<ValueRang
 /// Stride of the search for the range of the colours of a series: at most 24 steps are searched.
 int rangeSearchStride(int steps);
 
-/// One thread uses it.
+/// Computes the field of a scenario at a list of times. For one thread.
 class FieldSeries {
  public:
   /// @param times_s  ascending
@@ -49,12 +49,12 @@ class FieldSeries {
   /// @param times_s  ascending
   void setScenario(LoadedScenario input, std::vector<double> times_s);
 
-  /// Changes the volumes to differences (volume::difference()) to those of a reference at the same times,
-  /// with their names. setScenario() must not be called after it.
+  /// From now on compute() gives differences (volume::difference()) to the volumes of a reference at the same
+  /// times. setScenario() must not be called after it.
   /// @param name  of the reference, for legends
-  /// @throws Error (bad_input) for another grid, other channels and indices, (device)
+  /// @throws Error (bad_input) if the grids or channels differ, or for indices; (device)
   void compareWith(const LoadedScenario& reference, const std::string& name);
-  /// Null without one.
+  /// Null without a reference.
   const LoadedScenario* reference() const { return reference_ ? &reference_->input() : nullptr; }
 
   /// Computes the first step, so that its errors are thrown here. @throws Error, Stopped
@@ -65,11 +65,11 @@ class FieldSeries {
   /// @throws Error, Stopped
   std::vector<ValueRange> findRanges(int stride, const ProgressSink& progress);
 
-  /// The channels' volumes at a step, or their differences; info().range_* are each volume's own. The last
-  /// computed step is not recomputed. @throws Error, Stopped
+  /// The channels' volumes at a step, or their differences; info().range_* is the range of each volume. The
+  /// last computed step is not recomputed. @throws Error, Stopped
   std::vector<volume::Volume> compute(int step);
 
-  /// True if the volumes that compute() gave last differ from those of the call before.
+  /// True if the last volumes of compute() differ from those of the call before.
   bool changed() const { return changed_; }
   /// Number of updates of the solver.
   long long updates() const { return updates_; }

@@ -33,18 +33,18 @@ struct FrameSelection {
   std::string scenario;             ///< for volumes: the scenario of the ground and emitters; may be empty
   bool allow_missing_terrain = false;
   std::vector<scenario::Edit> edits;  ///< to the scenario
-  /// Frames are differences to this one: kOriginal, the scenario without the edits, or a scenario (or
-  /// volumes) on the same grid. Empty: no comparison, but setComparison() can start one with the original.
+  /// Frames are differences to this reference: kOriginal (the scenario without the edits), or a scenario or
+  /// volumes on the same grid. Empty: no comparison, but setComparison() can start one with the original.
   std::string compare;
-  /// Frames of a scenario are independent of each other, for any order: the range of each is that of its own
+  /// Frames of a scenario are independent of each other and of their order: each has the range of its own
   /// values, and there is no tolerance for the movement of emitters.
   bool independent = false;
 };
 
 constexpr const char* kOriginal = "original";
 
-/// Instants in order of time, all of volumes or all of fields on tetrahedra. One thread at a time calls
-/// frame(); the other functions except warnings() may be called at the same time.
+/// Frames in order of time; either all are volumes or all are fields on tetrahedra. One thread at a time
+/// calls frame(); the other functions, except warnings(), may be called at the same time.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -76,7 +76,8 @@ class FrameSource {
   /// is no reference
   virtual void setComparison(bool on);
 
-  /// The index whose time is nearest; the earlier of two equally near. @param time_s any, beyond the ends too
+  /// The index with the nearest time; of two equally near, the earlier. @param time_s any, beyond the ends
+  /// too
   int nearestIndex(double time_s) const;
   /// The frame nearest to a time. @throws Error, Stopped
   Frame frameAt(double time_s) { return frame(nearestIndex(time_s)); }
@@ -84,8 +85,8 @@ class FrameSource {
 
 /// @param target    the processor for a scenario's field
 /// @param progress  called while the range of the colours is searched; may be empty
-/// @param stop      ends the work of this call and of frame() with Stopped; may be null, else outlives the
-/// source
+/// @param stop      ends the work of this call and of frame() with Stopped; may be null, else must outlive
+/// the source
 /// @throws Error (usage, bad_input, device), Stopped
 std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const ComputeTarget& target,
                                              const ProgressSink& progress = {},

@@ -40,8 +40,8 @@ struct LiveOptions {
   double time_s = 0;                  ///< the view starts with the nearest step
   /// Minimum interval (ms) between the starts of two fields that only a change of time requests.
   double min_seek_interval_ms = 60;
-  /// Number of steps computed ahead of the one on screen while steps are requested in sequence and nothing
-  /// else is to be done.
+  /// Number of steps computed ahead of the one on screen, while steps are requested in sequence and there is
+  /// no other work.
   int steps_ahead = 2;
   /// Threads of loops; 0: all, but fields leave one core free while pictures are cast.
   int solve_threads = 0;
@@ -53,32 +53,33 @@ struct LiveOptions {
 struct LiveStatus {
   render::ControllerState state = render::ControllerState::idle;
   render::Pattern pattern = render::Pattern::full;  ///< of the picture's busy frame
-  std::string cells;         ///< how the picture's tetrahedra were drawn (CellPicture::text()); empty: volume
-  double rays_fraction = 0;  ///< of that frame: fraction of pixels that were cast, 0..1
+  std::string cells;  ///< how the picture's tetrahedra were drawn (CellPicture::text()); empty for volumes
+  double rays_fraction = 0;  ///< fraction of pixels of that frame that were cast, 0..1
   double cast_ms = 0;        ///< of that frame, interpolation included
   double labels_ms = 0;      ///< to fetch the picture and draw its labels
   double field_ms = 0;       ///< of the last computed field
   /// Time from the oldest input that this picture is the first to show; 0: it shows no new input.
   double input_to_picture_ms = 0;
-  double input_to_frame_ms = 0;  ///< from the same input to the begin of its frame
+  double input_to_frame_ms = 0;  ///< from the same input to the beginning of its frame
   /// The picture shows the last request, and each of its pixels is cast. After a failure: the last valid
   /// request.
   bool exact = false;
-  double asked_s = 0;                              ///< time of the last requested step
-  double shown_s = 0;                              ///< time of the picture's step
-  bool computing = false;                          ///< the last requested field is being computed
-  bool searching = false;                          ///< searchSeriesRange() is in progress
-  std::optional<volume::ValueRange> series_range;  ///< result of the search; none before, and without values
-  std::vector<int> cached_steps;                   ///< indices into times_s() of cached steps, ascending
-  std::string reason;                              ///< reason for the pattern
-  std::string device;                              ///< "cpu" or the name of the GPU
-  std::string error;  ///< the last failure, in one line; empty after the next success of its kind
+  double asked_s = 0;      ///< time of the last requested step
+  double shown_s = 0;      ///< time of the picture's step
+  bool computing = false;  ///< the last requested field is being computed
+  bool searching = false;  ///< searchSeriesRange() is in progress
+  std::optional<volume::ValueRange>
+      series_range;               ///< result of the search; none before, and if there are no values
+  std::vector<int> cached_steps;  ///< indices into times_s() of cached steps, ascending
+  std::string reason;             ///< reason for the pattern
+  std::string device;             ///< "cpu" or the name of the GPU
+  std::string error;              ///< the last failure, in one line; empty after the next success of its kind
   ErrorCode error_code = ErrorCode::other;  ///< of an input that cannot be opened
   long long frame = 0;                      ///< number of the picture, from 1; 0: none yet
   long long fields_computed = 0;
   long long wake_ups = 0;  ///< of both threads since the start; constant while there is no work
 
-  /// Nothing happens until the next input.
+  /// True if nothing is to be done until the next input.
   bool isSettled() const { return exact && state == render::ControllerState::idle && !searching; }
 };
 
@@ -88,48 +89,47 @@ struct StateChange {
   std::chrono::steady_clock::time_point time;
 };
 
-/// A picture with the field that it shows, whose info().range_* are its own. Does not change.
+/// A picture with the field that it shows; info().range_* is the range of that field. Immutable.
 struct LivePicture : ShownField {
   render::ImageSize size;
   /// With background and labels. Of a settled picture: as `emscape render` writes it.
   render::Image8 finished;
   /// The same on the GPU, in place of `finished`; null except for busy pictures with keepOnDevice().
   std::shared_ptr<const render::DevicePicture> on_device;
-  /// Premultiplied, without background and labels; empty except for settled pictures.
+  /// Settled pictures: premultiplied, without background and labels; else empty.
   render::Image8 image;
   render::Camera camera;
   render::SceneBox box;
   render::Annotations annotations;
   render::TransferFunction transfer;
   render::RenderSettings settings;
-  /// Range of colours of setRange(); none: they were fitted to the values of a step, or set.
+  /// Range of the colours after setRange(); none: they were fitted to the values of a step, or set.
   std::optional<volume::ValueRange> range;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null for volumes without one
   scenario::TerrainPtr terrain;                        ///< may be null
-  std::shared_ptr<const render::HeightField> ground;   ///< as it is drawn; null if there is none
+  std::shared_ptr<const render::HeightField> ground;   ///< as drawn; null if there is none
   LiveStatus status;                                   ///< when the picture was made
 };
 
-/// Computes and draws the requested pictures. One user thread calls it; only the constructor and the
-/// destructor wait. Requests take effect in order; of several pending requests of a kind only the last is
-/// served.
+/// Computes and draws the requested pictures. One thread calls it; only the constructor and the destructor
+/// wait. Requests take effect in order; of several pending requests of one kind only the last is served.
 ///
-/// Two threads work: *solve* opens the input and computes fields (edits and steps; steps are cached until an
-/// edit), *cast* draws: BUSY while requests arrive, then RESTORE, which any request stops within a few rows
-/// of tiles, then IDLE. An IDLE picture is bit-identical to a full cast by Painter of the same scene.
+/// Two threads work. *solve* opens the input and computes fields (edits and steps; steps are cached until an
+/// edit). *cast* draws: BUSY while requests arrive, then RESTORE, which any request stops within a few rows
+/// of tiles, then IDLE. An IDLE picture is bit-identical to a full cast of the same scene by Painter.
 ///
-/// Colours are fitted once, to the histogram of the first frame as in `render`, and again for another
-/// quantity; after that they are constant, so that steps and edits can be compared. fitToStep(), setRange()
-/// and setTransferFunction() change them. The function in use is part of each picture: together with camera
-/// and settings it reproduces the picture.
+/// Colours are fitted to the histogram of the first frame, as in `render`, and again after a change of the
+/// quantity. Otherwise they are constant, so that steps and edits can be compared; fitToStep(), setRange()
+/// and setTransferFunction() change them. Each picture contains the function in use, which reproduces it
+/// together with camera and settings.
 class LiveView {
  public:
   /// @param input  scenario or volume file, .pvd, folder of volumes; empty: no pictures
   /// @param scenario_beside_volumes  scenario of the ground and emitters that are drawn with volumes; may be
   /// empty
-  /// @param style  a size of 0: nothing is drawn before resize()
+  /// @param style  with a size of 0 nothing is drawn before resize()
   /// @param wake   called on the threads of this object after each picture and each change of the status; may
-  /// be empty. May call picture() and status(); must not wait for this object
+  /// be empty. It may call picture() and status(), and must not wait for this object
   /// @throws Error (bad_input) for settings out of their range, (device); faults of the input are in
   /// status().error
   LiveView(const std::string& input, const std::string& scenario_beside_volumes, const PictureStyle& style,
@@ -139,24 +139,26 @@ class LiveView {
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
 
-  /// The step nearest to a time. @param time_s  any, beyond the ends too
+  /// Shows the step nearest to a time. @param time_s any, also beyond the ends
   void seek(double time_s);
-  /// An edited scenario: results that the edit does not invalidate are kept; cached steps are dropped. If a
-  /// model refuses it, the message is in status().error and the picture stays. @param scenario  not null
+  /// Shows an edited scenario. Results that the edit does not invalidate are kept; cached steps are dropped.
+  /// If a model refuses an input, the message is in status().error and the picture stays. @param scenario
+  /// not null
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario);
-  /// Another quantity or channel; empty: the first. Colours are fitted again.
+  /// Shows another quantity or channel; empty: the first. Colours are fitted again.
   void setQuantity(const std::string& quantity);
 
-  /// Shows the difference to the reference: LiveOptions::compare, else the scenario as it was opened, without
+  /// Shows the difference to the reference: LiveOptions::compare, else the opened scenario without
   /// LiveOptions::edits. Colours are fitted again. An edit does not recompute the reference. If the two
-  /// cannot be compared, such as indices, the message is in status().error and the picture stays.
+  /// cannot be compared (indices, for example), the message is in status().error and the picture stays.
   void setComparison(bool on);
 
   void setCamera(const render::CameraSpec& camera);
   void setTransferFunction(const render::TransferFunction& function);
-  /// For values out of range the message is in status().error and the settings stay.
+  /// Sets the render settings. For values out of range the message is in status().error and the settings
+  /// stay.
   void setSettings(const render::RenderSettings& settings);
-  /// A side of 0: nothing is drawn until the next resize.
+  /// Sets the size of the picture. With a side of 0 nothing is drawn until the next resize.
   void resize(render::ImageSize size);
   /// Pattern of busy frames; none: the one that meets the budget.
   void setPattern(std::optional<render::Pattern> pattern);
@@ -171,17 +173,17 @@ class LiveView {
   /// Fits the colours to a range.
   void setRange(const volume::ValueRange& range);
   /// Searches the range of the values over the series, for status().series_range: computes up to 24 steps
-  /// when nothing else is to be done. The picture stays.
+  /// when there is no other work. The picture stays.
   void searchSeriesRange();
 
-  /// The latest; null before the first.
+  /// The latest picture; null before the first.
   std::shared_ptr<const LivePicture> picture() const;
   LiveStatus status() const;
   /// The changes of status().state since the last call, in order; at most the last 1000.
   std::vector<StateChange> takeStateChanges();
   /// Steps of the source, ascending; empty before it is open.
   std::vector<double> times_s() const;
-  /// The scenario that was set last or read from the file; null before it is read, and without one.
+  /// The scenario that was set last or read from the file; null before it is read, and if there is none.
   std::shared_ptr<const scenario::Scenario> scenario() const;
 
  private:

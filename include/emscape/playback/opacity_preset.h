@@ -15,7 +15,7 @@ struct OpacityPreset {
 /// ramp, late ramp, threshold, shell, bands, opaque.
 const std::vector<OpacityPreset>& opacityPresets();
 
-/// The points of one, from `lowest` to `highest`.
+/// The points of a preset, from `lowest` to `highest`.
 /// @param at  position of a threshold or a shell; clamped to the inner part of the interval
 /// @throws Error (bad_input) for an unknown name, which lists them
 std::vector<render::TransferFunction::OpacityPoint> opacityPreset(const std::string& name, double lowest,

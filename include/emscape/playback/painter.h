@@ -18,7 +18,8 @@ namespace emscape::playback {
 
 /// How fields on tetrahedra are drawn.
 enum class CellMethod {
-  automatic,  ///< complete pictures are marched; others projected, where the CPU marches and OpenGL is there
+  automatic,  ///< complete pictures are marched; others are projected if the CPU marches and OpenGL has a
+              ///< GPU
   march,      ///< CellRenderer::render()
   project     ///< CellRenderer::project(); pictures that are not complete by centroids
 };
@@ -30,10 +31,10 @@ struct CellStyle {
   render::ProjectionOptions projection;
 };
 
-/// What the last picture of a field on tetrahedra took.
+/// Method and cost of the last picture of a field on tetrahedra.
 struct CellPicture {
   bool projected = false;
-  render::CellSorting sorting = render::CellSorting::visibility;  ///< if projected, as what follows
+  render::CellSorting sorting = render::CellSorting::visibility;  ///< this and the following: if projected
   std::string device;
   long long cells = 0;
   long long cycles = 0;
@@ -50,17 +51,17 @@ struct PictureStyle {
   render::Theme theme = render::Theme::dark;
   render::RenderSettings settings;
   std::string transfer;  ///< file of the transfer function; empty: fitted to the first volume
-  std::optional<render::TransferFunction> function;  ///< without such a file; not used for categories
+  std::optional<render::TransferFunction> function;  ///< if there is no such file; not used for categories
   bool colors_span_range = false;  ///< fitted to the range of its values, not to their histogram
   bool show_terrain = true;
   bool show_emitters = true;
   CellStyle cells;
 };
 
-/// Draws frames; colours are those fitted to the first, the camera is kept as long as frames have the same
-/// grid. Of fields on tetrahedra there are two pictures: the complete one (Pattern::full, and restore()) and
-/// that of every other pattern, which is quick (CellMethod). Casting and labelling are separate: a program
-/// with its own labels uses image() or fetch(), annotations() and renderer(). One thread at a time uses it.
+/// Draws frames. Colours are fitted to the first frame; the camera is kept as long as frames have the same
+/// grid. Fields on tetrahedra have two kinds of picture: the complete one (Pattern::full and restore()), and
+/// a quick one for every other pattern (CellMethod). Casting and labelling are separate: a program with its
+/// own labels uses image() or fetch(), annotations() and renderer(). One thread at a time may use it.
 class Painter {
  public:
   /// Draws frames of one source. @throws Error (device)
@@ -68,35 +69,36 @@ class Painter {
   /// The same without title and scene, until setScene(). @throws Error (bad_input) for settings, (device)
   Painter(const PictureStyle& style, const ComputeTarget& target);
 
-  /// Sets the scene of the next frames. Another terrain object is another ground.
+  /// Sets the scene of the next frames. A different terrain object is treated as a different ground.
   /// @param scene  null: volumes without a scenario
   void setScene(const std::string& title, const LoadedScenario* scene);
   /// Sets the frame of the next pictures.
-  /// @throws Error (bad_input) for a transfer file, nothing is changed then; or for an isosurface that shows
-  /// nothing of the first frame, which is set anyway. Error (usage) for settings that tetrahedra do not have
-  /// (render::checkCellSettings()), nothing is changed then. Error (device)
+  /// @throws Error (bad_input) for the transfer file, after which nothing is changed; or if the isosurface
+  /// shows nothing of the first frame, which is set all the same. Error (usage) for settings that tetrahedra
+  /// do not have (render::checkCellSettings()), after which nothing is changed. Error (device)
   void setFrame(const Frame& frame);
   bool hasFrame() const { return frame_.has_value(); }
   /// Turns an orbiting camera to another azimuth. A frame must be set.
   void setAzimuth(double azimuth_deg);
-  /// Another camera, fitted to the box of the volume. A frame must be set.
+  /// Sets another camera, fitted to the box of the volume. A frame must be set.
   /// @throws Error (usage) if eye and target coincide; the camera is then unchanged
   void setCamera(const render::CameraSpec& spec);
 
-  /// The functions below change the style of the next pictures, before or after the first frame.
+  /// Sets the size. This and the following functions change the style of the next pictures, before or after
+  /// the first frame.
   /// @param size  both sides at least 1
   void setSize(render::ImageSize size);
   render::ImageSize size() const { return style_.size; }
-  /// An isosurface is not checked against the volume. @throws Error (bad_input) for a value out of its range,
-  /// (usage) as setFrame(); the settings are then unchanged
+  /// Sets the render settings. An isosurface is not checked against the volume. @throws Error (bad_input) for
+  /// a value out of its range, (usage) as setFrame(); the settings are then unchanged
   void setSettings(const render::RenderSettings& settings);
-  /// Sets the function, in place of a file or a fitted one.
+  /// Sets the transfer function, which replaces one from a file or a fitted one.
   void setTransferFunction(const render::TransferFunction& function);
   /// Fits the function to the histogram of the frame, or of the next one if there is none yet.
   void fitColors();
   /// Fits the function to a range of values. A frame must be set.
   void fitColors(const volume::ValueRange& range);
-  /// True if they have been fitted, read or set.
+  /// True if colours have been fitted, read or set.
   bool hasColors() const { return has_colors_; }
   void showTerrain(bool show);
   void showEmitters(bool show);
@@ -107,12 +109,12 @@ class Painter {
   render::FrameReport restore(const StopFlag* stop = nullptr);
   /// The last picture: premultiplied, without background and labels.
   const render::Image& image();
-  /// The same in 8 bits per channel; quantised on the GPU, hence cheaper.
+  /// The same in 8 bits per channel; cheaper on a GPU, which quantises it.
   void fetch(render::Image8& picture);
   /// A separate full cast of the picture of draw() and restore().
   render::Image fullCast();
 
-  /// The ground that is drawn; null if there is none.
+  /// The drawn ground; null if there is none.
   const std::shared_ptr<const render::HeightField>& heightField() const { return height_field_; }
   /// The annotations of a picture of the frame.
   const render::Annotations& annotations() const { return annotations_; }
@@ -126,7 +128,7 @@ class Painter {
   Backend backend() const { return renderer_.backend(); }
   /// None unless the last picture was of tetrahedra.
   const std::optional<CellPicture>& cellPicture() const { return cell_picture_; }
-  /// True if pictures of the frame that are not complete are quicker ones, of tetrahedra.
+  /// True if incomplete pictures of the frame are projected tetrahedra.
   bool projectsCells() const { return cells_ && projects_; }
   /// The small text at the bottom of a picture: "dvr, full rays, step 1 voxel", of tetrahedra
   /// "dvr, 1200 tetrahedra, marched".
@@ -136,7 +138,7 @@ class Painter {
   render::Image8 picture(const std::string& note);
   /// The same for a fetched picture; differs by at most one level.
   render::Image8 annotated(const render::Image8& fetched, const std::string& note);
-  /// The picture of annotated() in GPU memory; differs by at most two levels. Null with the CPU.
+  /// The picture of annotated() in GPU memory; differs by at most two levels. Null on the CPU.
   std::shared_ptr<const render::DevicePicture> annotatedOnDevice(const std::string& note);
 
  private:
@@ -153,7 +155,7 @@ class Painter {
   }
   /// Draws the tetrahedra into image_.
   render::FrameReport drawCells(bool is_complete, const StopFlag* stop);
-  /// The ground of the scene below the grid of the frame, if it is to be shown.
+  /// Sets the ground of the scene below the grid of the frame, if it is shown.
   void setGround();
   void setGround(const scenario::TerrainPtr& ground);
   void setMarkers();

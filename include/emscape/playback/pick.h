@@ -1,4 +1,4 @@
-/// Positions in space under points of a picture.
+/// Positions in space under the pixels of a picture.
 #pragma once
 
 #include <optional>
@@ -18,20 +18,20 @@ namespace emscape::playback {
 struct PickedPoint {
   enum class On {
     ground,     ///< the ray meets the ground
-    section,    ///< before that, a cutting plane at a point with a value
-    strongest,  ///< otherwise, the largest value along the ray in the volume that the planes leave
-    box         ///< without any value: where the ray enters the box
+    section,    ///< before the ground, a cutting plane at a point with a value
+    strongest,  ///< otherwise, the largest value along the ray in the part of the volume that the planes keep
+    box         ///< if there is no value: where the ray enters the box
   };
   Vec3d position_m;  ///< frame metres
   On on = On::ground;
 };
 
 /// The position under a pixel.
-/// @param camera, box  those of the picture; with the vertical exaggeration of the box
-/// @param x, y     pixel, may be fractions; (0, 0) is the centre of the first one
-/// @param volume   that the picture shows; for categories there is no largest value
-/// @param ground   as it is drawn; null without one
-/// @param planes   that cut the volume and, if vertical, the ground
+/// @param camera, box  of the picture, with the vertical exaggeration of the box
+/// @param x, y     pixel coordinates, may be fractional; (0, 0) is the centre of the first pixel
+/// @param volume   shown by the picture; categories have no largest value
+/// @param ground   as drawn; null if there is none
+/// @param planes   cutting the volume and, if vertical, the ground
 /// @return none if the ray misses the box
 std::optional<PickedPoint> pick(const render::Camera& camera, const render::SceneBox& box,
                                 render::ImageSize size, double x, double y, const volume::DenseVolume& volume,
@@ -48,7 +48,7 @@ std::optional<Vec3d> pickGround(const render::Camera& camera, const render::Scen
 std::optional<Vec3d> pickLevel(const render::Camera& camera, const render::SceneBox& box,
                                render::ImageSize size, double x, double y, double z_m);
 
-/// The position of a receiver above a point of the ground: the drawn ground differs from the terrain by some
+/// The position of a receiver above a point of the ground. The drawn ground differs from the terrain by some
 /// metres.
 /// @param ground_m      frame metres; of PickedPoint::On::ground
 /// @param height_agl_m  above the terrain; more if the voxel at that height is masked

@@ -1,4 +1,4 @@
-/// Draws the pictures of a source into files.
+/// Writes the pictures of a source to files.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace emscape::playback {
 
-/// Draws every frame of a source. Files are written on a thread of their own while the next picture is cast.
+/// Draws every frame of a source. Files are written on a separate thread while the next picture is cast.
 /// @param painter  with the first frame set
 /// @param sinks    each gets every picture; finished at the end
 /// @param done     called after each picture with the number of pictures so far; may be empty

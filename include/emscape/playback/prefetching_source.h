@@ -1,4 +1,4 @@
-/// Frames of a source, computed ahead on a separate thread, for a window whose time slider never waits.
+/// Frames of a source, computed ahead on a separate thread, so that the time slider of a window never waits.
 #pragma once
 
 #include <cstddef>
@@ -20,8 +20,8 @@ class FrameCache;
 struct PrefetchOptions {
   std::size_t cache_bytes = std::size_t{1} << 30;  ///< of volumes; one frame is kept even if it is larger
   int steps_ahead = 4;                             ///< number of frames computed after the requested one
-  /// Minimum interval (ms) between the starts of two frames that are requested out of order, as by dragging a
-  /// slider; only the last request is served.
+  /// Minimum interval (ms) between the starts of two frames that are requested out of order, for example by
+  /// dragging a slider. Only the last request is served.
   double min_seek_interval_ms = 60;
 };
 
@@ -36,9 +36,10 @@ struct IndexedFrame {
 /// the destructor and where stated.
 class PrefetchingSource {
  public:
-  /// @param source  frame() is called on the thread of this object alone; outlives this, as the clock
-  /// @param ready called on that thread after each frame, with its index, and with -1 after a failure; may be
-  /// empty. Must not destroy this object
+  /// @param source  frame() is called only on the thread of this object; must outlive this object, as must
+  /// the clock
+  /// @param ready called on that thread after each frame, with its index, or -1 after a failure; may be
+  /// empty. It must not destroy this object
   PrefetchingSource(FrameSource& source, const PrefetchOptions& options, Clock& clock,
                     std::function<void(int index)> ready = {});
   /// Waits for the frame in progress; to shorten the wait, set the source's stop flag first.
@@ -47,18 +48,18 @@ class PrefetchingSource {
   PrefetchingSource& operator=(const PrefetchingSource&) = delete;
 
   /// Requests a frame. @param index  0..count() - 1
-  /// @throws the source's exception for an earlier request, once; that request is then removed
+  /// @throws the source's exception for an earlier request, once; that request is then discarded
   void request(int index);
   /// Requests the frame nearest to a time. @return its index
   int requestTime(double time_s);
   /// The last requested index; -1 before the first request and after a failure.
   int requested() const;
 
-  /// The frame to show: the requested one if it is ready, else the newest one that was requested before. None
-  /// before the first is ready. @throws as request()
+  /// The frame to show: the requested one if it is ready, else the newest one that was requested before.
+  /// Empty before the first is ready. @throws as request()
   std::optional<IndexedFrame> latest() const;
-  /// Requests a frame and waits for it. @throws as request(); Error (other) if another thread requests
-  /// another meanwhile
+  /// Requests a frame and waits for it. @throws as request(); Error (other) if another thread requests a
+  /// different frame meanwhile
   Frame wait(int index);
 
   /// Indices of the cached frames, ascending.
@@ -70,7 +71,7 @@ class PrefetchingSource {
   void run();
   /// The frame to compute next; -1: none.
   int nextIndex() const;
-  /// Distance of a frame from the next expected one; the frame with the largest is dropped first.
+  /// Distance of a frame from the next expected one; the frame with the largest distance is dropped first.
   long long distance(int index) const;
   void keep(int index, Frame frame);
   void rethrowFailure() const;

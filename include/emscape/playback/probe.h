@@ -51,7 +51,8 @@ struct ProbeReading {
   std::vector<EmitterProbe> emitters;
 };
 
-/// Reads a position at the volume's time. Pure; some milliseconds, by the number of emitters.
+/// Reads a position at the volume's time. Pure function; takes some milliseconds, depending on the number of
+/// emitters.
 /// @param scenario  of the emitters; may be null
 /// @param terrain   may be null: heights above ground are then not known, and paths run over a smooth earth
 ProbeReading probe(const Vec3d& position_m, const volume::DenseVolume& volume,

@@ -20,23 +20,25 @@ struct RealTimeOptions {
   double speed = 1;                  ///< scenario seconds per second
   std::optional<double> duration_s;  ///< of the clock; none: until one step after the last
   double orbit_rate_deg_s = 0;       ///< of the camera, clockwise from above
-  bool verify = false;      ///< compare each settled picture with a full cast; the clock is stopped meanwhile
-  bool keep_events = true;  ///< in the report; else a long playback would need more and more memory
+  bool verify = false;  ///< compare each settled picture with a full cast, with the clock stopped
+  bool keep_events =
+      true;  ///< keep the events in the report; false avoids memory that grows with the playback
   render::ControllerOptions controller;
 };
 
 /// Receives each displayed picture, in order, with its number of slots.
 using Display = std::function<void(const render::Image8& picture, int slots)>;
 
-/// Plays a source. Every step of the source is an event, due when its time has come; a moving camera is one
-/// in every slot. A frame begins at the start of a slot, or later in it as soon as the field is ready. The
-/// next field is computed on its own thread after the end of a busy frame; restorations run on another
-/// thread, so that an event can stop them.
+/// Plays a source. Every step of the source is an event, due at its time; a moving camera is an event in
+/// every slot. A frame begins at the start of a slot, or as soon as the field is ready. The next field is
+/// computed on a separate thread after the end of a busy frame. Restorations run on another thread, so that
+/// an event can stop them.
 class RealTimeLoop {
  public:
-  /// @param painter    draws the source in this style; outlives this, as style, source and clock
+  /// @param painter    draws the source in this style. Painter, style, source and clock must outlive this
+  /// object
   /// @param display    empty: pictures are not labelled and not displayed
-  /// @param clock      tests use a simulated one
+  /// @param clock      tests use a simulated clock
   /// @param interrupt  ends play() with Stopped; may be null, else outlives this
   /// @throws Error (usage) for an orbit rate with a camera that does not orbit
   RealTimeLoop(const RealTimeOptions& options, const PictureStyle& style, FrameSource& source,

@@ -24,7 +24,7 @@ render::MarkerKind markerKindOf(scenario::EmitterKind kind);
 std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
                                       const volume::Grid& grid);
 
-/// The ways of the scenario's moving platforms, in the grid's frame. Sources of frames compute them once for
+/// The tracks of the scenario's moving platforms, in the grid's frame. Frame sources compute them once for
 /// all frames.
 std::vector<render::Track> tracksOf(const LoadedScenario& scene, const volume::Grid& grid, double time_s);
 

@@ -9,7 +9,7 @@
 
 namespace emscape::playback {
 
-/// A field on tetrahedra with what drawing it requires. Does not change.
+/// A field on tetrahedra with the data that drawing it requires. Immutable.
 struct CellField {
   volume::MeshField field;
   std::shared_ptr<const volume::MeshFaces> faces;  ///< of its mesh
@@ -28,9 +28,9 @@ struct ShownField {
   bool isEmpty() const { return volume.isEmpty() && !cells; }
   // The functions below require a field.
   const volume::VolumeInfo& info() const { return cells ? cells->field.info : volume.info(); }
-  /// Of tetrahedra: the reference grid of their box.
+  /// For tetrahedra: the reference grid of their box.
   const volume::Grid& grid() const { return cells ? cells->grid : volume.grid(); }
-  /// The values in host memory; of tetrahedra those at the points as a row of voxels, without NaN.
+  /// The values in host memory; for tetrahedra the values at the points as a row of voxels, without NaN.
   /// @throws Error (device)
   std::shared_ptr<const volume::DenseVolume> values() const;
   /// Fitted to the histogram of the values. @throws Error (device)

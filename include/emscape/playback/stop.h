@@ -1,4 +1,4 @@
-/// Cancellation of long work of this module.
+/// Cancellation of long work.
 #pragma once
 
 #include <exception>
@@ -7,7 +7,7 @@
 
 namespace emscape::playback {
 
-/// Thrown between two steps of the work once its StopFlag is set. Finished steps are kept.
+/// Thrown between two steps of the work after its StopFlag was set. Finished steps are kept.
 class Stopped : public std::exception {
  public:
   const char* what() const noexcept override { return "stopped"; }

@@ -1,4 +1,4 @@
-/// Model of a time line: its contents, the position of the hand and its motion. No drawing, no clock.
+/// Model of a time line: its contents, the current time and its motion. No drawing, no clock.
 #pragma once
 
 #include <optional>
@@ -19,15 +19,16 @@ struct TimelineTick {
 /// The active intervals of an emitter within the span of the steps.
 struct ActivityBar {
   std::string emitter;
-  std::vector<scenario::TimeInterval> intervals;  ///< ascending, without overlap; one for always
+  std::vector<scenario::TimeInterval>
+      intervals;  ///< ascending, without overlap; one interval if always active
 };
 
 /// The usual rates, ascending, in scenario seconds per second; negative rates (backwards) are not listed.
 const std::vector<double>& playRates();
-/// The nearest of them by ratio, with the sign of `rate`; the slowest for 0.
+/// The usual rate nearest to `rate` by ratio, with its sign; the slowest for 0.
 double snappedRate(double rate);
 
-/// Time moves between the first and the last step. One thread uses it.
+/// Time is between the first and the last step. For one thread.
 class Timeline {
  public:
   /// No steps: nothing moves before setSteps().
@@ -39,8 +40,8 @@ class Timeline {
   /// Steps of a source that shows a scenario.
   Timeline(std::vector<double> times_s, const scenario::Scenario& scenario);
 
-  /// Sets other steps, ascending. The hand, the playing range and the visible part are kept as far as they
-  /// are within.
+  /// Sets other steps, ascending. The current time, the playing range and the visible part are clamped to the
+  /// new steps.
   void setSteps(std::vector<double> times_s);
   /// Sets the epoch and the emitters' active intervals.
   void setScenario(const scenario::Scenario& scenario);
@@ -68,59 +69,60 @@ class Timeline {
   // The part that is drawn
   /// All of the steps' span at first.
   scenario::TimeInterval visible() const;
-  /// Moved into the span, widened to a millionth of it. Nothing happens unless from_s < to_s.
+  /// Sets the visible part; it is moved into the span and is at least a millionth of it long. No effect
+  /// unless from_s < to_s.
   void setVisible(double from_s, double to_s);
   /// @param factor   of the visible length, > 0: below 1 shows less
-  /// @param about_s  stays where it is
+  /// @param about_s  time that keeps its position
   void zoom(double factor, double about_s);
   void pan(double by_s);
   void showAll() { visible_.reset(); }
-  /// The value that was set; none: the span of all steps.
+  /// The set value; none: the span of all steps.
   const std::optional<scenario::TimeInterval>& visiblePart() const { return visible_; }
 
-  // The hand
+  // The current time
   double time_s() const { return time_s_; }
   /// Clamped to the steps' span; NaN has no effect. Playing continues from there.
   void seek(double time_s);
-  /// The index of the step nearest to a time; the earlier of two equally near.
+  /// The index of the step nearest to a time; of two equally near, the earlier.
   int nearestStep(double time_s) const;
   /// The step that is shown.
   int step() const { return nearestStep(time_s_); }
-  /// Its time; that of the hand without steps.
+  /// Time of the shown step; without steps, time_s().
   double step_s() const { return times_s_.empty() ? time_s_ : times_s_[static_cast<std::size_t>(step())]; }
-  /// Moves by a number of steps from the one shown (backwards: negative), at most to the last or first.
-  /// Stops playing.
+  /// Moves by a number of steps from the shown one (negative: backwards), at most to the first or last. Stops
+  /// playing.
   void stepBy(int steps);
   void goToFirst() { goToStep(0); }
   void goToLast() { goToStep(static_cast<int>(times_s_.size()) - 1); }
 
   // Playing
   bool playing() const { return playing_; }
-  /// At the end in the direction of the rate, and outside the playing range, playing starts again from the
-  /// other end.
+  /// Starts playing. At the end in the direction of the rate, or outside the playing range, it starts from
+  /// the other end.
   void play();
   void pause() { playing_ = false; }
   /// Range of playing; the span of all steps at first.
   scenario::TimeInterval playRange() const;
-  /// Moved to the nearest steps, two at least.
+  /// Sets the range of playing; its ends are moved to the nearest steps, and it has at least two steps.
   void setPlayRange(double begin_s, double end_s);
-  /// One end of it; stays a step before or after the other one.
+  /// Sets one end of the range; it stays at least a step before or after the other end.
   void setPlayBegin(double time_s);
   void setPlayEnd(double time_s);
   void playAll() { play_range_.reset(); }
-  /// The value that was set; none: the span of all steps.
+  /// The set value; none: the span of all steps.
   const std::optional<scenario::TimeInterval>& playPart() const { return play_range_; }
   double rate() const { return rate_; }
-  /// Any rate except 0, which is ignored; negative: backwards.
+  /// Sets the rate. 0 is ignored; negative: backwards.
   void setRate(double rate);
-  /// To the next of the usual rates above (1) or below (-1). Below the slowest are those backwards.
+  /// Changes to the next usual rate above (1) or below (-1). Below the slowest follow the negative rates.
   void changeRate(int direction);
   void reverse() { rate_ = -rate_; }
   bool loop() const { return loop_; }
   void setLoop(bool loop) { loop_ = loop; }
 
-  /// Lets time pass while it plays. At an end of the playing range it continues from the other one in a loop,
-  /// else it stops. The visible part follows the hand.
+  /// Advances the time while playing. At an end of the playing range it continues from the other end if
+  /// looping, else it stops. The visible part follows the current time.
   /// @param dt_s  of the user's clock, >= 0
   /// @return time_s()
   double advance(double dt_s);

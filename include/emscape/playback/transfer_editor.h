@@ -12,8 +12,8 @@
 
 namespace emscape::playback {
 
-/// Scale of an editor's vertical axis, 0..1 from the bottom. The logarithmic one resolves small opacities:
-/// its lowest part is opacity 0, above it kMinOpacity to 1.
+/// Scale of an editor's vertical axis, 0..1 from the bottom. The logarithmic scale resolves small opacities:
+/// its lowest part is opacity 0, the rest kMinOpacity to 1.
 struct OpacityAxis {
   static constexpr double kMinOpacity = 1e-4;
   static constexpr double kZeroPart = 0.05;
@@ -26,8 +26,8 @@ struct OpacityAxis {
   double opacity(double position) const;
 };
 
-/// The function always keeps an interval: its points are at least two different values. Not for categories.
-/// One thread uses it.
+/// The function always has an interval: its points have at least two different values. Not for categories.
+/// For one thread.
 class TransferEditor {
  public:
   /// @throws Error (bad_input) for a categorical function
@@ -36,15 +36,15 @@ class TransferEditor {
   const render::TransferFunction& function() const { return stack_.state(); }
   /// Number of changes, undo and redo included.
   long long changes() const { return changes_; }
-  /// Another function, in one step: a file, or the default of a volume. @throws as the constructor
+  /// Sets another function, as one step: from a file, or the default of a volume. @throws as the constructor
   void setFunction(const render::TransferFunction& function);
 
   OpacityAxis axis;
 
   // Opacity points, by index in function().opacities; values in the quantity's unit
-  /// The selected one; none after a change that leaves the selection without a point.
+  /// The selected point; none after a change that removes it.
   std::optional<int> selected() const { return selected_; }
-  /// None for an index that is not one.
+  /// Selects a point; none for an invalid index.
   void select(std::optional<int> point);
   /// The point nearest to a value and a position on the axis, if it is within `radius`.
   /// @param value_scale  length of one unit of the value, in that of the axis
@@ -57,7 +57,7 @@ class TransferEditor {
   /// and points without which no interval would be left, stay.
   void removeSelected();
 
-  /// All points of one of opacityPresets() over the interval, as a step.
+  /// Sets the points of one of opacityPresets() over the interval, as one step.
   /// @param at  position of a threshold or a shell; none: the middle
   /// @throws Error (bad_input) for an unknown name
   void setOpacityPreset(const std::string& name, std::optional<double> at = std::nullopt);
@@ -65,25 +65,26 @@ class TransferEditor {
   void scaleOpacities(double factor);
 
   // Colours
-  /// A colour map over the interval of the function, as a step. @throws Error (bad_input) for an unknown name
+  /// Sets a colour map over the interval of the function, as one step. @throws Error (bad_input) for an
+  /// unknown name
   void setColorMap(const std::string& name);
-  /// The name of the map that the colours are; empty: none of them.
+  /// The name of the colour map in use; empty if the colours are no named map.
   std::string colorMap() const;
   /// The names for setColorMap().
   static std::vector<std::string> presets() { return render::colorMapNames(); }
 
-  /// Colours and opacities together, stretched from the function's interval to another one. Nothing happens
-  /// for a range without width.
+  /// Stretches colours and opacities from the function's interval to another one. No effect for a range
+  /// without width.
   void fit(const volume::ValueRange& range);
   /// The same in double precision.
   void setInterval(double lowest, double highest);
-  /// The ends of the interval, each by itself. Within a drag they are moved relative to its begin, so that
+  /// Moves one end of the interval. Within a drag it is moved relative to the beginning of the drag, so that
   /// points are not lost.
   void setLowest(double value);
   void setHighest(double value);
 
   // Steps
-  /// From here to endDrag() all changes are one step.
+  /// All changes until endDrag() are one step.
   void beginDrag() { stack_.beginDrag(); }
   void endDrag();
   /// As UndoStack::stepsMade().
@@ -95,7 +96,7 @@ class TransferEditor {
 
  private:
   void set(render::TransferFunction function);
-  /// The function at the begin of a drag of the ends.
+  /// The function at the beginning of a drag of the ends.
   const render::TransferFunction& base() const { return stack_.dragged() ? *stack_.dragged() : function(); }
   void checkSelection();
 

@@ -1,4 +1,4 @@
-/// Undo and redo of whole states, in steps that may be drags.
+/// Undo and redo of whole states. A drag is one step.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 namespace emscape::playback {
 
 /// The current state and those before and after it. State is copied at every step: use a small value or a
-/// shared pointer. One thread uses it.
+/// shared pointer. For one thread.
 template <class State>
 class UndoStack {
  public:
@@ -24,7 +24,7 @@ class UndoStack {
     state_ = std::move(next);
   }
 
-  /// From here to endDrag() or cancelDrag() all changes are one step. An open drag is ended first.
+  /// All changes until endDrag() or cancelDrag() are one step. An open drag is ended first.
   void beginDrag() {
     endDrag();
     drag_ = state_;
@@ -32,23 +32,23 @@ class UndoStack {
   void endDrag() {
     if (drag_) push(*std::exchange(drag_, std::nullopt));
   }
-  /// Back to the state at the beginning of the drag, which leaves no step.
+  /// Returns to the state at the beginning of the drag; the drag makes no step.
   void cancelDrag() {
     if (drag_) state_ = *std::exchange(drag_, std::nullopt);
   }
   /// The state at the beginning of the drag; null if there is none.
   const State* dragged() const { return drag_ ? &*drag_ : nullptr; }
 
-  /// Number of steps ever made, by which the owner of several stacks keeps their order.
+  /// Number of steps ever made. The owner of several stacks uses it to order their steps.
   long long stepsMade() const { return steps_made_; }
   bool canUndo() const { return !past_.empty() || drag_; }
   bool canRedo() const { return !future_.empty() && !drag_; }
-  /// One step back; an open drag is that step. No effect if there is none.
+  /// Goes back one step; an open drag is that step. No effect if there is none.
   void undo() {
     endDrag();
     move(past_, future_);
   }
-  /// One step forward. No effect if there is none.
+  /// Goes forward one step. No effect if there is none.
   void redo() {
     endDrag();
     move(future_, past_);

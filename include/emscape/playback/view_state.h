@@ -1,5 +1,5 @@
-/// State of a view of a scenario or of volumes, as a file: a window writes it, `emscape render --state` draws
-/// the same picture from it.
+/// State of a view of a scenario or of volumes, and its file. The window writes it; `emscape render --state`
+/// draws the same picture from it.
 #pragma once
 
 #include <optional>
@@ -24,7 +24,7 @@ struct Bookmark {
   std::optional<double> time_s;
 };
 
-/// Everything that a picture depends on besides the input, and how the input is played.
+/// Everything that a picture depends on besides the input, and the settings of playback.
 struct ViewState {
   render::CameraSpec camera;
   std::vector<Bookmark> bookmarks;
@@ -53,21 +53,21 @@ ViewState readViewState(const std::string& file);
 /// The same from a text; `file` is the name that errors give.
 ViewState parseViewState(const std::string& text, const std::string& file);
 
-/// The JSON text that parseViewState() reads back to the same bits. A categorical transfer function is left
-/// out. Equal states have equal texts.
+/// The state as JSON; parseViewState() reads it back exactly. A categorical transfer function is left out.
+/// Equal states have equal texts.
 std::string viewStateText(const ViewState& state);
 /// Writes that text; the file is written atomically.
-/// @throws Error (bad_input) for a state that could not be read again, such as a camera out of its limits;
+/// @throws Error (bad_input) for a state that cannot be read again, such as a camera outside its limits;
 /// (other) if the file cannot be written
 void writeViewState(const std::string& file, const ViewState& state);
 
-/// Another quantity or channel in a view: colours, range and isosurface, which belong to the previous one,
-/// are dropped. No effect if it is the same.
+/// Changes the quantity or channel of a view. Colours, range and isosurface, which belong to the previous
+/// one, are dropped. No effect if it is the same.
 void changeQuantity(ViewState& state, const std::string& quantity);
-/// The field or a difference (FrameSelection::compare): colours, range and isosurface are dropped if the
-/// other of the two was shown.
+/// Changes between the field and a difference (FrameSelection::compare). Colours, range and isosurface are
+/// dropped if this is a change.
 void changeComparison(ViewState& state, const std::string& compare);
-/// Fits the colours to a range, in place of a transfer function.
+/// Fits the colours to a range; this replaces a transfer function.
 void changeRange(ViewState& state, const volume::ValueRange& range);
 
 /// The picture style of a state.

@@ -14,16 +14,16 @@ struct VolumeFile {
 };
 
 /// One volume file, the steps of a .pvd, or the volumes of a folder, in the order of time.
-/// @param quantity  only files with it; empty: set to the first quantity of the first file
+/// @param quantity  only files that contain it; empty: set to the first quantity of the first file
 /// @throws Error (bad_input)
 std::vector<VolumeFile> volumeFilesOf(const std::filesystem::path& path, std::string& quantity);
 
-/// True for a .vtu file, a .pvd that lists some, and a folder with some and without volumes.
+/// True for a .vtu file, a .pvd that lists .vtu files, and a folder with .vtu files and no volumes.
 bool holdsMeshes(const std::filesystem::path& path);
 /// volumeFilesOf() for an input for which holdsMeshes().
 std::vector<VolumeFile> meshFilesOf(const std::filesystem::path& path, std::string& quantity);
 
-/// Those nearest to the times of a selection. @param files  ascending, at least one
+/// The files nearest to the times of a selection. @param files  ascending, at least one
 /// @param times  "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all @param first_only  only the first
 /// @throws Error (usage)
 std::vector<VolumeFile> chosenFiles(std::vector<VolumeFile> files, const std::string& times, bool first_only);

@@ -1,4 +1,4 @@
-/// A propagation model's explanation of one path: the parts of its loss and their reason.
+/// A propagation model's explanation of one path: the parts of its loss and their reasons.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct ExcessPart {
 
 /// A path's reflected ray, with its direction at both ends.
 struct PathReflection : ReflectedRay {
-  /// Sine of the angle below the horizontal from which it arrives at the path's end, 0..1.
+  /// Sine of the angle below the horizontal from which the ray arrives at the path's end, 0..1.
   float arrival_sine = 0;
 };
 
@@ -26,8 +26,8 @@ struct Explanation {
   double loss_db = 0;             ///< sum of the parts; infinite if the model gives no field
   std::vector<ExcessPart> parts;  ///< empty: free space
   std::string why;                ///< reason, one clause
-  /// Of models with a reflected ray, in sight of the emitter. The parts hold the loss between isotropic
-  /// antennas.
+  /// Only for models with a reflected ray, where the emitter is in sight. The parts are the loss between
+  /// isotropic antennas.
   std::optional<PathReflection> reflection;
 
   void add(const std::string& key, const std::string& label, double part_db) {

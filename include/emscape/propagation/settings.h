@@ -1,5 +1,5 @@
-/// Inputs of propagation models: the choice of a model, the settings of each, and the wave, ground and air
-/// that all of them share. propagation/registry lists the values that each model takes.
+/// Inputs of propagation models: the choice of a model, the settings of each model, and the wave, ground and
+/// air that all models share. propagation/registry lists the values that each model accepts.
 #pragma once
 
 #include <memory>
@@ -29,7 +29,7 @@ const char* toString(PropagationModel model);
 /// Method of diffraction over terrain.
 enum class DiffractionMethod {
   delta_bullington,  ///< terrain as one edge, with the smooth-earth correction (P.526 section 4.5.3)
-  single_edge,       ///< the largest edge alone
+  single_edge,       ///< only the dominant edge
   deygout            ///< three edges
 };
 const char* toString(DiffractionMethod method);
@@ -45,10 +45,10 @@ enum class TwoRaySum {
 };
 const char* toString(TwoRaySum sum);
 
-/// Reduction of the coherent reflection by roughness, with z = 8 pi^2 (sigma sin psi / lambda)^2.
+/// Factor of the coherent reflection for a rough surface, with z = 8 pi^2 (sigma sin psi / lambda)^2.
 enum class RoughnessModel {
-  ament,         ///< exp(-z): heights Gaussian (Ament 1953)
-  miller_brown,  ///< exp(-z) I0(z): waves as sines of random phase (Miller, Brown, Vegh 1984); fits the sea
+  ament,         ///< exp(-z): Gaussian heights (Ament 1953)
+  miller_brown,  ///< exp(-z) I0(z): sinusoidal waves of random phase (Miller, Brown, Vegh 1984); fits the sea
 };
 const char* toString(RoughnessModel model);
 
@@ -108,24 +108,24 @@ struct P452Settings : ClearAirSettings {
   double transmitter_gain_dbi = 0, receiver_gain_dbi = 0;
 };
 
-/// What parabolic_equation keeps of a cell of range and height.
+/// Value that parabolic_equation stores for a cell of range and height.
 enum class PeCells {
   mean,  ///< the mean power
   point  ///< the field at one point: lobes smaller than cells alias
 };
 const char* toString(PeCells cells);
 
-/// What radiates at the start of parabolic_equation's march.
+/// Source of the field at the start of parabolic_equation's march.
 enum class PeRadiator {
-  isotropic,  ///< one march serves all patterns, which weigh each place by the direct ray
-  pattern     ///< the antenna's elevation cut: it weighs each ray by its own angle
+  isotropic,  ///< one march for all patterns, which are applied along the direct ray
+  pattern     ///< the antenna's elevation cut, so that each ray is weighted by its own angle
 };
 const char* toString(PeRadiator radiator);
 
-/// Numbers that are 0 are chosen by the model.
+/// A number of 0 is chosen by the model.
 struct ParabolicEquationSettings {
-  double max_angle_deg = 0;  ///< from the horizontal, up to which the equation is solved
-  double top_m = 0;          ///< above the ground, up to which the equation is solved
+  double max_angle_deg = 0;  ///< largest angle from the horizontal for which the equation is solved
+  double top_m = 0;          ///< height above the ground up to which the equation is solved
   double range_step_m = 0;
   double azimuths = 0;  ///< around the emitter
   PeRadiator source = PeRadiator::isotropic;
@@ -159,14 +159,14 @@ struct Ground {
   double roughness_m = 0;  ///< standard deviation of the surface's height
   /// Height of the smooth surface of models without terrain; none: that of the ground below each emitter.
   std::optional<double> surface_msl_m;
-  /// True: where the terrain is at or below mean sea level there is sea, for the earth of `diffraction`.
+  /// True: the earth of `diffraction` is sea where the terrain is at or below mean sea level.
   bool sea_by_height = false;
   SourceLocation location;
 };
 
-/// Emitters to whose paths the attenuation by oxygen and water vapour is added.
+/// Selects the emitters whose paths include the attenuation by oxygen and water vapour.
 enum class GasLosses {
-  automatic,  ///< those whose model is not a bound: all except free_space and horizon
+  automatic,  ///< all whose model is not a lower bound of the loss: all except free_space and horizon
   always,
   never
 };
@@ -193,7 +193,7 @@ const char* toString(RefractionProfile profile);
 
 struct Refractivity;  // propagation/parabolic_equation/refractivity_field.h
 
-/// The air that the waves travel through.
+/// The atmosphere.
 struct Atmosphere {
   double k_factor = 4.0 / 3.0;  ///< effective earth radius over earth radius
   double pressure_hpa = 1013.25;

@@ -1,4 +1,4 @@
-/// From where a volume is seen: the camera's text form, its fitting to a box, and the rays of its pixels.
+/// Cameras: text form, fitting to a box, and the rays of pixels.
 #pragma once
 
 #include <optional>
@@ -11,9 +11,9 @@
 
 namespace emscape::render {
 
-/// The volume's box in frame metres, and how it is drawn: heights are stretched about the box's bottom.
-/// *Drawn* positions are those after the stretch; cameras live among them, every interface takes frame
-/// metres.
+/// The volume's box in frame metres and its vertical exaggeration: heights are stretched about the box's
+/// bottom. *Drawn* positions are those after the stretch. Camera holds drawn positions; all interfaces take
+/// frame metres.
 struct SceneBox {
   Vec3d lower_m;
   Vec3d upper_m;
@@ -39,19 +39,19 @@ double niceVerticalExaggeration(const volume::Grid& grid);
 
 enum class Projection { perspective, orthographic };
 
-/// A camera as it is written. Angles in degrees.
+/// Description of a camera. Angles in degrees.
 struct CameraSpec {
   enum class Kind { orbit, lookat };
   Kind kind = Kind::orbit;
   Projection projection = Projection::perspective;
-  double fov_deg = 35;  ///< vertical opening; orthographic: the same scale at the target
+  double fov_deg = 35;  ///< vertical field of view; orthographic: the same scale at the target
 
-  double azimuth_deg = 155;   ///< orbit: bearing of the camera as seen from the target, clockwise from north
-  double elevation_deg = 28;  ///< orbit: of the camera above the target, as drawn
-  std::optional<double>
-      distance;  ///< orbit: camera to target in diagonals of the drawn box; none: the whole box fits
-  std::optional<Vec3d> target_m;  ///< orbit: frame metres; none: the box's centre. lookat: required
-  std::optional<Vec3d> eye_m;     ///< lookat: frame metres, required
+  double azimuth_deg = 155;        ///< orbit: bearing of the camera from the target, clockwise from north
+  double elevation_deg = 28;       ///< orbit: of the camera above the target, as drawn
+  std::optional<double> distance;  ///< orbit: distance of camera and target in diagonals of the drawn box;
+                                   ///< none: fitted to the whole box
+  std::optional<Vec3d> target_m;   ///< orbit: frame metres; none: the box's centre. lookat: required
+  std::optional<Vec3d> eye_m;      ///< lookat: frame metres, required
 };
 
 /// Parses
@@ -61,26 +61,26 @@ struct CameraSpec {
 /// of an orbit may be left out, and "orbit" alone is the default view.
 /// @throws Error (usage) that names the key, the value and what is allowed
 CameraSpec parseCamera(const std::string& text);
-/// The text that parseCamera() reads back to the same camera.
+/// The text of a camera; parseCamera() reads it back exactly.
 std::string toString(const CameraSpec& spec);
 
-/// Parts of the picture that the box leaves free when a camera is fitted to it, 0..1 of width (left, right)
-/// and height.
+/// Margins that stay free when a camera is fitted to a box: fractions 0..1 of the picture's width (left,
+/// right) and height.
 struct FrameMargins {
   double left = 0.04, right = 0.04, top = 0.04, bottom = 0.04;
 };
 
-/// A camera, among drawn positions. The image plane is one unit before the eye; its vertical half opening
-/// is half_height (the half height of the picture in metres where the projection is orthographic).
+/// A camera in drawn positions. The image plane is one unit in front of the eye; half_height is half its
+/// visible height (orthographic: half the height of the picture in metres).
 struct Camera {
   Vec3d eye_m;
   Vec3d forward, right, up;  ///< unit vectors
   Projection projection = Projection::perspective;
   double half_height = 0.3;
-  double shift_x = 0, shift_y = 0;  ///< lens shift, in half heights: where the picture's centre looks
+  double shift_x = 0, shift_y = 0;  ///< lens shift of the picture's centre, in half heights
 
-  /// Position on the image plane, in half heights from the principal point, of the centre of pixel (x, y); x
-  /// and y may be fractions.
+  /// Position of the centre of pixel (x, y) on the image plane, in half heights from the principal point; x
+  /// and y may be fractional.
   double planeX(double x, ImageSize size) const {
     return (2.0 * (x + 0.5) - size.width) / size.height + shift_x;
   }
@@ -91,8 +91,8 @@ struct Camera {
 Camera makeCamera(const CameraSpec& spec, const SceneBox& box, ImageSize size,
                   const FrameMargins& margins = {});
 
-/// A point of the picture: pixel coordinates (fractions; (0, 0) is the centre of the first pixel) and depth
-/// along the view direction (m); not visible where the point is behind the eye.
+/// A projected point: pixel coordinates (fractional; (0, 0) is the centre of the first pixel) and depth along
+/// the view direction (m); not visible if the point is behind the eye.
 struct Projected {
   double x = 0, y = 0, depth_m = 0;
   bool in_front = false;

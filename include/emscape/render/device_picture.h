@@ -1,4 +1,4 @@
-/// Finished pictures in the memory of a GPU, and their way to OpenGL without the host's memory.
+/// Finished pictures in GPU memory, and their transfer to OpenGL without a copy through the host.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace emscape::render {
 
-/// A picture of 8 bits a channel in the memory of a GPU. Does not change; may be used by any thread.
+/// A picture with 8 bits per channel in GPU memory. Immutable; threads may share it.
 class DevicePicture {
  public:
   virtual ~DevicePicture() = default;
@@ -18,20 +18,19 @@ class DevicePicture {
   virtual Image8 host() const = 0;
 };
 
-/// The labels of a picture in two layers, behind what is cast and in front of it: for composing a picture on
-/// a GPU.
+/// The labels of a picture in two layers, behind and in front of the cast image, for composition on a GPU.
 struct OverlayLayers {
   ImageSize size;
   /// Pixels 0xAARRGGBB, premultiplied, row by row from the top. `behind` is opaque.
   std::vector<std::uint32_t> behind, front;
 };
 
-/// Whether the OpenGL context of the calling thread draws with the GPU that CUDA computes on, so that
-/// GlPixelBuffer can be used. False where there is no CUDA, no GPU, or no context.
+/// True if the OpenGL context of the calling thread uses the same GPU as CUDA, so that GlPixelBuffer can be
+/// used. False without CUDA, GPU or context.
 bool openGlSharesGpu();
 
-/// A pixel buffer object of OpenGL that is filled from pictures on the GPU. From construction to destruction
-/// the context that the buffer belongs to must be current.
+/// A pixel buffer object of OpenGL that is filled from pictures on the GPU. The context of the buffer must be
+/// current from construction to destruction.
 class GlPixelBuffer {
  public:
   /// @param buffer  name of a buffer object with storage of at least 4 * size.count() bytes; it must outlive
@@ -40,8 +39,8 @@ class GlPixelBuffer {
   GlPixelBuffer(unsigned buffer, ImageSize size);
   ~GlPixelBuffer();
 
-  /// Copies a picture: bytes r g b a, rows from the top. Returns when it is there.
-  /// @param picture  of the size given above
+  /// Copies a picture: bytes r g b a, rows from the top. Returns when the copy is complete.
+  /// @param picture  of the size given to the constructor
   /// @throws Error (device); (other) for another size
   void fill(const DevicePicture& picture);
 

@@ -1,4 +1,4 @@
-/// A frame: how it is to be drawn, and what it took.
+/// A frame: how it is drawn, and its cost.
 #pragma once
 
 #include "emscape/render/pattern.h"
@@ -9,20 +9,20 @@ namespace emscape::render {
 struct FramePlan {
   Pattern pattern = Pattern::full;
   Interpolation interpolation = Interpolation::float32;  ///< adaptive always predicts in float
-  double tolerance_levels = kDefaultTolerance_levels;    ///< of adaptive, see AdaptiveFrame::draw()
-  /// Of adaptive: fraction of the pixels whose ray meets the box that a frame may cast, after the first few
-  /// frames; > 0
+  double tolerance_levels = kDefaultTolerance_levels;    ///< for adaptive; see AdaptiveFrame::draw()
+  /// For adaptive: of the pixels whose ray meets the box, the fraction that a frame may cast after the first
+  /// few frames; > 0
   double ray_share = kDefaultRayShare;
 };
 
-/// What a frame, or the restoration of one, took.
+/// Cost of a frame or a restoration.
 struct FrameReport {
   Pattern pattern = Pattern::full;
   long long rays = 0;
-  long long samples = 0;      ///< of the volume; 0 where they are not counted (the plain form, a GPU)
-  double cast_ms = 0;         ///< on a GPU by its own clock, and of the whole frame
+  long long samples = 0;      ///< of the volume; 0 if not counted (RenderSettings::plain, or a GPU)
+  double cast_ms = 0;         ///< on a GPU the whole frame, by the GPU's clock
   double interpolate_ms = 0;  ///< 0 on a GPU
-  bool complete = true;       ///< false: it was stopped; the picture then holds nothing to be shown
+  bool complete = true;       ///< false: it was stopped, and the picture must not be shown
 
   double total_ms() const { return cast_ms + interpolate_ms; }
 };

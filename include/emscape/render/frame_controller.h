@@ -1,4 +1,4 @@
-/// Busy, restore, idle: when the picture is interpolated and when it is made exact.
+/// The states busy, restore and idle: when pixels are interpolated, and when the picture is made exact.
 #pragma once
 
 #include <optional>
@@ -10,76 +10,76 @@
 
 namespace emscape::render {
 
-/// What changes a picture.
+/// Causes of a change of the picture.
 enum class SceneEvent { transfer_function, view, field, resized, mode };
 
 enum class ControllerState {
-  busy,     ///< the scene changes: frames are interpolated
-  restore,  ///< it stopped changing: the pixels that are missing are being cast
-  idle      ///< the picture is exact, nothing is drawn
+  busy,     ///< the scene changes; frames are interpolated
+  restore,  ///< the scene has stopped changing; the missing pixels are being cast
+  idle      ///< the picture is exact; nothing is drawn
 };
 /// "BUSY", "RESTORE", "IDLE".
 const char* toString(ControllerState state);
 
 struct ControllerOptions {
-  std::optional<Pattern> pattern;  ///< of busy frames; none: that which meets the budget (PatternChoice)
+  std::optional<Pattern> pattern;  ///< of busy frames; none: chosen to meet the budget (PatternChoice)
   Interpolation interpolation = Interpolation::float32;
-  double budget_ms = 40;  ///< between two busy pictures, > 0
+  double budget_ms = 40;  ///< time between two busy pictures, > 0
   double epsilon_floor_ms = 50;
   std::optional<double> epsilon_ms;  ///< none: measured, see FrameController::epsilon_ms()
 };
 
-/// What the caller is to do now.
+/// The next task of the caller.
 struct ControllerAction {
   enum class Kind {
     draw,          ///< draw a frame by `plan` and show it; then frameDone()
-    restore,       ///< begin to restore the frame drawn last; then restoreDone()
-    stop_restore,  ///< stop the restoration as fast as it goes; then restoreDone()
-    wait           ///< nothing, until an event, the end of what is being done, or `until_ms`
+    restore,       ///< begin to restore the last drawn frame; then restoreDone()
+    stop_restore,  ///< stop the restoration as soon as possible; then restoreDone()
+    wait           ///< nothing, until an event, the end of the present task, or `until_ms`
   };
   Kind kind = Kind::wait;
   FramePlan plan;
   double until_ms = 0;  ///< may be infinity
 };
 
-/// The state machine of the paper's Fig. 4 (Feng et al. 2016), as pure logic: the caller reports what
-/// happened and when (milliseconds of any clock that does not go back), asks what to do, and does it.
+/// The state machine of the paper's Fig. 4 (Feng et al. 2016), without drawing: the caller reports events
+/// with their time (milliseconds of any monotonic clock), asks for the next action, and executes it.
 ///
-///     BUSY     draws as long as events come; no event for epsilon -> RESTORE
-///     RESTORE  casts what is missing -> IDLE; any event -> stop it, BUSY from the start
+///     BUSY     draws while events arrive; no event for epsilon -> RESTORE
+///     RESTORE  casts the missing pixels -> IDLE; any event -> stop it, BUSY from the start
 ///     IDLE     any event -> BUSY
 ///
-/// It starts in IDLE with no picture. A frame that was cast in full leaves nothing to restore: BUSY -> IDLE
-/// after epsilon. A picture may be shown when frameDone() was told of it, or restoreDone() said so. One
-/// thread calls it.
+/// It starts in IDLE with no picture. A frame that was cast in full needs no restoration: BUSY -> IDLE after
+/// epsilon. A picture may be shown after frameDone(), or if restoreDone() returns true. For one thread.
 class FrameController {
  public:
-  static constexpr int kWarmUpFrames = 1;  ///< not measured, at the start and after a resize or mode change
+  static constexpr int kWarmUpFrames =
+      1;  ///< frames that are not measured, at the start and after a resize or mode change
 
   explicit FrameController(const ControllerOptions& options = {});
 
-  /// The scene changed.
+  /// Reports a change of the scene.
   void event(SceneEvent event, double now_ms);
-  /// Other options, the pattern for example: an event of kind `mode`.
+  /// Changes the options, for example the pattern. Counts as an event of kind `mode`.
   void setOptions(const ControllerOptions& options, double now_ms);
 
-  /// What to do. An action `draw` or `restore` is given once and counts as begun.
+  /// The next action. An action `draw` or `restore` is returned once and counts as begun.
   ControllerAction next(double now_ms);
 
-  /// The frame that was begun is drawn and shows the scene as it was when it was begun.
+  /// Reports that the frame is drawn. It shows the scene at the time when it was begun.
   void frameDone(const FrameCost& cost);
-  /// The restoration that was begun has ended. @param complete  false: it was stopped
-  /// @return whether the picture is to be shown: it is complete and the scene has not changed
+  /// Reports the end of the restoration. @param complete false: it was stopped
+  /// @return true if the picture may be shown: it is complete and the scene has not changed
   bool restoreDone(bool complete);
 
   ControllerState state() const { return state_; }
-  /// How the next busy frame is drawn.
+  /// The plan of the next busy frame.
   FramePlan plan() const;
-  /// Why with this pattern, as a sentence without its full stop.
+  /// Reason for the pattern, as a sentence without its full stop.
   const std::string& reason() const { return choice_.reason(); }
-  /// How long nothing must happen before a restoration begins (ms): what was ordered, or the median time of
-  /// the last frames of this pattern, 1.5 times that where three of four pixels or more are interpolated, and
-  /// at least the floor; the floor as long as nothing is measured.
+  /// Time without events (ms) after which a restoration begins: ControllerOptions::epsilon_ms if given; else
+  /// the median time of the last frames of this pattern, times 1.5 if at least three of four pixels are
+  /// interpolated, but not below a minimum; the minimum before the first measurement.
   double epsilon_ms() const;
 
  private:

@@ -1,4 +1,4 @@
-/// The ground below a volume, as the renderer takes it.
+/// The ground below a volume, as input of the renderer.
 #pragma once
 
 #include <vector>
@@ -7,8 +7,8 @@ namespace emscape::render {
 
 /// Heights at the posts of a regular grid, bilinear between them, in the volume's frame (m): x east, y north,
 /// heights in the frame's z. Post (i, j) is at (first_x_m + i * spacing_x_m, first_y_m + j * spacing_y_m).
-/// A NaN is a hole: where the ground is not known the picture shows a hatched pit, never a plain. Drawn
-/// inside the volume's box; edge posts hold for one spacing beyond.
+/// NaN marks a hole: unknown ground is drawn as a hatched pit, never as a plane. The ground is drawn inside
+/// the volume's box; edge posts are valid for one spacing beyond.
 struct HeightField {
   int columns = 0;  ///< >= 2
   int rows = 0;     ///< >= 2

@@ -1,5 +1,5 @@
-/// Pictures: float premultiplied RGBA as it is cast, 8 bit as it is shown, PNG files, and how two pictures
-/// differ.
+/// Pictures: premultiplied RGBA in float (cast) and in 8 bits (displayed), PNG files, and the difference of
+/// two pictures.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 namespace emscape::render {
 
 /// A colour with its coverage, premultiplied: r, g, b <= a. Components are sRGB-encoded, 0..1; compositing is
-/// linear in them, as in every volume renderer whose transfer functions are given as screen colours.
+/// linear in them, as is usual in volume renderers whose transfer functions are given in screen colours.
 struct Rgba {
   float r = 0, g = 0, b = 0, a = 0;
 };
@@ -32,7 +32,7 @@ struct ImageSize {
 /// Parses "WxH". @throws Error (usage) unless both are 1..32768
 ImageSize parseImageSize(const std::string& text);
 
-/// A picture as it is cast.
+/// A cast picture.
 struct Image {
   ImageSize size;
   std::vector<Rgba> pixels;  ///< rows from the top; size.count() of them
@@ -44,7 +44,7 @@ struct Image {
   const Rgba& at(int x, int y) const { return pixels[static_cast<std::size_t>(y) * size.width + x]; }
 };
 
-/// A picture of 8 bit a channel, r g b a, premultiplied.
+/// A picture with 8 bits per channel, r g b a, premultiplied.
 struct Image8 {
   ImageSize size;
   std::vector<std::uint8_t> rgba;  ///< rows from the top; 4 * size.count() bytes
@@ -54,19 +54,19 @@ struct Image8 {
   }
 };
 
-/// The only place where a picture loses precision.
+/// Quantises a picture: the only step at which it loses precision.
 Image8 quantize(const Image& image);
 
 /// A picture as the bytes of a PNG file (8 bit; RGB if every pixel is opaque, else RGBA).
 /// @throws Error (other)
 std::string encodePng(const Image8& image);
-/// Writes a PNG (8 bit; RGB if every pixel is opaque, else RGBA). The file appears whole or not at all.
+/// Writes a PNG (8 bit; RGB if every pixel is opaque, else RGBA). The file is written atomically.
 /// @throws Error (other) naming the file
 void writePng(const std::string& file, const Image8& image);
 /// Reads a PNG as 8 bit RGBA. @throws Error (bad_input) naming the file
 Image8 readPng(const std::string& file);
 
-/// How a picture differs from the one that it should be, as the paper's tables count it.
+/// Difference of a picture from a reference, as in the tables of Feng et al. 2016.
 struct ImageDifference {
   std::array<int, 4> max{};      ///< largest |difference| of r, g, b, a, in levels of 255
   std::array<double, 4> mean{};  ///< sum of |differences| / number of erroneous pixels; 0 if there are none

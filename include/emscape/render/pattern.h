@@ -6,16 +6,15 @@
 
 namespace emscape::render {
 
-/// Source pixels: all; x even; (x + y) even; x and y even; those that cannot be predicted
-/// (Pattern::adaptive).
+/// Cast pixels: all; x even; (x + y) even; x and y even; those that cannot be predicted (Pattern::adaptive).
 enum class Pattern { full, columns, checkerboard, quarter, adaptive };
 const char* toString(Pattern pattern);
 /// @throws Error (usage) that lists the names
 Pattern parsePattern(const std::string& name);
-/// Every pattern, that with the most rays first; adaptive, whose rays depend on the picture, is the last.
+/// All patterns, by falling number of rays; adaptive, whose rays depend on the picture, is the last.
 const std::vector<Pattern>& allPatterns();
 
-/// How missing pixels are interpolated: in premultiplied float, or in 8-bit levels as the paper does (for its
+/// Precision of interpolated pixels: premultiplied float, or 8-bit levels as in Feng et al. 2016 (for its
 /// tables).
 enum class Interpolation { float32, bits8 };
 const char* toString(Interpolation interpolation);
@@ -24,8 +23,8 @@ Interpolation parseInterpolation(const std::string& name);
 
 /// Default tolerance of the pattern adaptive: estimated error (levels of 255) above which a pixel is cast.
 constexpr double kDefaultTolerance_levels = 0.6;
-/// Part of the pixels whose rays meet the volume's box that an adaptive frame casts at most by default: that
-/// of quarter.
+/// Default of the largest fraction that an adaptive frame casts, of the pixels whose rays meet the volume's
+/// box: that of quarter.
 constexpr double kDefaultRayShare = 0.25;
 
 }  // namespace emscape::render

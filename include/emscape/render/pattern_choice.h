@@ -1,4 +1,4 @@
-/// The mode `auto`: which pattern casts busy frames so that they come in time.
+/// The mode `auto`: chooses the pattern of busy frames that meets the frame budget.
 #pragma once
 
 #include <cstddef>
@@ -11,32 +11,33 @@
 
 namespace emscape::render {
 
-/// What one busy frame took. The sum of the times is the least time between two pictures.
+/// Cost of one busy frame. The sum of the times is the minimum time between two pictures.
 struct FrameCost {
-  double draw_ms = 0;    ///< casting and interpolating: what the choice of the pattern changes
-  double other_ms = 0;   ///< the rest: the field's update, labels, showing
-  double ray_share = 0;  ///< of all pixels, those that were cast; 0: as many as its pattern usually casts
+  double draw_ms = 0;    ///< casting and interpolation, which depend on the pattern
+  double other_ms = 0;   ///< the rest: update of the field, labels, display
+  double ray_share = 0;  ///< fraction of all pixels that were cast; 0: the usual fraction of its pattern
 
   double total_ms() const { return draw_ms + other_ms; }
 };
 
-/// A pattern that may be chosen, and the part of the pixels that it usually casts.
+/// A pattern that may be chosen, and the fraction of the pixels that it usually casts.
 struct QualityLevel {
   Pattern pattern = Pattern::full;
   double ray_share = 1;
 };
-/// The patterns to choose from, the most rays first.
+/// The patterns to choose from, by falling number of rays.
 const std::vector<QualityLevel>& qualityLevels();
 
 /// Chooses the pattern with the most rays that meets a frame budget.
 ///
-/// Down: at once after one frame that takes more than kClearMiss budgets, or two in a row above the budget,
-/// to the first pattern that is expected to meet it. Up: when the last `patience` frames were within the
-/// budget and their median, scaled by the shares of rays, promises at most kHeadroom of the budget. Patience
-/// is kMinPatience frames; a pattern that does not hold for kHolds times as many frames doubles it, up to
-/// kMaxPatience. Hence, for any times, at most 6 + n / 72 changes upwards in n frames.
+/// Fewer rays: after one frame that takes more than kClearMiss budgets, or two consecutive frames above the
+/// budget, it changes to the first pattern that is expected to meet the budget. More rays: when the last
+/// `patience` frames were within the budget and their median, scaled by the fractions of rays, predicts at
+/// most kHeadroom of the budget. `patience` is kMinPatience frames; a pattern that is left within kHolds
+/// times as many frames doubles it, up to kMaxPatience. Hence there are at most 6 + n / 72 changes to more
+/// rays in n frames, whatever the times.
 ///
-/// With the pattern adaptive, the last one, the tolerance follows what the budget leaves for drawing.
+/// With the last pattern, adaptive, the tolerance follows the part of the budget that is left for drawing.
 class PatternChoice {
  public:
   static constexpr double kClearMiss = 1.5;
@@ -44,21 +45,21 @@ class PatternChoice {
   static constexpr int kMinPatience = 8;
   static constexpr int kMaxPatience = 256;
   static constexpr int kHolds = 8;
-  static constexpr int kWarmUpFrames = 1;         ///< these are not judged
-  static constexpr double kAdaptiveTarget = 0.9;  ///< part of the budget that adaptive frames are to take
+  static constexpr int kWarmUpFrames = 1;         ///< frames that are not judged
+  static constexpr double kAdaptiveTarget = 0.9;  ///< fraction of the budget that adaptive frames aim for
 
   /// @param budget_ms  > 0
-  /// @param fixed      this pattern always; only its tolerance is chosen
+  /// @param fixed      always this pattern; only its tolerance is chosen
   explicit PatternChoice(double budget_ms, std::optional<Pattern> fixed = {});
 
   Pattern pattern() const { return fixed_.value_or(level().pattern); }
   double tolerance_levels() const { return tolerance_levels_; }  ///< for the pattern adaptive
-  /// Why, as a sentence without its full stop.
+  /// Reason for the pattern, as a sentence without its full stop.
   const std::string& reason() const { return reason_; }
 
-  /// Reports the times of a frame with pattern(). @return whether the pattern is another one now
+  /// Reports the cost of a frame with pattern(). @return true if the pattern has changed
   bool add(const FrameCost& cost);
-  /// What was measured says nothing any more (another size, another mode): warms up again, keeps the pattern.
+  /// Discards the measurements after a change of size or mode: warms up again and keeps the pattern.
   void forget();
 
  private:
@@ -75,7 +76,7 @@ class PatternChoice {
   std::size_t level_ = 0;
   double tolerance_levels_ = kDefaultTolerance_levels;
   std::string reason_;
-  RunningMedian full_ms_{kMinPatience};  // what a full frame would take to draw, by the share of rays
+  RunningMedian full_ms_{kMinPatience};  // estimated drawing time of a full frame, by the fraction of rays
   RunningMedian other_ms_{kMinPatience};
   int warm_up_left_ = kWarmUpFrames;
   int misses_in_row_ = 0;

@@ -1,4 +1,4 @@
-/// Volume -> picture, kept between frames.
+/// Draws volumes; keeps its state between frames.
 #pragma once
 
 #include <memory>
@@ -16,22 +16,22 @@
 
 namespace emscape::render {
 
-/// Where pictures are cast.
+/// Backend and storage of a renderer.
 struct RendererOptions {
-  Backend backend = Backend::cpu;  ///< automatic: the GPU if there is one that can, else the CPU
-  /// How a GPU keeps volumes that come from the host's memory; sparse32: all volumes
+  Backend backend = Backend::cpu;  ///< automatic: the GPU if a usable one exists, else the CPU
+  /// Storage on a GPU of volumes from host memory; sparse32: of all volumes
   volume::VoxelPrecision precision = volume::VoxelPrecision::float32;
 };
 
-/// Casts a scene: volume, ground, transfer function, camera. A scene's pixel depends on its coordinates and
-/// the picture's size alone, never on the pattern that casts it.
+/// Casts a scene: volume, ground, transfer function, camera. A pixel of a scene depends only on its
+/// coordinates and the picture's size, not on the pattern.
 ///
-/// One thread calls it, but for setVolume(), which may be called by another one at any time: it waits for the
-/// frame that is being drawn. On the CPU a frame uses all threads that base/parallel.h allows; on a GPU it is
-/// cast on a stream of its own, while the next volume may be written on another.
+/// For one thread, except setVolume(), which any thread may call at any time: it waits for the frame in
+/// progress. On the CPU a frame uses all threads that base/parallel.h allows. On a GPU it is cast on a
+/// separate stream, while the next volume may be written on another one.
 class Renderer {
  public:
-  /// With Backend::automatic one line of the log says what was taken and why.
+  /// With Backend::automatic one line of the log states the choice and the reason.
   /// @throws Error (device) if cuda is requested and there is none
   explicit Renderer(const RendererOptions& options = {});
   ~Renderer();
@@ -39,12 +39,12 @@ class Renderer {
   /// cpu or cuda.
   Backend backend() const;
 
-  /// Values on the renderer's side (host memory for the CPU, GPU memory for the GPU) are read in place, not
-  /// copied; reads and writes of a GPU wait for each other. Values on the other side are copied. Cheap
-  /// where the grid stays the same.
+  /// Sets the volume. Values in the renderer's memory (host memory for the CPU, GPU memory for the GPU) are
+  /// read in place; reads and writes on a GPU wait for each other. Values in the other memory are copied.
+  /// Cheap if the grid stays the same.
   /// @throws Error (other) for an empty handle, (device) if a copy does not fit
   void setVolume(const volume::Volume& volume);
-  /// Memory of the GPU that the volume takes; 0 with the CPU.
+  /// GPU memory of the volume (bytes); 0 on the CPU.
   std::size_t volumeBytes() const;
   /// Null: no ground is drawn. @throws Error (bad_input) for an impossible field
   void setHeightField(std::shared_ptr<const HeightField> height_field);
@@ -55,38 +55,39 @@ class Renderer {
 
   const RenderSettings& settings() const;
   const TransferFunction& transferFunction() const;
-  /// The value of the isosurface that is drawn in that mode.
+  /// The value of the isosurface in mode iso.
   double isoValue() const;
   const Camera& camera() const;
-  /// The box of the volume as it is drawn. A volume must be set.
+  /// The box of the volume as drawn. A volume must be set.
   SceneBox sceneBox() const;
-  /// Whether a position (frame metres) is on the removed side of a plane, or the ground hides it from the
-  /// camera. A volume must be set.
+  /// True if a position (frame metres) is on the removed side of a plane, or is hidden from the camera by the
+  /// ground. A volume must be set.
   bool isHidden(const Vec3d& frame_m) const;
 
-  /// Draws a frame of the scene: casts the source pixels of the plan's pattern and interpolates the others.
-  /// The picture stays where it was cast.
-  /// @param stop  set from elsewhere: returns soon, incomplete. May be null
+  /// Draws a frame of the scene: casts the pixels of the plan's pattern and interpolates the others. The
+  /// picture stays in the memory in which it was cast.
+  /// @param stop  set by another thread: draw() returns soon with an incomplete picture. May be null
   /// @throws Error (device)
   FrameReport draw(const FramePlan& plan, ImageSize size, const StopFlag* stop = nullptr);
-  /// Casts exactly the pixels that the last draw() left out: the picture is then bit-identical to a full one
-  /// of the same scene, which must not have changed in between. A stopped restoration starts again.
+  /// Casts the pixels that the last draw() interpolated. The picture is then bit-identical to a full cast of
+  /// the same scene, which must not have changed in between. A stopped restoration starts again from the
+  /// beginning.
   FrameReport restore(const StopFlag* stop = nullptr);
-  /// The picture of the last draw() or restore() above, as it was cast, or quantised. The latter is the cheap
-  /// one on a GPU: it is quantised there. Not to be used after an incomplete frame.
+  /// The picture of the last draw() or restore(), in float or quantised. The latter is cheaper on a GPU,
+  /// which quantises it. Not to be used after an incomplete frame.
   void fetch(Image& image);
   void fetch(Image8& image);
 
-  /// The same picture, quantised, between the layers of its labels: stays on the GPU. Null with the CPU.
+  /// The same picture, quantised, between the layers of its labels; stays on the GPU. Null on the CPU.
   /// @param layers  of the picture's size. @throws Error (device)
   std::shared_ptr<const DevicePicture> compose(const OverlayLayers& layers);
 
-  /// The same into the caller's image, which is all there is of the picture then: restore() is given the one
-  /// that draw() wrote.
+  /// draw() and restore() with the caller's image; no other copy is kept. restore() needs the image that
+  /// draw() wrote.
   /// @param image  resized to `size`
   FrameReport draw(const FramePlan& plan, ImageSize size, Image& image, const StopFlag* stop = nullptr);
   FrameReport restore(Image& image, const StopFlag* stop = nullptr);
-  /// draw() into an image of its own.
+  /// draw() into a new image.
   Image render(ImageSize size, const FramePlan& plan = {}, FrameReport* report = nullptr);
 
  private:
@@ -94,9 +95,9 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Checks that an isosurface can show something of a volume or of the series that it belongs to.
-/// @throws Error (bad_input) that says what the values are: for indices, and for a value that is neither
-/// among the volume's own nor in the range of its series
+/// Checks that an isosurface can be visible in a volume or in its series.
+/// @throws Error (bad_input) that states the range of values: for indices, and for a value that is neither in
+/// the range of the volume nor in that of its series
 void checkIsoValue(double value, const volume::DenseVolume& volume);
 
 }  // namespace emscape::render

@@ -1,4 +1,4 @@
-/// The usual value of the last few measurements.
+/// Median of the last few measurements.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 
 namespace emscape::render {
 
-/// Median of the last `window` values: a few outliers do not move it.
+/// Median of the last `window` values; a few outliers do not change it.
 class RunningMedian {
  public:
   /// @param window  >= 1
@@ -21,7 +21,7 @@ class RunningMedian {
 
   bool empty() const { return values_.empty(); }
   bool isFull() const { return values_.size() >= window_; }
-  /// The upper one of two in the middle; 0 of nothing.
+  /// The upper of two middle values; 0 without values.
   double median() const {
     if (values_.empty()) return 0;
     std::vector<double> sorted = values_;

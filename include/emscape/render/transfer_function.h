@@ -1,4 +1,4 @@
-/// From values to colours and opacities.
+/// Transfer functions: from values to colours and opacities.
 #pragma once
 
 #include <string>
@@ -34,11 +34,11 @@ std::vector<std::string> colorMapNames();
 Rgb categoryColor(int index);
 
 /// A transfer function in the unit of the volume's values. Between points colour and opacity are linear;
-/// outside they stay as at the ends. Categorical ones give each index its palette colour.
+/// outside they are constant. Categorical functions give each index its palette colour.
 ///
-/// Opacity is that of one *reference step*: a length of one along the ray measured in voxels (index space). A
-/// ray that crosses n voxels of opacity a along any axis lets (1 - a)^n through, whatever the sampling step,
-/// the voxels' shape and the vertical exaggeration.
+/// Opacity is per *reference step*: one voxel along the ray (in index space). A ray that crosses n voxels of
+/// opacity a along any axis has the transmittance (1 - a)^n, whatever the sampling step, the shape of the
+/// voxels and the vertical exaggeration.
 struct TransferFunction {
   struct ColorPoint {
     double at = 0;
@@ -49,24 +49,24 @@ struct TransferFunction {
     double opacity = 0;  ///< 0..1, of one reference step
   };
   std::string name;
-  std::string unit;                     ///< of `at`; empty: not stated
+  std::string unit;                     ///< of `at`; empty: unknown
   std::vector<ColorPoint> colors;       ///< at increases strictly; at least one (none if categorical)
   std::vector<OpacityPoint> opacities;  ///< at does not decrease (a repeated one is a jump); at least one
   bool categorical = false;             ///< value = index of a category; < -0.5 is none
 
   Rgb color(double value) const;
   double opacity(double value) const;
-  /// The interval of a colour bar: that of all points.
+  /// The interval of the colour bar: that of all points.
   double lowest() const;
   double highest() const;
 };
 
-/// A sensible function for a volume. That of the scale that it names (volume::kScaleKey); else viridis,
-/// opacity rising from nothing, both by how frequent the values are, so that the common weak field stays
-/// clear and the rare strong one shows; the palette where it is categorical. Round numbers at both ends. For
-/// a series take one function of one of its volumes, so that colours mean the same throughout.
+/// The default function of a volume: that of its scale (volume::kScaleKey); the palette for categorical
+/// volumes; else viridis with opacity rising from 0, both fitted to the frequency of the values, so that the
+/// common weak field is transparent and the rare strong field is visible. Both ends are round numbers. For a
+/// series use the function of one of its volumes, so that colours are comparable.
 TransferFunction defaultTransferFunction(const volume::DenseVolume& volume);
-/// The same where only the range of the values is known.
+/// The same if only the range of the values is known.
 TransferFunction defaultTransferFunction(const volume::VolumeInfo& info);
 
 /// Reads a transfer function (JSON or YAML) for a volume.
@@ -79,20 +79,20 @@ TransferFunction defaultTransferFunction(const volume::VolumeInfo& info);
 /// "value", must be that of the volume. "colors" may be the name of a colour map, which then covers the
 /// interval of the opacity points.
 ///
-/// @throws Error (bad_input) with file:line:column for what is wrong: unknown, missing or repeated keys,
-/// types, ranges, order, unit
+/// @throws Error (bad_input) with file:line:column for unknown, missing or repeated keys, and wrong types,
+/// ranges, order or unit
 TransferFunction readTransferFunction(const std::string& file, const volume::VolumeInfo& info);
 /// The same from a text; `file` is the name that errors give.
 TransferFunction parseTransferFunction(const std::string& text, const std::string& file,
                                        const volume::VolumeInfo& info);
 
-/// The text of a function, "domain": "value", that parseTransferFunction() reads back to the same bits.
+/// The text of a function ("domain": "value"); parseTransferFunction() reads it back exactly.
 /// @throws Error (bad_input) for a categorical function: categories have their own colours
 std::string transferFunctionText(const TransferFunction& function);
-/// Writes that text; the file appears whole or not at all. @throws Error (bad_input) as above, (other)
+/// Writes that text; the file is written atomically. @throws Error (bad_input) as above, (other)
 void writeTransferFunction(const std::string& file, const TransferFunction& function);
 
-/// @throws Error (bad_input) if the function states a unit and it is not the volume's
+/// @throws Error (bad_input) if the function has a unit other than the volume's
 void requireUnitOf(const TransferFunction& function, const volume::VolumeInfo& info);
 
 }  // namespace emscape::render

@@ -12,16 +12,15 @@ struct Clock {
   double step_s = 1;
 };
 
-/// Times from begin to end, both included if the step meets them; computed as begin + i * step, so that no
-/// error accumulates.
+/// The times begin + i * step up to end, inclusive; no error accumulates.
 /// @throws Error (usage) if a value is not finite, end < begin, step <= 0, or there are more than 10^7 times
 std::vector<double> timesOf(double begin_s, double end_s, double step_s);
-/// The whole clock: 0, step, ... duration.
+/// All times of the clock: 0, step, ... duration.
 std::vector<double> timesOf(const Clock& clock);
 /// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T". @throws Error (usage)
 std::vector<double> parseTimes(const std::string& text, const Clock& clock);
 /// ISO 8601 time (UTC, milliseconds) at t_s; empty without an epoch.
-/// @throws Error (bad_input) if the epoch is not a time
+/// @throws Error (bad_input) if the epoch is not a valid time
 std::string utcAt(const Clock& clock, double t_s);
 
 }  // namespace emscape::scenario

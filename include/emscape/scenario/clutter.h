@@ -1,4 +1,4 @@
-/// Clutter of a radar: the echoes of land, sea and rain, and the filter against them.
+/// Clutter of a radar: the echoes of land, sea and rain, and the Doppler filter that suppresses them.
 #pragma once
 
 #include <optional>
@@ -24,17 +24,17 @@ double landGammaDb(LandKind kind, double frequency_hz);
 /// Doppler filter of a pulse train.
 enum class MtiKind {
   canceller,     ///< delay-line canceller: binomial weights of alternating sign
-  pulse_doppler  ///< coherent sum of pulses, weighted, in the filter that the target is in
+  pulse_doppler  ///< weighted coherent sum of pulses, in the Doppler filter of the target
 };
 const char* toString(MtiKind kind);
 
 struct Mti {
   MtiKind kind = MtiKind::canceller;
-  int pulses = 2;  ///< that the filter weighs, >= 2
+  int pulses = 2;  ///< pulses in the filter, >= 2
   /// Standard deviations (m/s) of the clutter's radial velocities; their spectra are Gaussian.
   double surface_spread_mps = 0;
   double rain_spread_mps = 0;
-  std::optional<double> improvement_limit_db;  ///< of the radar's instability; none: no limit
+  std::optional<double> improvement_limit_db;  ///< by the radar's instability; none: no limit
 };
 
 /// At least one of land, sea and rain.
@@ -42,7 +42,7 @@ struct Clutter {
   std::optional<double> land_gamma_db;  ///< sigma0 of land over the sine of the grazing angle; none: no echo
   std::optional<int> sea_state;         ///< 0..6; none: no echo
   bool rain = false;                    ///< echo of the atmosphere's rain
-  double range_cell_m = 0;              ///< length of the resolution cell after compression, > 0
+  double range_cell_m = 0;              ///< length of the resolution cell after pulse compression, > 0
   std::optional<Mti> mti;
   /// Radial speed of the target in volumes, either sign; none: the mean response of all speeds (canceller),
   /// the middle between two blind speeds (pulse_doppler).

@@ -7,8 +7,8 @@ namespace emscape::scenario {
 
 /// One change: the value at `path` becomes `value`.
 ///
-/// path: keys of the scenario format (docs/scenario-format.md) with points between them; items of a list by
-/// their name, or by their index from 0 if they have none: `emitters.search radar.antenna.gain_dbi`,
+/// path: keys of the scenario format (docs/scenario-format.md), separated by points. Items of a list have
+/// their name, or their index from 0 if they have no name: `emitters.search radar.antenna.gain_dbi`,
 /// `region.dims.2`, `terrain.files.0`. Names may contain blanks and points: the longest matching name in the
 /// scenario is used. A name in double quotes is taken literally, with \" and \\ for a quote and a backslash:
 /// `emitters."a=b".power_w`.
@@ -24,7 +24,7 @@ struct Edit {
 /// @throws Error (usage) if there is no such '=' or no path before it
 Edit parseEdit(const std::string& text);
 
-/// A name as a part of a path: in double quotes where it needs them.
+/// A name as a part of a path, in double quotes if necessary.
 std::string pathStep(const std::string& name);
 
 /// "PATH=VALUE".

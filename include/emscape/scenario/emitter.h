@@ -19,26 +19,25 @@ enum class EmitterKind { radar, transmitter, jammer };
 
 const char* toString(EmitterKind kind);
 
-/// Cross-polarisation isolation (dB) of antennas unless a receiver states another one: a typical value off
-/// the axis.
+/// Default cross-polarisation isolation (dB) of antennas: a typical value off the axis.
 /// @see D. L. Adamy, EW 101, 2001, chapter 3: about 25 dB between orthogonal linear, and between circular
 /// senses
 constexpr double kCrossPolarIsolation_db = 25;
 
-/// Polarisation match (0..1, in power): |<e_t, e_r>|^2, at least the isolation of a real antenna.
+/// Polarisation match (0..1, in power): |<e_t, e_r>|^2, but not below the limit of the isolation.
 /// @param isolation_db  >= 0; infinity: ideal antennas
 double polarizationFactor(propagation::Polarization transmit, propagation::Polarization receive,
                           double isolation_db = kCrossPolarIsolation_db);
 
-/// Relation of the probability of detection to the signal-to-noise ratio.
+/// Method that computes the probability of detection from the signal-to-noise ratio.
 enum class DetectionMethod {
   exact,       ///< Marcum's and Swerling's statistics
-  albersheim,  ///< Albersheim's formula: steady targets alone
+  albersheim,  ///< Albersheim's formula: steady targets only
   shnidman     ///< Shnidman's formula
 };
 const char* toString(DetectionMethod method);
 
-/// Rule for the loss of the pulses that a scanning beam receives off its peak.
+/// Method for the beam-shape loss of a scanning antenna: pulses received off the beam's peak.
 enum class BeamShapeLoss { none, blake, barton };
 const char* toString(BeamShapeLoss rule);
 
@@ -51,14 +50,14 @@ struct RadarReceiver {
   double processing_gain_db = 0;  ///< of echoes over noise and jamming, net of processing losses
   std::optional<propagation::Polarization> polarization;  ///< none: that of the transmitted wave
   double cross_polar_isolation_db = kCrossPolarIsolation_db;
-  int pulses = 1;  ///< integrated on a target; from the waveform and the scan unless given
+  int pulses = 1;  ///< integrated on a target; by default from the waveform and the scan
   double pfa = 1e-6;
   int swerling = 1;  ///< 0..4
   DetectionMethod detection = DetectionMethod::exact;
   BeamShapeLoss beam_shape_loss = BeamShapeLoss::none;
-  int cfar_cells = 0;        ///< reference cells of a cell-averaging CFAR; 0: the noise level is known
-  int binary_threshold = 0;  ///< M of M-of-N integration, N = pulses; 0: the pulses are added up
-  /// For burn-through; none: the ratio for a probability of detection of 1/2 in noise.
+  int cfar_cells = 0;        ///< reference cells of a cell-averaging CFAR; 0: known noise level
+  int binary_threshold = 0;  ///< M of M-of-N integration, N = pulses; 0: the pulses are summed
+  /// For burn-through; none: the ratio that gives a probability of detection of 1/2 in noise.
   std::optional<double> required_signal_to_jammer_db;
   double target_rcs_m2 = 1;
 };
@@ -82,8 +81,8 @@ struct Emitter {
   ScanSpec scan;
   propagation::ModelSettings propagation;
   RadarReceiver receiver;              ///< radars only
-  std::optional<Waveform> waveform;    ///< radars only; none: power_w is taken for the mean power too
-  std::optional<Clutter> clutter;      ///< radars with a waveform only; none: noise and jamming alone
+  std::optional<Waveform> waveform;    ///< radars only; none: power_w is also the mean power
+  std::optional<Clutter> clutter;      ///< radars with a waveform only; none: only noise and jamming
   std::vector<TimeInterval> active_s;  ///< empty: always
   SourceLocation location;             ///< in the scenario
   SourceLocation frequency_location;   ///< of its frequency

@@ -1,4 +1,4 @@
-/// What a volume shows of the time from its own instant on.
+/// Interval of time that a volume represents, from its own time on.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@ namespace emscape::scenario {
 
 enum class IntervalKind {
   instant,    ///< the field at the volume's time
-  max_hold,   ///< the largest value in the interval, of each emitter
+  max_hold,   ///< the largest value of each emitter in the interval
   mean,       ///< the mean power in the interval
   cumulative  ///< the probability of at least one detection in the interval
 };
@@ -21,7 +21,7 @@ const char* toString(IntervalKind kind);
 struct IntervalSpec {
   IntervalKind kind = IntervalKind::instant;
   std::optional<double> seconds;  ///< > 0
-  std::optional<double> turns;    ///< > 0; of each emitter's scan: its turns, or there-and-backs, or cycles
+  std::optional<double> turns;    ///< > 0; of each emitter's scan: turns, sweeps there and back, or cycles
 };
 
 /// For legends: "largest in 12 s", "mean of 2 turns"; empty for an instant.

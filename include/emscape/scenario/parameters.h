@@ -25,7 +25,7 @@ struct Parameter {
   std::string value;
 };
 
-/// The values of an object and of the objects in it.
+/// The values of an object and of its nested objects.
 struct ParameterGroup {
   std::string name;  ///< key, or name of the list's item
   std::string path;
@@ -33,15 +33,14 @@ struct ParameterGroup {
   std::vector<ParameterGroup> groups;
 };
 
-/// The editable values of an object. Left out: keys of antenna patterns, scans and propagation models that
-/// are not chosen, and keys that a given key excludes.
-/// @param path  of an object, "emitters.jammer" or "atmosphere", that need not be given
+/// The editable values of an object, without keys of antenna patterns, scans and propagation models that are
+/// not chosen, and without keys that a given key excludes.
+/// @param path  of an object, such as "emitters.jammer" or "atmosphere"; it need not be in the file
 /// @throws Error (bad_input) if the path does not lead to an object, or the scenario was not read from a file
 ParameterGroup parametersOf(const Scenario& scenario, const std::string& path);
 
-/// The edits that choose another antenna pattern, scan, propagation model or the like: keys that the new
-/// choice does not have are removed, keys that it requires get a common value. For other choices, that single
-/// edit.
+/// The edits that choose another antenna pattern, scan or propagation model: keys that the new choice does
+/// not have are removed, and keys that it requires get a common value. Other choices need a single edit.
 /// @param path    of a choice
 /// @throws Error (bad_input) for a choice that needs files
 std::vector<Edit> editsForChoice(const Scenario& scenario, const std::string& path,

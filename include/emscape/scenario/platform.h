@@ -26,8 +26,7 @@ struct Attitude {
   double roll_deg = 0;
 };
 
-/// One row of a track file. Attitude is optional there: heading is then taken along the track, pitch and roll
-/// are 0.
+/// One row of a track file. Without an attitude the heading is along the track, and pitch and roll are 0.
 struct TrackPoint {
   double t_s = 0;
   SitePosition position;
@@ -38,7 +37,8 @@ struct TrackPoint {
 
 struct Platform {
   std::string name;
-  /// One point: a fixed site. More: strictly increasing t_s; held at the ends outside the track's time.
+  /// One point: a fixed site. Several: strictly increasing t_s; outside the track's time the platform stays
+  /// at its ends.
   std::vector<TrackPoint> track;
   Attitude attitude;        ///< of a fixed site
   std::string track_file;   ///< empty for a fixed site
@@ -47,8 +47,8 @@ struct Platform {
 
 /// Position and attitude of a platform at t_s: position along the geodesic between the points before and
 /// after, height (above the datum of the track) and attitude linear in time, heading along the shorter arc.
-/// Without a heading in the track it is the course; a stationary platform keeps its last course.
-/// @return a point with all of heading, pitch and roll set (heading 0..360)
+/// Without a heading in the track, the heading is the course; a stationary platform keeps its last course.
+/// @return a point with heading (0..360), pitch and roll set
 TrackPoint pointAt(const Platform& platform, double t_s);
 
 }  // namespace emscape::scenario

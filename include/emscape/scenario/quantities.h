@@ -1,4 +1,4 @@
-/// The quantities that a scenario can request, emfield computes and volumes hold.
+/// The quantities: requested by scenarios, computed by emfield and stored in volumes.
 #pragma once
 
 #include <string>
@@ -27,7 +27,7 @@ enum class Quantity {
   dominant_model,
 };
 
-/// The signals that a quantity depends on.
+/// Signals on which a quantity depends.
 enum class QuantityKind {
   of_emitters,
   of_receiver,  ///< all emitters, at one of the scenario's receivers
@@ -45,17 +45,17 @@ struct QuantityInfo {
   bool needs_jammer = false;  ///< the scenario must have a jammer
 };
 
-/// True if a quantity has a meaning over such an interval.
+/// True if a quantity is defined for such an interval.
 bool hasInterval(const QuantityInfo& quantity, IntervalKind interval);
 /// True for quantities of radars and their targets, with or without jamming.
 bool needsRadar(Quantity quantity);
-/// True for those that depend on jamming.
+/// True for quantities that depend on jamming.
 bool needsJammer(Quantity quantity);
 
 /// All quantities, in the order of the enum.
 const std::vector<QuantityInfo>& quantityTable();
 const QuantityInfo& info(Quantity quantity);
-/// The names of all, with commas between them.
+/// The names of all quantities, separated by commas.
 std::string quantityNames();
 /// @throws Error (usage) that lists the allowed names
 Quantity quantityFromName(const std::string& name);

@@ -5,8 +5,8 @@
 
 namespace emscape::scenario {
 
-/// fixed: the beam stays. track: a radar whose antenna turns onto its target, anywhere; where no target is
-/// asked about (power density, radar_look: scan) it points as if fixed.
+/// fixed: the beam does not move. track: a radar whose antenna turns to its target in any direction; for
+/// quantities without a target (power density, radar_look: scan) it points as if fixed.
 enum class ScanKind { fixed, rotate, sector, raster, dwell_list, track };
 const char* toString(ScanKind kind);
 
@@ -28,23 +28,23 @@ struct ScanSpec {
   double rate_deg_s = 0;          ///< sector, raster: azimuth speed
   double elevation_step_deg = 0;  ///< raster: between bars
   int bars = 1;                   ///< raster
-  std::vector<Dwell> dwells;      ///< dwell_list, repeated for ever
+  std::vector<Dwell> dwells;      ///< dwell_list, repeated
 };
 
-/// Direction of a beam (deg): relative to the platform's axes if the antenna turns; if the beam is steered
-/// (dwell_list), relative to the mount's boresight, which azimuth_deg and elevation_deg of the scan have
-/// turned.
+/// Direction of a beam (deg), relative to the platform's axes if the antenna turns. If the beam is steered
+/// (dwell_list), relative to the mount's boresight, which is turned by azimuth_deg and elevation_deg of the
+/// scan.
 struct BeamDirection {
   double azimuth_deg = 0;
   double elevation_deg = 0;
-  /// True: steered electronically, the antenna itself does not turn (dwell_list).
+  /// True: steered electronically; the antenna does not turn (dwell_list).
   bool electronic = false;
 };
 
-/// The beam at t_s seconds since the epoch. Pure: the same t gives the same beam; no error accumulates over
-/// time. rotate: azimuth in 0..360. sector: back and forth, from the left end at t = 0. raster: the same
-/// sweeps, each one bar higher than the last, then again from the lowest. dwell_list: durations and t count
-/// in whole nanoseconds, so that a dwell ends exactly where the next begins.
+/// The beam at t_s seconds since the epoch. A pure function: no error accumulates over time. rotate: azimuth
+/// in 0..360. sector: back and forth, from the left end at t = 0. raster: the same sweeps, each one bar
+/// higher than the previous one, then again from the lowest. dwell_list: durations and t count in whole
+/// nanoseconds, so that a dwell ends exactly where the next begins.
 BeamDirection beamAt(const ScanSpec& scan, double t_s);
 
 }  // namespace emscape::scenario

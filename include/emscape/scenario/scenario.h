@@ -20,15 +20,15 @@
 
 namespace emscape::scenario {
 
-/// The box that the field fills. altitude: x, y centred on the origin, z from the origin's height above mean
-/// sea level upwards. enu: the same, z from the tangent point upwards.
+/// The box of the field. altitude: x and y centred on the origin, z upwards from the origin's height above
+/// mean sea level. enu: the same, with z upwards from the tangent point.
 struct Region {
   FrameOrigin origin;
   Vec3d size_m;
   Dims dims;
 };
 
-/// A named frequency interval, for combine by band.
+/// A named frequency interval, for combination by band.
 struct Band {
   std::string name;
   double begin_hz = 0;
@@ -40,8 +40,8 @@ const char* toString(CombineMode mode);
 
 /// Direction of a radar's beam for the probability of detection and the signal-to-noise ratio.
 enum class RadarLook {
-  scan,   ///< the direction of its scan at the time
-  target  ///< towards each voxel, as nearly as its scan permits
+  scan,   ///< the direction of the radar's scan at the time
+  target  ///< towards each voxel, as closely as the scan permits
 };
 const char* toString(RadarLook look);
 
@@ -49,22 +49,24 @@ struct OutputSpec {
   std::vector<std::string> quantities{"power_density_dbwm2"};  ///< names of the quantity table
   CombineMode combine = CombineMode::sum;
   RadarLook radar_look = RadarLook::scan;
-  double floor = -120;                 ///< lowest value kept, in each quantity's unit
+  double floor = -120;                 ///< lowest stored value, in each quantity's unit
   double count_threshold_dbwm2 = -90;  ///< emitter_count, occupancy: emitters above this power density
   IntervalSpec interval = {};
-  int receiver = 0;                  ///< of the quantities of a receiver: index into Scenario::receivers
-  int wanted_emitter = -1;           ///< whose signal sinr_db is of: index into Scenario::emitters; -1: none
-  double detection_threshold = 0.5;  ///< detection_age_s: probability from which a look is a detection
+  int receiver = 0;  ///< for the quantities of a receiver: index into Scenario::receivers
+  int wanted_emitter =
+      -1;  ///< emitter whose signal sinr_db is computed for: index into Scenario::emitters; -1: none
+  double detection_threshold =
+      0.5;  ///< detection_age_s: minimum probability of a look that counts as a detection
 };
 
 struct ScenarioSource;  // scenario/source.h
 
-/// Plain values; a copy is a scenario of its own. Reading it from several threads is safe; set() is a write.
+/// Plain values; copies are independent. Several threads may read a scenario; set() is a write.
 struct Scenario {
   std::string name;
   std::string file;  ///< from which it was read
   /// FNV-1a (64 bits, hex) of the text of the file with its edits and of the hashes of the track and antenna
-  /// files it names; of elevation files, only of the name and the size.
+  /// files that it names; elevation files enter only with name and size.
   std::string hash;
   Clock clock;
   Region region;
@@ -79,17 +81,16 @@ struct Scenario {
   std::vector<Band> bands;
   OutputSpec output;
 
-  /// Changes a value: edits the text of the scenario's file, in memory, and reads the scenario again from it,
-  /// so that the checks are those of a file. The files that it names are not read again; their content is
-  /// that of the first reading. Antennas that the edit does not change stay the same objects. Changes of
-  /// members by other means than set() are lost.
+  /// Changes a value: edits the text of the scenario's file in memory and parses it again, with the checks of
+  /// a file. The files that it names are not read again. Antennas that the edit does not change stay the same
+  /// objects. Direct changes of members are lost.
   /// @throws Error (bad_input) that lists all faults as loadScenario() does, with the edit as the location of
   /// its faults; or if the scenario was not read from a file. The scenario is then unchanged.
   void set(const std::string& path, const std::string& value);
-  /// Several edits in order, checked only when all are made: for values that depend on each other.
+  /// Applies several edits in order and checks the result: for values that depend on each other.
   void set(const std::vector<Edit>& edits);
-  /// The edits since the file was read, in an order in which they can be repeated; only the last of several
-  /// to one path.
+  /// The edits since the file was read, in an order in which they can be repeated. Of several edits of one
+  /// path only the last is listed.
   std::vector<Edit> edits() const;
 
   std::shared_ptr<const ScenarioSource> source;  ///< null if it was not read from a file

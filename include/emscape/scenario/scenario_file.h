@@ -19,17 +19,25 @@ struct ParseResult {
   std::vector<Problem> problems;             ///< in the order of the file
 };
 
-/// Reads a scenario and every file it names (tracks, antennas; elevation files are opened, not read). Faults
-/// in the files do not throw: all are in the result, each with file, line and column.
-/// @param edits  applied before the check; the location of a fault that one causes is the edit, as
-/// "PATH=VALUE"
-ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {});
+/// Times for which a scenario is read. Warnings about the steps of its clock are given for `series` only.
+enum class ReadFor {
+  series,       ///< all steps of the clock
+  chosen_times  ///< times chosen by the caller
+};
 
-/// The same, or one Error (bad_input) that lists all problems, one per line. Warnings go to the log.
-std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits = {});
+/// Reads a scenario and every file it names (tracks, antennas; elevation files are opened but not read).
+/// Faults in the files are not thrown; the result lists all of them, each with file, line and column.
+/// @param edits  applied before the check; a fault that an edit causes has the edit "PATH=VALUE" as its
+/// location
+ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {},
+                          ReadFor read_for = ReadFor::series);
 
-/// A scenario with further edits, as by Scenario::set(), with the warnings and without an exception. The
-/// given scenario is not changed.
+/// The same, but throws one Error (bad_input) that lists all errors, one per line. Warnings are logged.
+std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits = {},
+                                             ReadFor read_for = ReadFor::series);
+
+/// Applies further edits as Scenario::set() does, but returns all problems instead of throwing. The given
+/// scenario is not changed.
 /// @throws Error (bad_input) if the scenario was not read from a file
 ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits);
 
@@ -37,8 +45,8 @@ ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edit
 /// working folder.
 std::vector<std::string> filesOf(const Scenario& scenario);
 
-/// Writes the text of a scenario with its edits: comments, order and everything that was not edited are kept.
-/// Files that it names relative to its folder are named relative to the new one.
+/// Writes the text of a scenario with its edits. Comments, order and everything that was not edited are kept.
+/// Relative names of files are adapted to the new folder.
 /// @throws Error (bad_input) if the scenario was not read from a file, or a name cannot be changed in the
 /// text; (other) if the file cannot be written
 void saveScenario(const Scenario& scenario, const std::string& file);

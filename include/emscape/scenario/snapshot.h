@@ -25,12 +25,12 @@ struct BeamPose {
 };
 
 struct EmitterState {
-  bool active = true;  ///< at the time, or at some time of the output's interval that begins there
+  bool active = true;  ///< active at the time, or at some time of the output's interval that begins then
   GeodeticPosition position;
   double height_msl_m = 0;
   BeamPose beam;
-  /// The frame in which the beam can be turned onto a target: the platform's axes, turned to the centre of a
-  /// sector or raster scan in azimuth; for a steered array, its boresight.
+  /// The frame in which the beam can be turned to a target: the platform's axes, turned in azimuth to the
+  /// centre of a sector or raster scan; for a steered array, its boresight.
   BeamPose mount;
 };
 
@@ -53,19 +53,20 @@ struct Snapshot {
 /// A platform's axes (nose, right wing, up) in the local east-north-up axes.
 BeamPose platformAxes(const Attitude& attitude);
 
-/// A pose turned in azimuth about its own up, clockwise, then in elevation about its new right, upwards.
+/// A pose turned clockwise in azimuth about its own up axis, then upwards in elevation about its new right
+/// axis.
 BeamPose aimed(BeamPose pose, double azimuth_deg, double elevation_deg);
 
 /// True if an emitter's beam is steered electronically: a phased array with dwells or a fixed scan.
 bool isSteered(const Emitter& emitter);
 
-/// The scenario at t_s seconds since its epoch. Pure. Thread-safe.
+/// The scenario at t_s seconds since its epoch. A pure, thread-safe function.
 /// @param terrain  for heights above ground; may be null if no platform uses them
-/// @throws Error (bad_input) if a height above ground is asked for where the terrain is missing, or a
-/// platform is below ground
+/// @throws Error (bad_input) if a platform has a height above ground where terrain is missing, or is below
+/// ground
 Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s);
 
-/// The same for paths and links, which know no interval: emitters are active if they are at t_s itself.
+/// The same for paths and links, which have no interval: an emitter is active if it is active at t_s itself.
 Snapshot instantAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s);
 
 }  // namespace emscape::scenario

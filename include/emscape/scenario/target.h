@@ -1,4 +1,4 @@
-/// Targets of radars on platforms.
+/// Targets of radars, on platforms.
 #pragma once
 
 #include <memory>
@@ -11,8 +11,8 @@ class RcsTable {
  public:
   virtual ~RcsTable() = default;
   /// Radar cross section (dB over 1 m2), linear in dB between the rows of the table.
-  /// @param azimuth_deg    of the radar as seen from the target, clockwise from its nose; any angle
-  /// @param elevation_deg  above the plane of its wings, -90..90
+  /// @param azimuth_deg    of the radar as seen from the target, clockwise from the target's nose; any angle
+  /// @param elevation_deg  above the plane of the target's wings, -90..90
   virtual double rcs_dbsm(double azimuth_deg, double elevation_deg) const = 0;
 };
 using RcsTablePtr = std::shared_ptr<const RcsTable>;
@@ -21,7 +21,7 @@ using RcsTablePtr = std::shared_ptr<const RcsTable>;
 struct Target {
   std::string name;
   int platform = -1;  ///< index into Scenario::platforms
-  double rcs_m2 = 1;  ///< from every aspect, unless there is a table
+  double rcs_m2 = 1;  ///< for every aspect, unless there is a table
   RcsTablePtr table;  ///< may be null
   int swerling = 1;   ///< case of fluctuation, 0..4
 

@@ -1,5 +1,5 @@
-/// Comparison of two scenarios, or of two folders of maps: what the second wins and loses, on maps, in
-/// figures, and why.
+/// Comparison of two scenarios, or of two folders of maps: gained and lost areas as maps and figures, with
+/// their causes.
 #pragma once
 
 #include <functional>
@@ -32,27 +32,27 @@ struct ComparisonRow {
   double known_area_m2 = 0;
   bool is_area = false;  ///< the product marks an area (ProductInfo::area_class); else it is a level
   double area_a_m2 = 0, area_b_m2 = 0, gained_m2 = 0, lost_m2 = 0;  ///< of areas
-  /// Of levels, B less A: mean by area, smallest and largest; NaN: no pixel has both values.
+  /// Of levels, B minus A: area-weighted mean, minimum and maximum; NaN: no pixel has both values.
   double mean_difference = 0, min_difference = 0, max_difference = 0;
 };
 
-/// One end of an explanation: the path from the emitter that decides, in one of the scenarios.
+/// One side of an explanation: the path from the deciding emitter, in one of the scenarios.
 struct ExplainedPath {
   std::string verdict;          ///< of PathBudget, or the reason why there is none
   std::optional<double> value;  ///< of the quantity for this emitter alone, if the budget has it
   std::optional<double> jammer_to_signal_db;  ///< of radars with jammers
 };
 
-/// Pixels that touch along their sides and changed alike.
+/// Adjacent pixels (along their sides) with the same change.
 struct ChangedArea {
-  bool is_gained = false;  ///< B has it and A not; else the other way round
+  bool is_gained = false;  ///< true: in B and not in A; false: in A and not in B
   Product product = Product::covered;
   MapHeight height;
   double time_s = 0;
   double area_m2 = 0;
   /// Its pixel nearest to its centre.
   double latitude_deg = 0, longitude_deg = 0, height_msl_m = 0;
-  /// The emitter with the largest value there in the scenario that has the area; empty: none radiates.
+  /// The emitter with the largest value there, in the scenario that has the area; empty if none radiates.
   std::string emitter;
   ExplainedPath a, b;
 };
@@ -73,32 +73,32 @@ struct CompareRequest {
 void checkRequest(const CompareRequest& request, const scenario::Scenario& a, const scenario::Scenario& b);
 
 /// Computes the same maps of two scenarios and their differences. Products that mark an area give a map of
-/// classes (neither, gained, lost, kept), all others B less A. As computeCoverage() in all else.
-/// @param take  the maps, PRODUCT_change and PRODUCT_difference
+/// classes (neither, gained, lost, kept), all others the difference B - A. Otherwise as computeCoverage().
+/// @param take receives the maps PRODUCT_change and PRODUCT_difference
 /// @throws Error (usage) for Product::best
 Comparison computeComparison(const ComparedScenario& a, const ComparedScenario& b, const MapGrid& grid,
                              const CompareRequest& request, const emfield::FieldOptions& options,
                              const std::function<void(const Map&)>& take, const ProgressSink& progress = {});
 
-/// The same of the maps that two folders hold, in the order of A's: nothing is computed again. The largest
-/// areas are explained if both folders have their scenarios still.
+/// The same for the maps in two folders, in the order of A's; no field is computed. The largest areas are
+/// explained if the scenarios of both folders still exist.
 /// @param grid    of both
-/// @param chosen  maps of A and of B, of the same products, heights and times; none is Product::best
-/// @throws Error (bad_input) for a GeoTIFF that is missing, or of other pixels or units than its pair
+/// @param chosen  pairs of maps of A and B of the same products, heights and times; not Product::best
+/// @throws Error (bad_input) for a GeoTIFF that is missing, or whose pixels or unit differ from the other one
 Comparison compareFolders(const CoverageFolder& a, const CoverageFolder& b,
                           const std::vector<std::pair<std::size_t, std::size_t>>& chosen, int areas,
                           const std::function<void(const Map&)>& take, const ProgressSink& progress = {});
 
-/// Which maps of two folders are compared.
+/// Selection of the maps of two folders that are compared.
 struct MapChoice {
-  std::vector<Product> products;   ///< empty: all but Product::best
+  std::vector<Product> products;   ///< empty: all except Product::best
   std::vector<MapHeight> heights;  ///< empty: all
   std::vector<double> times_s;     ///< empty: all
 };
 /// Pairs of maps of two folders, in the order of A's.
-/// @throws Error (bad_input) if the folders differ in pixels, quantity or threshold, or if one has a chosen
-/// map that the other has not; (usage) for Product::best, and if there is no map of a chosen product or
-/// height, or of any chosen time
+/// @throws Error (bad_input) if the folders differ in pixels, quantity or threshold, or if a chosen map
+/// exists in only one of them; (usage) for Product::best, and if there is no map for a chosen product or
+/// height, or for any chosen time
 std::vector<std::pair<std::size_t, std::size_t>> pairsOf(const CoverageFolder& a, const CoverageFolder& b,
                                                          const MapChoice& choice);
 

@@ -1,4 +1,4 @@
-/// A folder that `emscape coverage` wrote, as it is read again.
+/// Reads a folder that `emscape coverage` wrote.
 #pragma once
 
 #include <filesystem>
@@ -19,11 +19,11 @@ struct CoverageFolder {
   double threshold = 0.5;
   std::shared_ptr<const MapGrid> grid;  ///< of all maps
   std::vector<CoverageMap> maps;        ///< without values and areas, in the order of report.json
-  std::vector<std::string> geotiffs;    ///< of each map, relative to the folder; empty: it has none
-  /// With name, file and hash; all else only if has_inputs.
+  std::vector<std::string> geotiffs;    ///< of each map, relative to the folder; empty: none
+  /// Has name, file and hash; the rest only if has_inputs.
   std::shared_ptr<const scenario::Scenario> scenario;
   scenario::TerrainPtr terrain;  ///< over the maps and all platforms, if has_inputs; null: none
-  /// The scenario's files and its elevation files are where they were, with the content that they had.
+  /// True if the scenario's files and its elevation files still exist with the same content.
   bool has_inputs = false;
 };
 
@@ -33,7 +33,7 @@ CoverageFolder openCoverageFolder(const std::filesystem::path& folder);
 
 /// Reads the values of a map.
 /// @param map  index of CoverageFolder::maps
-/// @throws Error (bad_input) naming the GeoTIFF: missing, not readable, or of other pixels than the first
+/// @throws Error (bad_input) naming the GeoTIFF: missing, not readable, or with other pixels than the first
 CoverageMap readMap(const CoverageFolder& folder, std::size_t map);
 
 /// "covered at 150 m above ground, t = 80 s".

@@ -27,15 +27,21 @@ struct ExposureRequest {
   std::optional<int> target;
 };
 
+/// Whether the value of all emitters together is at or above the threshold; unknown where the path to the
+/// platform from any emitter crosses missing terrain.
+enum class ExposureState { reached, below, unknown };
+const char* toString(ExposureState state);
+
 struct ExposureRow {
   double time_s = 0, latitude_deg = 0, longitude_deg = 0;
   double height_msl_m = 0;
   double height_agl_m = 0;   ///< NaN: over missing terrain
   double value = 0;          ///< of all emitters together; NaN: unknown
   std::vector<double> each;  ///< by emitter of Exposure::emitters; -infinity: it is off; NaN: unknown
-  int best = -1;             ///< place in `each` of the largest value; -1: there is none
+  ExposureState state = ExposureState::unknown;
+  int best = -1;  ///< place in `each` of the largest value; -1: there is none
   /// Detection by any radar so far: 1 - prod(1 - Pd) over all looks. Of detection_probability with look
-  /// target only; else NaN.
+  /// target only; else NaN. A look whose value is unknown does not count.
   double cumulative_probability = 0;
 };
 
@@ -45,8 +51,10 @@ struct ExposureSummary {
   double max = 0;                     ///< the largest value; NaN: there is none
   double max_time_s = 0;              ///< its time
   std::optional<double> first_s;      ///< time at which the threshold is reached for the first time
-  double fraction = 0;                ///< of the time, 0..1; a time stands for the interval up to the next
-  double longest_gap_s = 0;           ///< below the threshold
+  double fraction = 0;                ///< 0..1 of the known time; a time stands for the interval up to the
+                                      ///< next. NaN: no time is known
+  double unknown_fraction = 0;        ///< 0..1 of all the time: the value is unknown
+  double longest_gap_s = 0;           ///< known to be below the threshold; ends where it is unknown
   double best_fraction = 0;           ///< of the times at which it has the largest value; of emitters
   double cumulative_probability = 0;  ///< after the last time; NaN as in the rows
 };

@@ -10,10 +10,10 @@
 
 namespace emscape::study {
 
-/// Writes a map beside its final name, then renames it. Counts and indices are bytes (255: no value) with a
-/// colour table and labels in the metadata (EMSCAPE_LABEL_0 ...) and, as names of categories and a table of
-/// attributes, in FILE.aux.xml beside it; all else is Float32 with NaN for no value.
-/// @param metadata  items to add, EMSCAPE_NAME and value
+/// Writes a map, atomically. Counts and indices are bytes (255: no value) with a colour table and labels in
+/// the metadata (EMSCAPE_LABEL_0 ...) and, as names of categories and an attribute table, in FILE.aux.xml
+/// beside it. Other values are Float32 with NaN for no value.
+/// @param metadata  additional items, EMSCAPE_NAME and value
 /// @throws Error (other) that names the file and GDAL's reason
 void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const Map& map,
                   const std::vector<std::pair<std::string, std::string>>& metadata);

@@ -1,4 +1,4 @@
-/// A report as one HTML file that stands alone: pictures inlined, no script, nothing fetched from outside.
+/// A report as one self-contained HTML file: inline pictures, no scripts, no external resources.
 #pragma once
 
 #include <filesystem>
@@ -23,12 +23,12 @@ class HtmlReport {
   /// @param subtitle  may be empty
   HtmlReport(const std::string& title, const std::string& subtitle);
 
-  /// Begins a section, which the contents at the top list.
+  /// Begins a section. The table of contents at the top lists it.
   void section(const std::string& title);
   void paragraph(const std::string& text);
   /// Names and their values: inputs, versions, areas.
   void facts(const std::vector<std::pair<std::string, std::string>>& facts);
-  /// Cells that hold a number are set to the right.
+  /// Adds a table. Cells with a number are right-aligned.
   void table(const ReportTable& table);
   void picture(const render::Image8& image, const std::string& caption);
   /// A drawing as an SVG document (Canvas::svg).

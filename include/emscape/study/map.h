@@ -1,4 +1,4 @@
-/// A map: values of the pixels of a grid, and what they are.
+/// A map: values of the pixels of a grid, and their description.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,8 @@
 namespace emscape::study {
 
 enum class MapKind {
-  level,        ///< of a scale, in a unit: dB, m, s
-  difference,   ///< of two levels: the sign has a meaning
+  level,        ///< value with a unit: dB, m, s
+  difference,   ///< difference of two levels; the sign has a meaning
   probability,  ///< 0..1
   part,         ///< 0..1: fractions
   count,        ///< 0, 1, 2 ...
@@ -39,21 +39,21 @@ struct Map {
   std::optional<double> time_s;     ///< since the scenario's epoch; none: over all times
   std::vector<std::string> labels;  ///< of classes and categories: names of 0, 1 ...
   std::vector<int> colors;    ///< of classes: indices of render::categoryColor(); empty: the class itself
-  int area_class = -1;        ///< the class whose area is told; -1: none
+  int area_class = -1;        ///< the class whose area is reported; -1: none
   std::vector<float> values;  ///< pixels in the grid's order; NaN: no value
 };
 
 /// Name of a map's files, layers and variables: "covered_agl150m_t80s".
 std::string fileNameOf(const Map& map);
 
-/// A figure as reports write it, to the digits that maps are good for: km2 to 0.001, percent and dB to 0.01,
-/// m to 0.1, without a unit (probabilities, fractions) to 0.0001, all else to 4 digits. "none" of NaN and
+/// Text of a figure in reports, with the digits that maps justify: km2 to 0.001, percent and dB to 0.01, m to
+/// 0.1, without a unit (probabilities, fractions) to 0.0001, others to 4 digits. "none" for NaN and
 /// infinities.
 std::string figureText(double value, const std::string& unit);
 
-/// What a map holds.
+/// Statistics of a map.
 struct MapSummary {
-  double min = 0, max = 0;             ///< of the values; NaN: there is none
+  double min = 0, max = 0;             ///< of the values; NaN if there are none
   double known_area_m2 = 0;            ///< of the pixels with a value, on the ellipsoid
   double class_area_m2 = 0;            ///< of the pixels in Map::area_class
   long long largest_pixel = -1;        ///< with the largest value; -1: there is none

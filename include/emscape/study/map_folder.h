@@ -14,24 +14,24 @@
 
 namespace emscape::study {
 
-/// A format of maps, as an option names it.
+/// A format of maps.
 struct MapFormat {
   const char* name;         ///< "cog"
-  const char* description;  ///< what it holds and what opens it, one line
+  const char* description;  ///< contents, and programs that open it; one line
 };
 const std::vector<MapFormat>& mapFormats();
 
-/// What the maps of a folder are of.
+/// Inputs of the maps of a folder.
 struct MapStudy {
-  std::string command;  ///< the verb of `emscape`, and the name of the files that hold all maps: "coverage"
+  std::string command;  ///< subcommand of `emscape`, and name of the files that contain all maps: "coverage"
   std::string title;    ///< "Coverage of jacksboro"
-  /// One or more. Emitters and tracks are those of the first one.
+  /// One or more. Emitters and tracks are those of the first.
   std::vector<std::shared_ptr<const scenario::Scenario>> scenarios;
   scenario::TerrainPtr terrain;  ///< of the maps and all platforms; null: none
   std::shared_ptr<const MapGrid> grid;
   scenario::Quantity quantity = scenario::Quantity::detection_probability;
   double threshold = 0.5;
-  std::vector<double> times_s;     ///< rising, one or more; of all maps
+  std::vector<double> times_s;     ///< ascending, one or more; of all maps
   std::vector<MapHeight> heights;  ///< of all maps
 };
 
@@ -39,29 +39,29 @@ struct MapStudy {
 struct MapRecord {
   Map map;  ///< without its values
   MapSummary summary;
-  std::vector<std::string> files;  ///< of its own, relative to the folder
+  std::vector<std::string> files;  ///< files of this map alone, relative to the folder
 };
 
-/// Writes DIR/maps/*, DIR/report.json, DIR/report.html and DIR/study.json. Each file appears under its name
-/// when it is complete. The same maps give the same bytes. The folder is locked against other processes.
+/// Writes DIR/maps/*, DIR/report.json, DIR/report.html and DIR/study.json. Each file is written atomically.
+/// The same maps give the same bytes. The folder is locked against other processes.
 class MapFolder {
  public:
   /// @param formats  names of mapFormats()
-  /// @throws Error (usage) for an unknown format; (other) naming the folder, if it cannot be made or another
-  /// process writes it
+  /// @throws Error (usage) for an unknown format; (other) naming the folder, if it cannot be created or
+  /// another process writes it
   MapFolder(const std::filesystem::path& folder, MapStudy study, const std::vector<std::string>& formats);
-  /// Removes the files that are not complete.
+  /// Removes incomplete files.
   ~MapFolder();
   MapFolder(const MapFolder&) = delete;
   MapFolder& operator=(const MapFolder&) = delete;
 
-  /// Writes the files of one map, and adds it to those that hold all.
+  /// Writes the files of one map, and adds it to the files that contain all maps.
   /// @throws Error (other) naming the file
   const MapRecord& add(const Map& map);
 
   /// Adds sections to report.html, below the table of the maps.
   using AddSections = std::function<void(HtmlReport&)>;
-  /// Completes the files that hold all maps, and writes the reports.
+  /// Completes the files that contain all maps, and writes the reports.
   /// @param more  members for report.json beside the folder's own, as a JSON object; empty: none
   /// @throws Error (other) naming the file
   void finish(const std::vector<std::string>& warnings, const std::string& more = "",

@@ -1,4 +1,4 @@
-/// The pixels of a map: squares of a projection, and their places on the earth.
+/// The pixels of a map: squares of a projection, and their positions on the earth.
 #pragma once
 
 #include <string>
@@ -21,7 +21,7 @@ struct MapGrid {
   std::vector<float> areas_m2;                  ///< of the pixels, on the ellipsoid
 
   std::size_t pixels() const { return places.size(); }
-  /// The pixel that holds a position; -1: none.
+  /// The pixel that contains a position; -1: none.
   long long pixelAt(double latitude_deg, double longitude_deg) const;
 };
 
@@ -29,11 +29,12 @@ struct MapGrid {
 /// projection and cell fit each other.
 /// @param crs  "utm" (the zone of the area's middle, with the exceptions of Norway and Svalbard), "local"
 /// (azimuthal equidistant about it), or "EPSG:N", a projection in metres
-/// @throws Error (usage) for an unknown or unsuitable crs, a cell that is not positive, more than 2^26 pixels
-/// @accuracy places within 1 mm of the projection's
+/// @throws Error (usage) for an unknown or unsuitable crs, a cell size that is not positive, or more than
+/// 2^26 pixels
+/// @accuracy positions within 1 mm of the exact projection
 MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs);
 
-/// The pixels of a map that is there, none left out.
+/// The pixels of an existing map, none left out.
 /// @param wkt  of its projection, in metres  @param crs  its name
 /// @throws Error (bad_input) if the projection cannot be used
 MapGrid mapGridAt(const std::string& wkt, const std::string& crs, double cell_m, double left_m, double top_m,

@@ -1,4 +1,4 @@
-/// A map as a picture: its colours over the shaded ground, with legend, axes and the emitters.
+/// A map as a picture: colours over the shaded ground, with legend, axes and emitters.
 #pragma once
 
 #include <string>

@@ -10,21 +10,21 @@
 
 namespace emscape::study {
 
-/// A file that says which process works on a part. It is made with O_EXCL and touched every 30 s; it is
-/// abandoned when its process has ended, or when it was not touched for kAbandoned_s. Two processes may hold
-/// one claim for a moment where it was abandoned: both then compute the same.
+/// A file that names the process that works on a part. It is created with O_EXCL and touched every 30 s. It
+/// is abandoned if its process has ended, or if it was not touched for kAbandoned_s. For a moment two
+/// processes may hold a claim that was abandoned; both then compute the same results.
 class PartClaim {
  public:
   static constexpr double kAbandoned_s = 300;
 
-  /// Claims a file, also one that was abandoned.
+  /// Claims a file, also an abandoned one.
   /// @return null if another process holds it
   /// @throws Error (other) naming the file
   static std::unique_ptr<PartClaim> tryClaim(const std::filesystem::path& file);
   /// True if a process holds the claim.
   static bool isHeld(const std::filesystem::path& file);
 
-  /// Removes the file, if it is still this process's.
+  /// Removes the file if this process still holds it.
   ~PartClaim();
   PartClaim(const PartClaim&) = delete;
   PartClaim& operator=(const PartClaim&) = delete;

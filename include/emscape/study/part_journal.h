@@ -1,4 +1,4 @@
-/// The finished variants of a part that is not complete yet.
+/// The finished variants of an incomplete part.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,15 @@
 
 namespace emscape::study {
 
-/// A file to which each variant is appended when it is finished, so that a process that is killed loses none
-/// of them. Each line has a checksum: a line that was torn is read as if it were not there. Several processes
-/// may append to one file. What is appended survives the process, not a crash of the machine.
+/// A file to which each variant is appended when it is finished, so that none is lost if the process is
+/// killed. Each line has a checksum; incomplete lines are ignored. Several processes may append to one file.
+/// Appended lines survive the end of the process, but not a crash of the machine.
 class PartJournal {
  public:
-  /// Opens or makes the file and reads it.
-  /// @param variants  of the part, in the plan's order; lines of others are left out
-  /// @throws Error (other) naming the file; (bad_input) with the line for one that is no record of a variant
-  /// although its checksum is right
+  /// Opens or creates the file and reads it.
+  /// @param variants  of the part, in the plan's order; lines of other variants are ignored
+  /// @throws Error (other) naming the file; (bad_input) with the line number, for a line with a valid
+  /// checksum that is not a record of a variant
   PartJournal(std::filesystem::path file, std::vector<std::size_t> variants, std::size_t measures);
   ~PartJournal();
   PartJournal(const PartJournal&) = delete;
@@ -33,7 +33,7 @@ class PartJournal {
   /// @throws Error (other) naming the file
   void add(VariantResult result, const std::set<std::string>& warnings, const std::string& machine);
 
-  /// All variants of the part, in the plan's order; when none is unfinished.
+  /// All variants of the part, in the plan's order. None may be unfinished.
   std::vector<VariantResult> results() const;
   const std::set<std::string>& warnings() const { return warnings_; }
   const std::set<std::string>& machines() const { return machines_; }
@@ -45,7 +45,7 @@ class PartJournal {
   std::vector<std::size_t> variants_;
   std::size_t measures_;
   std::map<std::size_t, VariantResult> finished_;
-  std::set<std::string> warnings_, machines_, told_;  ///< told: warnings that this process has appended
+  std::set<std::string> warnings_, machines_, told_;  ///< told_: warnings that this process has appended
   int descriptor_ = -1;
 };
 

@@ -21,25 +21,25 @@ std::string nameOf(const MapHeight& height);
 /// @throws Error (usage) that names the part and what is allowed
 std::vector<MapHeight> parseHeights(const std::string& text);
 
-/// What a map shows. A place is covered where the quantity is at or above the threshold.
+/// Content of a map. A position is covered if the quantity is at or above the threshold.
 enum class Product {
   value,            ///< the quantity
   covered,          ///< 1 covered, 0 not
-  margin,           ///< the quantity less the threshold, of quantities in decibels
-  count,            ///< number of emitters that cover the place by themselves
-  redundancy,       ///< number of those that may fail before none of them covers it
-  best,             ///< the emitter with the largest value, where it covers the place
-  max_range,        ///< distance (m) on the ground of the farthest emitter that covers it by itself
-  min_height,       ///< least height (m) above ground at which it is covered
-  jam_loss,         ///< 1 where the place would be covered without jammers, but is not
-  burn_through,     ///< 0 not covered even without jammers, 1 lost to jamming, 2 covered in spite of it
-  first_detection,  ///< time (s) at which the place is covered for the first time
+  margin,           ///< the quantity minus the threshold, for quantities in decibels
+  count,            ///< number of emitters that cover the position on their own
+  redundancy,       ///< number of those that may fail while one still covers it
+  best,             ///< the emitter with the largest value, if it covers the position
+  max_range,        ///< distance (m) along the ground of the farthest emitter that covers it on its own
+  min_height,       ///< minimum height (m) above ground at which it is covered
+  jam_loss,         ///< 1 if the position would be covered without jammers, but is not
+  burn_through,     ///< 0 not covered even without jammers, 1 lost to jamming, 2 covered despite jamming
+  first_detection,  ///< time (s) at which the position is first covered
   fraction,         ///< fraction of the times at which it is covered
-  gaps,             ///< number of the gaps in coverage
+  gaps,             ///< number of gaps in coverage
   longest_gap,      ///< longest time (s) without coverage
-  mean_gap,         ///< mean time (s) of the gaps
-  revisit,          ///< mean time (s) from the beginning of a coverage to that of the next
-  response,         ///< mean time (s) until it is covered, from a moment chosen at random
+  mean_gap,         ///< mean duration (s) of the gaps
+  revisit,          ///< mean time (s) between the beginnings of successive periods of coverage
+  response,         ///< mean time (s) until it is covered, from a random moment
 };
 
 struct ProductInfo {
@@ -50,9 +50,9 @@ struct ProductInfo {
   bool over_time = false;    ///< one map for all times
   bool categorical = false;  ///< integers: counts and indices
   bool at_heights = true;    ///< a map for each height
-  /// Names of the values 0, 1 ... of a product that sorts places into classes.
+  /// Names of the values 0, 1 ... of a product with classes.
   std::vector<const char*> classes = {};
-  int area_class = -1;  ///< the class of which CoverageMap::class_area_m2 is the area
+  int area_class = -1;  ///< the class whose area is CoverageMap::class_area_m2
 };
 const std::vector<ProductInfo>& productTable();
 const ProductInfo& info(Product product);

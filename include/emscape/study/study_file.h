@@ -1,4 +1,5 @@
-/// Studies: many variants of a scenario, and what is measured of each. The file's format: docs/what-if.md.
+/// Studies: variants of a scenario, and the measures of each variant. docs/what-if.md describes the file
+/// format.
 #pragma once
 
 #include <memory>
@@ -15,15 +16,15 @@ namespace emscape::study {
 /// One number of a variant.
 struct StudyMeasure {
   enum class Figure {
-    km2,      ///< area where the product has its area class
-    percent,  ///< the same, of the area with a value
+    km2,      ///< area in which the product has its area class
+    percent,  ///< the same, as a percentage of the area with a value
     mean,     ///< of the product, weighted by area
     min,
     max
   };
   std::string name;
   Product product = Product::covered;
-  MapHeight height;  ///< not of products for all heights
+  MapHeight height;  ///< not for products for all heights
   scenario::Quantity quantity = scenario::Quantity::detection_probability;
   double threshold = 0.5;
   Figure figure = Figure::km2;
@@ -32,7 +33,7 @@ struct StudyMeasure {
 /// "km2", "percent", or the product's unit.
 std::string unitOf(const StudyMeasure& measure);
 
-/// Sites to choose from the candidates, each a variant.
+/// Choice of sites from candidates, each of which is a variant.
 struct SiteSearch {
   int choose = 1;
   std::size_t measure = 0;  ///< to maximise: index into StudySpec::measures
@@ -41,8 +42,8 @@ struct SiteSearch {
 struct StudySpec {
   std::string name;
   std::string file;
-  std::shared_ptr<const scenario::Scenario> base;  ///< which the variants edit
-  std::vector<double> times_s;                     ///< rising
+  std::shared_ptr<const scenario::Scenario> base;  ///< the scenario that the variants edit
+  std::vector<double> times_s;                     ///< ascending
   MapArea area;
   double cell_m = 0;
   std::string crs;
@@ -53,13 +54,12 @@ struct StudySpec {
   std::string hash;
 };
 
-/// Reads a study and its scenario. Names of files in it are relative to its folder. Every value of a
-/// parameter is tried in the scenario by itself; of more than 200 values, the first, the last and the
-/// extremes.
+/// Reads a study and its scenario. File names in it are relative to its folder. Every value of a parameter is
+/// checked separately in the scenario; of more than 200 values, only the first, the last and the extremes.
 /// @param edits    of the scenario, before those of the variants
 /// @param version  of the program, for the hash
-/// @param tries_values  false: values are not tried, in a process that computes parts of a study that another
-/// has read before
+/// @param tries_values  false: values are not checked; for processes that compute parts of a study that was
+/// checked before
 /// @throws Error (bad_input) that lists all faults with file, line and column
 StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& edits,
                     const std::string& version, bool tries_values = true);

@@ -1,11 +1,11 @@
 /// The folder of a study: its manifest, the results of its parts, and the results of all.
 ///
-///     manifest.json          the study's hash, its number of parts, the variants with what they set
-///     parts/part_00003.csv   variant, measures; a part appears when it is complete
+///     manifest.json          the study's hash, its number of parts, the variants and their settings
+///     parts/part_00003.csv   variant, measures; written when the part is complete
 ///     parts/part_00003.json  the hash, the machines, warnings; written last
-///     parts/part_00003.rows  the finished variants of a part that is not complete
-///     parts/part_00003.claim the process that works on a part, where several choose their parts themselves
-///     variants/              what is kept of each variant (VariantFiles)
+///     parts/part_00003.rows  the finished variants of an incomplete part
+///     parts/part_00003.claim the process that works on a part, if several processes claim parts
+///     variants/              the kept files of each variant (VariantFiles)
 ///     results.csv results.nc report.html
 #pragma once
 
@@ -25,7 +25,7 @@
 
 namespace emscape::study {
 
-/// The results of all parts that are there.
+/// The results of all finished parts.
 struct StudyResults {
   std::vector<double> values;                     ///< [variant][measure]; NaN: none
   std::vector<bool> is_computed;                  ///< of each variant
@@ -44,27 +44,27 @@ class StudyFolder {
   StudyFolder(std::filesystem::path folder, const StudySpec& study, const StudyPlan& plan,
               std::string version);
 
-  /// The number of parts in the folder's manifest; none without a manifest.
+  /// The number of parts in the folder's manifest; empty without a manifest.
   /// @throws Error (bad_input) if the manifest is that of another study, or cannot be read
   std::optional<int> partsOfManifest() const;
-  /// Writes the manifest, unless it is there.
-  /// @param kept  what is kept of each variant; none: that of the manifest, else nothing
-  /// @throws Error (bad_input) if the folder has another study, another number of parts or keeps something
-  /// else; (other)
+  /// Writes the manifest, unless it exists.
+  /// @param kept  files to keep of each variant; none: as in the manifest, else nothing
+  /// @throws Error (bad_input) if the folder has another study, another number of parts, or keeps other
+  /// files; (other)
   void begin(int parts, std::optional<KeptFiles> kept = std::nullopt);
 
   int parts() const { return parts_; }
-  /// What is kept of each variant; after begin().
+  /// The files that are kept of each variant; after begin().
   KeptFiles kept() const { return kept_; }
-  /// @throws Error (bad_input) if there is a part of another study
+  /// @throws Error (bad_input) if the part belongs to another study
   bool hasPart(int part) const;
   std::vector<int> missingParts() const;
 
   /// The variants of a part, in the plan's order.
   std::vector<std::size_t> variantsOf(int part) const;
-  /// The finished variants of a part that is not complete.
+  /// The finished variants of an incomplete part.
   std::unique_ptr<PartJournal> journal(int part) const;
-  /// Bytes of the journal: they grow with each finished variant. 0 without one.
+  /// Size of the journal (bytes), which grows with each finished variant; 0 without a journal.
   std::uintmax_t journalBytes(int part) const;
   /// Writes a complete part, and removes its journal.
   /// @throws Error (other)
@@ -100,7 +100,7 @@ class StudyFolder {
   KeptFiles kept_ = KeptFiles::nothing;
 };
 
-/// Names of the variants' parameters that set them apart: "name; path=value, path=value".
+/// Description of a variant by the parameters that distinguish it: "name; path=value, path=value".
 std::string describeVariant(const StudySpec& study, std::size_t variant);
 
 }  // namespace emscape::study

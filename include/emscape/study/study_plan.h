@@ -1,4 +1,4 @@
-/// The order in which the variants of a study are computed, so that most of the field is used again.
+/// The order in which the variants of a study are computed, so that most of the field is reused.
 #pragma once
 
 #include <array>
@@ -10,33 +10,34 @@
 
 namespace emscape::study {
 
-/// What a change of a parameter makes the field compute again, the most expensive first.
+/// The recomputation that a change of a parameter causes, the most expensive first.
 enum class ChangeClass {
   geometry,  ///< profiles and excess losses of an emitter: sites, tracks, frequencies, models, terrain
   beam,      ///< the combination of the emitters: antennas, scans
-  power,     ///< the same, without new antennas: powers, losses, receivers, radar cross sections
-  product    ///< at most what is derived from the combination
+  power,     ///< the same with unchanged antennas: powers, losses, receivers, radar cross sections
+  product    ///< only what is derived from the combination
 };
 constexpr std::size_t kChangeClasses = 4;
 /// "geometry", "beam", "power", "product".
 const char* toString(ChangeClass change);
 
 struct StudyPlan {
-  std::vector<ChangeClass> classes;  ///< of each path of the variants
-  std::vector<std::uint32_t> order;  ///< the variants, as they are computed
-  /// Variants by the class of what differs from the one before in the order; the first counts as geometry.
+  std::vector<ChangeClass> classes;  ///< class of each path of the variants
+  std::vector<std::uint32_t> order;  ///< the variants in the order of computation
+  /// Number of variants by the class of their change from the previous variant in the order; the first counts
+  /// as geometry.
   std::array<std::size_t, kChangeClasses> changes{};
 };
 
-/// Plans a study. The class of a parameter is what FieldSolver::update() computes again when the parameter
-/// alone changes from the scenario's value, at the first, middle and last time.
+/// Plans a study. The class of a parameter is determined by what FieldSolver::update() recomputes at the
+/// first, middle and last time, if only this parameter differs from the scenario.
 /// @param terrain  as of loadTerrain(); null: none
 StudyPlan planStudy(const StudySpec& study, const scenario::TerrainPtr& terrain);
 
-/// The class of what differs between two variants.
+/// The class of the change between two variants.
 ChangeClass changeBetween(const StudySpec& study, const StudyPlan& plan, std::size_t from, std::size_t to);
 
-/// Positions [begin, end) in the order that a part computes.
+/// Positions [begin, end) of a part in the order.
 struct PartRange {
   std::size_t begin = 0, end = 0;
 };

@@ -14,21 +14,21 @@
 
 namespace emscape::study {
 
-/// What a variant is measured at.
+/// Measures of a variant.
 struct VariantResult {
   std::size_t variant = 0;
-  std::vector<double> values;  ///< of the study's measures; NaN: none, where no pixel has a value
-  /// Of a search for sites: of each pixel, 1 where the measure to maximise has its area class; else empty.
+  std::vector<double> values;  ///< of the study's measures; NaN if no pixel has a value
+  /// For a search for sites: per pixel, 1 if the measure to maximise has its area class; else empty.
   std::vector<std::uint8_t> pixels;
 };
 
-/// Computes variants one after another with fields that stay between them. Results do not depend on which
-/// variants were computed before. One thread calls it.
+/// Computes variants one after another and keeps the fields between them. Results do not depend on the
+/// variants computed before. For one thread.
 class StudyRunner {
  public:
   /// @param terrain  as of loadTerrain() with the study's scenario and area; null: none
   /// @param options  backend and memory; the rest is set here
-  /// @param files    what is kept of each variant, written before it is taken; null: nothing
+  /// @param files    writes the kept files of each variant, before take() is called; null: none
   StudyRunner(const StudySpec& study, const StudyPlan& plan, scenario::TerrainPtr terrain,
               emfield::FieldOptions options, VariantFiles* files = nullptr);
   ~StudyRunner();
@@ -42,7 +42,7 @@ class StudyRunner {
   void run(const std::vector<std::size_t>& variants, const std::function<void(VariantResult)>& take,
            const ProgressSink& progress = {});
 
-  /// Warnings so far, each once, without how often.
+  /// Warnings so far, each once, without counts.
   const std::set<std::string>& warnings() const;
 
  private:

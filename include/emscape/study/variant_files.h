@@ -11,18 +11,18 @@
 
 namespace emscape::study {
 
-/// What a study keeps of its variants besides their measures.
+/// The files that a study keeps of each variant, besides its measures.
 enum class KeptFiles { nothing, maps, volumes };
 /// "nothing", "maps", "volumes".
 const char* toString(KeptFiles kept);
 
-/// The folder of a variant, relative to that of the study: "variants/03_no_jammer", its number with the
-/// digits of the last one and its name with '_' for all but letters, digits, '.' and '-'. Of more than 1000
-/// variants each thousand has a folder of its own: "variants/02000/02417".
+/// The folder of a variant, relative to that of the study: "variants/03_no_jammer", its number, padded to the
+/// digits of the last number, and its name with '_' in place of all but letters, digits, '.' and '-'. With
+/// more than 1000 variants each thousand has a folder: "variants/02000/02417".
 std::filesystem::path folderOfVariant(const StudySpec& study, std::size_t variant);
 
-/// Writes the files of variants. Each appears under its name when it is complete; those of a variant that is
-/// computed again are replaced by the same. One thread calls it.
+/// Writes the files of variants, atomically. Files of a variant that is computed again are replaced by equal
+/// ones. For one thread.
 class VariantFiles {
  public:
   /// @param study    must outlive the object
@@ -31,8 +31,8 @@ class VariantFiles {
                const emfield::FieldOptions& options);
   ~VariantFiles();
 
-  /// Writes PRODUCT_HEIGHT_TIME.tif if maps are kept; where the measures have several quantities or
-  /// thresholds, their names come first.
+  /// Writes PRODUCT_HEIGHT_TIME.tif if maps are kept; if the measures have several quantities or thresholds,
+  /// the names begin with these.
   /// @throws Error (other) naming the file
   void addMap(std::size_t variant, const scenario::Scenario& scenario, const MapGrid& grid,
               const CoverageRequest& request, const CoverageMap& map);

@@ -9,7 +9,7 @@
 
 namespace emscape::study {
 
-/// Some settings of the same values: the variants of a list, the values of a swept parameter, or samples.
+/// A list of settings of the same paths: the variants of a list, the values of a swept parameter, or samples.
 struct VariantFactor {
   enum class Kind { list, sweep, samples, sites };
   Kind kind = Kind::list;
@@ -23,7 +23,7 @@ struct VariantFactor {
   }
 };
 
-/// The product of factors; the last factor runs fastest. Variants are numbered from 0.
+/// The product of factors; the last factor varies fastest. Variants are numbered from 0.
 class VariantSet {
  public:
   static constexpr std::size_t kMaxVariants = 10'000'000;
@@ -47,7 +47,7 @@ class VariantSet {
     const Owner& owner = owners_[path];
     return factors_[owner.factor].value(setting(variant, owner.factor), owner.column);
   }
-  /// Names of the settings with " / " between them; empty where none has a name.
+  /// Names of the settings, separated by " / "; empty if none has a name.
   std::string name(std::size_t variant) const;
   std::vector<scenario::Edit> edits(std::size_t variant) const;
 

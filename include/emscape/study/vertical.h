@@ -22,12 +22,12 @@ struct VerticalRequest {
   double time_s = 0;
   scenario::Quantity quantity = scenario::Quantity::detection_probability;
   double threshold = 0.5;  ///< in the quantity's unit
-  /// mean_sea_level: heights from the lowest ground up. ground: from the ground below each place.
+  /// mean_sea_level: heights from the lowest ground upwards. ground: heights above the ground at each range.
   emfield::HeightReference axis = emfield::HeightReference::mean_sea_level;
-  double range_m = 0;       ///< over the ground, to the right edge
+  double range_m = 0;       ///< of the right edge, along the ground
   double max_height_m = 0;  ///< of the upper edge, on the axis, 10..1e5; above mean sea level from -500
-  /// Blake's chart: over a smooth earth in place of the terrain, at the height of the ground below the
-  /// emitter (or ground.surface_msl_m), from which all heights are then counted; axis must be mean_sea_level.
+  /// Blake's chart: over a smooth earth instead of the terrain, at the height of the ground below the emitter
+  /// (or ground.surface_msl_m). All heights are above this surface; axis must be mean_sea_level.
   bool smooth_earth = false;
   int ranges = 600, heights = 300;  ///< of the grid, 2..10000
 };
@@ -43,7 +43,7 @@ struct VerticalCut {
   double azimuth_deg = 0;
   std::vector<float> values;        ///< ranges x heights, range fastest; NaN: below ground or unknown
   std::vector<float> ground_msl_m;  ///< one per range; NaN: unknown; empty: a smooth earth at 0
-  std::vector<Line> contours;       ///< where the quantity is the threshold
+  std::vector<Line> contours;       ///< lines on which the quantity equals the threshold
   std::vector<Line> free_space;     ///< smooth_earth: the same without earth
 };
 
@@ -51,13 +51,13 @@ struct VerticalDiagram {
   VerticalRequest request;
   std::string scenario, emitter, model, unit;
   double latitude_deg = 0, longitude_deg = 0;
-  double station_msl_m = 0;  ///< of the emitter; over a smooth earth, above it
+  double station_msl_m = 0;  ///< of the emitter; smooth_earth: above that surface
   double station_agl_m = 0;
   double surface_msl_m = 0;  ///< smooth_earth: height of its surface
   double floor = 0;          ///< value, in the quantity's unit, of points without a field
   double k_factor = 0, effective_earth_radius_m = 0;
-  std::vector<double> ranges_m;   ///< rising, evenly spaced, the last is the request's
-  std::vector<double> heights_m;  ///< on the axis, rising, evenly spaced
+  std::vector<double> ranges_m;   ///< ascending, evenly spaced; the last is that of the request
+  std::vector<double> heights_m;  ///< on the axis, ascending, evenly spaced
   std::vector<VerticalCut> cuts;  ///< one per azimuth
   std::vector<std::string> warnings;
 
@@ -65,30 +65,30 @@ struct VerticalDiagram {
   /// earth, on which rays are straight.
   double slantRange_m(double range_m, double height_msl_m) const;
   double elevation_deg(double range_m, double height_msl_m) const;
-  /// Range over the ground (m) of a point by its slant range; NaN: there is none.
+  /// Range along the ground (m) of a point at a slant range; NaN if there is none.
   double groundRange_m(double slant_range_m, double height_msl_m) const;
   /// Height (m) of a ray after a slant range.
   double rayHeight_msl_m(double slant_range_m, double elevation_deg) const;
 };
 
-/// Range (m) of a diagram unless another is given: the instrumented range of the emitter's waveform, else
-/// that at which the last of the azimuths leaves the region, else (outside it) that of the region's farthest
+/// Default range (m) of a diagram: the instrumented range of the emitter's waveform; else the range at which
+/// the last of the azimuths leaves the region; else, for an emitter outside it, that of the region's farthest
 /// corner.
 double defaultRange_m(const scenario::Scenario& scenario, const VerticalRequest& request);
 
-/// Computes a diagram by the field's own functions: a value is that of `emscape profile` at its point, with
-/// the jammers that are active and the radar's beam on the target (RadarLook::target).
-/// @param terrain  over the whole of it (circularArea); null: a smooth earth
+/// Computes a diagram with the functions of the field: a value equals that of `emscape profile` at its point,
+/// with the active jammers and the radar's beam on the target (RadarLook::target).
+/// @param terrain  over the whole diagram (circularArea); null: a smooth earth
 /// @param options  backend and memory; the rest is set here
-/// @throws Error (usage) for an emitter that is off, a quantity that it does not have by itself, and values
-/// beyond their ranges; as FieldSolver does
+/// @throws Error (usage) for an emitter that is off, a quantity that is not defined for a single emitter, and
+/// values out of range; as FieldSolver does
 VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>& scenario,
                                 const scenario::TerrainPtr& terrain, const VerticalRequest& request,
                                 emfield::FieldOptions options);
 
-/// Size of a picture with so many panels: 1400 x 800, higher for more than four.
+/// Default size of a picture with this number of panels: 1400 x 800, higher for more than four.
 render::ImageSize verticalPlotSize(std::size_t azimuths);
-/// @throws Error (usage) for a picture that has no room for so many panels
+/// @throws Error (usage) for a picture that is too small for this number of panels
 void checkVerticalPlot(render::ImageSize size, std::size_t azimuths);
 
 /// Draws a diagram into a .png or .svg, one panel per azimuth.

@@ -12,8 +12,8 @@
 
 namespace emscape::volume {
 
-/// Floor of fields in which every finite value is a field, 0 included: arrays of other programs, which state
-/// none.
+/// Floor of fields in which every finite value, including 0, is a field: arrays of other programs, which have
+/// no floor.
 constexpr float kNoFloor = std::numeric_limits<float>::lowest();
 
 /// Description of the values. Every volume file contains it, as `emscape:*` if the format has metadata.
@@ -32,7 +32,7 @@ struct VolumeInfo {
 
 bool operator==(const VolumeInfo& a, const VolumeInfo& b);
 
-/// Key of VolumeInfo::extra for the scale of the values, if it matters for colours; one of these:
+/// Key of VolumeInfo::extra for the scale of the values, if it affects the colours. One of:
 constexpr const char* kScaleKey = "scale";
 constexpr const char* kProbabilityScale = "probability";  ///< 0..1
 constexpr const char* kRatioBelowScale = "ratio, below";  ///< dB about 0; values below 0 are of interest
@@ -48,8 +48,8 @@ struct DenseVolume {
   Grid grid;
   VolumeInfo info;
   std::vector<float> values;  ///< grid.dims.count() values
-  /// For each column (i, j), i fastest: the lowest k that holds a field; dims.z if none does. Empty: no
-  /// voxel is masked.
+  /// For each column (i, j), i fastest: the lowest k with a field; dims.z if there is none. Empty: no voxel
+  /// is masked.
   std::vector<std::uint16_t> first_valid_k;
 
   bool isMasked(int i, int j, int k) const {
@@ -60,17 +60,16 @@ struct DenseVolume {
 constexpr int kMaxVoxelsPerAxis = 65535;     ///< first_valid_k counts in 16 bits
 constexpr long long kMaxVoxels = 1LL << 32;  ///< 16 GiB of values
 
-/// @throws Error (bad_input) at `location` unless each of the dims and their product is within the limits
-/// above
+/// @throws Error (bad_input) at `location` if one of the dims or their product exceeds the limits above
 void checkDims(const Dims& dims, const SourceLocation& location);
 
-/// Checks that a volume has a name, as many values as voxels and a mask, if any, of as many columns.
-/// @throws Error (bad_input) at `location`, the file that is read or written
+/// Checks that a volume has a name, one value per voxel and, if it has a mask, one entry per column.
+/// @throws Error (bad_input) at `location`, the file being read or written
 void checkVolume(const DenseVolume& volume, const SourceLocation& location);
 
 /// The values of a categorical volume as whole numbers; NaN becomes the floor.
-/// @throws Error (bad_input) at `location` for values that are not whole, or above 2^24, where floats are not
-/// exact
+/// @throws Error (bad_input) at `location` for values that are not whole numbers, or above 2^24, where floats
+/// are not exact
 std::vector<std::int32_t> toIndices(const DenseVolume& volume, const SourceLocation& location);
 
 }  // namespace emscape::volume

@@ -18,8 +18,8 @@ enum class VoxelPrecision {
   sparse32  ///< a NanoVDB grid without the voxels at the floor; written only by upload()
 };
 
-/// Memory of the GPU for a volume of these dims, derived data included. For a sparse one it is a lower bound:
-/// the rest depends on its values.
+/// Memory of the GPU for a volume of these dims, derived data included. For sparse volumes it is a lower
+/// bound; the rest depends on the values.
 std::size_t deviceBytes(const Dims& dims, VoxelPrecision precision);
 
 class DeviceStorage;  // volume/cuda/device_storage.h
@@ -28,8 +28,8 @@ class DeviceStorage;  // volume/cuda/device_storage.h
 /// above them that is not masked, so that interpolation near the ground does not blend in the floor;
 /// uploading and downloading convert from and to the floor of DenseVolume.
 ///
-/// Kernels access it through storage(), whose begin and end calls order writers and readers on their streams:
-/// a picture never shows half an update. A build without CUDA has the type, but cannot construct one.
+/// Kernels access it through storage(), whose begin and end calls order writers and readers on their streams,
+/// so that a picture never shows a partial update. A build without CUDA has the type but cannot construct it.
 class DeviceVolume {
  public:
   /// Values are undefined until they are written.
@@ -39,25 +39,25 @@ class DeviceVolume {
 
   const Grid& grid() const { return grid_; }
   VoxelPrecision precision() const { return precision_; }
-  /// Memory of the GPU that it uses.
+  /// GPU memory that it uses (bytes).
   std::size_t bytes() const;
 
-  /// Description of the values. Set by the code that writes them.
+  /// Description of the values, set by the code that writes them.
   VolumeInfo info;
 
-  /// The columns' first voxels with a field, as in DenseVolume. Cheap if they do not change; else waits for
-  /// readers. @throws Error (bad_input) unless there is one per column, or none at all
+  /// Sets the first voxel with a field of each column, as in DenseVolume. Cheap if they do not change; else
+  /// waits for readers. @throws Error (bad_input) unless there is one per column, or none at all
   void setMask(const std::vector<std::uint16_t>& first_valid_k);
   const std::vector<std::uint16_t>& firstValidK() const { return first_valid_k_; }
 
-  /// Takes values, mask and info of a volume of the same dims. Returns when they are copied.
+  /// Copies values, mask and info of a volume of the same dims. Returns when the copy is complete.
   /// @throws Error (bad_input) if the dims differ or the volume is malformed, (device) if a sparse one does
   /// not fit
   void upload(const DenseVolume& volume);
-  /// A copy in the host's memory, for files. @throws Error (device)
+  /// A copy in host memory, for files. @throws Error (device)
   DenseVolume download() const;
-  /// A copy in the GPU's linear memory, for other programs' kernels: in the order of DenseVolume, the floor
-  /// in masked voxels. Complete when the function returns. The memory is that of CUDA's device 0.
+  /// A copy in linear GPU memory of CUDA device 0, for kernels of other programs: in the order of
+  /// DenseVolume, with the floor in masked voxels. Complete when the function returns.
   /// @throws Error (device)
   std::shared_ptr<const float> linearCopy() const;
 
@@ -71,12 +71,12 @@ class DeviceVolume {
   std::unique_ptr<DeviceStorage> storage_;
 };
 
-/// Ring of buffers: one is displayed while the next is written. One thread uses it; the volumes may be read
-/// by others.
+/// Ring of buffers: one is displayed while the next is written. For one thread; other threads may read the
+/// volumes.
 class DeviceVolumeRing {
  public:
-  /// A volume of this grid that only the ring holds: one that was returned before and has been released, else
-  /// a new one. @throws as DeviceVolume's constructor
+  /// A volume of this grid that is not in use: one that was returned before and has been released, else a new
+  /// one. @throws as DeviceVolume's constructor
   std::shared_ptr<DeviceVolume> next(const Grid& grid, VoxelPrecision precision);
 
  private:

@@ -12,27 +12,27 @@ namespace emscape::volume {
 
 /// A format and its capabilities.
 struct FileFormat {
-  std::string name;  ///< on the command line, and the extension: "vdb"
+  std::string name;  ///< name on the command line, and extension: "vdb"
   bool writable = true;
   bool several = false;   ///< holds several volumes
   bool one_grid = false;  ///< ... on one common grid
 };
 
-/// All of them; folders are searched in this order.
+/// All formats; folders are searched in this order.
 const std::vector<FileFormat>& fileFormats();
 
 /// The format of a file by its ending. @throws Error (bad_input) that lists the known ones
 const FileFormat& formatOf(const std::filesystem::path& path);
 
-/// True for names that end as volume files do.
+/// True for names with the extension of a volume format.
 bool isVolumeFile(const std::filesystem::path& path);
 
 /// Writes volumes into one file, atomically.
-/// @throws Error (bad_input) for a format that cannot be written or cannot hold as many, (other) if writing
-/// fails
+/// @throws Error (bad_input) for a format that cannot be written or cannot hold several volumes, (other) if
+/// writing fails
 void writeVolumes(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes);
 
-/// @param name  of the grid or array, for our files the quantity; empty: the first
+/// @param name  of the grid or array; in files of Emscape the quantity; empty: the first
 /// @throws Error (bad_input)
 DenseVolume readVolume(const std::filesystem::path& path, const std::string& name = "");
 
@@ -43,11 +43,11 @@ struct StoredRange {
 };
 
 /// Changes info.range_min and range_max of volumes in a file that writeVolumes() wrote; the values are not
-/// touched. The result is byte-equal to a file that was written with these ranges. For .raw and .nvdb the
+/// touched. The result is byte-identical to a file that was written with these ranges. For .raw and .nvdb the
 /// JSON sidecar is rewritten, atomically; .vdb and .vti are patched in place (8 bytes per grid, or one text
 /// of fixed length per volume), so that a reader sees the old or the new range. After a crash of the machine
 /// the same call completes the file.
-/// @param ranges  volumes that are not named keep their range
+/// @param ranges  volumes without an entry keep their range
 /// @throws Error (bad_input) for a format that cannot be written, a quantity that is not in the file, or a
 /// file without a range; (other) if writing fails
 void setStoredRange(const std::filesystem::path& path, const std::vector<StoredRange>& ranges);

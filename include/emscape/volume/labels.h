@@ -11,7 +11,7 @@ namespace emscape::volume {
 /// Key of VolumeInfo::extra: the names of the indices 0, 1 ... of a categorical volume, one per line.
 constexpr const char* kLabelsKey = "labels";
 
-/// The names; empty: there are none.
+/// The names; empty if there are none.
 std::vector<std::string> labelsOf(const VolumeInfo& info);
 
 }  // namespace emscape::volume

@@ -31,7 +31,7 @@ struct TetrahedralMesh {
 constexpr int kFaceVertices[4][3] = {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}};
 
 /// A scalar field at the points of a mesh, linear in each cell. NaN: no field is known there, and the cells
-/// at that point hold none.
+/// at that point have none.
 struct MeshField {
   std::shared_ptr<const TetrahedralMesh> mesh;
   VolumeInfo info;
@@ -47,9 +47,9 @@ MeshBounds boundsOf(const TetrahedralMesh& mesh);
 /// Checks a mesh and orders the vertices of each cell as TetrahedralMesh states: those of inverted cells are
 /// reordered, as their order carries no other information.
 /// @return the number of inverted cells
-/// @throws Error (bad_input) at `location` that names the point or cell: for no cells, too many, coordinates
-/// that are not finite, vertices that are not points, and degenerate cells: those with a repeated vertex, or
-/// with a volume below 1e-12 of the cube of their longest edge
+/// @throws Error (bad_input) at `location` that names the point or cell: for no cells or too many,
+/// coordinates that are not finite, vertices that are not points, and degenerate cells: with a repeated
+/// vertex, or with a volume below 1e-12 of the cube of the longest edge
 long long orientCells(TetrahedralMesh& mesh, const SourceLocation& location);
 
 /// A face as 4 * cell + index of the vertex opposite to it.
@@ -63,9 +63,9 @@ struct MeshFaces {
   std::vector<FaceId> boundary;  ///< ascending
 };
 
-/// Finds the adjacency. The mesh has passed orientCells().
-/// @throws Error (bad_input) at `location` that names the cells of a face that is not conforming: it belongs
-/// to three cells, or to two on its same side, which overlap
+/// Finds the adjacency. orientCells() must have been called.
+/// @throws Error (bad_input) at `location` that names the cells of a face that belongs to three cells, or to
+/// two cells on the same side, which overlap
 MeshFaces facesOf(const TetrahedralMesh& mesh, const SourceLocation& location);
 
 /// Compares the boundary faces with each other, along lines through their insides and near their vertices: at
@@ -87,8 +87,8 @@ std::vector<std::array<std::int32_t, 4>> latticeCells(const Dims& points);
 /// Checks that a field has a name and a finite or NaN value for each point. @throws Error (bad_input)
 void checkMeshField(const MeshField& field, const SourceLocation& location);
 
-/// Of the values at the points; NaN is not valid, nothing is masked. The mean is over points, not over
-/// volume.
+/// Statistics of the values at the points; NaN is not valid, and nothing is masked. The mean is over points,
+/// not over volume.
 Statistics statisticsOf(const MeshField& field);
 
 /// Sets info.range_min and range_max as for a DenseVolume.

@@ -1,4 +1,4 @@
-/// Fields on tetrahedra as files: VTK unstructured grids (.vtu), for ParaView and the like.
+/// Fields on tetrahedra as files: VTK unstructured grids (.vtu), for example for ParaView.
 ///
 /// One piece; cells of VTK type 10 (tetrahedra). Point data: one array per quantity, named by it, Float32, or
 /// Int32 for categorical ones; NaN (of categorical ones: the floor) where no field is known. Points are
@@ -19,8 +19,8 @@ namespace emscape::volume {
 /// True for names that end in .vtu.
 bool isMeshFile(const std::filesystem::path& path);
 
-/// Writes fields of one mesh, atomically. @throws Error (bad_input) for none, for different meshes, for two
-/// fields of one name or a malformed one; (other) if writing fails
+/// Writes fields of one mesh, atomically. @throws Error (bad_input) for no field, different meshes, two
+/// fields of one name, or a malformed field; (other) if writing fails
 void writeMesh(const std::filesystem::path& path, const std::vector<const MeshField*>& fields);
 
 /// Contents of a file.
@@ -32,10 +32,10 @@ struct MeshFile {
   std::vector<MeshField> fields;
 };
 
-/// Reads a file that writeMesh() wrote exactly; of other programs: point data of one component, as text or in binary
-/// form (appended or inline, raw or base64, uncompressed or compressed with zlib). The mesh is oriented and
-/// checked (orientCells(), facesOf(), touchingFaces()). Sizes are checked against the file's before memory is
-/// allocated.
+/// Reads files of writeMesh() exactly; from other programs, point data with one component, as text or in
+/// binary form (appended or inline, raw or base64, uncompressed or compressed with zlib). The mesh is
+/// oriented and checked (orientCells(), facesOf(), touchingFaces()). Sizes are checked against the size of
+/// the file before memory is allocated.
 /// @param name  of one field; empty: all
 /// @throws Error (bad_input), which lists the file's fields if none has that name
 MeshFile readMesh(const std::filesystem::path& path, const std::string& name = "");

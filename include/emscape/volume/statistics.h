@@ -7,19 +7,19 @@
 
 namespace emscape::volume {
 
-/// Counts over all voxels; the figures are those of the valid ones: neither masked nor NaN.
+/// Counts over all voxels; minimum, maximum and mean over the valid voxels, which are neither masked nor NaN.
 struct Statistics {
   long long voxels = 0;
   long long valid = 0;
   long long masked = 0;
   long long nan = 0;       ///< of those not masked
   long long at_floor = 0;  ///< valid ones without a field
-  float min = 0;           ///< over the valid voxels; 0 without any
+  float min = 0;           ///< over the valid voxels; 0 if there are none
   float max = 0;
   double mean = 0;
 };
 
-/// Computed in parallel; the same to the last bit for any number of threads.
+/// Computed in parallel; bit-identical for any number of threads.
 Statistics statisticsOf(const DenseVolume& volume);
 
 /// Counts of valid voxels in equal bins.

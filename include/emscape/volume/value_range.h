@@ -11,7 +11,7 @@ struct ValueRange {
   float max = -1;
 
   EMSCAPE_HD bool empty() const { return min > max; }
-  /// Widens the range to hold another one; an empty one and one with NaN add nothing.
+  /// Extends the range by another one. Empty ranges and ranges with NaN have no effect.
   EMSCAPE_HD void add(const ValueRange& other) {
     if (!(other.min <= other.max)) return;
     const bool was_empty = empty();

@@ -1,4 +1,4 @@
-/// A handle of a volume, whose values are in host memory or on a GPU.
+/// A handle to a volume, whose values are in host memory or on a GPU.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ class Volume {
   Volume(std::shared_ptr<const DeviceVolume> volume);
   Volume(const std::shared_ptr<DenseVolume>& volume) : Volume(std::shared_ptr<const DenseVolume>(volume)) {}
   Volume(const std::shared_ptr<DeviceVolume>& volume) : Volume(std::shared_ptr<const DeviceVolume>(volume)) {}
-  /// @param info  in place of the volume's own
+  /// @param info  replaces the volume's own
   Volume(std::shared_ptr<const DenseVolume> volume, VolumeInfo info);
   Volume(std::shared_ptr<const DeviceVolume> volume, VolumeInfo info);
   explicit Volume(DenseVolume volume);
@@ -30,8 +30,8 @@ class Volume {
   void setInfo(VolumeInfo info) { info_ = std::move(info); }
   bool isOnDevice() const { return device_ != nullptr; }
 
-  /// The volume in the host's memory, with info(). From a GPU every call copies the values (4 bytes per voxel
-  /// over the bus); in host memory they are copied only after setInfo().
+  /// The volume in host memory, with info(). From a GPU every call copies the values (4 bytes per voxel over
+  /// the bus); in host memory only a call after setInfo() copies them.
   /// @throws Error (device)
   std::shared_ptr<const DenseVolume> host() const;
   /// The volume on the GPU, with its original info; null if it is in host memory.

@@ -11,7 +11,7 @@ namespace emscape::render {
 
 /// Round values (1, 2, 2.5 or 5 times a power of ten apart) within [lowest, highest], about `count` of them.
 std::vector<double> roundTicks(double lowest, double highest, int count);
-/// The value as written at a tick, with as many decimals as the step needs.
+/// The text of a tick, with as many decimals as the step needs.
 std::string tickText(double value, double step);
 
 /// One category of a categorical volume.
@@ -20,7 +20,7 @@ struct Category {
   std::string name;
 };
 
-/// What a legend explains.
+/// Contents of a legend.
 struct Legend {
   std::string quantity;  ///< as written: "Power density"
   std::string unit;      ///< "dBW/m²"; may be empty
@@ -28,7 +28,7 @@ struct Legend {
   std::optional<double> iso_value;   ///< marked on the colour bar
   bool whole_numbers = false;        ///< counts: no ticks between
   std::string note;                  ///< a line below the colour bar; may be empty
-  std::vector<Category> categories;  ///< categorical volumes: those to be listed
+  std::vector<Category> categories;  ///< categorical volumes: the listed categories
 };
 
 /// A legend for a volume: the quantity's name in words, its unit set with superscripts.

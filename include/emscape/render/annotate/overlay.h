@@ -1,4 +1,4 @@
-/// The finished picture: what was cast, on a background, with box, axes, markers, legend, time and compass.
+/// The finished picture: the cast image on a background, with box, axes, markers, legend, time and compass.
 #pragma once
 
 #include <functional>
@@ -13,25 +13,24 @@
 
 namespace emscape::render {
 
-/// How a marker looks.
+/// Symbol of a marker.
 enum class MarkerKind { radar, transmitter, jammer, receiver, platform };
 
-/// Something with a place and a name.
+/// An object with a position and a name.
 struct Marker {
   Vec3d position_m;  ///< frame metres
   std::string label;
   MarkerKind kind = MarkerKind::platform;
   bool active = true;              ///< false: drawn hollow
   std::optional<Vec3d> beam;       ///< unit vector east, north, up of the beam's axis (not exaggerated)
-  std::optional<double> ground_m;  ///< height of the ground below it (frame z): where the stem ends
+  std::optional<double> ground_m;  ///< height of the ground below it (frame z), at which the stem ends
 };
 
-/// The way of something that moves.
+/// The track of a moving object.
 struct Track {
   MarkerKind kind = MarkerKind::platform;
   std::vector<Vec3d> points_m;  ///< frame metres, in the order of time
-  /// How far it has come: 2.5 is half way from points_m[2] to points_m[3]. The part behind it is
-  /// drawn brighter.
+  /// Current position: 2.5 is half way from points_m[2] to points_m[3]. The part before it is drawn brighter.
   double travelled = 0;
 };
 
@@ -39,10 +38,10 @@ enum class Theme { dark, light };
 /// "dark" or "light". @throws Error (usage)
 Theme parseTheme(const std::string& name);
 
-/// What is written on and around a picture. Empty texts are left out.
+/// Texts and markers of a picture. Empty texts are left out.
 struct Annotations {
   std::string title;     ///< the scenario
-  std::string subtitle;  ///< for example the quantity, or what is combined
+  std::string subtitle;  ///< for example the quantity or the combination
   std::string time;      ///< "t = 12.5 s"
   std::string time_utc;
   std::string note;  ///< small, at the bottom: rays, step
@@ -54,16 +53,15 @@ struct Annotations {
   Theme theme = Theme::dark;
 };
 
-/// Space that annotations take from a picture: give it to makeCamera() so that they do not cover the
-/// box.
+/// Margins that the annotations need. Pass them to makeCamera(), so that annotations do not cover the box.
 FrameMargins overlayMargins(ImageSize size, const Annotations& annotations);
 
 /// Whether the ground hides a position (frame metres); empty: nothing is hidden.
 using HiddenTest = std::function<bool(const Vec3d& frame_m)>;
 
-/// Draws both layers. What is cast put over `behind`, and `front` over that, is the picture of compose(); at
-/// most two levels apart, as each layer is rounded.
-/// @param layers  its memory is used again
+/// Draws both layers. The cast image over `behind`, and `front` over both, gives the picture of compose(),
+/// with a difference of at most two levels because each layer is rounded.
+/// @param layers  its memory is reused
 void drawLayers(OverlayLayers& layers, ImageSize size, const Camera& camera, const SceneBox& box,
                 const Annotations& annotations, const HiddenTest& hidden = {});
 
@@ -71,7 +69,7 @@ void drawLayers(OverlayLayers& layers, ImageSize size, const Camera& camera, con
 Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
                const HiddenTest& hidden = {});
 
-/// The same of a picture that is quantised already; differs from the above by at most one level.
+/// The same for a quantised picture; differs from the above by at most one level.
 Image8 compose(const Image8& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
                const HiddenTest& hidden = {});
 
