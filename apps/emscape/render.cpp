@@ -153,7 +153,7 @@ void checkMeshOptions(const RenderOptions& options, const ViewState& view) {
     }
   };
   if (!has_cells) {
-    return refuseAll({"--cells", "--cell-order", "--cell-perspective"},
+    return refuseAll({"--cells", "--cell-rasterizer", "--cell-order", "--cell-perspective"},
                      ": has no effect on volumes; with --mesh a scenario is computed on tetrahedra");
   }
   render::checkCellSettings(view.settings);

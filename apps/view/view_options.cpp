@@ -87,9 +87,10 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
 
 /// Refuses options that apply only to an INPUT.
 void refuseOptionsOfInput(const CLI::App& app) {
-  for (const char* name : {"--scenario", "--mesh", "--cells", "--cell-order", "--cell-perspective", "--state",
-                           "--set", "--compare", "--time", "--quantity", "--mode", "--camera", "--range",
-                           "--transfer", "--exaggeration", "--plane", "--step", "--shading"}) {
+  for (const char* name :
+       {"--scenario", "--mesh", "--cells", "--cell-rasterizer", "--cell-order", "--cell-perspective",
+        "--state", "--set", "--compare", "--time", "--quantity", "--mode", "--camera", "--range",
+        "--transfer", "--exaggeration", "--plane", "--step", "--shading"}) {
     if (app.count(name) == 0) continue;
     throw Error(ErrorCode::usage, std::string(name) + " needs INPUT\nTry 'emscape view --help'.");
   }

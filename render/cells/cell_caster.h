@@ -1,4 +1,4 @@
-/// Rays through cells on a GPU.
+/// Cells on a GPU: rays through them, and their projection by tiles of pixels.
 #pragma once
 
 #include <memory>
@@ -8,6 +8,7 @@
 #include "render/cells/cell_walk.h"
 #include "render/cells/face_tiles.h"
 #include "render/cells/linear_transfer.h"
+#include "render/cells/tile_cells.h"
 
 namespace emscape::render {
 
@@ -25,6 +26,21 @@ struct CellCounts {
   unsigned long long rays = 0, cells = 0;
 };
 
+/// What is projected for a picture.
+struct TileCast {
+  TileTask task;      ///< camera, axes and `through`; the rest is not read
+  bool table = true;  ///< Psi from the table, else in closed form
+  /// Per pixel the depth at which its ray ends; empty: none ends.
+  std::vector<double> end_depth;
+  /// All cells, the farthest first; null: by their centroids, which the GPU sorts.
+  const std::vector<std::int32_t>* order = nullptr;
+};
+
+struct TileTimes {
+  double order_ms = 0, bin_ms = 0, draw_ms = 0;  ///< by the GPU's clock
+  long long cells = 0;                           ///< that hold a field and are in the picture
+};
+
 /// One thread uses it.
 class CellCaster {
  public:
@@ -35,6 +51,8 @@ class CellCaster {
   virtual void setTransfer(const LinearTransfer& transfer) = 0;
   /// @throws Error (device)
   virtual CellCounts cast(const CellCast& cast, const FaceTiles& tiles, Image& image) = 0;
+  /// @throws Error (device)
+  virtual TileTimes project(const TileCast& cast, Image& image) = 0;
 };
 
 /// @throws Error (device) in a build without CUDA

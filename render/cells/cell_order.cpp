@@ -13,14 +13,11 @@ namespace {
 /// Rising with the distances of the centroids.
 std::vector<float> depths(const CellMesh& mesh, const CameraView& camera) {
   const Vec3d depth = DepthAxes(camera).depth;
+  const CellMeshView view = mesh.view();
   std::vector<float> result(mesh.mesh->cells.size());
   parallelFor(static_cast<int>(result.size()), 4096, [&](int begin, int end) {
     for (int c = begin; c < end; ++c) {
-      Vec3d sum{0, 0, 0};
-      for (const std::int32_t point : mesh.cell(c)) sum = sum + mesh.point(point);
-      const Vec3d from_eye = sum - camera.eye * 4.0;
-      result[static_cast<std::size_t>(c)] =
-          static_cast<float>(camera.orthographic ? dot(sum, depth) : dot(from_eye, from_eye));
+      result[static_cast<std::size_t>(c)] = centroidDepth(view, camera, depth, c);
     }
   });
   return result;

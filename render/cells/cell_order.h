@@ -16,6 +16,15 @@ struct CellOrder {
   long long cycles = 0;
 };
 
+/// Rising with the distance of a cell's centroid. @param depth  DepthAxes::depth
+EMSCAPE_HD inline float centroidDepth(const CellMeshView& mesh, const CameraView& camera, const Vec3d& depth,
+                                      int cell) {
+  Vec3d sum{0, 0, 0};
+  for (int n = 0; n < 4; ++n) sum = sum + mesh.points[mesh.vertex(cell, n)];
+  const Vec3d from_eye = sum - camera.eye * 4.0;
+  return static_cast<float>(camera.orthographic ? dot(sum, depth) : dot(from_eye, from_eye));
+}
+
 /// By the distances of centroids from the eye (parallel rays: by their depths). Wrong for some neighbours.
 CellOrder centroidOrder(const CellMesh& mesh, const CameraView& camera);
 

@@ -1,9 +1,8 @@
 /// Rays through the cells of a mesh in the lanes of vector registers, on the CPU.
 #pragma once
 
-#include <vector>
-
 #include "render/cells/cell_march.h"
+#include "render/cells/lane_transfer.h"
 
 namespace emscape::render {
 
@@ -18,22 +17,9 @@ class CellPackets {
   /// @return the number of cells that were passed
   long long march(MarchTask* tasks, int count) const;
 
-  /// A TransferInterval as lanes read it.
-  struct Interval {
-    double lower, upper;
-    double base;      ///< lower; 0 where the interval is uniform
-    double per_unit;  ///< 1 / (upper - lower); 0 where the interval is uniform
-    double extinction, extinction_rise;
-    double color[3], color_rise[3];
-    double clear;      ///< 1: no extinction; else 0
-    double unused[3];  ///< sixteen numbers in all: lanes find theirs by a shift
-  };
-
  private:
   CellMeshView mesh_;
-  IntervalsView transfer_;
-  PsiLookup psi_;
-  std::vector<Interval> intervals_;
+  LaneTransfer transfer_;
 };
 
 }  // namespace emscape::render

@@ -5,10 +5,12 @@
 #include <limits>
 
 #include "base/stopwatch.h"
+#include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "render/cells/cell_order.h"
 #include "render/cells/cell_renderer_impl.h"
 #include "render/cells/projected_cells.h"
+#include "render/cells/tile_projection.h"
 #include "render/names.h"
 
 namespace emscape::render {
@@ -18,6 +20,12 @@ constexpr Named<CellProjection> kProjections[] = {{CellProjection::published, "p
                                                   {CellProjection::exact, "exact"}};
 constexpr Named<CellSorting> kSortings[] = {{CellSorting::centroids, "centroids"},
                                             {CellSorting::visibility, "visibility"}};
+constexpr Named<Rasterizer> kRasterizers[] = {
+    {Rasterizer::automatic, "auto"}, {Rasterizer::opengl, "opengl"}, {Rasterizer::tiles, "tiles"}};
+
+CellOrder orderOf(const CellMesh& mesh, const CameraView& camera, CellSorting sorting) {
+  return sorting == CellSorting::visibility ? visibilityOrder(mesh, camera) : centroidOrder(mesh, camera);
+}
 
 /// False if the cell holds no field.
 bool seenFrom(const Vec3d& eye, const CellMesh& mesh, std::int32_t cell, SeenCell& seen) {
@@ -71,13 +79,14 @@ void drawCells(const CellMesh& mesh, const std::vector<std::int32_t>& order, con
 }
 
 /// Depths of points on the pixels' rays.
-std::vector<float> depthsOf(const std::vector<GroundHit>& hits, const CameraView& camera) {
-  std::vector<float> depths(hits.size(), std::numeric_limits<float>::max());
+template <class Real>
+std::vector<Real> depthsOf(const std::vector<GroundHit>& hits, const CameraView& camera) {
+  std::vector<Real> depths(hits.size(), std::numeric_limits<Real>::max());
   for (std::size_t pixel = 0; pixel < hits.size(); ++pixel) {
     if (!hits[pixel].found) continue;
     const auto n = static_cast<int>(pixel);
     const auto ray = camera.rayThrough<double>(n % camera.size.width, n / camera.size.width);
-    depths[pixel] = static_cast<float>(hits[pixel].distance / length(ray.direction));
+    depths[pixel] = static_cast<Real>(hits[pixel].distance / length(ray.direction));
   }
   return depths;
 }
@@ -91,52 +100,116 @@ const char* toString(CellSorting sorting) {
   return nameOf(kSortings, sorting);
 }
 
+const char* toString(Rasterizer rasterizer) {
+  return nameOf(kRasterizers, rasterizer);
+}
+
 CellProjection parseCellProjection(const std::string& name) {
   return parseName(kProjections, "projection of cells", name);
 }
 CellSorting parseCellSorting(const std::string& name) {
   return parseName(kSortings, "order of cells", name);
 }
-
-void CellRenderer::prepareProjection() {
-  if (!impl_->rasterizer) impl_->rasterizer = std::make_unique<gl::CellRasterizer>();
+Rasterizer parseRasterizer(const std::string& name) {
+  return parseName(kRasterizers, "rasteriser", name);
 }
 
 bool CellRenderer::projectsOnCpu() {
-  prepareProjection();
+  if (!impl_->rasterizer) impl_->rasterizer = std::make_unique<gl::CellRasterizer>();
   const std::string& device = impl_->rasterizer->device();
   constexpr const char* kSoftware[] = {"llvmpipe", "softpipe", "swrast", "SWR", "Software Rasterizer"};
   return std::any_of(std::begin(kSoftware), std::end(kSoftware),
                      [&](const char* name) { return device.find(name) != std::string::npos; });
 }
 
+Rasterizer CellRenderer::Impl::rasterizerFor(const ProjectionOptions& options, CellRenderer& renderer) const {
+  const bool is_published =
+      options.projection == CellProjection::published && scene.camera().projection == Projection::perspective;
+  if (is_published && options.rasterizer == Rasterizer::tiles) {
+    throw Error(ErrorCode::usage,
+                "the published form of cell projection interpolates distances over faces, which OpenGL does; "
+                "tiles of pixels have the exact form alone");
+  }
+  if (options.rasterizer != Rasterizer::automatic) return options.rasterizer;
+  if (is_published) return Rasterizer::opengl;
+  if (caster) return Rasterizer::tiles;
+  try {
+    return renderer.projectsOnCpu() ? Rasterizer::tiles : Rasterizer::opengl;
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::device) throw;
+    return Rasterizer::tiles;
+  }
+}
+
+Image CellRenderer::Impl::projectByOpenGl(const RaycastTask& task, const ProjectionOptions& options,
+                                          const std::vector<GroundHit>& hits, ProjectionReport& report) {
+  const gl::CellRasterizer::Use use(*rasterizer);
+  const gl::CellView view{task.camera, options.projection, depthsOf<float>(hits, task.camera)};
+  rasterizer->setTransfer(*transfer);
+  report.device = rasterizer->device();
+  Stopwatch watch;
+  const CellOrder order = orderOf(cells, task.camera, options.sorting);
+  report.cycles = order.cycles;
+  report.order_ms = watch.lap_ms();
+  drawCells(cells, order.cells, view, *rasterizer, report);
+  Image image;
+  rasterizer->fetch(image);
+  report.draw_ms = watch.lap_ms();
+  return image;
+}
+
+Image CellRenderer::Impl::projectByTiles(const RaycastTask& task, const ProjectionOptions& options,
+                                         const std::vector<GroundHit>& hits, ProjectionReport& report) {
+  const bool exact = scene.settings().exact;
+  TileCast cast{{task.camera, DepthAxes(task.camera)}, !exact, depthsOf<double>(hits, task.camera), nullptr};
+  cast.task.through = exact ? 0 : 1 - static_cast<double>(kOpaqueEnough);
+  report.device = toString(caster ? Backend::cuda : Backend::cpu);
+  Stopwatch watch;
+  CellOrder order;
+  if (!caster || options.sorting == CellSorting::visibility) {
+    order = orderOf(cells, task.camera, options.sorting);
+    cast.order = &order.cells;
+    report.cycles = order.cycles;
+    report.order_ms = watch.lap_ms();
+  }
+  Image image;
+  if (caster) {
+    const TileTimes times = caster->project(cast, image);
+    report.cells = times.cells;
+    report.draw_ms = watch.lap_ms() - times.order_ms;
+    report.order_ms += times.order_ms;
+    report.bin_ms = times.bin_ms;
+    report.device_ms = times.bin_ms + times.draw_ms;
+    report.sent_bytes = sizeof(std::int32_t) * order.cells.size();
+    return image;
+  }
+  TileTask& tiles = cast.task;
+  tiles.transfer = transfer->view();
+  if (cast.table) tiles.psi = PsiTable::shared().lookup();
+  tiles.end_depth = cast.end_depth.empty() ? nullptr : cast.end_depth.data();
+  const TileProjection projection(tiles, cells, order.cells);
+  report.bin_ms = watch.lap_ms();
+  image = projection.composite();
+  report.draw_ms = report.bin_ms + watch.lap_ms();
+  report.cells = projection.cells();
+  return image;
+}
+
 Image CellRenderer::project(ImageSize size, const ProjectionOptions& options, ProjectionReport* report) {
-  prepareProjection();
   Impl& impl = *impl_;
-  gl::CellRasterizer& rasterizer = *impl.rasterizer;
-  const gl::CellRasterizer::Use use(rasterizer);
+  ProjectionReport done;
+  done.rasterizer = impl.rasterizerFor(options, *this);
+  const bool by_opengl = done.rasterizer == Rasterizer::opengl;
+  const bool on_gl_gpu = by_opengl && !projectsOnCpu();  // makes the context
   impl.scene.prepare();
   const RaycastTask task = impl.scene.task(size);
   const std::vector<GroundHit> ground = impl.ground(task);
-  const gl::CellView view{task.camera, options.projection, depthsOf(ground, task.camera)};
-  rasterizer.setTransfer(*impl.transfer);
-
-  ProjectionReport done;
-  done.device = rasterizer.device();
-  Stopwatch watch;
-  const CellOrder order = options.sorting == CellSorting::visibility
-                              ? visibilityOrder(impl.cells, task.camera)
-                              : centroidOrder(impl.cells, task.camera);
-  done.cycles = order.cycles;
-  done.order_ms = watch.lap_ms();
-  drawCells(impl.cells, order.cells, view, rasterizer, done);
-  Image image;
-  rasterizer.fetch(image);
-  if (!projectsOnCpu()) done.device_ms = rasterizer.drawMs();
+  Image image = by_opengl ? impl.projectByOpenGl(task, options, ground, done)
+                          : impl.projectByTiles(task, options, ground, done);
+  if (on_gl_gpu) done.device_ms = impl.rasterizer->drawMs();
   for (std::size_t pixel = 0; pixel < ground.size(); ++pixel) {
     if (ground[pixel].found) image.pixels[pixel] = over(image.pixels[pixel], ground[pixel].color);
   }
-  done.draw_ms = watch.lap_ms();
   if (report != nullptr) *report = done;
   return image;
 }

@@ -21,7 +21,7 @@ struct CellRenderer::Impl {
   CellMesh cells;
   std::optional<LinearTransfer> transfer;
   std::unique_ptr<CellCaster> caster;              ///< of a GPU; null: the CPU casts
-  std::unique_ptr<gl::CellRasterizer> rasterizer;  ///< made by the first project()
+  std::unique_ptr<gl::CellRasterizer> rasterizer;  ///< made when it is first needed
 
   /// The ground's first points on all rays; empty: there is none.
   std::vector<GroundHit> ground(const RaycastTask& task) const;
@@ -30,6 +30,14 @@ struct CellRenderer::Impl {
   /// @return the rays that met the mesh and the cells that they passed
   CellReport castTile(const RaycastTask& task, const FaceTiles& tiles, int tile, int start_cell,
                       const CellPackets& packets, Image& image) const;
+
+  /// Not automatic. @throws Error (usage) as project()
+  Rasterizer rasterizerFor(const ProjectionOptions& options, CellRenderer& renderer) const;
+  /// @param hits  as ground()
+  Image projectByOpenGl(const RaycastTask& task, const ProjectionOptions& options,
+                        const std::vector<GroundHit>& hits, ProjectionReport& report);
+  Image projectByTiles(const RaycastTask& task, const ProjectionOptions& options,
+                       const std::vector<GroundHit>& hits, ProjectionReport& report);
 };
 
 }  // namespace emscape::render

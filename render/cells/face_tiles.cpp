@@ -19,20 +19,10 @@ PixelBox coveredBy(const std::array<Projected, 3>& corners, ImageSize size) {
           pixel(std::ceil(x.second) + 2, size.width), pixel(std::ceil(y.second) + 2, size.height)};
 }
 
-/// Calls visit(tile) for each tile of kTile pixels that a box touches.
-template <class Visit>
-void eachTile(const PixelBox& box, int columns, const Visit& visit) {
-  constexpr int kTile = FaceTiles::kTile;
-  for (int row = box.first_y / kTile; row * kTile < box.end_y; ++row) {
-    for (int column = box.first_x / kTile; column * kTile < box.end_x; ++column)
-      visit(row * columns + column);
-  }
-}
-
 }  // namespace
 
 FaceTiles::FaceTiles(const CellMesh& mesh, const SceneBox& box, const Camera& camera, ImageSize size)
-    : size_(size), columns_((size.width + kTile - 1) / kTile), rows_((size.height + kTile - 1) / kTile) {
+    : grid_{size} {
   const bool parallel_rays = camera.projection == Projection::orthographic;
   for (const volume::FaceId face : mesh.faces->boundary) {
     std::array<Vec3d, 3> drawn_m;
@@ -48,32 +38,19 @@ FaceTiles::FaceTiles(const CellMesh& mesh, const SceneBox& box, const Camera& ca
     constexpr double kEdgeOn = 1e-9;
     if (dot(normal, to_face) > kEdgeOn * length(normal) * length(to_face)) continue;
     const PixelBox pixels = coveredBy(corners, size);
-    if (pixels.first_x < pixels.end_x && pixels.first_y < pixels.end_y) faces_.push_back({face, pixels});
+    if (pixels.isEmpty()) continue;
+    faces_.push_back(face);
+    boxes_.push_back(pixels);
   }
-  first_.assign(static_cast<std::size_t>(count()) + 1, 0);
-  for (const Covered& face : faces_)
-    eachTile(face.pixels, columns_, [&](int tile) { ++first_[static_cast<std::size_t>(tile) + 1]; });
-  for (std::size_t tile = 0; tile + 1 < first_.size(); ++tile) first_[tile + 1] += first_[tile];
-  members_.resize(first_.back());
-  std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-  for (std::size_t n = 0; n < faces_.size(); ++n) {
-    eachTile(faces_[n].pixels, columns_,
-             [&](int tile) { members_[next[static_cast<std::size_t>(tile)]++] = static_cast<int>(n); });
-  }
+  lists_ = TileLists(grid_, boxes_.size(), [this](std::size_t n) { return boxes_[n]; });
 }
 
 FaceTiles::Lists FaceTiles::lists() const {
   Lists lists;
-  lists.first.assign(first_.begin(), first_.end());
-  lists.faces.resize(members_.size());
-  std::transform(members_.begin(), members_.end(), lists.faces.begin(),
-                 [this](int member) { return faces_[static_cast<std::size_t>(member)].face; });
+  for (int tile = 0; tile <= count(); ++tile) lists.first.push_back(static_cast<int>(lists_.first(tile)));
+  lists.faces.reserve(lists_.members().size());
+  for (const int member : lists_.members()) lists.faces.push_back(faces_[static_cast<std::size_t>(member)]);
   return lists;
-}
-
-PixelBox FaceTiles::pixelsOf(int tile) const {
-  const int x = tile % columns_ * kTile, y = tile / columns_ * kTile;
-  return {x, y, std::min(x + kTile, size_.width), std::min(y + kTile, size_.height)};
 }
 
 std::vector<std::vector<EntryHit>> FaceTiles::entriesOf(int tile, const CellMesh& mesh,
@@ -85,15 +62,14 @@ std::vector<std::vector<EntryHit>> FaceTiles::entriesOf(int tile, const CellMesh
   for (int y = box.first_y; y < box.end_y; ++y) {
     for (int x = box.first_x; x < box.end_x; ++x) frames.emplace_back(camera.ray(x, y));
   }
-  for (std::size_t n = first_[static_cast<std::size_t>(tile)]; n < first_[static_cast<std::size_t>(tile) + 1];
-       ++n) {
-    const Covered& face = faces_[static_cast<std::size_t>(members_[n])];
-    const PixelBox& covered = face.pixels;
-    for (int y = std::max(covered.first_y, box.first_y); y < std::min(covered.end_y, box.end_y); ++y) {
-      for (int x = std::max(covered.first_x, box.first_x); x < std::min(covered.end_x, box.end_x); ++x) {
+  for (std::size_t n = lists_.first(tile); n < lists_.first(tile + 1); ++n) {
+    const auto member = static_cast<std::size_t>(lists_.members()[n]);
+    const PixelBox covered = common(boxes_[member], box);
+    for (int y = covered.first_y; y < covered.end_y; ++y) {
+      for (int x = covered.first_x; x < covered.end_x; ++x) {
         const std::size_t pixel = box.index(x, y);
         EntryHit hit;
-        if (!entersThrough(view, frames[pixel], face.face, hit)) continue;
+        if (!entersThrough(view, frames[pixel], faces_[member], hit)) continue;
         if (camera.orthographic || hit.distance >= 0) entries[pixel].push_back(hit);
       }
     }

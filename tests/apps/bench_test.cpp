@@ -50,20 +50,35 @@ std::string deviceName() {
   return none ? "cpu" : version.substr(gpu, version.find(',', gpu) - gpu);
 }
 
-TEST(Bench, CellsAreProjectedInBothFormsAndOrdersAndMarched) {
-  if (run({"render", shippedScenario("quick.yaml"), "--mesh", "terrain:1", "--cells", "project", "--size",
-           "8x8", "-o", TemporaryFolder() / "a.png", "--quiet"})
-          .status == 4)
-    GTEST_SKIP() << "no OpenGL without a window";
-  const json found = bench({"cells", shippedScenario("quick.yaml"), "--mesh", "terrain:4", "--size", "80x60",
-                            "--set", "region.dims=[9, 8, 4]", "--frames", "1"});
+json benchCells(const char* rasterizer) {
+  return bench({"cells", shippedScenario("quick.yaml"), "--mesh", "terrain:4", "--size", "80x60", "--set",
+                "region.dims=[9, 8, 4]", "--frames", "1", "--rasterizer", rasterizer});
+}
+
+TEST(Bench, CellsAreProjectedByTilesInBothOrdersAndMarched) {
+  const json found = benchCells("tiles");
   EXPECT_EQ(found.at("tetrahedra"), 6 * 8 * 7 * 4);
-  ASSERT_EQ(found.at("projected").size(), 4);
+  ASSERT_EQ(found.at("projected").size(), 2);
   for (const json& form : found["projected"]) {
+    EXPECT_EQ(form.at("rasterizer"), "tiles");
     EXPECT_GT(form.at("tetrahedra_per_s"), 0);
-    EXPECT_EQ(form.at("floats_per_tetrahedron"), form.at("perspective") == "exact" ? 21 : 24);
+    EXPECT_TRUE(form.at("bin_ms").at("median").is_number());
+    EXPECT_LT(form.at("max_difference"), form.at("order") == "visibility" ? 1e-5 : 1.0);
   }
   EXPECT_GT(found.at("marched").at("cells_passed"), 1000);
+}
+
+TEST(Bench, CellsAreProjectedByOpenGlInBothFormsAndOrders) {
+  if (run({"render", shippedScenario("quick.yaml"), "--mesh", "terrain:1", "--cells", "project",
+           "--cell-rasterizer", "opengl", "--size", "8x8", "-o", TemporaryFolder() / "a.png", "--quiet"})
+          .status == 4)
+    GTEST_SKIP() << "no OpenGL without a window";
+  const json found = benchCells("opengl");
+  ASSERT_EQ(found.at("projected").size(), 4);
+  for (const json& form : found["projected"]) {
+    EXPECT_EQ(form.at("rasterizer"), "opengl");
+    EXPECT_EQ(form.at("floats_per_tetrahedron"), form.at("perspective") == "exact" ? 21 : 24);
+  }
 }
 
 TEST(Bench, CoverageTimesTheFirstHeightAndEachFurtherOne) {

@@ -102,14 +102,29 @@ TEST(MeshSeries, AScenarioIsDrawnAsItsFilesAre) {
 
   EXPECT_THAT(run({"render", scenario, "-o", folder / "no.png", "--cells", "march"}).err,
               HasSubstr("--cells: has no effect on volumes"));
-  if (run({"render", folder / "a", "-o", folder / "a.png", "--cells", "project", "--quiet"}).status == 4)
-    GTEST_SKIP() << "no OpenGL without a window";
+  const auto projected = [&](const char* rasterizer, const char* order) {
+    const json report = draw(stored, {"-o", folder / "projected.png", "--cells", "project",
+                                      "--cell-rasterizer", rasterizer, "--cell-order", order});
+    EXPECT_EQ(report["cells"]["drawn"], "projected by " + std::string(order));
+    return report["cells"];
+  };
+  constexpr int kCells = 6 * 19 * 17 * 9;
   for (const char* order : {"centroids", "visibility"}) {
-    const json projected =
-        draw(stored, {"-o", folder / "projected.png", "--cells", "project", "--cell-order", order});
-    EXPECT_EQ(projected["cells"]["drawn"], "projected by " + std::string(order));
-    EXPECT_EQ(projected["cells"]["tetrahedra"], 6 * 19 * 17 * 9);
-    EXPECT_EQ(projected["cells"]["sent_bytes"], 21 * 4 * 6 * 19 * 17 * 9);
+    const json tiles = projected("tiles", order);
+    EXPECT_GT(tiles["tetrahedra"], 0);
+    EXPECT_LE(tiles["tetrahedra"], kCells);
+  }
+  EXPECT_THAT(run({"render", folder / "a", "-o", folder / "no.png", "--cells", "project", "--cell-rasterizer",
+                   "tiles", "--cell-perspective", "published"})
+                  .err,
+              HasSubstr("tiles of pixels have the exact form alone"));
+  const Arguments by_opengl{"render",  folder / "a",        "-o",     folder / "a.png", "--cells",
+                            "project", "--cell-rasterizer", "opengl", "--quiet"};
+  if (run(by_opengl).status == 4) GTEST_SKIP() << "no OpenGL without a window";
+  for (const char* order : {"centroids", "visibility"}) {
+    const json opengl = projected("opengl", order);
+    EXPECT_EQ(opengl["tetrahedra"], kCells);
+    EXPECT_EQ(opengl["sent_bytes"], 21 * 4 * kCells);
   }
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ struct BenchCellsOptions {
   std::string camera = "orbit";
   std::string transfer;
   std::string picture;
+  std::string rasterizer = "auto";
   double exaggeration = 0;
   int frames = 5;
   int marched_frames = 1;
@@ -33,7 +35,9 @@ struct BenchCellsOptions {
 struct CellTimes {
   std::vector<double> ms;
   render::ProjectionReport last;
-  std::vector<double> order_ms, device_ms;
+  /// Of the last picture from the marched one: the greatest of a component, and the part of the pixels.
+  double max_difference = 0, above_1e5 = 0;
+  std::vector<double> order_ms, bin_ms, device_ms;
 };
 
 /// A field on tetrahedra, without ground, seen from around it.
@@ -75,11 +79,13 @@ class CellScene {
       stopIfInterrupted();
       turn(std::max(n, 0));
       Stopwatch watch;
-      renderer_.project(size_, options, &times.last);
+      const render::Image image = renderer_.project(size_, options, &times.last);
       if (n < 0) continue;
       times.ms.push_back(watch.lap_ms());
       times.order_ms.push_back(times.last.order_ms);
+      times.bin_ms.push_back(times.last.bin_ms);
       times.device_ms.push_back(times.last.device_ms);
+      if (n + 1 == frames) compare(image, times);
     }
     return times;
   }
@@ -110,11 +116,24 @@ class CellScene {
   }
 
  private:
+  /// @param image  of the last projected view
+  void compare(const render::Image& image, CellTimes& times) {
+    if (marched_.pixels.empty()) marched_ = renderer_.render(size_);
+    for (std::size_t n = 0; n < image.pixels.size(); ++n) {
+      const render::Rgba &p = image.pixels[n], &q = marched_.pixels[n];
+      const float off =
+          std::max({std::fabs(p.r - q.r), std::fabs(p.g - q.g), std::fabs(p.b - q.b), std::fabs(p.a - q.a)});
+      times.max_difference = std::max(times.max_difference, static_cast<double>(off));
+      if (off > 1e-5F) times.above_1e5 += 1.0 / static_cast<double>(image.pixels.size());
+    }
+  }
+
   const render::ImageSize size_;
   const render::CameraSpec camera_;
   const std::string device_;
   render::CellRenderer renderer_;
   playback::Frame frame_;
+  render::Image marched_;  ///< the last projected view
 };
 
 int benchCells(const BenchCellsOptions& options, const GlobalOptions& global) {
@@ -129,40 +148,49 @@ int benchCells(const BenchCellsOptions& options, const GlobalOptions& global) {
   if (!global.json) {
     print("{} tetrahedra, {} points, {} x {} pixels, {} threads\n\n", scene->tetrahedra(), scene->points(),
           scene->size().width, scene->size().height, threadCount());
-    print("{:<32} {:>10} {:>10} {:>10} {:>14} {:>8} {:>7}\n", "", "ms", "order (ms)", "GPU (ms)",
-          "tetrahedra/s", "floats", "cycles");
+    print("{:<40} {:>10} {:>10} {:>10} {:>10} {:>14} {:>8} {:>7} {:>9} {:>7}\n", "", "ms", "order (ms)",
+          "bin (ms)", "GPU (ms)", "tetrahedra/s", "floats", "cycles", "greatest", "> 1e-5");
   }
   using render::CellProjection;
   using render::CellSorting;
   std::string device;
+  const render::Rasterizer rasterizer = render::parseRasterizer(options.rasterizer);
   for (const CellProjection projection : {CellProjection::exact, CellProjection::published}) {
     for (const CellSorting sorting : {CellSorting::centroids, CellSorting::visibility}) {
       if (options.frames == 0) continue;
-      const CellTimes times = scene->project(options.frames, {projection, sorting});
+      if (projection == CellProjection::published && rasterizer != render::Rasterizer::opengl) continue;
+      const CellTimes times = scene->project(options.frames, {projection, sorting, rasterizer});
       device = times.last.device;
+      const std::string drawn_by = toString(times.last.rasterizer);
       const double floats = static_cast<double>(times.last.sent_bytes) / sizeof(float) /
                             static_cast<double>(scene->tetrahedra());
-      projected.push_back({{"perspective", toString(projection)},
+      projected.push_back({{"rasterizer", drawn_by},
+                           {"device", device},
+                           {"perspective", toString(projection)},
                            {"order", toString(sorting)},
                            {"ms", spreadJson(times.ms)},
                            {"order_ms", spreadJson(times.order_ms)},
+                           {"bin_ms", spreadJson(times.bin_ms)},
                            {"device_ms", spreadJson(times.device_ms)},
                            {"tetrahedra_per_s", perSecond(times.ms)},
                            {"floats_per_tetrahedron", floats},
-                           {"cycles", times.last.cycles}});
+                           {"cycles", times.last.cycles},
+                           {"max_difference", times.max_difference},
+                           {"above_1e5_fraction", times.above_1e5}});
       if (!global.json) {
-        print("{:<32} {:>10.1f} {:>10.1f} {:>10.1f} {:>14.3g} {:>8.0f} {:>7}\n",
-              fmt::format("projected, {}, {}", toString(projection), toString(sorting)), medianOf(times.ms),
-              medianOf(times.order_ms), medianOf(times.device_ms), perSecond(times.ms), floats,
-              times.last.cycles);
+        print("{:<40} {:>10.1f} {:>10.1f} {:>10.1f} {:>10.1f} {:>14.3g} {:>8.0f} {:>7} {:>9.1e} {:>5.1f} %\n",
+              fmt::format("projected by {}, {}, {}", drawn_by, toString(projection), toString(sorting)),
+              medianOf(times.ms), medianOf(times.order_ms), medianOf(times.bin_ms), medianOf(times.device_ms),
+              perSecond(times.ms), floats, times.last.cycles, times.max_difference, 100 * times.above_1e5);
       }
     }
   }
   render::CellReport report;
   const std::vector<double> marched_ms = scene->march(options.marched_frames, report);
   if (!global.json) {
-    print("{:<32} {:>10.1f} {:>10} {:>10} {:>14.3g}\n\nmarched by {}: {} rays passed {} cells\n", "marched",
-          medianOf(marched_ms), "", "", perSecond(marched_ms), scene->device(), report.rays, report.cells);
+    print("{:<40} {:>10.1f} {:>10} {:>10} {:>10} {:>14.3g}\n\nmarched by {}: {} rays passed {} cells\n",
+          "marched", medianOf(marched_ms), "", "", "", perSecond(marched_ms), scene->device(), report.rays,
+          report.cells);
     if (!device.empty()) print("projected by {}\n", device);
     return 0;
   }
@@ -190,8 +218,9 @@ void addBenchCells(CLI::App& bench, const GlobalOptions& global, Action& action)
   CLI::App* command = bench.add_subcommand("cells", "Time pictures of tetrahedra, projected and marched");
   command->fallthrough();
   command->footer(R"(
-Views around the field, without ground; each is ordered, sent and drawn anew. GPU: what it spends on drawing, by
-OpenGL's clock; 0 where OpenGL is a program on the CPU. Floats: sent per tetrahedron and picture.
+Views around the field, without ground; each is ordered and drawn anew. Bin: until all tiles know their cells. GPU:
+what it spends on drawing, by its own clock; 0 without one. Floats: sent per tetrahedron and picture. Greatest: difference
+from the marched picture, and the part of the pixels above 1e-5. The published form is measured with --rasterizer opengl.
 
 Example:
   emscape bench cells scenarios/jacksboro.yaml --mesh terrain:15,5 --set "region.dims=[107, 107, 100]" --json)");
@@ -212,9 +241,11 @@ Example:
   command->add_option("--picture", options->picture, "NAME.png: writes the first view, marched, on black");
   command->add_option("--quantity", options->selection.quantity, "Quantity or channel; default: the first");
   command->add_option("--time", options->selection.times, "Instant, in seconds; default: the first");
+  command->add_option("--rasterizer", options->rasterizer, "What projects; default: auto")
+      ->check(CLI::IsMember({"auto", "opengl", "tiles"}));
   command
       ->add_option("--frames", options->frames,
-                   "Timed frames that are projected, after a warm-up; 0: none is, and OpenGL is not needed")
+                   "Timed frames that are projected, after a warm-up; 0: none is")
       ->check(CLI::Range(0, 100000));
   command->add_option("--marched-frames", options->marched_frames, "Timed frames that are marched")
       ->check(CLI::Range(1, 100000));

@@ -58,10 +58,16 @@ void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& c
     command.add_option_function<std::string>(name, take, help)->check(CLI::IsMember(names));
   };
   addChoice("--cells",
-            "Tetrahedra are marched, or projected by OpenGL; auto: marched, but for incomplete pictures "
+            "Tetrahedra are marched, or projected; auto: marched, but for incomplete pictures "
             "where OpenGL has a GPU and CUDA does not",
             [&cells](const std::string& name) { cells.method = playback::parseCellMethod(name); },
             {"auto", "march", "project"});
+  addChoice(
+      "--cell-rasterizer",
+      "What projects cells: OpenGL, or tiles of pixels, computed by the backend; default: auto, OpenGL on a "
+      "GPU without CUDA, else tiles",
+      [&cells](const std::string& name) { cells.projection.rasterizer = render::parseRasterizer(name); },
+      {"auto", "opengl", "tiles"});
   addChoice("--cell-order", "Of projected cells; default: visibility",
             [&cells](const std::string& name) { cells.projection.sorting = render::parseCellSorting(name); },
             {"centroids", "visibility"});

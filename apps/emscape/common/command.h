@@ -50,7 +50,7 @@ void addCompareOption(CLI::App& command, std::string& compare, const std::string
 /// Error (usage) for a text that is not a plane and for too many planes.
 void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes);
 
-/// Adds --mesh, --cells, --cell-order and --cell-perspective, for pictures.
+/// Adds --mesh, --cells, --cell-rasterizer, --cell-order and --cell-perspective, for pictures.
 /// Parsing them throws Error (usage).
 void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& cells);
 

@@ -47,12 +47,22 @@ enum class CellSorting {
   /// the gaps of others by centroids
   visibility
 };
+/// What finds the pixels that a projected cell covers.
+enum class Rasterizer {
+  automatic,  ///< tiles with CUDA and where OpenGL has no GPU, else opengl; the published form by opengl
+              ///< alone
+  opengl,     ///< without a window
+  tiles       ///< tiles of pixels, computed by the renderer's backend; in perspective the exact form alone
+};
 const char* toString(CellProjection projection);
 const char* toString(CellSorting sorting);
+const char* toString(Rasterizer rasterizer);
 /// "published" or "exact". @throws Error (usage)
 CellProjection parseCellProjection(const std::string& name);
 /// "centroids" or "visibility". @throws Error (usage)
 CellSorting parseCellSorting(const std::string& name);
+/// "auto", "opengl" or "tiles". @throws Error (usage)
+Rasterizer parseRasterizer(const std::string& name);
 
 /// @throws Error (usage) for settings without a meaning on tetrahedra: another mode than dvr, shading, planes
 void checkCellSettings(const RenderSettings& settings);
@@ -60,16 +70,19 @@ void checkCellSettings(const RenderSettings& settings);
 struct ProjectionOptions {
   CellProjection projection = CellProjection::exact;
   CellSorting sorting = CellSorting::visibility;
+  Rasterizer rasterizer = Rasterizer::automatic;
 };
 
 /// What a picture by projection took.
 struct ProjectionReport {
-  std::string device;    ///< as OpenGL names it
-  long long cells = 0;   ///< drawn
+  Rasterizer rasterizer = Rasterizer::automatic;  ///< that drew it
+  std::string device;                             ///< as OpenGL names it; of tiles "cpu" or "cuda"
+  long long cells = 0;                            ///< drawn; by tiles those that may cover a pixel
   long long cycles = 0;  ///< faces across which the order is wrong; not counted by centroids
   std::size_t sent_bytes = 0;
   double order_ms = 0, draw_ms = 0;
-  double device_ms = 0;  ///< of draw_ms: what the GPU spent, by OpenGL's clock; 0 where OpenGL is a program
+  double bin_ms = 0;     ///< of draw_ms: until all tiles know their cells; 0 by OpenGL
+  double device_ms = 0;  ///< of draw_ms: what the GPU spent, by its own clock; 0 where there is none
 };
 
 /// Draws fields on tetrahedra by emission and absorption (dvr). The field, linear in each cell, is integrated
@@ -109,16 +122,15 @@ class CellRenderer {
   /// (1e-5).
   /// @param stop  set from elsewhere: returns soon, incomplete; without effect on a GPU. May be null
   Image render(ImageSize size, const StopFlag* stop = nullptr, CellReport* report = nullptr);
-  /// Prepares project(), which otherwise does so at the first call.
-  /// @throws Error (device) without OpenGL 3.3, or in a build without libepoxy
-  void prepareProjection();
   /// True if OpenGL is a program on the CPU, such as Mesa's llvmpipe: there render() is faster.
-  /// @throws Error (device) as prepareProjection()
+  /// @throws Error (device) without OpenGL 3.3, or in a build without libepoxy
   bool projectsOnCpu();
-  /// The same by projection of the cells with OpenGL, without a window.
-  /// @accuracy exact, visibility: within 1e-5 of render() in 98 % of the pixels, 2e-6 in the mean; 2e-4 at
-  /// most where no edge of a cell is within 1/32 pixel, else 2e-2: rasterisers round to 1/256 pixel
-  /// @throws Error (device) as prepareProjection()
+  /// The same by projection of the cells.
+  /// @accuracy exact, visibility: by tiles within 1e-5 of render(), where the order is right; by OpenGL in 98
+  /// % of the pixels, 2e-6 in the mean; 2e-4 at most where no edge of a cell is within 1/32 pixel, else 2e-2:
+  /// rasterisers round to 1/256 pixel
+  /// @throws Error (usage) for the published form by tiles in perspective; (device) for opengl as
+  /// projectsOnCpu()
   Image project(ImageSize size, const ProjectionOptions& options = {}, ProjectionReport* report = nullptr);
 
  private:

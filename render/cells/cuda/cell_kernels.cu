@@ -1,5 +1,6 @@
 #include "base/cuda/cuda_memory.h"
 #include "render/cells/cell_caster.h"
+#include "render/cells/cuda/tile_projector.h"
 
 namespace emscape::render {
 namespace {
@@ -118,6 +119,17 @@ class CudaCellCaster : public CellCaster {
 
   void setTransfer(const LinearTransfer& transfer) override { intervals_.upload(transfer.intervals()); }
 
+  TileTimes project(const TileCast& cast, Image& image) override {
+    end_distance_.upload(cast.end_depth, stream_);
+    TileTask task = cast.task;
+    task.transfer = transferView();
+    task.psi = {cast.table ? psi_.data() : nullptr};
+    task.end_depth = end_distance_.data();
+    const MeshOnDevice mesh{meshView(), static_cast<int>(points_.size()),
+                            static_cast<int>(vertices_.size() / 4)};
+    return projector_.project(task, mesh, cast.order, image, stream_);
+  }
+
   CellCounts cast(const CellCast& cast, const FaceTiles& tiles, Image& image) override {
     const FaceTiles::Lists lists = tiles.lists();
     faces_.upload(lists.faces, stream_);
@@ -126,14 +138,14 @@ class CudaCellCaster : public CellCaster {
     counts_.upload(std::vector<CellCounts>(1), stream_);
     picture_.resize(static_cast<std::size_t>(cast.camera.size.count()));
     CastTask task;
-    task.mesh = {points_.data(), vertices_.data(), other_side_.data(), values_.data()};
-    task.transfer = {intervals_.data(), static_cast<int>(intervals_.size())};
+    task.mesh = meshView();
+    task.transfer = transferView();
     task.psi = {cast.table ? psi_.data() : nullptr};
     task.camera = cast.camera;
     task.tiles = {faces_.data(), first_.data(), (cast.camera.size.width + kTile - 1) / kTile};
     task.start_cell = cast.start_cell;
     task.through = cast.through;
-    task.end_distance = end_distance_.size() > 0 ? end_distance_.data() : nullptr;
+    task.end_distance = end_distance_.data();
     castCells<<<static_cast<unsigned>(tiles.count()), kTile * kTile, 0, stream_>>>(task, picture_.data(),
                                                                                    counts_.data());
     emscape::cuda::checkLaunch("castCells");
@@ -145,7 +157,13 @@ class CudaCellCaster : public CellCaster {
   }
 
  private:
+  CellMeshView meshView() const {
+    return {points_.data(), vertices_.data(), other_side_.data(), values_.data()};
+  }
+  IntervalsView transferView() const { return {intervals_.data(), static_cast<int>(intervals_.size())}; }
+
   emscape::cuda::Stream stream_;
+  TileProjector projector_;
   emscape::cuda::Buffer<Vec3d> points_;
   emscape::cuda::Buffer<std::int32_t> vertices_;
   emscape::cuda::Buffer<volume::FaceId> other_side_;

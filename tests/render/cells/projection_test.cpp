@@ -101,14 +101,18 @@ TEST(CudaCells, AreTheCpusPicture) {
   }
 }
 
-/// Projection needs OpenGL by EGL.
+ProjectionOptions byOpenGl(CellProjection projection = CellProjection::exact) {
+  return {projection, CellSorting::visibility, Rasterizer::opengl};
+}
+
+/// Projection by OpenGL needs EGL.
 class Projection : public ::testing::Test {
  protected:
   void SetUp() override {
     try {
       CellRenderer renderer;
       prepare(renderer, wavy(2), lively(), "orbit");
-      renderer.project({4, 4});
+      renderer.project({4, 4}, byOpenGl());
     } catch (const Error& error) {
       if (error.code() != ErrorCode::device) throw;
       GTEST_SKIP() << error.what();
@@ -124,14 +128,14 @@ TEST_F(Projection, IsTheMarchedPicture) {
     prepare(renderer, wavy(8), lively(), camera);
     const Image marched = renderer.render(kSize);
     ProjectionReport report;
-    const Difference difference(renderer.project(kSize, {}, &report), marched);
+    const Difference difference(renderer.project(kSize, byOpenGl(), &report), marched);
     EXPECT_LT(difference.max, 2e-2) << camera;
     EXPECT_LT(difference.above_1e5, 0.02) << camera;
     EXPECT_LT(difference.mean, 2e-6) << camera;
     EXPECT_EQ(report.cycles, 0);
     // With parallel rays the published form is exact, too.
     if (std::string(camera).find("orthographic") == std::string::npos) continue;
-    EXPECT_LT(Difference(renderer.project(kSize, {CellProjection::published}), marched).max, 2e-2);
+    EXPECT_LT(Difference(renderer.project(kSize, byOpenGl(CellProjection::published)), marched).max, 2e-2);
   }
 }
 
@@ -178,7 +182,7 @@ TEST_F(Projection, IsTheMarchedPictureWhereNoEdgeIsNear) {
     SCOPED_TRACE(camera);
     CellRenderer renderer;
     prepare(renderer, field, lively(), camera);
-    const Image marched = renderer.render(kSize), projected = renderer.project(kSize);
+    const Image marched = renderer.render(kSize), projected = renderer.project(kSize, byOpenGl());
     const ProjectedEdges edges(*field.mesh, renderer);
     int far = 0, far_off = 0;
     double worst = 0;
@@ -211,7 +215,7 @@ TEST_F(Projection, IsHomogeneousWhereTheFieldIs) {
   prepare(renderer, field, fog,
           "lookat:eye_x_m=50,eye_y_m=-300,eye_z_m=50,target_x_m=50,target_y_m=50,target_z_m=50,"
           "projection=orthographic,fov_deg=10");
-  const Image image = renderer.project(kSize);
+  const Image image = renderer.project(kSize, byOpenGl());
   const double expected = 1 - std::pow(0.99, 100);
   int near = 0;
   for (const Rgba& pixel : image.pixels) {
@@ -230,9 +234,9 @@ TEST_F(Projection, TheGroundEndsRays) {
   for (const char* camera : {"orbit", "orbit:projection=orthographic", "orbit:distance=0.3"}) {
     CellRenderer renderer;
     prepare(renderer, wavy(8), lively(), camera);
-    const Image without = renderer.project(kSize);
+    const Image without = renderer.project(kSize, byOpenGl());
     renderer.setHeightField(ground);
-    const Image image = renderer.project(kSize);
+    const Image image = renderer.project(kSize, byOpenGl());
     EXPECT_GT(Difference(image, without).mean, 0.01) << camera;
     const Difference difference(image, renderer.render(kSize));
     EXPECT_LT(difference.max, 2e-2) << camera;
@@ -245,11 +249,11 @@ TEST_F(Projection, SendsFewerNumbersThanThePublishedAccount) {
   prepare(renderer, wavy(6), lively(), "orbit");
   const long long cells = 6 * 5 * 5 * 5;
   ProjectionReport report;
-  renderer.project(kSize, {CellProjection::published}, &report);
+  renderer.project(kSize, byOpenGl(CellProjection::published), &report);
   EXPECT_EQ(report.cells, cells);
   EXPECT_EQ(report.sent_bytes,
             24 * sizeof(float) * cells);  // 28 with the indices of vertices, which are their places
-  renderer.project(kSize, {CellProjection::exact}, &report);
+  renderer.project(kSize, byOpenGl(), &report);
   EXPECT_EQ(report.sent_bytes, 21 * sizeof(float) * cells);  // 25
 }
 
@@ -258,7 +262,7 @@ TEST_F(Projection, LeavesOutCellsWithoutAField) {
   field.values[3 * 36 + 2 * 6 + 2] = std::nanf("");
   CellRenderer renderer;
   prepare(renderer, field, lively(), "orbit");
-  const Difference difference(renderer.project(kSize), renderer.render(kSize));
+  const Difference difference(renderer.project(kSize, byOpenGl()), renderer.render(kSize));
   EXPECT_LT(difference.max, 2e-2);
   EXPECT_LT(difference.mean, 2e-6);
 }

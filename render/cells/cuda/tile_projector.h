@@ -1,0 +1,53 @@
+/// Cell projection by tiles of pixels, by CUDA.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "base/cuda/cuda_memory.h"
+#include "render/cells/cell_caster.h"
+
+namespace emscape::render {
+
+/// A mesh in device memory.
+struct MeshOnDevice {
+  CellMeshView view;
+  int points, cells;
+};
+
+class TileProjector {
+ public:
+  /// @param task   its points and cells are not set yet; the rest is in device memory
+  /// @param order  as TileCast::order
+  /// @throws Error (device)
+  TileTimes project(TileTask task, const MeshOnDevice& mesh, const std::vector<std::int32_t>* order,
+                    Image& image, cudaStream_t stream);
+
+ private:
+  /// All cells, the farthest first.
+  const std::int32_t* sorted(const TileTask& task, const MeshOnDevice& mesh, cudaStream_t stream);
+  /// Ranks of cells by the tiles that they touch, ascending in each; the first of each tile is in first_.
+  const int* bin(const TileTask& task, const MeshOnDevice& mesh, cudaStream_t stream);
+
+  template <class T>
+  using Buffer = emscape::cuda::Buffer<T>;
+  /// What a sort writes from one to the other.
+  template <class T>
+  struct Pair {
+    Buffer<T> from, to;
+  };
+  Buffer<ViewPoint> points_;
+  Buffer<PlacedCell> cells_;
+  Pair<float> depths_;
+  Pair<std::int32_t> order_;
+  Pair<unsigned> tile_counts_;  ///< of the cells; then the sums before each
+  Pair<unsigned> tiles_;
+  Pair<int> ranks_;
+  Buffer<unsigned> first_;
+  Buffer<unsigned long long> drawn_;
+  Buffer<std::byte> temporary_;
+  Buffer<Rgba> picture_;
+  emscape::cuda::TimeMark begin_, ordered_, binned_, drawn_mark_;
+};
+
+}  // namespace emscape::render

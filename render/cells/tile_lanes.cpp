@@ -1,0 +1,160 @@
+#include "base/simd_targets.h"
+#include "render/cells/tile_projection.h"
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/cells/tile_lanes.cpp"
+#include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register
+#include <hwy/highway.h>
+//
+#include "render/cells/integral_lanes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace emscape::render {
+namespace HWY_NAMESPACE {
+namespace {
+
+#if HWY_CAP_GE256
+/// A tile; neighbouring pixels of a row are in the lanes of a group.
+class TileInLanes {
+ public:
+  TileInLanes(const TileTask& task, const LaneTransferView& transfer, const PixelBox& pixels)
+      : task_(task), pixels_(pixels), integrals_(kTile * kGroups, IntegralLanes(transfer)) {
+    for (int y = pixels.first_y; y < pixels.end_y; ++y) {
+      for (int x = pixels.first_x; x < pixels.end_x; ++x) {
+        const PixelRay ray(task, x, y);
+        const int row = y - pixels.first_y, group = (x - pixels.first_x) / kLanes;
+        const int lane = (x - pixels.first_x) % kLanes;
+        x_[group].of[lane] = ray.x;
+        y_[row] = ray.y;
+        length_[row][group].of[lane] = ray.length;
+        end_depth_[row][group].of[lane] = ray.end_depth;
+        integral(row, group).reset(lane);
+        if (!open_[row][group]) ++open_groups_;
+        open_[row][group] = true;
+      }
+    }
+  }
+  /// Whether no ray sees farther cells.
+  bool isOpaque() const { return open_groups_ == 0; }
+
+  void add(const TileCell& cell) {
+    const PixelBox box = common(cell.pixels, pixels_);
+    const int first = (box.first_x - pixels_.first_x) / kLanes;
+    const int last = (box.end_x - 1 - pixels_.first_x) / kLanes;
+    for (int row = box.first_y - pixels_.first_y; row < box.end_y - pixels_.first_y; ++row) {
+      for (int group = first; group <= last; ++group) {
+        if (!open_[row][group]) continue;
+        if (task_.camera.orthographic) {
+          addRow<true>(cell, row, group);
+        } else {
+          addRow<false>(cell, row, group);
+        }
+      }
+    }
+  }
+
+  void write(Image& image) const {
+    for (int y = pixels_.first_y; y < pixels_.end_y; ++y) {
+      for (int x = pixels_.first_x; x < pixels_.end_x; ++x) {
+        const int across = x - pixels_.first_x;
+        image.at(x, y) = integral(y - pixels_.first_y, across / kLanes).color(across % kLanes);
+      }
+    }
+  }
+
+ private:
+  static constexpr int kTile = TileGrid::kTile, kGroups = kTile / kLanes;
+
+  IntegralLanes& integral(int row, int group) {
+    return integrals_[static_cast<std::size_t>(row * kGroups + group)];
+  }
+  const IntegralLanes& integral(int row, int group) const {
+    return integrals_[static_cast<std::size_t>(row * kGroups + group)];
+  }
+
+  /// See TileCell::meets() and addSegment().
+  template <bool kParallel>
+  HWY_INLINE void addRow(const TileCell& cell, int row, int group) {
+    const D zero = hn::Zero(kD), x = x_[group]();
+    const double y = y_[row];
+    const auto at = [&](double of_x, double constant)
+                        HWY_ATTR { return hn::MulAdd(hn::Set(kD, of_x), x, hn::Set(kD, constant)); };
+    const auto nearness = [&](const PlaneFunction& plane)
+                              HWY_ATTR { return at(plane.of_x, plane.of_y * y + plane.constant); };
+    D enter = hn::Set(kD, HUGE_VAL), leave = nearness(cell.nearness[3]);
+    for (int n = 0; n < cell.entries; ++n) enter = hn::Min(enter, nearness(cell.nearness[n]));
+    for (int n = cell.entries; n < 3; ++n) leave = hn::Max(leave, nearness(cell.nearness[n]));
+    M met = hn::Gt(enter, leave);
+    if (!kParallel) met = hn::And(met, hn::Gt(leave, zero));
+    if (hn::AllFalse(kD, met)) return;
+
+    D begin, end, front, slope;
+    if (kParallel) {
+      begin = hn::Max(zero, hn::Neg(enter));
+      end = hn::Neg(leave);
+      front = at(cell.gradient.x, cell.gradient.y * y + cell.eye_value);
+      slope = hn::Set(kD, cell.gradient.z);
+    } else {
+      const D one = hn::Set(kD, 1.0);
+      begin = one / enter;
+      end = one / leave;
+      front = hn::Set(kD, cell.eye_value);
+      slope = at(cell.gradient.x, cell.gradient.y * y + cell.gradient.z);
+    }
+    end = hn::Min(end, end_depth_[row][group]());
+    IntegralLanes& integral_here = integral(row, group);
+    const D least = hn::Set(kD, task_.through);
+    met = hn::And(met, hn::And(hn::Gt(end, begin), hn::Ge(integral_here.through(), least)));
+    integral_here.add(met, hn::MulAdd(begin, slope, front), hn::MulAdd(end, slope, front),
+                      (end - begin) * length_[row][group]());
+    if (hn::AllTrue(kD, hn::Lt(integral_here.through(), least))) {
+      open_[row][group] = false;
+      --open_groups_;
+    }
+  }
+
+  const TileTask& task_;
+  const PixelBox pixels_;
+  std::vector<IntegralLanes> integrals_;
+  Reals x_[kGroups], length_[kTile][kGroups], end_depth_[kTile][kGroups];
+  double y_[kTile] = {};
+  bool open_[kTile][kGroups] = {};
+  int open_groups_ = 0;
+};
+
+void compositeLanes(const TileTask& task, const LaneTransferView& transfer, const TileCells& cells,
+                    Image& image) {
+  constexpr int kAhead = 6;  // cells and points lie all over the memory
+  TileInLanes tile(task, transfer, cells.pixels);
+  for (const int* rank = cells.begin; rank < cells.end && !tile.isOpaque(); ++rank) {
+    if (cells.end - rank > 2 * kAhead) {
+      hwy::Prefetch(&task.cells[rank[2 * kAhead]]);
+      for (const std::int32_t corner : task.cells[rank[kAhead]].corners) hwy::Prefetch(&task.points[corner]);
+    }
+    tile.add(TileCell(task, *rank));
+  }
+  tile.write(image);
+}
+#else
+void compositeLanes(const TileTask& task, const LaneTransferView&, const TileCells& cells, Image& image) {
+  compositeTile(task, cells, image);
+}
+#endif
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace emscape::render
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace emscape::render {
+
+HWY_EXPORT(compositeLanes);
+
+void compositeTileInLanes(const TileTask& task, const LaneTransferView& transfer, const TileCells& cells,
+                          Image& image) {
+  HWY_DYNAMIC_DISPATCH(compositeLanes)(task, transfer, cells, image);
+}
+
+}  // namespace emscape::render
+#endif
