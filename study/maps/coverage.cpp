@@ -70,7 +70,7 @@ void checkRequest(const CoverageRequest& request, const scenario::Scenario& scen
       refuse(fmt::format("is a difference of decibels; quantity '{}' has none", quantity.name));
     }
     if (isOfJamming(product) && !scenario::needsJammer(request.quantity)) {
-      refuse(fmt::format("asks for a quantity that jamming changes; '{}' is none", quantity.name));
+      refuse(fmt::format("needs a quantity that jamming affects, not '{}'", quantity.name));
     }
     if (product != Product::value && quantity.categorical) {
       refuse(fmt::format("asks for a level; quantity '{}' is an index", quantity.name));

@@ -190,7 +190,7 @@ void addBenchCells(CLI::App& bench, const GlobalOptions& global, Action& action)
   CLI::App* command = bench.add_subcommand("cells", "Time pictures of tetrahedra, projected and marched");
   command->fallthrough();
   command->footer(R"(
-Views around the field, without ground; each is ordered, sent and drawn anew. GPU: what it spends on drawing, by
+Views around the field, without ground; each is ordered, sent and drawn anew. GPU: its time for drawing, by
 OpenGL's clock; 0 where OpenGL is a program on the CPU. Floats: sent per tetrahedron and picture.
 
 Example:
@@ -214,7 +214,7 @@ Example:
   command->add_option("--time", options->selection.times, "Instant, in seconds; default: the first");
   command
       ->add_option("--frames", options->frames,
-                   "Timed frames that are projected, after a warm-up; 0: none is, and OpenGL is not needed")
+                   "Timed frames that are projected, after a warm-up; 0: none, OpenGL is not needed")
       ->check(CLI::Range(0, 100000));
   command->add_option("--marched-frames", options->marched_frames, "Timed frames that are marched")
       ->check(CLI::Range(1, 100000));

@@ -58,16 +58,16 @@ void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& c
     command.add_option_function<std::string>(name, take, help)->check(CLI::IsMember(names));
   };
   addChoice("--cells",
-            "Tetrahedra are marched, or projected by OpenGL; auto: marched, but for incomplete pictures "
-            "where OpenGL has a GPU and CUDA does not",
+            "Tetrahedra are marched, or projected by OpenGL; auto: marched, except for incomplete pictures "
+            "if OpenGL has a GPU and CUDA does not",
             [&cells](const std::string& name) { cells.method = playback::parseCellMethod(name); },
             {"auto", "march", "project"});
-  addChoice("--cell-order", "Of projected cells; default: visibility",
+  addChoice("--cell-order", "Order of projected cells; default: visibility",
             [&cells](const std::string& name) { cells.projection.sorting = render::parseCellSorting(name); },
             {"centroids", "visibility"});
   addChoice(
       "--cell-perspective",
-      "How projection finds where a ray leaves a cell: exact, or as it was published; default: exact",
+      "How projection finds where a ray leaves a cell: exact, or as published; default: exact",
       [&cells](const std::string& name) { cells.projection.projection = render::parseCellProjection(name); },
       {"published", "exact"});
 }
