@@ -89,7 +89,7 @@ TEST(Coverage, RefusesWhatItCannotDo) {
   EXPECT_THAT(errorOf({"--quantity", "loudness"}, 2), HasSubstr("unknown quantity 'loudness'"));
   EXPECT_THAT(errorOf({"--products", "fraction"}, 2), HasSubstr("two times"));
   EXPECT_THAT(errorOf({"--format", "shp"}, 2), HasSubstr("shp"));
-  EXPECT_THAT(errorOf({"--crs", "EPSG:4326"}, 2), HasSubstr("no projection in metres"));
+  EXPECT_THAT(errorOf({"--crs", "EPSG:4326"}, 2), HasSubstr("not a projection in metres"));
   EXPECT_THAT(errorOf({"--area", "10,10,5000"}, 3), HasSubstr("terrain is missing"));
   EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
 }

@@ -55,7 +55,7 @@ std::vector<Verb> Session::pictureVerbs() {
        }},
       {"step_voxels",
        {{"value"}},
-       "Distance of samples in voxels, 0.05..10",
+       "Distance between samples in voxels, 0.05..10",
        [](Session& session, const Command& command) {
          const double value = command.number("value");
          if (!(value >= 0.05 && value <= 10))
