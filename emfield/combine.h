@@ -207,7 +207,7 @@ struct CombineTask {
 };
 
 /// True if a pass adds an emitter to any of its accumulators. Echoes of radars are added by other passes.
-inline bool takesPart(const CombineTask& task, const CombineEmitter& emitter) {
+inline bool isIncluded(const CombineTask& task, const CombineEmitter& emitter) {
   for (const ChannelWeight& share : emitter.shares) {
     if (task.accumulators[static_cast<std::size_t>(share.channel)].value != nullptr) return true;
   }

@@ -27,10 +27,9 @@ int groupsOf(int count) {
 struct SectorBounds {
   float base_msl_m = 0;
   float tx_m = 0;
-  std::vector<float> lowered_m;  ///< largest lowered height of an obstacle
-  std::vector<float> tx_slope;   ///< largest slope from the transmitter to a lowered obstacle
-  /// The largest over this block and all before it, and a lower bound of that.
-  std::vector<float> highest_tx_slope, least_tx_slope;
+  std::vector<float> lowered_m;         ///< largest lowered height of an obstacle
+  std::vector<float> tx_slope;          ///< largest slope from the transmitter to a lowered obstacle
+  std::vector<float> highest_tx_slope;  ///< the largest over this block and all before it
   /// The last block before this one that may hold the largest slope of those before this one; -1: none.
   std::vector<int> steep_before;
   /// The same of groups.
@@ -278,7 +277,7 @@ EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terr
   bounds.tx_m = tx;
   const int blocks = terrain.blocks(), groups = groupsOf(blocks);
   float least[kGroup];
-  float highest_slope = -HUGE_VALF, least_slope = -HUGE_VALF;
+  float max_slope = -HUGE_VALF, min_slope = -HUGE_VALF;  // bounds of the largest slope so far
   int steep = -1;  // the last block that may hold the largest slope so far
   for (int g = 0; g < groups; ++g) {
     const int begin = g * kGroup;
@@ -311,13 +310,12 @@ EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terr
     bounds.group_tx_slope[g] = group_steepest;
     for (int n = 0; n < count; ++n) {
       const int block = begin + n;
-      while (steep >= 0 && bounds.tx_slope[steep] < least_slope) steep = bounds.steep_before[steep];
+      while (steep >= 0 && bounds.tx_slope[steep] < min_slope) steep = bounds.steep_before[steep];
       bounds.steep_before[block] = steep;
       steep = block;
-      highest_slope = std::max(highest_slope, steepest[n]);
-      least_slope = std::max(least_slope, least[n]);
-      bounds.highest_tx_slope[block] = highest_slope;
-      bounds.least_tx_slope[block] = least_slope;
+      max_slope = std::max(max_slope, steepest[n]);
+      min_slope = std::max(min_slope, least[n]);
+      bounds.highest_tx_slope[block] = max_slope;
     }
   }
   for (int g = groups; g < groupsOf(groups) * kGroup; ++g) {
@@ -474,8 +472,7 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
   parallelFor(sectors.count(), 16, [&](int begin, int end) {
     SectorTerrain terrain(task.station, task.ground, bounds, sector_posts);
     SectorBounds of_sector;
-    for (auto* const array : {&of_sector.lowered_m, &of_sector.tx_slope, &of_sector.highest_tx_slope,
-                              &of_sector.least_tx_slope}) {
+    for (auto* const array : {&of_sector.lowered_m, &of_sector.tx_slope, &of_sector.highest_tx_slope}) {
       array->resize(groups * kGroup);
     }
     of_sector.steep_before.resize(groups * kGroup);

@@ -249,7 +249,7 @@ void FrameSource::setComparison(bool on) {
 }
 
 void FrameSource::setQuantity(const std::string& quantity) {
-  throw Error(ErrorCode::usage, fmt::format("quantity '{}': {} holds one quantity alone", quantity, name()));
+  throw Error(ErrorCode::usage, fmt::format("quantity '{}': {} has only one quantity", quantity, name()));
 }
 
 int FrameSource::nearestIndex(double time_s) const {
@@ -268,7 +268,7 @@ std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const Co
   const InputKind kind = inputKindOf(selection.input);
   if (!selection.mesh.empty() && kind != InputKind::scenario) {
     throw Error(ErrorCode::usage,
-                selection.input + " is no scenario: a mesh is that of a field to be computed");
+                selection.input + " is not a scenario: --mesh applies to a field to be computed");
   }
   switch (kind) {
     case InputKind::scenario:

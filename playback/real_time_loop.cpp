@@ -224,8 +224,8 @@ void RealTimeLoop::drawFrame(const render::FramePlan& plan) {
   event.cast_ms = drawn_.cast_ms;
   event.interpolate_ms = drawn_.interpolate_ms;
   event.restored = drawn_.pattern == render::Pattern::full;
-  if (told_pattern_ != drawn_.pattern) event.reason = controller_.reason();
-  told_pattern_ = drawn_.pattern;
+  if (reported_pattern_ != drawn_.pattern) event.reason = controller_.reason();
+  reported_pattern_ = drawn_.pattern;
   countSlots(slot, event);
   report(event);
   controller_.frameDone(costOf(drawn_, event.prepare_ms + std::max(event.field_ms, event.labels_ms)));

@@ -9,7 +9,7 @@ namespace {
 std::string_view consequenceOf(Beyond beyond) {
   switch (beyond) {
     case Beyond::warned:
-      return "computed all the same";
+      return "computed, with a warning";
     case Beyond::clamped:
       return "the nearest allowed value is used";
     case Beyond::refused:
@@ -20,7 +20,7 @@ std::string_view consequenceOf(Beyond beyond) {
 
 /// Consequence in the table of limits.
 std::string inTable(Beyond beyond) {
-  return std::string(consequenceOf(beyond)) + (beyond == Beyond::refused ? "" : ", with a warning");
+  return std::string(consequenceOf(beyond)) + (beyond == Beyond::clamped ? ", with a warning" : "");
 }
 
 /// The unit, preceded by a space if there is one.
@@ -45,7 +45,7 @@ std::string outsideMessage(const ModelLimit& limit, double value_si) {
 }
 
 std::string limitsTable(const ModelLimit* const* limits, int count) {
-  std::string table = "| parameter | unit | least | most | outside | remark |\n|---|---|---|---|---|---|\n";
+  std::string table = "| parameter | unit | min | max | outside | remark |\n|---|---|---|---|---|---|\n";
   for (int i = 0; i < count; ++i) {
     const ModelLimit& limit = *limits[i];
     table += fmt::format("| {} | {} | {:.6g} | {:.6g} | {} | {} |\n", limit.parameter, limit.unit, limit.min,

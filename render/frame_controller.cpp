@@ -104,8 +104,7 @@ double FrameController::epsilon_ms() const {
 }
 
 void FrameController::end(Doing doing) {
-  if (doing_ != doing)
-    throw Error(ErrorCode::other, "FrameController: told of the end of what was not begun");
+  if (doing_ != doing) throw Error(ErrorCode::other, "FrameController: end of a frame that was not started");
   doing_ = Doing::nothing;
 }
 

@@ -17,7 +17,7 @@ const std::vector<QualityLevel>& qualityLevels() {
 PatternChoice::PatternChoice(double budget_ms, std::optional<Pattern> fixed)
     : budget_ms_(budget_ms),
       fixed_(fixed),
-      reason_(fixed ? fmt::format("{} was asked for", toString(*fixed))
+      reason_(fixed ? fmt::format("{} was requested", toString(*fixed))
                     : fmt::format("{} until frames are measured against the budget of {:.3g} ms",
                                   toString(pattern()), budget_ms)) {}
 

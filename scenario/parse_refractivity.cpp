@@ -188,9 +188,10 @@ void warnOfEnsemble(const Section& section, const Values& values, ParseContext& 
         fmt::format("'members' is {}, but no value has a deviation: there is one member", members));
   }
   if (section.has("quantile") && (members == 1 || spread_keys.empty())) {
-    context.problems.addWarning(section.locationOf("quantile"),
-                                "'quantile' is of an ensemble, which needs 'members' above 1 and a value "
-                                "with a deviation");
+    context.problems.addWarning(
+        section.locationOf("quantile"),
+        "'quantile' applies to an ensemble, which needs 'members' above 1 and a value "
+        "with a deviation");
   }
 }
 

@@ -103,11 +103,10 @@ RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
   receiver.swerling = section.integer("swerling");
   receiver.detection = section.choice<DetectionMethod>("detection");
   if (receiver.detection == DetectionMethod::albersheim && receiver.swerling != 0) {
-    context.problems.addError(
-        section.locationOf("detection"),
-        fmt::format(
-            "'detection' is albersheim, which knows steady targets alone (swerling 0), not swerling {}",
-            receiver.swerling));
+    context.problems.addError(section.locationOf("detection"),
+                              fmt::format("'detection' is albersheim, which supports only steady "
+                                          "(non-fluctuating) targets (swerling 0), not swerling {}",
+                                          receiver.swerling));
   }
   receiver.beam_shape_loss = section.choice<BeamShapeLoss>("beam_shape_loss");
   receiver.cfar_cells = section.integer("cfar_cells");

@@ -115,7 +115,7 @@ std::vector<fs::path> filesOfFolder(const fs::path& folder) {
 }
 
 /// The files in the folder of a numbered one that differ from it only in the number.
-std::vector<fs::path> filesBeside(const fs::path& path) {
+std::vector<fs::path> siblingFiles(const fs::path& path) {
   const SeriesName own(path);
   if (own.number < 0) return {path};
   std::vector<fs::path> files;
@@ -203,7 +203,7 @@ std::vector<fs::path> seriesOf(const fs::path& path) {
   }
   requireFormat(path);
   if (!fs::exists(path)) throw Error(ErrorCode::bad_input, {path.string()}, "there is no such file");
-  return filesBeside(path);
+  return siblingFiles(path);
 }
 
 }  // namespace emscape::volume

@@ -38,7 +38,8 @@ Described describeByHeader(const fs::path& header) {
   const auto type_name = requiredFromJson<std::string>(json, "type", file);
   const std::optional<VoxelType> type = voxelTypeFromName(type_name);
   if (!type) {
-    throw Error(ErrorCode::bad_input, {file}, "type \"" + type_name + "\" is none of " + voxelTypeNames());
+    throw Error(ErrorCode::bad_input, {file},
+                "type \"" + type_name + "\" must be one of " + voxelTypeNames());
   }
   described.type = *type;
   const auto endianness = requiredFromJson<std::string>(json, "endianness", file);

@@ -96,8 +96,7 @@ class TreeWalk {
   /// The values of a node; inactive ones may be left out.
   void values(int log2, const std::uint8_t* value_mask) {
     const auto kind = reader_.value<std::int8_t>("kind of a node's values");
-    if (kind < 0 || kind > kAllValues)
-      reader_.fail("values of kind " + std::to_string(kind) + ", which is none");
+    if (kind < 0 || kind > kAllValues) reader_.fail("unknown kind " + std::to_string(kind) + " of values");
     const bool one_value = kind == kOneInactive || kind == kMaskAndOneInactive;
     const bool two_values = kind == kMaskAndTwoInactive;
     const bool selection = kind == kMaskOfSigns || kind == kMaskAndOneInactive || kind == kMaskAndTwoInactive;

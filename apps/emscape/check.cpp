@@ -73,7 +73,7 @@ void printAsTable(const std::vector<Outcome>& checked, const std::vector<std::st
 }
 
 int check(const std::string& dir, const GlobalOptions& global) {
-  const ReferenceFolder folder = emfield::lookInto(dir);
+  const ReferenceFolder folder = emfield::findDatasets(dir);
   std::vector<Outcome> checked;
   std::vector<std::string> not_checked;
   for (const ReferenceDataset* dataset : folder.present) {
@@ -109,7 +109,7 @@ model, absent and unknown datasets are listed and skipped.
 
 Examples:
   emscape check reference
-  emscape check reference/pe         one family alone
+  emscape check reference/pe         one family only
   emscape check reference --json     {"datasets": [{"name", "cases", "max_abs_error", "tolerance", "unit", "pass"}], "pass"}
 
 Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not or none was run, 3 for a file that

@@ -224,13 +224,13 @@ int compare(const CompareCommand& command, const GlobalOptions& global) {
 
 void addCompare(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "compare", "What a scenario gains and loses against another, or a folder of maps: areas, and why");
+      "compare", "Compare the coverage of two scenarios or folders of maps: areas gained and lost, and why");
   command->fallthrough();
   command->footer(R"(
 A and B are two scenarios, or one with --set-b, or two folders that `emscape coverage` wrote. Maps are of B less A: for products
 that mark an area (covered, jam_loss, burn_through) what is gained, lost and kept, for all others the difference. The table has
 the areas; the largest connected ones that changed are explained by the path from the emitter that decides, in A and in B, as
-`emscape profile` does. Products are those of `emscape coverage`, but best.
+`emscape profile` does. Products are those of `emscape coverage`, except best.
 
 Folders are compared as they are: nothing is computed again. They need GeoTIFFs (--format cog) of the same pixels, quantity,
 threshold and units. All maps are compared; --products, --heights and --times choose some. Paths are explained if both scenarios
@@ -247,7 +247,7 @@ DIR has maps, report.html, report.json and study.json, as `emscape coverage` wri
   command->add_option("A", options->a, "Scenario (YAML or JSON), or folder of emscape coverage")->required();
   command->add_option("B", options->b, "Scenario or folder that A is compared with; default: A with --set-b");
   addSetOption(*command, options->edits);
-  addSetOption(*command, options->edits_b, "--set-b", "changes a value of B alone");
+  addSetOption(*command, options->edits_b, "--set-b", "changes a value of B only");
   command->add_option("-o,--output", options->folder, "Folder to write")->required();
   addMapOptions(*command, options->maps);
   command->add_option("--volume", options->volume,

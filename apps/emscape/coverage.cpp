@@ -107,7 +107,7 @@ void addCoverage(CLI::App& app, const GlobalOptions& global, Action& action) {
 Each pixel is computed at its centre, on the surface itself, and equals `emscape profile` there
 (parabolic_equation: the mean over cells between marched azimuths, which differs over terrain). A height above ground follows the
 ground; pixels below ground, without terrain or beyond the area hold no value. Radars look at the target, wherever their scan
-points. A place is covered where the quantity is at or above --threshold.
+points. A pixel is covered if the quantity is at or above --threshold.
 
 Products:
 {}

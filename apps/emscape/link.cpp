@@ -91,13 +91,13 @@ int link(const LinkCommand& command, const GlobalOptions& global) {
 
 void addLink(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "link", "Links over time: what receivers receive of emitters, and radars detect of targets");
+      "link", "Links over time: what receivers receive from emitters, and which targets radars detect");
   command->fallthrough();
   command->footer(R"(
 For every pair of an emitter and a receiver on a platform: received power, the sum of all others in the band, noise, the
 ratio of signal to noise and interference (SINR), J/S, whether it is received, and what blocks the path. For every pair of a radar and a
 target: SNR, J/S and the probability of detection of one look, with the beam on the target, and of all looks so far.
-The tables show some twenty times of each pair; --csv and --json have all.
+The tables show about twenty times of each pair; --csv and --json contain all.
 
 Examples:
   emscape link scenarios/links.yaml

@@ -58,10 +58,10 @@ struct RenderOptions {
   std::string compare;
   std::string range;
   std::string theme;
-  double step_voxels = 0;
+  double step_voxels = render::RenderSettings{}.step_voxels;
   double mida_gamma = 0;
   double iso_value = 0;
-  double iso_opacity = 0;
+  double iso_opacity = render::RenderSettings{}.iso_opacity;
   bool shading = false;
   double exaggeration = 0;
   std::vector<render::CutPlane> planes;
@@ -349,7 +349,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
 void addRealTimeOptions(CLI::App& command, RenderOptions& options) {
   CLI::Option* realtime = command.add_flag(
       "--realtime", options.realtime,
-      "Play against the wall clock, without a window: interpolated while it changes, exact when it settles");
+      "Play in real time, without a window: interpolated while the picture changes, exact when it is still");
   const auto add = [&](const char* name, auto& value, const char* help) {
     return command.add_option(name, value, help)->needs(realtime);
   };
@@ -399,7 +399,7 @@ Examples:
   addCompareOption(*command, options->compare, "Draw");
   command->add_option(
       "--state", options->state,
-      "View file: camera, colours, time, edits and the rest; options that are given count more");
+      "View file: camera, colours, time, edits and the rest; options on the command line override it");
   command->add_option("--save-state", options->save_state,
                       "Write the view as a view file; --output may then be omitted");
   command->add_option("-o,--output", options->outputs,
@@ -407,7 +407,7 @@ Examples:
   command->add_option("--size", options->size, "Picture size in pixels, WxH; default: 1280x720");
   command->add_option("--mode", options->mode, "Compositing mode; default: dvr")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
-  command->add_option("--rays", options->rays, "Pixels that are cast, the rest interpolated; auto: all")
+  command->add_option("--rays", options->rays, "Pixels to cast; the others are interpolated; auto: all")
       ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter", "adaptive"}));
   command->add_option("--interpolate", options->interpolate, "Precision of interpolated pixels")
       ->check(CLI::IsMember({"float", "8bit"}));
@@ -416,9 +416,9 @@ Examples:
                       "lookat:eye_x_m=..,..,target_x_m=..,..");
   command->add_option("--transfer", options->transfer,
                       "Colours and opacities (JSON); default: fitted to the value range");
-  command->add_option(
-      "--times", options->selection.times,
-      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: all steps, for a .png alone the first");
+  command->add_option("--times", options->selection.times,
+                      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: all steps, or the first if the "
+                      "only output is a .png");
   command->add_option("--quantity", options->quantity, "Quantity or channel to draw; default: the first");
   command->add_option("--range", options->range, "MIN:MAX of the colours; default: the range of the series");
   command->add_option("--scenario", options->selection.scenario,
@@ -427,12 +427,14 @@ Examples:
       ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
       ->check(within(render::kExaggerationLimits));
   addPlaneOption(*command, options->planes);
-  command->add_option("--step", options->step_voxels, "Distance of samples, in voxels; default: 1")
+  command->add_option("--step", options->step_voxels, "Distance between samples, in voxels")
       ->check(within(render::kStepLimits));
   command->add_option("--mida-gamma", options->mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
       ->check(within(render::kMidaGammaLimits));
-  command->add_option("--iso-value", options->iso_value,
-                      "Value of the isosurface, in the quantity's unit; default: the middle of the colours");
+  command
+      ->add_option("--iso-value", options->iso_value,
+                   "Value of the isosurface, in the quantity's unit; default: the middle of the colours")
+      ->default_str("");
   command->add_option("--iso-opacity", options->iso_opacity, "Opacity of the isosurface")
       ->check(within(render::kIsoOpacityLimits));
   command->add_flag("--shading", options->shading, "Shading of dvr and mida; iso is always shaded");
@@ -443,8 +445,9 @@ Examples:
                    "Frames per second of a video (default 10); with --realtime: the maximum")
       ->check(CLI::Range(0.1, 240.0));
   command->add_flag("--exact", options->exact, "No early termination of rays");
-  command->add_option("--terrain", options->show_terrain, "Draw the ground: on or off");
-  command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off");
+  command->add_option("--terrain", options->show_terrain, "Draw the ground: on or off")->default_str("on");
+  command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off")
+      ->default_str("on");
   command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,
                     "Compute although elevation data is missing; the holes are drawn as such");
   addMeshOptions(*command, options->selection.mesh, options->cells);

@@ -177,7 +177,8 @@ Examples:
   command->add_flag("--force", options->force, "Replace the series in the folder")->excludes("--resume");
   command->add_flag("--allow-missing-terrain", options->allow_missing_terrain,
                     "Compute although elevation data is missing; voxels over holes are masked");
-  command->add_option("--cache-mib", options->cache_mib, "Bound on the per-emitter caches in MiB; 0: none")
+  command
+      ->add_option("--cache-mib", options->cache_mib, "Limit of the per-emitter caches in MiB; 0: no limit")
       ->check(CLI::Range(0.0, 1e6));
   command->callback(
       [options, &global, &action] { action = [options, &global] { return simulate(*options, global); }; });

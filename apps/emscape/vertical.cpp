@@ -95,12 +95,12 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
 
 void addVertical(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand(
-      "vertical", "Vertical coverage of an emitter: a quantity over range and height at azimuths");
+      "vertical", "Vertical coverage of an emitter: a quantity over range and height at given azimuths");
   command->fallthrough();
   command->footer(R"(
 Each value is that of `emscape profile` at its point, with the terrain below and the jammers that are active. Radars look at
-the target (radar_look: target). The line is where the threshold is reached. With --blake the terrain gives way to a smooth
-earth at the height of the ground below the emitter: a range-height-angle chart, over the slant range, with rays of constant
+the target (radar_look: target). The line is where the threshold is reached. With --blake a smooth earth replaces the
+terrain, at the height of the ground below the emitter: a range-height-angle chart, over the slant range, with rays of constant
 elevation and the line that free space would have.
 
 Examples:
@@ -117,7 +117,7 @@ not have by itself.)");
   command->add_option("--emitter", options->emitter, "Name of the emitter")->required();
   command
       ->add_option("--azimuth", options->azimuths_deg,
-                   "Degrees clockwise from true north, with commas between them: a panel each")
+                   "Degrees clockwise from true north, with commas between them: one panel each")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::Range(-360.0, 360.0))
@@ -131,7 +131,7 @@ not have by itself.)");
                    "Distance of the diagram's right edge from the emitter (m); default: the instrumented "
                    "range, else the "
                    "region's edge")
-      ->check(CLI::Range(study::VerticalRequest::kLeastRange_m, study::VerticalRequest::kLargestRange_m))
+      ->check(CLI::Range(study::VerticalRequest::kMinRange_m, study::VerticalRequest::kMaxRange_m))
       ->default_str("");
   command
       ->add_option("--max-height", options->max_height_m,

@@ -13,8 +13,8 @@ namespace emscape::view {
 namespace {
 
 constexpr const char* kFooter = R"(
-The window shows the picture while it changes, interpolated if need be, and makes it exact as soon as it stands still.
-F1 lists keys and mouse; --script runs the same actions without hands.
+The window shows the picture while it changes, interpolated if necessary, and makes it exact when the changes end.
+F1 lists keys and mouse; --script runs the same actions from a file.
 
 Examples:
   emscape view
@@ -29,7 +29,7 @@ Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectati
 /// Parsed options. Those that are also part of a view have an effect only if they are given.
 struct Typed {
   std::string state, size, mode, rays = "auto", camera, range, theme, quantity;
-  double time_s = 0, exaggeration = 0, step_voxels = 0, budget_ms = 40;
+  double time_s = 0, exaggeration = 0, step_voxels = render::RenderSettings{}.step_voxels, budget_ms = 40;
   bool shading = false;
   std::vector<scenario::Edit> edits;
   std::string compare;
@@ -43,15 +43,17 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
       "without it the window asks for one");
   app.add_option("--scenario", options.scenario, "Scenario of the ground and emitters to draw with volumes");
   app::addMeshOptions(app, options.mesh, options.cells);
-  app.add_option("--state", typed.state,
-                 "View file: camera, colours, time, edits and the rest; options that are given count more");
+  app.add_option(
+      "--state", typed.state,
+      "View file: camera, colours, time, edits and the rest; options on the command line override it");
   app::addSetOption(app, typed.edits);
   app::addCompareOption(app, typed.compare, "Show first");
   app.add_option("--size", typed.size,
                  "Window size in pixels, WxH; default: 1200x900, with --state as large as its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
-      ->check(CLI::Range(0.5, 4.0));
-  app.add_option("--time", typed.time_s, "First instant, in seconds; default: 0");
+      ->check(CLI::Range(0.5, 4.0))
+      ->default_str("");
+  app.add_option("--time", typed.time_s, "First instant, in seconds");
   app.add_option("--quantity", typed.quantity, "Quantity or channel to draw; default: the first");
   app.add_option("--mode", typed.mode, "Compositing mode; default: dvr")
       ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
@@ -60,21 +62,20 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_option("--transfer", options.transfer, "Colours and opacities (JSON); default: fitted");
   app.add_option("--theme", typed.theme, "Colours of texts and background; default: dark")
       ->check(CLI::IsMember({"dark", "light"}));
-  app.add_option("--rays", typed.rays,
-                 "Pixels that are cast while the picture changes; auto: as the budget allows")
+  app.add_option("--rays", typed.rays, "Pixels to cast while the picture changes; auto: as the budget allows")
       ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter", "adaptive"}));
   app.add_option("--budget", typed.budget_ms, "Milliseconds between two pictures while it changes")
       ->check(CLI::Range(1.0, 1e5));
   app.add_option("--exaggeration", typed.exaggeration, "Vertical exaggeration; 0: chosen from the box")
       ->check(app::within(render::kExaggerationLimits));
   app::addPlaneOption(app, typed.planes);
-  app.add_option("--step", typed.step_voxels, "Distance of samples, in voxels; default: 1")
+  app.add_option("--step", typed.step_voxels, "Distance between samples, in voxels")
       ->check(app::within(render::kStepLimits));
   app.add_flag("--shading", typed.shading, "Shading of dvr and mida; iso is always shaded");
   app.add_flag("--allow-missing-terrain", options.allow_missing_terrain,
                "Compute although elevation data is missing; the holes are drawn as such");
   app.add_option("--script", options.script, "Script: JSON lines (docs/viewer.md)");
-  app.add_option("--log", options.log, "Writes the window's log, as JSON lines");
+  app.add_option("--log", options.log, "Write the window's log, as JSON lines");
   app.add_flag_callback(
       "--no-share-gpu", [&options] { options.share_gpu = false; },
       "Copy every picture through the host's memory. Otherwise, where CUDA and the display's OpenGL "

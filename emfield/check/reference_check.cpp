@@ -113,7 +113,7 @@ ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
 
 }  // namespace
 
-ReferenceFolder lookInto(const fs::path& folder) {
+ReferenceFolder findDatasets(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw Error(ErrorCode::bad_input, fmt::format("{}: no such folder", folder.string()));
   }

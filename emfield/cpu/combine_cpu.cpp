@@ -158,7 +158,7 @@ void combineRow(const CombineTask& task, int j, int k, float* buffer) {
     }
   }
   for (const CombineEmitter& emitter : task.emitters) {
-    if (!takesPart(task, emitter)) continue;
+    if (!isIncluded(task, emitter)) continue;
     const float* const power_wm2 = powerOf(emitter, row, first, buffer);
     for (const ChannelWeight& share : emitter.shares) {
       const Accumulator& out = task.accumulators[share.channel];

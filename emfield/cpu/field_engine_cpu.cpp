@@ -149,7 +149,7 @@ void CpuEngine::combine(const CombinePass& pass) {
     EmitterBeam& beam = task.emitters.back().beam;
     beam.geometry = slots_[member.slot].view();
     beam.pattern = member.antenna->view();
-    if (takesPart(task, task.emitters.back()))
+    if (isIncluded(task, task.emitters.back()))
       kept_power_.choose(static_cast<std::size_t>(member.slot), member.antenna, task.emitters.back());
   }
   Stopwatch watch;

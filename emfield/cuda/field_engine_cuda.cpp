@@ -158,7 +158,7 @@ void CudaEngine::combine(const CombinePass& pass) {
     EmitterBeam& beam = task.emitters.back().beam;
     beam.geometry = geometry_.view(member.slot);
     beam.pattern = patternOf(member.antenna);
-    if (takesPart(task, task.emitters.back()))
+    if (isIncluded(task, task.emitters.back()))
       kept_power_.choose(static_cast<std::size_t>(member.slot), member.antenna, task.emitters.back());
   }
   clock_.begin(stream_);

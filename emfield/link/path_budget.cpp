@@ -147,7 +147,7 @@ std::vector<std::string> rangeWarnings(const scenario::Waveform& waveform, doubl
   if (waveform.instrumented_range_m && range_m > *waveform.instrumented_range_m) {
     warnings.push_back(
         fmt::format("the point is beyond the radar's instrumented range of {:.1f} km; detection is computed "
-                    "all the same",
+                    "nevertheless",
                     *waveform.instrumented_range_m / 1000));
   } else if (range_m > waveform.unambiguousRange_m()) {
     warnings.push_back(
@@ -341,7 +341,7 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
     budget.warnings.push_back(fmt::format(
         "the point is {:.0f} m from the antenna, closer than the far-field distance (2 D^2 / lambda = "
         "{:.0f} m): the "
-        "far field's formula is taken all the same",
+        "far-field formula is used nevertheless",
         geometry.slant_range_m, geometry.far_field_m));
   }
   if (with_detection && emitter.waveform) {

@@ -121,17 +121,19 @@ EMSCAPE_HD inline double jammerToSignalDb(const RadarLink& radar, double rcs_m2,
 
 /// Burn-through range (m) in free space for a self-screening jammer: the range at which J/S reaches the value
 /// at which the radar still detects. J/S grows with R^2.
-/// @param bearable_db  J/S at which the radar still detects
+/// @param max_jammer_to_signal_db  J/S at which the radar still detects
 EMSCAPE_HD inline double selfScreeningBurnThrough_m(const RadarLink& radar, double rcs_m2,
-                                                    const JammerLink& jammer, double bearable_db) {
-  return std::pow(10.0, (bearable_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, 1)) / 20);
+                                                    const JammerLink& jammer,
+                                                    double max_jammer_to_signal_db) {
+  return std::pow(10.0, (max_jammer_to_signal_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, 1)) / 20);
 }
 
 /// The same for a stand-off jammer at its own range: J/S grows with R^4.
 EMSCAPE_HD inline double standOffBurnThrough_m(const RadarLink& radar, double rcs_m2,
                                                const JammerLink& jammer, double jammer_range_m,
-                                               double bearable_db) {
-  return std::pow(10.0, (bearable_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, jammer_range_m)) / 40);
+                                               double max_jammer_to_signal_db) {
+  return std::pow(
+      10.0, (max_jammer_to_signal_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, jammer_range_m)) / 40);
 }
 
 }  // namespace emscape::emfield

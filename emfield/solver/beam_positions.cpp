@@ -12,7 +12,7 @@ namespace emscape::emfield {
 namespace {
 
 constexpr double kStepsPerBeamwidth = 20;
-constexpr int kLeastSteps = 1024, kMostSteps = 16384;
+constexpr int kMinSteps = 1024, kMaxSteps = 16384;
 
 Aim aimOf(double azimuth_deg, double elevation_deg) {
   const double azimuth_rad = degToRad(azimuth_deg), elevation_rad = degToRad(elevation_deg);
@@ -69,7 +69,7 @@ void addArc(double first_deg, double width_deg, double elevation_deg, double sha
             const scenario::AntennaPtr& antenna, PatternReaches& reaches, BeamPositions& positions) {
   const double wanted = std::ceil(kStepsPerBeamwidth * width_deg / antenna->beamwidth_az_deg);
   const int count =
-      width_deg > 0 ? static_cast<int>(std::clamp(wanted, double(kLeastSteps), double(kMostSteps))) : 1;
+      width_deg > 0 ? static_cast<int>(std::clamp(wanted, double(kMinSteps), double(kMaxSteps))) : 1;
   const double step_deg = width_deg / count;
   BeamArc arc;
   arc.aim = aimOf(first_deg + step_deg / 2, elevation_deg);

@@ -37,7 +37,7 @@ class KeptPower {
         slots_(slots) {}
 
   /// Sets the array to which the next pass writes, or from which it reads, the power of an emitter. The pass
-  /// must be run with the emitter in it (takesPart()), otherwise the array is never written.
+  /// must be run with the emitter in it (isIncluded()), otherwise the array is never written.
   /// @param slot     of the emitter; others than those of the constructor are never stored
   /// @param antenna  of the emitter
   /// @param emitter  its beam is complete; power_wm2 and power_is_known are set

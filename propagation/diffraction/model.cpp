@@ -52,7 +52,7 @@ Explanation explainDiffraction(const PathInputs& inputs, PathColumn& path) {
     const EdgeExcess model = edgeExcess(inputs);
     explanation.add("edges", model.three_edges ? "three edges (Deygout)" : "the largest edge",
                     path.excess_db(model));
-    explanation.why = "terrain as knife edges alone, without the earth's bulge";
+    explanation.why = "terrain as knife edges only, without the earth's bulge";
     return explanation;
   }
   const DiffractionExcess model = diffractionExcess(inputs);

@@ -297,7 +297,7 @@ P528Curve::LineOfSight P528Curve::lineOfSight(double distance_km, double time_pe
   const double scattered = square(reflected) + square(0.01) + std::pow(10, turbulence_db / 10);
 
   LineOfSight result;
-  result.k_db = std::max(kP528LeastK_db, 10 * std::log10(scattered));
+  result.k_db = std::max(kP528MinK_db, 10 * std::log10(scattered));
   result.loss.mode = P528Mode::line_of_sight;
   result.loss.absorption_db = ray.absorption_db;
   result.loss.free_space_db = freeSpace_db(frequency_mhz_, std::max(rays.direct_km, kNearest_km));

@@ -4,7 +4,7 @@
 namespace emscape::propagation {
 
 /// Smallest value of K (dB): almost no fading.
-constexpr double kP528LeastK_db = -40;
+constexpr double kP528MinK_db = -40;
 
 /// Slow variability at a percentage of time.
 struct P528Slow {

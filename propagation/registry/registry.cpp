@@ -38,7 +38,7 @@ ModelInfo freeSpaceRow() {
   row.gases = GasRole::on_request;
   row.explain = [](const PathInputs&, PathColumn&) {
     Explanation explanation;
-    explanation.why = "spreading alone: neither terrain nor earth count";
+    explanation.why = "free-space spreading only, without terrain and the earth's curvature";
     return explanation;
   };
   return row;

@@ -167,7 +167,7 @@ def vertical(
     backend: str = "auto",
     progress: Progress = None,
 ) -> xarray.Dataset:
-    """Vertical coverage of an emitter: a quantity over range and height at azimuths. Needs xarray.
+    """Vertical coverage of an emitter: a quantity over range and height at given azimuths. Needs xarray.
 
     :param azimuths_deg: clockwise from true north
     :param height_axis: heights above mean sea level ("msl") or ground ("agl")

@@ -171,7 +171,7 @@ AntennaPtr readMsi(const std::string& file, double gain_dbi) {
   if (content.tilt_deg && std::abs(peakAngle_deg(vertical) - *content.tilt_deg) > kTiltTolerance_deg) {
     logWarning(fmt::format(
         "{}: the file states {} deg of tilt, but its VERTICAL cut has its maximum at {} deg; the cut is "
-        "used as it stands",
+        "used unchanged",
         file, *content.tilt_deg, peakAngle_deg(vertical)));
   }
 

@@ -68,7 +68,7 @@ const ObjectSpec& antennaSpec() {
                     "-23 dB (cosine) or taper_side_lobe_db (taylor)",
                     apertures),
           byDefault("taper_side_lobe_db", number("dB").from(-60).to(-15), -30.0,
-                    "design level of the first side lobes; taper: taylor alone", apertures),
+                    "design level of the first side lobes; only with taper taylor", apertures),
           byDefault("max_elevation_deg", number("deg").above(0).to(90), 40.0,
                     "end of the cosecant-squared part", {"cosecant2"}),
           required("columns", kInteger.from(1).to(1024), "elements in azimuth", {"phased_array"}),

@@ -99,7 +99,7 @@ const ObjectSpec& refractivitySpec() {
           byDefault("seed", simple(ValueType::integer).from(0).to(2147483647), 1.0,
                     "of the ensemble: the same seed draws the same members"),
           optional("quantile", number().above(0).to(0.999),
-                   "the power below which this share of the members lies; by default their mean power"),
+                   "quantile of the power over the members; by default their mean power"),
       }};
   return spec;
 }

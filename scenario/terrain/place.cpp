@@ -154,7 +154,7 @@ TerrainSheet resample(const TerrainSheet& sheet, const GeoBox& part) {
       result.heights_m[post] = height_m;
       if (!std::isnan(height_m)) {
         result.kinds[post] = PostKind::known;
-      } else if (sheet.besideVoid(u, v)) {
+      } else if (sheet.isNextToVoid(u, v)) {
         result.kinds[post] = PostKind::empty;
       }
     }

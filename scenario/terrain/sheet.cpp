@@ -258,7 +258,7 @@ TerrainRaster TerrainSheet::raster() const {
   return raster;
 }
 
-bool TerrainSheet::besideVoid(double column, double row) const {
+bool TerrainSheet::isNextToVoid(double column, double row) const {
   const int i = std::min(static_cast<int>(column), columns - 2);
   const int j = std::min(static_cast<int>(row), rows - 2);
   return kind(i, j) == PostKind::empty || kind(i + 1, j) == PostKind::empty ||

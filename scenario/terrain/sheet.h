@@ -54,7 +54,7 @@ struct TerrainSheet {
   /// For lookups. For a sheet in its own plane only limit() and heightAtPost() are defined.
   TerrainRaster raster() const;
   /// True if one of the four posts around a point within the limits is void.
-  bool besideVoid(double column, double row) const;
+  bool isNextToVoid(double column, double row) const;
 };
 
 /// Posts that one sheet may hold (8 GiB of heights).

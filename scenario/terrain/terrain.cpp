@@ -180,7 +180,7 @@ bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double lati
   for (std::size_t k = 0; k < sheets.size(); ++k) {
     double column = 0, row = 0;
     if (rasters_[k].locate(degToRad(latitude_deg), degToRad(longitude_deg), column, row) &&
-        sheets[k].besideVoid(column, row)) {
+        sheets[k].isNextToVoid(column, row)) {
       return true;
     }
   }

@@ -57,7 +57,7 @@ struct TerrainRaster {
     const float on_south = lerp(south[0], south[1], x);
     const float on_north = lerp(north[0], north[1], x);
     const float height = lerp(on_south, on_north, y);
-    return height == height ? height : besideVoid(south, north, x, y);
+    return height == height ? height : heightNextToVoid(south, north, x, y);
   }
 
   /// Bilinear height (m); NaN outside, or if a post with weight is void.
@@ -68,7 +68,7 @@ struct TerrainRaster {
 
  private:
   /// The same if a post is void, which is ignored if it has no weight.
-  EMSCAPE_HD static float besideVoid(const float* south, const float* north, float x, float y) {
+  EMSCAPE_HD static float heightNextToVoid(const float* south, const float* north, float x, float y) {
     const float weights[4] = {(1 - x) * (1 - y), x * (1 - y), (1 - x) * y, x * y};
     const float posts[4] = {south[0], south[1], north[0], north[1]};
     float height = 0;

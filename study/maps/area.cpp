@@ -111,7 +111,7 @@ MapArea parseArea(const std::string& text) {
     const std::string word = rest.substr(begin, end - begin);
     char* stop = nullptr;
     const double number = std::strtod(word.c_str(), &stop);
-    if (word.empty() || *stop != '\0' || !std::isfinite(number)) refuse("'" + word + "' is no number");
+    if (word.empty() || *stop != '\0' || !std::isfinite(number)) refuse("'" + word + "' is not a number");
     numbers.push_back(number);
     begin = end + 1;
   }

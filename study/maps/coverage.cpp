@@ -82,17 +82,17 @@ void checkRequest(const CoverageRequest& request, const scenario::Scenario& scen
       throw Error(ErrorCode::usage, fmt::format("product '{}' {}", info(product).name, why));
     };
     if (product == Product::margin && !in_decibels) {
-      refuse(fmt::format("is a difference of decibels; quantity '{}' has none", quantity.name));
+      refuse(fmt::format("needs a quantity in decibels, not '{}'", quantity.name));
     }
     if (isOfJamming(product) && !scenario::needsJammer(request.quantity)) {
-      refuse(fmt::format("asks for a quantity that jamming changes; '{}' is none", quantity.name));
+      refuse(fmt::format("needs a quantity that jamming affects, not '{}'", quantity.name));
     }
     if (product != Product::value && quantity.categorical) {
-      refuse(fmt::format("asks for a level; quantity '{}' is an index", quantity.name));
+      refuse(fmt::format("needs a level; quantity '{}' is an index", quantity.name));
     }
     if (isPerEmitter(product) && !hasChannelPerEmitter(scenario, quantity.name)) {
-      refuse(fmt::format("asks what each emitter does by itself; quantity '{}' has one value for all",
-                         quantity.name));
+      refuse(
+          fmt::format("needs the value of each emitter; quantity '{}' has one value for all", quantity.name));
     }
     if (info(product).over_time && request.times_s.size() < 2) {
       refuse("is over time: give two times or more");

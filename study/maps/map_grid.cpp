@@ -70,7 +70,7 @@ gdal::SpatialReference referenceOf(const std::string& crs, const Middle& middle,
   }
   if (!OSRIsProjected(reference.get()) || std::abs(OSRGetLinearUnits(reference.get(), nullptr) - 1) > 1e-9) {
     throw Error(ErrorCode::usage,
-                fmt::format("crs '{}' is no projection in metres; pixels are squares of metres", crs));
+                fmt::format("crs '{}' is not a projection in metres; pixels are squares of metres", crs));
   }
   OSRSetAxisMappingStrategy(reference.get(), OAMS_TRADITIONAL_GIS_ORDER);
   return reference;

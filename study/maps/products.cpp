@@ -14,7 +14,7 @@ constexpr std::size_t kMaxHeights = 1000;
 
 [[noreturn]] void refuseHeights(const std::string& text, const std::string& part) {
   throw Error(ErrorCode::usage,
-              fmt::format("heights '{}': '{}' is none of agl:H,H,... agl:BEGIN:END:STEP msl:H,H,... "
+              fmt::format("heights '{}': '{}' must be one of agl:H,H,... agl:BEGIN:END:STEP msl:H,H,... "
                           "msl:BEGIN:END:STEP (metres; several with ';' between them)",
                           text, part));
 }
@@ -53,7 +53,7 @@ const std::vector<ProductInfo>& productTable() {
       {Product::max_range, "max_range", "m",
        "distance on the ground of the farthest emitter that reaches the threshold by itself"},
       {Product::min_height, "min_height", "m",
-       "least height above ground that reaches the threshold, to 10 km", false, false, false},
+       "minimum height above ground that reaches the threshold, up to 10 km", false, false, false},
       {Product::jam_loss,
        "jam_loss",
        "",

@@ -27,7 +27,7 @@ using Json = nlohmann::ordered_json;
 /// Calls a function that reads values from a report; errors name missing or wrong values.
 template <class Read>
 void readFrom(const fs::path& file, const Read& read) {
-  readJson<Json>(readWholeText(file), file.string(), read, ": no report of emscape coverage");
+  readJson<Json>(readWholeText(file), file.string(), read, ": not a report of emscape coverage");
 }
 
 /// The scenario of a folder, if it and its elevation files still have their content; else a scenario with
@@ -136,7 +136,7 @@ CoverageFolder openCoverageFolder(const fs::path& path) {
   const fs::path report = path / "report.json", study = path / "study.json";
   for (const fs::path& file : {report, study}) {
     if (!fs::is_regular_file(file)) {
-      fail(file, "there is no such file: the folder is none of emscape coverage, or not complete");
+      fail(file, "there is no such file: not a folder written by emscape coverage, or incomplete");
     }
   }
   readFrom(study, [&](const Json& record) {

@@ -103,7 +103,7 @@ void PartJournal::read(const std::string& text) {
       readJson<Json>(content, "", readRecord);
     } catch (const Error& error) {
       throw Error(ErrorCode::bad_input, {file_.string(), number, 0},
-                  "its checksum is right, but it is no record of a variant: " + error.message());
+                  "its checksum is right, but it is not a record of a variant: " + error.message());
     }
   }
 }
@@ -119,7 +119,7 @@ void PartJournal::add(VariantResult result, const std::set<std::string>& warning
                       const std::string& machine) {
   Json record{{"row", rowOf(result)}, {"machine", machine}, {"warnings", Json::array()}};
   for (const std::string& warning : warnings) {
-    if (told_.insert(warning).second) record["warnings"].push_back(warning);
+    if (reported_.insert(warning).second) record["warnings"].push_back(warning);
   }
   if (!result.pixels.empty()) {
     record["pixels"] = result.pixels.size();

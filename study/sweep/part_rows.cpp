@@ -34,7 +34,7 @@ VariantResult readRow(std::string_view row, std::size_t measures) {
     if (at == end || *at++ != ',') failRow(fmt::format("has less than {} measures", m + 1));
     if (at != end && *at != ',') {
       read = std::from_chars(at, end, value);
-      if (read.ec != std::errc()) failRow("holds text that is no number");
+      if (read.ec != std::errc()) failRow("holds text that is not a number");
       at = read.ptr;
     }
     result.values.push_back(value);

@@ -120,7 +120,7 @@ struct StudyRunner::Impl {
                     fmt::format("{}: {}: {}", nameOf(variant), toString(problem.location), problem.message));
       }
     }
-    throw Error(ErrorCode::bad_input, {study.file, 0, 0}, nameOf(variant) + " is no scenario");
+    throw Error(ErrorCode::bad_input, {study.file, 0, 0}, nameOf(variant) + " is not a scenario");
   }
 
   /// Variants of one geometry and terrain.

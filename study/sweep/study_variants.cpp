@@ -230,7 +230,7 @@ class VariantReader {
     }
     const StudyMeasure::Figure figure = reading_.spec.measures[search.measure].figure;
     if (figure != StudyMeasure::Figure::km2 && figure != StudyMeasure::Figure::percent) {
-      reading_.fault(sites.location(), fmt::format("sites are chosen by an area; measure '{}' is none",
+      reading_.fault(sites.location(), fmt::format("sites are chosen by an area; measure '{}' is not an area",
                                                    reading_.spec.measures[search.measure].name));
     } else if (reading_.spec.times_s.size() > 1) {
       reading_.fault(sites.location(), "sites are chosen for one instant: give the study one of 'times'");

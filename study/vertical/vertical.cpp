@@ -31,7 +31,7 @@ void checkRange(double value, double lowest, double highest, const char* what) {
 
 /// @throws Error (usage)
 void checkRequest(const scenario::Scenario& scenario, const VerticalRequest& request) {
-  checkRange(request.range_m, VerticalRequest::kLeastRange_m, VerticalRequest::kLargestRange_m, "range");
+  checkRange(request.range_m, VerticalRequest::kMinRange_m, VerticalRequest::kMaxRange_m, "range");
   const bool is_above_sea = request.axis == HeightReference::mean_sea_level && !request.smooth_earth;
   checkRange(request.max_height_m, is_above_sea ? -500 : 10, 1e5, "height");  // ground may be below sea level
   if (std::min(request.ranges, request.heights) < 2 || std::max(request.ranges, request.heights) > 10000) {
@@ -220,7 +220,7 @@ double defaultRange_m(const scenario::Scenario& scenario, const VerticalRequest&
       range_m = std::max(range_m, at_m);
     }
   }
-  return std::max(range_m > 0 ? range_m : farthest_m, VerticalRequest::kLeastRange_m);
+  return std::max(range_m > 0 ? range_m : farthest_m, VerticalRequest::kMinRange_m);
 }
 
 VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>& scenario,

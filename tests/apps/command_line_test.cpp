@@ -37,7 +37,7 @@ TEST(CommandLine, NumbersAreFinite) {
     const ProgramResult result = run({"vertical", shippedScenario("jacksboro.yaml"), "--emitter",
                                       "search radar", "--azimuth", "30", "-o", "out.png", "--time", number});
     EXPECT_EQ(result.status, kUsage);
-    EXPECT_THAT(result.err, HasSubstr("--time: '" + number + "' is no number"));
+    EXPECT_THAT(result.err, HasSubstr("--time: '" + number + "' is not a number"));
   }
 }
 
@@ -52,7 +52,7 @@ TEST(CommandLine, RefusedValuesAreToldWithWhatIsAllowed) {
   EXPECT_THAT(errorOf({"--step", "0"}),
               StartsWith("emscape: error: --step: '0' must be a number from 0.05 to 10\n"));
   EXPECT_THAT(errorOf({"--step", "one"}), HasSubstr("--step: 'one' must be a number from 0.05 to 10\n"));
-  EXPECT_THAT(errorOf({"--iso-value", "one"}), HasSubstr("--iso-value: 'one' is no number\n"));
+  EXPECT_THAT(errorOf({"--iso-value", "one"}), HasSubstr("--iso-value: 'one' is not a number\n"));
   EXPECT_THAT(errorOf({"--mode", "xray"}), HasSubstr("--mode: 'xray' must be one of dvr, mida, mip, iso\n"));
   EXPECT_THAT(errorOf({"--mode", std::string(100000, 'x')}),
               HasSubstr("' must be one of dvr, mida, mip, iso\n"));

@@ -192,7 +192,7 @@ TEST(Compare, RefusesFoldersThatDoNotFit) {
   EXPECT_THAT(errorOf("empty", {}, 3), HasSubstr("report.json: there is no such file"));
   writeFile(folder / "heights/report.json", "{}");
   EXPECT_THAT(errorOf("heights", {}, 3),
-              HasSubstr("report.json: key 'quantity' not found: no report of emscape coverage"));
+              HasSubstr("report.json: key 'quantity' not found: not a report of emscape coverage"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 

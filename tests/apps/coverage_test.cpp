@@ -80,16 +80,16 @@ TEST(Coverage, RefusesWhatItCannotDo) {
     return result.err;
   };
   EXPECT_THAT(errorOf({"--products", "holes"}, 2), HasSubstr("unknown product 'holes'"));
-  EXPECT_THAT(errorOf({"--heights", "100"}, 2), HasSubstr("'100' is none of agl:"));
+  EXPECT_THAT(errorOf({"--heights", "100"}, 2), HasSubstr("'100' must be one of agl:"));
   EXPECT_THAT(errorOf({"--area", "36,-84"}, 2), HasSubstr("2 numbers"));
-  EXPECT_THAT(errorOf({"--area", "bbox:1,2,x,4"}, 2), HasSubstr("'x' is no number"));
+  EXPECT_THAT(errorOf({"--area", "bbox:1,2,x,4"}, 2), HasSubstr("'x' is not a number"));
   EXPECT_THAT(errorOf({"--quantity", "power_density_dbwm2"}, 2), HasSubstr("--threshold"));
-  EXPECT_THAT(errorOf({"--threshold", "nan"}, 2), HasSubstr("--threshold: 'nan' is no number"));
+  EXPECT_THAT(errorOf({"--threshold", "nan"}, 2), HasSubstr("--threshold: 'nan' is not a number"));
   EXPECT_THAT(errorOf({"--products", "value,covered,value"}, 2), HasSubstr("'value' is given twice"));
   EXPECT_THAT(errorOf({"--quantity", "loudness"}, 2), HasSubstr("unknown quantity 'loudness'"));
   EXPECT_THAT(errorOf({"--products", "fraction"}, 2), HasSubstr("two times"));
   EXPECT_THAT(errorOf({"--format", "shp"}, 2), HasSubstr("shp"));
-  EXPECT_THAT(errorOf({"--crs", "EPSG:4326"}, 2), HasSubstr("no projection in metres"));
+  EXPECT_THAT(errorOf({"--crs", "EPSG:4326"}, 2), HasSubstr("not a projection in metres"));
   EXPECT_THAT(errorOf({"--area", "10,10,5000"}, 3), HasSubstr("terrain is missing"));
   EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
 }

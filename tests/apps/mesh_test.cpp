@@ -75,7 +75,7 @@ TEST(MeshSeries, IsComputedDescribedAndDrawnTheSameTwice) {
   EXPECT_THAT(refusal({"--rays", "columns"}), HasSubstr("--rays columns: has no effect"));
   EXPECT_THAT(refusal({"--step", "0.5"}), HasSubstr("--step: has no effect"));
   EXPECT_THAT(refusal({"--compare", "original"}), HasSubstr("--compare: has no effect"));
-  EXPECT_THAT(refusal({"--mesh", "terrain:9"}), HasSubstr("is no scenario"));
+  EXPECT_THAT(refusal({"--mesh", "terrain:9"}), HasSubstr("is not a scenario"));
   EXPECT_THAT(refusal({"--plane", "horizontal:altitude_m=900"}), HasSubstr("plane"));
   EXPECT_FALSE(std::filesystem::exists(folder / "no.png"));
 }

@@ -81,8 +81,8 @@ TEST(Realtime, SaysEachFrameAndWhyItsPattern) {
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out, "");
   EXPECT_THAT(result.err, HasSubstr("BUSY    columns"));
-  EXPECT_THAT(result.err, HasSubstr("(columns was asked for)"));
-  EXPECT_THAT(result.err, HasSubstr("a second asked"));
+  EXPECT_THAT(result.err, HasSubstr("(columns was requested)"));
+  EXPECT_THAT(result.err, HasSubstr("per second requested"));
   const ProgramResult quiet =
       run({"render", quick(), "--realtime", "--size", "64x48", "--duration", "0.2", "--quiet"});
   EXPECT_EQ(quiet.status, 0);

@@ -91,7 +91,7 @@ TEST_F(CheckFolder, TellsWhatIsPresentAbsentAndUnknown) {
   write("radar/mystery.csv", "");
   write("p9999/cases.csv", "");
   write("README.md", "");
-  const ReferenceFolder found = lookInto(root_.path());
+  const ReferenceFolder found = findDatasets(root_.path());
   ASSERT_EQ(found.present.size(), 1u);
   EXPECT_EQ(found.present[0]->name, "geoid");
   EXPECT_EQ(found.absent.size(), referenceDatasets().size() - 1);
@@ -99,8 +99,8 @@ TEST_F(CheckFolder, TellsWhatIsPresentAbsentAndUnknown) {
 }
 
 TEST_F(CheckFolder, RefusesAFolderWithoutDatasets) {
-  EXPECT_THAT(messageOf([this] { lookInto(root_.path()); }), HasSubstr("holds no dataset that is known"));
-  EXPECT_THAT(messageOf([this] { lookInto(root_ / "none"); }), EndsWith("none: no such folder"));
+  EXPECT_THAT(messageOf([this] { findDatasets(root_.path()); }), HasSubstr("holds no dataset that is known"));
+  EXPECT_THAT(messageOf([this] { findDatasets(root_ / "none"); }), EndsWith("none: no such folder"));
 }
 
 TEST(FigureCheck, KeepsTheLargestDifferenceAndItsLine) {

@@ -67,7 +67,7 @@ const FuzzTarget& fuzzTarget(const std::string& name) {
     if (target.name == name) return target;
     names += (names.empty() ? "" : ", ") + target.name;
   }
-  throw std::invalid_argument("'" + name + "' is none of the targets: " + names);
+  throw std::invalid_argument("'" + name + "' must be one of the targets: " + names);
 }
 
 void checkFuzzMessage(const std::string& message) {

@@ -191,7 +191,7 @@ TEST(RealTimeLoop, ThePicturesOnDisplayFillTheTimeOfThePlaying) {
 TEST(RealTimeLoop, SaysWhyAPatternIsTakenWhenItChanges) {
   MadeFrames source(seconds(2));
   const Played played = play(optionsOf(Pattern::columns), source);
-  EXPECT_EQ(played.report.events.front().reason, "columns was asked for");
+  EXPECT_EQ(played.report.events.front().reason, "columns was requested");
   for (std::size_t i = 1; i < played.report.events.size(); ++i) EXPECT_EQ(played.report.events[i].reason, "");
 }
 

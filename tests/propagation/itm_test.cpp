@@ -120,8 +120,8 @@ TEST(Itm, MessagesNameTheLimits) {
             "receiver: antenna height above ground outside 0.5..3000 m: refused");
   EXPECT_THAT(
       itmMessages(kItmWarnFrequency | kItmWarnTransmitterHorizonAngle),
-      ElementsAre("frequency outside 40..10000 MHz: computed all the same",
-                  "transmitter: elevation of a horizon outside -200..200 mrad: computed all the same"));
+      ElementsAre("frequency outside 40..10000 MHz: computed, with a warning",
+                  "transmitter: elevation of a horizon outside -200..200 mrad: computed, with a warning"));
   EXPECT_EQ(itmMessages(0x7fff).size(), 15u);
   EXPECT_TRUE(itmMessages(0).empty());
 }

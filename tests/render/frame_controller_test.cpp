@@ -254,7 +254,7 @@ TEST(FrameController, OtherOptionsAreAnEvent) {
   EXPECT_EQ(controller.next(110).kind, Kind::stop_restore);
   controller.restoreDone(false);
   EXPECT_EQ(controller.next(111).plan.pattern, Pattern::checkerboard);
-  EXPECT_EQ(controller.reason(), "checkerboard was asked for");
+  EXPECT_EQ(controller.reason(), "checkerboard was requested");
 }
 
 TEST(FrameController, RefusesTheEndOfWhatWasNotBegun) {

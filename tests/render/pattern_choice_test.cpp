@@ -187,7 +187,7 @@ TEST(PatternChoice, LeavesAdaptiveByTheRaysThatItCast) {
 
 TEST(PatternChoice, AFixedPatternStaysButItsToleranceFollowsTheBudget) {
   PatternChoice columns(40, Pattern::columns);
-  EXPECT_EQ(columns.reason(), "columns was asked for");
+  EXPECT_EQ(columns.reason(), "columns was requested");
   for (int n = 0; n < 20; ++n) EXPECT_FALSE(columns.add({900, 0}));
   EXPECT_EQ(columns.pattern(), Pattern::columns);
   PatternChoice adaptive(40, Pattern::adaptive);

@@ -179,7 +179,7 @@ TEST_F(RefractivityKeys, OfOneMemberAreTheMeanValues) {
   EXPECT_TRUE(areSame(one, refractivityOf("{kind: evaporation_duct, duct_height_m: 14}")));
   EXPECT_THAT(problemsOf("{kind: evaporation_duct, duct_height_m: {mean: 14, deviation: 3}, quantile: 0.5}"),
               AllOf(testing::Contains(HasSubstr("'members' is 1: its mean is taken")),
-                    testing::Contains(HasSubstr("'quantile' is of an ensemble"))));
+                    testing::Contains(HasSubstr("'quantile' applies to an ensemble"))));
   EXPECT_THAT(problemsOf("{kind: evaporation_duct, duct_height_m: 14, members: 5}"),
               testing::Contains(HasSubstr("'members' is 5, but no value has a deviation")));
 }

@@ -129,7 +129,7 @@ TEST(MapGrid, RefusesProjectionsThatAreCutWithinTheArea) {
 TEST(MapGrid, RefusesWhatIsNoMap) {
   const MapArea area = circularArea({44, -71, 10e3});
   EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100, "EPSG:4326"); }),
-              HasSubstr("no projection in metres"));
+              HasSubstr("not a projection in metres"));
   EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100, "EPSG:99999"); }), HasSubstr("EPSG:NUMBER"));
   EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100, "mercator"); }), HasSubstr("'mercator'"));
   EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 0, "utm"); }), HasSubstr("positive"));

@@ -79,7 +79,7 @@ TEST(Raw, NamesWhatIsWrongInAHeader) {
               HasSubstr("\"moon\" is neither"));
   EXPECT_THAT(with("{\"dims\": [2, 1, 1]}"), HasSubstr("key type:"));
   EXPECT_THAT(with("{\"dims\": [2, 1, 1], \"type\": \"float16\"}"),
-              HasSubstr("\"float16\" is none of int8, uint8"));
+              HasSubstr("\"float16\" must be one of int8, uint8"));
   const std::string layout =
       "{\"dims\": [2, 1, 1], \"type\": \"float32\", \"order\": \"x fastest, then y, then z\"";
   EXPECT_THAT(with(layout + "}"), HasSubstr("key endianness:"));

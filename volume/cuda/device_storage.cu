@@ -106,7 +106,7 @@ __global__ void loadSlab(Source source, Dims dims, const std::int32_t* first_val
   }
 }
 
-__device__ float warpLeast(float value) {
+__device__ float warpMin(float value) {
   for (int lanes = kWarp / 2; lanes > 0; lanes /= 2) {
     value = fminf(value, __shfl_xor_sync(~0U, value, lanes));
   }
@@ -141,8 +141,8 @@ __global__ void findBricks(Source source, Dims dims, Dims brick_dims, const std:
     }
   }
   const bool all_masked = __all_sync(~0U, masked) != 0;
-  least = warpLeast(least);
-  greatest = -warpLeast(-greatest);
+  least = warpMin(least);
+  greatest = -warpMin(-greatest);
   if (lane == 0) {
     ranges[brick] = all_masked ? ValueRange{INFINITY, -INFINITY} : ValueRange{least, greatest};
   }

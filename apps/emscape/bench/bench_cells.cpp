@@ -218,9 +218,10 @@ void addBenchCells(CLI::App& bench, const GlobalOptions& global, Action& action)
   CLI::App* command = bench.add_subcommand("cells", "Time pictures of tetrahedra, projected and marched");
   command->fallthrough();
   command->footer(R"(
-Views around the field, without ground; each is ordered and drawn anew. Bin: until all tiles know their cells. GPU:
-what it spends on drawing, by its own clock; 0 without one. Floats: sent per tetrahedron and picture. Greatest: difference
-from the marched picture, and the part of the pixels above 1e-5. The published form is measured with --rasterizer opengl.
+Views around the field, without ground; each is ordered and drawn anew. Bin: time until the lists of cells per tile
+are complete. GPU: its time for drawing, by its own clock; 0 without a GPU. Floats: sent per tetrahedron and picture.
+Max: largest difference from the marched picture, and the fraction of the pixels above 1e-5. The published form is
+measured with --rasterizer opengl.
 
 Example:
   emscape bench cells scenarios/jacksboro.yaml --mesh terrain:15,5 --set "region.dims=[107, 107, 100]" --json)");
@@ -245,7 +246,7 @@ Example:
       ->check(CLI::IsMember({"auto", "opengl", "tiles"}));
   command
       ->add_option("--frames", options->frames,
-                   "Timed frames that are projected, after a warm-up; 0: none is")
+                   "Timed frames that are projected, after a warm-up; 0: none, OpenGL is not needed")
       ->check(CLI::Range(0, 100000));
   command->add_option("--marched-frames", options->marched_frames, "Timed frames that are marched")
       ->check(CLI::Range(1, 100000));

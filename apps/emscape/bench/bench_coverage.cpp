@@ -155,7 +155,7 @@ Example:
   command->add_option("--further", options->further, "Number of further heights")->check(CLI::Range(0, 100));
   command->add_option("--height-step", options->step_m, "Distance between heights (m)")
       ->check(CLI::Range(0.1, 1000.0));
-  command->add_option("--quantity", options->quantity, "A quantity of the field");
+  command->add_option("--quantity", options->quantity, "Quantity to map");
   command->add_option("--repeats", options->repeats, "Computations of each kind; the median is reported")
       ->check(CLI::Range(1, 1000));
   command->callback([options, &global, &action] {

@@ -229,7 +229,8 @@ Example:
       ->delimiter(',')
       ->check(CLI::IsMember({"sea", "sea-auto", "terrain", "vertical", "radars"}));
   command->add_option("--azimuths", options->azimuths, "Azimuths of each emitter; default: 360, terrain 396")
-      ->check(CLI::Range(1, 10000));
+      ->check(CLI::Range(1, 10000))
+      ->default_str("");
   command->add_option("--repeats", options->repeats, "Marches of each case; the median is reported")
       ->check(CLI::Range(1, 1000));
   command->callback(

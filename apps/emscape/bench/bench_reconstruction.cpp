@@ -274,10 +274,10 @@ Example:
   addToleranceOption(*command, options->tolerance_levels);
   command->add_option("--frames", options->frames, "Views, after a warm-up")->check(CLI::Range(1, 100000));
   command
-      ->add_option(
-          "--repeats", options->repeats,
-          "So often each view is drawn in each way, of which the median counts; default: 1, with a GPU 3")
-      ->check(CLI::Range(1, 1000));
+      ->add_option("--repeats", options->repeats,
+                   "Repetitions per view and pattern; the median is reported; default: 1, with a GPU 3")
+      ->check(CLI::Range(1, 1000))
+      ->default_str("");
   command->callback([options, &global, &action] {
     action = [options, &global] { return benchReconstruction(*options, global); };
   });

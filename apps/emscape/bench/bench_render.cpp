@@ -81,7 +81,7 @@ Example:
   emscape bench render scenarios/eme_200.yaml --size 1200x900 --exact --no-skip --json)");
   auto options = std::make_shared<BenchRenderOptions>();
   addBenchSceneOptions(*command, options->scene);
-  command->add_option("--rays", options->rays, "Pixels that are cast, the rest interpolated; as for render");
+  command->add_option("--rays", options->rays, "Pixels to cast; the others are interpolated; as for render");
   command->add_option("--interpolate", options->interpolate,
                       "Precision of interpolated pixels: float or 8bit");
   addToleranceOption(*command, options->tolerance_levels);

@@ -170,7 +170,7 @@ void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
   addSetOption(command, options.selection.edits);
   command.add_option("--size", options.size, "Picture size in pixels, WxH");
   command.add_option("--mode", options.mode, "Compositing mode, as for render");
-  command.add_option("--step", options.step_voxels, "Distance of samples, in voxels")
+  command.add_option("--step", options.step_voxels, "Distance between samples, in voxels")
       ->check(within(render::kStepLimits));
   command.add_option("--mida-gamma", options.mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
       ->check(within(render::kMidaGammaLimits));
@@ -190,10 +190,10 @@ void addBenchSceneOptions(CLI::App& command, BenchSceneOptions& options) {
 
 void addToleranceOption(CLI::App& command, double& tolerance_levels) {
   command
-      .add_option("--tolerance", tolerance_levels,
-                  "Of adaptive rays: expected error, in levels of 255, above which a pixel is cast; raised "
-                  "where more "
-                  "than a quarter of the pixels would be")
+      .add_option(
+          "--tolerance", tolerance_levels,
+          "Adaptive rays: expected error, in levels of 255, above which a pixel is cast; raised if more "
+          "than a quarter of the pixels would be cast")
       ->check(CLI::Range(0.0, 255.0));
 }
 

@@ -177,7 +177,7 @@ until the display, or the software renderer, has finished.
 Example:
   emscape bench view scenarios/jacksboro.yaml)");
   auto options = std::make_shared<BenchViewOptions>();
-  command->add_option("input", options->input, "Scenario or volumes")->required();
+  command->add_option("INPUT", options->input, "Scenario or volumes")->required();
   addSetOption(*command, options->edits);
   command->add_option("--size", options->size, "Size of the window, WIDTHxHEIGHT")->capture_default_str();
   command->add_option("--idle", options->idle_s, "Seconds of the idle phase")

@@ -57,23 +57,24 @@ void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& c
                                     const std::vector<std::string>& names) {
     command.add_option_function<std::string>(name, take, help)->check(CLI::IsMember(names));
   };
-  addChoice("--cells",
-            "Tetrahedra are marched, or projected; auto: marched, but for incomplete pictures "
-            "where OpenGL has a GPU and CUDA does not",
-            [&cells](const std::string& name) { cells.method = playback::parseCellMethod(name); },
-            {"auto", "march", "project"});
+  addChoice(
+      "--cells",
+      "Tetrahedra are marched, or projected; auto: marched, except for incomplete pictures if OpenGL has "
+      "a GPU and CUDA does not",
+      [&cells](const std::string& name) { cells.method = playback::parseCellMethod(name); },
+      {"auto", "march", "project"});
   addChoice(
       "--cell-rasterizer",
-      "What projects cells: OpenGL, or tiles of pixels, computed by the backend; default: auto, OpenGL on a "
+      "Projects the cells: OpenGL, or tiles of pixels, computed by the backend; default: auto, OpenGL on a "
       "GPU without CUDA, else tiles",
       [&cells](const std::string& name) { cells.projection.rasterizer = render::parseRasterizer(name); },
       {"auto", "opengl", "tiles"});
-  addChoice("--cell-order", "Of projected cells; default: visibility",
+  addChoice("--cell-order", "Order of projected cells; default: visibility",
             [&cells](const std::string& name) { cells.projection.sorting = render::parseCellSorting(name); },
             {"centroids", "visibility"});
   addChoice(
       "--cell-perspective",
-      "How projection finds where a ray leaves a cell: exact, or as it was published; default: exact",
+      "How projection finds where a ray leaves a cell: exact, or as published; default: exact",
       [&cells](const std::string& name) { cells.projection.projection = render::parseCellProjection(name); },
       {"published", "exact"});
 }

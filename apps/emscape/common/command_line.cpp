@@ -35,8 +35,8 @@ void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
   app.add_option("--threads", global.threads, "Threads to use; 0: one per core")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
-  app.add_flag("--json", global.json, "The result, machine-readable, alone on standard output");
-  app.add_flag("--quiet,-q", global.quiet, "Neither progress nor messages, only warnings and errors");
+  app.add_flag("--json", global.json, "Print only the result, as JSON, on standard output");
+  app.add_flag("--quiet,-q", global.quiet, "Print only warnings and errors, no progress or messages");
 }
 
 /// To be called after the global options are added, since it depends on --json.
@@ -113,7 +113,7 @@ std::string plainMessage(const CLI::App& app, const std::string& message) {
   if (const std::size_t equals = message.find(" = ");
       startsWith(message, conversion) && equals != std::string::npos) {
     const std::string name = message.substr(conversion.size(), equals - conversion.size());
-    return fmt::format("{}: '{}' is no {}", name, message.substr(equals + 3), numberName(app, name));
+    return fmt::format("{}: '{}' is not a {}", name, message.substr(equals + 3), numberName(app, name));
   }
   const std::size_t colon = message.find(": ");
   if (!startsWith(message, "--") || colon == std::string::npos) return message;
@@ -154,7 +154,7 @@ void checkNumbers(const CLI::App& app) {
     for (const std::string& text : option->results()) {
       double value = 0;
       if (!CLI::detail::lexical_cast(text, value) || std::isfinite(value)) continue;
-      throw CLI::ValidationError(option->get_name(), "'" + text + "' is no number");
+      throw CLI::ValidationError(option->get_name(), "'" + text + "' is not a number");
     }
   }
   for (const CLI::App* subcommand : app.get_subcommands()) checkNumbers(*subcommand);

@@ -118,7 +118,7 @@ Progress::Progress(const GlobalOptions& global, std::string task)
       on_terminal_(isatty(STDERR_FILENO) != 0),
       visible_(!global.quiet),
       start_(Clock::now()),
-      told_(start_) {
+      reported_(start_) {
   show(0);
 }
 
@@ -144,8 +144,8 @@ void Progress::show(double fraction) {
     writeMessage(clear + shown_line);
     return;
   }
-  if (fraction <= 0 || fraction >= 1 || now - told_ < kProgressInterval) return;
-  told_ = now;
+  if (fraction <= 0 || fraction >= 1 || now - reported_ < kProgressInterval) return;
+  reported_ = now;
   writeMessage(fmt::format("emscape: {}: {:.0f} %, {}\n", task_, 100 * fraction, left));
 }
 

@@ -83,7 +83,7 @@ class Progress {
   const bool on_terminal_;
   const bool visible_;
   const Clock::time_point start_;
-  Clock::time_point told_;  // time of the last line that is not rewritten
+  Clock::time_point reported_;  // time of the last line that is not rewritten
 };
 
 /// A progress sink for a library: that of the options, otherwise one that owns a new Progress for each step.

@@ -16,7 +16,7 @@ void addMapOptions(CLI::App& command, MapOptions& options) {
       "--heights", options.heights,
       "Heights in metres above ground (agl:) and above mean sea level (msl:): agl:30,150;msl:500:3000:500");
   addListOption(command, "--products", options.products, "Products, with commas between them");
-  command.add_option("--quantity", options.quantity, "A quantity of the field; see docs/scenario-format.md");
+  command.add_option("--quantity", options.quantity, "Quantity to map; see docs/scenario-format.md");
   addThresholdOption(command, options.threshold);
   command.add_option(
       "--times", options.times,

@@ -12,8 +12,8 @@ void addDeviceVolumeOption(CLI::App& command, std::string& device_volume) {
   command
       .add_option(
           "--device-volume", device_volume,
-          "How a GPU keeps the volume: in 32 bit; in 16 bit, half the memory and 11 significant bits; or "
-          "sparse, a NanoVDB grid without voxels at the floor")
+          "How a GPU stores the volume: float, 32 bit; half, 16 bit: half the memory, 11 significant bits; "
+          "sparse: a NanoVDB grid without voxels at the floor")
       ->check(CLI::IsMember({"float", "half", "sparse"}));
 }
 

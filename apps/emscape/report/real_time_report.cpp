@@ -87,7 +87,7 @@ std::string lineOf(const RealTimeEvent& event) {
 std::string summaryOf(const RealTimeReport& report) {
   const playback::RealTimeTotals& totals = report.totals;
   std::string text = fmt::format(
-      "{} frames in {:.1f} s; {:g} a second asked, {:.2f} held; {} late, {} dropped", totals.busy,
+      "{} frames in {:.1f} s; {:g} per second requested, {:.2f} achieved; {} late, {} dropped", totals.busy,
       report.seconds, report.frames_per_s, heldPerSecond(report), totals.late, report.due - totals.busy);
   for (const render::Pattern pattern : render::allPatterns()) {
     const double fraction = fractionOf(pattern, totals);

@@ -55,7 +55,7 @@ PartNumber parsePart(const std::string& text) {
   if (!has_slash || parts.ec != std::errc() || parts.ptr != end || number.part < 1 ||
       number.part > number.parts || number.parts > study::kMaxParts) {
     throw Error(ErrorCode::usage,
-                fmt::format("--part '{}' is none; write I/N with I from 1 to N, N up to {}, or any", text,
+                fmt::format("--part '{}' must be one of I/N, with I from 1 to N and N up to {}, or any", text,
                             study::kMaxParts));
   }
   return number;
@@ -234,10 +234,10 @@ parts (DIR/parts), each written when it is complete. Finished variants of a part
 is missing, after an interruption, a kill or a full disk. With --keep, DIR/variants has the maps or volumes of each variant.
 
 Machines that share DIR compute a study together, and --merge joins the parts:
-  --part any   each process takes parts that no other works on, until all are there; it takes over those whose process has
+  --part any   each process takes parts that no other works on, until all exist; it takes over those whose process has
                ended, or has not been heard of for 5 minutes
   --part I/N   a scheduler says which; parts may come in any order
-The results are the same bytes.
+The results are identical, byte by byte.
 
 Examples:
   emscape study scenarios/study/jammer_power.yaml --plan
@@ -252,8 +252,8 @@ Examples:
   addSetOption(*command, options->edits);
   command->add_option("-o,--output", options->folder, "Folder of the results");
   CLI::Option* plan = command->add_flag("--plan", options->plan,
-                                        "Say how many variants there are, what each changes, and the time "
-                                        "that they need; compute one of each kind, write nothing");
+                                        "Print the number of variants, what each changes, and the time "
+                                        "needed; compute one of each kind, write nothing");
   command
       ->add_option("--keep", options->kept,
                    "Keep the maps of each variant (GeoTIFF) or its volumes (.vdb), in DIR/variants")
@@ -263,18 +263,19 @@ Examples:
                           ->check(CLI::Range(1, 1024));
   CLI::Option* part = command->add_option(
       "--part", options->part,
-      "I/N: compute what is missing of one of N parts; any: compute parts that no other process works on");
+      "I/N: compute what is missing of part I of N; any: compute parts that no other process works on");
   CLI::Option* resume = command->add_flag("--resume", options->resume, "Compute the parts that are missing");
-  CLI::Option* merge = command->add_flag("--merge", options->merge, "Join the parts; all must be there");
-  command->add_flag("--partial", options->partial, "With --merge: join those that are there")->needs(merge);
-  CLI::Option* slurm = command->add_option("--slurm", options->slurm.script,
-                                           "Write a job script of a Slurm array, and one that merges");
+  CLI::Option* merge = command->add_flag("--merge", options->merge, "Join the parts; all must exist");
+  command->add_flag("--partial", options->partial, "With --merge: join the parts that exist")->needs(merge);
+  CLI::Option* slurm =
+      command->add_option("--slurm", options->slurm.script,
+                          "Write the job script of a Slurm array, and one that merges the parts");
   command->add_option("--chunks", options->slurm.chunks, "Number of parts; default: 16 variants in each")
       ->check(CLI::Range(1, study::kMaxParts))
       ->default_str("");
-  command->add_option("--time", options->slurm.time, "With --slurm: limit of a part's time, HH:MM:SS")
+  command->add_option("--time", options->slurm.time, "With --slurm: time limit of a part, HH:MM:SS")
       ->needs(slurm);
-  command->add_option("--gpus", options->slurm.gpus, "With --slurm: GPUs of a part")
+  command->add_option("--gpus", options->slurm.gpus, "With --slurm: number of GPUs of a part")
       ->check(CLI::Range(0, 64))
       ->needs(slurm);
   command->add_flag("--submit", options->slurm.submit, "With --slurm: submit both jobs")->needs(slurm);

@@ -57,9 +57,8 @@ int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& 
                    const GlobalOptions& global) {
   static const std::regex kTime("([0-9]+-)?[0-9]{1,2}(:[0-9]{2}){0,2}");
   if (!std::regex_match(options.time, kTime)) {
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("--time '{}' is no limit of Slurm's; write HH:MM:SS or DAYS-HH:MM", options.time));
+    throw Error(ErrorCode::usage,
+                fmt::format("--time '{}' is not a time limit; write HH:MM:SS or DAYS-HH:MM", options.time));
   }
   std::string command = "emscape";
   for (std::size_t i = 0; i < arguments.size(); ++i) {

@@ -31,7 +31,7 @@ bool isChecked(const Session& session, const std::string& name) {
   if (name == "Cutting planes") return panels.planes && !panels.hidden;
   if (name == "Compare with the original") return session.compares();
   if (name == "Probe") return panels.probe && !panels.hidden;
-  if (name == "Hold the probe, or let it go") return session.prober().isLocked();
+  if (name == "Lock or unlock the probe") return session.prober().isLocked();
   if (name == "Timeline") return panels.timeline && !panels.hidden;
   return name == "Help" && panels.help;
 }
@@ -47,7 +47,7 @@ void drawRecentMenu(PanelContext& context) {
 
 bool isEnabled(const Session& session, const std::string& name) {
   static const std::set<std::string> kNeedInput{"Reload",          "Save the view", "Load a view",
-                                                "Copy as command", "Record",        "Picture alone"};
+                                                "Copy as command", "Record",        "Save the picture"};
   if (!session.hasInput() && kNeedInput.count(name) != 0) return false;
   if (name == "Undo") return session.canUndo();
   if (name == "Redo") return session.canRedo();
@@ -189,9 +189,9 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   ImGui::Dummy({badge_width, text.y});
   if (session.picture()) {
     ImGui::SameLine(0, 12 * s);
-    const std::string right = status.shown_s == status.asked_s
-                                  ? fmt::format("t = {:g} s", status.shown_s)
-                                  : fmt::format("asked {:g} s, shown {:g} s", status.asked_s, status.shown_s);
+    const std::string right = status.shown_s == status.asked_s ? fmt::format("t = {:g} s", status.shown_s)
+                                                               : fmt::format("requested {:g} s, shown {:g} s",
+                                                                             status.asked_s, status.shown_s);
     const float right_x = area.width - ImGui::CalcTextSize(right.c_str()).x - 12 * s;
     const float room = right_x - ImGui::GetCursorPosX() - 12 * s;
     ImGui::TextUnformatted(statusText(session, room).c_str());

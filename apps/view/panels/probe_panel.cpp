@@ -191,7 +191,7 @@ void drawProbe(PanelContext& context, const Area& picture) {
     if (ImGui::SmallButton(prober.isLocked() ? "release (P)" : "hold (P)"))
       perform(context, R"({"do":"lock_probe"})");
     ImGui::SameLine();
-    ImGui::TextDisabled(prober.isLocked() ? "held; follows time and edits" : "under the cursor");
+    ImGui::TextDisabled(prober.isLocked() ? "locked; follows time and edits" : "under the cursor");
     const ProbeResult* result = prober.result();
     if (result == nullptr) {
       ImGui::TextWrapped("Move the cursor over the picture; Ctrl + click holds a point.");

@@ -27,7 +27,7 @@ const std::vector<Action>& actions() {
        "emscape render INPUT --state FILE --times BEGIN:END:STEP -o FOLDER|NAME.mp4"},
       {"File", "Cancel the recording", "Ctrl+Shift+M", R"({"do":"record_cancel"})", "Ctrl-C in the terminal"},
       {"File", "Screenshot", "F12", R"({"do":"screenshot"})", "emscape render INPUT -o NAME.png"},
-      {"File", "Picture alone", "Shift+F12", R"({"do":"picture"})",
+      {"File", "Save the picture", "Shift+F12", R"({"do":"picture"})",
        "emscape render INPUT --state FILE -o NAME.png"},
       {"File", "Quit", "Ctrl+Q", R"({"do":"quit"})", "Ctrl-C in the terminal"},
 
@@ -87,7 +87,7 @@ const std::vector<Action>& actions() {
       {"View", "Ground", "B", R"({"do":"terrain"})", "--terrain on|off"},
       {"View", "Emitters", "E", R"({"do":"emitters"})", "--emitters on|off"},
       {"View", "Dark or light", "D", R"({"do":"theme"})", "--theme dark|light"},
-      {"View", "Hold the probe, or let it go", "P", R"({"do":"lock_probe"})",
+      {"View", "Lock or unlock the probe", "P", R"({"do":"lock_probe"})",
        "emscape profile INPUT --emitter NAME --to LAT,LON,HEIGHT"},
 
       {"Panels", "Scenario: what if", "W", R"({"do":"panel","name":"scenario"})", "--set PATH=VALUE"},

@@ -160,9 +160,9 @@ bool Session::update() {
     log_.write("state", {{"from", render::toString(logged_state_)}, {"to", render::toString(change.to)}});
     logged_state_ = change.to;
   }
-  if (status_.error != told_error_) {
-    told_error_ = status_.error;
-    if (!told_error_.empty()) tell(told_error_, true);
+  if (status_.error != reported_error_) {
+    reported_error_ = status_.error;
+    if (!reported_error_.empty()) tell(reported_error_, true);
   }
   if (const auto recorded = files_->recorder.takeOutcome()) tell(recorded->text, recorded->is_error);
   takeChangedFiles();

@@ -229,7 +229,7 @@ class Session {
 
   std::shared_ptr<const playback::LivePicture> picture_;
   playback::LiveStatus status_;
-  std::string told_error_;
+  std::string reported_error_;
   render::ControllerState logged_state_ = render::ControllerState::idle;
   CameraControl camera_;
   playback::Timeline timeline_;

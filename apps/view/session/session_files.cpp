@@ -201,14 +201,14 @@ std::vector<Verb> Session::fileVerbs() {
        [](Session& session, const Command& command) { session.saveScenario(command.text("file"), false); }},
       {"restore",
        {},
-       "Shows the view with its edits that was kept when the program ended before its time",
+       "Shows the view with its edits that was kept when the program did not exit normally",
        [](Session& session, const Command&) {
          if (!session.kept_view_) throw Error(ErrorCode::bad_input, "no edits were kept for this input");
          session.ask({session.options_.input, session.options_.scenario, session.kept_view_->state, true});
        }},
       {"discard",
        {},
-       "Removes what was kept when the program ended before its time",
+       "Removes what was kept when the program did not exit normally",
        [](Session& session, const Command&) {
          session.panels.restore = false;
          if (!session.kept_view_) throw Error(ErrorCode::bad_input, "no edits were kept for this input");

@@ -53,7 +53,7 @@ std::vector<Verb> Session::pictureVerbs() {
        }},
       {"step_voxels",
        {{"value"}},
-       "Distance of samples, in voxels",
+       "Distance between samples, in voxels",
        [](Session& session, const Command& command) {
          const double value = command.number("value");
          render::kStepLimits.require(value);

@@ -71,7 +71,7 @@ std::vector<Verb> Session::recordVerbs() {
        }},
       {"record_cancel",
        {},
-       "Ends the recording; pictures that are whole stay, a video is not written",
+       "Ends the recording; complete pictures are kept, a video is not written",
        [](Session& session, const Command&) { session.files_->recorder.cancel(); }},
   };
 }

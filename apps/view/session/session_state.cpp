@@ -161,8 +161,8 @@ std::vector<Verb> Session::stateVerbs() {
        }},
       {"picture",
        {{"file", kText, false}},
-       "Writes the picture alone as `emscape render` draws it, as soon as it is exact; default: a new "
-       "emscape-NNNN.png",
+       "Writes the picture without panels, as `emscape render` draws it, as soon as it is exact; default: a "
+       "new emscape-NNNN.png",
        [](Session& session, const Command& command) {
          session.requireInput();
          session.picture_file_ = command.has("file") ? command.text("file") : newPictureName();

@@ -227,7 +227,7 @@ std::vector<Verb> Session::transferVerbs() {
        }},
       {"opacity",
        {{"factor"}},
-       "Multiplies the opacity of all points, 0.001..1000; at most 1 comes of it",
+       "Multiplies the opacity of all points, 0.001..1000; limited to 1",
        [](Session& session, const Command& command) {
          const double factor = command.number("factor");
          if (!(factor >= 1e-3 && factor <= 1e3)) {

@@ -56,6 +56,6 @@ struct ReferenceFolder {
 /// @param folder  the folder of all datasets, or of one family, such as "reference/radar": names then begin
 /// with the family
 /// @throws Error (bad_input) if it is not a folder, or if it contains no known dataset
-ReferenceFolder lookInto(const std::filesystem::path& folder);
+ReferenceFolder findDatasets(const std::filesystem::path& folder);
 
 }  // namespace emscape::emfield

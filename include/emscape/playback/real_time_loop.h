@@ -115,7 +115,7 @@ class RealTimeLoop {
   long long view_slot_ = -1;        // whose camera the controller has
   std::optional<double> event_ms_;  // that stopped a restoration for the next frame
   render::FrameReport drawn_;
-  std::optional<render::Pattern> told_pattern_;  // whose reason was last reported
+  std::optional<render::Pattern> reported_pattern_;  // whose reason was last reported
   bool settled_ = true;
 
   std::optional<render::Image8> displayed_;

@@ -45,7 +45,8 @@ class PartJournal {
   std::vector<std::size_t> variants_;
   std::size_t measures_;
   std::map<std::size_t, VariantResult> finished_;
-  std::set<std::string> warnings_, machines_, told_;  ///< told_: warnings that this process has appended
+  std::set<std::string> warnings_, machines_;
+  std::set<std::string> reported_;  ///< warnings that this process has appended
   int descriptor_ = -1;
 };
 

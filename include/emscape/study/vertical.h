@@ -15,7 +15,7 @@
 namespace emscape::study {
 
 struct VerticalRequest {
-  static constexpr double kLeastRange_m = 100, kLargestRange_m = 1.99e6;
+  static constexpr double kMinRange_m = 100, kMaxRange_m = 1.99e6;
 
   int emitter = 0;                   ///< index into Scenario::emitters
   std::vector<double> azimuths_deg;  ///< clockwise from true north
