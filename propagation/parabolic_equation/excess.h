@@ -124,7 +124,7 @@ struct PeExcess {
   }
 
  private:
-  /// Next to one of the row: that one alone.
+  /// Only one of the row within kNext of it, which saves reading the next.
   static EMSCAPE_HD Neighbours between(float at, int count) {
     constexpr float kNext = 1e-3f;
     constexpr int kNone = Neighbours::kNone;
@@ -158,9 +158,9 @@ struct PeExcess {
   }
   /// Of the cells of a range.
   EMSCAPE_HD float azimuths_db(const Neighbours& a, int range, const Neighbours& h) const {
-    const float first = known_db(a.first, range, h);
+    const float first = cell_db(a.first, range, h);
     if (!(a.part > 0)) return first;
-    return curve_db(cell_db(a.before, range, h), first, known_db(a.second, range, h),
+    return curve_db(cell_db(a.before, range, h), first, cell_db(a.second, range, h),
                     cell_db(a.behind, range, h), a.part);
   }
   /// Of the cells of a range that only bends the curve: on the line between two azimuths.
@@ -171,18 +171,14 @@ struct PeExcess {
   EMSCAPE_HD const float* columnOf(int azimuth, int range) const {
     return tables + (static_cast<std::size_t>(azimuth) * ranges + range) * heights;
   }
-  /// NaN where there is no such cell, or it is not known.
+  /// Below the ground: of the lowest cell above it, so that the loss is continuous in height. NaN where there
+  /// is no such column, or none of its cells is known.
   EMSCAPE_HD float cell_db(int azimuth, int range, const Neighbours& h) const {
     if (azimuth < 0 || range < 0) return NAN;
     const float* const cells = columnOf(azimuth, range);
     const float low = cells[h.first];
-    return h.part > 0 ? low + h.part * (cells[h.second] - low) : low;
-  }
-  /// Below the ground: of the lowest cell above it.
-  EMSCAPE_HD float known_db(int azimuth, int range, const Neighbours& h) const {
-    const float db = cell_db(azimuth, range, h);
+    const float db = h.part > 0 ? low + h.part * (cells[h.second] - low) : low;
     if (db == db) return db;
-    const float* const cells = columnOf(azimuth, range);
     for (int j = h.first; j < heights; ++j) {
       if (cells[j] == cells[j]) return cells[j];
     }

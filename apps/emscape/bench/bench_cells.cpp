@@ -149,7 +149,7 @@ int benchCells(const BenchCellsOptions& options, const GlobalOptions& global) {
     print("{} tetrahedra, {} points, {} x {} pixels, {} threads\n\n", scene->tetrahedra(), scene->points(),
           scene->size().width, scene->size().height, threadCount());
     print("{:<40} {:>10} {:>10} {:>10} {:>10} {:>14} {:>8} {:>7} {:>9} {:>7}\n", "", "ms", "order (ms)",
-          "bin (ms)", "GPU (ms)", "tetrahedra/s", "floats", "cycles", "greatest", "> 1e-5");
+          "bin (ms)", "GPU (ms)", "tetrahedra/s", "floats", "cycles", "max diff", "> 1e-5");
   }
   using render::CellProjection;
   using render::CellSorting;
@@ -220,7 +220,7 @@ void addBenchCells(CLI::App& bench, const GlobalOptions& global, Action& action)
   command->footer(R"(
 Views around the field, without ground; each is ordered and drawn anew. Bin: time until the lists of cells per tile
 are complete. GPU: its time for drawing, by its own clock; 0 without a GPU. Floats: sent per tetrahedron and picture.
-Max: largest difference from the marched picture, and the fraction of the pixels above 1e-5. The published form is
+Max diff: largest difference from the marched picture; > 1e-5: fraction of the pixels beyond it. The published form is
 measured with --rasterizer opengl.
 
 Example:
