@@ -335,7 +335,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
               {"rays", options.rays},
               {"outputs", options.outputs},
               {"budget_ms", loop_options.controller.budget_ms}};
-    json.update(toJson(report));
+    json.update(app::toJson(report));
     printJson(json);
   }
   if (report.totals.unequal() > 0) {

@@ -79,7 +79,7 @@ class MeanDifference {
 };
 
 /// One pattern and interpolation over all views.
-struct Measured {
+struct MeasuredPattern {
   render::FramePlan plan;
   std::vector<double> busy_ms, busy_cpu_ms, restore_ms;
   std::vector<double> ratios;  ///< of busy_ms to busy_ms of the full picture of the same view
@@ -91,11 +91,11 @@ struct Measured {
 };
 
 /// Every pattern with each of its interpolations, the full one first.
-std::vector<Measured> plansFor(const BenchReconstructionOptions& options) {
+std::vector<MeasuredPattern> plansFor(const BenchReconstructionOptions& options) {
   std::vector<Pattern> patterns;
   for (const std::string& name : options.rays) patterns.push_back(render::parsePattern(name));
   if (options.rays.empty()) patterns = render::allPatterns();
-  std::vector<Measured> plans(1);
+  std::vector<MeasuredPattern> plans(1);
   for (const Pattern pattern : patterns) {
     if (pattern == Pattern::full) continue;
     for (const Interpolation interpolation : {Interpolation::float32, Interpolation::bits8}) {
@@ -109,10 +109,10 @@ std::vector<Measured> plansFor(const BenchReconstructionOptions& options) {
 class ReconstructionBench {
  public:
   /// @param repeats  number of times each view is drawn in each way; the median is reported
-  ReconstructionBench(BenchScene& scene, std::vector<Measured> plans, int repeats)
+  ReconstructionBench(BenchScene& scene, std::vector<MeasuredPattern> plans, int repeats)
       : scene_(scene), plans_(std::move(plans)), repeats_(repeats) {}
 
-  const std::vector<Measured>& plans() const { return plans_; }
+  const std::vector<MeasuredPattern>& plans() const { return plans_; }
   double pixels() const { return pixels_; }
   double pixelsInBox() const { return pixels_in_box_; }
 
@@ -120,7 +120,7 @@ class ReconstructionBench {
   void warmUp() {
     constexpr int kFrames = 6;
     render::FrameReport report;
-    for (const Measured& measured : plans_) {
+    for (const MeasuredPattern& measured : plans_) {
       for (int frame = 0; frame < kFrames; ++frame) scene_.draw(measured.plan, report);
       scene_.restore();
     }
@@ -134,7 +134,7 @@ class ReconstructionBench {
     pixels_in_box_ += static_cast<double>(all.rays);
     Image full;
     Image8 full8;
-    for (Measured& measured : plans_) {
+    for (MeasuredPattern& measured : plans_) {
       render::FrameReport report;
       drawRepeatedly(angle_deg, measured, report);
       const Image drawn = scene_.image();
@@ -157,7 +157,7 @@ class ReconstructionBench {
     return scene_.loadOf(render::sourceLattices(pattern, scene_.size())).rays;
   }
 
-  void drawRepeatedly(double angle_deg, Measured& measured, render::FrameReport& report) {
+  void drawRepeatedly(double angle_deg, MeasuredPattern& measured, render::FrameReport& report) {
     std::vector<double> ms, cpu_ms;
     for (int n = 0; n < repeats_; ++n) {
       stopIfInterrupted();
@@ -171,7 +171,7 @@ class ReconstructionBench {
   }
 
   BenchScene& scene_;
-  std::vector<Measured> plans_;  ///< the full picture first
+  std::vector<MeasuredPattern> plans_;  ///< the full picture first
   int repeats_ = 1;
   double pixels_ = 0, pixels_in_box_ = 0;
 };
@@ -185,7 +185,7 @@ Json timesJson(const std::vector<double>& times_ms) {
 
 Json patternsJson(const ReconstructionBench& bench) {
   Json patterns = Json::array();
-  for (const Measured& measured : bench.plans()) {
+  for (const MeasuredPattern& measured : bench.plans()) {
     patterns.push_back({{"name", render::toString(measured.plan.pattern)},
                         {"interpolate", render::toString(measured.plan.interpolation)},
                         {"rays_fraction", measured.rays / bench.pixels()},
@@ -203,7 +203,7 @@ Json patternsJson(const ReconstructionBench& bench) {
 void printTable(const ReconstructionBench& bench) {
   print("{:<13} {:<6} {:>7} {:>8} {:>8} {:>8}  {:<15} {:<21} {:>6} {:>7}  {}\n", "rays", "interp", "of hits",
         "busy ms", "of full", "restore", "max R-G-B-A", "mean R-G-B-A", "err %", "PSNR dB", "restored");
-  for (const Measured& measured : bench.plans()) {
+  for (const MeasuredPattern& measured : bench.plans()) {
     const auto max = measured.error.max();
     const auto mean = measured.error.mean();
     print("{:<13} {:<6} {:>6.1f}% {:>8.2f} {:>7.1f}% {:>8.2f}  {:<15} {:<21} {:>6.1f} {:>7.1f}  {}\n",
@@ -218,7 +218,7 @@ void printTable(const ReconstructionBench& bench) {
 }
 
 int benchReconstruction(const BenchReconstructionOptions& options, const GlobalOptions& global) {
-  std::vector<Measured> plans = plansFor(options);
+  std::vector<MeasuredPattern> plans = plansFor(options);
   const std::unique_ptr<BenchScene> opened = openBenchScene(options.scene, global);
   BenchScene& scene = *opened;
   // Between compared frames a GPU transfers pictures, and its cache then holds less of the volume than
@@ -245,7 +245,7 @@ int benchReconstruction(const BenchReconstructionOptions& options, const GlobalO
     print("{}\n{} views on a circle, medians of times, means of errors\n\n", scene.summary(), options.frames);
     printTable(bench);
   }
-  for (const Measured& measured : bench.plans()) {
+  for (const MeasuredPattern& measured : bench.plans()) {
     if (measured.restored_equals_full) continue;
     throw Error(ErrorCode::check_failed,
                 fmt::format("{}: the restored picture is not the full one", toString(measured.plan.pattern)));
