@@ -126,9 +126,9 @@ class CellRenderer {
   /// @throws Error (device) without OpenGL 3.3, or in a build without libepoxy
   bool projectsOnCpu();
   /// The same picture by projection of the cells.
-  /// @accuracy exact, visibility: tiles within 1e-5 of render() where the order is correct; OpenGL within 1e-5
-  /// in 98 % of the pixels, mean 2e-6, max 2e-4 where no edge of a cell is within 1/32 pixel, else max 2e-2:
-  /// rasterisers round to 1/256 pixel
+  /// @accuracy exact, visibility: tiles within 1e-5 of render() where the order is correct; OpenGL within
+  /// 1e-5 in 98 % of the pixels, mean 2e-6, max 2e-4 where no edge of a cell is within 1/32 pixel, else max
+  /// 2e-2: rasterisers round to 1/256 pixel
   /// @throws Error (usage) for the published form by tiles in perspective; (device) for opengl as
   /// projectsOnCpu()
   Image project(ImageSize size, const ProjectionOptions& options = {}, ProjectionReport* report = nullptr);

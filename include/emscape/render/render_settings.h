@@ -38,8 +38,8 @@ struct RenderSettings {
   /// Value of the isosurface; NaN: the centre of the transfer function's interval
   double iso_value = std::numeric_limits<double>::quiet_NaN();
   double iso_opacity = 1;
-  bool skip_empty = true;  ///< skip bricks without visible values; does not change the picture
-  bool plain = false;      ///< scalar reference form of the ray caster; slow, for comparison
+  bool skip_empty = true;            ///< skip bricks without visible values; does not change the picture
+  bool plain = false;                ///< scalar reference form of the ray caster; slow, for comparison
   double vertical_exaggeration = 0;  ///< 0: niceVerticalExaggeration()
   std::vector<CutPlane> planes;      ///< cut planes, at most kMaxCutPlanes
 };

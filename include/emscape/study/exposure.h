@@ -62,10 +62,10 @@ struct ExposureSummary {
 struct Exposure {
   ExposureRequest request;
   std::string scenario, platform, unit;
-  std::string cross_section;       ///< source of the cross section, in words; empty: the quantity has none
-  std::vector<int> emitters;       ///< indices into Scenario::emitters; without those on the platform
-  std::vector<std::string> names;  ///< of these
-  std::vector<ExposureRow> rows;   ///< one per time
+  std::string cross_section;          ///< source of the cross section, in words; empty: the quantity has none
+  std::vector<int> emitters;          ///< indices into Scenario::emitters; without those on the platform
+  std::vector<std::string> names;     ///< of these
+  std::vector<ExposureRow> rows;      ///< one per time
   std::vector<ExposureSummary> each;  ///< one per emitter
   ExposureSummary together;
   std::vector<std::string> warnings;
