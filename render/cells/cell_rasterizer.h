@@ -58,7 +58,7 @@ class CellRasterizer {
   static constexpr std::size_t kBatchCells = 1 << 16;
   /// Memory for kBatchCells cells.
   Batch nextBatch();
-  /// Draws the first `cells` of the batch over what was drawn before, in their order.
+  /// Draws the first `cells` of the batch over the earlier ones, in their order.
   void draw(std::size_t cells);
   /// Draws the batch's single cell, which contains the eye.
   /// @param eye_value  the field's value at the eye
