@@ -29,7 +29,7 @@ struct AzimuthMarch {
     return air.size() == 1 ? air.front() : air[std::size_t(azimuth)];
   }
   int rangesOf(int azimuth) const { return ranges.empty() ? cells.ranges : ranges[std::size_t(azimuth)]; }
-  /// Max over the group of kStepLanes azimuths with which an azimuth is marched on a CPU.
+  /// Max number of range cells over the group of kStepLanes azimuths marched together on a CPU.
   int rangesOfGroup(int azimuth) const;
   /// Number of range cells of all azimuths; times the grid's heights, it gives the cost of the march.
   long long rangesOfAll() const {
@@ -56,7 +56,7 @@ struct MarchNotes {
 /// @throws Error (bad_input) as RadialMarch() and marchCells(), or if the sizes do not fit
 MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db);
 
-/// Values of N supported on the GPU.
+/// Limits of N on the GPU.
 constexpr int kMinBlockIntervals = 128, kMaxBlockIntervals = 8192;
 
 /// marchAzimuths() on the GPU, without halving within 0.05 dB of it where F > -60 dB.

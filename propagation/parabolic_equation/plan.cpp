@@ -19,7 +19,7 @@ namespace {
 constexpr double kAngle_rad = 3 * kPi / 180, kSmallestAngle_rad = kPi / 180;
 constexpr int kPlainIntervals = 4096, kTerrainIntervals = 2048;  // limit the domain's height
 constexpr int kDearIntervals = 8192;                             // limit for a larger angle
-/// Over terrain: max fraction of the largest angle given up to halve the height steps.
+/// Over terrain: min fraction of the largest angle that is kept in order to halve the height steps.
 constexpr double kWorthwhileAngle = 0.75;
 /// Up to the first number of azimuths, which a GPU marches concurrently (three on each of its 132
 /// multiprocessors), they are one position apart, else two.

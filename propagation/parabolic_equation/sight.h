@@ -101,7 +101,7 @@ class PeSightWalk {
     const float angle_rad = (post.ground_m - tx_msl_m_) / post.range_m - curvature_per_m_ * post.range_m / 2;
     if (angle_rad > sight_.horizon_rad) sight_.horizon_rad = angle_rad;
   }
-  /// Height with the bulge of the effective earth, where rays are straight.
+  /// Post lowered by the curvature of the effective earth, over which rays are straight.
   EMSCAPE_HD SightPost lowered(const SightPost& post) const {
     return {post.range_m, post.ground_m - half_curvature_ * post.range_m * post.range_m};
   }

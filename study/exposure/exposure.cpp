@@ -118,7 +118,7 @@ class Track {
     return jams || !isOwn(emitter);
   }
 
-  /// The scenario with radars whose target is that of the request.
+  /// The scenario with the cross section, fluctuation and radial speed of the request's target, by radar.
   std::shared_ptr<const scenario::Scenario> withTarget(const scenario::Snapshot& snapshot) const {
     const scenario::Target& target = scenario_->targets[*request_.target];
     auto seen = std::make_shared<scenario::Scenario>(*scenario_);
@@ -236,7 +236,7 @@ ExposureSummary summaryOf(const std::string& name, const Exposure& exposure, con
   return summary;
 }
 
-/// Warns about time steps in which the beam may pass the platform unnoticed.
+/// Warning about time steps in which a beam may pass the platform unnoticed.
 std::optional<std::string> scanWarning(const scenario::Scenario& scenario, const Exposure& exposure) {
   if (exposure.request.look != scenario::RadarLook::scan || exposure.rows.size() < 2) return std::nullopt;
   double step_s = 0;
