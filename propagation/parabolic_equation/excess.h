@@ -171,8 +171,8 @@ struct PeExcess {
   EMSCAPE_HD const float* columnOf(int azimuth, int range) const {
     return tables + (static_cast<std::size_t>(azimuth) * ranges + range) * heights;
   }
-  /// Below the ground: of the lowest cell above it, so that the loss is continuous in height. NaN where there
-  /// is no such column, or none of its cells is known.
+  /// Below the ground: the loss of the lowest cell above it, so that the loss is continuous in height. NaN if
+  /// there is no such column, or none of its cells is known.
   EMSCAPE_HD float cell_db(int azimuth, int range, const Neighbours& h) const {
     if (azimuth < 0 || range < 0) return NAN;
     const float* const cells = columnOf(azimuth, range);

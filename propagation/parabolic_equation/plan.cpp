@@ -62,7 +62,7 @@ double secondsPerPoint(bool has_terrain) {
   return has_terrain ? 20e-9 : 14e-9;
 }
 
-/// Part of an elevation cut within the equation's angles.
+/// Description of an elevation cut within the equation's angles.
 std::string sourceText(const ElevationPattern& pattern, double max_angle_rad) {
   if (!pattern) return "the antenna's elevation cut, which is isotropic";
   const DirectRayPattern cut = directRayPattern(pattern, max_angle_rad);

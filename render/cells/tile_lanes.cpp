@@ -34,7 +34,7 @@ class TileInLanes {
       }
     }
   }
-  /// Whether all rays are opaque or have ended.
+  /// Whether all rays are opaque.
   bool isOpaque() const { return open_groups_ == 0; }
 
   void add(const TileCell& cell) {
