@@ -34,7 +34,7 @@ double litShare(std::vector<double> azimuths_deg, double width_deg, double range
   return std::min(lit_deg / range_deg, 1.0);
 }
 
-/// Whether the output holds a radar's beam, or any other's, where its scan has it at the time.
+/// Whether the output shows the beams of radars, or of other emitters, in their scan direction at the time.
 bool showsScans(const OutputSpec& output) {
   return output.interval.kind == IntervalKind::instant &&
          std::any_of(output.quantities.begin(), output.quantities.end(), [&](const std::string& name) {

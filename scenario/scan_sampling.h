@@ -23,13 +23,13 @@ std::optional<ScanSampling> scanSampling(const ScanSpec& scan, double beamwidth_
 /// True if steps larger than half a beamwidth leave azimuths that are never illuminated.
 bool leavesGaps(const ScanSampling& sampling, double beamwidth_az_deg);
 
-/// Azimuths that beams sweep between the times of a clock and never light at one of them.
+/// Azimuths that beams sweep between the times of a clock and illuminate at none of them.
 struct UnlitAzimuths {
   std::size_t first_emitter = 0;  ///< of those concerned
   std::string warning;            ///< one line about all of them; beams of the same width and rate together
 };
 
-/// @return none where the output does not show where a scan is at a time, or where beams light all azimuths
+/// @return none if the output does not show scans at a time, or if beams illuminate all azimuths
 std::optional<UnlitAzimuths> unlitAzimuths(const Scenario& scenario, const Clock& clock);
 
 }  // namespace emscape::scenario

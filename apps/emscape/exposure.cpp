@@ -1,4 +1,4 @@
-/// emscape exposure: a platform on its track through the field.
+/// emscape exposure: exposure of a platform to the field along its track.
 #include "emscape/study/exposure.h"
 
 #include <fmt/core.h>

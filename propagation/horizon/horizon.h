@@ -64,8 +64,8 @@ struct GrazingSlope {
   EMSCAPE_HD Real value() const { return highest + unknown; }
 };
 
-/// The slope of that ray over a smooth earth at mean sea level, in closed form. Nearer than the horizon it is
-/// that to a centimetre below the surface, so that rounding does not put places on the surface in shadow.
+/// Slope of that ray over a smooth earth at mean sea level, in closed form. Nearer than the horizon it is the
+/// slope to a centimetre below the surface, so that rounding does not put points on the surface in shadow.
 /// @param range_m  of the point
 template <class Real>
 EMSCAPE_HD Real smoothGrazingSlope(const HorizonGeometry<Real>& geometry, double range_m) {

@@ -40,14 +40,14 @@ double vapour_hpa(double specific_humidity, double pressure_hpa) {
   return specific_humidity * pressure_hpa / (kVapourRatio + (1 - kVapourRatio) * specific_humidity);
 }
 
-/// Similarity theory's unknowns.
+/// Unknowns of similarity theory.
 struct Scales {
   double friction_m_s = 0, temperature_k = 0, humidity = 0;
   double inverse_length_m = 0;  ///< 1 / L
   double roughness_m = 0, heat_roughness_m = 0;
 };
 
-/// What the scales are solved from: differences between the sensors and the sea, and the air between.
+/// Inputs of the solution for the scales: differences between the sensors and the sea, and the air between.
 struct Layer {
   double potential_difference_k = 0, humidity_difference = 0;
   double wind_m_s = 0, wind_height_m = 0, sensor_height_m = 0;
@@ -83,7 +83,7 @@ Scales nextScales(const Layer& layer, const Scales& before) {
   return scales;
 }
 
-/// Where the parabola in the logarithm of the height through a lowest level and its neighbours is lowest.
+/// Minimum of the parabola, in the logarithm of height, through the lowest level and its neighbours.
 double heightOfMinimum_m(const std::vector<RefractivityLevel>& levels, std::size_t lowest) {
   const double z = levels[lowest].height_msl_m;
   if (lowest < 2) return z;
@@ -93,7 +93,7 @@ double heightOfMinimum_m(const std::vector<RefractivityLevel>& levels, std::size
   return below + above > 0 ? z * std::exp(step * (below - above) / (2 * (below + above))) : z;
 }
 
-/// The fixed point of nextScales(), each step halfway so that stable air of little wind converges.
+/// Fixed point of nextScales(); half steps, so that stable air with little wind converges.
 Scales solveScales(const Layer& layer) {
   Scales scales;
   scales.friction_m_s = 0.035 * layer.wind_m_s;

@@ -28,10 +28,11 @@ double stabilityOfWind(double zeta);
 double stabilityOfHeat(double zeta);
 
 struct BulkAir {
-  /// M from the surface to 100 m, standard above; its levels are within 0.02 M-units of the theory.
+  /// M from the surface to 100 m, standard above; the levels are within 0.02 M-units of the theory.
   RefractivityProfile profile;
-  /// Height where M is smallest, below 100 m; 0: M rises from the surface on; none: it falls up to 100 m, or
-  /// the profile below it is not possible (above saturation, without vapour or above 50 C): not defined.
+  /// Height of the minimum of M, below 100 m; 0: M increases from the surface; none (not defined): M
+  /// decreases up to 100 m, or the profile below is impossible (above saturation, without vapour or above 50
+  /// C).
   std::optional<double> duct_height_m;
   double friction_velocity_m_s = 0;  ///< u*
   double temperature_scale_k = 0;    ///< theta*

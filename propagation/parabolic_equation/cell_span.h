@@ -1,19 +1,19 @@
-/// The heights of a march that a cell's loss is the mean of.
+/// Heights of a march over which a cell's loss is averaged.
 #pragma once
 
 #include "emscape/base/host_device.h"
 
 namespace emscape::propagation {
 
-/// From z1_m to z2_m above the ground; none if z2_m is not above z1_m.
+/// From z1_m to z2_m above the ground; empty if z2_m <= z1_m.
 struct CellSpan {
   double z1_m, z2_m;
 };
 
-/// @param bottom_m       half of cell_m below the lowest cell's middle, above the ground
-/// @param cell_m         from the middle of a cell to that of the next
+/// @param bottom_m       half of cell_m below the lowest cell's centre, above the ground
+/// @param cell_m         from the centre of a cell to that of the next
 /// @param mean_m         height of a cell
-/// @param is_point       only half of a height step about the cell's middle
+/// @param is_point       only half of a height step about the cell's centre
 /// @param height_step_m  of the march
 /// @param top_m          above it no field is read
 EMSCAPE_HD inline CellSpan cellSpan(double bottom_m, double cell_m, double mean_m, int cell, bool is_point,

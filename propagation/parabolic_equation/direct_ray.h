@@ -1,8 +1,8 @@
-/// The antenna's pattern along the direct ray, where the march has radiated its elevation cut.
+/// The antenna's pattern along the direct ray, for marches whose source has its elevation cut.
 ///
-/// Losses of all models are over the direct ray's field, which the antenna's pattern weighs after them, in
-/// whatever azimuth the beam points: so the march's field is divided by the cut at the direct ray's angle.
-/// What remains of the pattern is its azimuth.
+/// Losses of all models are relative to the direct ray's field, to which the antenna's pattern is applied
+/// later, for any azimuth of the beam. So the march's field is divided by the cut at the direct ray's angle;
+/// only the azimuth pattern remains.
 #pragma once
 
 #include <cmath>
@@ -15,17 +15,17 @@ namespace emscape::propagation {
 /// Plain data.
 struct DirectRayPattern {
   static constexpr int kEntries = 257;  ///< odd: 0 degrees is one
-  /// Lowest level (dB): in a null of the pattern the ratio of the two fields has no bound.
+  /// Min level (dB): in a null of the pattern the ratio of the two fields is unbounded.
   static constexpr float kLowest_db = -120;
 
   bool is_weighed = false;  ///< false: the source is isotropic
-  float max_angle_rad = 0;  ///< of the entries, either way
+  float max_angle_rad = 0;  ///< of the entries, up and down
   float db[kEntries] = {};
 
   EMSCAPE_HD float angle_rad(int entry) const {
     return max_angle_rad * (2 * static_cast<float>(entry) / (kEntries - 1) - 1);
   }
-  /// Level (dB, up to 0) at an angle above the horizontal; beyond the largest angle: that at it.
+  /// Level (dB, up to 0) at an angle above the horizontal, clamped to the largest angle.
   EMSCAPE_HD float pattern_db(float elevation_rad) const {
     const float at = (elevation_rad / max_angle_rad + 1) * ((kEntries - 1) / 2);
     if (!(at > 0)) return db[0];

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kLeastStrength = 0.1;
 
-/// Integral of sqrt(2e-6 x) over a height in which x goes linearly from a to b, both >= 0.
+/// Integral of sqrt(2e-6 x) over a height in which x is linear from a to b, both >= 0.
 double pieceOfPhase_m(double height_m, double a, double b) {
   const double root_a = std::sqrt(std::max(a, 0.0)), root_b = std::sqrt(std::max(b, 0.0));
   if (root_a + root_b == 0) return 0;
@@ -19,7 +19,7 @@ double pieceOfPhase_m(double height_m, double a, double b) {
   return std::sqrt(2e-6) * height_m * mean;
 }
 
-/// The duct below the top level of a layer in which M falls.
+/// Duct below the top level of a layer in which M decreases.
 Duct ductBelow(const RefractivityProfile& profile, std::size_t layer_base, std::size_t top) {
   const std::vector<RefractivityLevel>& levels = profile.levels;
   const double m_top = levels[top].m_units;

@@ -1,4 +1,4 @@
-/// Excess of `parabolic_equation` over columns, from the losses of a march over all azimuths.
+/// Excess loss of `parabolic_equation` in columns, from the losses of a march over all azimuths.
 #pragma once
 
 #include <cmath>
@@ -13,19 +13,19 @@ namespace emscape::propagation {
 /// Warning bits. The bits from kPeStaircaseShift to 30 hold the number of steps of the staircase.
 enum PeWarning : unsigned {
   kPePointwiseAir = 1,
-  kPeDuctOverLand = 2,  ///< an evaporation duct, and land, over which it is left out
+  kPeDuctOverLand = 2,  ///< the path has land, over which the evaporation duct is left out
   kPeProfileEnds = 4    ///< the air was measured up to less than the antenna's or the field's height
 };
 constexpr int kPeStaircaseShift = 4;
 
-/// Warning bits of a number of pieces of the ground that are taken as steps of a staircase.
+/// Warning bits that encode the number of terrain segments replaced by steps of a staircase.
 EMSCAPE_HD inline unsigned staircaseWarning(int staircases) {
   constexpr int kMost = (1 << (31 - kPeStaircaseShift)) - 1;
   return static_cast<unsigned>(staircases < kMost ? staircases : kMost) << kPeStaircaseShift;
 }
 
-/// Interpolates in dB between azimuths, ranges (cubic) and heights; other models speak outside the equation's
-/// limits.
+/// Interpolates in dB between azimuths, ranges (cubic) and heights; outside the equation's limits other
+/// models are used.
 struct PeExcess {
   static constexpr bool kNeedsTerrain = true;
   static constexpr bool kInParts = false;
@@ -39,11 +39,11 @@ struct PeExcess {
   bool is_around = false;  ///< the last azimuth's neighbour is the first
   bool above_ground = false;
   double first_azimuth_rad = 0, azimuth_step_rad = 0;
-  /// A cell holds the mean of the march's steps in it, the last of which is at its end, or that one: that of
-  /// the first cell, if it were as long as the others, is of first_range_m.
+  /// A cell has the mean of the march's steps in it, the last of which is at its end, or the value of that
+  /// step. first_range_m is the range of the first cell, if it were as long as the others.
   float first_range_m = 0, range_step_m = 0;
   float bottom_m = 0, height_step_m = 0;
-  float top_m = 0;  ///< as the cells' heights; above: along the ray from there
+  float top_m = 0;  ///< datum as the cells' heights; above it: extended along the ray
   unsigned warnings = 0;
 
   /// @param excess_db  one per voxel; NaN over missing terrain
@@ -70,13 +70,13 @@ struct PeExcess {
     return warnings;
   }
 
-  /// Four of a row; a place is between the first and the second. kNone: there is none.
+  /// Four neighbours in a row; the position is between the first and the second. kNone: no neighbour.
   struct Neighbours {
     static constexpr int kNone = -1;
     int before, first, second, behind;
-    float part;  ///< of the second
+    float part;  ///< weight of the second
   };
-  /// The azimuths beside a column's.
+  /// Neighbouring azimuths of a column.
   EMSCAPE_HD Neighbours azimuthsAt(double azimuth_rad) const {
     if (azimuths == 1) return between(0, 1);
     double from_first = azimuth_rad - first_azimuth_rad;
@@ -92,9 +92,9 @@ struct PeExcess {
     return between(static_cast<float>(from_first / azimuth_step_rad), azimuths);
   }
 
-  /// The parts of the loss at a height of a column.
+  /// Contributions to the loss at a height of a column.
   /// @param beside    azimuthsAt() the column's
-  /// @param other_db  gives that of the other model
+  /// @param other_db  gives the other model's loss
   template <class Other>
   EMSCAPE_HD PeLoss lossAt(const ExcessColumn& column, const Neighbours& beside, const PeSight& sight,
                            float height_msl_m, const Other& other_db) const {
@@ -104,7 +104,7 @@ struct PeExcess {
     return loss;
   }
 
-  /// The equation's part alone.
+  /// Contribution of the equation only.
   EMSCAPE_HD PeLoss equationAt(const ExcessColumn& column, const Neighbours& beside, float height_msl_m,
                                float horizon_rad) const {
     const auto range_m = static_cast<float>(column.range_m);
@@ -124,7 +124,7 @@ struct PeExcess {
   }
 
  private:
-  /// Only one of the row within kNext of it, which saves reading the next.
+  /// If the position is within kNext of a neighbour, only that one is used, which saves reading the other.
   static EMSCAPE_HD Neighbours between(float at, int count) {
     constexpr float kNext = 1e-3f;
     constexpr int kNone = Neighbours::kNone;
@@ -135,11 +135,11 @@ struct PeExcess {
     if (!(part > kNext)) return {kNone, first, first, kNone, 0};
     return {first - 1, first, first + 1, first + 2 < count ? first + 2 : kNone, part};
   }
-  /// Between the middle two of four losses (dB) at equal distances, by the cubic of Catmull and Rom: at a
-  /// null between two azimuths the loss is larger than at both. By the line between the two where one of the
-  /// others is NaN; that of the two that is known where one of them is NaN.
+  /// Catmull-Rom interpolation between the middle two of four losses (dB) at equal distances: at a null
+  /// between two azimuths the loss is larger than at both. Linear if one of the outer two is NaN; if one of
+  /// the middle two is NaN, the value of the other.
   static EMSCAPE_HD float curve_db(float before, float first, float second, float behind, float part) {
-    constexpr float kLargestBend_db = 2;  // from the line: at the edge of a shadow the cubic swings
+    constexpr float kLargestBend_db = 2;  // from linear: at the edge of a shadow the cubic overshoots
     if (!(first == first)) return second;
     if (!(second == second)) return first;
     const float line = first + part * (second - first);
@@ -148,7 +148,7 @@ struct PeExcess {
     if (!(bend == bend)) return line;
     return line + std::fmin(std::fmax(bend, -kLargestBend_db), kLargestBend_db);
   }
-  /// NaN where no cell around is known.
+  /// NaN if no neighbouring cell is known.
   EMSCAPE_HD float cells_db(const Neighbours& a, float range_m, float height_m) const {
     const Neighbours r = between((range_m - first_range_m) / range_step_m, ranges);
     const Neighbours h = between((height_m - bottom_m) / height_step_m - 0.5f, heights);
@@ -156,14 +156,14 @@ struct PeExcess {
     return curve_db(outer_db(a, r.before, h), azimuths_db(a, r.first, h), azimuths_db(a, r.second, h),
                     outer_db(a, r.behind, h), r.part);
   }
-  /// Of the cells of a range.
+  /// From the cells of a range.
   EMSCAPE_HD float azimuths_db(const Neighbours& a, int range, const Neighbours& h) const {
     const float first = cell_db(a.first, range, h);
     if (!(a.part > 0)) return first;
     return curve_db(cell_db(a.before, range, h), first, cell_db(a.second, range, h),
                     cell_db(a.behind, range, h), a.part);
   }
-  /// Of the cells of a range that only bends the curve: on the line between two azimuths.
+  /// From the cells of an outer range of the cubic: linear between two azimuths.
   EMSCAPE_HD float outer_db(const Neighbours& a, int range, const Neighbours& h) const {
     const float first = cell_db(a.first, range, h);
     return a.part > 0 ? first + a.part * (cell_db(a.second, range, h) - first) : first;
@@ -171,8 +171,8 @@ struct PeExcess {
   EMSCAPE_HD const float* columnOf(int azimuth, int range) const {
     return tables + (static_cast<std::size_t>(azimuth) * ranges + range) * heights;
   }
-  /// Below the ground: of the lowest cell above it, so that the loss is continuous in height. NaN where there
-  /// is no such column, or none of its cells is known.
+  /// Below the ground: the loss of the lowest cell above it, so that the loss is continuous in height. NaN if
+  /// there is no such column, or none of its cells is known.
   EMSCAPE_HD float cell_db(int azimuth, int range, const Neighbours& h) const {
     if (azimuth < 0 || range < 0) return NAN;
     const float* const cells = columnOf(azimuth, range);

@@ -40,7 +40,7 @@ int marchEnsemble(FieldMarch& field, float* excess_db) {
   std::vector<float> losses_db(members.size());
   for (std::size_t i = 0; i < field.cellCount(); ++i) {
     for (std::size_t m = 0; m < members.size(); ++m) losses_db[m] = members[m][i];
-    const float first_db = losses_db.front();  // where it is NaN, all are: they have their ground in common
+    const float first_db = losses_db.front();  // NaN for all members or none: they have the same ground
     excess_db[i] = std::isnan(first_db) ? NAN : ofMembers_db(losses_db, field.quantile);
   }
   return staircases;

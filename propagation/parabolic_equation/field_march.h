@@ -1,5 +1,5 @@
-/// All marches of an emitter's field: one per member of the air's ensemble and per polarisation, which come
-/// to one table of losses.
+/// All marches of an emitter's field: one per member of the air's ensemble and per polarisation, combined
+/// into one table of losses.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ struct FieldMarch {
   std::vector<PeSurface> surfaces;                          ///< of the polarisations, 1 or 2
   std::vector<std::vector<RefractivityAlongPath>> members;  ///< AzimuthMarch::air of each, at least one
   std::optional<double> quantile;  ///< of the members' powers (0..1); none: their mean
-  /// Of each azimuth the cells in range that are marched and before missing terrain; empty: all.
+  /// Number of range cells of each azimuth that are marched and before missing terrain; empty: all.
   std::vector<int> known_ranges;
 
   std::size_t cellCount() const { return march.cellCount(); }
-  /// Steps in range of all azimuths of all marches times N at the start: what they cost without halving.
+  /// Cost without halving: range steps of all azimuths of all marches times the initial N.
   double heights() const {
     return double(march.rangesOfAll()) * (march.cells.range_step_m / march.grid.range_step_m) *
            march.grid.intervals * double(surfaces.size() * members.size());
@@ -37,8 +37,8 @@ constexpr float kPeNoField_db = 200;
 
 /// Marches on the CPU, in parallel.
 /// @param excess_db  field.cellCount() elements: losses over free space (dB) as of marchAzimuths(), of the
-/// mean power of the polarisations and, of the members, of their mean power or the power below which
-/// `quantile` of them lie; NaN in cells that are not known
+/// mean power of the polarisations and of the mean or the `quantile` of the members' powers; NaN in unknown
+/// cells
 /// @return warning bits (PeWarning)
 /// @throws Error as marchAzimuths()
 unsigned marchField(FieldMarch& field, float* excess_db);
@@ -46,10 +46,10 @@ unsigned marchField(FieldMarch& field, float* excess_db);
 /// The loss of an ensemble.
 /// @param losses_db  of the members, none NaN; reordered
 float ofMembers_db(std::vector<float>& losses_db, const std::optional<double>& quantile);
-/// Place of a quantile of the power among `members` losses in ascending order.
+/// Index of a quantile of the power in `members` losses in ascending order.
 int placeOfQuantile(double quantile, int members);
 
-/// True if the GPU can march it, and has enough azimuths to be faster.
+/// True if the GPU supports the march, and the number of azimuths makes it faster.
 bool isForGpu(const FieldMarch& field);
 
 }  // namespace emscape::propagation

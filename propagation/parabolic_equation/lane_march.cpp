@@ -206,7 +206,7 @@ void LaneMarch::advance() {
   halve();
 }
 
-/// Moves the field by whole height steps: the ground rises (> 0) or falls.
+/// Shifts the field by whole height steps: the ground rises (> 0) or falls.
 void LaneMarch::shift(int l, int by) {
   const int n = intervals();
   for (int i = 0; i < n; ++i) {

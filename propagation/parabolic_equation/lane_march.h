@@ -9,7 +9,7 @@
 
 namespace emscape::propagation {
 
-/// What all groups of eight azimuths of a march share, for one N.
+/// Tables shared by all groups of eight azimuths of a march, for one N.
 struct LaneMarchTables {
   MarchBlockTask task;
   std::vector<StoredComplex> propagator;   ///< flat ground
@@ -19,13 +19,13 @@ struct LaneMarchTables {
   LaneSurface surface;                     ///< mixed transform
 };
 
-/// Of a whole march; for several threads.
+/// Tables of a whole march; shared by threads.
 struct LaneMarchPlan {
   AzimuthMarch const* march = nullptr;
   BlockInput input;
   std::vector<LaneMarchTables> tables;  ///< of each N of the input
 };
-/// @param march  is to outlive the plan
+/// @param march  must outlive the plan
 /// @throws Error as blockInput(), for N outside kMinLaneIntervals .. kMaxLaneIntervals
 LaneMarchPlan laneMarchPlan(const AzimuthMarch& march);
 
@@ -44,7 +44,7 @@ class LaneMarch {
   int intervals() const { return transform_.intervals(); }
   /// RadialMarch::meanSquaredFactor().
   double meanSquaredFactor(int lane, double z1_m, double z2_m);
-  /// Of the azimuths, without those that fill the lanes.
+  /// Over the given azimuths, without those that pad the lanes.
   int staircases() const;
 
  private:
@@ -61,7 +61,7 @@ class LaneMarch {
   int first_, count_, step_ = 0;
   std::size_t level_ = 0;  ///< of plan_.tables
   LaneTransform transform_;
-  std::array<MarchState, kStepLanes> states_;  ///< all end where the last of them does
+  std::array<MarchState, kStepLanes> states_;  ///< all end at the last one's end
   std::array<int, kStepLanes> own_end_;        ///< steps
   std::vector<PlannedStep> planned_;
   struct Air {

@@ -12,7 +12,7 @@ namespace {
 
 using Cx = std::complex<double>;
 
-/// Power that may be in the upper half of the spectrum where it is dropped, over that of all.
+/// Max fraction of the power in the upper half of the spectrum when it is dropped.
 constexpr double kNegligible = 1e-6;
 
 /// exp(stepExponent()).
@@ -117,7 +117,7 @@ double RadialMarch<Real, kLanes>::bend(int l) {
   return step.stair_m;
 }
 
-/// u -> v[j] = u[j] - r u[j-1], v[0] = 0; keeps the surface wave's amplitude A.
+/// u -> v[j] = u[j] - r u[j-1], v[0] = 0; stores the surface wave's amplitude A.
 template <class Real, int kLanes>
 void RadialMarch<Real, kLanes>::splitSurface(int l) {
   Lane& lane = lanes_[l];
@@ -165,7 +165,7 @@ void RadialMarch<Real, kLanes>::joinSurface(int l) {
   }
 }
 
-/// Moves the field by whole height steps: the ground rises (> 0) or falls.
+/// Shifts the field by whole height steps: the ground rises (> 0) or falls.
 template <class Real, int kLanes>
 void RadialMarch<Real, kLanes>::shift(int l, double rise_m) {
   const int n = intervals(), by = int(std::lround(rise_m / heightStep_m()));
@@ -207,7 +207,7 @@ void RadialMarch<Real, kLanes>::advance() {
   if (grid_.halving) halveIfEmpty();
 }
 
-/// Once the rays of the band's upper half have left the domain, and the spectrum says so in every lane.
+/// Halves N if the rays of the band's upper half have left the domain, as the spectrum shows in every lane.
 template <class Real, int kLanes>
 void RadialMarch<Real, kLanes>::halveIfEmpty() {
   const int n = intervals();

@@ -1,4 +1,4 @@
-/// The parabolic equation marched outwards over a group of azimuths, one in each vector lane.
+/// March of the parabolic equation outwards over a group of azimuths, one per vector lane.
 ///
 /// Split-step Fourier (Feit and Fleck's wide-angle form): a step multiplies the field by half of the air's
 /// screen, multiplies its sine spectrum by the propagator, and multiplies by the other half. Over terrain the
@@ -25,11 +25,11 @@ struct RadialPath {
   PeSource source;
   RefractivityAlongPath air;
   PeSurface surface;
-  /// Heights above mean sea level at 0, 1, 2, ... range steps; behind the last: level. Empty: 0 m throughout.
+  /// Heights above mean sea level at 0, 1, 2, ... range steps; level beyond the last. Empty: 0 m everywhere.
   std::vector<double> ground_msl_m;
 };
 
-/// Not for several threads at once. Compiled for double with 1 and 4 lanes, float with 1 and 8.
+/// Not thread-safe. Compiled for double with 1 and 4 lanes, float with 1 and 8.
 template <class Real, int kLanes>
 class RadialMarch {
  public:
@@ -41,16 +41,16 @@ class RadialMarch {
   /// mixed transform's limits
   RadialMarch(const MarchGrid& grid, std::array<RadialPath, kLanes> paths);
 
-  /// By one range step.
+  /// Advances by one range step.
   void advance();
-  /// Steps done times the range step.
+  /// Range: number of steps done times the range step.
   double range_m() const { return steps_ * grid_.range_step_m; }
   const MarchGrid& grid() const { return grid_; }
 
-  /// Height of the ground under the field (m above mean sea level), which differs from the given one by at
-  /// most half a height step behind a staircase.
+  /// Height of the ground under the field (m above mean sea level); beyond a staircase it differs from the
+  /// given height by up to half a height step.
   double ground_m(int lane) const { return lanes_[std::size_t(lane)].ground_m; }
-  /// Height steps at present: N, or less after halving.
+  /// Current number of height steps: N, or less after halving.
   int intervals() const { return sines_.intervals(); }
   double heightStep_m() const { return grid_.top_m / intervals(); }
   /// |u| at a height above the ground, 0 .. top; linear between the heights.
@@ -60,7 +60,7 @@ class RadialMarch {
   /// Mean of the squared factor over heights above the ground, z1 < z2, both within 0 .. top.
   double meanSquaredFactor(int lane, double z1_m, double z2_m) const;
 
-  /// Zero below an absorbing edge, half at it, at the present range.
+  /// Sets the field to zero below an absorbing edge and halves it at the edge, at the current range.
   void screenBelow(int lane, double height_agl_m);
   /// Replaces the field of a lane.
   /// @param values  at the heights 0, 1, ... N-1
@@ -68,9 +68,9 @@ class RadialMarch {
   /// Sum of |u|^2 over the heights of a lane, times the height step.
   double energy(int lane) const;
 
-  /// Pieces of terrain that were too steep or too sharply bent and were taken as steps, over all lanes.
+  /// Number of terrain segments, over all lanes, too steep or too sharply bent, replaced by steps.
   int staircases() const { return staircases_; }
-  /// Neighbouring profiles of the air differ in levels (RefractivityAlongPath::pointwise()).
+  /// Neighbouring profiles of the air have different levels (RefractivityAlongPath::pointwise()).
   bool pointwiseAir() const;
 
  private:
@@ -83,12 +83,12 @@ class RadialMarch {
     Complex<Real> surface_wave;      ///< A
   };
 
-  /// Sine of the band's largest angle at present.
+  /// Sine of the band's current largest angle.
   double maxSine() const { return wavelength_m(grid_.frequency_hz) / (2 * heightStep_m()); }
   double groundAt(const RadialPath& path, int step) const;
   void setRatio(int lane);
-  /// Slope of the next piece; turns the field's phase at a break.
-  /// @return rise (m) at the end of a piece that is taken as a step; else 0
+  /// Slope of the next segment; turns the field's phase at a break.
+  /// @return rise (m) at the end of a segment that is replaced by a step; else 0
   double bend(int lane);
   void setScreen(int lane);
   void setPropagator(int lane);

@@ -1,4 +1,4 @@
-/// The parabolic equation marched over all azimuths around an emitter.
+/// March of the parabolic equation over all azimuths around an emitter.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +9,19 @@
 
 namespace emscape::propagation {
 
-/// One emitter's march: what its azimuths have in common, and what each has of its own.
+/// One emitter's march: parameters common to its azimuths, and those of each azimuth.
 struct AzimuthMarch {
   MarchGrid grid;
   PeSource source;
   PeSurface surface;
   RadialCells cells;
   int azimuths = 0;
-  /// Of each azimuth the cells in range that are marched; empty: all.
+  /// Number of range cells marched of each azimuth; empty: all.
   std::vector<int> ranges;
-  /// One for all azimuths, or one each.
+  /// One for all azimuths, or one per azimuth.
   std::vector<RefractivityAlongPath> air;
-  /// Heights above mean sea level at 0, 1, 2, ... range steps, `ground_steps` of them per azimuth; behind the
-  /// last: level. Empty: 0 m throughout.
+  /// Heights above mean sea level at 0, 1, 2, ... range steps, `ground_steps` of them per azimuth; level
+  /// beyond the last. Empty: 0 m everywhere.
   std::vector<float> ground_msl_m;
   std::size_t ground_steps = 0;
 
@@ -29,14 +29,14 @@ struct AzimuthMarch {
     return air.size() == 1 ? air.front() : air[std::size_t(azimuth)];
   }
   int rangesOf(int azimuth) const { return ranges.empty() ? cells.ranges : ranges[std::size_t(azimuth)]; }
-  /// The most of the group of kStepLanes azimuths in which an azimuth is marched on a CPU, to the end of all.
+  /// Max number of range cells over the group of kStepLanes azimuths marched together on a CPU.
   int rangesOfGroup(int azimuth) const;
-  /// Cells in range of all azimuths: the march takes so long, times the heights of the grid.
+  /// Number of range cells of all azimuths; times the grid's heights, it gives the cost of the march.
   long long rangesOfAll() const {
     return ranges.empty() ? static_cast<long long>(azimuths) * cells.ranges
                           : std::accumulate(ranges.begin(), ranges.end(), 0LL);
   }
-  /// Losses of all azimuths.
+  /// Number of losses of all azimuths.
   std::size_t cellCount() const { return std::size_t(azimuths) * cells.ranges * cells.heights; }
 };
 
@@ -44,7 +44,7 @@ struct AzimuthMarch {
 /// sizes that do not fit
 void checkMarch(const AzimuthMarch& march);
 
-/// What happened on the way, over all azimuths.
+/// Events during the march, over all azimuths.
 struct MarchNotes {
   int staircases = 0;          ///< RadialMarch::staircases()
   bool pointwise_air = false;  ///< RadialMarch::pointwiseAir()
@@ -56,7 +56,7 @@ struct MarchNotes {
 /// @throws Error (bad_input) as RadialMarch() and marchCells(), or if the sizes do not fit
 MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db);
 
-/// N that the GPU marches with.
+/// Limits of N on the GPU.
 constexpr int kMinBlockIntervals = 128, kMaxBlockIntervals = 8192;
 
 /// marchAzimuths() on the GPU, without halving within 0.05 dB of it where F > -60 dB.
@@ -69,7 +69,7 @@ struct FieldColumn {
   double range_m = 0, ground_msl_m = 0, height_step_m = 0;
   std::vector<float> amplitude;
 };
-/// Columns that the GPU's march goes through, for comparison with RadialMarch.
+/// Columns of the GPU's march, for comparison with RadialMarch.
 /// @param steps  ascending, 1 or more
 /// @return azimuths x steps
 /// @throws as marchAzimuthsOnGpu()

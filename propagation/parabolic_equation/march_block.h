@@ -1,13 +1,13 @@
-/// The march of one azimuth by a block of threads, the field in their registers: the parabolic equation on a
-/// GPU. The same source runs on the host, thread after thread, for tests.
+/// March of one azimuth by a block of threads with the field in registers: the parabolic equation on a GPU.
+/// The same source runs on the host, thread after thread, for tests.
 ///
 /// The field at the heights j = 0..N is continued oddly to 2N heights; its Fourier transform is 2i times the
 /// sine transform. A thread holds 16 heights, L = N/8 apart: the column t, t + L, ... of which the column L -
 /// t is the mirror image. So the threads 0..L/2 hold everything, and a transform of 16 numbers in each gives
-/// the sixteen residues of the wavenumbers; those of r and 16 - r are mirror images again. The rows of the
-/// residues 0..8, of L values each, are then transformed by L/16 threads each, which need no barrier of the
-/// block. The inverse runs the other way round, without any reordering: the propagator lies in the order of
-/// the threads.
+/// the sixteen residues of the wavenumbers; those of r and 16 - r are also mirror images. The rows of the
+/// residues 0..8, of L values each, are then transformed by L/16 threads each, without a barrier of the
+/// block. The inverse applies these steps in reverse without reordering: the propagator is stored in the
+/// order of the threads.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@
 
 namespace emscape::propagation {
 
-/// A complex number in memory, read and written at once.
+/// A complex number in memory, read and written in one access.
 struct alignas(8) StoredComplex {
   float re, im;
 
@@ -48,11 +48,11 @@ struct BlockShape {
 
   static EMSCAPE_HD constexpr int padded(int i) { return i + i / 16; }
   static EMSCAPE_HD constexpr int powerIndex(int j) { return j + j / 32; }
-  /// Height of place q in a column, 0..N.
+  /// Height of element q of a column, 0..N.
   static EMSCAPE_HD constexpr int height(int column, int q) {
     return q < 8 ? column + kColumns * q : 2 * kIntervals - column - kColumns * q;
   }
-  /// True at one of the places that show a height of 0..N-1.
+  /// True for exactly one of the elements that represent a height of 0..N-1.
   static EMSCAPE_HD constexpr bool owns(int column, int q) {
     return q < 8 || (column > 0 && column < kColumns / 2);
   }
@@ -79,7 +79,7 @@ bool withBlockShape(int intervals, const Function& function) {
   return false;
 }
 
-/// What a step over terrain or through changing air needs, made by planSteps() (march_block_tables.h).
+/// Data of a step over terrain or through changing air, computed by planSteps() (march_block_tables.h).
 struct PlannedStep {
   double ground_m = 0, sine = 0;  ///< at the end, above mean sea level, and of the slope
   float turns = 0,
@@ -89,12 +89,12 @@ struct PlannedStep {
   float cube = 0, square = 0;  ///< 1 / cos^3 - 1, 1 / cos^2 - 1 of the slope
   StoredComplex wave;          ///< factor of the surface wave
   int shift = 0;               ///< height steps that the ground rises at the end
-  int staircases = 0;          ///< 1: the piece is taken as a step of a staircase
+  int staircases = 0;          ///< 1: the segment is replaced by a step of a staircase
 };
 
-/// Levels of the air between two ranges; at each range between, all levels move linearly.
+/// Levels of the air between two ranges; all levels change linearly with range.
 struct AirSegment {
-  double begin_m = 0, per_m = 0;  ///< of the range; per_m: 1 / length, 0: the first profile throughout
+  double begin_m = 0, per_m = 0;  ///< of the range; per_m: 1 / length, 0: only the first profile
   int first = 0, levels = 0;
   float top_from = 0, top_to = 0;  ///< gradients above the last level
 };
@@ -102,7 +102,7 @@ struct AirLevel {
   float from_m, from_units, to_m, to_units;
 };
 
-/// Where the march of an azimuth is.
+/// State of the march of an azimuth.
 struct MarchState {
   int intervals = 0;  ///< N; less after halving
   int step = 0, cell = 0;
@@ -111,7 +111,7 @@ struct MarchState {
   double ground_m = 0, sine = 0;
 };
 
-/// A march for one N. Pointers are to memory of the processor that runs it.
+/// A march for one N. Pointers refer to memory of the processor that runs it.
 struct MarchBlockTask {
   int azimuths = 0;
   int end_step = 0;       ///< the largest of all azimuths
@@ -133,7 +133,7 @@ struct MarchBlockTask {
   const StoredComplex* propagator = nullptr;  ///< flat: 16 x kSpectral, with 1 / 2N
   const StoredComplex* exponents =
       nullptr;  ///< terrain: the same in turns and log2 of the magnitude, without 1 / 2N
-  /// Screens of half a step and of a whole one by height, and by place in a run; null: computed
+  /// Screens of half a step and of a whole one by height, and by position in a run; null: computed
   const StoredComplex *half_screen = nullptr, *whole_screen = nullptr;
   const StoredComplex *half_in_runs = nullptr, *whole_in_runs = nullptr;
   const AirSegment* segments = nullptr;
@@ -170,7 +170,7 @@ struct MarchBlockTask {
   EMSCAPE_HD int sumsOfCells() const { return cells_overlap ? 2 * cell_heights : cell_heights; }
 };
 
-/// Memory that the threads of a block share.
+/// Shared memory of a block.
 struct BlockMemory {
   StoredComplex *rows, *column_turns, *first_turns, *second_turns;
   StoredComplex *ends, *group_ends, *parts, *part_groups, *starts, *start_groups, *shares;
@@ -219,7 +219,7 @@ struct BlockThread {
   Complex<float> base, base_below, lead, carry;  ///< r^(16 i), r^(16 i - 1), r^(16 (i mod 16))
 };
 
-/// The transforms of a block. Each function's threads are followed by a barrier of the block.
+/// Transforms of a block. Each function ends with a barrier of the block.
 template <class Shape, class Team>
 struct BlockTransform {
   static constexpr int L = Shape::kColumns, G = Shape::kLanes;
@@ -239,7 +239,7 @@ struct BlockTransform {
     });
   }
 
-  /// The columns' residues into the rows.
+  /// Writes the columns' residues into the rows.
   static EMSCAPE_HD void foldColumns(int t, BlockThread& x, const BlockMemory& memory) {
     SmallFourier<16, 1, float>::run(x.v);
     const bool pair = t > 0 && t < L / 2;
@@ -255,7 +255,7 @@ struct BlockTransform {
     }
   }
 
-  /// The rows' residues into the columns.
+  /// Writes the rows' residues into the columns.
   static EMSCAPE_HD void unfoldColumns(int t, BlockThread& x, const BlockMemory& memory) {
     const int at = Shape::padded(t), mirrored = Shape::padded(t == 0 ? 0 : L - t);
     x.v[0] = memory.rows[at];
@@ -269,7 +269,7 @@ struct BlockTransform {
     SmallFourier<16, -1, float>::run(x.v);
   }
 
-  /// Rows to their spectra, which onSpectrum(row, lane, thread) changes in registers, and back.
+  /// Transforms rows to spectra, applies onSpectrum(row, lane, thread) in registers, and transforms back.
   template <class OnSpectrum>
   static EMSCAPE_HD void transformRows(Team& team, const BlockMemory& memory, const OnSpectrum& onSpectrum) {
     constexpr int kSecond = Shape::kSecond, kThird = Shape::kThird;

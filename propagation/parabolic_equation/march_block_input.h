@@ -1,4 +1,4 @@
-/// What the march of all azimuths by blocks begins with, on the host.
+/// Input of the march of all azimuths by blocks, prepared on the host.
 #pragma once
 
 #include <type_traits>
@@ -10,7 +10,7 @@
 namespace emscape::propagation {
 
 struct BlockInput {
-  std::vector<int> intervals;         ///< N, and what halving may come to, descending
+  std::vector<int> intervals;         ///< N and its possible values after halving, descending
   std::vector<MarchBlockTask> tasks;  ///< of each, without pointers
   bool flat = false;                  ///< no terrain
   bool steady_air = false;            ///< one profile for all azimuths and ranges
@@ -24,9 +24,8 @@ struct BlockInput {
   std::vector<MarchState> states;    ///< of each azimuth
 };
 
-/// @param max_intervals  largest N that is to be taken
-/// @param columns_at  steps after which whole columns are kept, ascending; the march goes on to the last of
-/// them
+/// @param max_intervals  max N
+/// @param columns_at  steps after which whole columns are kept, ascending; the march continues to the last
 /// @throws Error (bad_input) as marchAzimuths(), for N outside kMinBlockIntervals .. kMaxBlockIntervals, and
 /// for the narrow form over terrain or in changing air
 BlockInput blockInput(const AzimuthMarch& march, int max_intervals = kMaxBlockIntervals,

@@ -1,4 +1,4 @@
-/// The steps of a block's march: march_block.h.
+/// Steps of a block's march; see march_block.h.
 #pragma once
 
 #include "propagation/parabolic_equation/cell_span.h"
@@ -6,7 +6,7 @@
 
 namespace emscape::propagation {
 
-/// Kinds of a march, for each of which a GPU has a kernel of its own.
+/// Kinds of marches; a GPU has one kernel per kind.
 enum class BlockKind {
   tables,   ///< flat ground under one profile of the air, perfectly conducting: screens and propagator from
             ///< tables
@@ -14,7 +14,7 @@ enum class BlockKind {
   mixed     ///< all with the mixed transform
 };
 
-/// The march of an azimuth from its state to state.end_step, or to the step at which N is halved.
+/// March of an azimuth from its state to state.end_step, or to the step at which N is halved.
 /// @param Team  runs the threads of a block: each(f) calls f(thread, its registers) for all and then is a
 /// barrier of the block; eachInRows(f) is a barrier of the threads of a row alone; eachFree(f) is none
 template <class Shape, BlockKind kKind, class Team>
@@ -58,11 +58,11 @@ class BlockMarch {
   static constexpr int N = Shape::kIntervals;
   static constexpr bool kMixed = kKind == BlockKind::mixed;
 
-  /// The air's screens are in tables.
+  /// True if the air's screens are in tables.
   EMSCAPE_HD bool steady() const {
     return kKind == BlockKind::tables || (kMixed && task_.half_screen != nullptr);
   }
-  /// The propagator is in a table.
+  /// True if the propagator is in a table.
   EMSCAPE_HD bool flat() const { return kKind == BlockKind::tables || task_.planned == nullptr; }
 
   EMSCAPE_HD double groundAtSource() const {
@@ -129,7 +129,7 @@ class BlockMarch {
     });
   }
 
-  /// Keeps what a next march begins with.
+  /// Stores the initial state of the next march.
   EMSCAPE_HD void save(bool halve) {
     finishScreen();
     StoredComplex* const field = task_.fields + std::size_t(azimuth_) * task_.pitch;
@@ -198,7 +198,7 @@ class BlockMarch {
     const float t = (float(j) * task_.dz_m - task_.usable_m) * task_.per_absorber_m;
     return t > 0 ? powerOfTwo(task_.absorber_log2_per_m * t * t * t * distance_m) : 1.0F;
   }
-  /// Half of the last step's screen, if it is still to come, the break of slope, and half of this step's.
+  /// Half of the last step's screen, if still pending, the break of slope, and half of this step's screen.
   EMSCAPE_HD Complex<float> screen(int j, float& turns) const {
     const float before = screened_half_m_ > 0 ? turns : 0;
     turns = screenTurns(j);
@@ -221,7 +221,7 @@ class BlockMarch {
     });
   }
 
-  /// The half screen of the last step, unless it is in the field.
+  /// The half screen of the last step, unless already applied.
   EMSCAPE_HD void finishScreen() {
     if (!(screened_half_m_ > 0)) return;
     const auto half = [&](int j, float turns) -> Complex<float> {
@@ -245,7 +245,7 @@ class BlockMarch {
     screened_half_m_ = 0;
   }
 
-  /// Columns through the spectrum and back.
+  /// Transforms columns to the spectrum and back.
   EMSCAPE_HD void spectrum(bool test) {
     using Transform = BlockTransform<Shape, Team>;
     team_.each([&](int t, BlockThread& x) {
@@ -327,7 +327,7 @@ class BlockMarch {
 
   /// v -> u, in columns and then in runs, with the surface wave one step further.
   EMSCAPE_HD void joinSurface() {
-    team_.each([&](int, BlockThread&) {});  // the rows were read
+    team_.each([&](int, BlockThread&) {});  // all rows have been read
     team_.each([&](int t, BlockThread& x) {
       if (t >= Shape::kHolders) return;
       Complex<float> part;
@@ -389,9 +389,9 @@ class BlockMarch {
     return a;
   }
 
-  /// Moves the field by whole height steps.
+  /// Shifts the field by whole height steps.
   EMSCAPE_HD void shift() {
-    finishScreen();  // ends with a barrier: nobody reads the rows any more
+    finishScreen();  // ends with a barrier: the rows are no longer read
     const int by = step_.shift;
     team_.each([&](int t, BlockThread& x) {
       forHeights(t, x, [&](int j, Complex<float> u) { memory_.rows[Shape::padded(j)] = u; });
@@ -405,7 +405,7 @@ class BlockMarch {
     });
   }
 
-  /// |u| by height; the half screen that is still to come has magnitude 1 below the absorber.
+  /// |u| by height; the pending half screen has magnitude 1 below the absorber.
   EMSCAPE_HD void keepColumn(int column) {
     const std::size_t of = std::size_t(azimuth_) * task_.columns + column;
     team_.eachFree([&](int t, BlockThread& x) {
@@ -418,7 +418,7 @@ class BlockMarch {
     });
   }
 
-  /// F^2 of the step into the cells; losses where a range of cells ends.
+  /// Adds F^2 of the step to the cells; writes losses at the end of a range of cells.
   EMSCAPE_HD void addToCells() {
     const bool ends = task_.cell_end[state_.cell] == state_.step;
     if (task_.cells_are_points && !ends) return;
@@ -469,7 +469,7 @@ class BlockMarch {
     });
     if (ends) ++state_.cell;
   }
-  /// Mean between two heights (in height steps) of the power, which is linear between the heights.
+  /// Mean power between two heights (in height steps); the power is linear between the grid's heights.
   EMSCAPE_HD float meanPower(float z1, float z2) const {
     const int first = z1 < float(N - 2) ? int(z1) : N - 2;
     int last = int(ceilf(z2));
@@ -490,7 +490,7 @@ class BlockMarch {
   const BlockMemory& memory_;
   MarchState state_;
   PlannedStep step_;
-  float screened_half_m_ = 0;  ///< half step whose screen the field still lacks
+  float screened_half_m_ = 0;  ///< half step whose screen is pending
   int levels_ = 0, level_stride_ = 0;
 };
 

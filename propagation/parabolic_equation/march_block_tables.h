@@ -1,11 +1,11 @@
-/// Tables and plans of a block's march, an entry or an azimuth at a time, in double: march_block.h.
+/// Tables and plans of a block's march in double, one entry or azimuth per call; see march_block.h.
 #pragma once
 
 #include "propagation/parabolic_equation/march_block.h"
 
 namespace emscape::propagation {
 
-/// To be written; the same pointers as in MarchBlockTask.
+/// Tables to be written; the same pointers as in MarchBlockTask.
 struct BlockTables {
   StoredComplex *propagator = nullptr, *exponents = nullptr;
   StoredComplex *half_screen = nullptr, *whole_screen = nullptr, *half_in_runs = nullptr,
@@ -20,7 +20,7 @@ EMSCAPE_HD inline StoredComplex stored(Complex<double> a) {
   return Complex<float>{float(a.re), float(a.im)};
 }
 
-/// M-units above those of the first level, at the first range.
+/// M relative to that of the first level, at the first range.
 EMSCAPE_HD inline double unitsAt(const MarchBlockTask& task, double height_m) {
   const AirSegment& segment = task.segments[0];
   const AirLevel* const levels = task.levels + segment.first;
@@ -100,7 +100,7 @@ EMSCAPE_HD void fillTables(const MarchBlockTask& task, const BlockTables& tables
   if (tables.weights != nullptr) tables.weights[i] = block_tables::stored(surfaceWeight(task, N, i));
 }
 
-/// What a step along a slope needs of the surface wave: exp(i d (sqrt(k^2 + (ln r / (dz cos))^2) - k)).
+/// Factor of the surface wave for a step along a slope: exp(i d (sqrt(k^2 + (ln r / (dz cos))^2) - k)).
 EMSCAPE_HD inline StoredComplex surfaceWave(const MarchBlockTask& task, double cosine) {
   const double scale = 1 / (task.height_step_m * cosine);
   const Complex<double> decay = task.log_ratio * scale, squared = decay * decay;
@@ -108,7 +108,7 @@ EMSCAPE_HD inline StoredComplex surfaceWave(const MarchBlockTask& task, double c
       task.wide, 2 * kPi / task.wavelength_m, task.range_step_m / cosine, {-squared.re, -squared.im})));
 }
 
-/// All steps of an azimuth from its state on.
+/// Plans all steps of an azimuth from its state on.
 template <class Shape>
 EMSCAPE_HD void planSteps(const MarchBlockTask& task, PlannedStep* planned, int azimuth) {
   const MarchState& state = task.states[azimuth];

@@ -15,7 +15,7 @@ constexpr double kMinRangeStep_m = 50;
 constexpr double kTrappingStep_m = 200;  ///< at kTrappingFrequency_hz
 constexpr double kTrappingFrequency_hz = 1e10;
 constexpr double kPlainStep_m = 500;
-/// Over terrain the band holds the even source, the slopes, and a last tenth that is absorbed:
+/// Over terrain the band contains the flat source spectrum, the slopes, and an absorbed last tenth:
 /// bandEdgeRate().
 constexpr double kSlopePart = 0.9 - kPeEvenBand;
 
@@ -30,9 +30,9 @@ void requirePositive(const char* what, double value, const char* unit) {
   throw Error(ErrorCode::bad_input, fmt::format("{} {} {} is not above 0", what, value, unit));
 }
 
-/// Least height of the domain whose absorber is eight vertical wavelengths thick for the ray that grazes the
-/// earth below it, in standard air. A thinner one reflects that ray, and far beyond the horizon nothing is
-/// left but its reflections: with three wavelengths -2 dB in place of -80 dB (10 GHz, 60 km).
+/// Min height of the domain: in standard air its absorber is eight vertical wavelengths thick for the ray
+/// that grazes the earth. A thinner absorber reflects that ray, and the reflections dominate far beyond the
+/// horizon: with three wavelengths -2 dB instead of -80 dB (10 GHz, 60 km).
 double grazingTop_m(double wavelength_m) {
   constexpr double kVerticalWavelengths = 8;
   const double sine_per_root_m = std::sqrt(2e-6 * kStandardGradient_m);  // of the ray at a height
@@ -77,7 +77,7 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
 
   const double wavelength = wavelength_m(needs.frequency_hz);
   const double sine = std::sin(needs.max_angle_rad);
-  // the source fills 0.6 of the band: the wanted angle lies within that
+  // the source fills 0.6 of the band, which includes the wanted angle
   const double largest_step_m = kPeEvenBand * wavelength / (2 * sine);
   const double wanted_top_m = needs.max_height_m / kPeUsable / (1 - kPeAbsorberPart);
   // thirty vertical wavelengths of a ray at a tenth of the band in the absorber

@@ -14,8 +14,8 @@ constexpr ModelLimit kPeFrequency{
 constexpr ModelLimit kPeAngle{
     "largest angle", "degrees", kPi / 180, 0.1, 15, Beyond::refused, "other models serve at larger angles"};
 constexpr int kPeMaxIntervals = 32768;
-constexpr double kPeEvenBand = 0.6;        ///< part of the band that the source fills evenly (source.h)
-constexpr double kPeUsable = 0.8;          ///< of the height below the absorber
+constexpr double kPeEvenBand = 0.6;        ///< fraction of the band with a flat source spectrum (source.h)
+constexpr double kPeUsable = 0.8;          ///< fraction of the height below the absorber
 constexpr double kPeAbsorberPart = 0.125;  ///< of the domain
 
 /// Form of the one-way equation.
@@ -24,7 +24,7 @@ enum class PeForm {
   narrow,  ///< of small angles; for comparisons with its closed forms
 };
 
-/// What every azimuth of a group has in common.
+/// Parameters common to all azimuths of a group.
 struct MarchGrid {
   double frequency_hz = 0;
   double top_m = 0;   ///< of the domain above the ground, absorber included
@@ -34,8 +34,8 @@ struct MarchGrid {
   /// Its rate at the top: the field decays as exp(-rate t^3 x), t = 0..1 in the layer.
   double absorber_per_m = 0;
   PeForm form = PeForm::wide;
-  /// Part of the band that slopes may turn the rays by, at most 1. What is steeper is a staircase for the
-  /// rest.
+  /// Fraction of the band by which slopes may turn the rays, at most 1. The rest of steeper slopes becomes a
+  /// staircase.
   double slope_part = 1;
   bool halving = false;  ///< halves N where the upper half of the spectrum has left the domain
 
@@ -43,7 +43,7 @@ struct MarchGrid {
   double heightStep_m() const { return top_m / intervals; }
   /// Sine of the largest angle of the sine transform.
   double maxSine() const { return wavelength_m(frequency_hz) / (2 * heightStep_m()); }
-  /// Heights above the ground up to which the field is that without a top.
+  /// Height above the ground up to which the domain's top does not affect the field.
   double usableTop_m() const { return top_m - absorber_m; }
 };
 
@@ -59,7 +59,7 @@ double absorberStep_m(const MarchGrid& grid);
 /// domain
 void checkGrid(const MarchGrid& grid);
 
-/// What the automatic steps depend on.
+/// Inputs of the automatic choice of steps.
 struct MarchNeeds {
   double frequency_hz = 0;
   double max_height_m = 0;  ///< above the ground, up to which the field is wanted, the source included
@@ -76,7 +76,7 @@ struct AutomaticGrid {
 
 /// Steps for a splitting error of 0.2 dB in nine of ten points, and a domain that holds the wanted heights
 /// below 0.8 of what the absorber leaves.
-/// @throws Error (bad_input) outside the limits; the message gives the largest angle that N = 32768 affords
+/// @throws Error (bad_input) outside the limits; the message gives the largest angle possible with N = 32768
 AutomaticGrid automaticGrid(const MarchNeeds& needs);
 
 }  // namespace emscape::propagation

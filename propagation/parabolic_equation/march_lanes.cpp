@@ -348,7 +348,7 @@ void split(const LaneSurface& surface, StepLanes* field, int n, StepLanes* wave)
   store(sum * Complex<float>{surface.inverse_power.re, surface.inverse_power.im}, *wave);
 }
 
-/// Four heights at a time, whose carries are one product apart.
+/// Four heights at a time, whose carries differ by one product.
 void join(const LaneSurface& surface, StepLanes* field, int n, const StepLanes* wave) {
   const auto power = [&](int i) HWY_ATTR { return load(surface.powers[std::size_t(i)]); };
   Complex<V> held{V{}, V{}}, carry{V{}, V{}};

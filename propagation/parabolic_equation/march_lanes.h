@@ -24,13 +24,13 @@ struct FlatExponent {
   float cosine = 0;     ///< sqrt(1 - sine^2); < 0: evanescent
 };
 
-/// Memory of a transform: twiddle factors, and 9 rows of residues.
+/// Memory of a transform: twiddle factors and 9 rows of residues.
 struct LaneTables {
   const StoredComplex *column_turns, *first_turns, *second_turns;
   StepLanes* rows;
 };
 
-/// Tables of the transforms for one N, and their memory. Not for several threads at once.
+/// Tables of the transforms for one N, and their memory. Not thread-safe.
 class LaneTransform {
  public:
   explicit LaneTransform(int intervals);
@@ -45,7 +45,7 @@ class LaneTransform {
   };
   /// field <- inverse transform of the propagator times its transform. field[0] becomes 0.
   /// @param propagator  of all lanes, with 1 / 2N
-  /// @param shares  null: not wanted
+  /// @param shares  null: not computed
   void step(StepLanes* field, const std::vector<StoredComplex>& propagator, Shares* shares);
 
   /// Slopes of the lanes: 1 / cos^3 - 1, 1 / cos^2 - 1 and 1 / cos - 1.

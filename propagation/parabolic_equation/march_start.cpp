@@ -41,8 +41,8 @@ std::vector<Cx> seriesSum(const std::vector<Cx>& sines, const std::vector<Cx>& c
 }  // namespace
 
 /// The source as a sum of the discrete surface's waves e^(-i p z) + R e^(i p z), R(p) = -(1 - r e^(i p dz)) /
-/// (1 - r e^(-i p dz)): for r = 0 the source and its image. The part of the delta at the source that the
-/// surface wave r^j holds is put in by itself.
+/// (1 - r e^(-i p dz)): for r = 0 the source and its image. The surface wave r^j of the
+/// delta at the source is added separately.
 std::vector<Cx> startField(const MarchGrid& grid, const PeSource& source, Cx ratio) {
   const int n = grid.intervals;
   const double dz = grid.heightStep_m(), k = grid.wavenumber(), p_max = kPi / dz;

@@ -1,4 +1,4 @@
-/// The field at the start of a march, and what a march refuses.
+/// The field at the start of a march, and the checks of its input.
 #pragma once
 
 #include <complex>

@@ -1,4 +1,4 @@
-/// What a step of the march is made of, at one height or one wavenumber, for host and device.
+/// Operations of a step of the march at one height or one wavenumber, for host and device.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,8 @@
 
 namespace emscape::propagation {
 
-/// Sines of the slope above which a piece of terrain is taken as a step of a staircase (15 degrees), and of
-/// the break of slope above which it is (20 degrees, or the band's largest angle).
+/// Sines of the slope (15 degrees) and of the break of slope (20 degrees, or the band's largest angle) above
+/// which a terrain segment is replaced by a step of a staircase.
 constexpr double kMaxSlopeSine = 0.25881904510252076;
 constexpr double kMaxBreakSine = 0.34202014332566873;
 
@@ -21,10 +21,10 @@ EMSCAPE_HD inline Complex<double> exponential(Complex<double> a) {
   return {magnitude * std::cos(a.im), magnitude * std::sin(a.im)};
 }
 
-/// Rate (1/m) at which the last tenth of the band is absorbed. Rays that leave the band come back mirrored at
-/// its edge, downwards. Standard air turns rays out of it slowly: 90 dB over the range in which it turns a
-/// ray through that tenth. Over terrain a break of slope does so at once: 90 dB in a step, which removes what
-/// a break by up to a fifth of the band mirrors.
+/// Absorption rate (1/m) of the last tenth of the band. Rays that leave the band are reflected downwards at
+/// its edge. Standard air turns rays out of the band slowly: 90 dB over the range in which it turns a ray
+/// through that tenth. Over terrain a break of slope does so at once: 90 dB in a step, which removes the
+/// reflections of breaks by up to a fifth of the band.
 EMSCAPE_HD inline double bandEdgeRate(double part_of_band, double max_sine, double range_step_m,
                                       bool over_terrain) {
   constexpr double kBegin = 0.9, kLoss = 90 / kDbPerNeper<double>;
@@ -47,16 +47,16 @@ EMSCAPE_HD inline Complex<double> stepExponent(bool wide, double k, double dista
 /// One range step over the ground.
 struct GroundStep {
   double sine = 0, cosine = 1;  ///< of the slope
-  /// Sine of the slope before less that of this one: the field turns by exp(i k z turn) at the break.
+  /// Sine of the previous slope minus that of this one: the break multiplies the field by exp(i k z turn).
   double turn = 0;
-  double stair_m = 0;  ///< rise of the step of a staircase at the end: what the slope leaves
-  /// Steeper or more sharply bent than the equation allows: all rise is the staircase's.
+  double stair_m = 0;  ///< rise of the step of a staircase at the end: the rest of the rise
+  /// Steeper or more sharply bent than the equation allows: the staircase has the whole rise.
   bool is_steep = false;
 };
 
 /// @param rise_m       over the step
 /// @param sine_before  of the slope of the step before
-/// @param first        the march's first step: the source's band lies about its slope
+/// @param first        the march's first step: the source's band is centred on its slope
 /// @param max_sine     of the band
 /// @param slope_part   MarchGrid::slope_part
 EMSCAPE_HD inline GroundStep groundStep(double rise_m, double range_step_m, double sine_before, bool first,

@@ -69,8 +69,8 @@ bool isLand(const Ground& ground) {
   return ground.kind != GroundKind::sea && ground.kind != GroundKind::fresh_water;
 }
 
-/// Reads the ground along all azimuths; behind the first hole it is level, and cells that reach there are
-/// unknown. So it is behind an azimuth's end.
+/// Reads the ground along all azimuths. Beyond the first hole, and beyond an azimuth's end, it is level;
+/// cells beyond a hole are unknown.
 void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& field) {
   if (!radials.has_terrain) return;
   AzimuthMarch& march = field.march;
@@ -97,8 +97,8 @@ void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& fie
   });
 }
 
-/// Ends the marches behind ground that the antenna sees at more than the equation's largest angle: over it
-/// the field comes at such angles, and other models speak (PeOthers::equationPart()).
+/// Ends the marches beyond ground that the antenna sees above the equation's largest angle: the field passes
+/// it at larger angles, for which other models are used (PeOthers::equationPart()).
 void endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMarch& field) {
   constexpr float kMargin = 1.05f;  // a column between two azimuths may see a little past both
   AzimuthMarch& march = field.march;
@@ -158,7 +158,7 @@ std::vector<float> evenGround(const TerrainProfile& profile, double step_m, int 
   return ground_msl_m;
 }
 
-/// The other model, as a model of columns.
+/// The other model as a column model.
 struct OtherColumn {
   const PeOthers& others;
 

@@ -16,7 +16,7 @@ std::vector<Setting> peSettings();
 InputFaults checkPe(const EmitterInputs& inputs);
 std::vector<std::string> peWarningMessages(unsigned warnings);
 std::vector<ModelChoice> peChoices(const PathInputs& inputs, const RadialInputs& radials);
-/// The excess of an emitter's field, without its tables, and the marches that make them.
+/// Excess of an emitter's field without its tables, and the marches that compute them.
 struct PeField {
   PeExcess excess;
   FieldMarch march;

@@ -1,6 +1,6 @@
-/// The models that speak where the parabolic equation does not: close to the antenna and at large angles
-/// diffraction over terrain or two rays over a smooth earth, deep behind the horizon scattering in the
-/// troposphere; and which of them decides.
+/// Models used outside the parabolic equation's limits: close to the antenna and at large angles diffraction
+/// over terrain or two rays over a smooth earth, far beyond the horizon troposcatter; and the choice between
+/// them.
 #pragma once
 
 #include <cmath>
@@ -15,15 +15,15 @@
 
 namespace emscape::propagation {
 
-/// Part (0..1) of the angle's and the range's limits over which two models are blended, in dB.
+/// Fraction (0..1) of the angle's and the range's limits over which two models are blended, in dB.
 constexpr float kPeBlendPart = 0.2f;
 
-/// The loss over free space at one place, and its parts.
+/// Loss over free space at one position, and its contributions.
 struct PeLoss {
   float equation_db = 0;         ///< of the parabolic equation, no larger than the floor's
   float equation_part = 1;       ///< its weight in dB: 1 within its limits, 0 outside
   float other_db = 0;            ///< of the other model
-  float scatter_db = HUGE_VALF;  ///< by troposcatter; infinite in sight
+  float scatter_db = HUGE_VALF;  ///< by troposcatter; infinite within line of sight
   bool is_extended = false;      ///< from the top of the equation's domain along the ray
   bool is_floor = false;         ///< the equation's field is no larger than its floor
 
@@ -38,7 +38,7 @@ struct PeLoss {
     if (!(scatter_db < HUGE_VALF)) return without_db;
     return -10 * std::log10(std::pow(10.0f, -without_db / 10) + std::pow(10.0f, -scatter_db / 10));
   }
-  /// The larger part of the field, or of the blend in dB.
+  /// Mechanism of the larger contribution to the field, or to the blend in dB.
   EMSCAPE_HD Mechanism mechanism(bool over_terrain) const {
     if (scatter_db < withoutScatter_db()) return Mechanism::troposcatter;
     if (equation_part < 0.5f) return over_terrain ? Mechanism::diffraction : Mechanism::two_ray;
@@ -57,9 +57,9 @@ struct PeOthers {
   bool over_terrain = false;
   DiffractionExcess diffraction;  ///< over terrain
   TwoRayExcess two_ray;           ///< over the smooth earth, at mean sea level
-  /// Size of the cells over which the equation's field is averaged, and so the two rays; 0: points.
+  /// Size of the cells over which the equation's field and the two rays are averaged; 0: points.
   float cell_range_m = 0, cell_height_m = 0;
-  P1812Model<float> scatter;  ///< what p1812TroposcatterDb() reads
+  P1812Model<float> scatter;  ///< input of p1812TroposcatterDb()
 
   /// Angle (rad) above the horizontal at which the ray to a height leaves the antenna.
   EMSCAPE_HD float launchAngle(float range_m, float height_msl_m) const {
@@ -81,7 +81,7 @@ struct PeOthers {
   }
 
   /// Weight of the equation.
-  /// @param horizon_rad  PeSight: over a ridge the field comes at that angle
+  /// @param horizon_rad  PeSight: angle at which the field passes a ridge
   EMSCAPE_HD float equationPart(float range_m, float height_msl_m, float ground_msl_m,
                                 float horizon_rad) const {
     if (!(range_m > min_range_m)) return 0;
@@ -96,7 +96,7 @@ struct PeOthers {
     return part < 0 ? 0 : part > 1 ? 1 : part;
   }
 
-  /// Sets the equation's loss, no larger than that of its floor, over the direct ray to a place.
+  /// Sets the equation's loss relative to the direct ray to a position, at most that of its floor.
   EMSCAPE_HD void setEquation(float equation_db, float range_m, float height_msl_m, PeLoss& loss) const {
     loss.is_floor = equation_db > largest_db;
     loss.equation_db = loss.is_floor ? largest_db : equation_db;
@@ -104,7 +104,7 @@ struct PeOthers {
       loss.equation_db += direct_ray.pattern_db(std::atan(launchAngle(range_m, height_msl_m)));
   }
 
-  /// Range (m) at which the ray to a place above a height passes that height, which is above the antenna.
+  /// Range (m) at which the ray to a position above a given height, itself above the antenna, crosses it.
   EMSCAPE_HD float crossing_m(float range_m, float height_msl_m, float crossed_msl_m) const {
     const float rise_m = crossed_msl_m - tx_msl_m, angle = launchAngle(range_m, height_msl_m);
     const float under = angle * angle + 2 * curvature_per_m * rise_m;
@@ -112,7 +112,7 @@ struct PeOthers {
     return at_m > 0 && at_m < range_m ? at_m : range_m;
   }
 
-  /// Losses of the other model at all heights of a column; NaN behind missing terrain.
+  /// Losses of the other model at all heights of a column; NaN beyond missing terrain.
   EMSCAPE_HD void fill(const ExcessColumn& column, const ExcessScratch& scratch, float* other_db) const {
     if (over_terrain) {
       diffraction(column, scratch, other_db);
@@ -121,7 +121,7 @@ struct PeOthers {
     for (int k = 0; k < column.count; ++k) other_db[k] = twoRays_db(column.range_m, column.height_msl_m[k]);
   }
 
-  /// Adds the troposcatter to a loss where it can matter.
+  /// Adds troposcatter to a loss where it can be significant.
   EMSCAPE_HD void addScatter(float range_m, const PeSight& sight, float height_msl_m, PeLoss& loss) const {
     constexpr float kMatters_db = 30;  // troposcatter is weaker than that by 15 dB and more
     if (loss.withoutScatter_db() < kMatters_db) return;
@@ -132,7 +132,7 @@ struct PeOthers {
     loss.scatter_db = scatter_db > 0 ? scatter_db : 0;
   }
 
-  /// Mean of the two rays over a cell, in which the difference of their paths grows linearly.
+  /// Mean of the two rays over a cell, in which the difference of their paths is linear.
   EMSCAPE_HD float twoRays_db(double range_m, float height_msl_m) const {
     float excess_db = 0;
     const ReflectedRay ray = two_ray.reflectedRay(range_m, height_msl_m, excess_db);
@@ -149,7 +149,7 @@ struct PeOthers {
  private:
   static EMSCAPE_HD float sinc(float x) { return std::fabs(x) < 1e-3f ? 1 : std::sin(x) / x; }
 
-  /// Angle (rad) between the horizons' rays of both ends, 0 where they see each other.
+  /// Angle (rad) between the horizon rays of both ends, 0 within line of sight.
   EMSCAPE_HD float horizonAngle(float range_m, const PeSight& sight, float height_msl_m) const {
     const float half_curvature = scatter.clear_air.median.half_curvature;
     const float to_rx = (height_msl_m - tx_msl_m) / range_m - half_curvature * range_m;

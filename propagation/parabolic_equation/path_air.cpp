@@ -17,7 +17,7 @@ constexpr int kIntervals = 128;
 constexpr double kReach = 1.25;
 constexpr double kNearest_m = 100;
 
-/// Great circles of a sphere: a profile does not depend on its place more exactly than that.
+/// Great circles of a sphere are accurate enough for the positions of profiles.
 double distance_m(const Place& a, const Place& b, double radius_m) {
   const double lat_a = degToRad(a.latitude_deg), lat_b = degToRad(b.latitude_deg);
   const double half_lat = std::sin((lat_b - lat_a) / 2);

@@ -17,28 +17,28 @@ namespace emscape::propagation {
 namespace {
 
 constexpr double kAngle_rad = 3 * kPi / 180, kSmallestAngle_rad = kPi / 180;
-constexpr int kPlainIntervals = 4096, kTerrainIntervals = 2048;  // the domain is no higher than they afford
-constexpr int kDearIntervals = 8192;                             // for a larger angle no more than this
-/// Of the largest angle, over terrain: no more of it is given up for half of the height steps.
+constexpr int kPlainIntervals = 4096, kTerrainIntervals = 2048;  // limit the domain's height
+constexpr int kDearIntervals = 8192;                             // limit for a larger angle
+/// Over terrain: min fraction of the largest angle that is kept in order to halve the height steps.
 constexpr double kWorthwhileAngle = 0.75;
-/// Up to the first number of azimuths, which a GPU marches at the same time (three on each of its 132
-/// processors), they are one place apart, else two.
+/// Up to the first number of azimuths, which a GPU marches concurrently (three on each of its 132
+/// multiprocessors), they are one position apart, else two.
 constexpr int kFewAzimuths = 396, kMaxAzimuths = 1584;
-constexpr double kFinestStep_m = 50;  // over places that are closer
+constexpr double kFinestStep_m = 50;  // for positions that are closer
 constexpr int kMaxHeights = 1024, kMaxRanges = 2000;
-constexpr double kUsablePart = 0.8;  // of the height below the absorber
+constexpr double kUsablePart = 0.8;  // fraction of the height below the absorber
 
 void requireWithinLimit(const ModelLimit& limit, double value_si) {
   if (!limit.holds(value_si)) throw Error(ErrorCode::bad_input, outsideMessage(limit, value_si));
 }
 
-/// Height (m) that so many height steps afford at an angle: automaticGrid().
+/// Height (m) covered by a number of height steps at an angle; see automaticGrid().
 double affordable_m(const EmitterInputs& emitter, double angle_rad, int intervals) {
   const double step_m = kPeEvenBand * wavelength_m(emitter.frequency_hz) / (2 * std::sin(angle_rad));
   return intervals * step_m * kPeUsable * (1 - kPeAbsorberPart);
 }
 
-/// The largest angle, of those up to `angle_rad`, at which so many height steps afford a height.
+/// Largest angle up to `angle_rad` at which a number of height steps covers a height.
 double affordableAngle_rad(const EmitterInputs& emitter, double angle_rad, double height_m, int intervals) {
   const double part = affordable_m(emitter, angle_rad, intervals) / height_m;
   return part >= 1 ? angle_rad : std::asin(std::sin(angle_rad) * part);
@@ -62,7 +62,7 @@ double secondsPerPoint(bool has_terrain) {
   return has_terrain ? 20e-9 : 14e-9;
 }
 
-/// What the equation's angles have of an elevation cut.
+/// Description of an elevation cut within the equation's angles.
 std::string sourceText(const ElevationPattern& pattern, double max_angle_rad) {
   if (!pattern) return "the antenna's elevation cut, which is isotropic";
   const DirectRayPattern cut = directRayPattern(pattern, max_angle_rad);
@@ -138,7 +138,7 @@ void planCells(const RadialInputs& radials, PeCells kept, PePlan& plan) {
            cells.ranges, cells.heights, cells.range_step_m, cells.height_step_m)});
 }
 
-/// Of each azimuth the cells up to the farthest place that is interpolated from it.
+/// Number of cells of each azimuth up to the farthest position that is interpolated from it.
 void planRanges(const RadialInputs& radials, PePlan& plan) {
   const std::vector<float>& arcs_m = radials.farthest_of_arcs_m;
   if (arcs_m.empty() || plan.azimuths == 1) return;
@@ -275,7 +275,7 @@ std::vector<PeSurface> planSurfaces(const EmitterInputs& emitter, const Refracti
 PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   constexpr double kClear = 1.1, kMargin_m = 30;  // between the antenna or a summit and the top of the cells
   RadialInputs radials = given;
-  // Places of a map are points: close to the ground the field follows the terrain's posts, not the pixels.
+  // Positions of a map are points: close to the ground the field follows the terrain's posts, not the pixels.
   if (radials.above_ground && radials.has_terrain)
     radials.spacing_m = std::min(radials.spacing_m, 3 * inputs.post_spacing_m);
   const double source_msl_m = inputs.site.height_msl_m, lowest_m = radials.lowest_ground_msl_m;

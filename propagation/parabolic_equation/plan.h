@@ -1,5 +1,5 @@
-/// How the parabolic equation is marched around an emitter: steps, domain, azimuths and cells, chosen
-/// from the scenario and reported.
+/// Plan of an emitter's marches of the parabolic equation: steps, domain, azimuths and cells, chosen from the
+/// scenario and reported.
 #pragma once
 
 #include <vector>
@@ -47,17 +47,17 @@ constexpr const ModelLimit* kPeLimits[] = {&kPeFrequency, &kPeTriedFrequency, &k
                                            &kPeDistance,  &kPeSteps,          &kPeSlope,
                                            &kPeRoughness, &kPeWork,           &kPeCells};
 
-/// What is asked of the domain of a march. Heights are above the lowest ground.
+/// Requirements for the domain of a march. Heights are above the lowest ground.
 struct DomainNeeds {
-  double required_m = 0;  ///< the antenna and all ground lie below it
+  double required_m = 0;  ///< the antenna and all ground are below it
   double wanted_m = 0;    ///< no field is read above it
   double post_spacing_m = 0;
   double farthest_m = 0;
-  double spacing_m = 0;    ///< of the places along the ground, which the range steps resolve; 0: one place
-  bool is_single = false;  ///< one azimuth: everything wanted is in the domain, whatever it costs
+  double spacing_m = 0;  ///< of the positions along the ground, resolved by the range steps; 0: one position
+  bool is_single = false;  ///< one azimuth: the domain contains wanted_m at any cost
 };
 
-/// The grid by the emitter's settings, what they leave open chosen.
+/// Grid from the emitter's settings; missing settings are chosen.
 /// @param max_angle_rad  receives the largest angle
 /// @throws Error (bad_input) outside the limits
 AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath& air,
@@ -66,31 +66,32 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
 /// The surfaces of a march, one per polarisation: two for those that are half horizontal, half vertical.
 std::vector<PeSurface> planSurfaces(const EmitterInputs& emitter, const RefractivityAlongPath& air);
 
-/// Top (m above mean sea level) of the highest layer that traps; 0: there is none.
+/// Top (m above mean sea level) of the highest trapping layer; 0: none.
 double trappingTop_m(const RefractivityAlongPath& air);
 
-/// Of several members' air the one that traps to the greatest height.
+/// The member's air whose trapping layer has the highest top.
 RefractivityAlongPath highestDuct(const std::vector<RefractivityAlongPath>& airs);
 
 struct PePlan {
   MarchGrid grid;
   RadialCells cells;
   std::vector<PeSurface> surfaces;
-  /// Of each member of the air's ensemble, one member without one: one for all azimuths, or one each.
+  /// For each member of the air's ensemble (one without an ensemble): one for all azimuths, or one per
+  /// azimuth.
   std::vector<std::vector<RefractivityAlongPath>> air;
   int azimuths = 0;
   std::vector<int> ranges;  ///< AzimuthMarch::ranges
   bool is_around = false;   ///< the last azimuth's neighbour is the first
   double first_azimuth_rad = 0, azimuth_step_rad = 0;
   double max_angle_rad = 0;
-  double min_range_m = 0;  ///< nearer, other models speak
-  double top_m = 0;        ///< in the cells' heights; above: along the ray from that height
+  double min_range_m = 0;  ///< at shorter ranges other models are used
+  double top_m = 0;        ///< datum as the cells' heights; above it: extended along the ray
   std::vector<ModelChoice> choices;
 
   double azimuth_rad(int i) const { return first_azimuth_rad + i * azimuth_step_rad; }
 };
 
-/// @throws Error (bad_input) outside the limits, with the value and what is allowed
+/// @throws Error (bad_input) outside the limits, with the value and the allowed range
 PePlan planMarch(const PathInputs& inputs, const RadialInputs& radials);
 
 }  // namespace emscape::propagation

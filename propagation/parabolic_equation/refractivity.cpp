@@ -35,8 +35,8 @@ bool haveSameCounts(const std::vector<RefractivityProfile>& profiles) {
   });
 }
 
-/// Heights with a constant step in their logarithm, so that the error of straight pieces is the same
-/// everywhere, and the duct height.
+/// Heights with a constant step in their logarithm, so that the error of linear interpolation is uniform, and
+/// the duct height.
 std::set<double> evaporationHeights_m(double top_m, int count, double duct_height_m) {
   const double step = std::log1p(top_m / kEvaporationRoughness_m) / (count - 2);
   std::set<double> heights_m{duct_height_m};

@@ -1,4 +1,4 @@
-/// Modified refractivity of the air along a path: what the parabolic equation bends rays with.
+/// Modified refractivity of the air along a path, for refraction in the parabolic equation.
 ///
 /// The earth is flattened: M = (n - 1 + z/a) 10^6 = N + 0.157 z. Only differences of M bend rays. A profile
 /// is a list of levels; M is linear between them.
@@ -14,7 +14,7 @@ namespace emscape::propagation {
 constexpr double kStandardGradient_m = 0.118;
 /// dM/dz of air without gradient of N: 10^6 / 6371 km.
 constexpr double kFlatteningGradient_m = 1e6 / 6371000.0;
-/// M at the surface where a profile does not give it.
+/// M at the surface if a profile does not give it.
 constexpr double kSurface_m_units = 330;
 /// Roughness length of the evaporation duct's profile (m).
 constexpr double kEvaporationRoughness_m = 1.5e-4;
@@ -36,7 +36,7 @@ struct RefractivityProfile {
   double known_to_m = HUGE_VAL;
 
   double at(double height_msl_m) const;
-  /// M falls with height somewhere: a layer that traps.
+  /// True if M decreases with height somewhere (a trapping layer).
   bool traps() const;
   bool operator==(const RefractivityProfile& other) const {
     return levels == other.levels && top_gradient_m == other.top_gradient_m && known_to_m == other.known_to_m;
@@ -52,13 +52,13 @@ RefractivityProfile linearRefractivity(double gradient_m, double surface_m_units
 /// @throws Error (bad_input) outside that range
 /// @see Paulus 1985, Radio Sci. 20(4), neutral air
 RefractivityProfile evaporationDuct(double duct_height_m, double surface_m_units = kSurface_m_units);
-/// M falls from the surface by a deficit up to the top, then standard.
+/// M decreases from the surface by a deficit up to the top; standard above.
 /// @param top_m            > 0
 /// @param deficit_m_units  > 0
 /// @throws Error (bad_input)
 RefractivityProfile surfaceDuct(double top_m, double deficit_m_units,
                                 double surface_m_units = kSurface_m_units);
-/// Standard up to base_m, falling by the deficit up to top_m, standard above. A surface-based duct if M at
+/// Standard up to base_m, decreasing by the deficit up to top_m, standard above. A surface-based duct if M at
 /// the top is below that of the surface, else an elevated one.
 /// @param base_m           >= 0
 /// @param top_m            > base_m
@@ -79,28 +79,27 @@ RefractivityProfile withEvaporationDuct(const RefractivityProfile& profile, doub
 /// A measured profile with standard air above its last level, up to 5 km, and from there, or from its last
 /// level, with N that falls by e in 7.35 km (ITU-R P.453), as levels up to 40 km.
 RefractivityProfile withUpperAir(RefractivityProfile profile);
-/// The mean of profiles: level by level, in height and in M, where all have as many levels, else M at each
-/// height.
+/// Mean of profiles: level by level, in height and in M, if all have the same number of levels, else M at
+/// each height.
 /// @param weights  as many, >= 0, not all 0
 RefractivityProfile meanProfile(const std::vector<RefractivityProfile>& profiles,
                                 const std::vector<double>& weights);
-/// The fewest levels, by bisection at the worst one (Douglas and Peucker), between which M differs from the
-/// levels left out by at most a tolerance (M-units).
+/// Profile with fewer levels by the Douglas-Peucker algorithm; at levels left out M differs by at most a
+/// tolerance (M-units).
 std::vector<RefractivityLevel> thinned(const std::vector<RefractivityLevel>& levels, double tolerance);
-/// What is wrong with the level `index`, or an empty string: the check of profileOfLevels(), for readers of
-/// files.
+/// Error in the level `index`, or an empty string; the check of profileOfLevels(), for file readers.
 std::string faultOfLevel(const std::vector<RefractivityLevel>& levels, std::size_t index);
 
-/// M along the range. Between two given profiles with equal numbers of levels each level is interpolated, in
-/// height and in M, so that a duct's base and top move; between others, M at each height, which shows two
-/// faint ducts halfway.
+/// M along the range. Between two profiles with equal numbers of levels each level is interpolated in height
+/// and in M, so that a duct's base and top move. Otherwise M is interpolated at each height, which gives two
+/// weak ducts halfway.
 class RefractivityAlongPath {
  public:
   RefractivityAlongPath() : RefractivityAlongPath(standardRefractivity()) {}
   /// The same at all ranges.
   RefractivityAlongPath(RefractivityProfile profile);
-  /// @param ranges_m  strictly ascending, as many as profiles; before the first and behind the last that
-  /// profile rules
+  /// @param ranges_m  strictly ascending, as many as profiles; the first and the last profile hold before and
+  /// beyond
   /// @throws Error (bad_input) if empty, of unequal sizes or not ascending
   RefractivityAlongPath(std::vector<double> ranges_m, std::vector<RefractivityProfile> profiles);
 
@@ -112,7 +111,7 @@ class RefractivityAlongPath {
   const std::vector<RefractivityProfile>& profiles() const { return profiles_; }
   bool constant() const { return profiles_.size() == 1; }
   bool traps() const;
-  /// Some neighbours have different numbers of levels: interpolated at each height; to be warned of.
+  /// True if neighbours have different numbers of levels and are interpolated at each height (for a warning).
   bool pointwise() const;
 
  private:

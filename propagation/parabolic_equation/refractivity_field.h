@@ -1,4 +1,4 @@
-/// Refractivity of a scenario's air: profiles by place or range, and the members of an ensemble.
+/// Refractivity of a scenario's air: profiles by position or range, and the members of an ensemble.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 
 namespace emscape::propagation {
 
-/// Profiles of the air around all emitters: one for everywhere, or one for each range from the emitter, or
-/// one for each place.
+/// Profiles of the air around all emitters: a single one, or one per range from the emitter, or one per
+/// position.
 struct RefractivityField {
   struct Place {
     double latitude_deg = 0, longitude_deg = 0;
@@ -26,7 +26,7 @@ struct RefractivityField {
 struct Refractivity {
   RefractivityField air;                   ///< of an ensemble: that of the mean values
   std::vector<RefractivityField> members;  ///< of an ensemble; empty: `air` alone
-  /// Of the members' powers, the one below which this share of them lies; none: their mean.
+  /// Quantile of the members' powers (0..1); none: their mean.
   std::optional<double> quantile;
 };
 

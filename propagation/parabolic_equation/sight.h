@@ -1,4 +1,4 @@
-/// What an antenna and the places of a column see of the ground between them.
+/// Visibility of the ground between an antenna and a column.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@ struct SightPost {
   float range_m, ground_m;
 };
 
-/// Memory for the posts of a column; those of several columns may lie between each other.
+/// Memory for the posts of a column; those of several columns may be interleaved.
 class SightPosts {
  public:
   SightPosts() = default;
@@ -37,7 +37,7 @@ class SightPosts {
 };
 
 struct PeSight {
-  /// Nearer than that (m) the slopes of the antenna's own hill would speak.
+  /// Min distance (m); nearer, the slopes of the antenna's hill would dominate.
   static constexpr float kNearGround_m = 500;
 
   /// Largest angle (rad) above the horizontal at which the antenna sees the ground from kNearGround_m on, at
@@ -45,8 +45,8 @@ struct PeSight {
   float horizon_rad = 0;
   /// Largest angle (rad) from the antenna to the ground before the column, over the effective earth.
   float to_ground_rad = -HUGE_VALF;
-  /// Posts before the column of which each is the horizon of some height there: the corners of the upper
-  /// convex hull of the ground over the effective earth, the nearest to the column last.
+  /// Posts before the column that are the horizon of some height there: the vertices of the upper convex hull
+  /// of the ground over the effective earth, the nearest to the column last.
   SightPosts posts;
   int count = 0;
 
@@ -101,7 +101,7 @@ class PeSightWalk {
     const float angle_rad = (post.ground_m - tx_msl_m_) / post.range_m - curvature_per_m_ * post.range_m / 2;
     if (angle_rad > sight_.horizon_rad) sight_.horizon_rad = angle_rad;
   }
-  /// By the bulge of the effective earth: convex where a ray that grazes is straight.
+  /// Post lowered by the curvature of the effective earth, over which rays are straight.
   EMSCAPE_HD SightPost lowered(const SightPost& post) const {
     return {post.range_m, post.ground_m - half_curvature_ * post.range_m * post.range_m};
   }

@@ -1,4 +1,4 @@
-/// The sine transform of several azimuths at once, each in a vector lane.
+/// Sine transform of several azimuths at once, one per vector lane.
 ///
 /// S(u)[n] = sum over j = 1..N-1 of u[j] sin(pi j n / N), n = 1..N-1, N a power of two; S(S(u)) = N/2 u.
 ///
@@ -41,7 +41,7 @@ inline LaneComplex<Real, kLanes> operator-(const LaneComplex<Real, kLanes>& a,
   for (int l = 0; l < kLanes; ++l) difference.im[l] = a.im[l] - b.im[l];
   return difference;
 }
-/// All lanes by one number.
+/// Multiplies all lanes by one number.
 template <class Real, int kLanes>
 inline LaneComplex<Real, kLanes> operator*(const LaneComplex<Real, kLanes>& a, Complex<Real> b) {
   LaneComplex<Real, kLanes> product;

@@ -1,4 +1,4 @@
-/// The field of an antenna at the start of a march, by its sine coefficients.
+/// Field of an antenna at the start of a march, as sine coefficients.
 #pragma once
 
 #include <cmath>

@@ -20,14 +20,14 @@ namespace emscape::propagation {
 constexpr double kMaxSurfaceRatio = 0.999;
 
 struct PeSurface {
-  bool perfect = true;  ///< R = -1 at all angles; the members below do not count
+  bool perfect = true;  ///< R = -1 at all angles; the members below are not used
   LinearPolarization polarization = LinearPolarization::horizontal;
   GroundConstants ground;  ///< at the frequency
   double roughness_m = 0;  ///< standard deviation of the heights
   RoughnessModel roughness_model = RoughnessModel::miller_brown;
-  /// Grazing angle at which the reflection is exact, at all ranges. In a duct: its critical angle. A steeper
-  /// one close to the source, that of the reflected ray, was 2.5 dB worse beyond the horizon (sea, 100 MHz)
-  /// and is not reciprocal.
+  /// Grazing angle at which the reflection is exact, at all ranges. In a duct: its critical angle. The
+  /// steeper angle of the reflected ray close to the source gave 2.5 dB more error beyond the horizon (sea,
+  /// 100 MHz) and is not reciprocal.
   double grazing_rad = 0.3 * kPi / 180;
 };
 

@@ -1,4 +1,4 @@
-/// Cells on a GPU: rays through them, and their projection by tiles of pixels.
+/// Tetrahedral cells on a GPU: ray casting, and projection by tiles of pixels.
 #pragma once
 
 #include <memory>
@@ -12,13 +12,13 @@
 
 namespace emscape::render {
 
-/// What is cast for a picture.
+/// Parameters of ray casting for a picture.
 struct CellCast {
   CameraView camera;
-  int start_cell = -1;  ///< that holds the eye; -1: none does
+  int start_cell = -1;  ///< cell that contains the eye; -1: none
   double through = 0;   ///< MarchLimits::through
   bool table = true;    ///< Psi from the table, else in closed form
-  /// Per pixel the distance at which its ray ends; empty: none ends.
+  /// Distance at which the ray of each pixel ends; empty: no ray ends.
   std::vector<double> end_distance;
 };
 
@@ -26,27 +26,27 @@ struct CellCounts {
   unsigned long long rays = 0, cells = 0;
 };
 
-/// What is projected for a picture.
+/// Parameters of projection for a picture.
 struct TileCast {
-  TileTask task;      ///< camera, axes and `through`; the rest is not read
+  TileTask task;      ///< camera, axes and `through`; the other members are not read
   bool table = true;  ///< Psi from the table, else in closed form
-  /// Per pixel the depth at which its ray ends; empty: none ends.
+  /// Depth at which the ray of each pixel ends; empty: no ray ends.
   std::vector<double> end_depth;
-  /// All cells, the farthest first; null: by their centroids, which the GPU sorts.
+  /// All cells, the farthest first; null: the GPU sorts them by their centroids.
   const std::vector<std::int32_t>* order = nullptr;
 };
 
 struct TileTimes {
   double order_ms = 0, bin_ms = 0, draw_ms = 0;  ///< by the GPU's clock
-  long long cells = 0;                           ///< that hold a field and are in the picture
+  long long cells = 0;                           ///< cells with a field in the picture
 };
 
-/// One thread uses it.
+/// Not thread-safe.
 class CellCaster {
  public:
   virtual ~CellCaster() = default;
 
-  /// @param points_too  false: only the values changed
+  /// @param points_too  false: only the values have changed
   virtual void setMesh(const CellMesh& mesh, bool points_too) = 0;
   virtual void setTransfer(const LinearTransfer& transfer) = 0;
   /// @throws Error (device)

@@ -1,5 +1,4 @@
-/// Rays through the cells of a mesh, on the CPU: the oracle of cell projection, and what is drawn without a
-/// GPU.
+/// Ray casting through the cells of a mesh on the CPU; the reference for cell projection.
 #pragma once
 
 #include <vector>
@@ -8,20 +7,20 @@
 
 namespace emscape::render {
 
-/// The cell that holds a position (index space); -1 if none does. Looks at all cells, in parallel.
+/// Cell that contains a position (index space); -1: none. Tests all cells, in parallel.
 int cellAt(const CellMesh& mesh, const Vec3d& position);
 
-/// A ray that is to be marched.
+/// A ray to be marched.
 struct MarchTask {
   RayFrame frame;
   MarchLimits limits;
   std::vector<EntryHit> entries;  ///< ascending
-  Rgba color{};                   ///< what it gathers; the march sets it
+  Rgba color{};                   ///< result of the march
 };
 
-/// Marches rays one after another, each from every entry, and counts what it has not passed yet: a mesh that
-/// is not convex is left and entered again.
-/// @return the number of cells that were passed
+/// Marches rays one after another, each from all its entries; parts already marched are skipped. A ray may
+/// leave and re-enter a mesh that is not convex.
+/// @return the number of cells crossed
 long long marchInTurn(const CellMeshView& mesh, const IntervalsView& transfer, const PsiLookup& psi,
                       MarchTask* tasks, int count);
 

@@ -1,4 +1,4 @@
-/// A mesh of tetrahedra in the index space of its reference grid, where rays are cast.
+/// Tetrahedral mesh in the index space of its reference grid, in which rays are cast.
 #pragma once
 
 #include <array>
@@ -12,17 +12,17 @@
 
 namespace emscape::render {
 
-/// A mesh ready to be cast, as plain data. Lengths along rays are in reference steps (referenceGridOf()).
+/// Mesh for ray casting, as plain data. Lengths along rays are in reference steps (referenceGridOf()).
 struct CellMeshView {
   const Vec3d* points = nullptr;           ///< index space
   const std::int32_t* vertices = nullptr;  ///< four per cell
   const volume::FaceId* other_side = nullptr;
-  const float* values = nullptr;  ///< of the points; NaN: none
+  const float* values = nullptr;  ///< one per point; NaN: no field
 
   EMSCAPE_HD std::int32_t vertex(int cell, int n) const { return vertices[4 * cell + n]; }
 };
 
-/// The same with its memory.
+/// Owner of a CellMeshView's memory.
 struct CellMesh {
   std::vector<Vec3d> points;
   std::shared_ptr<const volume::TetrahedralMesh> mesh;

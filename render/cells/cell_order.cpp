@@ -10,7 +10,7 @@
 namespace emscape::render {
 namespace {
 
-/// Rising with the distances of the centroids.
+/// Sort keys, increasing with the distances of the centroids.
 std::vector<float> depths(const CellMesh& mesh, const CameraView& camera) {
   const Vec3d depth = DepthAxes(camera).depth;
   const CellMeshView view = mesh.view();
@@ -23,21 +23,21 @@ std::vector<float> depths(const CellMesh& mesh, const CameraView& camera) {
   return result;
 }
 
-/// Keys whose order as unsigned numbers is that of the floats, the greatest first.
+/// Keys whose order as unsigned numbers is that of the floats, the largest first.
 std::uint32_t descendingKey(float value) {
   std::uint32_t bits;
   std::memcpy(&bits, &value, sizeof bits);
   return (bits >> 31) != 0 ? bits : ~(bits | 0x80000000u);
 }
 
-/// Cells that a cell hides across its faces: a bit for each.
+/// Faces across which a cell hides its neighbour: one bit per face.
 std::uint8_t facesBehind(const CellMesh& mesh, const CameraView& camera, int cell) {
   std::uint8_t behind = 0;
   for (int i = 0; i < 4; ++i) {
     const volume::FaceId here = 4 * cell + i;
     const volume::FaceId there = mesh.faces->other_side[static_cast<std::size_t>(here)];
     if (there == volume::kNoFace) continue;
-    // Both sides of a face decide by the same numbers.
+    // Both sides of a face use the same numbers.
     const volume::FaceId decides = std::min(here, there);
     const auto& vertices = mesh.cell(decides / 4);
     const int* const face = volume::kFaceVertices[decides % 4];

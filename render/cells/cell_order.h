@@ -1,4 +1,4 @@
-/// The order in which projected cells are drawn: the farthest first.
+/// Order in which projected cells are drawn: the farthest first.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@ namespace emscape::render {
 
 struct CellOrder {
   std::vector<std::int32_t> cells;  ///< the farthest first
-  /// Faces across which the order is wrong, as cells overlap each other in a circle; 0 by centroids: not
-  /// known.
+  /// Number of faces across which the order is wrong because of visibility cycles; by centroids 0 (not
+  /// counted).
   long long cycles = 0;
 };
 
-/// Rising with the distance of a cell's centroid. @param depth  DepthAxes::depth
+/// Sort key, increasing with the distance of a cell's centroid. @param depth  DepthAxes::depth
 EMSCAPE_HD inline float centroidDepth(const CellMeshView& mesh, const CameraView& camera, const Vec3d& depth,
                                       int cell) {
   Vec3d sum{0, 0, 0};
@@ -25,12 +25,12 @@ EMSCAPE_HD inline float centroidDepth(const CellMeshView& mesh, const CameraView
   return static_cast<float>(camera.orthographic ? dot(sum, depth) : dot(from_eye, from_eye));
 }
 
-/// By the distances of centroids from the eye (parallel rays: by their depths). Wrong for some neighbours.
+/// Orders by the centroids' distances from the eye (parallel rays: depths). Wrong for some neighbours.
 CellOrder centroidOrder(const CellMesh& mesh, const CameraView& camera);
 
-/// Every cell after those that it hides across its faces, otherwise by centroids (MPVO: P. Williams,
-/// Visibility-ordering meshed polyhedra, 1992). Right for convex meshes without cycles. Where a mesh is not
-/// convex, cells on both sides of a gap are ordered by centroids.
+/// Orders every cell after those that it hides across its faces, otherwise by centroids (MPVO: P. Williams,
+/// Visibility-ordering meshed polyhedra, 1992). Correct for convex meshes without cycles. In other meshes
+/// cells on both sides of a gap are ordered by centroids.
 CellOrder visibilityOrder(const CellMesh& mesh, const CameraView& camera);
 
 }  // namespace emscape::render

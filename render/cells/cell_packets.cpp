@@ -13,7 +13,7 @@
 namespace emscape::render {
 namespace {
 
-/// What all rays of a picture share.
+/// Data shared by all rays of a picture.
 struct PacketScene {
   CellMeshView mesh;
   LaneTransferView transfer;
@@ -66,7 +66,7 @@ HWY_INLINE D mean(const D* area, D sum, M is_face, D a, D b, D c) {
   return chosen(is_face, inside, (a + b + c) / hn::Set(kD, 3.0));
 }
 
-/// Rays on their ways, a lane each; see march().
+/// Rays in progress, one per lane; see march().
 class MarchLanes {
  public:
   MarchLanes(const PacketScene& scene, MarchTask* tasks, int count)
@@ -89,7 +89,7 @@ class MarchLanes {
   }
 
  private:
-  /// Lets a lane go on with its ray's next entry, or with another ray; without one it is idle.
+  /// Continues a lane with its ray's next entry, or with another ray; if there is none, the lane is idle.
   HWY_NOINLINE void refill(int lane) {
     if (MarchTask* const task = task_[lane]) {
       --busy_;
@@ -112,7 +112,7 @@ class MarchLanes {
     cell_.of[lane] = fourth_.of[lane] = 0;
   }
 
-  /// @return false if the ray has no further entry that counts
+  /// @return false if the ray has no further valid entry
   bool enter(int lane) {
     const MarchTask& task = *task_[lane];
     if (entry_[lane] == task.entries.size()) return false;
@@ -158,7 +158,7 @@ class MarchLanes {
     return {u - slope_u_() * w, v - slope_v_() * w, w * per_w_(), gather(scene_.mesh.values, point), point};
   }
 
-  /// Passes a cell. @return the lanes whose march has ended
+  /// Crosses a cell. @return the lanes whose march has ended
   HWY_INLINE M step() {
     const D zero = hn::Zero(kD);
     const M live = hn::Gt(live_(), zero);
@@ -184,7 +184,7 @@ class MarchLanes {
     const D area[3] = {hn::Max(zero, hn::Neg(of_second)), hn::Max(zero, of_first), opposite};
     const D sum = area[0] + area[1] + area[2];
     const M is_face = hn::Gt(sum, zero);
-    // The next cell is looked for before the integral, which takes long.
+    // The next cell is found before the integral, which takes long.
     const L cell = cell_();
     const L four = hn::ShiftLeft<2>(cell);
     const auto vertex = [&](int n) HWY_ATTR { return gather(scene_.mesh.vertices + n, four); };

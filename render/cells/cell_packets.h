@@ -1,4 +1,4 @@
-/// Rays through the cells of a mesh in the lanes of vector registers, on the CPU.
+/// Ray casting through the cells of a mesh on the CPU, vectorised: one ray per lane.
 #pragma once
 
 #include "render/cells/cell_march.h"
@@ -6,15 +6,15 @@
 
 namespace emscape::render {
 
-/// Marches rays as marchInTurn() does, each in a lane of its own; a lane whose ray has ended takes the next
-/// ray. What rays span with edges is computed as there, so that the same cells are passed; colours differ by
-/// less than 1e-6, as the exponential and fused products round otherwise. Without AVX2 it is marchInTurn().
+/// Marches rays as marchInTurn() does, one ray per lane; a lane whose ray has ended takes the next ray. Areas
+/// between rays and edges are computed identically, so that the same cells are crossed. Colours differ by
+/// less than 1e-6: the exponential and fused products round differently. Without AVX2 it calls marchInTurn().
 class CellPackets {
  public:
   /// @param mesh, psi  must outlive this object; psi has a table
   CellPackets(const CellMeshView& mesh, const IntervalsView& transfer, const PsiLookup& psi);
 
-  /// @return the number of cells that were passed
+  /// @return the number of cells crossed
   long long march(MarchTask* tasks, int count) const;
 
  private:

@@ -27,7 +27,7 @@ CellOrder orderOf(const CellMesh& mesh, const CameraView& camera, CellSorting so
   return sorting == CellSorting::visibility ? visibilityOrder(mesh, camera) : centroidOrder(mesh, camera);
 }
 
-/// False if the cell holds no field.
+/// False if the cell has no field.
 bool seenFrom(const Vec3d& eye, const CellMesh& mesh, std::int32_t cell, SeenCell& seen) {
   const auto& vertices = mesh.cell(cell);
   for (std::size_t i = 0; i < 4; ++i) {
@@ -38,7 +38,7 @@ bool seenFrom(const Vec3d& eye, const CellMesh& mesh, std::int32_t cell, SeenCel
   return true;
 }
 
-/// Draws all cells that hold a field.
+/// Draws all cells with a field.
 void drawCells(const CellMesh& mesh, const std::vector<std::int32_t>& order, const gl::CellView& view,
                gl::CellRasterizer& rasterizer, ProjectionReport& report) {
   rasterizer.begin(view);
@@ -56,7 +56,7 @@ void drawCells(const CellMesh& mesh, const std::vector<std::int32_t>& order, con
         float* const vertices = batch.vertices + 4 * kFloatsOfVertex * n;
         SeenCell seen;
         if (!seenFrom(view.camera.eye, mesh, cell, seen)) {
-          std::fill_n(vertices, 4 * kFloatsOfVertex, 0.0f);  // of no area
+          std::fill_n(vertices, 4 * kFloatsOfVertex, 0.0f);  // zero area
           continue;
         }
         if (!projectCell(seen, along, view.projection, vertices, batch.numbers + numbers * n))
@@ -200,7 +200,7 @@ Image CellRenderer::project(ImageSize size, const ProjectionOptions& options, Pr
   ProjectionReport done;
   done.rasterizer = impl.rasterizerFor(options, *this);
   const bool by_opengl = done.rasterizer == Rasterizer::opengl;
-  const bool on_gl_gpu = by_opengl && !projectsOnCpu();  // makes the context
+  const bool on_gl_gpu = by_opengl && !projectsOnCpu();  // creates the context
   impl.scene.prepare();
   const RaycastTask task = impl.scene.task(size);
   const std::vector<GroundHit> ground = impl.ground(task);

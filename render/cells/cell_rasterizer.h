@@ -1,4 +1,4 @@
-/// Cells drawn by OpenGL: the rasteriser's side of cell projection.
+/// OpenGL rasteriser of projected cells.
 #pragma once
 
 #include <cstddef>
@@ -13,23 +13,24 @@
 
 namespace emscape::render::gl {
 
-/// From where cells are drawn.
+/// View of the cells.
 struct CellView {
   CameraView camera;
   CellProjection projection = CellProjection::exact;
-  /// Per pixel, rows from the top, the depth at which its ray ends; empty: none ends.
+  /// Depth at which the ray of each pixel ends, rows from the top; empty: no ray ends.
   std::vector<float> end_depth;
 };
 
-/// Draws batches of cells, the farthest first, into a picture of 32-bit floats. One thread at a time uses it.
+/// Draws batches of cells, the farthest first, into a picture of 32-bit floats. Not thread-safe.
 class CellRasterizer {
  public:
-  /// With an OpenGL context of its own, without a window.
+  /// Creates an OpenGL context without a window.
   /// @throws Error (device)
   CellRasterizer();
   ~CellRasterizer();
 
-  /// While it lives, its thread calls the functions below; threads take turns.
+  /// Makes the context current; the functions below may be called in its thread during its lifetime. Only one
+  /// thread may hold it at a time.
   class Use {
    public:
     /// @throws Error (device)
@@ -49,7 +50,7 @@ class CellRasterizer {
 
   /// Starts a picture.
   void begin(const CellView& view);
-  /// The memory of the next batch, to be filled before draw().
+  /// Memory of the next batch, to be filled before draw().
   struct Batch {
     float* vertices = nullptr;  ///< cells x 4 x kFloatsOfVertex
     float* numbers = nullptr;   ///< cells x cellNumbers()
@@ -57,17 +58,17 @@ class CellRasterizer {
   static constexpr std::size_t kBatchCells = 1 << 16;
   /// Memory for kBatchCells cells.
   Batch nextBatch();
-  /// Draws the first `cells` of the batch over what was drawn before, in their order.
+  /// Draws the first `cells` of the batch over the earlier ones, in their order.
   void draw(std::size_t cells);
-  /// Draws the batch's one cell, which holds the eye.
-  /// @param eye_value  of the field at the eye
+  /// Draws the batch's single cell, which contains the eye.
+  /// @param eye_value  the field's value at the eye
   void drawAround(float eye_value);
   /// Ends the picture: colours are premultiplied, the first row is the top one.
   void fetch(Image& image);
 
   /// Floats sent since begin().
   std::size_t sentFloats() const;
-  /// Time that the device spent on drawing the batches of the last picture fetched, by its own clock.
+  /// Drawing time of the last fetched picture's batches on the device, by its clock.
   double drawMs() const;
 
  private:

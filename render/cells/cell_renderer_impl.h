@@ -1,4 +1,4 @@
-/// What the two ways of drawing cells share.
+/// State shared by ray casting and projection of cells.
 #pragma once
 
 #include <memory>
@@ -20,14 +20,14 @@ struct CellRenderer::Impl {
   mutable Scene scene;
   CellMesh cells;
   std::optional<LinearTransfer> transfer;
-  std::unique_ptr<CellCaster> caster;              ///< of a GPU; null: the CPU casts
-  std::unique_ptr<gl::CellRasterizer> rasterizer;  ///< made when it is first needed
+  std::unique_ptr<CellCaster> caster;              ///< GPU; null: rays are cast on the CPU
+  std::unique_ptr<gl::CellRasterizer> rasterizer;  ///< created at the first use
 
-  /// The ground's first points on all rays; empty: there is none.
+  /// First intersections of all rays with the ground; empty: no ground.
   std::vector<GroundHit> ground(const RaycastTask& task) const;
   Image castOnDevice(const RaycastTask& task, const FaceTiles& tiles, int start_cell, CellReport& report);
-  /// The tile's pixels into the image; `exact` is marched in turn, all else by packets.
-  /// @return the rays that met the mesh and the cells that they passed
+  /// Draws a tile's pixels; `exact` marches one ray after another, otherwise packets are used.
+  /// @return the number of rays that met the mesh and of cells crossed
   CellReport castTile(const RaycastTask& task, const FaceTiles& tiles, int tile, int start_cell,
                       const CellPackets& packets, Image& image) const;
 

@@ -1,4 +1,4 @@
-/// A ray through the cells of a mesh, from face to face (P. Bunyk, A. Kaufman, C. Silva, Simple, fast, and
+/// Traversal of a mesh's cells by a ray, from face to face (P. Bunyk, A. Kaufman, C. Silva, Simple, fast, and
 /// robust ray casting of irregular grids, 1997). Host and device.
 #pragma once
 
@@ -11,16 +11,16 @@
 
 namespace emscape::render {
 
-/// Coordinates about a ray: two across it, and the distance along it. They are an affine function of the
-/// position, so that what is linear in space is linear in them; a point has the same ones in every cell.
-/// Hence the ray is on one side of an edge for all the cells at the edge, and none is missed or met twice.
+/// Coordinates relative to a ray: two across it, and the distance along it. They are an affine function of
+/// position, so that linear functions of position are linear in them. A point has the same coordinates in
+/// every cell. Hence the ray is on the same side of an edge for all its cells; none is missed or met twice.
 class RayFrame {
  public:
   EMSCAPE_HD explicit RayFrame(const Ray& ray) : origin_(ray.origin) {
     const Vec3d& d = ray.direction;
     if (fabs(d.y) > fabs(along(d))) w_ = 1;
     if (fabs(d.z) > fabs(along(d))) w_ = 2;
-    // What faces the eye has one sense of rotation for every direction.
+    // Faces towards the eye have the same orientation for every direction.
     is_mirrored_ = along(d) < 0;
     const Vec3d turned = turnedTo(d);
     slope_u_ = turned.x / turned.z;
@@ -36,7 +36,7 @@ class RayFrame {
     return {to.x - slope_u_ * to.z, to.y - slope_v_ * to.z, to.z * per_w_};
   }
 
-  /// The same as numbers: what operator() takes from each axis, across, across and along.
+  /// operator() as numbers: its axes and factors; across, across and along.
   struct Parts {
     int axis[3];  ///< 0..2: x, y, z
     double origin[3];
@@ -54,7 +54,7 @@ class RayFrame {
 
  private:
   EMSCAPE_HD double along(const Vec3d& v) const { return w_ == 0 ? v.x : w_ == 1 ? v.y : v.z; }
-  /// Components across, across and along the ray's largest one.
+  /// Components across, across and along the ray's dominant axis.
   EMSCAPE_HD Vec3d turnedTo(const Vec3d& v) const {
     const double u = w_ == 0 ? v.y : w_ == 1 ? v.z : v.x, other = w_ == 0 ? v.z : w_ == 1 ? v.x : v.y;
     return is_mirrored_ ? Vec3d{other, u, along(v)} : Vec3d{u, other, along(v)};
@@ -66,11 +66,11 @@ class RayFrame {
   double slope_u_, slope_v_, per_w_;
 };
 
-/// Twice the area that two positions span with the ray, positive where they turn counter-clockwise about it
-/// as seen against its direction. Exactly the negative for exchanged arguments.
+/// Twice the area of the triangle of two positions and the ray, positive if counter-clockwise as seen against
+/// the ray's direction. Exactly antisymmetric.
 EMSCAPE_HD inline double spanned(const RayFrame::Position& a, const RayFrame::Position& b) {
 #if defined(__CUDA_ARCH__)
-  return __dmul_rn(a.u, b.v) - __dmul_rn(a.v, b.u);  // never one instruction with the difference
+  return __dmul_rn(a.u, b.v) - __dmul_rn(a.v, b.u);  // prevents fusion with the difference
 #else
   return a.u * b.v - a.v * b.u;
 #endif
@@ -92,13 +92,13 @@ struct EntryHit {
   }
 };
 
-/// Where a march ends.
+/// Limits of a march.
 struct MarchLimits {
   double distance = 0;  ///< of the ground, or infinite
-  double through = 0;   ///< least part of the light that is worth following, 0..1
+  double through = 0;   ///< transmittance below which the march ends, 0..1
 };
 
-/// Only a ray along an edge can pass so many cells and come no farther.
+/// Max number of cells crossed without progress, as along an edge.
 constexpr int kMaxStanding = 10000;
 
 struct Corner {
@@ -107,18 +107,18 @@ struct Corner {
   double value = 0;
 };
 
-/// A face that a ray passes in its direction: its corners turn so that all areas that they span with the ray
-/// are positive, and are the weights of the opposite corners.
+/// A face that a ray crosses. Its corners are ordered so that all areas between its edges and the ray are
+/// positive; they are the weights of the opposite corners.
 struct Crossing {
   Corner corner[3];
   double area[3];
 
   EMSCAPE_HD double sum() const { return area[0] + area[1] + area[2]; }
-  /// Whether the line passes here, and in this direction.
+  /// Whether the line crosses the face in this direction.
   EMSCAPE_HD bool isPassed() const { return area[0] >= 0 && area[1] >= 0 && area[2] >= 0 && sum() > 0; }
   EMSCAPE_HD double mean(double a, double b, double c) const {
     const double total = sum();
-    // A face that is seen from its edge: what rounding leaves of it may be anywhere between its corners.
+    // Edge-on face: after rounding, the crossing may be anywhere between its corners.
     return total > 0 ? (area[0] * a + area[1] * b + area[2] * c) / total : (a + b + c) / 3;
   }
   EMSCAPE_HD double distance() const {
@@ -134,7 +134,7 @@ EMSCAPE_HD inline Corner cornerOf(const CellMeshView& mesh, const RayFrame& fram
 /// A face of a cell as a ray enters it.
 EMSCAPE_HD inline Crossing entryOf(const CellMeshView& mesh, const RayFrame& frame, volume::FaceId face) {
   Crossing entry;
-  // Backwards: the face's order is that of a ray which leaves the cell.
+  // Reversed: the face's order is that for a ray leaving the cell.
   for (int n = 0; n < 3; ++n)
     entry.corner[n] = cornerOf(mesh, frame, mesh.vertex(face >> 2, faceVertex(face & 3, 2 - n)));
   for (int n = 0; n < 3; ++n)
@@ -142,13 +142,13 @@ EMSCAPE_HD inline Crossing entryOf(const CellMeshView& mesh, const RayFrame& fra
   return entry;
 }
 
-/// The corner of the entry that is not of the face through which a ray leaves; `crossing` becomes that face.
+/// Corner of the entry face that the exit face does not have; `crossing` becomes the exit face.
 EMSCAPE_HD inline std::int32_t leave(Crossing& crossing, const Corner& fourth) {
   double edge[3];
   for (int n = 0; n < 3; ++n) edge[n] = spanned(fourth.at, crossing.corner[n].at);
-  // The face without corner n has the edges from the fourth corner to n + 1 and n + 2 on its two sides. One
-  // of the three holds the ray; where rounding leaves none, it is on their common edge. A ray in the plane of
-  // a face is on the edges of another one, too, which tells where it is.
+  // The face without corner n has the edges from the fourth corner to n + 1 and n + 2. One of the three faces
+  // contains the ray; if rounding leaves none, the ray is on their common edge. A ray in the plane of a face
+  // is also on edges of another face, which gives its position.
   int left_out = 0;
   double best = -HUGE_VAL, best_area = best;
   for (int n = 0; n < 3; ++n) {
@@ -177,7 +177,7 @@ EMSCAPE_HD inline bool entersThrough(const CellMeshView& mesh, const RayFrame& f
   return true;
 }
 
-/// The face through which the line of a ray enters a cell that it meets.
+/// Face through which the line of a ray enters a cell that it crosses.
 EMSCAPE_HD inline volume::FaceId entryFaceOf(const CellMeshView& mesh, const RayFrame& frame, int cell) {
   volume::FaceId entered = 4 * cell;
   double best = -HUGE_VAL;
@@ -191,12 +191,12 @@ EMSCAPE_HD inline volume::FaceId entryFaceOf(const CellMeshView& mesh, const Ray
   return entered;
 }
 
-/// Follows a ray from cell to cell until it leaves the mesh or reaches a limit. What is behind its origin, or
-/// where it has been, does not count: rounding may have moved an entry into the cells that it has just left,
-/// and an edge is an entry for the faces on both its sides.
-/// @param been  the distance up to which the ray has been followed; -infinity at first
-/// @param cells  the number of cells that were passed is added
-/// @return the distance up to which it has been followed now
+/// Follows a ray from cell to cell until it leaves the mesh or reaches a limit. Parts behind its origin and
+/// parts already followed are skipped: rounding may move an entry into cells that the ray has just left, and
+/// an edge is an entry for the faces on both its sides.
+/// @param been  distance up to which the ray has been followed; initially -infinity
+/// @param cells  incremented by the number of cells crossed
+/// @return the new value of `been`
 EMSCAPE_HD inline double march(const CellMeshView& mesh, const RayFrame& frame, const EntryHit& entry,
                                double been, const MarchLimits& limits, RayIntegral& integral,
                                long long& cells) {

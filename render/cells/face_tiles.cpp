@@ -32,7 +32,7 @@ FaceTiles::FaceTiles(const CellMesh& mesh, const SceneBox& box, const Camera& ca
       drawn_m[n] = box.toDrawn(mesh.mesh->points_m[static_cast<std::size_t>(point)]);
       corners[n] = project(camera, size, drawn_m[n]);
     }
-    // Rays leave through faces whose outward side looks away; one that is seen from its edge may do either.
+    // Rays leave through faces whose outward normal points away; edge-on faces may be entries or exits.
     const Vec3d normal = cross(drawn_m[1] - drawn_m[0], drawn_m[2] - drawn_m[0]);
     const Vec3d to_face = parallel_rays ? camera.forward : drawn_m[0] - camera.eye_m;
     constexpr double kEdgeOn = 1e-9;

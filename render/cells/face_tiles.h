@@ -1,4 +1,4 @@
-/// The boundary faces of a mesh by the tiles of a picture: which rays enter the mesh where.
+/// Boundary faces of a mesh by the picture's tiles: the entries of rays into the mesh.
 #pragma once
 
 #include <cstddef>
@@ -16,24 +16,24 @@ class FaceTiles {
 
   FaceTiles(const CellMesh& mesh, const SceneBox& box, const Camera& camera, ImageSize size);
 
-  /// The faces of each tile, one tile after another.
+  /// Faces of all tiles, one tile after another.
   struct Lists {
     std::vector<volume::FaceId> faces;
-    std::vector<int> first;  ///< of each tile in it; one more at the end
+    std::vector<int> first;  ///< first face of each tile; one more at the end
   };
   Lists lists() const;
 
   int count() const { return grid_.count(); }
   PixelBox pixelsOf(int tile) const { return grid_.pixelsOf(tile); }
-  /// The entries of each pixel's ray, in the order of PixelBox::index(). In perspective those behind the eye
-  /// are left out.
+  /// Entries of each pixel's ray, in the order of PixelBox::index(); in perspective without those behind the
+  /// eye.
   std::vector<std::vector<EntryHit>> entriesOf(int tile, const CellMesh& mesh,
                                                const CameraView& camera) const;
 
  private:
   TileGrid grid_;
   std::vector<volume::FaceId> faces_;
-  std::vector<PixelBox> boxes_;  ///< the pixels that each may cover
+  std::vector<PixelBox> boxes_;  ///< pixels that each face may cover
   TileLists lists_;
 };
 

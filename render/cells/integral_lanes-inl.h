@@ -15,7 +15,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace emscape::render {
 namespace HWY_NAMESPACE {
-namespace {  // each source that includes it rounds as it is compiled
+namespace {  // rounding depends on each source's compilation
 
 #if HWY_CAP_GE256
 namespace hn = hwy::HWY_NAMESPACE;
@@ -58,7 +58,7 @@ HWY_INLINE M isSame(L a, L b) {
   return hn::RebindMask(kD, hn::Eq(a, b));
 }
 
-/// A number of every lane, in memory.
+/// One number per lane, in memory.
 struct alignas(64) Reals {
   double of[kLanes] = {};
   HWY_INLINE D operator()() const { return hn::Load(kD, of); }
@@ -70,7 +70,7 @@ struct alignas(64) Wholes {
   HWY_INLINE void operator=(L value) { hn::Store(value, kL, of); }
 };
 
-/// What RayIntegral does, a lane each.
+/// RayIntegral, one ray per lane.
 class IntegralLanes {
  public:
   explicit IntegralLanes(const LaneTransferView& transfer) : transfer_(transfer) {}
@@ -90,7 +90,7 @@ class IntegralLanes {
   /// See RayIntegral::add(). @param on  lanes that have a segment
   HWY_INLINE void add(M on, D front, D back, D length) {
     if (hn::AllFalse(kD, on)) return;
-    // Mostly all are in one interval.
+    // Usually all are in one interval.
     const std::int64_t first = interval_.of[hn::FindKnownFirstTrue(kD, on)];
     const OneInterval one_interval{transfer_.lanes[first]};
     const M inside = hn::And(hn::Ge(hn::Min(front, back), one_interval(&LaneInterval::lower)),
@@ -106,7 +106,7 @@ class IntegralLanes {
     const M falls = hn::Lt(back, front);
     D lower = field(interval, &LaneInterval::lower);
     D upper = field(interval, &LaneInterval::upper);
-    for (;;) {  // at a control point the interval is that towards the back
+    for (;;) {  // at a control point the interval towards the back is used
       const M up = hn::And(on, chosen(rises, hn::Le(upper, front), hn::Lt(upper, front)));
       const M down = hn::And(on, chosen(falls, hn::Ge(lower, front), hn::Gt(lower, front)));
       if (HWY_LIKELY(hn::AllFalse(kD, hn::Or(up, down)))) break;
@@ -147,7 +147,7 @@ class IntegralLanes {
       return hn::GatherIndex(kD, &(lanes->*member)[n], hn::ShiftLeft<4>(interval));
     }
   };
-  /// The same where all lanes have one interval.
+  /// The same if all lanes have one interval.
   struct OneInterval {
     const LaneInterval& interval;
 
@@ -170,7 +170,7 @@ class IntegralLanes {
     const D per_unit = field(&LaneInterval::per_unit);
     const D low = field(&LaneInterval::extinction);
     const D rise = field(&LaneInterval::extinction_rise);
-    // Zero in the other lanes: what they hold may be unknown.
+    // Zero in the other lanes: their values may be undefined.
     const D at_front = hn::IfThenElseZero(on, (front - base) * per_unit);
     const D at_back = hn::IfThenElseZero(on, (back - base) * per_unit);
     const D depth_front = hn::IfThenElseZero(on, hn::MulAdd(at_front, rise, low) * length);

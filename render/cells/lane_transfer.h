@@ -1,4 +1,4 @@
-/// A transfer function as the lanes of vector registers read it.
+/// Transfer function laid out for vector lanes.
 #pragma once
 
 #include <vector>
@@ -7,25 +7,25 @@
 
 namespace emscape::render {
 
-/// A TransferInterval as lanes read it.
+/// A TransferInterval laid out for vector lanes.
 struct LaneInterval {
   double lower, upper;
-  double base;      ///< lower; 0 where the interval is uniform
-  double per_unit;  ///< 1 / (upper - lower); 0 where the interval is uniform
+  double base;      ///< lower; 0 if the interval is uniform
+  double per_unit;  ///< 1 / (upper - lower); 0 if the interval is uniform
   double extinction, extinction_rise;
   double color[3], color_rise[3];
   double clear;      ///< 1: no extinction; else 0
-  double unused[3];  ///< sixteen numbers in all: lanes find theirs by a shift
+  double unused[3];  ///< padding to sixteen numbers, so that a shift gives the offset
 };
 
-/// What rays of a picture share, as plain data.
+/// Transfer function and Psi of all rays of a picture, as plain data.
 struct LaneTransferView {
   IntervalsView intervals;
   PsiLookup psi;
   const LaneInterval* lanes = nullptr;  ///< the intervals
 };
 
-/// The same with its memory.
+/// Owner of a LaneTransferView's memory.
 class LaneTransfer {
  public:
   /// @param intervals, psi  must outlive this object; psi has a table

@@ -14,18 +14,18 @@ double extinctionOf(double opacity) {
   return -std::log1p(-std::clamp(opacity, 0.0, kMaxOpacity));
 }
 
-/// A part of the opacity's course between two values.
+/// Segment of the opacity function between two values.
 struct OpacityPiece {
   double lower, upper;
   double opacity_lower, opacity_upper;
 };
 
-/// Appends a piece in parts on which linear extinction is near enough to linear opacity.
+/// Appends a segment, split so that linear extinction approximates linear opacity.
 void appendParts(const OpacityPiece& piece, std::vector<OpacityPiece>& parts, int depth = 0) {
   constexpr int kMaxDepth = 24;
   const double middle = 0.5 * (piece.opacity_lower + piece.opacity_upper);
   const double extinction = 0.5 * (extinctionOf(piece.opacity_lower) + extinctionOf(piece.opacity_upper));
-  // The greatest difference is near the middle, up to 1.3 times the one there.
+  // The max difference is near the middle, up to 1.3 times the one there.
   if (depth == kMaxDepth ||
       std::abs(-std::expm1(-extinction) - middle) <= LinearTransfer::kOpacityError / 1.5) {
     parts.push_back(piece);
@@ -76,7 +76,7 @@ LinearTransfer::LinearTransfer(const TransferFunction& function) {
       return low + part * (high - low);
     };
     TransferInterval interval{lower, upper, {extinctionAt(lower), extinctionAt(upper)}, {}, false, false};
-    // Beyond the ends colours stay as there.
+    // Beyond the ends colours are constant.
     interval.color[0] = function.color(std::isinf(lower) ? upper : lower);
     interval.color[1] = function.color(std::isinf(upper) ? lower : upper);
     interval.clear = interval.extinction[0] == 0 && interval.extinction[1] == 0;

@@ -1,4 +1,4 @@
-/// A transfer function as intervals on which extinction and colour are linear in the value.
+/// Transfer function as intervals with extinction and colour linear in the value.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,9 @@
 
 namespace emscape::render {
 
-/// Between two control points of the transfer function its colour is linear. Its opacity a is linear as well,
-/// and with it the extinction of one reference step, -ln(1 - a), is not: control points are added until the
-/// opacity of a step differs from the function's by at most kOpacityError. A jump stays a jump. Opacity 1 is
-/// taken for 1 - 2^-24.
+/// Colour and opacity a are linear between two control points of the transfer function. The extinction of one
+/// reference step, -ln(1 - a), is not: control points are added until the opacity of a step differs from the
+/// function's by at most kOpacityError. Discontinuities are kept. Opacity 1 is replaced by 1 - 2^-24.
 class LinearTransfer {
  public:
   static constexpr double kOpacityError = 1e-4;
@@ -20,7 +19,7 @@ class LinearTransfer {
   explicit LinearTransfer(const TransferFunction& function);
 
   const std::vector<TransferInterval>& intervals() const { return intervals_; }
-  /// Valid as long as this object.
+  /// Valid during this object's lifetime.
   IntervalsView view() const { return {intervals_.data(), static_cast<int>(intervals_.size())}; }
 
  private:

@@ -1,4 +1,4 @@
-/// A picture in square tiles, and what lies in boxes of pixels by the tiles that it touches.
+/// Square tiles of a picture, and lists of the pixel boxes that touch each tile.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ EMSCAPE_HD inline PixelBox common(const PixelBox& a, const PixelBox& b) {
           a.end_x < b.end_x ? a.end_x : b.end_x, a.end_y < b.end_y ? a.end_y : b.end_y};
 }
 
-/// Tiles are counted along rows, the top one first.
+/// Tiles are numbered along rows, from the top row.
 struct TileGrid {
   static constexpr int kTile = 16;  ///< pixels along a side
 
@@ -48,11 +48,11 @@ struct TileGrid {
   }
 };
 
-/// Boxes by tiles.
+/// Lists of the boxes that touch each tile.
 class TileLists {
  public:
   TileLists() = default;
-  /// @param boxOf  the box of each index 0..count - 1; called from several threads
+  /// @param boxOf  gives the box of each index 0..count - 1; called from several threads
   TileLists(const TileGrid& grid, std::size_t count, const std::function<PixelBox(std::size_t)>& boxOf);
 
   /// Indices of the boxes that touch a tile, ascending: members()[first(tile)] .. members()[first(tile + 1) -

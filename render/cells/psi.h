@@ -4,7 +4,7 @@
 ///   zeta = exp(-D (tau_b + tau_f) / 2)
 ///   Psi  = (1 / D) int_0^D exp(-int_s^D tau(t) dt) ds, s from the back to the front
 ///   I    = I_behind zeta + L_b (Psi - zeta) + L_f (1 - Psi)
-/// Psi depends on tau_b D and tau_f D alone, not on the transfer function.
+/// Psi depends only on tau_b D and tau_f D, not on the transfer function.
 /// @see K. D. Moreland, Fast High Accuracy Volume Rendering, PhD thesis, University of New Mexico, 2004
 #pragma once
 
@@ -21,7 +21,7 @@ constexpr double kSqrtPi = 1.7724538509055160273;
 EMSCAPE_HD inline double scaledErfc(double x) {
   constexpr double kFar = 5;
   if (x < kFar) return exp(x * x) * erfc(x);
-  // The continued fraction of Laplace, from its end.
+  // Laplace's continued fraction, from its end.
   constexpr int kTerms = 40;
   double tail = x;
   for (int n = kTerms; n >= 1; --n) tail = x + 0.5 * n / tail;
@@ -43,7 +43,7 @@ EMSCAPE_HD inline double dawson(double x) {
     }
     return x * exp(-squared) * sum;
   }
-  // Asymptotic: 1 / (2x) sum (2n - 1)!! / (2 x^2)^n, up to its least term.
+  // Asymptotic: 1 / (2x) sum (2n - 1)!! / (2 x^2)^n, up to its smallest term.
   double term = 1, sum = 1;
   for (int n = 1; n < 50; ++n) {
     const double next = term * (2 * n - 1) / (2 * squared);
@@ -54,9 +54,9 @@ EMSCAPE_HD inline double dawson(double x) {
   return sum / (2 * x);
 }
 
-/// Psi by quadrature; for shallow segments, where differences of the closed form cancel.
+/// Psi by quadrature; for optically thin segments, where the closed form's differences cancel.
 EMSCAPE_HD inline double shallowPsi(double back, double front) {
-  // Gauss and Legendre's rule of ten points on -1..1: half of its symmetric nodes and weights.
+  // Ten-point Gauss-Legendre rule on -1..1: half of its symmetric nodes and weights.
   constexpr double kNodes[] = {0.14887433898163121089, 0.43339539412924719080, 0.67940956829902440623,
                                0.86506336668898451073, 0.97390652851717172008};
   constexpr double kWeights[] = {0.29552422471475287017, 0.26926671930999635509, 0.21908636251598204400,
@@ -78,20 +78,20 @@ EMSCAPE_HD inline double psi(double back, double front) {
   const double depth = 0.5 * (back + front);
   const double zeta = exp(-depth);
   const double apart = fabs(back - front);
-  // Nearer than this the closed form is that of equal ends to all digits.
+  // For smaller differences the closed form equals that of equal ends to all digits.
   if (apart < 1e-13 * depth) return -expm1(-depth) / depth;
   const double k = 1 / sqrt(2 * apart);
   return back > front ? kSqrtPi * k * (scaledErfc(k * front) - zeta * scaledErfc(k * back))
                       : 2 * k * (dawson(k * front) - zeta * dawson(k * back));
 }
 
-/// Psi tabulated over gamma = tau D / (1 + tau D) of both ends, bilinear between the entries.
+/// Psi tabulated over gamma = tau D / (1 + tau D) of both ends, with bilinear interpolation.
 struct PsiLookup {
   static constexpr int kEntries = 512;  ///< along each axis
-  /// Largest tau D that is looked up: beyond it Psi falls as a square root does, which bilinear interpolation
-  /// follows badly (1e-2 near gamma = 1), and the closed form is used.
+  /// Max tau D of the lookup. Beyond it the closed form is used: Psi falls like a square root, and bilinear
+  /// interpolation errs by up to 1e-2 near gamma = 1.
   static constexpr double kMaxDepth = 8;
-  /// Below this tau D the first terms of the series are used; they err by less than 4e-7.
+  /// Below this tau D the first terms of the series are used; error < 4e-7.
   static constexpr double kSmallDepth = 0.02;
 
   /// kEntries x kEntries, gamma of the back fastest; null: Psi in closed form for all arguments.
@@ -108,7 +108,7 @@ struct PsiLookup {
     if (values == nullptr || greater > kMaxDepth) return psi(back, front);
     return interpolated(back / (1 + back), front / (1 + front));
   }
-  /// The bilinear interpolation alone. @param gamma_back, gamma_front  0..1
+  /// Bilinear interpolation only. @param gamma_back, gamma_front  0..1
   EMSCAPE_HD double interpolated(double gamma_back, double gamma_front) const {
     const double x = gamma_back * (kEntries - 1), y = gamma_front * (kEntries - 1);
     const int i = x < kEntries - 2 ? static_cast<int>(x) : kEntries - 2;
@@ -122,11 +122,11 @@ struct PsiLookup {
   }
 };
 
-/// The table.
+/// Owner of Psi's table.
 class PsiTable {
  public:
   PsiTable();
-  /// The table of the process, made at the first call.
+  /// The process-wide table, computed at the first call.
   static const PsiTable& shared();
 
   PsiLookup lookup() const { return {values_.data()}; }

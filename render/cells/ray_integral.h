@@ -1,4 +1,4 @@
-/// The integral of a ray over segments of a linear value. Host and device.
+/// Ray integral over segments with a linear value. Host and device.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace emscape::render {
 
-/// Values between which extinction and colour are linear.
+/// Interval of values on which extinction and colour are linear.
 struct TransferInterval {
   double lower, upper;   ///< of the value; infinite at the ends
   double extinction[2];  ///< per reference step, at lower and upper
@@ -18,7 +18,7 @@ struct TransferInterval {
   bool clear;    ///< no extinction
   bool uniform;  ///< extinction and colour are the same at both ends
 
-  /// Part of the way from lower to upper, where the interval is not uniform.
+  /// Fraction of the interval from lower to upper; the interval must not be uniform.
   EMSCAPE_HD double at(double value) const { return uniform ? 0 : (value - lower) / (upper - lower); }
 };
 
@@ -27,9 +27,9 @@ struct IntervalsView {
   const TransferInterval* intervals = nullptr;
   int count = 0;
 
-  /// The interval in which a value lies, the upper one of two that meet there.
+  /// Interval that contains a value; at a common end the upper one.
   EMSCAPE_HD int indexOf(double value) const {
-    int low = 0, high = count;  // the first that begins above the value
+    int low = 0, high = count;  // first interval that begins above the value
     while (low < high) {
       const int middle = (low + high) / 2;
       if (value < intervals[middle].lower) {
@@ -42,14 +42,14 @@ struct IntervalsView {
   }
 };
 
-/// What a ray has gathered so far, from the front to the back.
+/// Colour and transmittance accumulated along a ray, from the front to the back.
 class RayIntegral {
  public:
   EMSCAPE_HD RayIntegral(const IntervalsView& transfer, const PsiLookup& psi)
       : transfer_(transfer), psi_(psi) {}
 
-  /// Adds a segment behind those before; the value is linear along it. It is cut where the value passes a
-  /// control point of the transfer function: nothing is lost between the ends, however thin.
+  /// Adds a segment behind the earlier ones; the value is linear along it. The segment is split at the
+  /// control points of the transfer function, so that no feature between the ends is lost.
   /// @param front, back  values at its ends @param length  in reference steps, >= 0
   EMSCAPE_HD void add(double front, double back, double length) {
     if (!(length > 0)) return;
@@ -58,7 +58,7 @@ class RayIntegral {
     last_ = back;
     const bool rises = back > front;
     const double per_value = length / (back - front);  // not used where they are equal
-    // At a control point the interval is that towards the back.
+    // At a control point the interval towards the back is used.
     while (rises && intervals[interval_].upper <= front) ++interval_;
     while (back < front && intervals[interval_].lower >= front) --interval_;
     for (double value = front;;) {
@@ -76,7 +76,7 @@ class RayIntegral {
     }
   }
 
-  /// Part of the light from behind that comes through, 0..1.
+  /// Transmittance, 0..1.
   EMSCAPE_HD double through() const { return through_; }
   EMSCAPE_HD Rgba color() const {
     return {static_cast<float>(red_), static_cast<float>(green_), static_cast<float>(blue_),
@@ -117,8 +117,8 @@ class RayIntegral {
   IntervalsView transfer_;
   PsiLookup psi_;
   double red_ = 0, green_ = 0, blue_ = 0, through_ = 1;
-  double last_ = NAN;  ///< the back end of the last segment
-  int interval_ = 0;   ///< where it lies
+  double last_ = NAN;  ///< value at the back end of the last segment
+  int interval_ = 0;   ///< interval that contains it
 };
 
 }  // namespace emscape::render

@@ -1,10 +1,10 @@
-/// Balanced cell projection for tiles of pixels, without a rasteriser: the numbers of a cell, and what a
-/// pixel's ray makes of them. Host and device.
+/// Balanced cell projection for tiles of pixels, without a rasteriser: the numbers of a cell, and their
+/// evaluation for the ray of a pixel. Host and device.
 ///
-/// With r = (x, y, 1) in the camera's axes, the ray t r through the place (x, y) of the picture plane crosses
-/// the plane n.p = c of a face at t = c / (n.r): 1/t is linear over the picture plane, and with it the u of
-/// projected_cells.h; with parallel rays t itself is. A ray enters a cell at the farthest of the planes that
-/// the eye is in front of, and leaves it at the nearest of the others. Where cells meet they find the same t.
+/// With r = (x, y, 1) in the camera's axes, the ray t r through the point (x, y) of the picture plane crosses
+/// the plane n.p = c of a face at t = c / (n.r). So 1/t and the u of projected_cells.h are linear over the
+/// picture plane; with parallel rays t is. A ray enters a cell at the farthest of the planes that the eye is
+/// in front of, and leaves it at the nearest of the others. Adjacent cells have the same t at their face.
 /// The value along a ray is (value at the eye) + t (g.r), with its gradient g.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace emscape::render {
 
-/// A point of the mesh along the camera's axes, from the eye on, and its value.
+/// A point of the mesh along the camera's axes relative to the eye, and its value.
 struct ViewPoint {
   double x, y, depth, value;
 };
@@ -24,17 +24,17 @@ struct ViewPoint {
 /// A cell of a mesh in a picture.
 struct PlacedCell {
   std::int32_t corners[4];  ///< points
-  PixelBox pixels;          ///< that it may cover
+  PixelBox pixels;          ///< pixels that the cell may cover
 };
 
-/// A picture that is to be projected, as plain data.
+/// Projection of a picture, as plain data.
 struct TileTask {
   CameraView camera;
   DepthAxes axes;
   IntervalsView transfer{};
   PsiLookup psi{};
   double through = 0;  ///< MarchLimits::through
-  /// Per pixel the depth at which its ray ends; null: none ends.
+  /// Depth at which the ray of each pixel ends; null: no ray ends.
   const double* end_depth = nullptr;
   const ViewPoint* points = nullptr;
   const PlacedCell* cells = nullptr;  ///< the nearest first
@@ -48,13 +48,13 @@ struct TileTask {
 
 /// The ray of a pixel.
 struct PixelRay {
-  double x, y;       ///< place in the picture plane
-  double length;     ///< of its part of depth 1, in reference steps
-  double end_depth;  ///< where it ends
+  double x, y;       ///< position in the picture plane
+  double length;     ///< reference steps per unit of depth
+  double end_depth;  ///< depth of the ray's end
 
   EMSCAPE_HD PixelRay(const TileTask& task, int pixel_x, int pixel_y) {
-    // Beside the centre of the pixel by a part of it that no picture shows: a ray within a face or along an
-    // edge of a regular mesh is in none of the cells there, or in several, as rounding has it.
+    // Offset from the pixel's centre by an invisible fraction: by rounding, a ray within a face or along an
+    // edge of a regular mesh would be in none of the adjacent cells, or in several.
     constexpr double kAsideX = 2.3e-7, kAsideY = 1.7e-7;
     const CameraView& camera = task.camera;
     const double pixel = 2 * camera.half_height / camera.size.height;
@@ -67,7 +67,7 @@ struct PixelRay {
   }
 };
 
-/// The part of the picture in which the corners of a cell span what is in front of the eye.
+/// Bounding box, in the picture, of the part of a cell in front of the eye.
 EMSCAPE_HD inline PixelBox pixelsOf(const TileTask& task, const std::int32_t (&corners)[4]) {
   const CameraView& camera = task.camera;
   double low_x = HUGE_VAL, high_x = -HUGE_VAL, low_y = HUGE_VAL, high_y = -HUGE_VAL;
@@ -87,7 +87,7 @@ EMSCAPE_HD inline PixelBox pixelsOf(const TileTask& task, const std::int32_t (&c
       for (int m = 0; m < 4; ++m) {
         const ViewPoint& q = task.points[corners[m]];
         if (q.depth > 0) continue;
-        // The edge goes on to where its depth is 0: infinitely far in the picture plane.
+        // The edge extends to depth 0: infinitely far in the picture plane.
         const auto farAt = [&](double of_p, double of_q) {
           const double at = of_q * p.depth - of_p * q.depth;
           return at > 0 ? HUGE_VAL : at < 0 ? -HUGE_VAL : 0.0;
@@ -98,7 +98,7 @@ EMSCAPE_HD inline PixelBox pixelsOf(const TileTask& task, const std::int32_t (&c
       }
     }
   }
-  // The inverse of CameraView::rayThrough(); the margin is for rounding and PixelRay's step aside.
+  // Inverse of CameraView::rayThrough(); the margin covers rounding and PixelRay's offset.
   constexpr double kMargin = 1e-3;
   const double width = camera.size.width, height = camera.size.height;
   const auto pixelX = [&](double x) {
@@ -121,26 +121,26 @@ EMSCAPE_HD inline PlacedCell placed(const TileTask& task, const std::int32_t* ve
   return result;
 }
 
-/// The function x of_x + y of_y + constant of a place in the picture plane.
+/// Linear function x of_x + y of_y + constant of a position in the picture plane.
 struct PlaneFunction {
   double of_x, of_y, constant;
 
   EMSCAPE_HD double operator()(double x, double y) const { return of_x * x + (of_y * y + constant); }
 };
 
-/// A part of a ray in a cell.
+/// Segment of a ray in a cell.
 struct RaySegment {
   double begin, end;   ///< depths
   double front, back;  ///< values
 };
 
-/// A cell as the rays of a picture meet it.
+/// A cell prepared for the rays of a picture.
 struct TileCell {
-  /// 1/t at the planes of the faces, with parallel rays -t: those through which rays enter first.
+  /// 1/t at the planes of the faces, with parallel rays -t; entry faces first.
   PlaneFunction nearness[4];
-  int entries = 0;  ///< their number; none: the eye is in the cell
+  int entries = 0;  ///< number of entry faces; 0: the eye is in the cell
   double eye_value;
-  Vec3d gradient;  ///< of the value, along the camera's axes
+  Vec3d gradient;  ///< of the value, in the camera's axes
   PixelBox pixels;
 
   TileCell() = default;
@@ -160,7 +160,7 @@ struct TileCell {
     for (int n = 0; n < 4; ++n) {
       const Vec3d &a = p[faceVertex(n, 0)], &b = p[faceVertex(n, 1)], &c = p[faceVertex(n, 2)];
       Vec3d outward = cross(b - a, c - a);
-      if (volume6 < 0) outward = outward * -1.0;  // the camera's axes may mirror
+      if (volume6 < 0) outward = outward * -1.0;  // the camera's axes may be left-handed
       const double at = dot(outward, a);
       // The weight of corner n is (at - outward.p) / |volume6|.
       const double rise = (values[n] - values[0]) * per_volume;
@@ -175,7 +175,7 @@ struct TileCell {
     }
   }
 
-  /// @return false if the ray does not meet it
+  /// @return false if the ray does not cross the cell
   EMSCAPE_HD bool meets(const PixelRay& ray, bool is_parallel, RaySegment& segment) const {
     double enter = HUGE_VAL, leave = -HUGE_VAL;
     for (int n = 0; n < entries; ++n) enter = fmin(enter, nearness[n](ray.x, ray.y));
@@ -199,7 +199,7 @@ struct TileCell {
   }
 };
 
-/// Adds what a ray gathers in a cell behind those before.
+/// Adds a ray's segment in a cell behind the earlier ones.
 EMSCAPE_HD inline void addSegment(const TileTask& task, const TileCell& cell, const PixelRay& ray,
                                   RayIntegral& integral) {
   RaySegment segment;

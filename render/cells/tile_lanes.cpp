@@ -14,7 +14,7 @@ namespace HWY_NAMESPACE {
 namespace {
 
 #if HWY_CAP_GE256
-/// A tile; neighbouring pixels of a row are in the lanes of a group.
+/// A tile; the lanes of a group are neighbouring pixels of a row.
 class TileInLanes {
  public:
   TileInLanes(const TileTask& task, const LaneTransferView& transfer, const PixelBox& pixels)
@@ -34,7 +34,7 @@ class TileInLanes {
       }
     }
   }
-  /// Whether no ray sees farther cells.
+  /// Whether all rays are opaque.
   bool isOpaque() const { return open_groups_ == 0; }
 
   void add(const TileCell& cell) {
@@ -124,7 +124,7 @@ class TileInLanes {
 
 void compositeLanes(const TileTask& task, const LaneTransferView& transfer, const TileCells& cells,
                     Image& image) {
-  constexpr int kAhead = 6;  // cells and points lie all over the memory
+  constexpr int kAhead = 6;  // prefetch: cells and points are scattered in memory
   TileInLanes tile(task, transfer, cells.pixels);
   for (const int* rank = cells.begin; rank < cells.end && !tile.isOpaque(); ++rank) {
     if (cells.end - rank > 2 * kAhead) {

@@ -10,16 +10,16 @@
 
 namespace emscape::render {
 
-/// Cells ready to be composited from the front to the back, tile by tile.
+/// Cells prepared for compositing from the front to the back, tile by tile.
 class TileProjection {
  public:
-  /// @param task   its mesh and cells are not set yet
+  /// @param task   without mesh and cells
   /// @param order  all cells, the farthest first
   TileProjection(const TileTask& task, const CellMesh& mesh, const std::vector<std::int32_t>& order);
 
-  /// The number of those that hold a field and are in the picture.
+  /// Number of cells with a field in the picture.
   long long cells() const;
-  /// The picture, without ground. A psi with a table is composited in lanes.
+  /// The picture, without ground. Vectorised if psi has a table.
   Image composite() const;
 
  private:
@@ -30,16 +30,16 @@ class TileProjection {
   TileLists lists_;
 };
 
-/// The ranks of the cells of a tile, and its pixels.
+/// Ranks of the cells of a tile, and its pixels.
 struct TileCells {
   PixelBox pixels;
   const int* begin;
   const int* end;
 };
 
-/// One pixel after another.
+/// Composites one pixel after another.
 void compositeTile(const TileTask& task, const TileCells& cells, Image& image);
-/// The pixels of a row in the lanes of vector registers. Colours differ by less than 1e-6. Without AVX2 it is
+/// Composites the pixels of a row in vector lanes. Colours differ by less than 1e-6. Without AVX2 it calls
 /// compositeTile().
 void compositeTileInLanes(const TileTask& task, const LaneTransferView& transfer, const TileCells& cells,
                           Image& image);

@@ -18,8 +18,8 @@ namespace {
 using scenario::EmitterKind;
 using scenario::Quantity;
 
-/// Places of a track that are solved at once: fixed emitters have one geometry for all, that of moving ones
-/// is computed for all at each time.
+/// Number of track positions solved together. Fixed emitters have one geometry for all; the geometry of
+/// moving emitters is computed for all positions at each time.
 constexpr std::size_t kPlaces = 32;
 
 /// @throws Error (usage)
@@ -69,7 +69,7 @@ class Track {
     }
   }
 
-  /// The rows of some times, of which the field's values are solved together.
+  /// Rows of some times, whose field values are solved together.
   void addRows(std::size_t begin, std::size_t end, std::vector<ExposureRow>& rows,
                const ProgressSink& progress) {
     std::vector<scenario::Snapshot> snapshots;
@@ -104,21 +104,21 @@ class Track {
     addOnce(warnings, solver.warnings());
   }
 
-  std::vector<int> emitters;  ///< with a value of their own
+  std::vector<int> emitters;  ///< with a separate value
   std::vector<std::string> warnings;
 
  private:
   bool isOwn(int emitter) const {
     return scenario_->emitters[static_cast<std::size_t>(emitter)].platform == request_.platform;
   }
-  /// Whether an emitter takes part: those on the platform only as jammers of radars.
+  /// Whether an emitter is included: those on the platform only as jammers of radars.
   bool counts(int emitter) const {
     const bool jams = scenario_->emitters[static_cast<std::size_t>(emitter)].kind == EmitterKind::jammer &&
                       scenario::needsJammer(request_.quantity);
     return jams || !isOwn(emitter);
   }
 
-  /// The scenario with radars that look at the target of the request from where they are.
+  /// The scenario with the cross section, fluctuation and radial speed of the request's target, by radar.
   std::shared_ptr<const scenario::Scenario> withTarget(const scenario::Snapshot& snapshot) const {
     const scenario::Target& target = scenario_->targets[*request_.target];
     auto seen = std::make_shared<scenario::Scenario>(*scenario_);
@@ -176,7 +176,7 @@ class Track {
   std::vector<std::size_t> channels_;  ///< of the solver, by emitter
 };
 
-/// Sets the probabilities of detection in any look so far.
+/// Sets the cumulative probabilities of detection.
 void accumulate(const scenario::Scenario& scenario, Exposure& exposure) {
   const bool has_looks = exposure.request.quantity == Quantity::detection_probability &&
                          exposure.request.look == scenario::RadarLook::target;
@@ -205,7 +205,7 @@ void accumulate(const scenario::Scenario& scenario, Exposure& exposure) {
   exposure.together.cumulative_probability = exposure.rows.back().cumulative_probability;
 }
 
-/// Figures of a value over time.
+/// Statistics of a value over time.
 template <class ValueOf>
 ExposureSummary summaryOf(const std::string& name, const Exposure& exposure, const ValueOf& valueOf) {
   const std::vector<ExposureRow>& rows = exposure.rows;
@@ -219,7 +219,7 @@ ExposureSummary summaryOf(const std::string& name, const Exposure& exposure, con
       summary.max = value;
       summary.max_time_s = rows[t].time_s;
     }
-    const bool is_alone = rows.size() == 1;  // one time is all of it
+    const bool is_alone = rows.size() == 1;  // a single time represents the whole time
     const double length_s = is_alone ? 1 : t + 1 < rows.size() ? rows[t + 1].time_s - rows[t].time_s : 0;
     all_s += length_s;
     const ExposureState state = stateOf(value, exposure.request.threshold);
@@ -236,7 +236,7 @@ ExposureSummary summaryOf(const std::string& name, const Exposure& exposure, con
   return summary;
 }
 
-/// A step in which the beam turns past the platform is not seen.
+/// Warning about time steps in which a beam may pass the platform unnoticed.
 std::optional<std::string> scanWarning(const scenario::Scenario& scenario, const Exposure& exposure) {
   if (exposure.request.look != scenario::RadarLook::scan || exposure.rows.size() < 2) return std::nullopt;
   double step_s = 0;

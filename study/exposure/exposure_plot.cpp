@@ -66,7 +66,7 @@ void drawUnknown(const Exposure& exposure, const PlotPanel& panel) {
   }
 }
 
-/// Limits of the values: 0..1 of probabilities, else tens, at most 100 below the highest.
+/// Limits of the values: 0..1 for probabilities, else multiples of ten, at most 100 below the maximum.
 PlotAxis axisOf(const std::vector<PlotLine>& lines, const std::string& unit) {
   if (unit.empty() && std::all_of(lines.begin(), lines.end(), [](const PlotLine& line) {
         return std::all_of(line.points.begin(), line.points.end(),

@@ -15,7 +15,7 @@ namespace emscape::study {
 
 namespace {
 
-/// Distance of the nearer pole (m).
+/// Distance to the nearer pole (m).
 double poleDistance_m(double latitude_deg) {
   return geodesicInverse(latitude_deg, 0, latitude_deg < 0 ? -90 : 90, 0).distance_m;
 }

@@ -37,7 +37,7 @@ std::shared_ptr<const scenario::Scenario> atTargets(const scenario::Scenario& sc
   return at_targets;
 }
 
-/// Of products over time where the beams of scans pass between the times.
+/// Warnings for products over time if scanning beams pass between the times.
 std::optional<std::string> scanWarning(const scenario::Scenario& at_targets,
                                        const std::vector<CoverageRequest>& requests) {
   const bool is_over_time =

@@ -96,8 +96,8 @@ class Projection {
   gdal::Transformation transform_;
 };
 
-/// Points along the border of a box, by longitude and latitude: those at one part of the southern, northern,
-/// western and eastern side, from part to part.
+/// Points along the border of a box (longitude and latitude): at each fraction of the sides one point on the
+/// southern, northern, western and eastern side.
 void addBorder(const scenario::GeoBox& box, std::vector<double>& longitudes, std::vector<double>& latitudes) {
   constexpr int kPerSide = 32;
   for (int n = 0; n <= kPerSide; ++n) {
@@ -115,8 +115,8 @@ void addBorder(const scenario::GeoBox& box, std::vector<double>& longitudes, std
   }
 }
 
-/// Refuses a projection that is cut along a meridian of the area, as most are opposite to their middle: the
-/// pixels would run around the earth.
+/// Refuses a projection that is discontinuous at a meridian of the area (usually opposite its central
+/// meridian): the pixels would extend around the earth.
 /// @param x  of the points of addBorder()  @param width_m  of all
 /// @throws Error (usage)
 void checkUncut(const std::vector<double>& x, double width_m, const std::string& crs) {

@@ -20,7 +20,7 @@ bool isPerEmitter(Product product);
 /// True for products of the effect of jamming.
 bool isOfJamming(Product product);
 
-/// True if a product of the request is over all times.
+/// True if a product of the request covers all times.
 bool isOverTime(const CoverageRequest& request);
 
 /// A map without values.

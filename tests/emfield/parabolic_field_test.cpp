@@ -62,7 +62,7 @@ scenario::TerrainPtr gentleHills() {
       });
 }
 
-/// Moves region and emitter to a place on the ground of a file.
+/// Moves region and emitter to a position on the terrain of a file.
 /// @param antenna_agl_m  above the ground
 scenario::TerrainPtr standOn(const char* file, double latitude_deg, double longitude_deg,
                              double antenna_agl_m, scenario::Scenario& scenario) {
@@ -149,7 +149,7 @@ double quantileOf(std::vector<double> values, double part) {
   return values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
 }
 
-/// Largest angle (rad) at which the antenna sees ground that is given at even steps, before a range.
+/// Largest angle (rad) at which the antenna sees ground given at regular steps, up to a range.
 float horizonOf(const propagation::PeOthers& others, const std::vector<float>& ground_msl_m, double step_m,
                 double range_m) {
   float horizon_rad = 0;
@@ -266,8 +266,8 @@ TEST(ParabolicField, IsThatOfSingleMarchesAtRandomPointsOverHills) {
   EXPECT_LT(quantileOf(coarser, 0.9), 0.5) << quantileOf(coarser, 0.9);
 }
 
-// Real ground changes from azimuth to azimuth, and with where the steps of a march fall: of two marches along
-// one azimuth, whose steps of 70 m fall elsewhere, one of ten points differs by 0.6 dB and more.
+// Real ground changes with azimuth and with the positions of a march's steps: two marches along one azimuth,
+// with shifted steps of 70 m, differ by 0.6 dB or more at one of ten points.
 TEST(ParabolicField, IsNearSingleMarchesAtRandomPointsOverMountains) {
   const auto valley = around(4e8, 0, {16e3, 16e3, 600}, {80, 80, 24}, 250);
   const auto jacksboro = standOn("scenarios/data/jacksboro.tif", 36.25, -84.2, 60, *valley);

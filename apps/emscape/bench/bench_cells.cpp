@@ -35,7 +35,7 @@ struct BenchCellsOptions {
 struct CellTimes {
   std::vector<double> ms;
   render::ProjectionReport last;
-  /// Of the last picture from the marched one: the greatest of a component, and the part of the pixels.
+  /// Difference of the last picture from the marched one: max over components, and fraction of the pixels.
   double max_difference = 0, above_1e5 = 0;
   std::vector<double> order_ms, bin_ms, device_ms;
 };

@@ -1,4 +1,4 @@
-/// An exposure as a table, JSON and CSV.
+/// Exposure as a table, JSON and CSV.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace emscape::app {
 
 Json exposureJson(const study::Exposure& exposure);
-/// The figures of each emitter and of all; rows are in files.
+/// Statistics of each emitter and of all together; without rows, which are in the files.
 void printExposure(const study::Exposure& exposure);
 /// One row per time, one column per emitter. @throws Error (other) naming the file
 void writeExposureCsv(const study::Exposure& exposure, const std::string& file);

@@ -1,4 +1,4 @@
-/// The area of a map, and the terrain over it.
+/// Area of a map and its terrain.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace emscape::study {
 
-/// Area of a map: a box, or a circle in it, beyond which pixels are left out. With a pole in it the box has
-/// all longitudes.
+/// Area of a map: a box, or a circle in it; pixels outside the circle are left out. A box that contains a
+/// pole has all longitudes.
 struct MapArea {
   struct Circle {
     double latitude_deg = 0, longitude_deg = 0, radius_m = 0;
@@ -19,18 +19,18 @@ struct MapArea {
   std::optional<Circle> circle;
 };
 
-/// The area of a scenario's region; with a pole in it, the circle around it.
+/// Area of a scenario's region; if it contains a pole, the circle around the region.
 MapArea areaOf(const scenario::Region& region);
-/// @throws Error (usage) for a position that is none or a radius outside 10 m..2000 km
+/// @throws Error (usage) for an invalid position or a radius outside 10 m..2000 km
 MapArea circularArea(const MapArea::Circle& circle);
 /// Parses "LATITUDE,LONGITUDE,RADIUS_M" or "bbox:WEST,SOUTH,EAST,NORTH" (degrees; a box across the
 /// antimeridian has west > east).
 /// @throws Error (usage) that names the text
 MapArea parseArea(const std::string& text);
 
-/// The box of terrain that maps of an area need: with all platforms, and a margin.
+/// Box of terrain needed by maps of an area: the area, all platforms and a margin.
 scenario::GeoBox terrainBoxOf(const scenario::Scenario& scenario, const MapArea& area);
-/// The terrain that a scenario names, over an area and all platforms; null if it names none.
+/// Loads the scenario's terrain over an area and all platforms; null if the scenario names none.
 /// @throws Error (bad_input) naming the file
 scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapArea& area);
 

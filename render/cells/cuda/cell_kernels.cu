@@ -10,7 +10,7 @@ constexpr int kTile = FaceTiles::kTile;
 /// Faces through which rays of a tile may enter.
 struct TilesView {
   const volume::FaceId* faces;  ///< of all tiles, one after another
-  const int* first;             ///< of each tile in it; one more at the end
+  const int* first;             ///< first face of each tile; one more at the end
   int columns;
 };
 
@@ -22,7 +22,7 @@ struct CastTask {
   TilesView tiles;
   int start_cell;
   double through;
-  const double* end_distance;  ///< null: none ends
+  const double* end_distance;  ///< null: no ray ends
 };
 
 /// The nearest entries of a ray behind one of them.

@@ -36,7 +36,7 @@ __global__ void findDepths(const __grid_constant__ TileTask task, CellMeshView m
 }
 
 /// @param order        the farthest first
-/// @param tile_counts  receives the number of tiles that each cell touches, and 0 behind the last one
+/// @param tile_counts  receives the number of tiles that each cell touches, and 0 after the last one
 __global__ void placeCells(const __grid_constant__ TileTask task, CellMeshView mesh, int count,
                            const std::int32_t* order, PlacedCell* cells, unsigned* tile_counts,
                            unsigned long long* drawn) {
@@ -78,7 +78,7 @@ __global__ void findTiles(const unsigned* tiles, unsigned pairs, int count, unsi
   first[tile] = low;
 }
 
-/// A block per tile, a thread per pixel; a warp has 8 x 4 pixels.
+/// One block per tile, one thread per pixel; a warp has 8 x 4 pixels.
 __global__ void __launch_bounds__(kThreads)
     compositeTiles(const __grid_constant__ TileTask task, const int* ranks, const unsigned* first,
                    Rgba* picture) {
@@ -108,7 +108,7 @@ __global__ void __launch_bounds__(kThreads)
   if (is_inside) picture[y * task.camera.size.width + x] = integral.color();
 }
 
-/// Calls a function of CUB that asks for temporary memory first.
+/// Calls a function of CUB: first for the size of its temporary memory, then with it.
 template <class Call>
 void withTemporary(emscape::cuda::Buffer<std::byte>& memory, const char* name, const Call& call) {
   std::size_t bytes = 0;

@@ -17,7 +17,7 @@ struct MeshOnDevice {
 
 class TileProjector {
  public:
-  /// @param task   its points and cells are not set yet; the rest is in device memory
+  /// @param task   without points and cells; its other pointers are to device memory
   /// @param order  as TileCast::order
   /// @throws Error (device)
   TileTimes project(TileTask task, const MeshOnDevice& mesh, const std::vector<std::int32_t>* order,
@@ -31,7 +31,7 @@ class TileProjector {
 
   template <class T>
   using Buffer = emscape::cuda::Buffer<T>;
-  /// What a sort writes from one to the other.
+  /// Input and output buffers of a sort.
   template <class T>
   struct Pair {
     Buffer<T> from, to;

@@ -16,7 +16,7 @@
 namespace emscape::render::gl {
 namespace {
 
-/// What a name of OpenGL stands for is deleted with it.
+/// Owner of an OpenGL object, which it deletes.
 template <auto kDelete>
 class Name {
  public:
@@ -96,7 +96,7 @@ Program linked() {
   throw Error(ErrorCode::device, fmt::format("OpenGL does not link the shaders: {}", log.data()));
 }
 
-/// A buffer whose elements shaders fetch by their index.
+/// Buffer texture, whose elements shaders fetch by index.
 struct BufferTexture {
   Buffer buffer = made<Buffer>(glGenBuffers);
   Texture texture = made<Texture>(glGenTextures);
@@ -118,7 +118,7 @@ void setNearest() {
 enum Unit : GLint { kCellNumbers, kIntervals, kPsi, kEnd };
 
 constexpr int kBatches = 3;  ///< being filled, waiting, being drawn
-/// A strip has each face once, all of one winding.
+/// Triangle strip with each face once, all with the same winding.
 constexpr GLuint kStrip[] = {0, 1, 2, 3, 0, 1};
 constexpr GLsizeiptr kVertexBytes = CellRasterizer::kBatchCells * 4 * kFloatsOfVertex * sizeof(float);
 GLsizeiptr numberBytes(CellProjection projection) {

@@ -12,7 +12,7 @@
 namespace emscape::render::gl {
 namespace {
 
-/// libepoxy ends the program where a library is missing.
+/// libepoxy ends the program if a library is missing.
 void requireLibrary(const char* name) {
   if (void* const library = dlopen(name, RTLD_LAZY | RTLD_LOCAL)) {
     dlclose(library);

@@ -6,8 +6,8 @@
 
 namespace emscape::render::gl {
 
-/// OpenGL 3.3 core by EGL: on a GPU's own device where there is one, else Mesa's software. One thread at a
-/// time has it current.
+/// OpenGL 3.3 core through EGL: on a GPU if there is one, else Mesa's software. Current in one thread at a
+/// time.
 class OffscreenContext {
  public:
   /// Makes it current.
@@ -18,7 +18,7 @@ class OffscreenContext {
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
   void makeCurrent();
-  /// Another thread may make it current then.
+  /// Releases it, so that another thread may make it current.
   void release();
   /// "VENDOR, RENDERER" as OpenGL names them.
   const std::string& name() const { return name_; }

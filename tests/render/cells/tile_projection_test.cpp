@@ -83,7 +83,7 @@ constexpr const char* kCameras[] = {
 
 class TileProjections : public test::OnBackends {
  protected:
-  /// The greatest difference between the projected and the marched picture.
+  /// Max difference between the projected and the marched picture.
   static double difference(const MeshField& field, const std::string& camera,
                            std::shared_ptr<const HeightField> ground = nullptr, bool exact = true) {
     CellRenderer march, project(GetParam());
@@ -111,7 +111,7 @@ TEST_P(TileProjections, AreTheMarchedPictureInAllPixels) {
 }
 
 TEST_P(TileProjections, KeepRaysInPlanesAndAlongEdgesOfCells) {
-  // Rows and columns of pixels lie in inner planes of a regular lattice, some pixels on its edges.
+  // Rows and columns of pixels are in inner planes of a regular lattice, some pixels on its edges.
   const MeshField field = wavy(9, 0);
   const double fov_deg = 2 * std::atan(0.5 * 121 * 3.125 / 2000) * 180 / 3.14159265358979323846;
   const std::string along_y =
@@ -181,7 +181,7 @@ TEST_P(TileProjections, HaveTheExactFormAlone) {
   published.projection = CellProjection::published;
   EXPECT_THAT(test::errorOf([&] { renderer.project(kSize, published); }, ErrorCode::usage),
               ::testing::HasSubstr("tiles of pixels have the exact form alone"));
-  // With parallel rays both are one.
+  // With parallel rays both forms are equal.
   prepare(renderer, wavy(4), "orbit:projection=orthographic");
   EXPECT_EQ(greatestDifference(renderer.project(kSize, published), renderer.project(kSize, byTiles())), 0);
 }
