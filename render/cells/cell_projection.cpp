@@ -126,9 +126,10 @@ Rasterizer CellRenderer::Impl::rasterizerFor(const ProjectionOptions& options, C
   const bool is_published =
       options.projection == CellProjection::published && scene.camera().projection == Projection::perspective;
   if (is_published && options.rasterizer == Rasterizer::tiles) {
-    throw Error(ErrorCode::usage,
-                "the published form of cell projection interpolates distances over faces, which OpenGL does; "
-                "tiles of pixels have the exact form alone");
+    throw Error(
+        ErrorCode::usage,
+        "tiles of pixels support only the exact form of cell projection in perspective; the published form "
+        "needs the rasterizer opengl");
   }
   if (options.rasterizer != Rasterizer::automatic) return options.rasterizer;
   if (is_published) return Rasterizer::opengl;

@@ -117,7 +117,7 @@ TEST(MeshSeries, AScenarioIsDrawnAsItsFilesAre) {
   EXPECT_THAT(run({"render", folder / "a", "-o", folder / "no.png", "--cells", "project", "--cell-rasterizer",
                    "tiles", "--cell-perspective", "published"})
                   .err,
-              HasSubstr("tiles of pixels have the exact form alone"));
+              HasSubstr("tiles of pixels support only the exact form"));
   const Arguments by_opengl{"render",  folder / "a",        "-o",     folder / "a.png", "--cells",
                             "project", "--cell-rasterizer", "opengl", "--quiet"};
   if (run(by_opengl).status == 4) GTEST_SKIP() << "no OpenGL without a window";

@@ -180,7 +180,7 @@ TEST_P(TileProjections, HaveTheExactFormAlone) {
   ProjectionOptions published = byTiles();
   published.projection = CellProjection::published;
   EXPECT_THAT(test::errorOf([&] { renderer.project(kSize, published); }, ErrorCode::usage),
-              ::testing::HasSubstr("tiles of pixels have the exact form alone"));
+              ::testing::HasSubstr("tiles of pixels support only the exact form"));
   // With parallel rays both forms are equal.
   prepare(renderer, wavy(4), "orbit:projection=orthographic");
   EXPECT_EQ(greatestDifference(renderer.project(kSize, published), renderer.project(kSize, byTiles())), 0);
