@@ -32,13 +32,13 @@ struct TileCast {
   bool table = true;  ///< Psi from the table, else in closed form
   /// Depth at which the ray of each pixel ends; empty: no ray ends.
   std::vector<double> end_depth;
-  /// All cells, the farthest first; null: the GPU sorts them by their centroids.
-  const std::vector<std::int32_t>* order = nullptr;
+  CellSorting sorting = CellSorting::visibility;
 };
 
 struct TileTimes {
   double order_ms = 0, bin_ms = 0, draw_ms = 0;  ///< by the GPU's clock
   long long cells = 0;                           ///< cells with a field in the picture
+  long long cycles = 0;                          ///< CellOrder::cycles
 };
 
 /// Not thread-safe.

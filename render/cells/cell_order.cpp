@@ -1,64 +1,21 @@
 #include "render/cells/cell_order.h"
 
 #include <algorithm>
-#include <cstring>
 #include <utility>
 
 #include "emscape/base/parallel.h"
 #include "render/cells/projected_cells.h"
 
 namespace emscape::render {
-namespace {
-
-/// Sort keys, increasing with the distances of the centroids.
-std::vector<float> depths(const CellMesh& mesh, const CameraView& camera) {
-  const Vec3d depth = DepthAxes(camera).depth;
-  const CellMeshView view = mesh.view();
-  std::vector<float> result(mesh.mesh->cells.size());
-  parallelFor(static_cast<int>(result.size()), 4096, [&](int begin, int end) {
-    for (int c = begin; c < end; ++c) {
-      result[static_cast<std::size_t>(c)] = centroidDepth(view, camera, depth, c);
-    }
-  });
-  return result;
-}
-
-/// Keys whose order as unsigned numbers is that of the floats, the largest first.
-std::uint32_t descendingKey(float value) {
-  std::uint32_t bits;
-  std::memcpy(&bits, &value, sizeof bits);
-  return (bits >> 31) != 0 ? bits : ~(bits | 0x80000000u);
-}
-
-/// Faces across which a cell hides its neighbour: one bit per face.
-std::uint8_t facesBehind(const CellMesh& mesh, const CameraView& camera, int cell) {
-  std::uint8_t behind = 0;
-  for (int i = 0; i < 4; ++i) {
-    const volume::FaceId here = 4 * cell + i;
-    const volume::FaceId there = mesh.faces->other_side[static_cast<std::size_t>(here)];
-    if (there == volume::kNoFace) continue;
-    // Both sides of a face use the same numbers.
-    const volume::FaceId decides = std::min(here, there);
-    const auto& vertices = mesh.cell(decides / 4);
-    const int* const face = volume::kFaceVertices[decides % 4];
-    const Vec3d a = mesh.point(vertices[static_cast<std::size_t>(face[0])]);
-    const Vec3d outward = cross(mesh.point(vertices[static_cast<std::size_t>(face[1])]) - a,
-                                mesh.point(vertices[static_cast<std::size_t>(face[2])]) - a);
-    const double away = camera.orthographic ? dot(outward, camera.forward) : dot(outward, a - camera.eye);
-    if (here == decides ? away > 0 : away < 0) behind |= static_cast<std::uint8_t>(1 << i);
-  }
-  return behind;
-}
-
-}  // namespace
 
 CellOrder centroidOrder(const CellMesh& mesh, const CameraView& camera) {
-  const std::vector<float> depth = depths(mesh, camera);
   struct Item {
     std::uint32_t key;
     std::int32_t cell;
   };
-  std::vector<Item> items(depth.size()), sorted(depth.size());
+  const CellMeshView view = mesh.view();
+  const Vec3d depth = DepthAxes(camera).depth;
+  std::vector<Item> items(mesh.mesh->cells.size()), sorted(items.size());
   const auto count = static_cast<int>(items.size());
   // Radix sort, stable, in parallel over blocks: the same on every machine.
   constexpr int kBits = 11, kBuckets = 1 << kBits, kBlock = 1 << 16;
@@ -69,7 +26,7 @@ CellOrder centroidOrder(const CellMesh& mesh, const CameraView& camera) {
     });
   };
   overBlocks([&](int, int begin, int end) {
-    for (int c = begin; c < end; ++c) items[c] = {descendingKey(depth[c]), c};
+    for (int c = begin; c < end; ++c) items[c] = {~centroidKey(view, camera, depth, c), c};
   });
   std::vector<std::int32_t> first(static_cast<std::size_t>(blocks) * kBuckets);
   for (int shift = 0; shift < 32; shift += kBits) {
@@ -101,10 +58,11 @@ CellOrder centroidOrder(const CellMesh& mesh, const CameraView& camera) {
 }
 
 CellOrder visibilityOrder(const CellMesh& mesh, const CameraView& camera) {
+  const CellMeshView view = mesh.view();
   const std::size_t count = mesh.mesh->cells.size();
   std::vector<std::uint8_t> behind(count);
   parallelFor(static_cast<int>(count), 4096, [&](int begin, int end) {
-    for (int c = begin; c < end; ++c) behind[static_cast<std::size_t>(c)] = facesBehind(mesh, camera, c);
+    for (int c = begin; c < end; ++c) behind[static_cast<std::size_t>(c)] = facesBehind(view, camera, c);
   });
   enum State : std::uint8_t { unseen, open, done };
   std::vector<State> states(count, unseen);

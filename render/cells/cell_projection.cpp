@@ -162,28 +162,25 @@ Image CellRenderer::Impl::projectByOpenGl(const RaycastTask& task, const Project
 Image CellRenderer::Impl::projectByTiles(const RaycastTask& task, const ProjectionOptions& options,
                                          const std::vector<GroundHit>& hits, ProjectionReport& report) {
   const bool exact = scene.settings().exact;
-  TileCast cast{{task.camera, DepthAxes(task.camera)}, !exact, depthsOf<double>(hits, task.camera), nullptr};
+  TileCast cast{
+      {task.camera, DepthAxes(task.camera)}, !exact, depthsOf<double>(hits, task.camera), options.sorting};
   cast.task.through = exact ? 0 : 1 - static_cast<double>(kOpaqueEnough);
   report.device = toString(caster ? Backend::cuda : Backend::cpu);
   Stopwatch watch;
-  CellOrder order;
-  if (!caster || options.sorting == CellSorting::visibility) {
-    order = orderOf(cells, task.camera, options.sorting);
-    cast.order = &order.cells;
-    report.cycles = order.cycles;
-    report.order_ms = watch.lap_ms();
-  }
   Image image;
   if (caster) {
     const TileTimes times = caster->project(cast, image);
     report.cells = times.cells;
+    report.cycles = times.cycles;
     report.draw_ms = watch.lap_ms() - times.order_ms;
-    report.order_ms += times.order_ms;
+    report.order_ms = times.order_ms;
     report.bin_ms = times.bin_ms;
     report.device_ms = times.bin_ms + times.draw_ms;
-    report.sent_bytes = sizeof(std::int32_t) * order.cells.size();
     return image;
   }
+  const CellOrder order = orderOf(cells, task.camera, options.sorting);
+  report.cycles = order.cycles;
+  report.order_ms = watch.lap_ms();
   TileTask& tiles = cast.task;
   tiles.transfer = transfer->view();
   if (cast.table) tiles.psi = PsiTable::shared().lookup();

@@ -127,7 +127,7 @@ class CudaCellCaster : public CellCaster {
     task.end_depth = end_distance_.data();
     const MeshOnDevice mesh{meshView(), static_cast<int>(points_.size()),
                             static_cast<int>(vertices_.size() / 4)};
-    return projector_.project(task, mesh, cast.order, image, stream_);
+    return projector_.project(task, mesh, cast.sorting, image, stream_);
   }
 
   CellCounts cast(const CellCast& cast, const FaceTiles& tiles, Image& image) override {

@@ -27,12 +27,34 @@ __global__ void viewPoints(const __grid_constant__ TileTask task, CellMeshView m
   if (n < count) points[n] = task.viewOf(mesh.points[n], mesh.values[n]);
 }
 
-__global__ void findDepths(const __grid_constant__ TileTask task, CellMeshView mesh, int count, float* depths,
-                           std::int32_t* cells) {
+/// @param behind  receives facesBehind(); null: not needed
+__global__ void findKeys(const __grid_constant__ TileTask task, CellMeshView mesh, int count,
+                         std::uint32_t* keys, std::int32_t* cells, std::uint8_t* behind) {
   const int n = threadIndex();
   if (n >= count) return;
-  depths[n] = centroidDepth(mesh, task.camera, task.axes.depth, n);
+  keys[n] = centroidKey(mesh, task.camera, task.axes.depth, n);
   cells[n] = n;
+  if (behind != nullptr) behind[n] = facesBehind(mesh, task.camera, n);
+}
+
+/// Raises the keys of hidden neighbours that do not exceed the cell's own.
+/// @param raised  receives their number; null: not needed
+__global__ void raiseNeighbours(CellMeshView mesh, int count, const std::uint8_t* behind, std::uint32_t* keys,
+                                unsigned* raised) {
+  const int cell = threadIndex();
+  unsigned here = 0;
+  if (cell < count) {
+    const unsigned faces = behind[cell];
+    const std::uint32_t key = keys[cell];
+    for (int face = 0; face < 4; ++face) {
+      if ((faces >> face & 1) == 0) continue;
+      std::uint32_t* const neighbour = keys + mesh.other_side[4 * cell + face] / 4;
+      if (*neighbour > key) continue;
+      atomicMax(neighbour, key + 1);
+      ++here;
+    }
+  }
+  if (raised != nullptr && here > 0) atomicAdd(raised, here);
 }
 
 /// @param order        the farthest first
@@ -82,28 +104,45 @@ __global__ void findTiles(const unsigned* tiles, unsigned pairs, int count, unsi
 __global__ void __launch_bounds__(kThreads)
     compositeTiles(const __grid_constant__ TileTask task, const int* ranks, const unsigned* first,
                    Rgba* picture) {
-  constexpr int kBatch = 128;
+  constexpr unsigned kBatch = 128, kGroup = 64;
   __shared__ __align__(16) unsigned char memory[kBatch * sizeof(TileCell)];
   TileCell* const batch = reinterpret_cast<TileCell*>(memory);
 
   const PixelBox tile = TileGrid{task.camera.size}.pixelsOf(static_cast<int>(blockIdx.x));
   const int warp = static_cast<int>(threadIdx.x / 32), lane = static_cast<int>(threadIdx.x % 32);
-  const int x = tile.first_x + warp % 2 * 8 + lane % 8, y = tile.first_y + warp / 2 * 4 + lane / 8;
+  const int first_x = tile.first_x + warp % 2 * 8, first_y = tile.first_y + warp / 2 * 4;
+  const PixelBox pixels{first_x, first_y, first_x + 8, first_y + 4};  // of the warp
+  const int x = first_x + lane % 8, y = first_y + lane / 8;
   const bool is_inside = x < tile.end_x && y < tile.end_y;
   const PixelRay ray(task, is_inside ? x : tile.first_x, is_inside ? y : tile.first_y);
   RayIntegral integral(task.transfer, task.psi);
   bool is_open = is_inside;
   const unsigned end = first[blockIdx.x + 1];
   for (unsigned begin = first[blockIdx.x]; begin < end; begin += kBatch) {
-    const unsigned count = min(end - begin, static_cast<unsigned>(kBatch));
+    const unsigned count = min(end - begin, kBatch);
     if (__syncthreads_count(is_open) == 0) break;
     if (threadIdx.x < count) batch[threadIdx.x] = TileCell(task, ranks[begin + threadIdx.x]);
     __syncthreads();
-    if (!is_open) continue;
-    for (unsigned n = 0; n < count; ++n) {
-      if (batch[n].pixels.holds(x, y)) addSegment(task, batch[n], ray, integral);
+    if (!__any_sync(0xffffffffu, is_open)) continue;
+    // First each ray finds the cells that it meets, then it integrates: these are others for each lane, so
+    // that few lanes wait.
+    for (unsigned n = 0; n < count; n += kGroup) {
+      unsigned long long met = 0;
+      for (unsigned m = 0; m < kGroup; m += 32) {
+        const unsigned mine = n + m + lane;
+        const bool is_near = mine < count && !common(batch[mine].pixels, pixels).isEmpty();
+        for (unsigned near = __ballot_sync(0xffffffffu, is_near); near != 0; near &= near - 1) {
+          const int bit = static_cast<int>(m) + __ffs(static_cast<int>(near)) - 1;
+          const TileCell& cell = batch[n + bit];
+          RaySegment segment;
+          if (is_open && cell.pixels.holds(x, y) && cell.meets(ray, task.camera.orthographic, segment))
+            met |= 1ull << bit;
+        }
+      }
+      for (; met != 0; met &= met - 1)
+        addSegment(task, batch[n + __ffsll(static_cast<long long>(met)) - 1], ray, integral);
     }
-    is_open = integral.through() >= task.through;
+    is_open = is_open && integral.through() >= task.through;
   }
   if (is_inside) picture[y * task.camera.size.width + x] = integral.color();
 }
@@ -119,20 +158,42 @@ void withTemporary(emscape::cuda::Buffer<std::byte>& memory, const char* name, c
 
 }  // namespace
 
-const std::int32_t* TileProjector::sorted(const TileTask& task, const MeshOnDevice& mesh,
-                                          cudaStream_t stream) {
+long long TileProjector::raiseHidden(const MeshOnDevice& mesh, cudaStream_t stream) {
+  // Only chains of cells whose centroids are in the wrong order need several sweeps; a cycle never ends.
+  constexpr int kSweeps = 1024, kSweepsPerCheck = 16;
+  unsigned raised = 0;
+  raised_.resize(1);
+  for (int sweep = 1; sweep <= kSweeps; ++sweep) {
+    const bool is_checked = sweep % kSweepsPerCheck == 0;
+    if (is_checked) check(cudaMemsetAsync(raised_.data(), 0, sizeof raised, stream), "cudaMemsetAsync");
+    raiseNeighbours<<<blocksFor(mesh.cells), kThreads, 0, stream>>>(
+        mesh.view, mesh.cells, behind_.data(), keys_.from.data(), is_checked ? raised_.data() : nullptr);
+    checkLaunch("raiseNeighbours");
+    if (!is_checked) continue;
+    raised_.download(&raised, stream);
+    if (raised == 0) break;
+  }
+  return raised;
+}
+
+long long TileProjector::sort(const TileTask& task, const MeshOnDevice& mesh, CellSorting sorting,
+                              cudaStream_t stream) {
   const auto count = static_cast<std::size_t>(mesh.cells);
-  for (auto* depths : {&depths_.from, &depths_.to}) depths->atLeast(count);
+  const bool by_visibility = sorting == CellSorting::visibility;
+  for (auto* keys : {&keys_.from, &keys_.to}) keys->atLeast(count);
   for (auto* order : {&order_.from, &order_.to}) order->atLeast(count);
-  findDepths<<<blocksFor(mesh.cells), kThreads, 0, stream>>>(task, mesh.view, mesh.cells, depths_.from.data(),
-                                                             order_.from.data());
-  checkLaunch("findDepths");
+  if (by_visibility) behind_.atLeast(count);
+  findKeys<<<blocksFor(mesh.cells), kThreads, 0, stream>>>(task, mesh.view, mesh.cells, keys_.from.data(),
+                                                           order_.from.data(),
+                                                           by_visibility ? behind_.data() : nullptr);
+  checkLaunch("findKeys");
+  const long long cycles = by_visibility ? raiseHidden(mesh, stream) : 0;
   withTemporary(temporary_, "cub::DeviceRadixSort of cells", [&](void* temporary, std::size_t& bytes) {
-    return cub::DeviceRadixSort::SortPairsDescending(temporary, bytes, depths_.from.data(), depths_.to.data(),
+    return cub::DeviceRadixSort::SortPairsDescending(temporary, bytes, keys_.from.data(), keys_.to.data(),
                                                      order_.from.data(), order_.to.data(), mesh.cells, 0, 32,
                                                      stream);
   });
-  return order_.to.data();
+  return cycles;
 }
 
 const int* TileProjector::bin(const TileTask& task, const MeshOnDevice& mesh, cudaStream_t stream) {
@@ -163,11 +224,10 @@ const int* TileProjector::bin(const TileTask& task, const MeshOnDevice& mesh, cu
   return ranks_.to.data();
 }
 
-TileTimes TileProjector::project(TileTask task, const MeshOnDevice& mesh,
-                                 const std::vector<std::int32_t>* order, Image& image, cudaStream_t stream) {
+TileTimes TileProjector::project(TileTask task, const MeshOnDevice& mesh, CellSorting sorting, Image& image,
+                                 cudaStream_t stream) {
   begin_.record(stream);
-  const std::int32_t* const cells =
-      order != nullptr ? order_.to.send(*order, stream) : sorted(task, mesh, stream);
+  const long long cycles = sort(task, mesh, sorting, stream);
   ordered_.record(stream);
 
   task.points = points_.atLeast(static_cast<std::size_t>(mesh.points));
@@ -179,7 +239,7 @@ TileTimes TileProjector::project(TileTask task, const MeshOnDevice& mesh,
   drawn_.resize(1);
   check(cudaMemsetAsync(drawn_.data(), 0, sizeof(unsigned long long), stream), "cudaMemsetAsync");
   placeCells<<<blocksFor(mesh.cells + 1), kThreads, 0, stream>>>(
-      task, mesh.view, mesh.cells, cells, cells_.data(), tile_counts_.from.data(), drawn_.data());
+      task, mesh.view, mesh.cells, order_.to.data(), cells_.data(), tile_counts_.from.data(), drawn_.data());
   checkLaunch("placeCells");
   const int* const ranks = bin(task, mesh, stream);
   binned_.record(stream);
@@ -195,7 +255,7 @@ TileTimes TileProjector::project(TileTask task, const MeshOnDevice& mesh,
   unsigned long long drawn = 0;
   drawn_.download(&drawn, stream);
   return {ordered_.since_ms(begin_), binned_.since_ms(ordered_), drawn_mark_.since_ms(binned_),
-          static_cast<long long>(drawn)};
+          static_cast<long long>(drawn), cycles};
 }
 
 }  // namespace emscape::render

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <cstddef>
-#include <vector>
+#include <cstdint>
 
 #include "base/cuda/cuda_memory.h"
 #include "render/cells/cell_caster.h"
@@ -18,14 +18,15 @@ struct MeshOnDevice {
 class TileProjector {
  public:
   /// @param task   without points and cells; its other pointers are to device memory
-  /// @param order  as TileCast::order
   /// @throws Error (device)
-  TileTimes project(TileTask task, const MeshOnDevice& mesh, const std::vector<std::int32_t>* order,
-                    Image& image, cudaStream_t stream);
+  TileTimes project(TileTask task, const MeshOnDevice& mesh, CellSorting sorting, Image& image,
+                    cudaStream_t stream);
 
  private:
-  /// All cells, the farthest first.
-  const std::int32_t* sorted(const TileTask& task, const MeshOnDevice& mesh, cudaStream_t stream);
+  /// Sorts all cells into order_.to, the farthest first. @return CellOrder::cycles
+  long long sort(const TileTask& task, const MeshOnDevice& mesh, CellSorting sorting, cudaStream_t stream);
+  /// Raises the keys of hidden cells above the keys of those that hide them. @return CellOrder::cycles
+  long long raiseHidden(const MeshOnDevice& mesh, cudaStream_t stream);
   /// Ranks of cells by the tiles that they touch, ascending in each; the first of each tile is in first_.
   const int* bin(const TileTask& task, const MeshOnDevice& mesh, cudaStream_t stream);
 
@@ -38,7 +39,9 @@ class TileProjector {
   };
   Buffer<ViewPoint> points_;
   Buffer<PlacedCell> cells_;
-  Pair<float> depths_;
+  Pair<std::uint32_t> keys_;
+  Buffer<std::uint8_t> behind_;
+  Buffer<unsigned> raised_;
   Pair<std::int32_t> order_;
   Pair<unsigned> tile_counts_;  ///< of the cells; then the sums before each
   Pair<unsigned> tiles_;
