@@ -29,9 +29,13 @@ GeoidGrid readGrid() {
 
 }  // namespace
 
-double geoidUndulation_m(double latitude_deg, double longitude_deg) {
+const GeoidGrid& egm96Grid() {
   static const GeoidGrid grid = readGrid();
-  return grid.undulation_m(latitude_deg, longitude_deg);
+  return grid;
+}
+
+double geoidUndulation_m(double latitude_deg, double longitude_deg) {
+  return egm96Grid().undulation_m(latitude_deg, longitude_deg);
 }
 
 void setGeoidFile(const std::string& file) {

@@ -16,15 +16,6 @@
 namespace emscape {
 namespace {
 
-/// Lagrange's weights of the posts at -1, 0, 1, 2 for a point at t in 0..1.
-void cubicWeights(double t, double weights[4]) {
-  const double a = t + 1.0, b = t - 1.0, c = t - 2.0;
-  weights[0] = -t * b * c / 6.0;
-  weights[1] = a * b * c / 2.0;
-  weights[2] = -a * t * c / 2.0;
-  weights[3] = a * t * b / 6.0;
-}
-
 int wrapped(int index, int count) {
   return (index % count + count) % count;
 }
@@ -129,27 +120,6 @@ void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
       posts_.push_back(static_cast<float>(scale.offset_m + scale.scale_m * static_cast<double>(value)));
     }
   }
-}
-
-double GeoidGrid::undulation_m(double latitude_deg, double longitude_deg) const {
-  const int columns = 360 * posts_per_degree_, rows = 180 * posts_per_degree_ + 1;
-  const double u =
-      (longitude_deg - 360.0 * std::floor((longitude_deg + 180.0) / 360.0) + 180.0) * posts_per_degree_;
-  const double v = (std::clamp(latitude_deg, -90.0, 90.0) + 90.0) * posts_per_degree_;
-  if (!(u >= 0.0 && u <= columns && v >= 0.0)) return std::nan("");
-  const int column = std::min(static_cast<int>(u), columns - 1);
-  const int row = std::min(static_cast<int>(v), rows - 2);
-  const int i = wrapped(column - 1 - first_column_, columns), j = row - 1 - first_row_;
-  if (i + 4 > column_count_ || j < 0 || j + 4 > row_count_) return std::nan("");
-  double x[4], y[4];
-  cubicWeights(u - column, x);
-  cubicWeights(v - row, y);
-  double sum = 0.0;
-  for (int k = 0; k < 4; ++k) {
-    const float* p = &posts_[static_cast<std::size_t>(j + k) * column_count_ + i];
-    sum += y[k] * (x[0] * p[0] + x[1] * p[1] + x[2] * p[2] + x[3] * p[3]);
-  }
-  return sum;
 }
 
 std::string findGeoidFile(const std::vector<std::string>& names, std::string& searched) {

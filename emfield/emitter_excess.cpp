@@ -136,6 +136,13 @@ bool hasExcess(const Scenario& scenario, const Emitter& emitter) {
   return propagation::hasExcess(emitterInputs(scenario, emitter));
 }
 
+bool needsHostColumns(const Scenario& scenario) {
+  return std::any_of(scenario.emitters.begin(), scenario.emitters.end(), [](const Emitter& emitter) {
+    const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+    return model.radial != nullptr || model.excess_at != nullptr;
+  });
+}
+
 EmitterExcess planExcess(const PathInputs& inputs, const propagation::RadialInputs* radials,
                          const propagation::PathPoints* points) {
   const ModelInfo& model = propagation::modelInfo(inputs.emitter.settings.model);

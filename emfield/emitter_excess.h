@@ -60,6 +60,8 @@ propagation::PathExtent pathExtent(const Station& station, const GridColumns& co
 /// True if an emitter's voxels have an excess: false for free_space and horizon in clear air, which need no
 /// memory for it.
 bool hasExcess(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
+/// True if planExcess() of some emitter reads the columns of a surface, which must then be in host memory.
+bool needsHostColumns(const scenario::Scenario& scenario);
 
 /// The excess of an emitter that has one.
 /// @param radials  for models with ModelInfo::radial

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/geoid_grid.h"
 #include "emfield/foot_inverse.h"
+#include "emfield/place_columns.h"
 #include "emscape/base/error.h"
-#include "emscape/base/geoid.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 
@@ -50,55 +51,22 @@ GridColumn tiltedColumn(const GeoFrame& frame, const Vec3d& base_m, double upper
   return column;
 }
 
-/// Undulations of the geoid at many positions close to each other: bilinear in small cells, parts of the
-/// cells of the geoid grid, in which the geoid is nearly flat.
-/// @accuracy 0.1 mm if the geoid's slope changes by 1e-6 per km
+/// GeoidCells for many positions: keeps the cells.
 class NearGeoid {
  public:
-  double undulation_m(double latitude_deg, double longitude_deg) {
-    const double row = latitude_deg * kCellsPerDegree, column = longitude_deg * kCellsPerDegree;
-    const double j = std::floor(row), i = std::floor(column);
-    const Cell& cell = cellAt(i, j);
-    const double x = column - i, y = row - j;
-    const double south = cell.corners_m[0] + x * (cell.corners_m[1] - cell.corners_m[0]);
-    const double north = cell.corners_m[2] + x * (cell.corners_m[3] - cell.corners_m[2]);
-    return south + y * (north - south);
+  double operator()(double latitude_deg, double longitude_deg) {
+    const double i = std::floor(longitude_deg * GeoidCell::kPerDegree);
+    const double j = std::floor(latitude_deg * GeoidCell::kPerDegree);
+    GeoidCell& cell = cells_[static_cast<unsigned>(static_cast<long long>(i)) % kKept];
+    if (cell.i != i || cell.j != j) cell = GeoidCell::at(geoid_, i, j);
+    return cell.undulation_m(latitude_deg, longitude_deg);
   }
 
  private:
-  static constexpr double kCellsPerDegree = 64;
   static constexpr int kKept = 128;  ///< cells of one row, which the next row of positions often needs again
-  struct Cell {
-    double i = HUGE_VAL, j = HUGE_VAL;
-    double corners_m[4];
-  };
 
-  const Cell& cellAt(double i, double j) {
-    Cell& cell = cells_[static_cast<unsigned>(static_cast<long long>(i)) % kKept];
-    if (cell.i != i || cell.j != j) {
-      cell.i = i;
-      cell.j = j;
-      for (int n = 0; n < 4; ++n) {
-        cell.corners_m[n] =
-            geoidUndulation_m(std::min((j + n / 2) / kCellsPerDegree, 90.0), (i + n % 2) / kCellsPerDegree);
-      }
-    }
-    return cell;
-  }
-
-  Cell cells_[kKept];
-};
-
-/// Makes vertical columns whose t = 0 is at a height above a position.
-class ColumnMaker {
- public:
-  PlaceColumn columnAbove(const Surface::Place& place, double base_msl_m) {
-    return {toEcef({place.latitude_deg, place.longitude_deg, 0}),
-            base_msl_m + geoid_.undulation_m(place.latitude_deg, place.longitude_deg), base_msl_m};
-  }
-
- private:
-  NearGeoid geoid_;
+  GeoidView geoid_ = egm96Grid().view();
+  GeoidCell cells_[kKept];
 };
 
 /// Extends a range of heights by those of a column.
@@ -123,74 +91,51 @@ void setOutlineOfGrid(GridColumns& columns) {
   }
 }
 
-/// Sums over a part of a surface's positions.
-struct PlacesPart {
-  Vec3d feet{0, 0, 0};  ///< sum
-  double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;
-  double farthest2_m2 = 0;               ///< largest squared straight-line distance of a foot from the middle
-  double beyond_m = 0;                   ///< the same along the ground
-  long long holes = 0, first_hole = -1;  ///< positions without ground
-};
-
 /// Positions that a thread processes together. Their sums are added in order, whichever thread computes them.
 constexpr int kPlacesPart = 4096;
 
-/// Calls visit(first, end, part) for all parts.
+/// Calls visit(n, first, end) for all parts.
 template <class Visit>
-void visitParts(std::vector<PlacesPart>& parts, int places, const Visit& visit) {
-  parallelFor(static_cast<int>(parts.size()), 1, [&](int begin, int end) {
-    for (int n = begin; n < end; ++n)
-      visit(n * kPlacesPart, std::min((n + 1) * kPlacesPart, places), parts[n]);
+void visitParts(int places, const Visit& visit) {
+  parallelFor((places + kPlacesPart - 1) / kPlacesPart, 1, [&](int begin, int end) {
+    for (int n = begin; n < end; ++n) visit(n, n * kPlacesPart, std::min((n + 1) * kPlacesPart, places));
   });
 }
 
-/// Sets a circle around all positions with ground. Positions that are left out get the column of its centre,
-/// so that their numbers are finite.
-void setOutlineOfPlaces(const Surface& surface, std::vector<PlacesPart>& parts, GridColumns& columns) {
-  Vec3d sum{0, 0, 0};
-  for (const PlacesPart& part : parts) {
-    sum = sum + part.feet;
-    columns.lowest_msl_m = std::min(columns.lowest_msl_m, part.lowest_msl_m);
-    columns.highest_msl_m = std::max(columns.highest_msl_m, part.highest_msl_m);
-  }
-  if (length(sum) == 0) {
-    throw Error(ErrorCode::bad_input,
-                columns.ground_msl_m.empty()
-                    ? "there is no place to compute the field over"
-                    : "the terrain is missing below all places to compute the field over");
-  }
-  const GeodeticPosition middle = fromEcef(sum * (kWgs84SemiMajor_m / length(sum)));
-  const PlaceColumn at_middle = ColumnMaker().columnAbove({middle.latitude_deg, middle.longitude_deg}, 0);
-  columns.outline.push_back(gridColumn(at_middle));
+/// Sets a circle around all positions with ground.
+void setOutlineOfPlaces(const Surface& surface, const std::vector<PlacesPart>& parts, GridColumns& columns) {
+  const PlaceColumn middle = setMiddle(parts, !columns.ground_msl_m.empty(), columns);
   const auto places = static_cast<int>(columns.of_surface.size());
   const auto distance2_m2 = [&](int c) {
     const bool is_hole = !columns.ground_msl_m.empty() && std::isnan(columns.ground_msl_m[c]);
-    if (is_hole || std::isnan(surface.places[c].latitude_deg)) return 0.0;
-    const Vec3d chord = columns.of_surface[c].foot_ecef_m - columns.outline[0].foot_ecef_m;
+    if (is_hole || isLeftOut(surface.places[c])) return 0.0;
+    const Vec3d chord = columns.of_surface[c].foot_ecef_m - middle.foot_ecef_m;
     return dot(chord, chord);
   };
-  visitParts(parts, places, [&](int first, int end, PlacesPart& part) {
+  std::vector<double> farthest2_of_parts_m2(parts.size());
+  visitParts(places, [&](int n, int first, int end) {
+    double farthest2_m2 = 0;
     for (int c = first; c < end; ++c) {
-      part.farthest2_m2 = std::max(part.farthest2_m2, distance2_m2(c));
-      if (std::isnan(surface.places[c].latitude_deg)) columns.of_surface[c] = at_middle;
+      farthest2_m2 = std::max(farthest2_m2, distance2_m2(c));
+      if (isLeftOut(surface.places[c])) columns.of_surface[c] = middle;
     }
+    farthest2_of_parts_m2[n] = farthest2_m2;
   });
-  double farthest2_m2 = 0;
-  for (const PlacesPart& part : parts) farthest2_m2 = std::max(farthest2_m2, part.farthest2_m2);
   // The earth's radii differ by less than 1.5 %, and the arcs over one chord by much less.
   constexpr double kNearlyFarthest2 = 0.97;
-  const Station station = makeStation({middle.latitude_deg, middle.longitude_deg, 0}, 0, 1);
-  visitParts(parts, places, [&](int first, int end, PlacesPart& part) {
-    if (part.farthest2_m2 < kNearlyFarthest2 * farthest2_m2) return;
+  const double near2_m2 =
+      kNearlyFarthest2 * *std::max_element(farthest2_of_parts_m2.begin(), farthest2_of_parts_m2.end());
+  const FastGeodesy geodesy = geodesyOf(middle);
+  std::vector<double> beyond_of_parts_m(parts.size());
+  visitParts(places, [&](int n, int first, int end) {
+    if (farthest2_of_parts_m2[n] < near2_m2) return;
     for (int c = first; c < end; ++c) {
-      if (distance2_m2(c) < kNearlyFarthest2 * farthest2_m2) continue;
-      part.beyond_m =
-          std::max(part.beyond_m, fastInverse(station.geodesy, columns.of_surface[c].foot_ecef_m).distance_m);
+      if (distance2_m2(c) < near2_m2) continue;
+      beyond_of_parts_m[n] =
+          std::max(beyond_of_parts_m[n], fastInverse(geodesy, columns.of_surface[c].foot_ecef_m).distance_m);
     }
   });
-  for (const PlacesPart& part : parts) {
-    columns.beyond_outline_m = std::max(columns.beyond_outline_m, part.beyond_m);
-  }
+  columns.beyond_outline_m = *std::max_element(beyond_of_parts_m.begin(), beyond_of_parts_m.end());
 }
 
 void countHole(std::size_t c, GridColumns& columns) {
@@ -255,53 +200,66 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
   return result;
 }
 
+PlaceTask placeTask(const Surface& surface, const scenario::Terrain* terrain) {
+  PlaceTask task;
+  task.places = surface.places.data();
+  task.offsets_m = surface.offsets_m.empty() ? nullptr : surface.offsets_m.data();
+  task.heights_m = surface.heights_m.data();
+  task.layers = static_cast<int>(surface.heights_m.size());
+  task.above_ground = surface.reference == HeightReference::ground;
+  task.has_terrain = terrain != nullptr;
+  if (terrain != nullptr) task.terrain = terrain->view();
+  return task;
+}
+
+GridColumns emptyColumns(const Surface& surface) {
+  GridColumns columns;
+  columns.every_height = true;
+  columns.dims = {surface.width, surface.height, static_cast<int>(surface.heights_m.size())};
+  for (const double height_m : surface.heights_m) columns.t_m.push_back(static_cast<float>(height_m));
+  return columns;
+}
+
+PlaceColumn setMiddle(const std::vector<PlacesPart>& parts, bool has_terrain, GridColumns& columns) {
+  PlacesPart all;
+  for (const PlacesPart& part : parts) all.add(part);
+  if (length(all.feet) == 0) {
+    throw Error(ErrorCode::bad_input,
+                has_terrain ? "the terrain is missing below all places to compute the field over"
+                            : "there is no place to compute the field over");
+  }
+  columns.lowest_msl_m = all.lowest_msl_m;
+  columns.highest_msl_m = all.highest_msl_m;
+  columns.hole_columns = all.holes;
+  columns.first_hole = all.first_hole;
+  const GeodeticPosition middle = fromEcef(all.feet * (kWgs84SemiMajor_m / length(all.feet)));
+  const PlaceColumn column{ellipsoidPoint_m(degToRad(middle.latitude_deg), degToRad(middle.longitude_deg)),
+                           GeoidCells{egm96Grid().view()}(middle.latitude_deg, middle.longitude_deg), 0};
+  columns.outline.push_back(gridColumn(column));
+  return column;
+}
+
+FastGeodesy geodesyOf(const PlaceColumn& middle) {
+  const GeodeticPosition position = fromEcef(middle.foot_ecef_m);
+  return fastGeodesy(position.latitude_deg, position.longitude_deg);
+}
+
 GridColumns makeGridColumns(const Surface& surface, const scenario::Terrain* terrain) {
-  GridColumns result;
-  result.every_height = true;
-  result.dims = {surface.width, surface.height, static_cast<int>(surface.heights_m.size())};
+  GridColumns result = emptyColumns(surface);
   const auto places = static_cast<int>(surface.places.size());
   result.of_surface.resize(surface.places.size());
-  for (const double height_m : surface.heights_m) result.t_m.push_back(static_cast<float>(height_m));
   if (terrain != nullptr) result.ground_msl_m.resize(surface.places.size());
-  result.first_valid_k.assign(surface.places.size(), 0);
-  const bool above_ground = surface.reference == HeightReference::ground;
+  result.first_valid_k.resize(surface.places.size());
+  PlaceTask task = placeTask(surface, terrain);
+  task.columns = result.of_surface.data();
+  task.ground_msl_m = result.ground_msl_m.data();
+  task.first_valid_k = result.first_valid_k.data();
   std::vector<PlacesPart> parts((surface.places.size() + kPlacesPart - 1) / kPlacesPart);
-  visitParts(parts, places, [&](int first, int end, PlacesPart& part) {
-    ColumnMaker maker;
-    for (int c = first; c < end; ++c) {
-      const Surface::Place& place = surface.places[c];
-      if (std::isnan(place.latitude_deg)) {
-        result.first_valid_k[c] = static_cast<std::uint16_t>(result.dims.z);
-        continue;
-      }
-      const double ground_msl_m =
-          terrain != nullptr ? terrain->heightMsl_m(place.latitude_deg, place.longitude_deg) : 0;
-      const double base_msl_m = (above_ground && !std::isnan(ground_msl_m) ? ground_msl_m : 0) +
-                                (surface.offsets_m.empty() ? 0 : static_cast<double>(surface.offsets_m[c]));
-      const PlaceColumn& column = result.of_surface[c] = maker.columnAbove(place, base_msl_m);
-      if (terrain != nullptr) {
-        result.ground_msl_m[c] = static_cast<float>(ground_msl_m);
-        int k = 0;
-        if (std::isnan(ground_msl_m)) {
-          k = result.dims.z;
-        } else if (!above_ground) {
-          while (k < result.dims.z && !(base_msl_m + surface.heights_m[k] >= ground_msl_m)) ++k;
-        }
-        result.first_valid_k[c] = static_cast<std::uint16_t>(k);
-      }
-      if (std::isnan(ground_msl_m)) {
-        if (part.holes++ == 0) part.first_hole = c;
-        continue;
-      }
-      part.feet = part.feet + column.foot_ecef_m;
-      addHeights(column, result.t_m, part);
-    }
+  visitParts(places, [&](int n, int first, int end) {
+    NearGeoid undulation_m;
+    for (int c = first; c < end; ++c) task(c, undulation_m, parts[n]);
   });
   setOutlineOfPlaces(surface, parts, result);
-  for (const PlacesPart& part : parts) {
-    if (part.holes > 0 && result.hole_columns == 0) result.first_hole = part.first_hole;
-    result.hole_columns += part.holes;
-  }
   return result;
 }
 

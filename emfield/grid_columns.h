@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/fast_geodesy.h"
@@ -56,6 +57,10 @@ struct ColumnsView {
   }
 };
 
+namespace cuda {
+struct DevicePlaces;  // emfield/cuda/device_places.h
+}
+
 /// All columns of a grid, x fastest. Immutable once made.
 struct GridColumns {
   Dims dims;
@@ -68,7 +73,10 @@ struct GridColumns {
   double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;  ///< of the columns' points
   std::vector<GridColumn> of_grid;                            ///< or, of a surface:
   UnsetVector<PlaceColumn> of_surface;  ///< positions that are left out have the column of the outline
-  std::vector<float> t_m;               ///< z of each layer
+  /// Or, of a surface, its columns and ground in the memory of the GPU; of_surface and ground_msl_m are
+  /// empty.
+  std::shared_ptr<const cuda::DevicePlaces> on_device;
+  std::vector<float> t_m;           ///< z of each layer
   std::vector<float> ground_msl_m;  ///< ground below each column (m); NaN over holes; empty without terrain
   std::vector<std::uint16_t>
       first_valid_k;  ///< lowest layer whose centre is not below ground; dims.z over holes and if left out
@@ -79,10 +87,9 @@ struct GridColumns {
   ColumnsView view() const {
     return {of_grid.empty() ? nullptr : of_grid.data(), of_surface.empty() ? nullptr : of_surface.data()};
   }
-  std::size_t count() const { return of_grid.size() + of_surface.size(); }
-  std::size_t bytes() const {
-    return of_grid.size() * sizeof(GridColumn) + of_surface.size() * sizeof(PlaceColumn);
-  }
+  std::size_t count() const { return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y); }
+  /// Of the columns, in host or device memory.
+  std::size_t bytes() const { return count() * (of_grid.empty() ? sizeof(PlaceColumn) : sizeof(GridColumn)); }
   /// z of the middle between the lowest and the highest layer.
   double middle_m() const { return 0.5 * (t_m.front() + t_m.back()); }
 };

@@ -1,5 +1,8 @@
 #include <cuda_runtime_api.h>
 
+#include <mutex>
+#include <string>
+
 #include "emscape/base/device.h"
 
 namespace emscape {
@@ -16,6 +19,21 @@ std::string whyNot(cudaError_t status) {
   return cudaGetErrorString(status);
 }
 
+/// The name of device 0. Its other properties, which take the driver milliseconds, are read once.
+cudaError_t readName(std::string& name) {
+  static std::mutex of_known;
+  static std::string known;
+  const std::lock_guard<std::mutex> lock(of_known);
+  if (known.empty()) {
+    cudaDeviceProp properties{};
+    const cudaError_t status = cudaGetDeviceProperties(&properties, 0);
+    if (status != cudaSuccess) return status;
+    known = properties.name;
+  }
+  name = known;
+  return cudaSuccess;
+}
+
 }  // namespace
 
 std::string cudaOfBuild() {
@@ -27,20 +45,19 @@ Device findDevice() {
   Device device;
   int count = 0;
   cudaError_t status = cudaGetDeviceCount(&count);
-  cudaDeviceProp properties{};
   cudaFuncAttributes attributes{};
   if (status == cudaSuccess && count == 0) status = cudaErrorNoDevice;
-  if (status == cudaSuccess) status = cudaGetDeviceProperties(&properties, 0);
+  if (status == cudaSuccess) status = readName(device.name);
   if (status == cudaSuccess) status = cudaSetDevice(0);
   if (status == cudaSuccess) status = cudaFuncGetAttributes(&attributes, answer);
   if (status == cudaSuccess) status = cudaMemGetInfo(&device.free_bytes, &device.total_bytes);
   if (status != cudaSuccess) {
+    device.name.clear();
     device.why_not = whyNot(status);
     cudaGetLastError();  // clears the sticky error
     return device;
   }
   device.usable = true;
-  device.name = properties.name;
   return device;
 }
 

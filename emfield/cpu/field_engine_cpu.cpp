@@ -87,7 +87,7 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     found.warnings = geometry.warnings();
     if (found.unknown_columns > 0) {
       found.unknown.resize(setup_.columns.count());
-      for (std::size_t c = 0; c < found.unknown.size(); ++c) found.unknown[c] = geometry.isUnknown(c);
+      for (std::size_t c = 0; c < found.unknown.size(); ++c) found.unknown[c] = geometry.isUnknown(c) ? 1 : 0;
     }
     const ColumnGeometryView view = geometry.view();
     const std::vector<float>& t_m = setup_.columns.t_m;

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "base/cuda/staged_copy.h"
 #include "emfield/column_geometry.h"
+#include "emfield/cuda/device_places.h"
 #include "emscape/base/parallel.h"
 #include "propagation/diffraction/model.h"
 #include "propagation/parabolic_equation/field_march.h"
@@ -14,6 +16,8 @@ namespace emscape::emfield::cuda {
 namespace {
 
 using emscape::cuda::check;
+using emscape::cuda::downloadStaged;
+using emscape::cuda::uploadStaged;
 
 bool isDiffraction(const propagation::ExcessModel& model) {
   return std::holds_alternative<DiffractionExcess>(model);
@@ -27,26 +31,43 @@ double marchedHeights(const EmitterExcess& excess) {
 }  // namespace
 
 DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots) : setup_(setup), slots_(slots) {
-  if (setup.terrain != nullptr) terrain_ = DeviceTerrain(setup.terrain->view());
-  grid_columns_.upload(setup.columns.of_grid);
-  place_columns_.upload(setup.columns.of_surface.data(), setup.columns.of_surface.size());
-  t_m_.upload(setup.columns.t_m);
-  first_valid_k_.upload(setup.columns.first_valid_k);
-  columns_.columns = {setup.columns.of_grid.empty() ? nullptr : grid_columns_.data(),
-                      setup.columns.of_surface.empty() ? nullptr : place_columns_.data()};
-  columns_.count = static_cast<int>(setup.columns.count());
-  columns_.row = setup.columns.dims.x;
+  const GridColumns& columns = setup.columns;
+  t_m_.upload(columns.t_m);
+  columns_.count = static_cast<int>(columns.count());
+  columns_.row = columns.dims.x;
   columns_.t_m = t_m_.data();
-  columns_.layers = static_cast<int>(setup.columns.t_m.size());
-  columns_.middle_m = setup.columns.middle_m();
-  excess_grid_ = excessGrid(setup.columns, setup.terrain.get());
-  excess_grid_.columns = columns_.columns;
+  columns_.layers = static_cast<int>(columns.t_m.size());
+  columns_.middle_m = columns.middle_m();
+  excess_grid_ = excessGrid(columns, setup.terrain.get());
   excess_grid_.t_m = t_m_.data();
-  excess_grid_.first_valid_k = firstValidK();
+  if (columns.on_device != nullptr) {
+    const DevicePlaces& places = *columns.on_device;
+    terrain_ = places.terrain;
+    columns_.columns.of_surface = places.columns.data();
+    excess_grid_.first_valid_k = places.first_valid_k.data();
+    excess_grid_.ground_msl_m = places.ground_msl_m.data();
+  } else {
+    copyColumns();
+  }
+  excess_grid_.columns = columns_.columns;
+}
+
+/// Copies the terrain and the columns to the device.
+void DeviceGeometry::copyColumns() {
+  const emscape::cuda::Stream stream;
+  const GridColumns& columns = setup_.columns;
+  if (setup_.terrain != nullptr)
+    terrain_ = std::make_shared<const DeviceTerrain>(setup_.terrain->view(), stream);
+  uploadStaged(grid_columns_, columns.of_grid.data(), columns.of_grid.size(), stream);
+  uploadStaged(place_columns_, columns.of_surface.data(), columns.of_surface.size(), stream);
+  uploadStaged(first_valid_k_, columns.first_valid_k.data(), columns.first_valid_k.size(), stream);
+  columns_.columns = {grid_columns_.data(), place_columns_.data()};
+  excess_grid_.first_valid_k = first_valid_k_.data();
   if (excess_grid_.ground_msl_m != nullptr) {
-    ground_msl_m_.upload(setup.columns.ground_msl_m);
+    uploadStaged(ground_msl_m_, columns.ground_msl_m.data(), columns.ground_msl_m.size(), stream);
     excess_grid_.ground_msl_m = ground_msl_m_.data();
   }
+  stream.wait();
 }
 
 ColumnGeometryView DeviceGeometry::view(int slot) const {
@@ -83,7 +104,7 @@ DeviceGeometry::Work DeviceGeometry::prepare(const GeometryRequest& request) con
   const propagation::PathExtent extent = pathExtent(station, setup_.columns);
   work.ranges_m = postRanges(extent.farthest_m, postSpacing_m(setup_.terrain.get()));
   work.ground.is_smooth = setup_.terrain == nullptr;
-  work.ground.terrain = terrain_.view();
+  if (terrain_ != nullptr) work.ground.terrain = terrain_->view();
   work.ground.range_count = static_cast<int>(work.ranges_m.size());
   work.has_mechanisms = setup_.needs[request.emitter].mechanisms && hasMechanisms(model);
   if (setup_.needs[request.emitter].clutter_map)
@@ -194,7 +215,11 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
   std::stable_sort(marched.begin(), marched.end(), [](const Work* a, const Work* b) {
     return marchedHeights(*a->model) > marchedHeights(*b->model);
   });
-  const auto marcherOf = [&](std::size_t n) -> Marcher& { return marchers_[n % marchers_.size()]; };
+  const auto marcherOf = [&](std::size_t n) -> Marcher& {
+    std::unique_ptr<Marcher>& marcher = marchers_[n % marchers_.size()];
+    if (marcher == nullptr) marcher = std::make_unique<Marcher>();
+    return *marcher;
+  };
   for (std::size_t n = 0; n < std::min(marched.size(), marchers_.size()); ++n)
     startMarch(*marched[n], marcherOf(n));
   for (std::size_t n = 0; n < marched.size(); ++n) {
@@ -215,11 +240,9 @@ std::vector<GeometryResult> DeviceGeometry::compute(const std::vector<GeometryRe
     found.warnings = counts[r].warnings;
     found.near_voxels = static_cast<long long>(counts[r].near_voxels);
     if (found.unknown_columns > 0) {
-      std::vector<float> edges_m(columns);
-      check(cudaMemcpy(edges_m.data(), works[r].task.shadow_edge_m, columns * sizeof(float),
-                       cudaMemcpyDeviceToHost),
-            "cudaMemcpy from the GPU");
-      for (float edge_m : edges_m) found.unknown.push_back(std::isnan(edge_m));
+      found.unknown.resize(columns);
+      markUnknownColumns(works[r].task.shadow_edge_m, columns_.count, unknown_.atLeast(columns), stream);
+      downloadStaged(found.unknown.data(), unknown_.data(), columns, stream);
     }
     all.push_back(std::move(found));
   }
@@ -334,9 +357,12 @@ std::size_t DeviceGeometry::bytes() const {
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(place_columns_) + bytesOf(t_m_) +
                       bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(shadows_) +
                       bytesOf(terms_) + bytesOf(diffraction_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
-                      bytesOf(model_tables_);
-  for (const Marcher& marcher : marchers_)
-    bytes += marcher.march.bytes() + bytesOf(marcher.model_tables) + bytesOf(marcher.air_tables);
+                      bytesOf(model_tables_) + bytesOf(unknown_);
+  if (setup_.columns.on_device != nullptr) bytes += setup_.columns.on_device->bytes();
+  for (const std::unique_ptr<Marcher>& marcher : marchers_) {
+    if (marcher == nullptr) continue;
+    bytes += marcher->march.bytes() + bytesOf(marcher->model_tables) + bytesOf(marcher->air_tables);
+  }
   for (const Slot& slot : slots_) {
     bytes += bytesOf(slot.numbers) + bytesOf(slot.excess) + bytesOf(slot.excess_db) +
              bytesOf(slot.reflected) + bytesOf(slot.mechanisms) + bytesOf(slot.clutter);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,9 +31,7 @@ class DeviceGeometry {
   ClutterMapView clutterMap(int slot) const;
   const DeviceColumns& columns() const { return columns_; }
   /// Null without terrain.
-  const std::uint16_t* firstValidK() const {
-    return first_valid_k_.size() > 0 ? first_valid_k_.data() : nullptr;
-  }
+  const std::uint16_t* firstValidK() const { return excess_grid_.first_valid_k; }
   std::size_t bytes() const;
 
  private:
@@ -73,15 +72,18 @@ class DeviceGeometry {
   void startMarch(Work& work, Marcher& marcher);
   void readMarch(const Work& work, Marcher& marcher, cudaStream_t stream, StageClock& clock);
   ScratchMemory scratch();
+  void copyColumns();
 
   const FieldSetup& setup_;
-  DeviceTerrain terrain_;
+  std::shared_ptr<const DeviceTerrain> terrain_;  ///< null: none
+  // Copies of columns that are on the host:
   emscape::cuda::Buffer<GridColumn> grid_columns_;  ///< or, of a surface:
   emscape::cuda::Buffer<PlaceColumn> place_columns_;
-  emscape::cuda::Buffer<float> t_m_;
   emscape::cuda::Buffer<std::uint16_t> first_valid_k_;
-  DeviceColumns columns_;
   emscape::cuda::Buffer<float> ground_msl_m_;  ///< empty: none, or tilted columns
+
+  emscape::cuda::Buffer<float> t_m_;
+  DeviceColumns columns_;
   ExcessGrid excess_grid_;
   struct Slot {
     emscape::cuda::Buffer<float> numbers;      ///< of the columns, then the shadow's edges
@@ -95,7 +97,8 @@ class DeviceGeometry {
   };
   std::vector<Slot> slots_;
 
-  std::array<Marcher, 8> marchers_;  ///< each waits for the longest of its azimuths; several fill the device
+  /// Made for the first march. Each waits for the longest of its azimuths; several fill the device.
+  std::array<std::unique_ptr<Marcher>, 8> marchers_;
   emscape::cuda::Event placed_;
 
   // for the emitters being computed; kept for the next update
@@ -107,6 +110,7 @@ class DeviceGeometry {
   emscape::cuda::Buffer<DiffractionTask> diffraction_;
   emscape::cuda::Buffer<double> scratch_;
   emscape::cuda::Buffer<GeometryCounts> counts_;
+  emscape::cuda::Buffer<std::uint8_t> unknown_;
 };
 
 }  // namespace emscape::emfield::cuda

@@ -13,8 +13,9 @@ namespace emscape::emfield::cuda {
 class DeviceTerrain {
  public:
   DeviceTerrain() = default;
+  /// Copies on a stream; later work on the stream can use it.
   /// @throws Error (device)
-  explicit DeviceTerrain(const scenario::TerrainView& terrain);
+  DeviceTerrain(const scenario::TerrainView& terrain, cudaStream_t stream);
 
   /// For kernels, while this object lives.
   scenario::TerrainView view() const { return {rasters_.data(), static_cast<int>(rasters_.size())}; }

@@ -57,6 +57,11 @@ __global__ void __launch_bounds__(kThreads)
   if (isnan(edge_m)) atomicAdd(&shadow.counts->unknown_columns, 1);
 }
 
+__global__ void unknownKernel(const float* shadow_edge_m, int columns, std::uint8_t* unknown) {
+  const int c = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
+  if (c < columns) unknown[c] = isnan(shadow_edge_m[c]) ? 1 : 0;
+}
+
 /// One thread per azimuth.
 __global__ void clutterKernel(const __grid_constant__ ClutterMapTask task, ClutterCell* cells) {
   const int azimuth = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);
@@ -71,6 +76,11 @@ void fillClutterMap(const ClutterMapTask& task, ClutterCell* cells, cudaStream_t
   const auto blocks = static_cast<unsigned>((task.grid.azimuths + kRowsOfBlock - 1) / kRowsOfBlock);
   clutterKernel<<<blocks, kRowsOfBlock, 0, stream>>>(task, cells);
   checkLaunch("clutterMap");
+}
+
+void markUnknownColumns(const float* shadow_edge_m, int columns, std::uint8_t* unknown, cudaStream_t stream) {
+  unknownKernel<<<blocksFor(columns), kThreads, 0, stream>>>(shadow_edge_m, columns, unknown);
+  checkLaunch("unknownColumns");
 }
 
 void locateColumns(const LocateTask* tasks, int count, const DeviceColumns& columns, cudaStream_t stream) {

@@ -4,6 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include <cstddef>
+#include <cstdint>
 
 #include "emfield/combine.h"
 #include "emfield/shadow_edge.h"
@@ -52,6 +53,9 @@ void locateColumns(const LocateTask* tasks, int count, const DeviceColumns& colu
 /// @param grid    of device memory
 void findShadowEdges(const DeviceShadowTask* tasks, int count, int ranges, const ExcessGrid& grid,
                      cudaStream_t stream);
+
+/// Sets the bytes of columns with an unknown shadow edge to 1, the others to 0.
+void markUnknownColumns(const float* shadow_edge_m, int columns, std::uint8_t* unknown, cudaStream_t stream);
 
 /// Fills a radar's map of surface clutter, as fillClutterMapCpu(). Pointers are to device memory.
 void fillClutterMap(const ClutterMapTask& task, ClutterCell* cells, cudaStream_t stream);

@@ -35,10 +35,10 @@ struct GeometryRequest {
 
 /// Findings of stages 1 and 2 for one emitter.
 struct GeometryResult {
-  long long unknown_columns = 0;  ///< columns whose path crosses missing terrain
-  std::vector<bool> unknown;      ///< one per column; empty: none is unknown
-  unsigned warnings = 0;          ///< of the excess model: see warningMessages()
-  long long near_voxels = 0;      ///< voxels nearer than the emitter's far field
+  long long unknown_columns = 0;      ///< columns whose path crosses missing terrain
+  std::vector<std::uint8_t> unknown;  ///< one per column, 0 or 1; empty: none is unknown
+  unsigned warnings = 0;              ///< of the excess model: see warningMessages()
+  long long near_voxels = 0;          ///< voxels nearer than the emitter's far field
 };
 
 /// One pass of stage 3.
@@ -92,6 +92,12 @@ class FieldEngine {
   /// Adds the engine's memory to total_bytes and to the bytes of voxels and channels.
   virtual void addMemory(MemoryUse& use) const = 0;
 };
+
+/// The columns of a surface, computed on the GPU and kept there: for models that do not need them on the host
+/// (needsHostColumns()). @throws Error (device), or (bad_input) as makeGridColumns()
+GridColumns makeDeviceColumns(const Surface& surface, const scenario::Terrain* terrain);
+/// Copies the ground below such columns (GridColumns::ground_msl_m). @throws Error (device)
+std::vector<float> groundOf(const cuda::DevicePlaces& places);
 
 /// @param setup  must outlive the engine
 /// @param slots  number of slots

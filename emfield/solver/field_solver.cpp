@@ -56,28 +56,37 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
     : options(std::move(options_in)) {
   static_cast<FieldPlan&>(setup) = makePlan(std::move(scenario), options);
   setup.terrain = std::move(terrain);
-  if (options.surface != nullptr) {
-    setup.columns = makeGridColumns(*options.surface, setup.terrain.get());
-    setup.grid.dims = setup.columns.dims;
-    setup.grid.spacing_m = {1, 1, 1};
-  } else {
-    setup.grid = gridOf(setup.scenario->region);
-    requireColumnsMemory(setup.grid.dims, setup.scenario->file);
-    setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
-  }
-  checkHoles();
   emitters.resize(setup.scenario->emitters.size());
   masks.resize(setup.channels.size());
   volumes.resize(setup.channels.size());
-  const std::vector<bool> cached = chooseCached(setup, &estimate.emitters);
-  for (std::size_t e = 0; e < emitters.size(); ++e) emitters[e].is_cached = cached[e];
   engine = withBackendFallback(
       options.backend,
       [&](const ResolvedBackend& resolved) {
         backend = resolved.backend;
+        makeColumns();
+        const std::vector<bool> cached = chooseCached(setup, &estimate.emitters);
+        for (std::size_t e = 0; e < emitters.size(); ++e) emitters[e].is_cached = cached[e];
         return makeEngine();
       },
       logInfo);
+}
+
+/// Makes the columns where the backend needs them. Those of a region are the same for all backends.
+void FieldSolver::Impl::makeColumns() {
+  if (options.surface == nullptr) {
+    if (!setup.columns.of_grid.empty()) return;
+    setup.grid = gridOf(setup.scenario->region);
+    requireColumnsMemory(setup.grid.dims, setup.scenario->file);
+    setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
+  } else {
+    const bool on_device = backend == Backend::cuda && !needsHostColumns(*setup.scenario);
+    setup.columns = {};
+    setup.columns = on_device ? makeDeviceColumns(*options.surface, setup.terrain.get())
+                              : makeGridColumns(*options.surface, setup.terrain.get());
+    setup.grid.dims = setup.columns.dims;
+    setup.grid.spacing_m = {1, 1, 1};
+  }
+  checkHoles();
 }
 
 /// Chooses the emitters that are cached.
@@ -124,7 +133,13 @@ std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine() {
 }
 
 std::string FieldSolver::Impl::placeOf(std::size_t column) const {
-  const GeodeticPosition place = fromEcef(setup.columns.view()[column].base_ecef_m);
+  GeodeticPosition place;
+  if (options.surface != nullptr) {
+    const Surface::Place& of_surface = options.surface->places[column];
+    place = {of_surface.latitude_deg, of_surface.longitude_deg, 0};
+  } else {
+    place = fromEcef(setup.columns.view()[column].base_ecef_m);
+  }
   return fmt::format("latitude {:.5f}, longitude {:.5f} deg", place.latitude_deg, place.longitude_deg);
 }
 
@@ -151,6 +166,7 @@ bool FieldSolver::Impl::canKeep(const FieldPlan& plan, const scenario::TerrainPt
   const bool same_places =
       options.surface != nullptr || sameRegion(setup.scenario->region, plan.scenario->region);
   if (terrain != setup.terrain || !same_places ||
+      (setup.columns.on_device != nullptr && needsHostColumns(*plan.scenario)) ||
       !std::equal(old.begin(), old.end(), edited.begin(), edited.end(), sameName)) {
     return false;
   }
@@ -174,7 +190,10 @@ const std::vector<Channel>& FieldSolver::channels() const {
   return impl_->setup.channels;
 }
 const std::vector<float>& FieldSolver::groundHeights_m() const {
-  return impl_->setup.columns.ground_msl_m;
+  GridColumns& columns = impl_->setup.columns;
+  if (columns.on_device != nullptr && columns.ground_msl_m.empty())
+    columns.ground_msl_m = groundOf(*columns.on_device);
+  return columns.ground_msl_m;
 }
 Backend FieldSolver::backend() const {
   return impl_->backend;
@@ -221,7 +240,7 @@ MemoryUse FieldSolver::memoryUse() const {
         static_cast<double>(impl.emitters.size());
   }
   impl.engine->addMemory(use);
-  use.total_bytes += impl.setup.columns.bytes();
+  if (impl.setup.columns.on_device == nullptr) use.total_bytes += impl.setup.columns.bytes();
   return use;
 }
 

@@ -55,6 +55,7 @@ struct FieldSolver::Impl {
        FieldOptions options_in);
 
   std::vector<bool> chooseCached(const FieldPlan& plan, std::size_t* slot_bytes) const;
+  void makeColumns();
   std::unique_ptr<FieldEngine> makeEngine();
   void checkHoles() const;
   std::string placeOf(std::size_t column) const;

@@ -45,7 +45,7 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   const GeometryResult& geometry_result = cache.geometry_result;
   if (geometry_result.unknown_columns > 0) {
     if (!options.allow_missing_terrain) {
-      const auto first = std::find(geometry_result.unknown.begin(), geometry_result.unknown.end(), true);
+      const auto first = std::find(geometry_result.unknown.begin(), geometry_result.unknown.end(), 1);
       throw Error(ErrorCode::bad_input, {setup.scenario->file},
                   fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
                               emitter.name,
@@ -187,13 +187,16 @@ const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& chann
   const std::vector<std::uint16_t>& above_ground = setup.columns.first_valid_k;
   own.clear();
   for (int e : channel.emitters) {
-    const std::vector<bool>& unknown = emitters[e].geometry_result.unknown;
+    const std::vector<std::uint8_t>& unknown = emitters[e].geometry_result.unknown;
     if (!emitters[e].state.active || unknown.empty()) continue;
+    const std::vector<std::uint16_t>& now = own.empty() ? above_ground : own;
+    const auto none_k = static_cast<std::uint16_t>(setup.grid.dims.z);
+    std::size_t c = 0;  // the first unknown column that is not masked yet
+    while (c < unknown.size() && (unknown[c] == 0 || (!now.empty() && now[c] == none_k))) ++c;
+    if (c == unknown.size()) continue;
     if (own.empty()) own = above_ground;
     own.resize(unknown.size(), 0);
-    for (std::size_t c = 0; c < unknown.size(); ++c) {
-      if (unknown[c]) own[c] = static_cast<std::uint16_t>(setup.grid.dims.z);
-    }
+    for (; c < unknown.size(); ++c) own[c] = unknown[c] != 0 ? none_k : own[c];
   }
   return own.empty() ? above_ground : own;
 }

@@ -7,4 +7,12 @@ std::unique_ptr<FieldEngine> makeCudaEngine(const FieldSetup&, int, volume::Voxe
   throw Error(ErrorCode::device, "the field on a GPU: this build has no CUDA");
 }
 
+GridColumns makeDeviceColumns(const Surface&, const scenario::Terrain*) {
+  throw Error(ErrorCode::device, "the field on a GPU: this build has no CUDA");
+}
+
+std::vector<float> groundOf(const cuda::DevicePlaces&) {
+  return {};
+}
+
 }  // namespace emscape::emfield

@@ -124,6 +124,16 @@ TEST(FastGeodesy, SurfacePointsLieOnTheEllipsoid) {
   }
 }
 
+TEST(FastGeodesy, EllipsoidPointsAreWithinTheirAccuracy) {
+  for (double latitude_deg = -90; latitude_deg <= 90; latitude_deg += 0.37) {
+    for (double longitude_deg = -180; longitude_deg <= 180; longitude_deg += 1.3) {
+      const Vec3d exact = toEcef({latitude_deg, longitude_deg, 0});
+      const Vec3d point = ellipsoidPoint_m(degToRad(latitude_deg), degToRad(longitude_deg));
+      ASSERT_LT(length(point - exact), 4e-9) << latitude_deg << ", " << longitude_deg;
+    }
+  }
+}
+
 TEST(FastGeodesy, RadiiAreThoseOfTheEllipsoid) {
   const FastGeodesy equator = fastGeodesy(0, 0), pole = fastGeodesy(90, 0);
   EXPECT_NEAR(equator.radius_m(1, 0), 6378137.0, 1e-6);

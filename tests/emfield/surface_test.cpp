@@ -210,6 +210,38 @@ TEST_P(SurfaceField, LeavesOutPlacesWithoutALatitude) {
   EXPECT_THROW(solve(scenario, terrain_, options), Error);
 }
 
+TEST_P(SurfaceField, KnowsTheGroundBelowItsPlaces) {
+  const auto scenario = radarOnRidge(PropagationModel::diffraction);
+  const auto surface = places(HeightReference::ground, {100}, 100, 50);
+  surface->places[7].latitude_deg = NAN;
+  FieldOptions options;
+  options.backend = GetParam();
+  options.surface = surface;
+  const FieldSolver solver(scenario, terrain_, options);
+  const std::vector<float>& ground_msl_m = solver.groundHeights_m();
+  ASSERT_EQ(ground_msl_m.size(), surface->places.size());
+  for (std::size_t p = 0; p < surface->places.size(); ++p) {
+    if (p == 7) continue;
+    const auto [latitude_deg, longitude_deg] = surface->places[p];
+    EXPECT_NEAR(static_cast<double>(ground_msl_m[p]), terrain_->heightMsl_m(latitude_deg, longitude_deg),
+                1e-3);
+  }
+}
+
+/// A GPU keeps the columns to itself until a model needs them on the host.
+TEST_P(SurfaceField, AfterAnEditToAModelOfRadialsIsThatOfANewSolver) {
+  const auto surface = places(HeightReference::ground, {100}, 12, 10);
+  FieldOptions options;
+  options.backend = GetParam();
+  options.surface = surface;
+  const auto scenario = radarOnRidge(PropagationModel::diffraction);
+  FieldSolver solver(scenario, terrain_, options);
+  solver.update(scenario::snapshotAt(scenario, terrain_.get(), 0));
+  const auto edited = radarOnRidge(PropagationModel::parabolic_equation);
+  solver.update(scenario::snapshotAt(edited, terrain_.get(), 0), terrain_);
+  EXPECT_EQ(solver.volumes().front().host()->values, solve(edited, terrain_, options)->values);
+}
+
 EMSCAPE_ON_BACKENDS(SurfaceField);
 
 }  // namespace

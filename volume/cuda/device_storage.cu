@@ -2,6 +2,7 @@
 #include <limits>
 #include <string>
 
+#include "base/cuda/staged_copy.h"
 #include "volume/cuda/device_storage.h"
 #include "volume/sparse_grid.h"
 
@@ -275,12 +276,20 @@ BricksView DeviceStorage::bricks() const {
 void DeviceStorage::setMask(const std::vector<std::uint16_t>& first_valid_k) {
   read_.wait();
   written_.wait();
-  const auto highest = std::max_element(first_valid_k.begin(), first_valid_k.end());
-  masked_below_ = highest == first_valid_k.end() ? 0 : *highest;
+  masked_below_ = 0;
+  for (const std::uint16_t first_valid : first_valid_k)
+    masked_below_ = std::max<int>(masked_below_, first_valid);
   if (masked_below_ == 0) return;
-  const std::vector<std::int32_t> wide(first_valid_k.begin(), first_valid_k.end());
-  first_valid_k_.upload(wide);
-  check(cudaStreamSynchronize(nullptr), "cudaStreamSynchronize");
+  first_valid_k_.resize(first_valid_k.size());
+  const emscape::cuda::Stream stream;
+  const auto widen = [&](char* to, std::size_t begin, std::size_t end) {
+    constexpr std::size_t kSize = sizeof(std::int32_t);
+    std::copy(first_valid_k.data() + begin / kSize, first_valid_k.data() + end / kSize,
+              reinterpret_cast<std::int32_t*>(to));
+  };
+  emscape::cuda::uploadStaged(first_valid_k_.data(), first_valid_k.size() * sizeof(std::int32_t), widen,
+                              stream);
+  stream.wait();
 }
 
 int DeviceStorage::slabLayers() const {
@@ -328,12 +337,10 @@ void DeviceStorage::readTo(float* host_values, float floor, cudaStream_t stream)
   for (int begin_k = 0; begin_k < dims_.z; begin_k += layers) {
     const int end_k = std::min(begin_k + layers, dims_.z);
     loadLayers(begin_k, end_k, floor, slab.data(), stream);
-    check(cudaMemcpyAsync(host_values + columns * begin_k, slab.data(),
-                          sizeof(float) * static_cast<std::size_t>(columns * (end_k - begin_k)),
-                          cudaMemcpyDeviceToHost, stream),
-          "download of a volume");
+    emscape::cuda::downloadStaged(host_values + columns * begin_k, slab.data(),
+                                  sizeof(float) * static_cast<std::size_t>(columns * (end_k - begin_k)),
+                                  stream);
   }
-  check(cudaStreamSynchronize(stream), "download of a volume");
 }
 
 }  // namespace emscape::volume

@@ -33,8 +33,15 @@ struct BenchCoverageOptions {
 
 /// Median times of the steps that compute maps at some heights (ms).
 struct MapTimes {
-  double places_ms = 0, update_ms = 0;
+  double places_ms = 0, update_ms = 0, values_ms = 0;
   emfield::StageTimes stages;
+
+  double all_ms() const { return places_ms + update_ms + values_ms; }
+  /// Of the update, outside the stages.
+  double rest_ms() const {
+    return update_ms - stages.columns_ms - stages.march_ms - stages.excess_ms - stages.combine_ms -
+           stages.product_ms;
+  }
 };
 
 /// @param heights_m  above ground
@@ -50,7 +57,7 @@ MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
   options.surface = surface;
   options.allow_missing_terrain = true;
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), 0);
-  std::vector<double> places, update, columns, march, excess, combine, product;
+  std::vector<double> places, update, values, columns, march, excess, combine, product;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     stopIfInterrupted();
     Stopwatch watch;
@@ -58,6 +65,8 @@ MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
     places.push_back(watch.lap_ms());
     solver.update(snapshot);
     update.push_back(watch.lap_ms());
+    for (const volume::Volume& volume : solver.volumes()) volume.host();
+    values.push_back(watch.lap_ms());
     const emfield::StageTimes stages = solver.stageTimes();
     columns.push_back(stages.columns_ms);
     march.push_back(stages.march_ms);
@@ -67,6 +76,7 @@ MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
   }
   return {medianOf(places),
           medianOf(update),
+          medianOf(values),
           {medianOf(columns), medianOf(march), medianOf(excess), medianOf(combine), medianOf(product)}};
 }
 
@@ -78,9 +88,15 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
   const study::MapArea area =
       options.area.empty() ? study::areaOf(scenario->region) : study::parseArea(options.area);
   const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
-  Stopwatch watch;
-  const study::MapGrid grid = study::makeMapGrid(area, options.cell_m, "utm");
-  const double grid_ms = watch.lap_ms();
+  study::MapGrid grid;
+  std::vector<double> grids_ms;
+  for (int repeat = 0; repeat < options.repeats; ++repeat) {
+    grid = {};
+    Stopwatch watch;
+    grid = study::makeMapGrid(area, options.cell_m, "utm");
+    grids_ms.push_back(watch.lap_ms());
+  }
+  const double grid_ms = medianOf(grids_ms);
   const auto pixels = std::count_if(
       grid.places.begin(), grid.places.end(),
       [](const emfield::Surface::Place& place) { return place.latitude_deg == place.latitude_deg; });
@@ -93,11 +109,8 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
     all = timesOf(scenario, terrain, grid, heights_m, options.repeats, target);
     return target.device();
   });
-  const double first_ms = grid_ms + first.places_ms + first.update_ms;
-  const double further_ms =
-      options.further == 0
-          ? 0
-          : (all.places_ms + all.update_ms - first.places_ms - first.update_ms) / options.further;
+  const double first_ms = grid_ms + first.all_ms();
+  const double further_ms = options.further == 0 ? 0 : (all.all_ms() - first.all_ms()) / options.further;
   const double pixels_per_s = static_cast<double>(pixels) / (first_ms / 1000);
   if (global.json) {
     printJson({{"device", device},
@@ -115,7 +128,9 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
                  {"march", first.stages.march_ms},
                  {"excess", first.stages.excess_ms},
                  {"combine", first.stages.combine_ms},
-                 {"product", first.stages.product_ms}}}});
+                 {"product", first.stages.product_ms},
+                 {"rest", first.rest_ms()},
+                 {"values", first.values_ms}}}});
     return 0;
   }
   print("device {} ({} threads), map of {} x {} pixels of {:g} m, {} within the area, medians of {}\n\n",
@@ -124,8 +139,9 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
   print("  pixels              {:10.2f}\n  places              {:10.2f}\n", grid_ms, first.places_ms);
   print("  field: columns      {:10.2f}\n  field: march        {:10.2f}\n  field: excess       {:10.2f}\n",
         first.stages.columns_ms, first.stages.march_ms, first.stages.excess_ms);
-  print("  field: combine      {:10.2f}\n  field: product      {:10.2f}\n", first.stages.combine_ms,
-        first.stages.product_ms);
+  print("  field: combine      {:10.2f}\n  field: product      {:10.2f}\n  field: rest         {:10.2f}\n",
+        first.stages.combine_ms, first.stages.product_ms, first.rest_ms());
+  print("  values              {:10.2f}\n", first.values_ms);
   print("each further height   {:10.2f}  ({:.0f} % of the first; of {})\n", further_ms,
         100 * further_ms / first_ms, options.further);
   print("million pixels per s  {:10.2f}\n", pixels_per_s / 1e6);
@@ -139,7 +155,9 @@ void addBenchCoverage(CLI::App& bench, const GlobalOptions& global, Action& acti
   command->fallthrough();
   command->footer(R"(
 Time of a map from its area to the values of its pixels, without reading the terrain and without writing files, and the time that each
-further height adds. pixels: their positions in the projection; places: terrain below them; field: the stages of the computation.
+further height adds. pixels: their positions in the projection; places: terrain below them, and memory (on a GPU also the copy of the
+terrain to it); field: the stages of the computation, and the rest of its wall-clock time; values: copied from the GPU. Work that a
+program does once (start of the GPU, database of projections) is in the first repeat, not in the medians.
 
 Example:
   emscape bench coverage scenarios/jacksboro.yaml --area 36.303,-84.246,10000 --cell 30)");

@@ -109,7 +109,7 @@ class FieldSolver {
   const volume::Grid& grid() const;
   const std::vector<Channel>& channels() const;
   /// Ground height above mean sea level under the centre of each column (m), i fastest; NaN over holes; empty
-  /// without terrain.
+  /// without terrain. On a GPU the first call for a surface copies it from there: not from several threads.
   const std::vector<float>& groundHeights_m() const;
 
   /// Computes the field of a snapshot. If the snapshot's scenario is not the object of the last update, it is

@@ -1,0 +1,73 @@
+#include "base/cuda/cuda_memory.h"
+#include "emfield/cuda/place_kernels.h"
+
+namespace emscape::emfield::cuda {
+namespace {
+
+using emscape::cuda::checkLaunch;
+
+constexpr int kThreads = 128;
+
+/// Adds up the threads of a block.
+/// @param add(sum, other)
+/// @return for thread 0, the sum
+template <class Sum, class Add>
+__device__ Sum sumOfBlock(const Sum& own, const Add& add) {
+  __shared__ __align__(16) unsigned char memory[kThreads * sizeof(Sum)];
+  Sum* const sums = reinterpret_cast<Sum*>(memory);
+  const int thread = static_cast<int>(threadIdx.x);
+  sums[thread] = own;
+  for (int half = kThreads / 2; half > 0; half /= 2) {
+    __syncthreads();
+    if (thread < half) add(sums[thread], sums[thread + half]);
+  }
+  return sums[thread];
+}
+
+/// Calls visit(c) for the positions of a thread.
+template <class Visit>
+__device__ void eachPlace(int places, const Visit& visit) {
+  const int threads = static_cast<int>(gridDim.x * blockDim.x);
+  for (int c = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); c < places; c += threads) visit(c);
+}
+
+__global__ void __launch_bounds__(kThreads)
+    placesKernel(const __grid_constant__ PlaceTask task, int places, GeoidCells geoid, PlacesPart* parts) {
+  PlacesPart own;
+  eachPlace(places, [&](int c) { task(c, geoid, own); });
+  const PlacesPart all = sumOfBlock(own, [](PlacesPart& sum, const PlacesPart& other) { sum.add(other); });
+  if (threadIdx.x == 0) parts[blockIdx.x] = all;
+}
+
+__global__ void __launch_bounds__(kThreads)
+    spanKernel(const __grid_constant__ PlaceTask task, int places, PlaceColumn middle,
+               const __grid_constant__ FastGeodesy geodesy, double* beyond_m) {
+  double own_m = 0;
+  eachPlace(places, [&](int c) {
+    if (isLeftOut(task.places[c])) {
+      task.columns[c] = middle;
+      return;
+    }
+    if (task.has_terrain && isnan(task.ground_msl_m[c])) return;
+    own_m = fmax(own_m, fastInverse(geodesy, task.columns[c].foot_ecef_m).distance_m);
+  });
+  const double all_m =
+      sumOfBlock(own_m, [](double& most_m, double other_m) { most_m = fmax(most_m, other_m); });
+  if (threadIdx.x == 0) beyond_m[blockIdx.x] = all_m;
+}
+
+}  // namespace
+
+void computePlaces(const PlaceTask& task, int places, const GeoidView& geoid, PlacesPart* parts,
+                   cudaStream_t stream) {
+  placesKernel<<<kPlacesParts, kThreads, 0, stream>>>(task, places, GeoidCells{geoid}, parts);
+  checkLaunch("places");
+}
+
+void spanPlaces(const PlaceTask& task, int places, const PlaceColumn& middle, const FastGeodesy& geodesy,
+                double* beyond_m, cudaStream_t stream) {
+  spanKernel<<<kPlacesParts, kThreads, 0, stream>>>(task, places, middle, geodesy, beyond_m);
+  checkLaunch("spanOfPlaces");
+}
+
+}  // namespace emscape::emfield::cuda

@@ -1,0 +1,26 @@
+/// Kernels over the positions of a surface.
+#pragma once
+
+#include <cuda_runtime_api.h>
+
+#include "emfield/place_columns.h"
+
+namespace emscape::emfield::cuda {
+
+/// Number of parts into which the kernels divide the positions.
+constexpr int kPlacesParts = 1024;
+
+/// Computes the columns of a surface. Pointers are to device memory.
+/// @param parts  kPlacesParts sums
+void computePlaces(const PlaceTask& task, int places, const GeoidView& geoid, PlacesPart* parts,
+                   cudaStream_t stream);
+
+/// Largest distance (m) from the middle of a surface to a position with ground, of each part. Sets the
+/// columns of positions that are left out to that in the middle.
+/// @param task      of computePlaces()
+/// @param geodesy   of the middle
+/// @param beyond_m  kPlacesParts distances
+void spanPlaces(const PlaceTask& task, int places, const PlaceColumn& middle, const FastGeodesy& geodesy,
+                double* beyond_m, cudaStream_t stream);
+
+}  // namespace emscape::emfield::cuda
