@@ -188,7 +188,7 @@ TEST_F(EditScenario, FaultsNameTheEditAndLeaveTheScenario) {
   EXPECT_EQ(faultOf(scenario, "emitters.search radar.power_w", "abc"),
             "emitters.search radar.power_w=abc: 'power_w' must be a number (W), not 'abc'");
   EXPECT_EQ(faultOf(scenario, "atmosphere.k_factor", "99"),
-            "atmosphere.k_factor=99: 'k_factor' is 99, outside the allowed 0.5 to 10");
+            "atmosphere.k_factor=99: 'k_factor' is 99, outside the allowed range 0.5 to 10");
   EXPECT_EQ(faultOf(scenario, "emitters.serch radar.power_w", "5"),
             "emitters.serch radar.power_w=5: there is no emitter 'serch radar'; did you mean 'search "
             "radar'?; allowed "
