@@ -234,7 +234,7 @@ Reference reference(const scenario::Snapshot& snapshot, const volume::Grid& grid
 void expectReference(const std::shared_ptr<const scenario::Scenario>& scenario,
                      const volume::DenseVolume& volume) {
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
-  const volume::Dims dims = volume.grid.dims;
+  const Dims dims = volume.grid.dims;
   for (int k = 0; k < dims.z; ++k) {
     for (int j = 0; j < dims.y; ++j) {
       for (int i = 0; i < dims.x; ++i) {
