@@ -141,9 +141,18 @@ struct CoverageSolver::Impl {
   std::optional<LeastHeights> least_heights;
 
   /// @param of_maps  without quantities
+  /// @throws Error (usage) if no pixel has its centre in the area
   Impl(const MapGrid& map_grid, std::vector<CoverageRequest> of_maps_requests,
        const emfield::FieldOptions& of_maps)
       : grid(map_grid), requests(std::move(of_maps_requests)), options(of_maps) {
+    const auto isInside = [](const emfield::Surface::Place& centre) {
+      return !std::isnan(centre.latitude_deg);
+    };
+    if (std::none_of(grid.places.begin(), grid.places.end(), isInside)) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("no pixel of {} m has its centre in the area: a smaller cell or a larger area",
+                              grid.cell_m));
+    }
     for (const HeightReference reference : {HeightReference::ground, HeightReference::mean_sea_level}) {
       SurfaceField field(grid, requests, reference, options);
       if (!field.hasHeights()) continue;

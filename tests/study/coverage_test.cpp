@@ -91,6 +91,18 @@ TEST(Coverage, WarnsOfTimesWithoutAnActiveRadar) {
       << "of other emitters";
 }
 
+TEST(Coverage, AnAreaWithoutAPixelIsRefused) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
+  const MapArea area = circularArea({36.3, -84.2, 10});
+  const MapGrid grid = makeMapGrid(area, 5000, "utm");
+  const auto compute = [&] {
+    computeCoverage(scenario, loadTerrain(*scenario, area), grid,
+                    {{kLow}, {Product::covered}, scenario::Quantity::snr_db, 10, {0}}, {},
+                    [](const CoverageMap&) {});
+  };
+  EXPECT_THAT(test::errorOf(compute), HasSubstr("no pixel of 5000 m has its centre in the area"));
+}
+
 TEST(Coverage, ValuesThatAreIndicesOrCountsAreMappedAsSuch) {
   const auto mapOf = [](scenario::Quantity quantity) {
     return CoverageOf("jacksboro.yaml", 3000, {{kLow}, {Product::value}, quantity, 1, {80}}).maps.front();
