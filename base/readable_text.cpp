@@ -12,8 +12,8 @@ constexpr std::size_t kLineBegin = 500, kLineEnd = 200;  // of a longer one
 
 /// The first byte of a character of UTF-8 at or before `at`; `at` itself in other bytes.
 std::size_t characterBegin(const std::string& text, std::size_t at) {
-  constexpr std::size_t kMostFollowing = 3;
-  for (std::size_t back = 0; back <= std::min(kMostFollowing, at); ++back) {
+  constexpr std::size_t kMaxFollowing = 3;
+  for (std::size_t back = 0; back <= std::min(kMaxFollowing, at); ++back) {
     if ((static_cast<unsigned char>(text[at - back]) & 0xC0) != 0x80) return at - back;
   }
   return at;

@@ -172,8 +172,9 @@ class Resolver {
       known += (i == 0 ? "'" : ", '") + names[i] + "'";
     }
     if (names.size() > kMaxNamesShown) known += fmt::format(" and {} more", names.size() - kMaxNamesShown);
-    fail(fmt::format("there is no {} '{}'{}; {}", spec.name, name, didYouMean(name, names),
-                     names.empty() ? "the scenario has none" : "allowed are " + known));
+    fail(fmt::format("there is no {} '{}'; {}{}", spec.name, name,
+                     names.empty() ? "the scenario has none" : "allowed are " + known,
+                     didYouMean(name, names)));
   }
 
   std::size_t indexByNumber() {

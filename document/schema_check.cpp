@@ -230,8 +230,8 @@ class Checker {
     } else {
       const auto length = static_cast<long long>(characterCount(node.text));
       if (length >= spec.min_items && length <= spec.max_items) return;
-      fault(node.position, fmt::format("{} has {} characters, outside the allowed {} to {}", name, length,
-                                       spec.min_items, spec.max_items));
+      fault(node.position, fmt::format("{} has {} characters, outside the allowed range {} to {}", name,
+                                       length, spec.min_items, spec.max_items));
     }
   }
 
@@ -332,7 +332,8 @@ std::string rangeFault(const std::string& name, const std::string& text, double 
   const bool low = spec.minimum_excluded ? value <= spec.minimum : value < spec.minimum;
   if (!low && value <= spec.maximum) return "";
   constexpr int kDigits = 12;  // limits are shown in full
-  return fmt::format("{} is {}, outside the allowed {}{}", name, text, spec.minimum_excluded ? "above " : "",
+  return fmt::format("{} is {}, outside the allowed range {}{}", name, text,
+                     spec.minimum_excluded ? "above " : "",
                      rangeText(spec.minimum, spec.maximum, spec.unit, kDigits));
 }
 

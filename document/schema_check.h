@@ -28,7 +28,7 @@ void requireNoProblem(const ProblemList& problems);
 /// The truth value in a scalar's text (YAML 1.2 core schema); none if it is not one.
 std::optional<bool> booleanOf(const std::string& text);
 
-/// The fault of a number, as `'name' is 95, outside the allowed -90 to 90 deg`; empty if it has none.
+/// The fault of a number, as `'name' is 95, outside the allowed range -90 to 90 deg`; empty if it has none.
 std::string rangeFault(const std::string& name, const std::string& text, double value, const ValueSpec& spec);
 
 /// The message for a key that an object does not have: with the missing unit suffix, or with the key that was

@@ -134,7 +134,7 @@ void setHeights(const GridColumns& columns, const propagation::PathExtent& exten
   }
   // Maps: the lowest height is in the middle of the second cell above the ground, where the mean over a cell
   // is within 0.2 dB of a field that grows with the height.
-  constexpr double kLargestStep_m = 10, kSmallestStep_m = 0.5;
+  constexpr double kMaxStep_m = 10, kMinStep_m = 0.5;
   double lowest_m = HUGE_VAL, highest_m = 0;
   for (std::size_t c = 0; c < columns.count(); ++c) {
     const double ground_m = columns.ground_msl_m.empty() ? 0 : static_cast<double>(columns.ground_msl_m[c]);
@@ -150,7 +150,7 @@ void setHeights(const GridColumns& columns, const propagation::PathExtent& exten
     const double high_m = aboveGround_m(t_m.back());
     if (std::isfinite(high_m)) highest_m = std::max(highest_m, high_m);
   }
-  lowest_m = std::clamp(lowest_m, 1.5 * kSmallestStep_m, 1.5 * kLargestStep_m);
+  lowest_m = std::clamp(lowest_m, 1.5 * kMinStep_m, 1.5 * kMaxStep_m);
   radials.height_step_m = lowest_m / 1.5;
   radials.lowest_m = radials.height_step_m / 2;
   radials.highest_m = std::max(highest_m, lowest_m);

@@ -14,8 +14,8 @@
 namespace emscape::render {
 namespace {
 
-constexpr double kLeastFov_deg = 1;
-constexpr double kLargestFov_deg = 150;
+constexpr double kMinFov_deg = 1;
+constexpr double kMaxFov_deg = 150;
 constexpr double kMinDistance = 0.01;
 constexpr double kMaxDistance = 1000;
 constexpr double kMaxExaggeration = 20;
@@ -38,7 +38,7 @@ Vec3d& orNew(std::optional<Vec3d>& position) {
 constexpr double kFar_m = 1e9;
 const std::vector<CameraKey>& commonKeys() {
   static const std::vector<CameraKey> keys{
-      {"fov_deg", kLeastFov_deg, kLargestFov_deg, [](CameraSpec& s, double v) { s.fov_deg = v; }},
+      {"fov_deg", kMinFov_deg, kMaxFov_deg, [](CameraSpec& s, double v) { s.fov_deg = v; }},
       {"target_x_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.target_m).x = v; }},
       {"target_y_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.target_m).y = v; }},
       {"target_z_m", -kFar_m, kFar_m, [](CameraSpec& s, double v) { orNew(s.target_m).z = v; }}};

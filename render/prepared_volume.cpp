@@ -29,17 +29,17 @@ EMSCAPE_SIMD_CLONES bool encodeRun(const float* values, int count, const Quantiz
                                    std::int16_t* codes) {
   const float middle = coded.middle;
   const float codes_per_unit = coded.step_per_weight > 0.0F ? 1.0F / coded.step() : 0.0F;
-  constexpr float kLargest = QuantizedValues::kLargest;
+  constexpr float kMaxCode = QuantizedValues::kMaxCode;
   int others = 0;
   for (int i = 0; i < count; ++i) {
     const float from_middle = values[i] - middle;
     others += from_middle - from_middle != 0.0F ? 1 : 0;
     float code = from_middle * codes_per_unit;
-    code = code > -kLargest ? code : -kLargest;  // NaN too
-    code = code < kLargest ? code : kLargest;
+    code = code > -kMaxCode ? code : -kMaxCode;  // NaN too
+    code = code < kMaxCode ? code : kMaxCode;
     // The converted number is positive, so that truncation rounds it.
     codes[i] =
-        static_cast<std::int16_t>(static_cast<int>(code + kLargest + 0.5F) - QuantizedValues::kLargest);
+        static_cast<std::int16_t>(static_cast<int>(code + kMaxCode + 0.5F) - QuantizedValues::kMaxCode);
   }
   return others == 0;
 }
@@ -72,7 +72,7 @@ void PreparedVolume::encode(const volume::DenseVolume& shown) {
   }
   // Of halves, as the difference of two floats can be infinite.
   coded_.middle = 0.5F * lowest + 0.5F * highest_;
-  const float step = (highest_ - coded_.middle) / QuantizedValues::kLargest;
+  const float step = (highest_ - coded_.middle) / QuantizedValues::kMaxCode;
   coded_.step_per_weight = step / QuantizedValues::kWeights;
   const bool too_small = highest_ > lowest && !(coded_.step_per_weight >= std::numeric_limits<float>::min());
 

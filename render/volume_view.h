@@ -17,7 +17,7 @@ namespace emscape::render {
 struct QuantizedValues {
   /// Widest sum of two neighbours' codes with weights that add up to it, in 32 bits.
   static constexpr std::int32_t kWeights = 32767;
-  static constexpr std::int32_t kLargest = 32767;  ///< codes are -kLargest..kLargest
+  static constexpr std::int32_t kMaxCode = 32767;  ///< codes are -kMaxCode..kMaxCode
 
   const std::int16_t* codes = nullptr;  ///< as VolumeView::values; null: none
   float middle = 0;

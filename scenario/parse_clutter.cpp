@@ -6,17 +6,17 @@ namespace emscape::scenario {
 namespace {
 
 Mti parseMti(const Section& section, ParseContext& context) {
-  constexpr int kMostOfCanceller = 10;
+  constexpr int kMaxCancellerPulses = 10;
   Mti mti;
   mti.kind = section.choice<MtiKind>("kind");
   mti.pulses = section.integer("pulses");
   mti.surface_spread_mps = section.number("surface_spread_m_s");
   mti.rain_spread_mps = section.number("rain_spread_m_s");
   mti.improvement_limit_db = section.optionalNumber("improvement_limit_db");
-  if (mti.kind == MtiKind::canceller && mti.pulses > kMostOfCanceller) {
+  if (mti.kind == MtiKind::canceller && mti.pulses > kMaxCancellerPulses) {
     context.problems.addError(
         section.locationOf("pulses"),
-        fmt::format("'pulses' of a canceller is {}, at most {}", mti.pulses, kMostOfCanceller));
+        fmt::format("'pulses' of a canceller is {}, at most {}", mti.pulses, kMaxCancellerPulses));
   }
   return mti;
 }

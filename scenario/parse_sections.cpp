@@ -246,7 +246,7 @@ ScanSpec parseScan(const Section& section, bool steers_electronically, ParseCont
   if (highest_deg > 90) {
     context.problems.addError(section.locationOf("bars"),
                               fmt::format("the bars reach {} deg of elevation, outside the "
-                                          "allowed -90 to 90 deg",
+                                          "allowed range -90 to 90 deg",
                                           highest_deg));
   }
   for (const Section& item : section.sections("dwells")) {

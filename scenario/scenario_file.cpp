@@ -43,7 +43,7 @@ Region parseRegion(const Section& section, ParseContext& context) {
   std::vector<double> size_m = section.numbers("size_m"), dims = section.numbers("dims");
   if (dims.size() == 3 && dims[0] * dims[1] * dims[2] > kMaxVoxels) {
     context.problems.addError(section.locationOf("dims"),
-                              fmt::format("'dims' are {} voxels in all, outside the allowed 8 to {}",
+                              fmt::format("'dims' are {} voxels in all, outside the allowed range 8 to {}",
                                           dims[0] * dims[1] * dims[2], kMaxVoxels));
   }
   if (!section.sound()) return region;

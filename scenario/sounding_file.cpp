@@ -22,7 +22,7 @@ using namespace propagation;
 
 constexpr std::size_t kMaxSoundingBytes = std::size_t{64} << 20;
 constexpr double kHighest_m = 10000;
-constexpr double kLeastStep_m = 1;  ///< between levels
+constexpr double kMinStep_m = 1;    ///< between levels
 constexpr double kTolerance = 0.5;  ///< M-units
 constexpr std::size_t kMaxLevels = 256;
 constexpr double kGravity_m_s2 = 9.80665, kDryGas_j_kg_k = 287.05;
@@ -217,7 +217,7 @@ class SoundingReader {
     std::vector<RefractivityLevel> all;
     for (const Level& level : levels) {
       if (level.height_msl_m > kHighest_m) break;
-      if (!all.empty() && level.height_msl_m < all.back().height_msl_m + kLeastStep_m) continue;
+      if (!all.empty() && level.height_msl_m < all.back().height_msl_m + kMinStep_m) continue;
       all.push_back(
           {level.height_msl_m, refractivity_n(level.pressure_hpa, level.temperature_k, level.vapour_hpa) +
                                    kFlatteningGradient_m * level.height_msl_m});

@@ -111,7 +111,7 @@ std::vector<fs::path> filesOfFolder(const fs::path& folder) {
     }
     if (!files.empty()) return sorted(std::move(files));
   }
-  throw Error(ErrorCode::bad_input, {folder.string()}, "the folder holds no volume file");
+  throw Error(ErrorCode::bad_input, {folder.string()}, "the folder has no volume file");
 }
 
 /// The files in the folder of a numbered one that differ from it only in the number.

@@ -48,7 +48,7 @@ class VdbFile {
         walkTree(entry);
       }
     }
-    if (entries_.empty()) fail("the file holds no grid");
+    if (entries_.empty()) fail("the file has no grid");
   }
 
   const std::vector<VdbGrid>& entries() const { return entries_; }

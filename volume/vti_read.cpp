@@ -201,7 +201,7 @@ std::vector<PvdEntry> readPvd(const std::filesystem::path& path) {
     if (name.empty()) file.fail("a DataSet names no file");
     entries.push_back({node.attribute("timestep").as_double(), path.parent_path() / name});
   }
-  if (entries.empty()) file.fail("the series holds no file");
+  if (entries.empty()) file.fail("the series has no file");
   return entries;
 }
 

@@ -106,7 +106,7 @@ void addCoverage(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->footer(fmt::format(R"(
 Each pixel is computed at its centre, on the surface itself, and equals `emscape profile` there
 (parabolic_equation: the mean over cells between marched azimuths, which differs over terrain). A height above ground follows the
-ground; pixels below ground, without terrain or beyond the area hold no value. Radars look at the target, wherever their scan
+ground; pixels below ground, without terrain or outside the area have no value. Radars look at the target, wherever their scan
 points. A pixel is covered if the quantity is at or above --threshold.
 
 Products:

@@ -311,7 +311,17 @@ void printText(const Json& json, int depth) {
   }
 }
 
-Description describe(const std::string& file) {
+/// The file of values for a header such as field.raw.json; other names unchanged.
+std::string valuesFileOf(const std::string& file) {
+  const std::filesystem::path path(file);
+  const std::string inner = path.stem().extension().string();
+  const bool is_header =
+      path.extension() == ".json" && (inner == ".raw" || inner == ".dat" || inner == ".nvdb");
+  return is_header ? (path.parent_path() / path.stem()).string() : file;
+}
+
+Description describe(const std::string& name) {
+  const std::string file = valuesFileOf(name);
   if (scenario::isSoundingFile(file) || scenario::isRefractivityCsv(file)) return describeRefractivity(file);
   switch (playback::inputKindOf(file)) {
     case playback::InputKind::scenario:

@@ -65,7 +65,7 @@ P1812Posts readP1812Posts(const fs::path& file) {
     is_profile = is_profile || first == "{Begin of Profile}";
   }
   if (posts.range_m.size() >= 3) return posts;
-  throw Error(ErrorCode::bad_input, {file.string(), 0, 0}, "holds no terrain profile");
+  throw Error(ErrorCode::bad_input, {file.string(), 0, 0}, "has no terrain profile");
 }
 
 /// Values of a log by name and, if given, equation: "hst (m) Eq (85)".
@@ -88,7 +88,7 @@ class Log {
   const Value& at(const std::string& name) const {
     const auto found = values_.find(name);
     if (found != values_.end()) return found->second;
-    throw Error(ErrorCode::bad_input, {file_, 0, 0}, fmt::format("holds no '{}'", name));
+    throw Error(ErrorCode::bad_input, {file_, 0, 0}, fmt::format("has no '{}'", name));
   }
   double operator[](const std::string& name) const { return at(name).number; }
 

@@ -126,9 +126,8 @@ ReferenceFolder findDatasets(const fs::path& folder) {
     found = lookBelow(whole.parent_path(), family);
     if (!found.present.empty()) return found;
   }
-  throw Error(ErrorCode::bad_input,
-              fmt::format("{}: holds no dataset that is known; expected folders such as {}", folder.string(),
-                          referenceDatasets().front().name));
+  throw Error(ErrorCode::bad_input, fmt::format("{}: has no known dataset; expected folders such as {}",
+                                                folder.string(), referenceDatasets().front().name));
 }
 
 }  // namespace emscape::emfield

@@ -113,7 +113,7 @@ PathProfile readPathProfile(const PathEnd& begin, const PathEnd& end,
 
 std::vector<PathObstacle> pathObstacles(const PathProfile& profile, double wavelength_m) {
   constexpr double kFreeZone = 0.6;  // Fresnel radii
-  constexpr std::size_t kMost = 8;
+  constexpr std::size_t kMaxCrests = 8;
   const auto obstruction = [&](int i) {  // Fresnel radii
     return -profile.clearance_m(i) / profile.fresnelRadius_m(i, wavelength_m);
   };
@@ -151,7 +151,7 @@ std::vector<PathObstacle> pathObstacles(const PathProfile& profile, double wavel
     return obstacle.clearanceInFresnelRadii() >= kFreeZone;
   });
   crests.erase(first_free, crests.end());
-  crests.resize(std::min(crests.size(), kMost));
+  crests.resize(std::min(crests.size(), kMaxCrests));
   std::sort(crests.begin(), crests.end(),
             [](const PathObstacle& a, const PathObstacle& b) { return a.range_m < b.range_m; });
   return crests;

@@ -44,8 +44,8 @@ PathSection pathSection(const scenario::Snapshot& snapshot, int emitter, propaga
   const auto lowest_m = static_cast<double>(*lowest);
   const double highest_m = std::max({static_cast<double>(*highest), profile.begin.height_msl_m,
                                      profile.end.height_msl_m, propagation::trappingTop_m(air)});
-  constexpr double kRoom = 1.5, kLeast_m = 50;
-  const double top_msl_m = lowest_m + std::max(kRoom * (highest_m - lowest_m), kLeast_m);
+  constexpr double kRoom = 1.5, kMinHeight_m = 50;
+  const double top_msl_m = lowest_m + std::max(kRoom * (highest_m - lowest_m), kMinHeight_m);
 
   PathSection section;
   Surface surface;

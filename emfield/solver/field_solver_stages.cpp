@@ -53,7 +53,7 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
                               geometry_result.unknown_columns - 1),
                   Hint::allow_missing_terrain);
     }
-    ++cache.warnings[fmt::format("emitter '{}': columns seen across missing terrain hold no field",
+    ++cache.warnings[fmt::format("emitter '{}': columns seen across missing terrain have no field",
                                  emitter.name)];
   }
   const Station station =
@@ -65,8 +65,8 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   }
   if (geometry_result.near_voxels > 0) {
     ++cache.warnings[fmt::format(
-        "emitter '{}': voxels closer than the far-field distance (2 D^2 / lambda = {:.0f} m) hold the far "
-        "field's formula",
+        "emitter '{}': voxels closer than the far-field distance (2 D^2 / lambda = {:.0f} m) have the value "
+        "of the far field's formula",
         emitter.name, setup.far_field_m[e])];
   }
 }

@@ -53,7 +53,7 @@ std::shared_ptr<const GasProfile> gasProfile(double frequency_hz, const Atmosphe
   };
   static std::mutex mutex;
   static std::list<Kept> kept;  // last used first
-  constexpr std::size_t kMostKept = 256;
+  constexpr std::size_t kMaxKept = 256;
   constexpr double kRounding_m = 2000;  // so that a profile is reused after small changes of height
   const double top_m = std::clamp(kRounding_m * std::ceil(highest_msl_m / kRounding_m), 0.0,
                                   kGasesHeight.max * kGasesHeight.si_per_unit);
@@ -76,7 +76,7 @@ std::shared_ptr<const GasProfile> gasProfile(double frequency_hz, const Atmosphe
       static_cast<int>(count));
   const std::lock_guard lock(mutex);
   kept.push_front({key, made});
-  if (kept.size() > kMostKept) kept.pop_back();
+  if (kept.size() > kMaxKept) kept.pop_back();
   return made;
 }
 

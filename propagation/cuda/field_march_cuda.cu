@@ -11,9 +11,9 @@ using cuda::checkLaunch;
 constexpr int kThreads = 256;
 
 unsigned blocksFor(std::size_t count) {
-  constexpr std::size_t kMost = 4096;
+  constexpr std::size_t kMaxBlocks = 4096;
   const std::size_t blocks = (count + kThreads - 1) / kThreads;
-  return unsigned(blocks < kMost ? blocks : kMost);
+  return unsigned(blocks < kMaxBlocks ? blocks : kMaxBlocks);
 }
 
 /// Calls f(i) for i = 0 .. count - 1, in all threads of the grid.

@@ -183,11 +183,11 @@ EMSCAPE_HD Real valueAtRank(Real* values, int count, int rank) {
 ///
 /// Values are counted in buckets, and only those of the two buckets that contain the result are sorted. 0
 /// below a micrometre.
-/// @tparam kMost  largest count, <= 255
-template <int kMost, class Real>
+/// @tparam kMaxCount  largest count, <= 255
+template <int kMaxCount, class Real>
 EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
   constexpr int kBuckets = 128;
-  static_assert(kMost <= 255, "places and counts are bytes");
+  static_assert(kMaxCount <= 255, "places and counts are bytes");
   // in lanes, for independent comparisons
   Real lane_least[kLanes] = {values[0], values[0], values[0], values[0]};
   Real lane_most[kLanes] = {values[0], values[0], values[0], values[0]};
@@ -203,7 +203,7 @@ EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
   constexpr Real kFlat_m = Real(1e-6);
   if (!(most - least > kFlat_m)) return 0;
 
-  unsigned char bucket[kMost];
+  unsigned char bucket[kMaxCount];
   unsigned char members[kBuckets] = {};
   unsigned char more_members[kBuckets] = {};  // used alternately, so that equal buckets are independent
   const Real scale = (kBuckets - 1) / (most - least);
@@ -223,8 +223,8 @@ EMSCAPE_HD Real interdecileRange(const Real* values, int count, int tenth) {
   for (; high_rank >= members[high]; --high) high_rank -= members[high];
   high_rank = members[high] - 1 - high_rank;  // from below
 
-  Real low_values[kMost];
-  Real high_values[kMost];
+  Real low_values[kMaxCount];
+  Real high_values[kMaxCount];
   int low_count = 0;
   int high_count = 0;
   for (int i = 0; i < count; ++i) {

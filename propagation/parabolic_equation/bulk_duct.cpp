@@ -28,8 +28,8 @@ constexpr int kMaxIterations = 100;
 
 void check(const char* what, double value, double lowest, double highest, const char* unit) {
   if (value >= lowest && value <= highest) return;
-  throw Error(ErrorCode::bad_input,
-              fmt::format("{} is {}, outside the allowed {} to {}{}", what, value, lowest, highest, unit));
+  throw Error(ErrorCode::bad_input, fmt::format("{} is {}, outside the allowed range {} to {}{}", what, value,
+                                                lowest, highest, unit));
 }
 
 double specificHumidity(double vapour_hpa, double pressure_hpa) {

@@ -77,15 +77,15 @@ bool areSameAir(const std::vector<RefractivityAlongPath>& air) {
 
 void planAzimuths(const PathInputs& inputs, const RadialInputs& radials, PePlan& plan) {
   const double given = inputs.emitter.settings.parabolic_equation.azimuths;
-  const double place_rad = std::max(radials.spacing_m, plan.grid.range_step_m) / radials.farthest_m;
-  const double one_apart = std::ceil(radials.azimuth_span_rad / place_rad);
-  const double two_apart = std::ceil(radials.azimuth_span_rad / (2 * place_rad));
+  const double voxel_rad = std::max(radials.spacing_m, plan.grid.range_step_m) / radials.farthest_m;
+  const double one_apart = std::ceil(radials.azimuth_span_rad / voxel_rad);
+  const double two_apart = std::ceil(radials.azimuth_span_rad / (2 * voxel_rad));
   const double automatic =
       std::clamp(std::max(std::min(one_apart, double(kFewAzimuths)), two_apart), 8.0, double(kMaxAzimuths));
   std::string why = fmt::format("{} at the far end, at most {} around",
-                                one_apart <= kFewAzimuths  ? "one place apart"
-                                : two_apart > kFewAzimuths ? "two places apart"
-                                                           : "at most two places apart",
+                                one_apart <= kFewAzimuths  ? "one voxel apart"
+                                : two_apart > kFewAzimuths ? "two voxels apart"
+                                                           : "at most two voxels apart",
                                 kMaxAzimuths);
   plan.is_around = radials.isAround();
   plan.azimuths = int(given > 0 ? given : automatic);
@@ -132,7 +132,7 @@ void planCells(const RadialInputs& radials, PeCells kept, PePlan& plan) {
   plan.choices.push_back(
       {"cells",
        fmt::format(
-           "{:.4g} m in range, {:.4g} m in height, above {}: the places' spacing; {} x {}, {:.4g} m and "
+           "{:.4g} m in range, {:.4g} m in height, above {}: the voxels' spacing; {} x {}, {:.4g} m and "
            "{:.4g} m apart",
            cells.meanRange_m(), cells.meanHeight_m(), cells.above_ground ? "the ground" : "mean sea level",
            cells.ranges, cells.heights, cells.range_step_m, cells.height_step_m)});
@@ -234,10 +234,10 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
     const double places_m = std::max(has_posts ? needs.spacing_m : needs.spacing_m / 2, kFinestStep_m);
     if (places_m < step_m) {
       step_m = places_m;
-      text = fmt::format("{:.4g} m: {} the places' spacing, at least {:g} m", step_m,
+      text = fmt::format("{:.4g} m: {} the voxels' spacing, at least {:g} m", step_m,
                          has_posts ? "as" : "half of", kFinestStep_m);
     } else if (!has_posts) {
-      text += fmt::format(" (at most {:.4g} m), a whole number in half of the places' spacing", step_m);
+      text += fmt::format(" (at most {:.4g} m), a whole number in half of the voxels' spacing", step_m);
       step_m = places_m / std::ceil(places_m / step_m * (1 - 1e-12));
       text = fmt::format("{:.4g} m", step_m) + text.substr(text.find(':'));
     }

@@ -89,7 +89,7 @@ MapsAndGrid coverage(const ScenarioHandle& handle, const std::string& heights,
     request.quantity = scenario::quantityFromName(quantity);
     if (!threshold) threshold = study::defaultThreshold(request.quantity);
     if (!threshold && needs_threshold) {
-      throw Error(ErrorCode::usage, "a threshold is required: " + quantity + " has no usual one");
+      throw Error(ErrorCode::usage, "a threshold is required: " + quantity + " has no default threshold");
     }
     request.threshold = threshold.value_or(0);
     request.times_s = std::move(times_s);

@@ -116,13 +116,7 @@ void Canvas::path(const std::vector<Point2>& points, bool closed) const {
 }
 
 void Canvas::line(const Point2& from, const Point2& to, const Ink& ink, double width, bool dashed) {
-  setInk(ink);
-  cairo_set_line_width(cairo_.get(), width);
-  const double dash = 3 * width;
-  cairo_set_dash(cairo_.get(), &dash, dashed ? 1 : 0, 0);
-  path({from, to}, false);
-  cairo_stroke(cairo_.get());
-  cairo_set_dash(cairo_.get(), nullptr, 0, 0);
+  outline({from, to}, ink, width, false, dashed);
 }
 
 void Canvas::polygon(const std::vector<Point2>& points, const Ink& ink) {
@@ -131,11 +125,15 @@ void Canvas::polygon(const std::vector<Point2>& points, const Ink& ink) {
   cairo_fill(cairo_.get());
 }
 
-void Canvas::outline(const std::vector<Point2>& points, const Ink& ink, double width, bool closed) {
+void Canvas::outline(const std::vector<Point2>& points, const Ink& ink, double width, bool closed,
+                     bool dashed) {
   setInk(ink);
   cairo_set_line_width(cairo_.get(), width);
+  const double dash = 3 * width;
+  cairo_set_dash(cairo_.get(), &dash, dashed ? 1 : 0, 0);
   path(points, closed);
   cairo_stroke(cairo_.get());
+  cairo_set_dash(cairo_.get(), nullptr, 0, 0);
 }
 
 void Canvas::disc(const Point2& center, double radius, const Ink& ink) {

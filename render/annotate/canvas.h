@@ -68,7 +68,8 @@ class Canvas {
 
   void line(const Point2& from, const Point2& to, const Ink& ink, double width, bool dashed = false);
   void polygon(const std::vector<Point2>& points, const Ink& ink);
-  void outline(const std::vector<Point2>& points, const Ink& ink, double width, bool closed);
+  void outline(const std::vector<Point2>& points, const Ink& ink, double width, bool closed,
+               bool dashed = false);
   void disc(const Point2& center, double radius, const Ink& ink);
   void circle(const Point2& center, double radius, const Ink& ink, double width);
   void arc(const Point2& center, double radius, double begin_rad, double end_rad, const Ink& ink,

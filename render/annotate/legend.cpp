@@ -194,11 +194,13 @@ void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, do
   for (const Category& category : legend.categories) {
     y += kRowHeight * style.unit;
     const double swatch = kSwatch * style.unit;
-    canvas.rectangle({left, y - swatch / 2, swatch, swatch}, {categoryColor(category.index), 1},
-                     3 * style.unit);
+    canvas.rectangle({left, y - swatch / 2, swatch, swatch},
+                     {category.color.value_or(categoryColor(category.index)), 1}, 3 * style.unit);
     canvas.textWithRim(category.name, {left + swatch + 8 * style.unit, y}, style.small_px, style.textInk(),
                        style.rimInk());
   }
+  canvas.textWithRim(legend.note, {left, y + kRowHeight * style.unit}, 0.85 * style.small_px,
+                     style.mutedInk(0.9), style.rimInk());
 }
 
 }  // namespace
@@ -274,7 +276,8 @@ double legendWidth(const Style& style, const Legend& legend) {
 
 double legendHeight(const Style& style, const Legend& legend) {
   if (!legend.function.categorical) return 0;
-  const double rows = kRowHeight * style.unit * (static_cast<double>(legend.categories.size()) + 1);
+  const double rows = kRowHeight * style.unit *
+                      (static_cast<double>(legend.categories.size()) + (legend.note.empty() ? 1 : 2));
   return std::max(rows / (1 - kBarTop), leastTop(style, legend) + rows);
 }
 

@@ -102,10 +102,34 @@ void PlotPanel::drawBand(double x_begin, double x_end, const Ink& ink) const {
 }
 
 void PlotPanel::drawLine(const PlotLine& line) {
+  if (line.is_dashed) {
+    drawDashed(line);
+    return;
+  }
   for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
     const PlotLine::Point &a = line.points[i], &b = line.points[i + 1];
     if (!std::isfinite(a.y) || !std::isfinite(b.y)) continue;
     canvas_.line(at(a.x, a.y), at(b.x, b.y), line.ink, (a.is_strong ? 3 : 1.2) * unit_, line.is_dashed);
+  }
+}
+
+/// Points of equal width are one path, since dashes begin anew with each path.
+void PlotPanel::drawDashed(const PlotLine& line) {
+  std::vector<Point2> path;
+  const std::size_t count = line.points.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const PlotLine::Point& here = line.points[i];
+    const bool is_known = std::isfinite(here.y);
+    if (is_known) path.push_back(at(here.x, here.y));
+    const bool goes_on =
+        is_known && i + 1 < count && (path.size() == 1 || here.is_strong == line.points[i - 1].is_strong);
+    if (goes_on) continue;
+    if (path.size() > 1) {
+      const bool is_strong = line.points[is_known ? i - 1 : i - 2].is_strong;  // of the last segment
+      canvas_.outline(path, line.ink, (is_strong ? 3 : 1.2) * unit_, false, true);
+    }
+    path.clear();
+    if (is_known) path.push_back(at(here.x, here.y));
   }
 }
 

@@ -71,6 +71,8 @@ class PlotPanel {
   static double namesWidth(const Canvas& canvas, const std::vector<PlotLine>& lines, double unit);
 
  private:
+  void drawDashed(const PlotLine& line);
+
   Canvas& canvas_;
   Rect frame_;
   double unit_;

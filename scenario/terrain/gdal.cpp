@@ -170,7 +170,7 @@ void TerrainFile::Impl::readHead() {
   const gdal::Dataset dataset = open();
   const int bands = GDALGetRasterCount(dataset.get());
   if (bands == 0) {
-    fail("holds no raster band itself; name one of the data sets in it, as gdalinfo lists them");
+    fail("has no raster band itself; name one of the data sets in it, as gdalinfo lists them");
   }
   GDALDriverH driver = GDALGetDatasetDriver(dataset.get());
   const char* long_name = GDALGetMetadataItem(driver, GDAL_DMD_LONGNAME, nullptr);
@@ -277,7 +277,7 @@ void TerrainFile::Impl::placeOnEarth(OGRSpatialReferenceH given) {
     const double west_deg = lattice.x(0), east_deg = lattice.x(columns - 1);
     if (west_deg < -kMaxLongitude_deg || east_deg > kMaxLongitude_deg) {
       fail("its longitudes run from " + shortText(west_deg) + " to " + shortText(east_deg) +
-           " deg, outside the allowed " + shortText(-kMaxLongitude_deg) + " to " +
+           " deg, outside the allowed range " + shortText(-kMaxLongitude_deg) + " to " +
            shortText(kMaxLongitude_deg) + " deg");
     }
     plane_name = "WGS84";

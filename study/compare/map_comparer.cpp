@@ -38,7 +38,7 @@ class Pair {
     constexpr int kGreen = 2, kVermilion = 5, kSkyBlue = 1;
     map.name += "_change";
     map.kind = MapKind::classes;
-    map.title = map.name;
+    map.title = "change of " + a_.title;
     map.description = "change of " + a_.description;
     map.labels = {"neither", "gained", "lost", "kept"};
     map.colors = {0, kGreen, kVermilion, kSkyBlue};
@@ -56,7 +56,7 @@ class Pair {
   void differ() {
     map.name += "_difference";
     map.kind = MapKind::difference;
-    map.title = map.name;
+    map.title = "difference of " + a_.title;
     map.description = "difference of " + a_.description;
     if (map.unit.rfind("dB", 0) == 0) map.unit = row.unit = "dB";
     double sum = 0;

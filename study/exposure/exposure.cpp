@@ -303,6 +303,11 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
   }
   exposure.together = summaryOf("together", exposure, [](const ExposureRow& row) { return row.value; });
   accumulate(*scenario, exposure);
+  if (exposure.names.empty()) {
+    exposure.warnings.push_back(fmt::format(
+        "all {} are on platform '{}' itself, whose own emitters are left out: the value is that of none",
+        scenario::needsRadar(request.quantity) ? "radars" : "emitters", exposure.platform));
+  }
   if (const std::optional<std::string> warning = scanWarning(*scenario, exposure)) {
     exposure.warnings.push_back(*warning);
   }

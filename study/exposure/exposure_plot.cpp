@@ -102,13 +102,13 @@ void plotExposure(const Exposure& exposure, render::ImageSize size, const std::s
         render::quantityTitle(scenario::info(exposure.request.quantity).name, exposure.unit);
     const std::string in_unit = exposure.unit.empty() ? "" : " (" + render::unitText(exposure.unit) + ")";
     const std::string title =
-        fmt::format("{}: {} on the way of {}", exposure.scenario, quantity, exposure.platform);
+        fmt::format("{}: {} along the track of {}", exposure.scenario, quantity, exposure.platform);
     canvas.text(title, {92 * unit, 26 * unit},
                 render::fittedSize_px(canvas, title, 20 * unit, width - 112 * unit, render::Weight::bold),
                 render::kPlotText, Align::left, render::Weight::bold);
     Rect frame{92 * unit, 84 * unit, width - right - 152 * unit, 0.62 * height - 100 * unit};
     PlotPanel values(canvas, frame, unit, times, axisOf(lines, exposure.unit));
-    values.drawTitle(quantity + in_unit + "; wide where it reaches the threshold");
+    values.drawTitle(quantity + in_unit + "; thick line: the threshold is reached");
     drawUnknown(exposure, values);
     values.drawGrid();
     for (const PlotLine& line : lines) values.drawLine(line);

@@ -52,10 +52,11 @@ class Czml : public MapCollection {
 
   void add(const Map& map) override {
     if (map.kind != MapKind::classes) return;
-    const std::string group = map.name + (map.height ? ", " + describe(*map.height) : "");
+    const std::string height = map.height ? ", " + describe(*map.height) : "";
+    const std::string group = map.name + height;
     if (std::find(groups_.begin(), groups_.end(), group) == groups_.end()) {
       groups_.push_back(group);
-      packets_.push_back({{"id", "group/" + group}, {"name", group}});
+      packets_.push_back({{"id", "group/" + group}, {"name", map.title + height}});
     }
     const MapShapes shapes = shapesOf(*study_.grid, map, file_);
     int number = 0;

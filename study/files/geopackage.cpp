@@ -193,7 +193,7 @@ class GeoPackage : public MapCollection {
   /// A rule of the style for a product at a height, over all times.
   void addRule(const Map& map) {
     StyleRule rule;
-    rule.label = map.name;
+    rule.label = map.title;
     rule.filter = "\"product\" = " + expressionText(map.name);
     if (map.height) {
       rule.label += ", " + describe(*map.height);

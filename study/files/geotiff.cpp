@@ -5,26 +5,27 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/files/map_colors.h"
 #include "study/maps/gdal_support.h"
 
 namespace emscape::study {
 namespace {
 
 constexpr int kNoIndex = 255;
-constexpr float kLargestIndex = 254;  ///< for counts also larger values
+constexpr float kMaxIndex = 254;  ///< for counts also larger values
 
-/// Colours of counts and indices: none for 0, then distinct hues.
-gdal::ColorTable coloursOf(MapKind kind, int count) {
-  // Okabe and Ito's colours for colour-blind readers.
-  static constexpr GDALColorEntry kColours[] = {{230, 159, 0, 255},  {86, 180, 233, 255}, {0, 158, 115, 255},
-                                                {240, 228, 66, 255}, {0, 114, 178, 255},  {213, 94, 0, 255},
-                                                {204, 121, 167, 255}};
+/// Colours of counts and indices 0 .. count - 1 as in pictures; white for the class 0, since colour tables of
+/// GeoTIFF have no transparency except for the value that means none.
+gdal::ColorTable colorsOf(const Map& map, int count) {
   gdal::ColorTable table(GDALCreateColorTable(GPI_RGB));
-  const GDALColorEntry none{0, 0, 0, 0};
+  const render::Legend legend = legendOf(map);
+  const GDALColorEntry none{255, 255, 255, 0};
+  const auto byteOf = [](float part) { return static_cast<short>(std::lround(255 * part)); };
   for (int i = 0; i < count; ++i) {
-    const bool is_none = kind != MapKind::category && i == 0;
-    const int hue = kind == MapKind::category ? i : i - 1;
-    GDALSetColorEntry(table.get(), i, is_none ? &none : &kColours[hue % 7]);
+    const std::optional<render::Rgb> color = colorOf(map, legend, static_cast<float>(i));
+    const GDALColorEntry entry =
+        color ? GDALColorEntry{byteOf(color->r), byteOf(color->g), byteOf(color->b), 255} : none;
+    GDALSetColorEntry(table.get(), i, &entry);
   }
   GDALSetColorEntry(table.get(), kNoIndex, &none);
   return table;
@@ -73,13 +74,13 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
     int largest = 1;
     for (const float value : map.values) {
       const bool is_none = std::isnan(value) || value < 0;
-      const int index = is_none ? kNoIndex : static_cast<int>(std::min(value, kLargestIndex));
+      const int index = is_none ? kNoIndex : static_cast<int>(std::min(value, kMaxIndex));
       bytes.push_back(static_cast<std::uint8_t>(index));
       if (!is_none) largest = std::max(largest, index);
     }
     GDALSetRasterNoDataValue(band, kNoIndex);
-    const int colours = std::max(largest + 1, static_cast<int>(map.labels.size()));
-    GDALSetRasterColorTable(band, coloursOf(map.kind, colours).get());
+    const int colors = std::max(largest + 1, static_cast<int>(map.labels.size()));
+    GDALSetRasterColorTable(band, colorsOf(map, colors).get());
     if (!map.labels.empty()) setLabels(band, map.labels);
     written = GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, bytes.data(), grid.width,
                            grid.height, GDT_Byte, 0, 0);

@@ -155,7 +155,7 @@ class Kmz : public MapCollection {
   };
 
   Folder& folderOf(const Map& map) {
-    const std::string name = map.name + (map.height ? ", " + describe(*map.height) : "");
+    const std::string name = map.title + (map.height ? ", " + describe(*map.height) : "");
     for (Folder& folder : folders_) {
       if (folder.name == name) return folder;
     }

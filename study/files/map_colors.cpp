@@ -9,7 +9,16 @@
 namespace emscape::study {
 namespace {
 
-constexpr float kNoPart = 0.005f;  ///< probabilities and fractions below it are transparent
+constexpr std::size_t kMaxAbsent = 8;  ///< labels of categories that are listed if they are not on the map
+constexpr int kMaxSwatches = 16;       ///< of counts; more values have a colour bar
+constexpr float kNoPart = 0.005f;      ///< probabilities and fractions below it are transparent
+
+/// Adds the colours of "viridis" or "diverging" from low to high.
+void setColors(render::Legend& legend, const char* colors, double low, double high) {
+  for (const render::ColorMap::Point& point : render::colorMap(colors).points)
+    legend.function.colors.push_back({low + point.at * (high - low), point.color});
+  legend.function.opacities = {{low, 0}, {high, 0}};
+}
 
 /// Index of a colour of render::categoryColor().
 int categoryOf(const Map& map, int value) {
@@ -32,13 +41,23 @@ render::Legend legendOf(const Map& map) {
     if (isWhole(map.kind) && value != previous) present.insert(static_cast<int>(value));
     previous = value;
   }
+  if (map.kind == MapKind::count) {
+    const int last = std::isfinite(largest) ? static_cast<int>(largest) : 0;
+    setColors(legend, "viridis", 0, std::max(last, 1));
+    legend.whole_numbers = true;
+    if (last >= kMaxSwatches) return legend;
+    for (int n = 0; n <= last; ++n)
+      legend.categories.push_back({n, std::to_string(n), legend.function.color(n)});
+    legend.function.categorical = true;
+    return legend;
+  }
   if (isWhole(map.kind)) {
     legend.function.categorical = true;
     const int first = map.kind == MapKind::category ? 0 : 1;
     int last = std::isfinite(largest) ? static_cast<int>(largest) : 0;
     if (map.kind == MapKind::classes) last = static_cast<int>(map.labels.size()) - 1;
-    const bool has_absent =
-        map.kind == MapKind::classes || last < first + 16;  // if there are many, only those on the map
+    // Of many, only those on the map.
+    const bool has_absent = map.kind == MapKind::classes || map.labels.size() <= kMaxAbsent;
     for (int n = first; n <= last; ++n) {
       if (!has_absent && present.count(n) == 0) continue;
       const std::string label = n < static_cast<int>(map.labels.size()) ? map.labels[n] : std::to_string(n);
@@ -58,10 +77,7 @@ render::Legend legendOf(const Map& map) {
   }
   if (high - low < 1e-6) high = low + 1;
   const char* const colors = map.kind == MapKind::difference ? "diverging" : "viridis";
-  for (const render::ColorMap::Point& point : render::colorMap(colors).points) {
-    legend.function.colors.push_back({low + point.at * (high - low), point.color});
-  }
-  legend.function.opacities = {{low, 0}, {high, 0}};
+  setColors(legend, colors, low, high);
   return legend;
 }
 
@@ -70,6 +86,11 @@ std::optional<render::Rgb> colorOf(const Map& map, const render::Legend& legend,
   if (!isWhole(map.kind)) {
     if (isPart(map.kind) && value < kNoPart) return std::nullopt;
     return legend.function.color(static_cast<double>(value));
+  }
+  if (map.kind == MapKind::count) {
+    const std::size_t n = static_cast<std::size_t>(std::max(value, 0.0f));
+    return n < legend.categories.size() ? legend.categories[n].color
+                                        : legend.function.color(static_cast<double>(value));
   }
   const int index = static_cast<int>(value), none = map.kind == MapKind::category ? -1 : 0;
   if (index == none) return std::nullopt;

@@ -11,7 +11,7 @@ namespace emscape::study {
 /// Colours and legend of a map, over the range of its values; 0..1 for parts.
 render::Legend legendOf(const Map& map);
 
-/// The colour of a value by the map's legend; none if it is transparent: no value, a count of 0, a fraction
+/// The colour of a value by the map's legend; none if it is transparent: no value, the class 0, a fraction
 /// below half a percent.
 std::optional<render::Rgb> colorOf(const Map& map, const render::Legend& legend, float value);
 

@@ -17,8 +17,8 @@ namespace {
 constexpr double kMaxLevels = 64;
 
 double logOddsOf(double probability) {
-  constexpr double kLeast = 1e-6;
-  const double clamped = std::clamp(probability, kLeast, 1 - kLeast);
+  constexpr double kMinProbability = 1e-6;
+  const double clamped = std::clamp(probability, kMinProbability, 1 - kMinProbability);
   return std::log(clamped / (1 - clamped));
 }
 
@@ -139,7 +139,7 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
 
 void addOutlines(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
   constexpr int kNone = -1;
-  const int nothing = map.kind == MapKind::category ? -1 : 0;
+  const int nothing = map.kind == MapKind::classes ? 0 : -1;
   const gdal::Dataset raster = memoryRaster(grid, GDT_Int32, file);
   GDALRasterBandH band = GDALGetRasterBand(raster.get(), 1);
   std::vector<std::int32_t> numbers(map.values.size(), kNone);

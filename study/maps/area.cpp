@@ -48,7 +48,7 @@ MapArea circularArea(const MapArea::Circle& circle) {
   if (!(circle.latitude_deg >= -90 && circle.latitude_deg <= 90 && circle.longitude_deg >= -180 &&
         circle.longitude_deg <= 180)) {
     throw Error(ErrorCode::usage,
-                fmt::format("area: latitude {}, longitude {} is no position (-90..90, -180..180 deg)",
+                fmt::format("area: latitude {}, longitude {} is not a position (-90..90, -180..180 deg)",
                             circle.latitude_deg, circle.longitude_deg));
   }
   if (!(circle.radius_m >= 10 && circle.radius_m <= 2e6)) {

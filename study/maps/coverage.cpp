@@ -51,6 +51,31 @@ std::optional<std::string> scanWarning(const scenario::Scenario& at_targets,
   return unlit->warning;
 }
 
+/// Warning for times at which no emitter of the quantity is active: their maps are empty.
+std::optional<std::string> inactiveWarning(const std::shared_ptr<const scenario::Scenario>& at_targets,
+                                           const scenario::TerrainPtr& terrain, Quantity quantity,
+                                           const std::vector<double>& times_s) {
+  const bool of_radars = scenario::needsRadar(quantity);
+  std::vector<double> empty_s;
+  for (const double time_s : times_s) {
+    const scenario::Snapshot snapshot = scenario::snapshotAt(at_targets, terrain.get(), time_s);
+    bool is_active = false;
+    for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
+      const bool counts = !of_radars || at_targets->emitters[e].kind == scenario::EmitterKind::radar;
+      is_active = is_active || (counts && snapshot.emitters[e].active);
+    }
+    if (!is_active) empty_s.push_back(time_s);
+  }
+  if (empty_s.empty()) return std::nullopt;
+  const char* const kind = of_radars ? "radar" : "emitter";
+  if (empty_s.size() == 1) {
+    return fmt::format("no {} is active at t = {} s (active_s): the maps of this time are empty", kind,
+                       empty_s.front());
+  }
+  return fmt::format("no {} is active at {} of {} times, first at t = {} s (active_s): their maps are empty",
+                     kind, empty_s.size(), times_s.size(), empty_s.front());
+}
+
 emfield::FieldOptions withoutQuantities(emfield::FieldOptions options) {
   options.quantities.clear();
   return options;
@@ -116,9 +141,18 @@ struct CoverageSolver::Impl {
   std::optional<LeastHeights> least_heights;
 
   /// @param of_maps  without quantities
+  /// @throws Error (usage) if no pixel has its centre in the area
   Impl(const MapGrid& map_grid, std::vector<CoverageRequest> of_maps_requests,
        const emfield::FieldOptions& of_maps)
       : grid(map_grid), requests(std::move(of_maps_requests)), options(of_maps) {
+    const auto isInside = [](const emfield::Surface::Place& centre) {
+      return !std::isnan(centre.latitude_deg);
+    };
+    if (std::none_of(grid.places.begin(), grid.places.end(), isInside)) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("no pixel of {} m has its centre in the area: a smaller cell or a larger area",
+                              grid.cell_m));
+    }
     for (const HeightReference reference : {HeightReference::ground, HeightReference::mean_sea_level}) {
       SurfaceField field(grid, requests, reference, options);
       if (!field.hasHeights()) continue;
@@ -190,7 +224,9 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
   }
   std::vector<std::vector<std::string>> warnings(scenarios.size());
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
-    if (const auto warning = scanWarning(*at_targets[s], requests)) warnings[s].push_back(*warning);
+    const auto inactive = inactiveWarning(at_targets[s], terrain, requests.front().quantity, times_s);
+    for (const auto& warning : {inactive, scanWarning(*at_targets[s], requests)})
+      if (warning) warnings[s].push_back(*warning);
     for (Impl::OfReference& of : impl_->references) {
       for (std::size_t r = 0; r < requests.size(); ++r)
         of.maps[r].finish(s, [&](CoverageMap map) { take(s, r, std::move(map)); });

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kFirstSteps = 64, kLaterSteps = 16;
 /// Number of voxels at a time, which limits the memory.
-constexpr int kMostVoxels = 1 << 25;
+constexpr int kMaxVoxels = 1 << 25;
 
 /// Some rows of a map.
 class Strip {
@@ -77,7 +77,7 @@ std::vector<std::vector<float>> LeastHeights::compute(
     const std::shared_ptr<const scenario::Scenario>& scenario, const scenario::TerrainPtr& terrain,
     double time_s) {
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), time_s);
-  const int rows_at_once = std::max(1, kMostVoxels / (grid_.width * (kFirstSteps + 1)));
+  const int rows_at_once = std::max(1, kMaxVoxels / (grid_.width * (kFirstSteps + 1)));
   const bool is_kept = rows_at_once >= grid_.height;
   const auto solve = [&](const emfield::Surface& surface, std::optional<emfield::FieldSolver>& solver) {
     if (!solver) {
@@ -100,7 +100,7 @@ std::vector<std::vector<float>> LeastHeights::compute(
     for (std::size_t t = 0; t < thresholds_.size(); ++t) {
       Strip strip = all;
       if (first) strip.search(kFirstStep_m, kFirstSteps, thresholds_[t], *first);
-      for (double step_m = kFirstStep_m; strip.hasPlaces() && step_m > kLeastHeightAccuracy_m;) {
+      for (double step_m = kFirstStep_m; strip.hasPlaces() && step_m > kMinHeightAccuracy_m;) {
         step_m /= kLaterSteps;
         std::optional<emfield::FieldSolver> own;
         const auto volume = solve(strip.surfaceOf(step_m, kLaterSteps), own);

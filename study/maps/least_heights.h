@@ -11,10 +11,10 @@
 namespace emscape::study {
 
 /// Heights are searched from the ground to kHighestSearched_m in 64 steps, which all thresholds share, then
-/// below the first step that reaches a threshold in 16 steps, repeatedly down to kLeastHeightAccuracy_m.
+/// below the first step that reaches a threshold in 16 steps, repeatedly down to kMinHeightAccuracy_m.
 /// Lower intervals of heights thinner than a first step (160 m) may be missed.
 constexpr double kHighestSearched_m = 10240;
-constexpr double kLeastHeightAccuracy_m = 0.625;
+constexpr double kMinHeightAccuracy_m = 0.625;
 
 /// Finds minimum heights on a map. For one thread at a time.
 class LeastHeights {
@@ -27,7 +27,7 @@ class LeastHeights {
   /// The field of the first steps is kept for the next scenario or time, so that only changes are computed,
   /// unless the map is larger than one strip.
   /// @param scenario  with the quantity as its only output
-  /// @return for each threshold, heights (m) that reach it, at most kLeastHeightAccuracy_m above the minimum;
+  /// @return for each threshold, heights (m) that reach it, at most kMinHeightAccuracy_m above the minimum;
   /// 0 on the ground; NaN: none does, or the position has no value
   std::vector<std::vector<float>> compute(const std::shared_ptr<const scenario::Scenario>& scenario,
                                           const scenario::TerrainPtr& terrain, double time_s);

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "emscape/base/error.h"
+#include "emscape/render/annotate/legend.h"
 
 namespace emscape::study {
 namespace {
@@ -35,9 +37,10 @@ std::vector<std::string> split(const std::string& text, char separator) {
 
 const std::vector<ProductInfo>& productTable() {
   static const std::vector<ProductInfo> kTable{
-      {Product::value, "value", nullptr, "the quantity"},
+      {Product::value, "value", nullptr, nullptr, "the quantity"},
       {Product::covered,
        "covered",
+       "coverage",
        "",
        "1 where the quantity reaches the threshold, else 0",
        false,
@@ -45,17 +48,20 @@ const std::vector<ProductInfo>& productTable() {
        true,
        {"no", "yes"},
        1},
-      {Product::margin, "margin", "dB", "the quantity less the threshold"},
-      {Product::count, "count", "", "number of emitters that reach the threshold by themselves", false, true},
-      {Product::redundancy, "redundancy", "", "number of those that may fail before none of them reaches it",
-       false, true},
-      {Product::best, "best", "", "the emitter with the largest value that reaches it", false, true},
-      {Product::max_range, "max_range", "m",
+      {Product::margin, "margin", "margin over the threshold", "dB", "the quantity less the threshold"},
+      {Product::count, "count", "number of emitters", "",
+       "number of emitters that reach the threshold by themselves", false, true},
+      {Product::redundancy, "redundancy", "redundancy", "",
+       "number of those that may fail before none of them reaches it", false, true},
+      {Product::best, "best", "best emitter", "", "the emitter with the largest value that reaches it", false,
+       true},
+      {Product::max_range, "max_range", "maximum range", "m",
        "distance on the ground of the farthest emitter that reaches the threshold by itself"},
-      {Product::min_height, "min_height", "m",
+      {Product::min_height, "min_height", "minimum height above ground", "m",
        "minimum height above ground that reaches the threshold, up to 10 km", false, false, false},
       {Product::jam_loss,
        "jam_loss",
+       "loss to jamming",
        "",
        "1 where jamming takes the coverage away",
        false,
@@ -65,6 +71,7 @@ const std::vector<ProductInfo>& productTable() {
        1},
       {Product::burn_through,
        "burn_through",
+       "burn-through",
        "",
        "2 where the threshold is reached in spite of jamming, 1 where jamming takes it away, else 0",
        false,
@@ -72,20 +79,36 @@ const std::vector<ProductInfo>& productTable() {
        true,
        {"out of reach", "jammed", "covered"},
        2},
-      {Product::first_detection, "first_detection", "s", "time of the first coverage", true},
-      {Product::fraction, "fraction", "", "fraction of the time with coverage", true},
-      {Product::gaps, "gaps", "", "number of the gaps in coverage", true, true},
-      {Product::longest_gap, "longest_gap", "s", "longest time without coverage", true},
-      {Product::mean_gap, "mean_gap", "s", "mean time of the gaps in coverage", true},
-      {Product::revisit, "revisit", "s", "mean time from the beginning of a coverage to that of the next",
+      {Product::first_detection, "first_detection", "first detection", "s", "time of the first coverage",
        true},
-      {Product::response, "response", "s", "mean time until coverage, from a moment chosen at random", true},
+      {Product::fraction, "fraction", "fraction of time covered", "", "fraction of the time with coverage",
+       true},
+      {Product::gaps, "gaps", "number of gaps", "", "number of the gaps in coverage", true, true},
+      {Product::longest_gap, "longest_gap", "longest gap", "s", "longest time without coverage", true},
+      {Product::mean_gap, "mean_gap", "mean gap", "s", "mean time of the gaps in coverage", true},
+      {Product::revisit, "revisit", "revisit time", "s",
+       "mean time from the beginning of a coverage to that of the next", true},
+      {Product::response, "response", "response time", "s",
+       "mean time until coverage, from a moment chosen at random", true},
   };
   return kTable;
 }
 
 const ProductInfo& info(Product product) {
   return productTable()[static_cast<std::size_t>(product)];
+}
+
+std::string titleOf(scenario::Quantity quantity) {
+  const scenario::QuantityInfo& entry = scenario::info(quantity);
+  std::string title = render::quantityTitle(entry.name, entry.unit);
+  const bool is_abbreviation = title.size() > 1 && std::isupper(static_cast<unsigned char>(title[1])) != 0;
+  if (!is_abbreviation) title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
+  return title;
+}
+
+std::string titleOf(Product product, scenario::Quantity quantity) {
+  const char* const title = info(product).title;
+  return title != nullptr ? title : titleOf(quantity);
 }
 
 Product productNamed(const std::string& name) {
@@ -128,7 +151,7 @@ std::vector<MapHeight> parseHeights(const std::string& text) {
       if (used != word.size() || !std::isfinite(metres)) refuseHeights(text, part);
       if (metres < (above_ground ? 0 : -500) || metres > 100e3) {
         throw Error(ErrorCode::usage,
-                    fmt::format("heights '{}': {} m; {} to 100000 m above {}", text, word,
+                    fmt::format("heights '{}': {} m must be from {} to 100000 m above {}", text, word,
                                 above_ground ? 0 : -500, above_ground ? "ground" : "mean sea level"));
       }
       return metres;

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/quantity_text.h"
 #include "emscape/base/parallel.h"
+#include "emscape/emfield/categories.h"
 #include "emscape/scenario/snapshot.h"
 
 namespace emscape::study {
@@ -15,12 +17,14 @@ using emfield::HeightReference;
 using scenario::Quantity;
 
 MapKind kindOf(const ProductInfo& product, Quantity quantity, const std::string& unit) {
+  const bool is_value = product.product == Product::value;
   if (product.product == Product::best) return MapKind::category;
+  if (is_value && scenario::info(quantity).categorical) return MapKind::category;
+  if (is_value && quantity == Quantity::emitter_count) return MapKind::count;
   if (!product.classes.empty()) return MapKind::classes;
   if (product.categorical) return MapKind::count;
   if (!unit.empty()) return MapKind::level;
-  const bool is_probability =
-      product.product == Product::value && quantity == Quantity::detection_probability;
+  const bool is_probability = is_value && quantity == Quantity::detection_probability;
   return is_probability ? MapKind::probability : MapKind::part;
 }
 
@@ -71,19 +75,21 @@ CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& 
   CoverageMap map;
   map.product = product;
   map.name = of_product.name;
-  map.title = product == Product::value ? quantity.name : of_product.name;
+  map.title = titleOf(product, request.quantity);
   map.height = height;
   map.labels.assign(of_product.classes.begin(), of_product.classes.end());
   map.colors = classColors(product);
   map.area_class = of_product.area_class;
   map.unit = of_product.unit != nullptr ? of_product.unit : quantity.unit;
   map.kind = kindOf(of_product, request.quantity, map.unit);
-  if (product == Product::best) {
-    for (const scenario::Emitter& emitter : scenario.emitters) map.labels.push_back(emitter.name);
+  if (map.kind == MapKind::category) {
+    const Quantity named = product == Product::best ? Quantity::dominant_emitter : request.quantity;
+    map.labels = emfield::categoryNames(scenario, named);
   }
   map.description = product == Product::value
-                        ? quantity.name
-                        : fmt::format("{} ({} >= {})", of_product.name, quantity.name, request.threshold);
+                        ? map.title
+                        : fmt::format("{} ({} >= {})", map.title, titleOf(request.quantity),
+                                      quantityText(request.threshold, quantity.unit));
   if (height) map.description += " at " + describe(*height);
   return map;
 }

@@ -155,7 +155,7 @@ struct MapFolder::State {
     const MapGrid& grid = *study.grid;
     const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
     HtmlReport report(study.title, fmt::format("{} x {} pixels of {} m in {}; {} >= {}", grid.width,
-                                               grid.height, grid.cell_m, grid.crs, quantity.name,
+                                               grid.height, grid.cell_m, grid.crs, titleOf(study.quantity),
                                                quantityText(study.threshold, quantity.unit)));
     report.section("Areas and ranges");
     report.table(tableOf(records));

@@ -205,10 +205,10 @@ ReportTable tableOf(const std::vector<MapRecord>& records) {
     if (map.kind == MapKind::category) {
       for (std::size_t n = 0; n < map.labels.size(); ++n)
         if (summary.label_areas_m2[n] > 0)
-          addRow(map.name + ": " + map.labels[n], summary.label_areas_m2[n], false);
+          addRow(map.title + ": " + map.labels[n], summary.label_areas_m2[n], false);
       continue;
     }
-    addRow(map.name, map.area_class >= 0 ? std::optional(summary.class_area_m2) : std::nullopt,
+    addRow(map.title, map.area_class >= 0 ? std::optional(summary.class_area_m2) : std::nullopt,
            map.kind != MapKind::classes);
   }
   return table;
@@ -244,7 +244,7 @@ void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapR
   }
   const MapGrid& grid = *study.grid;
   const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
-  facts.emplace_back("quantity", quantity.name);
+  facts.emplace_back("quantity", fmt::format("{} ({})", titleOf(study.quantity), quantity.name));
   facts.emplace_back("threshold", quantityText(study.threshold, quantity.unit));
   facts.emplace_back("times", study.times_s.size() == 1
                                   ? fmt::format("{} s", study.times_s.front())

@@ -58,7 +58,7 @@ std::vector<CandidateSite> readCandidates(const std::string& file) {
   }
   if (sites.empty() || sites.size() > kMaxCandidates) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
-                fmt::format("{} points, outside the allowed 1 to {}", sites.size(), kMaxCandidates));
+                fmt::format("{} points, outside the allowed range 1 to {}", sites.size(), kMaxCandidates));
   }
   std::set<std::string> names;
   for (const CandidateSite& site : sites) {

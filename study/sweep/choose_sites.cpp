@@ -47,7 +47,7 @@ class Cover {
 
 std::vector<std::size_t> chooseSites(const std::vector<std::vector<std::uint8_t>>& pixels,
                                      const std::vector<float>& weights, std::size_t count) {
-  constexpr double kSmallest = 1e-9;  // relative: an exchange must add more than rounding
+  constexpr double kMinGain = 1e-9;  // relative: an exchange must add more than rounding
   Cover cover(pixels, weights);
   std::vector<std::size_t> chosen;
   double gain = 0;
@@ -61,7 +61,7 @@ std::vector<std::size_t> chooseSites(const std::vector<std::vector<std::uint8_t>
       cover.add(site, -1);
       const double own = cover.gain(site);
       const std::size_t other = cover.best(chosen, gain);
-      if (gain > own * (1 + kSmallest)) {
+      if (gain > own * (1 + kMinGain)) {
         site = other;
         has_changed = true;
       }

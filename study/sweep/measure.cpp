@@ -32,7 +32,7 @@ std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& g
       }
     }
   }
-  if (geometries.empty()) fail("holds no polygon");
+  if (geometries.empty()) fail("has no polygon");
   std::vector<OGRGeometryH> handles;
   for (const gdal::Geometry& geometry : geometries) handles.push_back(geometry.get());
   const int band = 1;
@@ -44,7 +44,7 @@ std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& g
                    grid.width, grid.height, GDT_Byte, 0, 0) != CE_None) {
     fail("cannot be drawn on the map");
   }
-  if (std::find(pixels.begin(), pixels.end(), 1) == pixels.end()) fail("holds no pixel of the map");
+  if (std::find(pixels.begin(), pixels.end(), 1) == pixels.end()) fail("has no pixel of the map");
   return pixels;
 }
 

@@ -17,11 +17,11 @@ using document::ValueType;
 namespace spec = document::spec;
 
 constexpr int kMaxItems = 100000;
-constexpr double kLargest = 1e300;
+constexpr double kMaxNumber = 1e300;
 const document::ValueSpec kText = spec::textOf(ValueType::text, 4096);
 const document::ValueSpec kFile = spec::textOf(ValueType::file, 4096);
-const document::ValueSpec kNumber = spec::number().from(-kLargest).to(kLargest);
-const document::ValueSpec kPositive = spec::number().above(0).to(kLargest);
+const document::ValueSpec kNumber = spec::number().from(-kMaxNumber).to(kMaxNumber);
+const document::ValueSpec kPositive = spec::number().above(0).to(kMaxNumber);
 const document::ValueSpec kCount = spec::simple(ValueType::integer).from(2).to(1e7);
 
 document::ValueSpec productNames() {

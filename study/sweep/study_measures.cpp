@@ -76,8 +76,8 @@ void readMeasures(StudyReading& reading, const Section& root) {
     const std::optional<double> usual = defaultThreshold(measure.quantity);
     if (!given && !usual && measure.product != Product::value) {
       reading.fault(item.location(),
-                    fmt::format("measure '{}' needs a threshold: quantity '{}' has no usual one",
-                                measure.name, scenario::info(measure.quantity).name));
+                    fmt::format("measure '{}' needs a threshold: quantity '{}' has no default", measure.name,
+                                scenario::info(measure.quantity).name));
     }
     measure.threshold = given.value_or(usual.value_or(0));
     if (product.over_time && spec.times_s.size() < 2) {

@@ -164,9 +164,9 @@ PartRange rangeOfPart(std::size_t variants, int part, int parts) {
 }
 
 int usualParts(std::size_t variants) {
-  constexpr std::size_t kVariantsPerPart = 16, kMostUsual = 500;
+  constexpr std::size_t kVariantsPerPart = 16, kMaxUsual = 500;
   return static_cast<int>(
-      std::clamp<std::size_t>(variants / kVariantsPerPart, std::min<std::size_t>(variants, 8), kMostUsual));
+      std::clamp<std::size_t>(variants / kVariantsPerPart, std::min<std::size_t>(variants, 8), kMaxUsual));
 }
 
 }  // namespace emscape::study

@@ -7,6 +7,7 @@
 #include <map>
 #include <numeric>
 
+#include "base/quantity_text.h"
 #include "document/schema_check.h"
 #include "emscape/study/html_report.h"
 #include "emscape/study/map.h"
@@ -70,14 +71,14 @@ class ReportWriter {
                    {"Emscape", EMSCAPE_VERSION}});
     ReportTable measures{{"Measure", "Product", "Quantity", "Threshold", "Over", "Unit"}, {}, ""};
     for (const StudyMeasure& measure : study_.measures) {
-      const ProductInfo& product = info(measure.product);
       const std::string over =
           measure.over.empty() ? "the whole map" : std::filesystem::path(measure.over).filename().string();
       measures.rows.push_back(
           {measure.name,
-           product.name + (product.at_heights ? " at " + describe(measure.height) : std::string()),
-           scenario::info(measure.quantity).name, fmt::format("{}", measure.threshold), over,
-           unitOf(measure)});
+           study::titleOf(measure.product, measure.quantity) +
+               (info(measure.product).at_heights ? " at " + describe(measure.height) : std::string()),
+           study::titleOf(measure.quantity),
+           quantityText(measure.threshold, scenario::info(measure.quantity).unit), over, unitOf(measure)});
     }
     report_.table(measures);
     ReportTable parameters{{"Parameter", "Settings", "A change computes again"}, {}, ""};

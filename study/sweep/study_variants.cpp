@@ -214,8 +214,8 @@ class VariantReader {
     search.choose = sites.integer("choose");
     if (search.choose > static_cast<int>(candidates.size()) && !candidates.empty()) {
       reading_.fault(sites.locationOf("choose"),
-                     fmt::format("'choose' is {}, outside the allowed 1 to {} candidates", search.choose,
-                                 candidates.size()));
+                     fmt::format("'choose' is {}, outside the allowed range 1 to {} candidates",
+                                 search.choose, candidates.size()));
     }
     if (sites.has("maximise")) {
       const auto found =

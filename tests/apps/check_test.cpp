@@ -91,7 +91,7 @@ TEST(Check, RefusesAFolderWithoutDatasets) {
   const TemporaryFolder folder;
   const ProgramResult result = run({"check", folder.path().string()});
   EXPECT_EQ(result.status, 3);
-  EXPECT_THAT(result.err, HasSubstr("holds no dataset that is known"));
+  EXPECT_THAT(result.err, HasSubstr("has no known dataset"));
 }
 
 }  // namespace

@@ -69,6 +69,21 @@ int statusOf(const std::string& arguments_and_redirections) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+TEST(CommandLine, AnOptionWithoutItsValueIsNamed) {
+  const auto errorOf = [](const Arguments& more) {
+    Arguments arguments{"simulate", shippedScenario("quick.yaml"), "-o", "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, kUsage);
+    return result.err;
+  };
+  EXPECT_THAT(errorOf({"--mesh", "--times", "0"}),
+              HasSubstr("--mesh needs a value, but '--times' follows\n"));
+  EXPECT_THAT(errorOf({"--times", "--json"}), HasSubstr("--times needs a value, but '--json' follows\n"));
+  EXPECT_THAT(errorOf({"--times"}), HasSubstr("--times needs a value\n"));
+  EXPECT_THAT(errorOf({"--resume", "0"}), HasSubstr("unexpected argument '0'\n"));
+}
+
 TEST(CommandLine, MessagesThatCannotBeWrittenDoNotStopTheWork) {
   const TemporaryFolder folder;
   for (const std::string redirection : {"2>&-", "2>/dev/full", "<&- 2>&-"}) {

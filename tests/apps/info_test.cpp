@@ -102,6 +102,22 @@ emitters:
   }());
 }
 
+TEST(Info, AHeaderOfValuesDescribesThem) {
+  const TemporaryFolder folder;
+  const ProgramResult written =
+      run({"simulate", quick(), "-o", folder / "out", "--format", "raw,nvdb", "--times", "0"});
+  ASSERT_EQ(written.status, 0) << written.err;
+  for (const std::string ending : {".raw", ".nvdb"}) {
+    std::string file;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / "out"))
+      if (entry.path().extension() == ending) file = entry.path().string();
+    const ProgramResult of_values = run({"info", file, "--json"}),
+                        of_header = run({"info", file + ".json", "--json"});
+    EXPECT_EQ(of_header.status, 0) << of_header.err;
+    EXPECT_EQ(of_header.out, of_values.out);
+  }
+}
+
 TEST(InfoOfRefractivity, RefusesAPlotOfOtherFiles) {
   const TemporaryFolder folder;
   const ProgramResult result = run({"info", quick(), "--plot", folder / "x.png"});

@@ -117,9 +117,10 @@ TEST_F(Validate, ChecksTheEditsOfTheCommandLine) {
             0);
   const ProgramResult unknown = run({"validate", file, "--set", "emitters.serch radar.power_w=500"});
   EXPECT_EQ(unknown.status, 3);
-  EXPECT_THAT(unknown.out,
-              HasSubstr("emitters.serch radar.power_w=500: error: there is no emitter 'serch radar'; did "
-                        "you mean 'search radar'?"));
+  EXPECT_THAT(
+      unknown.out,
+      HasSubstr("emitters.serch radar.power_w=500: error: there is no emitter 'serch radar'; allowed"));
+  EXPECT_THAT(unknown.out, HasSubstr("'jammer'; did you mean 'search radar'?\n"));
   const ProgramResult value = run({"validate", file, "--set", "atmosphere.k_factor=99", "--json"});
   EXPECT_EQ(value.status, 3);
   EXPECT_EQ(json::parse(value.out).at("problems").at(0).at("file"), "atmosphere.k_factor=99");

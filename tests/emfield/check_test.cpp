@@ -99,7 +99,7 @@ TEST_F(CheckFolder, TellsWhatIsPresentAbsentAndUnknown) {
 }
 
 TEST_F(CheckFolder, RefusesAFolderWithoutDatasets) {
-  EXPECT_THAT(messageOf([this] { findDatasets(root_.path()); }), HasSubstr("holds no dataset that is known"));
+  EXPECT_THAT(messageOf([this] { findDatasets(root_.path()); }), HasSubstr("has no known dataset"));
   EXPECT_THAT(messageOf([this] { findDatasets(root_ / "none"); }), EndsWith("none: no such folder"));
 }
 

@@ -229,6 +229,25 @@ Reference reference(const scenario::Snapshot& snapshot, const volume::Grid& grid
           boresight_wm2 * sum * sum * std::pow(isotropic, -weight)};
 }
 
+/// Asserts that each voxel of a field at time 0 has the reference's amplitude, relative to the sum of the
+/// magnitudes: nulls are as deep as the phases are exact.
+void expectReference(const std::shared_ptr<const scenario::Scenario>& scenario,
+                     const volume::DenseVolume& volume) {
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
+  const Dims dims = volume.grid.dims;
+  for (int k = 0; k < dims.z; ++k) {
+    for (int j = 0; j < dims.y; ++j) {
+      for (int i = 0; i < dims.x; ++i) {
+        const Reference expected = reference(snapshot, volume.grid, i, j, k);
+        const double power_wm2 = dbToRatio(static_cast<double>(valueAt(volume, i, j, k)));
+        ASSERT_NEAR(std::sqrt(power_wm2 / expected.scale_wm2),
+                    std::sqrt(expected.power_wm2 / expected.scale_wm2), 4e-3)
+            << i << ", " << j << ", " << k;
+      }
+    }
+  }
+}
+
 TEST_P(TwoRays, AreWeighedByThePatternAlongEachInEveryVoxel) {
   const scenario::AntennaPtr antennas[] = {
       scenario::makeIsotropic(3),
@@ -257,20 +276,7 @@ TEST_P(TwoRays, AreWeighedByThePatternAlongEachInEveryVoxel) {
       scenario->platforms[0].attitude = {10.0 * n, 4,
                                          -12};  // the antenna rolls: no scalar elevation would do
       scenario->output.quantities = {"power_density_dbwm2"};
-      const auto volume = field(scenario);
-      const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
-      for (int k = 0; k < 12; ++k) {
-        for (int j = 0; j < 16; ++j) {
-          for (int i = 0; i < 19; ++i) {
-            const Reference expected = reference(snapshot, volume->grid, i, j, k);
-            const double power_wm2 = dbToRatio(static_cast<double>(valueAt(*volume, i, j, k)));
-            // relative to the magnitudes' sum: nulls are as deep as the phases are exact
-            ASSERT_NEAR(std::sqrt(power_wm2 / expected.scale_wm2),
-                        std::sqrt(expected.power_wm2 / expected.scale_wm2), 4e-3)
-                << i << ", " << j << ", " << k;
-          }
-        }
-      }
+      ASSERT_NO_FATAL_FAILURE(expectReference(scenario, *field(scenario)));
       ++n;
     }
   }
@@ -287,19 +293,7 @@ TEST_P(TwoRays, AreAtTheirOwnRangeInEveryVoxelOfALeaningColumn) {
   emitter.propagation.two_ray.sum = propagation::TwoRaySum::coherent;
   placeOver(*scenario, emitter, kShip, 40);
   scenario->output.quantities = {"power_density_dbwm2"};
-  const auto volume = field(scenario);
-  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
-  for (int k = 0; k < 40; ++k) {
-    for (int j = 0; j < 16; ++j) {
-      for (int i = 0; i < 19; ++i) {
-        const Reference expected = reference(snapshot, volume->grid, i, j, k);
-        const double power_wm2 = dbToRatio(static_cast<double>(valueAt(*volume, i, j, k)));
-        ASSERT_NEAR(std::sqrt(power_wm2 / expected.scale_wm2),
-                    std::sqrt(expected.power_wm2 / expected.scale_wm2), 4e-3)
-            << i << ", " << j << ", " << k;
-      }
-    }
-  }
+  expectReference(scenario, *field(scenario));
 }
 
 TEST_P(TwoRays, OfABeamThatTurnsAreCombinedAnewAndNotComputed) {

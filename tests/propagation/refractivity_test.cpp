@@ -214,7 +214,7 @@ TEST(BulkDuct, NeverGivesNanWithinItsLimits) {
 
 TEST(BulkDuct, RefusesInputsOutsideItsLimits) {
   EXPECT_THAT(test::errorOf([] { bulkAir(bulk(0, 5)); }, ErrorCode::bad_input),
-              HasSubstr("relative humidity is 5, outside the allowed 10 to 100 %"));
+              HasSubstr("relative humidity is 5, outside the allowed range 10 to 100 %"));
   EXPECT_THAT(test::errorOf([] { bulkAir(bulk(0, 80, 31)); }, ErrorCode::bad_input), HasSubstr("wind is 31"));
   EXPECT_THAT(test::errorOf([] { bulkAir(bulk(60, 80)); }), HasSubstr("air temperature is 348.15"));
 }

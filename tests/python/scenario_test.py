@@ -62,7 +62,7 @@ def test_all_faults_of_a_file_are_listed_with_their_places(tmp_path):
         em.load(file)
     problems = caught.value.problems
     assert [(p.file, p.line, p.column) for p in problems] == [(str(file), 6, 9), (str(file), 19, 14)]
-    assert problems[1].message == "'power_w' is -1, outside the allowed above 0 to 1 TW"
+    assert problems[1].message == "'power_w' is -1, outside the allowed range above 0 to 1 TW"
     assert str(caught.value).splitlines()[1] == f"{file}:19:14: {problems[1].message}"
     assert caught.value.status == 3
     again = pickle.loads(pickle.dumps(caught.value))

@@ -252,13 +252,10 @@ TEST(Cut, PacketsAreWithinOneLevelOfThePlainForm) {
     const ImageSize size{1 + static_cast<int>(random() % 60), 1 + static_cast<int>(random() % 60)};
     testing::setRandomScene(renderer, random, size);
     testing::addRandomPlanes(renderer, random);
-    const Image8 fast = quantize(renderer.render(size));
-    RenderSettings settings = renderer.settings();
-    settings.plain = true;
-    renderer.setSettings(settings);
-    const ImageDifference difference = compare(fast, quantize(renderer.render(size)));
+    const ImageDifference difference = testing::differenceFromPlain(renderer, size);
     for (std::size_t channel = 0; channel < 4; ++channel) {
-      EXPECT_LE(difference.max[channel], 1) << "scene " << scene << ", " << toString(settings.mode);
+      EXPECT_LE(difference.max[channel], 1)
+          << "scene " << scene << ", " << toString(renderer.settings().mode);
     }
   }
 }

@@ -21,14 +21,10 @@ TEST_P(Packets, AreWithinOneLevelOfThePlainForm) {
   for (int scene = 0; scene < 60; ++scene) {
     const ImageSize size{1 + static_cast<int>(random() % 70), 1 + static_cast<int>(random() % 70)};
     testing::setRandomScene(renderer, random, size);
-    const Image8 fast = quantize(renderer.render(size));
-    RenderSettings settings = renderer.settings();
-    settings.plain = true;
-    renderer.setSettings(settings);
-    const ImageDifference difference = compare(fast, quantize(renderer.render(size)));
+    const ImageDifference difference = testing::differenceFromPlain(renderer, size);
     for (int channel = 0; channel < 4; ++channel) {
       EXPECT_LE(difference.max[static_cast<std::size_t>(channel)], 1)
-          << "scene " << scene << ", " << toString(settings.mode) << ", channel " << channel;
+          << "scene " << scene << ", " << toString(renderer.settings().mode) << ", channel " << channel;
     }
   }
 }

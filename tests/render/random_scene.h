@@ -8,6 +8,15 @@
 
 namespace emscape::render::testing {
 
+/// Largest differences of a picture by packets of rays from the plain form, one ray after another.
+inline ImageDifference differenceFromPlain(Renderer& renderer, ImageSize size) {
+  const Image8 fast = quantize(renderer.render(size));
+  RenderSettings settings = renderer.settings();
+  settings.plain = true;
+  renderer.setSettings(settings);
+  return compare(fast, quantize(renderer.render(size)));
+}
+
 /// A renderer of a random scene: volume, ground, camera, mode, step.
 inline void setRandomScene(Renderer& renderer, std::mt19937& random, ImageSize size) {
   const auto between = [&](int least, int most) {

@@ -138,7 +138,7 @@ TEST(TransferFile, RefusalsSayWhereAndWhat) {
   const std::string head = "{\"schema_version\": 1,\n \"domain\": \"value\",\n \"colors\": \"viridis\",\n";
   EXPECT_THAT(
       refusalOf(head + " \"opacity\": [{\"at\": -90, \"opacity\": 0}, {\"at\": -20, \"opacity\": 1.5}]}"),
-      HasSubstr("tf.json:4:64: 'opacity' is 1.5, outside the allowed 0 to 1"));
+      HasSubstr("tf.json:4:64: 'opacity' is 1.5, outside the allowed range 0 to 1"));
   EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}, {\"at\": 0, \"opacity\": 1}]}"),
               HasSubstr("at 0: points must not decrease"));
   EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}]}"),
@@ -153,7 +153,7 @@ TEST(TransferFile, RefusalsSayWhereAndWhat) {
   EXPECT_THAT(refusalOf(head + " \"domain\": \"value\"}"),
               HasSubstr("tf.json:4:2: duplicate key 'domain'; first at line 2"));
   EXPECT_THAT(refusalOf("{\"schema_version\": 2}"),
-              HasSubstr("'schema_version' is 2, outside the allowed 1 to 1"));
+              HasSubstr("'schema_version' is 2, outside the allowed range 1 to 1"));
   EXPECT_THAT(refusalOf("{\"schema_version\": 1, \"domain\": "), HasSubstr("tf.json:1:"));
   EXPECT_THAT(refusalOf("[]"), HasSubstr("transfer function must be a set of keys, not a list"));
   EXPECT_THAT(refusalOf(""), HasSubstr("the file is empty"));
@@ -228,7 +228,8 @@ TEST(TransferFile, AColourHasOneForm) {
   const std::string head = "{\"schema_version\": 1, \"domain\": \"value\", \"colors\": [{\"at\": 0, ";
   EXPECT_THAT(refusalOf(head + "\"color\": \"#000000\", \"rgb\": [0, 0, 0" + tail),
               HasSubstr("the colour point must have exactly one of 'color', 'rgb'; it has 2"));
-  EXPECT_THAT(refusalOf(head + "\"rgb\": [0, 0, 2" + tail), HasSubstr("is 2, outside the allowed 0 to 1"));
+  EXPECT_THAT(refusalOf(head + "\"rgb\": [0, 0, 2" + tail),
+              HasSubstr("is 2, outside the allowed range 0 to 1"));
   EXPECT_THAT(refusalOf(head + "\"rgb\": [0, 0" + tail), HasSubstr("'rgb' has 2 items; it must have 3"));
 }
 

@@ -188,11 +188,10 @@ TEST_F(EditScenario, FaultsNameTheEditAndLeaveTheScenario) {
   EXPECT_EQ(faultOf(scenario, "emitters.search radar.power_w", "abc"),
             "emitters.search radar.power_w=abc: 'power_w' must be a number (W), not 'abc'");
   EXPECT_EQ(faultOf(scenario, "atmosphere.k_factor", "99"),
-            "atmosphere.k_factor=99: 'k_factor' is 99, outside the allowed 0.5 to 10");
+            "atmosphere.k_factor=99: 'k_factor' is 99, outside the allowed range 0.5 to 10");
   EXPECT_EQ(faultOf(scenario, "emitters.serch radar.power_w", "5"),
-            "emitters.serch radar.power_w=5: there is no emitter 'serch radar'; did you mean 'search "
-            "radar'?; allowed "
-            "are 'search radar', 'x=1 \"q\"'");
+            "emitters.serch radar.power_w=5: there is no emitter 'serch radar'; allowed are 'search radar', "
+            "'x=1 \"q\"'; did you mean 'search radar'?");
   EXPECT_EQ(faultOf(scenario, "emitters.search radar.power", "5"),
             "emitters.search radar.power=5: unknown key 'power'; write 'power_w' (W)");
   EXPECT_THAT(faultOf(scenario, "atmosfere.k_factor", "1"), HasSubstr("did you mean 'atmosphere'?"));

@@ -208,7 +208,7 @@ TEST_F(RefractivityKeys, SayWhichModelsDoNotReadThem) {
 TEST_F(RefractivityKeys, AreCheckedWithTheirPlace) {
   const auto first = [&](const std::string& text) { return problemsOf(text).at(0); };
   EXPECT_THAT(first("{kind: evaporation_duct, duct_height_m: 61}"),
-              HasSubstr("scenario.yaml:5:68: 'duct_height_m' is 61, outside the allowed 0 to 60 m"));
+              HasSubstr("scenario.yaml:5:68: 'duct_height_m' is 61, outside the allowed range 0 to 60 m"));
   EXPECT_THAT(first("{kind: evaporation_duct, duct_height_m: .nan}"), HasSubstr("not a finite number"));
   EXPECT_THAT(first("{kind: evaporation_duct, duct_height_m: [1]}"),
               HasSubstr("'duct_height_m' must be a number (m) or the keys of a spread, not a list"));
@@ -216,7 +216,8 @@ TEST_F(RefractivityKeys, AreCheckedWithTheirPlace) {
               HasSubstr("missing key 'deviation' of the spread"));
   EXPECT_THAT(
       first("{kind: evaporation_duct, duct_height_m: {mean: 140, deviation: 3}, members: 2}"),
-      HasSubstr("scenario.yaml:5:75: the mean of 'duct_height_m' is 140, outside the allowed 0 to 60 m"));
+      HasSubstr(
+          "scenario.yaml:5:75: the mean of 'duct_height_m' is 140, outside the allowed range 0 to 60 m"));
   EXPECT_THAT(first("{kind: trilinear, base_m: 300, top_m: 200, deficit_m_units: 40}"),
               HasSubstr("top of the layer: 200 m is not above its base of 300 m"));
   EXPECT_THAT(first("{kind: duct}"), HasSubstr("must be one of standard, linear, evaporation_duct"));

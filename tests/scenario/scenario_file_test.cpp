@@ -156,7 +156,7 @@ TEST_F(ScenarioYaml, DerivesGainFromBeamwidthsAndAperture) {
   EXPECT_NEAR(scenario->emitters[2].antenna->gain_dbi, 12 + kDipoleGain_dbi, 1e-9) << "dBd of the file";
 }
 
-const char* const kSmallest = R"(schema_version: 1
+const char* const kMinimal = R"(schema_version: 1
 name: smallest
 region: {origin: {latitude_deg: 0, longitude_deg: 180}, size_m: [1, 1, 1], dims: [2, 2, 2]}
 platforms: [{name: p, position: {latitude_deg: 0, longitude_deg: 0, height_msl_m: 0}}]
@@ -165,7 +165,7 @@ emitters: [{name: e, platform: p, kind: radar, frequency_hz: 1e9, power_w: 1, an
 )";
 
 TEST_F(ScenarioYaml, DefaultsOfTheTableAreThoseOfTheTypes) {
-  const auto scenario = load(kSmallest);
+  const auto scenario = load(kMinimal);
   EXPECT_EQ(scenario->clock.epoch_utc, "");
   EXPECT_EQ(scenario->clock.duration_s, Clock{}.duration_s);
   EXPECT_EQ(scenario->clock.step_s, Clock{}.step_s);

@@ -316,7 +316,8 @@ TEST_F(TerrainFileTest, AbsurdPositionsAreRefused) {
   file.transform[0] = 5000;
   EXPECT_THAT(
       problemOf(write("round.tif", file)),
-      HasSubstr("its longitudes run from 5000.05 to 5000.95 deg, outside the allowed -1080 to 1080 deg"));
+      HasSubstr(
+          "its longitudes run from 5000.05 to 5000.95 deg, outside the allowed range -1080 to 1080 deg"));
   file.transform[0] = 10;
   file.transform[1] = 1e300;
   EXPECT_THAT(problemOf(write("wide.tif", file)), HasSubstr("its posts are not on the earth"));

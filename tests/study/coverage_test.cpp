@@ -20,7 +20,9 @@
 namespace emscape::study {
 namespace {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// Maps of a shipped scenario by product, height and time.
 class CoverageOf {
@@ -64,6 +66,64 @@ TEST(Coverage, WarnsOfBeamsBetweenItsTimesWhereAProductIsOverThem) {
   EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, Product::covered), ::testing::Not(unlit));
   EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, Product::fraction), ::testing::Not(unlit))
       << "radars look at the target";
+}
+
+TEST(Coverage, WarnsOfTimesWithoutAnActiveRadar) {
+  auto scenario =
+      std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("jacksboro.yaml")));
+  for (scenario::Emitter& emitter : scenario->emitters)
+    if (emitter.kind == scenario::EmitterKind::radar) emitter.active_s = {{0, 40}};
+  const MapGrid grid = makeMapGrid(areaOf(scenario->region), 3000, "utm");
+  const scenario::TerrainPtr terrain = loadTerrain(*scenario, areaOf(scenario->region));
+  const auto warningsOf = [&](scenario::Quantity quantity, std::vector<double> times_s) {
+    return computeCoverage(scenario, terrain, grid,
+                           {{kLow}, {Product::covered}, quantity, 0.5, std::move(times_s)}, {},
+                           [](const CoverageMap&) {});
+  };
+  EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, {0, 40}),
+              Contains("no radar is active at t = 40 s (active_s): the maps of this time are empty"));
+  EXPECT_THAT(
+      warningsOf(scenario::Quantity::snr_db, {20, 60, 100}),
+      Contains("no radar is active at 2 of 3 times, first at t = 60 s (active_s): their maps are empty"));
+  const auto inactive = Contains(HasSubstr("is active"));
+  EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, {0, 39}), Not(inactive));
+  EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, {60}), Not(inactive))
+      << "of other emitters";
+}
+
+TEST(Coverage, AnAreaWithoutAPixelIsRefused) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
+  const MapArea area = circularArea({36.3, -84.2, 10});
+  const MapGrid grid = makeMapGrid(area, 5000, "utm");
+  const auto compute = [&] {
+    computeCoverage(scenario, loadTerrain(*scenario, area), grid,
+                    {{kLow}, {Product::covered}, scenario::Quantity::snr_db, 10, {0}}, {},
+                    [](const CoverageMap&) {});
+  };
+  EXPECT_THAT(test::errorOf(compute), HasSubstr("no pixel of 5000 m has its centre in the area"));
+}
+
+TEST(Coverage, ValuesThatAreIndicesOrCountsAreMappedAsSuch) {
+  const auto mapOf = [](scenario::Quantity quantity) {
+    return CoverageOf("jacksboro.yaml", 3000, {{kLow}, {Product::value}, quantity, 1, {80}}).maps.front();
+  };
+  const CoverageMap emitters = mapOf(scenario::Quantity::dominant_emitter);
+  EXPECT_EQ(emitters.kind, MapKind::category);
+  ASSERT_EQ(emitters.labels.size(), 4u);
+  EXPECT_EQ(emitters.labels[3], "jammer");
+  EXPECT_EQ(mapOf(scenario::Quantity::dominant_model).kind, MapKind::category);
+  EXPECT_EQ(mapOf(scenario::Quantity::emitter_count).kind, MapKind::count);
+}
+
+TEST(Coverage, TitlesAreInWordsAndNamesAreTheKeys) {
+  const CoverageMap map =
+      CoverageOf("jacksboro.yaml", 3000, {{kLow}, {Product::max_range}, scenario::Quantity::snr_db, 10, {80}})
+          .maps.front();
+  EXPECT_EQ(map.name, "max_range");
+  EXPECT_EQ(map.title, "maximum range");
+  EXPECT_EQ(map.description, "maximum range (SNR >= 10 dB) at 100 m above ground");
+  EXPECT_EQ(titleOf(Product::value, scenario::Quantity::detection_probability), "detection probability");
+  EXPECT_EQ(titleOf(Product::min_height, scenario::Quantity::snr_db), "minimum height above ground");
 }
 
 TEST(Coverage, APixelIsThePathOfProfileThere) {

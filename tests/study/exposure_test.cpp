@@ -104,6 +104,18 @@ TEST(Exposure, ThePlatformsOwnEmittersAreLeftOut) {
   EXPECT_EQ(computeExposure(given.scenario, given.terrain, request, {}).names.size(), 3u);
 }
 
+TEST(Exposure, WarnsIfAllRadarsAreOnThePlatform) {
+  const Given given("jamming.yaml");
+  ExposureRequest request;
+  request.platform = given.scenario->emitters.front().platform;
+  request.times_s = {0, 10};
+  auto alone = std::make_shared<scenario::Scenario>(*given.scenario);
+  alone->emitters.resize(1);
+  const Exposure exposure = computeExposure(alone, given.terrain, request, {});
+  EXPECT_TRUE(exposure.names.empty());
+  EXPECT_THAT(exposure.warnings, ::testing::Contains(HasSubstr("radars are on platform")));
+}
+
 TEST(Exposure, AWarningComesOnceForAllTimes) {
   const Given given("jacksboro.yaml");
   auto scenario = std::make_shared<scenario::Scenario>(*given.scenario);

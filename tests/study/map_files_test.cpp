@@ -14,6 +14,7 @@
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/study/geotiff.h"
 #include "emscape/study/map_folder.h"
+#include "study/files/map_colors.h"
 #include "study/files/map_objects.h"
 #include "study/files/map_shapes.h"
 #include "study/report/map_report.h"
@@ -277,6 +278,26 @@ TEST_F(MapFiles, AGeoTiffHoldsCountsUpTo254) {
                                                 GDT_Byte, 0, 0, nullptr),
             CE_None);
   EXPECT_EQ(value, 254);
+}
+
+TEST_F(MapFiles, AGeoTiffHasTheColoursOfThePicture) {
+  Map covered = fixture.map(MapKind::classes, 70, 0, 1);
+  covered.labels = {"no", "yes"};
+  covered.colors = {2, 2};
+  for (const Map& map : {fixture.map(MapKind::count, 70, 0, 5), covered}) {
+    const std::string file = folder / (map.name + ".tif");
+    writeGeoTiff(file, *fixture.grid, map, {});
+    const Opened dataset = open(file, GDAL_OF_RASTER);
+    const GDALColorTable* const table = dataset->GetRasterBand(1)->GetColorTable();
+    ASSERT_NE(table, nullptr);
+    const render::Legend legend = legendOf(map);
+    for (const int n : {0, 1}) {
+      const auto color = colorOf(map, legend, static_cast<float>(n));
+      const GDALColorEntry* const entry = table->GetColorEntry(n);
+      EXPECT_NEAR(entry->c2, color ? 255 * color->g : 255, 1) << map.name << " " << n;
+    }
+    EXPECT_EQ(table->GetColorEntry(255)->c4, 0);
+  }
 }
 
 TEST_F(MapFiles, TheReportHasTheAreaOfEachBestEmitter) {

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <string>
 
 #include "emscape/study/area.h"
@@ -68,7 +70,10 @@ TEST(MapPicture, TheLegendOfManyEmittersHoldsAllThatAreOnTheMap) {
   for (int n = 0; n < 40; ++n) map.labels.push_back("radar " + std::to_string(n));
   map.values.assign(grid.pixels(), -1.0f);
   map.values[0] = 2;
-  EXPECT_EQ(legendOf(map).categories.size(), 3u) << "of few also those that win nowhere";
+  EXPECT_EQ(legendOf(map).categories.size(), 1u);
+  Map few = map;
+  few.labels.resize(4);
+  EXPECT_EQ(legendOf(few).categories.size(), 3u) << "of few also those that win nowhere, up to the last";
   map.values[1] = 35;
   render::Legend legend = legendOf(map);
   ASSERT_EQ(legend.categories.size(), 2u);
@@ -80,6 +85,49 @@ TEST(MapPicture, TheLegendOfManyEmittersHoldsAllThatAreOnTheMap) {
   const int right = image.size.width - 8, bottom = image.size.height;
   EXPECT_TRUE(isPlain(image, right - 150, bottom - 10, right, bottom));
   EXPECT_FALSE(isPlain(image, right - 150, bottom - 60, right, bottom)) << "the last entry";
+}
+
+/// A map of counts that rise from left to right, without a value in the last pixel.
+Map counts(const MapGrid& grid, float factor) {
+  Map map;
+  map.name = "count";
+  map.title = "number of emitters";
+  map.kind = MapKind::count;
+  for (std::size_t p = 0; p < grid.pixels(); ++p)
+    map.values.push_back(factor * std::floor(static_cast<float>(p % grid.width) / 5));
+  map.values.back() = NAN;
+  return map;
+}
+
+TEST(MapPicture, ACountOf0HasAColour) {
+  const MapGrid grid = smallGrid();
+  const Map map = counts(grid, 1);
+  const render::Legend legend = legendOf(map);
+  EXPECT_EQ(legend.quantity, "Number of emitters");
+  ASSERT_EQ(legend.categories.size(), 4u);
+  EXPECT_EQ(legend.categories[0].name, "0");
+  EXPECT_EQ(legend.categories[3].name, "3");
+  for (int n = 0; n < 4; ++n) {
+    const auto color = colorOf(map, legend, static_cast<float>(n));
+    ASSERT_TRUE(color && legend.categories[static_cast<std::size_t>(n)].color);
+    EXPECT_EQ(color->g, legend.categories[static_cast<std::size_t>(n)].color->g) << n;
+  }
+  EXPECT_FALSE(colorOf(map, legend, NAN));
+  const render::Image8 image = drawMap(grid, map, {});
+  const auto first = image.at(90, image.size.height / 2);
+  EXPECT_GT(std::abs(first[1] - first[2]), 20) << "the ground is grey";
+}
+
+TEST(MapPicture, ManyCountsHaveABarWithWholeNumbers) {
+  const MapGrid grid = smallGrid();
+  const Map map = counts(grid, 50);
+  const render::Legend legend = legendOf(map);
+  EXPECT_TRUE(legend.categories.empty());
+  EXPECT_FALSE(legend.function.categorical);
+  EXPECT_TRUE(legend.whole_numbers);
+  EXPECT_EQ(legend.function.lowest(), 0);
+  EXPECT_EQ(legend.function.highest(), 150);
+  EXPECT_TRUE(colorOf(map, legend, 0));
 }
 
 TEST(MapPicture, LabelsStayOnTheMap) {

@@ -306,7 +306,7 @@ TEST(Study, RefusesFaultsWithTheirPlace) {
   EXPECT_THAT(errorOf("sweep: {emitters.jammer.power_w: {linear: {from: 1, to: 2}}}"),
               HasSubstr("missing key 'count'"));
   EXPECT_THAT(errorOf("sweep: {emitters.jammer.power_w: {log: {from: 0, to: 2, count: 3}}}"),
-              HasSubstr("'from' is 0, outside the allowed above 0"));
+              HasSubstr("'from' is 0, outside the allowed range above 0"));
   EXPECT_THAT(errorOf("variants: [{name: a, set: {emitters.jammer.power_w: x}}]"),
               HasSubstr("study.yaml:4:28: emitters.jammer.power_w=x"));
   EXPECT_THAT(errorOf("variants: [{name: a}, {name: a}]"), HasSubstr("'a' twice"));

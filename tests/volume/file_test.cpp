@@ -87,7 +87,7 @@ TEST(Series, IsFoundFromAFolderAFileOrAList) {
     writeBytes(folder / name, {});
     return folder / name;
   };
-  EXPECT_THAT(errorOf([&] { seriesOf(folder.path()); }), HasSubstr("holds no volume file"));
+  EXPECT_THAT(errorOf([&] { seriesOf(folder.path()); }), HasSubstr("has no volume file"));
   const auto late = touch("a_10000.vti"), early = touch("a_9999.vti"), other = touch("b_0001.vti");
   touch("a_0001.raw");
   EXPECT_THAT(seriesOf(folder.path()), ElementsAre(early, late, other));

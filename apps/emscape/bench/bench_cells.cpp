@@ -53,7 +53,7 @@ class CellScene {
     frame_ = playback::openFrameSource(selection, target, progressSink(global), &stopFlag())->frame(0);
     if (!frame_.cells) {
       throw Error(ErrorCode::usage,
-                  selection.input + " holds no tetrahedra; with --mesh a scenario is computed on some");
+                  selection.input + " has no tetrahedra; --mesh computes a scenario on tetrahedra");
     }
     renderer_.setField(frame_.cells->field, frame_.cells->faces);
     renderer_.setTransferFunction(benchFunction(frame_.info(), options.transfer));

@@ -219,11 +219,13 @@ void addBenchField(CLI::App& bench, const GlobalOptions& global, Action& action)
   CLI::App* command = bench.add_subcommand("field", "Time the stages of the field computation");
   command->fallthrough();
   command->footer(R"(
-all moved: every emitter is shifted by more than the tolerance, so that its columns and excess are recomputed; one moved: only the
-first emitter; beams turned: only the beams change. --emitters: only these move and turn, the others are static. Voxel-emitters per
-second: voxels times emitters over the time of the combine stage with all moved. march: of emitters with parabolic_equation, at the
-heights of the start of each march, without what halving saves; on a GPU with the share of the floor, what an H100's arithmetic and
-shared memory alone need over smooth earth (0.0068 ns).
+all moved: every emitter is shifted by more than the tolerance, so that its columns and excess are computed again. one moved: only
+the first emitter is shifted. beams turned: only the beams change. With --emitters, only these move and turn, and the others are
+static. Voxel-emitters per second: voxels times emitters, divided by the time of the combine stage with all moved.
+
+march (parabolic_equation): time per azimuth, step and height, for the number of heights at the start of each march. Halving the
+heights with range reduces the time, not this number. On a GPU, share is the ratio of 0.0068 ns to this time: 0.0068 ns is the
+minimum for the arithmetic and the shared memory of an H100 over a smooth earth.
 
 Example:
   emscape bench field scenarios/jacksboro.yaml --threads 2 --json

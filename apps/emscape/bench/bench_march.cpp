@@ -219,8 +219,8 @@ void addBenchMarch(CLI::App& bench, const GlobalOptions& global, Action& action)
 Cases: sea (10 GHz, evaporation duct, 100 km in steps of 100 m), sea-auto (the same in steps of 200 m, with halving of the heights),
 terrain (3 GHz, 60 km in steps of 50 m over synthetic hills), vertical (1 GHz over sea, mixed transform), radars (sixteen times
 sea-auto). 2048 heights, 200 x 256 cells. ns/height: wall time per azimuth, step and height; Gflop/s: two transforms, screens and
-propagator per step at all heights, without what halving saves. On a GPU: the share of the floor that arithmetic and shared memory
-set on an H100, and the time of cuFFT's two transforms alone.
+propagator per step at all heights, as if the heights were not halved. On a GPU, floor is the minimum time for the arithmetic and
+the shared memory of an H100, share is the ratio of the floor to the measured time, and cuFFT is the time of its two transforms alone.
 
 Example:
   emscape bench march --cases sea,terrain --backend cuda)");

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <exception>
 #include <new>
+#include <optional>
 #include <string>
 
 #include "apps/emscape/common/command.h"
@@ -115,11 +116,16 @@ std::string plainMessage(const CLI::App& app, const std::string& message) {
     const std::string name = message.substr(conversion.size(), equals - conversion.size());
     return fmt::format("{}: '{}' is not a {}", name, message.substr(equals + 3), numberName(app, name));
   }
+  const std::string unexpected = "The following argument was not expected: ";
+  if (startsWith(message, unexpected))
+    return fmt::format("unexpected argument '{}'", message.substr(unexpected.size()));
   const std::size_t colon = message.find(": ");
   if (!startsWith(message, "--") || colon == std::string::npos) return message;
   const std::string name = message.substr(0, colon), rest = message.substr(colon + 2);
   const std::string in_range = " not in range ", to = " to ", in_names = " not in {";
   const std::size_t range = rest.rfind(in_range), names = rest.rfind(in_names);
+  if (startsWith(rest, "1 required ") && rest.rfind(" missing") == rest.size() - 8)
+    return name + " needs a value";
   if (startsWith(rest, value) && range != std::string::npos && range >= value.size()) {
     const std::string bounds = rest.substr(range + in_range.size());
     const std::size_t split = bounds.find(to);
@@ -135,10 +141,27 @@ std::string plainMessage(const CLI::App& app, const std::string& message) {
   return fmt::format("{}: '{}' must be one of {}", name, rest.substr(0, names), allowed);
 }
 
+/// CLI11 takes the word after an option as its value even if it is the name of an option.
+/// @return the error's text for the first option whose value is missing in this way
+std::optional<std::string> missingValue(const CLI::App& app) {
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_expected_max() == 0) continue;  // flags
+    for (const std::string& text : option->results()) {
+      if (text.rfind("--", 0) != 0) continue;
+      for (const CLI::App* of = &app; of != nullptr; of = of->get_parent()) {
+        if (of->get_option_no_throw(text) != nullptr)
+          return fmt::format("{} needs a value, but '{}' follows", option->get_name(), text);
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 /// The parser's message. Where CLI11 asks for a subcommand, it names the unknown word.
 std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* last = &app;
   while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
+  if (const auto missing = missingValue(*last)) return *missing;
   if (last->get_require_subcommand_min() == 0) return plainMessage(*last, error.what());
   for (const std::string& word : app.remaining(true)) {
     if (!word.empty() && word.front() != '-') return "there is no subcommand '" + word + "'";
@@ -146,9 +169,10 @@ std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
   return plainMessage(*last, error.what());
 }
 
-/// Rejects 'nan' and 'inf', which CLI11 accepts as numbers.
+/// Rejects missing values, and 'nan' and 'inf', which CLI11 accepts as numbers.
 /// @throws CLI::ValidationError naming the first such option of the program or its subcommands
-void checkNumbers(const CLI::App& app) {
+void checkValues(const CLI::App& app) {
+  if (const auto missing = missingValue(app)) throw CLI::ValidationError(*missing);
   for (const CLI::Option* option : app.get_options()) {
     if (option->get_type_name().rfind("FLOAT", 0) != 0) continue;
     for (const std::string& text : option->results()) {
@@ -157,14 +181,14 @@ void checkNumbers(const CLI::App& app) {
       throw CLI::ValidationError(option->get_name(), "'" + text + "' is not a number");
     }
   }
-  for (const CLI::App* subcommand : app.get_subcommands()) checkNumbers(*subcommand);
+  for (const CLI::App* subcommand : app.get_subcommands()) checkValues(*subcommand);
 }
 
 /// Parses the command line; returns an exit status if there is nothing to run.
 int parse(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);
-    checkNumbers(app);
+    checkValues(app);
     return -1;
   } catch (const CLI::Success& help) {
     return app.exit(help);
@@ -180,7 +204,7 @@ int parse(CLI::App& app, int argc, char** argv) {
 void parse(CLI::App& app, const std::vector<std::string>& arguments) {
   try {
     app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them reversed
-    checkNumbers(app);
+    checkValues(app);
   } catch (const CLI::Success&) {
     throw Error(ErrorCode::usage, "help and version are texts of the program, without a result");
   } catch (const CLI::ParseError& error) {

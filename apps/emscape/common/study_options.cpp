@@ -48,12 +48,13 @@ double thresholdOf(double threshold, scenario::Quantity quantity) {
   if (std::isnan(threshold)) {
     if (const std::optional<double> usual = study::defaultThreshold(quantity)) return *usual;
     const std::string unit = info.unit;
-    throw Error(ErrorCode::usage, fmt::format("--threshold: quantity '{}' has no usual one; give it{}",
-                                              info.name, unit.empty() ? "" : " in " + unit));
+    throw Error(ErrorCode::usage,
+                fmt::format("--threshold: quantity '{}' has no default threshold; give one{}", info.name,
+                            unit.empty() ? "" : " in " + unit));
   }
   if (quantity == scenario::Quantity::detection_probability && !(threshold > 0 && threshold < 1)) {
     throw Error(ErrorCode::usage,
-                fmt::format("--threshold: {} of {}; between 0 and 1", threshold, info.name));
+                fmt::format("--threshold: {} of {} must be between 0 and 1", threshold, info.name));
   }
   return threshold;
 }

@@ -22,15 +22,22 @@ std::string decimals(double value) {
   return std::isfinite(value) ? fmt::format("{:.4g}", value) : "-";
 }
 
+std::string keyOf(study::Product product) {
+  return study::info(product).name;
+}
+
 /// Areas of the products that mark an area, and differences of the other products; either may be empty.
-std::pair<study::ReportTable, study::ReportTable> tablesOf(const study::Comparison& comparison) {
+/// @param nameOf  text of a product
+template <class NameOf>
+std::pair<study::ReportTable, study::ReportTable> tablesOf(const study::Comparison& comparison,
+                                                           const NameOf& nameOf) {
   std::pair<study::ReportTable, study::ReportTable> tables;
   tables.first.columns = {"product",    "height",   "time s",   "A km2", "B km2",
                           "gained km2", "lost km2", "gained %", "lost %"};
   tables.first.caption = "Percent are of the area with a value in both.";
   tables.second.columns = {"product", "height", "time s", "unit", "mean B - A", "smallest", "largest"};
   for (const study::ComparisonRow& row : comparison.rows) {
-    const char* const name = study::info(row.product).name;
+    const std::string name = nameOf(row.product);
     if (row.is_area) {
       tables.first.rows.push_back({name, heightText(row), timeText(row), km2(row.area_a_m2),
                                    km2(row.area_b_m2), km2(row.gained_m2), km2(row.lost_m2),
@@ -138,7 +145,9 @@ Json comparisonJson(const study::Comparison& comparison, const study::ComparedSc
 
 void addSections(study::HtmlReport& report, const study::Comparison& comparison,
                  const std::string& quantity) {
-  const auto [areas, differences] = tablesOf(comparison);
+  const scenario::Quantity of = scenario::quantityFromName(quantity);
+  const auto titleOfProduct = [&](study::Product product) { return study::titleOf(product, of); };
+  const auto [areas, differences] = tablesOf(comparison, titleOfProduct);
   report.section("Gained and lost");
   if (!areas.rows.empty()) report.table(areas);
   if (!differences.rows.empty()) report.table(differences);
@@ -150,13 +159,14 @@ void addSections(study::HtmlReport& report, const study::Comparison& comparison,
         "emitter with the largest value there, as emscape profile explains it.");
   }
   for (const study::ChangedArea& area : comparison.changed_areas) {
-    report.paragraph(titleOf(area) + (comparison.has_paths ? ". " + valuesText(area, quantity) : "."));
+    report.paragraph(titleOf(area) +
+                     (comparison.has_paths ? ". " + valuesText(area, study::titleOf(of)) : "."));
     if (!area.emitter.empty()) report.facts({{"A", area.a.verdict}, {"B", area.b.verdict}});
   }
 }
 
 void printComparison(const study::Comparison& comparison, const std::string& quantity) {
-  const auto [areas, differences] = tablesOf(comparison);
+  const auto [areas, differences] = tablesOf(comparison, keyOf);
   printTable(areas);
   printTable(differences);
   for (const study::ChangedArea& area : comparison.changed_areas) {

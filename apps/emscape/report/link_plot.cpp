@@ -91,7 +91,7 @@ void plotLinks(const NamedLinks& links, render::ImageSize size, const std::strin
     };
     if (!ratios.empty()) {
       const auto [lowest, highest] = limitsOf(ratios);
-      drawPanel("Signal over noise and interference (dB); wide where received", ratios, lowest, highest);
+      drawPanel("Signal over noise and interference (dB); thick line: received", ratios, lowest, highest);
     }
     if (!detections.empty())
       drawPanel("Probability of detection of one look and of all looks", detections, 0, 1);

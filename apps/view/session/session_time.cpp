@@ -28,8 +28,9 @@ std::vector<Verb> Session::timeVerbs() {
        {{"steps"}},
        "Moves by so many steps of the series, backwards if negative; pauses",
        [](Session& session, const Command& command) {
-         constexpr double kMost = 1e9;
-         session.timeline_.stepBy(static_cast<int>(std::clamp(command.number("steps"), -kMost, kMost)));
+         constexpr double kMaxSteps = 1e9;
+         session.timeline_.stepBy(
+             static_cast<int>(std::clamp(command.number("steps"), -kMaxSteps, kMaxSteps)));
          session.askTime();
        }},
       {"seek",

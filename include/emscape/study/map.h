@@ -32,9 +32,9 @@ constexpr bool isPart(MapKind kind) {
 struct Map {
   std::string name;  ///< of the product, for file names: "covered"; letters, digits, '_'
   MapKind kind = MapKind::level;
-  std::string title;                ///< of its legend: a quantity's or product's name
+  std::string title;                ///< of its legend, in words: "minimum height above ground"
   std::string unit;                 ///< "": none
-  std::string description;          ///< "detection_probability at 150 m above ground"
+  std::string description;          ///< "detection probability at 150 m above ground"
   std::optional<MapHeight> height;  ///< none: for all heights
   std::optional<double> time_s;     ///< since the scenario's epoch; none: over all times
   std::vector<std::string> labels;  ///< of classes and categories: names of 0, 1 ...

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "emscape/emfield/surface.h"
+#include "emscape/scenario/quantities.h"
 
 namespace emscape::study {
 
@@ -44,8 +45,9 @@ enum class Product {
 
 struct ProductInfo {
   Product product;
-  const char* name;
-  const char* unit;  ///< null: the quantity's
+  const char* name;   ///< in options and file names
+  const char* title;  ///< in words, for titles and legends; null: the quantity's
+  const char* unit;   ///< null: the quantity's
   const char* description;
   bool over_time = false;    ///< one map for all times
   bool categorical = false;  ///< integers: counts and indices
@@ -56,6 +58,10 @@ struct ProductInfo {
 };
 const std::vector<ProductInfo>& productTable();
 const ProductInfo& info(Product product);
+/// Name of a quantity in words: "detection probability", "SNR".
+std::string titleOf(scenario::Quantity quantity);
+/// Name of a product in words: "minimum height"; for Product::value that of the quantity.
+std::string titleOf(Product product, scenario::Quantity quantity);
 /// @throws Error (usage) that lists the allowed names
 Product productNamed(const std::string& name);
 

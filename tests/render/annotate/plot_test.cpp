@@ -45,6 +45,24 @@ bool isDrawn(const Image8& image, const Rect& area) {
   return false;
 }
 
+TEST(Plot, DashesDoNotDependOnTheNumberOfPoints) {
+  const auto inkOf = [](int points) {
+    Canvas canvas({600, 100});
+    canvas.rectangle({0, 0, 600, 100}, kPlotPaper);
+    PlotPanel panel(canvas, {0, 0, 600, 100}, 1, {0, 1, 4, ""}, {0, 1, 4, ""});
+    PlotLine line{"", {}, plotInk(0)};
+    for (int i = 0; i < points; ++i) line.points.push_back({i / (points - 1.0), 0.5, true});
+    line.is_dashed = true;
+    panel.drawLine(line);
+    const Image8 image = canvas.pixels();
+    int drawn = 0;
+    for (int x = 0; x < 600; ++x) drawn += isDrawn(image, {static_cast<double>(x), 45, 1, 10}) ? 1 : 0;
+    return drawn;
+  };
+  EXPECT_LT(inkOf(2), 500);
+  EXPECT_NEAR(inkOf(1000), inkOf(2), 10);
+}
+
 TEST(Plot, NamesStayBesideTheirFrame) {
   for (const std::size_t count : {3, 8, 9, 40}) {
     Canvas canvas({600, 600});

@@ -18,6 +18,7 @@ std::string tickText(double value, double step);
 struct Category {
   int index = 0;
   std::string name;
+  std::optional<Rgb> color = std::nullopt;  ///< none: categoryColor(index)
 };
 
 /// Contents of a legend.
@@ -27,7 +28,7 @@ struct Legend {
   TransferFunction function;
   std::optional<double> iso_value;   ///< marked on the colour bar
   bool whole_numbers = false;        ///< counts: no ticks between
-  std::string note;                  ///< a line below the colour bar; may be empty
+  std::string note;                  ///< a line below the colour bar or the categories; may be empty
   std::vector<Category> categories;  ///< categorical volumes: the listed categories
 };
 
