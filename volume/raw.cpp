@@ -1,5 +1,6 @@
 #include "volume/raw.h"
 
+#include <algorithm>
 #include <fstream>
 #include <regex>
 #include <string>
@@ -56,9 +57,10 @@ Described describeByHeader(const fs::path& header) {
 }
 
 std::string quantityFromName(const fs::path& path) {
-  static const std::regex kLayout("[_-]?[0-9]+x[0-9]+x[0-9]+.*");
+  static const std::regex kLayout("[_-]?[0-9]{1,9}x[0-9]{1,9}x[0-9]{1,9}");
   const std::string stem = path.stem().string();
-  const std::string name = std::regex_replace(stem, kLayout, "");
+  std::smatch layout;
+  const std::string name = std::regex_search(stem, layout, kLayout) ? layout.prefix().str() : stem;
   return name.empty() ? stem : name;
 }
 
@@ -153,9 +155,11 @@ void writeRaw(const fs::path& path, const DenseVolume& volume) {
 
 std::optional<RawLayout> rawLayoutFromName(const fs::path& path) {
   static const std::regex kName(".*?([0-9]{1,9})x([0-9]{1,9})x([0-9]{1,9})_([a-z]+[0-9]+)\\.raw");
+  constexpr std::size_t kMaxLayout = 64;  // std::regex uses the stack for each character
   std::smatch parts;
   const std::string name = path.filename().string();
-  if (!std::regex_match(name, parts, kName)) return std::nullopt;
+  const std::string end = name.substr(name.size() - std::min(name.size(), kMaxLayout));
+  if (!std::regex_match(end, parts, kName)) return std::nullopt;
   const std::optional<VoxelType> type = voxelTypeFromName(parts[4]);
   if (!type) return std::nullopt;
   RawLayout layout;
