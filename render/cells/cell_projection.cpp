@@ -185,7 +185,7 @@ Image CellRenderer::Impl::projectByTiles(const RaycastTask& task, const Projecti
   tiles.transfer = transfer->view();
   if (cast.table) tiles.psi = PsiTable::shared().lookup();
   tiles.end_depth = cast.end_depth.empty() ? nullptr : cast.end_depth.data();
-  const TileProjection projection(tiles, cells, order.cells);
+  const TileProjection projection(tiles, cells, order.cells, options.sorting == CellSorting::visibility);
   report.bin_ms = watch.lap_ms();
   image = projection.composite();
   report.draw_ms = report.bin_ms + watch.lap_ms();

@@ -132,6 +132,8 @@ struct PlaneFunction {
 struct RaySegment {
   double begin, end;   ///< depths
   double front, back;  ///< values
+
+  EMSCAPE_HD double middle() const { return 0.5 * (begin + end); }
 };
 
 /// A cell prepared for the rays of a picture.

@@ -17,8 +17,11 @@ namespace {
 /// A tile; the lanes of a group are neighbouring pixels of a row.
 class TileInLanes {
  public:
-  TileInLanes(const TileTask& task, const LaneTransferView& transfer, const PixelBox& pixels)
-      : task_(task), pixels_(pixels), integrals_(kTile * kGroups, IntegralLanes(transfer)) {
+  TileInLanes(const TileTask& task, const LaneTransferView& transfer, const PixelBox& pixels, bool sort_rays)
+      : task_(task),
+        pixels_(pixels),
+        sort_rays_(sort_rays),
+        integrals_(kTile * kGroups, IntegralLanes(transfer)) {
     for (int y = pixels.first_y; y < pixels.end_y; ++y) {
       for (int x = pixels.first_x; x < pixels.end_x; ++x) {
         const PixelRay ray(task, x, y);
@@ -34,8 +37,8 @@ class TileInLanes {
       }
     }
   }
-  /// Whether all rays are opaque.
-  bool isOpaque() const { return open_groups_ == 0; }
+  /// Whether further cells do not matter: all rays are opaque, and need not be checked for their order.
+  bool isDone() const { return open_groups_ == 0 && !sort_rays_; }
 
   void add(const TileCell& cell) {
     const PixelBox box = common(cell.pixels, pixels_);
@@ -43,7 +46,7 @@ class TileInLanes {
     const int last = (box.end_x - 1 - pixels_.first_x) / kLanes;
     for (int row = box.first_y - pixels_.first_y; row < box.end_y - pixels_.first_y; ++row) {
       for (int group = first; group <= last; ++group) {
-        if (!open_[row][group]) continue;
+        if (!open_[row][group] && !sort_rays_) continue;
         if (task_.camera.orthographic) {
           addRow<true>(cell, row, group);
         } else {
@@ -53,11 +56,17 @@ class TileInLanes {
     }
   }
 
-  void write(Image& image) const {
+  void write(const TileCells& cells, Image& image) const {
     for (int y = pixels_.first_y; y < pixels_.end_y; ++y) {
       for (int x = pixels_.first_x; x < pixels_.end_x; ++x) {
-        const int across = x - pixels_.first_x;
-        image.at(x, y) = integral(y - pixels_.first_y, across / kLanes).color(across % kLanes);
+        const int row = y - pixels_.first_y, group = (x - pixels_.first_x) / kLanes;
+        const int lane = (x - pixels_.first_x) % kLanes;
+        image.at(x, y) = integral(row, group).color(lane);
+        if (wrong_[row][group].of[lane] > 0) {
+          RayIntegral sorted(task_.transfer, task_.psi);
+          compositeSorted(task_, cells, x, y, sorted);
+          image.at(x, y) = sorted.color();
+        }
       }
     }
   }
@@ -104,7 +113,16 @@ class TileInLanes {
     end = hn::Min(end, end_depth_[row][group]());
     IntegralLanes& integral_here = integral(row, group);
     const D least = hn::Set(kD, task_.through);
-    met = hn::And(met, hn::And(hn::Gt(end, begin), hn::Ge(integral_here.through(), least)));
+    met = hn::And(met, hn::Gt(end, begin));
+    const M open = hn::Ge(integral_here.through(), least);
+    if (sort_rays_) {
+      const D middle = hn::Set(kD, 0.5) * (begin + end), last = last_[row][group]();
+      const M is_wrong = hn::And(met, hn::Lt(middle, last));
+      wrong_[row][group] = hn::IfThenElse(is_wrong, hn::Set(kD, 1.0), wrong_[row][group]());
+      last_[row][group] = hn::IfThenElse(hn::And(met, open), middle, last);
+    }
+    if (!open_[row][group]) return;
+    met = hn::And(met, open);
     integral_here.add(met, hn::MulAdd(begin, slope, front), hn::MulAdd(end, slope, front),
                       (end - begin) * length_[row][group]());
     if (hn::AllTrue(kD, hn::Lt(integral_here.through(), least))) {
@@ -115,8 +133,11 @@ class TileInLanes {
 
   const TileTask& task_;
   const PixelBox pixels_;
+  const bool sort_rays_;
   std::vector<IntegralLanes> integrals_;
   Reals x_[kGroups], length_[kTile][kGroups], end_depth_[kTile][kGroups];
+  Reals last_[kTile][kGroups];   ///< depth in the middle of the last segment
+  Reals wrong_[kTile][kGroups];  ///< 1: the ray met a cell in the wrong order
   double y_[kTile] = {};
   bool open_[kTile][kGroups] = {};
   int open_groups_ = 0;
@@ -125,15 +146,15 @@ class TileInLanes {
 void compositeLanes(const TileTask& task, const LaneTransferView& transfer, const TileCells& cells,
                     Image& image) {
   constexpr int kAhead = 6;  // prefetch: cells and points are scattered in memory
-  TileInLanes tile(task, transfer, cells.pixels);
-  for (const int* rank = cells.begin; rank < cells.end && !tile.isOpaque(); ++rank) {
+  TileInLanes tile(task, transfer, cells.pixels, cells.sort_rays);
+  for (const int* rank = cells.begin; rank < cells.end && !tile.isDone(); ++rank) {
     if (cells.end - rank > 2 * kAhead) {
       hwy::Prefetch(&task.cells[rank[2 * kAhead]]);
       for (const std::int32_t corner : task.cells[rank[kAhead]].corners) hwy::Prefetch(&task.points[corner]);
     }
     tile.add(TileCell(task, *rank));
   }
-  tile.write(image);
+  tile.write(cells, image);
 }
 #else
 void compositeLanes(const TileTask& task, const LaneTransferView&, const TileCells& cells, Image& image) {

@@ -14,8 +14,11 @@ namespace emscape::render {
 class TileProjection {
  public:
   /// @param task   without mesh and cells
-  /// @param order  all cells, the farthest first
-  TileProjection(const TileTask& task, const CellMesh& mesh, const std::vector<std::int32_t>& order);
+  /// @param order      all cells, the farthest first
+  /// @param sort_rays  rays that meet cells in the wrong order are composited again, with their segments
+  /// sorted: across gaps in the mesh, and in visibility cycles
+  TileProjection(const TileTask& task, const CellMesh& mesh, const std::vector<std::int32_t>& order,
+                 bool sort_rays);
 
   /// Number of cells with a field in the picture.
   long long cells() const;
@@ -25,6 +28,7 @@ class TileProjection {
  private:
   TileGrid grid_;
   TileTask task_;
+  bool sort_rays_;
   std::vector<ViewPoint> points_;
   std::vector<PlacedCell> cells_;
   TileLists lists_;
@@ -35,8 +39,11 @@ struct TileCells {
   PixelBox pixels;
   const int* begin;
   const int* end;
+  bool sort_rays = false;  ///< see TileProjection
 };
 
+/// Composites a pixel with its segments sorted. @param integral  receives them
+void compositeSorted(const TileTask& task, const TileCells& cells, int x, int y, RayIntegral& integral);
 /// Composites one pixel after another.
 void compositeTile(const TileTask& task, const TileCells& cells, Image& image);
 /// Composites the pixels of a row in vector lanes. Colours differ by less than 1e-6. Without AVX2 it calls
