@@ -200,8 +200,14 @@ void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const 
                                quantityText(receiver.bandwidth_hz, "Hz")),
                    Kind::sum});
   if (std::isfinite(radar.jammer_to_signal_db)) {
-    terms.push_back({"jammer_to_signal_db", "jamming over the echo", radar.jammer_to_signal_db, "dB",
-                     "the beam on the target"});
+    std::string note = "the beam on the target";
+    for (const Emitter& jammer : scenario.emitters) {
+      if (jammer.kind != scenario::EmitterKind::jammer) continue;
+      const double loss_db = polarizationLossDb(emitter, jammer);
+      if (loss_db > 0.05)
+        note += fmt::format("; polarisation mismatch of '{}' {:.1f} dB", jammer.name, loss_db);
+    }
+    terms.push_back({"jammer_to_signal_db", "jamming over the echo", radar.jammer_to_signal_db, "dB", note});
   }
   if (radar.clutter) addClutterTerms(emitter, *radar.clutter, terms);
   const std::string settings =

@@ -41,6 +41,13 @@ double echoRoot_m2_w(const Emitter& radar) {
   return std::sqrt(snr) / density_wm2;
 }
 
+double polarizationLossDb(const Emitter& radar, const Emitter& jammer) {
+  const RadarReceiver& receiver = radar.receiver;
+  return -ratioToDb(scenario::polarizationFactor(jammer.polarization,
+                                                 receiver.polarization.value_or(radar.polarization),
+                                                 receiver.cross_polar_isolation_db));
+}
+
 double jammingToNoise_m2_w(const Emitter& radar, const Emitter& jammer) {
   const RadarReceiver& receiver = radar.receiver;
   const RadarLink link = radarLinkOf(radar);
@@ -49,9 +56,7 @@ double jammingToNoise_m2_w(const Emitter& radar, const Emitter& jammer) {
   jamming.frequency_hz = jammer.frequency_hz;
   jamming.bandwidth_hz = jammer.bandwidth_hz;
   jamming.radar_gain_dbi = radar.antenna->gain_dbi;
-  jamming.polarization_loss_db = -ratioToDb(
-      scenario::polarizationFactor(jammer.polarization, receiver.polarization.value_or(radar.polarization),
-                                   receiver.cross_polar_isolation_db));
+  jamming.polarization_loss_db = polarizationLossDb(radar, jammer);
   jamming.radar_receive_losses_db = receiver.losses_db;
   return jammingPower_w(link, jamming, 1) / noisePower_w(link.bandwidth_hz, link.noise_temperature_k);
 }

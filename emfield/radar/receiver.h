@@ -21,6 +21,9 @@ Detector detectorOf(const scenario::RadarReceiver& receiver);
 /// (4 pi R^2 Lt) = S the radar equation is SNR = S^2 lambda^2 sigma Lt / (4 pi P k Ts B Lr).
 double echoRoot_m2_w(const scenario::Emitter& radar);
 
+/// Loss (dB) by the mismatch of a jammer's polarisation at the radar's antenna, at most the isolation of its
+/// cross polarisation.
+double polarizationLossDb(const scenario::Emitter& radar, const scenario::Emitter& jammer);
 /// Jamming over noise (m2/W) at the radar's receiver for a power density of 1 W/m2 that arrives on its
 /// boresight; 0 for a jammer outside its band.
 double jammingToNoise_m2_w(const scenario::Emitter& radar, const scenario::Emitter& jammer);

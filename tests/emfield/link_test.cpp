@@ -313,6 +313,19 @@ TEST(Detection, IsTheBudgetOfTheSamePathWithTheBeamOnTheTarget) {
   EXPECT_DOUBLE_EQ(row.detection_probability, budget.find("detection_probability")->value);
 }
 
+TEST(Detection, TheBudgetNamesThePolarisationLossOfAJammer) {
+  const auto scenario = radarAndTarget();
+  addEmitter(*scenario, pointAt(*scenario, 15e3, 12e3), jammerOf(1e-3));
+  scenario->emitters[0].polarization = propagation::Polarization::horizontal;
+  scenario->emitters[1].polarization = propagation::Polarization::vertical;
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0.5);
+  const scenario::PlatformState& end = snapshot.platforms.at(1);
+  const PathBudget budget = pathBudget(snapshot, 0, {end.position, end.height_msl_m},
+                                       propagation::PropagationModel::free_space, nullptr);
+  EXPECT_THAT(budget.find("jammer_to_signal_db")->note,
+              HasSubstr("polarisation mismatch of '" + scenario->emitters[1].name + "' 25.0 dB"));
+}
+
 TEST(Link, AnErrorNamesThePairAndTheTime) {
   const auto scenario = oneLink();
   scenario->emitters[0].propagation.model = propagation::PropagationModel::p528;
