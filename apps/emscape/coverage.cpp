@@ -60,9 +60,10 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
                            request.heights},
                           command.maps.formats);
   if (!global.json) {
-    print("Coverage of {}: {} x {} pixels of {} m in {}, {} >= {}\n", scenario->name, grid->width,
-          grid->height, grid->cell_m, grid->crs, command.maps.quantity,
-          quantityText(request.threshold, scenario::info(request.quantity).unit));
+    const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
+    print("Coverage of {}: {} x {} pixels of {} m in {}, {}{}\n", scenario->name, grid->width, grid->height,
+          grid->cell_m, grid->crs, quantity.name,
+          quantity.categorical ? "" : " >= " + quantityText(request.threshold, quantity.unit));
   }
   const auto take = [&](const study::CoverageMap& map) {
     stopIfInterrupted();

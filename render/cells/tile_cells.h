@@ -201,12 +201,17 @@ struct TileCell {
   }
 };
 
-/// Adds a ray's segment in a cell behind the earlier ones.
+/// Adds a ray's segment behind the earlier ones.
+EMSCAPE_HD inline void addSegment(const RaySegment& segment, const PixelRay& ray, RayIntegral& integral) {
+  integral.add(segment.front, segment.back, (segment.end - segment.begin) * ray.length);
+}
+
+/// The same for the segment in a cell, if the ray crosses it.
 EMSCAPE_HD inline void addSegment(const TileTask& task, const TileCell& cell, const PixelRay& ray,
                                   RayIntegral& integral) {
   RaySegment segment;
   if (integral.through() < task.through || !cell.meets(ray, task.camera.orthographic, segment)) return;
-  integral.add(segment.front, segment.back, (segment.end - segment.begin) * ray.length);
+  addSegment(segment, ray, integral);
 }
 
 }  // namespace emscape::render

@@ -66,7 +66,7 @@ void compositeSorted(const TileTask& task, const TileCells& cells, int x, int y,
                    [](const RaySegment& a, const RaySegment& b) { return a.middle() < b.middle(); });
   for (const RaySegment& segment : segments) {
     if (integral.through() < task.through) return;
-    integral.add(segment.front, segment.back, (segment.end - segment.begin) * ray.length);
+    addSegment(segment, ray, integral);
   }
 }
 
@@ -92,7 +92,7 @@ void compositeTile(const TileTask& task, const TileCells& cells, Image& image) {
         if (segment.middle() < last[pixel]) is_wrong[pixel] = true;
         if (integral.through() < task.through) continue;
         last[pixel] = segment.middle();
-        integral.add(segment.front, segment.back, (segment.end - segment.begin) * rays[pixel].length);
+        addSegment(segment, rays[pixel], integral);
       }
     }
   }

@@ -16,7 +16,8 @@ class TileProjection {
   /// @param task   without mesh and cells
   /// @param order      all cells, the farthest first
   /// @param sort_rays  rays that meet cells in the wrong order are composited again, with their segments
-  /// sorted: across gaps in the mesh, and in visibility cycles
+  /// sorted: across gaps in the mesh, and in visibility cycles. All cells are then checked, also those behind
+  /// opaque ones
   TileProjection(const TileTask& task, const CellMesh& mesh, const std::vector<std::int32_t>& order,
                  bool sort_rays);
 

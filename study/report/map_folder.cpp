@@ -154,9 +154,10 @@ struct MapFolder::State {
                  const AddSections& addSections) const {
     const MapGrid& grid = *study.grid;
     const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
-    HtmlReport report(study.title, fmt::format("{} x {} pixels of {} m in {}; {} >= {}", grid.width,
-                                               grid.height, grid.cell_m, grid.crs, titleOf(study.quantity),
-                                               quantityText(study.threshold, quantity.unit)));
+    const std::string threshold =
+        quantity.categorical ? "" : " >= " + quantityText(study.threshold, quantity.unit);
+    HtmlReport report(study.title, fmt::format("{} x {} pixels of {} m in {}; {}{}", grid.width, grid.height,
+                                               grid.cell_m, grid.crs, titleOf(study.quantity), threshold));
     report.section("Areas and ranges");
     report.table(tableOf(records));
     if (!warnings.empty()) report.section("Warnings");

@@ -245,7 +245,7 @@ void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapR
   const MapGrid& grid = *study.grid;
   const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
   facts.emplace_back("quantity", fmt::format("{} ({})", titleOf(study.quantity), quantity.name));
-  facts.emplace_back("threshold", quantityText(study.threshold, quantity.unit));
+  if (!quantity.categorical) facts.emplace_back("threshold", quantityText(study.threshold, quantity.unit));
   facts.emplace_back("times", study.times_s.size() == 1
                                   ? fmt::format("{} s", study.times_s.front())
                                   : fmt::format("{}, from {} to {} s", study.times_s.size(),

@@ -69,6 +69,14 @@ int statusOf(const std::string& arguments_and_redirections) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
+TEST(CommandLine, AVeryLongFileNameGivesAReadableError) {
+  const ProgramResult result = run({"info", std::string(5000, 'a') + "_2x2x2_uint8.raw"});
+  EXPECT_NE(result.status, 0);
+  EXPECT_THAT(result.err, HasSubstr(": File name too long"));
+  EXPECT_THAT(result.err, ::testing::Not(HasSubstr("filesystem error")));
+  EXPECT_LT(result.err.size(), 1000u);
+}
+
 TEST(CommandLine, AnOptionWithoutItsValueIsNamed) {
   const auto errorOf = [](const Arguments& more) {
     Arguments arguments{"simulate", shippedScenario("quick.yaml"), "-o", "out"};

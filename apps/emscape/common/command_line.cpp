@@ -13,6 +13,7 @@
 #include "apps/emscape/common/components.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
+#include "base/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 
@@ -82,7 +83,7 @@ int run(const Action& action) {
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::other, "out of memory; use fewer voxels (region.dims), channels or --cache-mib");
   } catch (const std::exception& error) {
-    return fail(ErrorCode::other, error.what());
+    return fail(ErrorCode::other, failureText(error));
   } catch (...) {
     return fail(ErrorCode::other, "unknown exception");
   }
