@@ -151,13 +151,15 @@ TEST(Study, AStudyWhoseProcessesAreKilledComputesNoFinishedVariantAgain) {
   RunningProgram running({"study", file, "-o", folder / "out", "--jobs", "2"});
   std::map<int, int> seen;
   std::size_t seen_at_kill = 0;
+  // A part that ends its process five times before it finishes a variant would end the study.
+  constexpr int kKills = 4;
   int killed = 0;
   for (int wait = 0; wait < 6000 && !std::filesystem::exists(folder / "out/results.csv"); ++wait) {
     usleep(5000);
     for (const auto& [variant, count] : variantsInJournals(folder / "out/parts")) {
       seen[variant] = std::max(seen[variant], count);
     }
-    if (killed == 6 || seen.size() == seen_at_kill) continue;
+    if (killed == kKills || seen.size() == seen_at_kill) continue;
     for (const pid_t program : childrenOf(getpid())) {
       const std::vector<pid_t> workers = childrenOf(program);
       if (workers.size() != 2) continue;
@@ -168,7 +170,7 @@ TEST(Study, AStudyWhoseProcessesAreKilledComputesNoFinishedVariantAgain) {
   }
   const ProgramResult result = running.wait();
   EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_GE(killed, 3);
+  EXPECT_GE(killed, 2);
   for (const auto& [variant, count] : seen) EXPECT_EQ(count, 1) << "variant " << variant;
   expectSameResults(folder, "whole", "out");
 }
