@@ -28,6 +28,7 @@ PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bo
   others.tx_agl_m = static_cast<float>(inputs.site.height_msl_m - site_ground_msl_m);
   others.curvature_per_m = static_cast<float>(1e-6 * air.at(0).top_gradient_m);
   others.max_angle_rad = static_cast<float>(max_angle_rad);
+  others.half_wavelength_m = static_cast<float>(wavelength_m(inputs.emitter.frequency_hz) / 2);
   others.direct_ray = directRayPattern(inputs.elevation_pattern, max_angle_rad);
   others.largest_db = static_cast<float>(-settings.floor_db);
   others.over_terrain = has_terrain;
@@ -300,6 +301,7 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   if (!cells.are_points) {
     excess.others.cell_range_m = static_cast<float>(cells.meanRange_m());
     excess.others.cell_height_m = static_cast<float>(cells.meanHeight_m());
+    excess.others.march_step_m = static_cast<float>(plan.grid.top_m / plan.grid.intervals);
   }
   excess.azimuths = plan.azimuths;
   excess.ranges = cells.ranges;
@@ -394,7 +396,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
                                               double(100 * loss.equation_part), other_name),
       radToDeg(double(
           std::max(sight.horizon_rad, others.launchAngle(static_cast<float>(column.range_m), end_msl_m)))),
-      radToDeg(max_angle_rad), march_text);
+      radToDeg(double(others.maxAngle(static_cast<float>(column.range_m)))), march_text);
   return explanation;
 }
 

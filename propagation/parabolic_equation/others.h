@@ -52,6 +52,7 @@ struct PeOthers {
   float tx_msl_m = 0, tx_agl_m = 0;
   float curvature_per_m = 0;  ///< of rays over the flattened earth, upwards: 10^-6 dM/dz
   float max_angle_rad = 0, min_range_m = 0;
+  float half_wavelength_m = 0;
   float largest_db = 80;  ///< of the equation
   DirectRayPattern direct_ray;
   bool over_terrain = false;
@@ -59,6 +60,7 @@ struct PeOthers {
   TwoRayExcess two_ray;           ///< over the smooth earth, at mean sea level
   /// Size of the cells over which the equation's field and the two rays are averaged; 0: points.
   float cell_range_m = 0, cell_height_m = 0;
+  float march_step_m = 0;  ///< between heights that are so far apart, the equation's power is taken as linear
   P1812Model<float> scatter;  ///< input of p1812TroposcatterDb()
 
   /// Angle (rad) above the horizontal at which the ray to a height leaves the antenna.
@@ -80,6 +82,13 @@ struct PeOthers {
     return walk.sight(profile.count > 0 ? profile.height_msl_m[profile.count - 1] : 0);
   }
 
+  /// Largest angle (rad) of the equation at a range: the edge of the band, at max_angle_rad, diffracts the
+  /// field at angles below it, as a knife edge does up to the Fresnel parameter 1. 0 at short ranges.
+  EMSCAPE_HD float maxAngle(float range_m) const {
+    const float angle_rad = max_angle_rad - std::sqrt(half_wavelength_m / range_m);
+    return angle_rad > 0 ? angle_rad : 0;
+  }
+
   /// Weight of the equation.
   /// @param horizon_rad  PeSight: angle at which the field passes a ridge
   EMSCAPE_HD float equationPart(float range_m, float height_msl_m, float ground_msl_m,
@@ -90,7 +99,7 @@ struct PeOthers {
     const float reflected = (tx_agl_m + above_m) / range_m - curvature_per_m * range_m / 2;
     const float seen = direct > reflected ? direct : reflected;
     const float angle = seen > horizon_rad ? seen : horizon_rad;
-    const float by_angle = (1 - angle / max_angle_rad) / kPeBlendPart;
+    const float by_angle = (maxAngle(range_m) - angle) / (kPeBlendPart * max_angle_rad);
     const float by_range = (range_m / min_range_m - 1) / kPeBlendPart;
     const float part = by_angle < by_range ? by_angle : by_range;
     return part < 0 ? 0 : part > 1 ? 1 : part;
@@ -132,14 +141,16 @@ struct PeOthers {
     loss.scatter_db = scatter_db > 0 ? scatter_db : 0;
   }
 
-  /// Mean of the two rays over a cell, in which the difference of their paths is linear.
+  /// Mean of the two rays over a cell, in which the difference of their paths is linear; taken as the
+  /// equation's mean, so that there is no seam between them.
   EMSCAPE_HD float twoRays_db(double range_m, float height_msl_m) const {
     float excess_db = 0;
     const ReflectedRay ray = two_ray.reflectedRay(range_m, height_msl_m, excess_db);
     if (ray.weight < 1) return excess_db;
     const float phase_per_m =
         2 * float(kPi) * 2 * tx_agl_m / (float(two_ray.model.earth.wavelength_m) * float(range_m));
-    const float mean = sinc(phase_per_m * cell_height_m / 2) *
+    const float of_lines = sinc(phase_per_m * march_step_m / 2);
+    const float mean = of_lines * of_lines * sinc(phase_per_m * cell_height_m / 2) *
                        sinc(phase_per_m * height_msl_m / float(range_m) * cell_range_m / 2);
     const float power = 1 + ray.re * ray.re + ray.im * ray.im + 2 * ray.re * mean;
     constexpr float kLowest = 1e-6f;  // 60 dB, as two_ray
