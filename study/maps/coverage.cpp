@@ -51,6 +51,25 @@ std::optional<std::string> scanWarning(const scenario::Scenario& at_targets,
   return unlit->warning;
 }
 
+/// Warning for a projection in which pixels have another size than on the ground: Mercator's far from the
+/// equator, a zone of UTM far from its meridian.
+std::optional<std::string> scaleWarning(const MapGrid& grid) {
+  constexpr double kTolerated = 0.02;
+  double least_m = HUGE_VAL, largest_m = 0;
+  for (std::size_t pixel = 0; pixel < grid.pixels(); ++pixel) {
+    if (std::isnan(grid.places[pixel].latitude_deg)) continue;
+    const double side_m = std::sqrt(static_cast<double>(grid.areas_m2[pixel]));
+    least_m = std::min(least_m, side_m);
+    largest_m = std::max(largest_m, side_m);
+  }
+  if (least_m > (1 - kTolerated) * grid.cell_m && largest_m < (1 + kTolerated) * grid.cell_m)
+    return std::nullopt;
+  return fmt::format(
+      "pixels of {:g} m in {} are {:.4g} to {:.4g} m on the ground; with the crs utm or local they are "
+      "nearly that size",
+      grid.cell_m, grid.crs, least_m, largest_m);
+}
+
 /// Warning for times at which no emitter of the quantity is active: their maps are empty.
 std::optional<std::string> inactiveWarning(const std::shared_ptr<const scenario::Scenario>& at_targets,
                                            const scenario::TerrainPtr& terrain, Quantity quantity,
@@ -223,9 +242,10 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     }
   }
   std::vector<std::vector<std::string>> warnings(scenarios.size());
+  const auto scale = scaleWarning(impl_->grid);
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
     const auto inactive = inactiveWarning(at_targets[s], terrain, requests.front().quantity, times_s);
-    for (const auto& warning : {inactive, scanWarning(*at_targets[s], requests)})
+    for (const auto& warning : {inactive, scanWarning(*at_targets[s], requests), scale})
       if (warning) warnings[s].push_back(*warning);
     for (Impl::OfReference& of : impl_->references) {
       for (std::size_t r = 0; r < requests.size(); ++r)

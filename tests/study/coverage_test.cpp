@@ -91,6 +91,22 @@ TEST(Coverage, WarnsOfTimesWithoutAnActiveRadar) {
       << "of other emitters";
 }
 
+TEST(Coverage, WarnsOfPixelsOfAnotherSizeOnTheGround) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
+  const auto warningsIn = [&](const std::string& crs) {
+    return computeCoverage(scenario, loadTerrain(*scenario, areaOf(scenario->region)),
+                           makeMapGrid(areaOf(scenario->region), 3000, crs),
+                           {{kLow}, {Product::covered}, scenario::Quantity::snr_db, 0, {0}}, {},
+                           [](const CoverageMap&) {});
+  };
+  const auto scaled = Contains(HasSubstr("on the ground"));
+  for (const char* crs : {"utm", "local"}) EXPECT_THAT(warningsIn(crs), Not(scaled)) << crs;
+  // The scale of Mercator's projection is that of the parallel: cos(36.25 degrees) = 0.806, here with the
+  // flattening of the earth.
+  EXPECT_THAT(warningsIn("EPSG:3857"), Contains(HasSubstr("pixels of 3000 m in EPSG:3857 are 24")));
+  EXPECT_THAT(warningsIn("EPSG:32633"), scaled) << "a zone of Europe";
+}
+
 TEST(Coverage, AnAreaWithoutAPixelIsRefused) {
   const auto scenario = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
   const MapArea area = circularArea({36.3, -84.2, 10});
