@@ -215,8 +215,13 @@ std::vector<std::string> colorMapNames() {
 }
 
 Rgb categoryColor(int index) {
-  constexpr int count = static_cast<int>(std::size(kCategoryColors));
-  return rgbOf(kCategoryColors[((index % count) + count) % count]);
+  constexpr int count = static_cast<int>(std::size(kCategoryColors)), kShades = 3;
+  const int distinct = ((index % (kShades * count)) + kShades * count) % (kShades * count);
+  const Rgb color = rgbOf(kCategoryColors[distinct % count]);
+  const int shade = distinct / count;
+  return shade == 0   ? color
+         : shade == 1 ? lerpColor(color, {0, 0, 0}, 0.4f)
+                      : lerpColor(color, {1, 1, 1}, 0.4f);
 }
 
 Rgb TransferFunction::color(double value) const {

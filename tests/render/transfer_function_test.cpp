@@ -112,6 +112,18 @@ TEST(TransferFunction, CategoriesHaveOwnColoursAndNoneIsClear) {
   }
 }
 
+TEST(CategoryColor, DiffersForTwentyOneCategories) {
+  for (int a = 0; a < 21; ++a) {
+    for (int b = 0; b < a; ++b) {
+      const Rgb one = categoryColor(a), other = categoryColor(b);
+      EXPECT_GT(std::abs(one.r - other.r) + std::abs(one.g - other.g) + std::abs(one.b - other.b), 0.19f)
+          << a << ", " << b;
+    }
+  }
+  EXPECT_EQ(categoryColor(21).r, categoryColor(0).r);
+  EXPECT_EQ(categoryColor(-21).r, categoryColor(0).r);
+}
+
 TEST(TransferTable, CorrectsOpacityForTheStep) {
   const TransferTable table(testing::fog(0.3), 0.5);
   EXPECT_NEAR(table.view().samples[100].a, 1 - std::sqrt(0.7), 1e-6);

@@ -30,7 +30,8 @@ struct ColorMap {
 /// viridis, cividis, inferno, diverging. @throws Error (bad_input) that lists them
 const ColorMap& colorMap(const std::string& name);
 std::vector<std::string> colorMapNames();
-/// Okabe and Ito's palette without black; indices beyond it repeat.
+/// Okabe and Ito's palette without black: seven colours, then the same darker, then lighter. From 21 on they
+/// repeat.
 Rgb categoryColor(int index);
 
 /// A transfer function in the unit of the volume's values. Between points colour and opacity are linear;
