@@ -303,11 +303,16 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   planRanges(radials, plan);
   plan.min_range_m = std::max({2 * plan.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz),
                                2 * plan.cells.meanRange_m()});
+  const auto blurred_deg = [&](double range_m) {  // PeOthers::maxAngle()
+    return radToDeg(std::sqrt(wavelength_m(inputs.emitter.frequency_hz) / (2 * range_m)));
+  };
   plan.choices.push_back(
       {"extent",
-       fmt::format("from {:.4g} m, to {:.4g} m above {}: nearer, higher and above the largest angle "
-                   "other models apply",
-                   plan.min_range_m, plan.top_m, plan.cells.above_ground ? "the ground" : "mean sea level")});
+       fmt::format(
+           "from {:.4g} m, to {:.4g} m above {}, up to the largest angle less {:.2g} degrees at 1 km, "
+           "{:.2g} at 10 km (the band's edge diffracts): elsewhere other models apply",
+           plan.min_range_m, plan.top_m, plan.cells.above_ground ? "the ground" : "mean sea level",
+           blurred_deg(1e3), blurred_deg(1e4))});
   const auto members = double(plan.air.size());
   const double lanes = kStepLanes * std::ceil(double(plan.azimuths) / kStepLanes);
   const double marched = plan.ranges.empty() ? lanes * plan.cells.ranges
