@@ -13,8 +13,9 @@ namespace emscape::propagation {
 /// Warning bits. The bits from kPeStaircaseShift to 30 hold the number of steps of the staircase.
 enum PeWarning : unsigned {
   kPePointwiseAir = 1,
-  kPeDuctOverLand = 2,  ///< the path has land, over which the evaporation duct is left out
-  kPeProfileEnds = 4    ///< the air was measured up to less than the antenna's or the field's height
+  kPeDuctOverLand = 2,      ///< the path has land, over which the evaporation duct is left out
+  kPeProfileEnds = 4,       ///< the air was measured up to less than the antenna's or the field's height
+  kPeBehindSteepGround = 8  ///< most of the field is behind ground above the largest angle
 };
 constexpr int kPeStaircaseShift = 4;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "emscape/base/error.h"
@@ -100,7 +101,8 @@ void readGround(const RadialInputs& radials, const PePlan& plan, FieldMarch& fie
 
 /// Ends the marches beyond ground that the antenna sees above the equation's largest angle: the field passes
 /// it at larger angles, for which other models are used (PeOthers::equationPart()).
-void endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMarch& field) {
+/// @return fraction of the marches' length that is left
+double endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMarch& field) {
   constexpr float kMargin = 1.05f;  // a column between two azimuths may see a little past both
   AzimuthMarch& march = field.march;
   const auto azimuths = std::size_t(plan.azimuths);
@@ -117,12 +119,15 @@ void endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMarch
     }
   }
   if (march.ranges.empty()) march.ranges.assign(azimuths, plan.cells.ranges);
+  const auto length = [&] { return std::accumulate(march.ranges.begin(), march.ranges.end(), 0.0); };
+  const double whole = length();
   for (std::size_t a = 0; a < azimuths; ++a) {
     const std::size_t before = a > 0 ? a - 1 : plan.is_around ? azimuths - 1 : a;
     const std::size_t behind = a + 1 < azimuths ? a + 1 : plan.is_around ? 0 : a;
     march.ranges[a] = std::min(march.ranges[a], std::max({reached[before], reached[a], reached[behind]}));
     field.known_ranges[a] = std::min(field.known_ranges[a], march.ranges[a]);
   }
+  return whole > 0 ? length() / whole : 1;
 }
 
 /// The air of each azimuth over its ground, or one for all.
@@ -261,6 +266,11 @@ std::vector<std::string> peWarningMessages(unsigned warnings) {
         "the profile of the air ends below the antenna or the top of the field: above it the air is "
         "standard");
   }
+  if (warnings & kPeBehindSteepGround) {
+    messages.emplace_back(
+        "ground above the equation's largest angle ends more than half of its marches' length; behind it "
+        "'diffraction' applies; a larger 'max_angle_deg' reaches further");
+  }
   const unsigned staircases = (warnings & ~kMissingTerrain) >> kPeStaircaseShift;
   if (staircases > 0) {
     messages.push_back(
@@ -296,7 +306,8 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   PeExcess excess;
   excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m,
                            plan.max_angle_rad);
-  if (radials.has_terrain) endBehindSteepGround(excess.others, plan, field);
+  if (radials.has_terrain && endBehindSteepGround(excess.others, plan, field) < 0.5)
+    excess.warnings |= kPeBehindSteepGround;
   excess.others.min_range_m = static_cast<float>(plan.min_range_m);
   if (!cells.are_points) {
     excess.others.cell_range_m = static_cast<float>(cells.meanRange_m());

@@ -1141,6 +1141,22 @@ TEST(ParabolicField, DoesNotDependOnPowerAndAzimuth) {
     EXPECT_NEAR(stronger->values[v] - volume->values[v], 20, 0.01);
 }
 
+TEST(ParabolicField, WarnsOfAnAntennaInAValley) {
+  const auto warningsWith = [](double max_angle_deg) {
+    const auto crater = std::make_shared<const MadeTerrain>(
+        kLatitude_deg, kLongitude_deg, 0.4,
+        [](double east, double north) { return std::hypot(east - 0.2, north - 0.2) > 0.03 ? 500.0 : 100.0; });
+    const auto scenario = around(3e8, 110, {20e3, 20e3, 400}, {20, 20, 4}, 520);
+    scenario->emitters[0].propagation.parabolic_equation.max_angle_deg = max_angle_deg;
+    FieldSolver solver(scenario, crater, {});
+    solver.update(scenario::snapshotAt(scenario, crater.get(), 0));
+    return solver.warnings();
+  };
+  const auto behind = ::testing::Contains(::testing::HasSubstr("a larger 'max_angle_deg' reaches further"));
+  EXPECT_THAT(warningsWith(3), behind);
+  EXPECT_THAT(warningsWith(12), ::testing::Not(behind));
+}
+
 TEST(ParabolicField, CountsGroundThatIsTooSteep) {
   const auto terrain = std::make_shared<const MadeTerrain>(
       kLatitude_deg, kLongitude_deg, 0.4, [](double east, double) { return east > 0.3 ? 400.0 : 100.0; });
