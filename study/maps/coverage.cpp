@@ -55,13 +55,14 @@ std::optional<std::string> scanWarning(const scenario::Scenario& at_targets,
 /// equator, a zone of UTM far from its meridian.
 std::optional<std::string> scaleWarning(const MapGrid& grid) {
   constexpr double kTolerated = 0.02;
-  double least_m = HUGE_VAL, largest_m = 0;
+  float least_m2 = INFINITY, largest_m2 = 0;
   for (std::size_t pixel = 0; pixel < grid.pixels(); ++pixel) {
     if (std::isnan(grid.places[pixel].latitude_deg)) continue;
-    const double side_m = std::sqrt(static_cast<double>(grid.areas_m2[pixel]));
-    least_m = std::min(least_m, side_m);
-    largest_m = std::max(largest_m, side_m);
+    least_m2 = std::min(least_m2, grid.areas_m2[pixel]);
+    largest_m2 = std::max(largest_m2, grid.areas_m2[pixel]);
   }
+  const auto least_m = std::sqrt(static_cast<double>(least_m2)),
+             largest_m = std::sqrt(static_cast<double>(largest_m2));
   if (least_m > (1 - kTolerated) * grid.cell_m && largest_m < (1 + kTolerated) * grid.cell_m)
     return std::nullopt;
   return fmt::format(
@@ -158,12 +159,16 @@ struct CoverageSolver::Impl {
   std::vector<OfReference> references;
   std::vector<std::size_t> with_least;  ///< requests with minimum heights
   std::optional<LeastHeights> least_heights;
+  const std::optional<std::string> scale_warning;
 
   /// @param of_maps  without quantities
   /// @throws Error (usage) if no pixel has its centre in the area
   Impl(const MapGrid& map_grid, std::vector<CoverageRequest> of_maps_requests,
        const emfield::FieldOptions& of_maps)
-      : grid(map_grid), requests(std::move(of_maps_requests)), options(of_maps) {
+      : grid(map_grid),
+        requests(std::move(of_maps_requests)),
+        options(of_maps),
+        scale_warning(scaleWarning(map_grid)) {
     const auto isInside = [](const emfield::Surface::Place& centre) {
       return !std::isnan(centre.latitude_deg);
     };
@@ -242,10 +247,9 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     }
   }
   std::vector<std::vector<std::string>> warnings(scenarios.size());
-  const auto scale = scaleWarning(impl_->grid);
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
     const auto inactive = inactiveWarning(at_targets[s], terrain, requests.front().quantity, times_s);
-    for (const auto& warning : {inactive, scanWarning(*at_targets[s], requests), scale})
+    for (const auto& warning : {inactive, scanWarning(*at_targets[s], requests), impl_->scale_warning})
       if (warning) warnings[s].push_back(*warning);
     for (Impl::OfReference& of : impl_->references) {
       for (std::size_t r = 0; r < requests.size(); ++r)
