@@ -9,12 +9,15 @@ import subprocess
 def virtual_display():
     """A private X server without a screen, as $DISPLAY while the context lasts; yields its name.
 
-    The server chooses a number that is free, so that any number of them start at the same time. Needs xvfb.
+    It ends with this process at the latest. The server chooses a number that is free, so that any number of them start at the same time. Needs xvfb.
     """
     before = os.environ.get("DISPLAY")
     read, write = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1920x1200x24", "-nolisten", "tcp"],
-                              pass_fds=[write], stderr=subprocess.DEVNULL)
+    # Without -noreset it starts anew after its last client, and refuses one that comes meanwhile.
+    server = subprocess.Popen(
+        ["setpriv", "--pdeathsig", "TERM", "Xvfb", "-displayfd", str(write), "-noreset", "-screen", "0", "1920x1200x24",
+         "-nolisten", "tcp"],
+        pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     os.close(write)
     try:
         with os.fdopen(read) as answer:
