@@ -9,7 +9,8 @@ import subprocess
 def virtual_display():
     """A private X server without a screen, as $DISPLAY while the context lasts; yields its name.
 
-    It ends with this process at the latest. The server chooses a number that is free, so that any number of them start at the same time. Needs xvfb.
+    It ends with this process at the latest. The server chooses a number that is free, so that any number of them start at
+    the same time. Needs xvfb.
     """
     before = os.environ.get("DISPLAY")
     read, write = os.pipe()
