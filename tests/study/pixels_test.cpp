@@ -143,7 +143,7 @@ TEST(PixelsOfMaps, AreThePathsOfProfileWithEveryModel) {
 }
 
 // A map has the mean over cells between marched azimuths, `profile` the field of the path's own.
-// EMSCAPE_PIXELS: pixels of each site.
+// With EMSCAPE_PIXELS, that many pixels of each site; otherwise 20 of two sites.
 TEST(PixelsOfMaps, OfTheParabolicEquationAreMeansOfCells) {
   const char* const pixels = std::getenv("EMSCAPE_PIXELS");
   std::mt19937 random(7);
