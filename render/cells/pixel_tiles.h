@@ -33,6 +33,7 @@ struct TileGrid {
 
   EMSCAPE_HD int columns() const { return (size.width + kTile - 1) / kTile; }
   EMSCAPE_HD int count() const { return columns() * ((size.height + kTile - 1) / kTile); }
+  EMSCAPE_HD int tileOf(int x, int y) const { return y / kTile * columns() + x / kTile; }
   EMSCAPE_HD PixelBox pixelsOf(int tile) const {
     const int x = tile % columns() * kTile, y = tile / columns() * kTile;
     return common({x, y, x + kTile, y + kTile}, {0, 0, size.width, size.height});

@@ -100,10 +100,19 @@ __global__ void findTiles(const unsigned* tiles, unsigned pairs, int count, unsi
   first[tile] = low;
 }
 
+/// Pixels whose rays met cells in the wrong order.
+struct WrongPixels {
+  unsigned* count;
+  int* pixels;
+};
+
 /// One block per tile, one thread per pixel; a warp has 8 x 4 pixels.
+/// @param kFindsWrong  also lists the pixels whose rays meet cells in the wrong order. All cells are then
+/// checked, also those behind opaque ones
+template <bool kFindsWrong>
 __global__ void __launch_bounds__(kThreads)
     compositeTiles(const __grid_constant__ TileTask task, const int* ranks, const unsigned* first,
-                   Rgba* picture) {
+                   WrongPixels wrong, Rgba* picture) {
   constexpr unsigned kBatch = 128, kGroup = 64;
   __shared__ __align__(16) unsigned char memory[kBatch * sizeof(TileCell)];
   TileCell* const batch = reinterpret_cast<TileCell*>(memory);
@@ -116,14 +125,15 @@ __global__ void __launch_bounds__(kThreads)
   const bool is_inside = x < tile.end_x && y < tile.end_y;
   const PixelRay ray(task, is_inside ? x : tile.first_x, is_inside ? y : tile.first_y);
   RayIntegral integral(task.transfer, task.psi);
-  bool is_open = is_inside;
+  bool is_searched = is_inside, is_wrong = false;
+  double last = 0;  // middle of the last segment
   const unsigned end = first[blockIdx.x + 1];
   for (unsigned begin = first[blockIdx.x]; begin < end; begin += kBatch) {
     const unsigned count = min(end - begin, kBatch);
-    if (__syncthreads_count(is_open) == 0) break;
+    if (__syncthreads_count(is_searched) == 0) break;
     if (threadIdx.x < count) batch[threadIdx.x] = TileCell(task, ranks[begin + threadIdx.x]);
     __syncthreads();
-    if (!__any_sync(0xffffffffu, is_open)) continue;
+    if (!__any_sync(0xffffffffu, is_searched)) continue;
     // First each ray finds the cells that it meets, then it integrates: these are others for each lane, so
     // that few lanes wait.
     for (unsigned n = 0; n < count; n += kGroup) {
@@ -135,16 +145,103 @@ __global__ void __launch_bounds__(kThreads)
           const int bit = static_cast<int>(m) + __ffs(static_cast<int>(near)) - 1;
           const TileCell& cell = batch[n + bit];
           RaySegment segment;
-          if (is_open && cell.pixels.holds(x, y) && cell.meets(ray, task.camera.orthographic, segment))
+          if (is_searched && cell.pixels.holds(x, y) && cell.meets(ray, task.camera.orthographic, segment))
             met |= 1ull << bit;
         }
       }
-      for (; met != 0; met &= met - 1)
-        addSegment(task, batch[n + __ffsll(static_cast<long long>(met)) - 1], ray, integral);
+      for (; met != 0; met &= met - 1) {
+        const TileCell& cell = batch[n + __ffsll(static_cast<long long>(met)) - 1];
+        if constexpr (kFindsWrong) {
+          RaySegment segment;
+          cell.meets(ray, task.camera.orthographic, segment);
+          is_wrong = is_wrong || segment.middle() < last;
+          if (integral.through() < task.through) continue;
+          last = segment.middle();
+          addSegment(segment, ray, integral);
+        } else {
+          addSegment(task, cell, ray, integral);
+        }
+      }
     }
-    is_open = is_open && integral.through() >= task.through;
+    if (!kFindsWrong) is_searched = is_searched && integral.through() >= task.through;
   }
-  if (is_inside) picture[y * task.camera.size.width + x] = integral.color();
+  if (!is_inside) return;
+  const int pixel = y * task.camera.size.width + x;
+  picture[pixel] = integral.color();
+  if (is_wrong) wrong.pixels[atomicAdd(wrong.count, 1u)] = pixel;
+}
+
+/// Composites rays again with their segments sorted: up to kThreads of them at a time, the nearest first. One
+/// block per pixel.
+__global__ void __launch_bounds__(kThreads)
+    compositeSorted(const __grid_constant__ TileTask task, const int* ranks, const unsigned* first,
+                    const int* pixels, Rgba* picture) {
+  __shared__ __align__(16) unsigned char memory[kThreads * sizeof(RaySegment)];
+  RaySegment* const segments = reinterpret_cast<RaySegment*>(memory);
+  __shared__ int order[kThreads];
+  __shared__ unsigned count;
+  __shared__ unsigned long long nearest,
+      farthest;  // middles; as integers in the same order, as none is negative
+  __shared__ bool is_done;
+
+  const int pixel = pixels[blockIdx.x], width = task.camera.size.width;
+  const int x = pixel % width, y = pixel / width, thread = static_cast<int>(threadIdx.x);
+  const int tile = TileGrid{task.camera.size}.tileOf(x, y);
+  const PixelRay ray(task, x, y);
+  RayIntegral integral(task.transfer, task.psi);  // of the first thread
+  double behind = -1, limit = HUGE_VAL;           // middles of the segments that are sorted: ]behind, limit]
+  do {
+    if (thread == 0) {
+      count = 0;
+      nearest = ~0ull;
+      farthest = 0;
+    }
+    __syncthreads();
+    for (unsigned n = first[tile] + threadIdx.x; n < first[tile + 1]; n += kThreads) {
+      RaySegment segment;
+      if (!task.cells[ranks[n]].pixels.holds(x, y) ||
+          !TileCell(task, ranks[n]).meets(ray, task.camera.orthographic, segment))
+        continue;
+      const double middle = segment.middle();
+      if (!(middle > behind && middle <= limit)) continue;
+      const auto at = static_cast<unsigned long long>(__double_as_longlong(middle));
+      atomicMin(&nearest, at);
+      atomicMax(&farthest, at);
+      const unsigned place = atomicAdd(&count, 1u);
+      if (place < kThreads) segments[place] = segment;
+    }
+    __syncthreads();
+    const unsigned found = count;
+    const double least = __longlong_as_double(static_cast<long long>(nearest)),
+                 largest = __longlong_as_double(static_cast<long long>(farthest));
+    const double half = least + 0.5 * (largest - least);
+    __syncthreads();
+    if (found > kThreads && half < largest) {
+      limit = half;
+      continue;
+    }
+    const int sorted = static_cast<int>(min(found, static_cast<unsigned>(kThreads)));
+    if (thread < sorted) {
+      const double middle = segments[thread].middle();
+      int before = 0;
+      for (int other = 0; other < sorted; ++other) {
+        const double at = segments[other].middle();
+        before += at < middle || (at == middle && other < thread) ? 1 : 0;
+      }
+      order[before] = thread;
+    }
+    __syncthreads();
+    if (thread == 0) {
+      for (int n = 0; n < sorted && integral.through() >= task.through; ++n)
+        addSegment(segments[order[n]], ray, integral);
+      is_done = limit == HUGE_VAL || integral.through() < task.through;
+    }
+    __syncthreads();
+    behind = limit;
+    limit = HUGE_VAL;
+    if (is_done) break;
+  } while (true);
+  if (thread == 0) picture[pixel] = integral.color();
 }
 
 /// Calls a function of CUB: first for the size of its temporary memory, then with it.
@@ -224,6 +321,25 @@ const int* TileProjector::bin(const TileTask& task, const MeshOnDevice& mesh, cu
   return ranks_.to.data();
 }
 
+void TileProjector::composite(const TileTask& task, const int* ranks, bool sort_rays, cudaStream_t stream) {
+  const auto tiles = static_cast<unsigned>(TileGrid{task.camera.size}.count());
+  if (!sort_rays) {
+    compositeTiles<false><<<tiles, kThreads, 0, stream>>>(task, ranks, first_.data(), {}, picture_.data());
+    checkLaunch("compositeTiles");
+    return;
+  }
+  wrong_count_.resize(1);
+  check(cudaMemsetAsync(wrong_count_.data(), 0, sizeof(unsigned), stream), "cudaMemsetAsync");
+  const WrongPixels wrong{wrong_count_.data(), wrong_.atLeast(picture_.size())};
+  compositeTiles<true><<<tiles, kThreads, 0, stream>>>(task, ranks, first_.data(), wrong, picture_.data());
+  checkLaunch("compositeTiles");
+  unsigned count = 0;
+  wrong_count_.download(&count, stream);
+  if (count == 0) return;
+  compositeSorted<<<count, kThreads, 0, stream>>>(task, ranks, first_.data(), wrong_.data(), picture_.data());
+  checkLaunch("compositeSorted");
+}
+
 TileTimes TileProjector::project(TileTask task, const MeshOnDevice& mesh, CellSorting sorting, Image& image,
                                  cudaStream_t stream) {
   begin_.record(stream);
@@ -246,9 +362,7 @@ TileTimes TileProjector::project(TileTask task, const MeshOnDevice& mesh, CellSo
 
   const ImageSize size = task.camera.size;
   picture_.resize(static_cast<std::size_t>(size.count()));
-  compositeTiles<<<static_cast<unsigned>(TileGrid{size}.count()), kThreads, 0, stream>>>(
-      task, ranks, first_.data(), picture_.data());
-  checkLaunch("compositeTiles");
+  composite(task, ranks, sorting == CellSorting::visibility, stream);
   drawn_mark_.record(stream);
   image = Image(size);
   picture_.download(image.pixels.data(), stream);

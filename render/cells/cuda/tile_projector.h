@@ -29,6 +29,9 @@ class TileProjector {
   long long raiseHidden(const MeshOnDevice& mesh, cudaStream_t stream);
   /// Ranks of cells by the tiles that they touch, ascending in each; the first of each tile is in first_.
   const int* bin(const TileTask& task, const MeshOnDevice& mesh, cudaStream_t stream);
+  /// Composites the tiles into picture_.
+  /// @param sort_rays  see TileProjection
+  void composite(const TileTask& task, const int* ranks, bool sort_rays, cudaStream_t stream);
 
   template <class T>
   using Buffer = emscape::cuda::Buffer<T>;
@@ -50,6 +53,8 @@ class TileProjector {
   Buffer<unsigned long long> drawn_;
   Buffer<std::byte> temporary_;
   Buffer<Rgba> picture_;
+  Buffer<unsigned> wrong_count_;
+  Buffer<int> wrong_;  ///< pixels whose rays met cells in the wrong order
   emscape::cuda::TimeMark begin_, ordered_, binned_, drawn_mark_;
 };
 

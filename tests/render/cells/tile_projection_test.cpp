@@ -200,14 +200,14 @@ TEST(TileProjection, TakesThePlaceOfOpenGlOnTheCpu) {
 }
 
 // From low cameras cells on both sides of a gap are in the wrong order by their centroids.
-TEST(TileProjection, SortsRaysWhereTheOrderOfCellsIsWrong) {
+TEST_P(TileProjections, SortRaysWhereTheOrderOfCellsIsWrong) {
   TetrahedralMesh slabs = boxMesh({12, 12, 3}, {0, 0, 0}, {1000, 800, 150}, 0.2);
   test::append(slabs, boxMesh({3, 2, 2}, {0, 0, 160}, kUpper, 0));
   const MeshField field = oriented(std::move(slabs));
   for (const char* camera : {"orbit:elevation_deg=10", "orbit:azimuth_deg=30,elevation_deg=25",
                              "orbit:elevation_deg=-15,projection=orthographic"}) {
     for (const bool exact : {true, false}) {
-      CellRenderer renderer;
+      CellRenderer renderer(GetParam());
       prepare(renderer, field, camera, exact);
       const Image marched = renderer.render(kSize);
       EXPECT_LT(greatestDifference(renderer.project(kSize, byTiles()), marched), 1e-5) << camera << exact;
