@@ -61,23 +61,30 @@ EMSCAPE_HD void visitPosts(const Station& station, const GroundPosts& ground, co
   }
   constexpr int kAtOnce = 4;  // independent loads
   TerrainWalk walk(station, ground.terrain, path);
+  const double* const ranges_m = ground.ranges_m;
   for (int i = 0; i < count;) {
-    const double* const ranges_m = ground.ranges_m + i;
-    const TerrainChord& chord = walk.chordAt(ranges_m[0]);
-    if (chord.corner_msl_m == nullptr || i + kAtOnce > count ||
-        !(ranges_m[kAtOnce - 1] < walk.endOfChord_m(ranges_m[0]))) {
-      visit(i++, chord.heightAt(ground.terrain, ranges_m[0]));
-      continue;
+    const TerrainChord& chord = walk.chordAt(ranges_m[i]);
+    const RasterChord in_raster = chord.in_raster;
+    const int beyond = ground.lastBefore(walk.endOfChord_m(ranges_m[i])) + 1;
+    const int end = beyond <= i ? i + 1 : beyond < count ? beyond : count;
+    while (i < end) {
+      for (; in_raster.corner_msl_m != nullptr && i + kAtOnce <= end; i += kAtOnce) {
+        float heights_msl_m[kAtOnce];
+        bool is_known = true;
+        EMSCAPE_UNROLL
+        for (int n = 0; n < kAtOnce; ++n) {
+          heights_msl_m[n] = in_raster.heightAt(ranges_m[i + n]);
+          is_known = is_known && heights_msl_m[n] == heights_msl_m[n];
+        }
+        if (!is_known) break;
+        EMSCAPE_UNROLL
+        for (int n = 0; n < kAtOnce; ++n) visit(i + n, heights_msl_m[n]);
+      }
+      // Beside voids, outside the finest raster, and the last ones of a chord.
+      for (const int next = i + kAtOnce < end ? i + kAtOnce : end; i < next; ++i) {
+        visit(i, chord.heightAt(ground.terrain, ranges_m[i]));
+      }
     }
-    float heights_msl_m[kAtOnce];
-    EMSCAPE_UNROLL
-    for (int n = 0; n < kAtOnce; ++n) heights_msl_m[n] = chord.heightInRaster(ranges_m[n]);
-    EMSCAPE_UNROLL
-    for (int n = 0; n < kAtOnce; ++n) {
-      const float here = heights_msl_m[n];
-      visit(i + n, here == here ? here : chord.heightAmongRasters(ground.terrain, ranges_m[n]));
-    }
-    i += kAtOnce;
   }
 }
 

@@ -9,13 +9,13 @@ namespace emscape::emfield {
 namespace {
 
 /// Heights in the chord's raster. @return false if one is NaN
-EMSCAPE_SIMD_CLONES bool readInRaster(const TerrainChord& in, const double* ranges_m, int count,
+EMSCAPE_SIMD_CLONES bool readInRaster(const RasterChord& in, const double* ranges_m, int count,
                                       float* height_msl_m) {
-  const TerrainChord chord = in;  // stores into height_msl_m do not change it
+  const RasterChord chord = in;  // stores into height_msl_m do not change it
   float unknown = 0;
 #pragma omp simd reduction(+ : unknown)
   for (int i = 0; i < count; ++i) {
-    const float here = chord.heightInRaster(ranges_m[i]);
+    const float here = chord.heightAt(ranges_m[i]);
     height_msl_m[i] = here;
     unknown += here - here;
   }
@@ -37,8 +37,8 @@ void readPostsCpu(const Station& station, const GroundPosts& ground, const FastI
     const double* const beyond =
         std::lower_bound(ranges_m + begin, ranges_m + count, walk.endOfChord_m(ranges_m[begin]));
     const int end = std::max(begin + 1, static_cast<int>(beyond - ranges_m));
-    if (chord.corner_msl_m == nullptr ||
-        !readInRaster(chord, ranges_m + begin, end - begin, height_msl_m + begin)) {
+    if (chord.in_raster.corner_msl_m == nullptr ||
+        !readInRaster(chord.in_raster, ranges_m + begin, end - begin, height_msl_m + begin)) {
       for (int i = begin; i < end; ++i) height_msl_m[i] = chord.heightAt(ground.terrain, ranges_m[i]);
     }
     begin = end;

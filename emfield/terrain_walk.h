@@ -92,30 +92,34 @@ EMSCAPE_HD inline double maxChord_m(double sine_of_latitude) {
   return sine_of_latitude < kOf60Degrees ? 32000 : sine_of_latitude < kOf80Degrees ? 8000 : 100;
 }
 
-/// A part of a walk.
-struct TerrainChord {
+/// A chord in the finest raster.
+struct RasterChord {
   double begin_m = 0, per_m = 0;  ///< part of the chord at a range: (range - begin_m) * per_m, 0..1
-  ChordPosition position;
-  /// Posts of the finest raster here, from the one that `corner` points to, if the whole chord is in that
-  /// raster; else null.
+  /// Posts of the raster, from the one that `corner` points to, if the whole chord is in it; else null.
   const float* corner_msl_m = nullptr;
-  int row_posts = 0;  ///< posts in a row of that raster
+  int row_posts = 0;  ///< posts in a row of the raster
   Parabola<float> column, row;
 
-  EMSCAPE_HD float partAt(double range_m) const { return static_cast<float>((range_m - begin_m) * per_m); }
   /// Bilinear height (m) where corner_msl_m is set; NaN beside a void.
-  EMSCAPE_HD float heightInRaster(double range_m) const {
-    const float part = partAt(range_m);
+  EMSCAPE_HD float heightAt(double range_m) const {
+    const auto part = static_cast<float>((range_m - begin_m) * per_m);
     return bilinearHeight(corner_msl_m, row_posts, column.at(part), row.at(part));
   }
+};
+
+/// A part of a walk.
+struct TerrainChord {
+  RasterChord in_raster;
+  ChordPosition position;
+
   /// Height (m) in all rasters; NaN if the terrain is missing.
   EMSCAPE_HD float heightAmongRasters(const scenario::TerrainView& terrain, double range_m) const {
-    const double part = (range_m - begin_m) * per_m;
+    const double part = (range_m - in_raster.begin_m) * in_raster.per_m;
     return terrain.heightAt(position.latitude_rad.at(part), position.longitude_rad.at(part));
   }
   EMSCAPE_HD float heightAt(const scenario::TerrainView& terrain, double range_m) const {
-    if (corner_msl_m != nullptr) {
-      const float height_msl_m = heightInRaster(range_m);
+    if (in_raster.corner_msl_m != nullptr) {
+      const float height_msl_m = in_raster.heightAt(range_m);
       if (height_msl_m == height_msl_m) return height_msl_m;
     }
     return heightAmongRasters(terrain, range_m);
@@ -160,18 +164,20 @@ class TerrainWalk {
   }
 
   EMSCAPE_HD void setChord(int index) {
-    chord_.begin_m = index * chord_m_;
-    chord_.per_m = per_m_;
-    const FastDirect begin = index > 0 && index == index_ + 1 ? end_ : positionAt(chord_.begin_m);
-    const FastDirect middle = positionAt(chord_.begin_m + chord_m_ / 2);
-    end_ = positionAt(chord_.begin_m + chord_m_);
+    const double begin_m = index * chord_m_;
+    chord_.in_raster.begin_m = begin_m;
+    chord_.in_raster.per_m = per_m_;
+    const FastDirect begin = index > 0 && index == index_ + 1 ? end_ : positionAt(begin_m);
+    const FastDirect middle = positionAt(begin_m + chord_m_ / 2);
+    end_ = positionAt(begin_m + chord_m_);
     chord_.position = chordThrough(begin, middle, end_);
     findRaster();
   }
 
   /// Sets the chord's raster: the finest, if the whole chord is within it.
   EMSCAPE_HD void findRaster() {
-    chord_.corner_msl_m = nullptr;
+    RasterChord& chord = chord_.in_raster;
+    chord.corner_msl_m = nullptr;
     if (terrain_.count == 0) return;
     const scenario::TerrainRaster& raster = terrain_.rasters[0];
     const ChordInRaster in = chordInRaster(raster, chord_.position);
@@ -180,10 +186,10 @@ class TerrainWalk {
     // An index from the corner must fit into an int.
     if (!((in.highest_row - in.lowest_row + 6) * raster.columns < 2e9)) return;
     const int i = static_cast<int>(in.lowest_column - kMargin), j = static_cast<int>(in.lowest_row - kMargin);
-    chord_.corner_msl_m = raster.heights_msl_m + static_cast<long long>(j) * raster.columns + i;
-    chord_.row_posts = raster.columns;
-    chord_.column = relativeTo(in.column, i);
-    chord_.row = relativeTo(in.row, j);
+    chord.corner_msl_m = raster.heights_msl_m + static_cast<long long>(j) * raster.columns + i;
+    chord.row_posts = raster.columns;
+    chord.column = relativeTo(in.column, i);
+    chord.row = relativeTo(in.row, j);
   }
 
   EMSCAPE_HD static Parabola<float> relativeTo(const Parabola<double>& parabola, int origin) {

@@ -22,7 +22,7 @@ struct GridEntry {
 struct DenseBox {
   nano::Coord first;
   Dims dims;
-  std::vector<float>& values;
+  UnsetVector<float>& values;
 };
 
 /// A grid in memory. NanoVDB follows its offsets unchecked; here each is checked to point to a node inside

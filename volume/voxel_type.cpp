@@ -26,9 +26,9 @@ const TypeRow& rowOf(VoxelType type) {
 }
 
 template <class Source>
-std::vector<float> convert(const std::uint8_t* bytes, std::size_t count, bool big_endian) {
+UnsetVector<float> convert(const std::uint8_t* bytes, std::size_t count, bool big_endian) {
   constexpr std::size_t kPiece = 1 << 16;
-  std::vector<float> floats(count);
+  UnsetVector<float> floats(count);
   const int pieces = static_cast<int>((count + kPiece - 1) / kPiece);
   parallelFor(pieces, 1, [&](int begin, int end) {
     const std::size_t last = std::min(count, end * kPiece);
@@ -67,7 +67,7 @@ std::string voxelTypeNames() {
   return names;
 }
 
-std::vector<float> toFloats(const std::uint8_t* bytes, std::size_t count, VoxelType type, bool big_endian) {
+UnsetVector<float> toFloats(const std::uint8_t* bytes, std::size_t count, VoxelType type, bool big_endian) {
   switch (type) {
     case VoxelType::int8:
       return convert<std::int8_t>(bytes, count, big_endian);

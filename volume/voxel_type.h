@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/unset_vector.h"
+
 namespace emscape::volume {
 
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
@@ -20,6 +22,6 @@ std::string voxelTypeNames();
 int bytesOf(VoxelType type);
 
 /// Converts `count` voxels to float, in parallel. @param bytes  count * bytesOf(type), of any alignment
-std::vector<float> toFloats(const std::uint8_t* bytes, std::size_t count, VoxelType type, bool big_endian);
+UnsetVector<float> toFloats(const std::uint8_t* bytes, std::size_t count, VoxelType type, bool big_endian);
 
 }  // namespace emscape::volume

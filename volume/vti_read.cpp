@@ -124,7 +124,7 @@ class VtiFile {
     return {};
   }
 
-  std::vector<float> valuesOf(const pugi::xml_node& array) const {
+  UnsetVector<float> valuesOf(const pugi::xml_node& array) const {
     const std::string name = array.attribute("Name").value();
     const int components = array.attribute("NumberOfComponents").as_int(1);
     if (components != 1) {
@@ -144,7 +144,7 @@ class VtiFile {
     pugi::xml_node array = arrayNamed(std::string(kMask) + ":" + name);
     if (!array) array = arrayNamed(kMask);
     if (!array) return;
-    const std::vector<float> valid = valuesOf(array);
+    const UnsetVector<float> valid = valuesOf(array);
     const Dims& dims = grid_.dims;
     for (int j = 0; j < dims.y; ++j) {
       for (int i = 0; i < dims.x; ++i) {

@@ -19,6 +19,9 @@ using emscape::cuda::check;
 using emscape::cuda::downloadStaged;
 using emscape::cuda::uploadStaged;
 
+/// Surfaces of more heights keep the posts of their paths.
+constexpr int kMostHeightsOfOnePass = 32;
+
 bool isDiffraction(const propagation::ExcessModel& model) {
   return std::holds_alternative<DiffractionExcess>(model);
 }
@@ -309,8 +312,27 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
     most_ranges = std::max(most_ranges, work.ground.range_count);
   }
   if (tasks.empty()) return;
-  fillDiffraction(diffraction_.send(tasks, stream), static_cast<int>(tasks.size()), most_ranges, excess_grid_,
-                  columns_.row, scratch(), stream);
+  const DiffractionTask* const on_device = diffraction_.send(tasks, stream);
+  const int count = static_cast<int>(tasks.size());
+  const std::uint8_t* left = nullptr;
+  if (setup_.columns.every_height && columns_.layers <= kMostHeightsOfOnePass) {
+    left = fillClearColumns(on_device, count, stream);
+    if (left == nullptr) return;
+  }
+  fillDiffraction(on_device, count, most_ranges, excess_grid_, columns_.row, left, scratch(), stream);
+}
+
+/// @return the columns that were left; null: none
+const std::uint8_t* DeviceGeometry::fillClearColumns(const DiffractionTask* tasks, int count,
+                                                     cudaStream_t stream) {
+  std::uint8_t* const left =
+      left_.atLeast(static_cast<std::size_t>(count) * static_cast<std::size_t>(columns_.count));
+  left_count_.resize(1);
+  check(cudaMemsetAsync(left_count_.data(), 0, sizeof(unsigned), stream), "cudaMemsetAsync");
+  fillClear(tasks, count, excess_grid_, columns_.row, left, left_count_.data(), stream);
+  unsigned left_count = 0;
+  left_count_.download(&left_count, stream);
+  return left_count == 0 ? nullptr : left;
 }
 
 /// PeOthers::diffraction of an equation before its plan.
@@ -357,7 +379,7 @@ std::size_t DeviceGeometry::bytes() const {
   std::size_t bytes = bytesOf(grid_columns_) + bytesOf(place_columns_) + bytesOf(t_m_) +
                       bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(shadows_) +
                       bytesOf(terms_) + bytesOf(diffraction_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
-                      bytesOf(model_tables_) + bytesOf(unknown_);
+                      bytesOf(model_tables_) + bytesOf(unknown_) + bytesOf(left_);
   if (setup_.columns.on_device != nullptr) bytes += setup_.columns.on_device->bytes();
   for (const std::unique_ptr<Marcher>& marcher : marchers_) {
     if (marcher == nullptr) continue;

@@ -1,15 +1,16 @@
 #include <algorithm>
+#include <cstdint>
+#include <type_traits>
 
 #include "base/cuda/cuda_memory.h"
 #include "emfield/cuda/column_tiles.h"
+#include "propagation/diffraction/obstacle_maxima.h"
 
 namespace emscape::emfield::cuda {
 namespace {
 
 using propagation::DiffractionColumn;
 using propagation::TerrainSums;
-
-constexpr int kReceivers = propagation::kDiffractionReceivers;
 
 /// Summary of a block of posts; see DiffractionColumn.
 struct PostBlock {
@@ -120,7 +121,13 @@ __device__ __noinline__ float effectiveHeight_m(const Station& station, float he
       station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m), station.height_msl_m, range_m));
 }
 
+/// Height of a receiver, as input of the model.
+__device__ float modelHeight_m(const Station& station, float height_msl_m, double range_m) {
+  return station.refraction.exponential ? effectiveHeight_m(station, height_msl_m, range_m) : height_msl_m;
+}
+
 /// The column of a thread in a tile.
+template <int kReceivers>
 __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGrid& grid, int c,
                                     const ProfileMemory& memory, int thread) {
   const auto layer = static_cast<long long>(grid.column_count);
@@ -155,11 +162,8 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
       while (k < end && !is_free) {
         float rx_msl_m[kReceivers], loss_db[kReceivers];
 #pragma unroll
-        for (int j = 0; j < kReceivers; ++j) rx_msl_m[j] = heightOf(k + j);
-        if (task.station.refraction.exponential) {
-          for (int j = 0; j < kReceivers; ++j) {
-            rx_msl_m[j] = effectiveHeight_m(task.station, rx_msl_m[j], path.distance_m);
-          }
+        for (int j = 0; j < kReceivers; ++j) {
+          rx_msl_m[j] = modelHeight_m(task.station, heightOf(k + j), path.distance_m);
         }
         is_free = receivers.losses(rx_msl_m, loss_db);
 #pragma unroll
@@ -176,22 +180,136 @@ __device__ void diffractionOfColumn(const DiffractionTask& task, const ExcessGri
   if (is_unknown) markUnknown(task.to, c);
 }
 
+/// @param left  null: all columns; else those that fillClear() left
+template <int kReceivers>
 __global__ void __launch_bounds__(kColumnThreads, 5)
     diffractionKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
-                      const __grid_constant__ ProfileMemory memory, const __grid_constant__ Tiles tiles) {
-  tiles.eachColumn(
-      grid, [&](int task, int c, int thread) { diffractionOfColumn(tasks[task], grid, c, memory, thread); });
+                      const std::uint8_t* left, const __grid_constant__ ProfileMemory memory,
+                      const __grid_constant__ Tiles tiles) {
+  tiles.eachColumn(grid, [&](int task, int c, int thread) {
+    if (left != nullptr && left[task * grid.column_count + static_cast<std::size_t>(c)] == 0) return;
+    diffractionOfColumn<kReceivers>(tasks[task], grid, c, memory, thread);
+  });
+}
+
+/// Sets the excess of a column without keeping its posts.
+/// @return false: it was not set, because a receiver is not clear of the smooth earth
+template <int kReceivers>
+__device__ bool fillClearColumn(const DiffractionTask& task, const ExcessGrid& grid, int c) {
+  const auto column_index = static_cast<std::size_t>(c);
+  const auto set = [&](int k, float excess_db) {
+    task.to.out.excess.set(static_cast<std::size_t>(k) * grid.column_count + column_index, excess_db);
+  };
+  const int lowest = grid.firstValid(column_index);
+  const auto setUnknown = [&] {
+    for (int k = lowest; k < grid.layers; ++k) set(k, NAN);
+    markUnknown(task.to, c);
+  };
+  for (int k = 0; k < lowest; ++k) set(k, 0);
+  if (grid.isWithoutGround(column_index)) {
+    setUnknown();
+    return true;
+  }
+  if (lowest == grid.layers) return true;
+
+  const FastInverse path = grid.coordinatesOf(task.station, column_index, 0);
+  if (!(path.distance_m > 0)) return false;  // at the emitter itself
+  const GridColumn column = grid.columns[column_index];
+  const auto distance_m = static_cast<float>(path.distance_m);
+  const float base_msl_m = groundAt(task.station, task.ground, {0, path.sin_azimuth, path.cos_azimuth});
+  const propagation::DiffractionModel<float>& model = task.model.model;
+  const float tx_m = model.raised_m(task.model.tx_msl_m - base_msl_m, 0);
+  const float ground_m = grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] - base_msl_m : 0;
+  const auto heightMslOf = [&](int k) {
+    return static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[min(k, grid.layers - 1)])));
+  };
+  const auto receiver_m = [&](int k) {
+    return model.raised_m(modelHeight_m(task.station, heightMslOf(k), path.distance_m) - base_msl_m,
+                          ground_m);
+  };
+  // The antennas are at least as high above the smooth earth as above their ground.
+  if (!isClearThroughout(model.earth, distance_m,
+                         sightLine(model.earth, distance_m, tx_m, receiver_m(lowest) - ground_m))) {
+    return false;
+  }
+  const propagation::AirColumn air(task.air, distance_m);
+  const int posts = task.ground.lastBefore(path.distance_m) + 1;
+  for (int first = lowest; first < grid.layers; first += kReceivers) {
+    float rx_m[kReceivers];
+#pragma unroll
+    for (int j = 0; j < kReceivers; ++j) rx_m[j] = receiver_m(first + j);
+    propagation::ObstacleMaxima<float, kReceivers> obstacles(model, distance_m, tx_m, rx_m);
+    float known = 0;  // NaN after a missing height
+    visitPosts(task.station, task.ground, path, posts, [&](int i, float height_msl_m) {
+      known += height_msl_m;
+      if (i > 0) obstacles.add(static_cast<float>(task.ground.ranges_m[i]), height_msl_m - base_msl_m);
+    });
+    if (isnan(known)) {
+      setUnknown();
+      return true;
+    }
+#pragma unroll
+    for (int j = 0; j < kReceivers; ++j) {
+      if (first + j >= grid.layers) break;
+      const float air_db = task.air.isClear() ? 0 : air.lossDb(heightMslOf(first + j));
+      set(first + j, obstacles.lossDb(model, j) + air_db);
+    }
+  }
+  return true;
+}
+
+template <int kReceivers>
+__global__ void __launch_bounds__(kColumnThreads, 5)
+    clearColumnsKernel(const DiffractionTask* tasks, const __grid_constant__ ExcessGrid grid,
+                       const __grid_constant__ Tiles tiles, std::uint8_t* left, unsigned* left_count) {
+  tiles.eachColumn(grid, [&](int task, int c, int) {
+    const bool is_left = !fillClearColumn<kReceivers>(tasks[task], grid, c);
+    left[task * grid.column_count + static_cast<std::size_t>(c)] = is_left ? 1 : 0;
+    if (is_left) atomicAdd(left_count, 1u);
+  });
+}
+
+template <int kReceivers>
+using Receivers = std::integral_constant<int, kReceivers>;
+
+/// Calls f(Receivers<n>) with a number from 1 to kMost.
+template <int kMost, class Function>
+void withReceivers(int receivers, const Function& f) {
+  if constexpr (kMost > 1) {
+    if (receivers < kMost) return withReceivers<kMost - 1>(receivers, f);
+  }
+  f(Receivers<kMost>());
 }
 
 }  // namespace
 
 void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
-                     const ScratchMemory& scratch, cudaStream_t stream) {
+                     const std::uint8_t* left, const ScratchMemory& scratch, cudaStream_t stream) {
   const Tiles tiles(grid, row, count);
   const ProfileMemory memory(scratch, ranges);
-  const int blocks = std::min(tiles.count(), memory.threads() / kColumnThreads);
-  diffractionKernel<<<static_cast<unsigned>(blocks), kColumnThreads, 0, stream>>>(tasks, grid, memory, tiles);
+  const auto blocks = static_cast<unsigned>(std::min(tiles.count(), memory.threads() / kColumnThreads));
+  const auto launch = [&](auto kernel) {
+    kernel<<<blocks, kColumnThreads, 0, stream>>>(tasks, grid, left, memory, tiles);
+  };
+  if (grid.layers == 1) {
+    launch(diffractionKernel<1>);
+  } else {
+    launch(diffractionKernel<propagation::kDiffractionReceivers>);
+  }
   emscape::cuda::checkLaunch("diffraction");
+}
+
+void fillClear(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row, std::uint8_t* left,
+               unsigned* left_count, cudaStream_t stream) {
+  const Tiles tiles(grid, row, count);
+  const auto blocks = static_cast<unsigned>(tiles.count());
+  constexpr int kMost = 8;
+  const int passes = (grid.layers + kMost - 1) / kMost;
+  withReceivers<kMost>((grid.layers + passes - 1) / passes, [&](auto receivers) {
+    clearColumnsKernel<receivers()>
+        <<<blocks, kColumnThreads, 0, stream>>>(tasks, grid, tiles, left, left_count);
+  });
+  emscape::cuda::checkLaunch("diffraction of clear columns");
 }
 
 }  // namespace emscape::emfield::cuda

@@ -36,8 +36,17 @@ struct DiffractionTask {
 /// @param ranges  the largest number of posts of a task
 /// @param grid    in device memory; layers that do not count get no excess
 /// @param row     columns along x
+/// @param left    the columns to fill, by task, as fillClear() sets them; null: all
 void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
-                     const ScratchMemory& scratch, cudaStream_t stream);
+                     const std::uint8_t* left, const ScratchMemory& scratch, cudaStream_t stream);
+
+/// The columns of a surface whose receivers are all clear of the smooth earth: each reads its posts once, and
+/// keeps none of them.
+/// @param grid        not tilted, with few layers
+/// @param left        one per task and column; receives 1 if the column was not filled, else 0
+/// @param left_count  in device memory, 0; receives the number of such columns
+void fillClear(const DiffractionTask* tasks, int count, const ExcessGrid& grid, int row, std::uint8_t* left,
+               unsigned* left_count, cudaStream_t stream);
 
 /// `parabolic_equation` of one emitter. Pointers are to device memory.
 struct EquationTask {

@@ -91,6 +91,7 @@ TEST(Bench, CoverageTimesTheFirstHeightAndEachFurtherOne) {
   EXPECT_TRUE(found.at("further_height_ms").is_number());
   for (const char* step : {"pixels", "places", "columns", "excess", "combine", "product"}) {
     EXPECT_TRUE(found.at("steps_ms").at(step).is_number()) << step;
+    EXPECT_TRUE(found.at("further_steps_ms").at(step).is_number()) << step;
   }
 }
 

@@ -59,14 +59,14 @@ std::shared_ptr<scenario::Scenario> battlefield() {
   return scenario;
 }
 
-std::vector<float> freshValues(const std::shared_ptr<scenario::Scenario>& scenario, double t_s) {
+UnsetVector<float> freshValues(const std::shared_ptr<scenario::Scenario>& scenario, double t_s) {
   FieldSolver solver(scenario, nullptr, {});
   solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
   return solver.volumes().front().host()->values;
 }
 
 /// Expects bit-identical fields.
-void expectSameField(const std::vector<float>& a, const std::vector<float>& b) {
+void expectSameField(const UnsetVector<float>& a, const UnsetVector<float>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t v = 0; v < a.size(); ++v) ASSERT_EQ(a[v], b[v]) << "voxel " << v;
 }

@@ -45,7 +45,7 @@ TEST(GroundPosts, ChordsFollowTheGeodesic) {
       double largest_m = 0;
       for (double range_m = 0; range_m < path.distance_m; range_m += 333) {
         const TerrainChord& chord = walk.chordAt(range_m);
-        const double along = (range_m - chord.begin_m) * chord.per_m;
+        const double along = (range_m - chord.in_raster.begin_m) * chord.in_raster.per_m;
         const FastDirect exact = fastDirect(station.geodesy, path.sin_azimuth, path.cos_azimuth, range_m);
         const double north_m = 6371e3 * (chord.position.latitude_rad.at(along) - exact.latitude_rad);
         const double east_rad =

@@ -27,7 +27,7 @@ constexpr double kBegin_s = 1.7;
 
 class Intervals : public test::OnBackends {
  protected:
-  std::vector<float> valuesOf(FieldSolver& solver, const std::shared_ptr<Scenario>& scenario, double t_s) {
+  UnsetVector<float> valuesOf(FieldSolver& solver, const std::shared_ptr<Scenario>& scenario, double t_s) {
     solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
     return solver.volumes().front().host()->values;
   }
@@ -36,7 +36,7 @@ class Intervals : public test::OnBackends {
     options.backend = GetParam();
     return FieldSolver(scenario, nullptr, options);
   }
-  std::vector<float> overInterval(const std::shared_ptr<Scenario>& scenario, IntervalKind kind,
+  UnsetVector<float> overInterval(const std::shared_ptr<Scenario>& scenario, IntervalKind kind,
                                   double seconds) {
     auto copy = std::make_shared<Scenario>(*scenario);
     copy->output.interval = {kind, seconds, {}};
@@ -52,7 +52,7 @@ class Intervals : public test::OnBackends {
     FieldSolver solver = solverOf(scenario);
     std::vector<double> largest, sum;
     for (int n = 0; n <= steps; ++n) {
-      const std::vector<float> values = valuesOf(solver, scenario, kBegin_s + seconds * n / steps);
+      const UnsetVector<float> values = valuesOf(solver, scenario, kBegin_s + seconds * n / steps);
       const double weight = (n == 0 || n == steps ? 0.5 : 1) / steps;
       largest.resize(values.size());
       sum.resize(values.size());
@@ -75,7 +75,7 @@ class Intervals : public test::OnBackends {
                "mean", depth_db);
   }
   /// Down to depth_db below the beam's maximum at each voxel.
-  void expectNear(const std::shared_ptr<Scenario>& scenario, const std::vector<float>& found,
+  void expectNear(const std::shared_ptr<Scenario>& scenario, const UnsetVector<float>& found,
                   const std::vector<double>& expected, double tolerance_db, const char* what,
                   double depth_db = 30) {
     auto isotropic = std::make_shared<Scenario>(*scenario);
@@ -83,7 +83,7 @@ class Intervals : public test::OnBackends {
         scenario::makeIsotropic(scenario->emitters.front().antenna->gain_dbi);
     isotropic->emitters.front().active_s.clear();
     FieldSolver solver = solverOf(isotropic);
-    const std::vector<float> boresight = valuesOf(solver, isotropic, 0);
+    const UnsetVector<float> boresight = valuesOf(solver, isotropic, 0);
     const std::vector<double> boresight_db(boresight.begin(), boresight.end());
     ASSERT_EQ(found.size(), expected.size());
     double worst_db = 0;
@@ -164,7 +164,7 @@ TEST_P(Intervals, OfWholeTurnsDoNotChangeWithTheTime) {
   auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), rotating(7, 3));
   scenario->output.interval = {IntervalKind::max_hold, {}, 2.0};
   FieldSolver solver = solverOf(scenario);
-  const std::vector<float> first = valuesOf(solver, scenario, 0);
+  const UnsetVector<float> first = valuesOf(solver, scenario, 0);
   EXPECT_FALSE(solver.update(scenario::snapshotAt(scenario, nullptr, 1.3)).volumes.size() > 0);
   EXPECT_EQ(first, valuesOf(solver, scenario, 2.1));
 
@@ -178,7 +178,7 @@ TEST_P(Intervals, LongerThanASweepThereAndBackKeepTheirLargestAsTimeGoesOn) {
   auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), sweeping(ScanKind::sector, 90, 50));
   scenario->output.interval = {IntervalKind::max_hold, 4.5, {}};  // of 3.6 s there and back
   FieldSolver solver = solverOf(scenario);
-  const std::vector<float> first = valuesOf(solver, scenario, 0);
+  const UnsetVector<float> first = valuesOf(solver, scenario, 0);
   for (const double t_s : {0.3, 1.1, 2.9, 17.77}) {
     EXPECT_TRUE(solver.update(scenario::snapshotAt(scenario, nullptr, t_s)).volumes.empty()) << t_s;
   }
@@ -189,7 +189,7 @@ TEST_P(Intervals, OfPartsOfATurnAreTheSameFromSolverToSolver) {
   scenario->output.interval = {IntervalKind::mean, 3.0, {}};
   FieldSolver solver = solverOf(scenario);
   valuesOf(solver, scenario, 0);
-  const std::vector<float> later = valuesOf(solver, scenario, 4.9);
+  const UnsetVector<float> later = valuesOf(solver, scenario, 4.9);
   FieldSolver anew = solverOf(scenario);
   EXPECT_EQ(valuesOf(anew, scenario, 4.9), later);
 }
@@ -211,8 +211,8 @@ std::shared_ptr<Scenario> radarAround(const ScanSpec& scan) {
 TEST_P(Intervals, CumulateTheLooksOfATurn) {
   const auto scenario = radarAround(rotating(10));
   FieldSolver solver = solverOf(scenario);
-  const std::vector<float> once = valuesOf(solver, scenario, kBegin_s);
-  const std::vector<float> thrice = overInterval(scenario, IntervalKind::cumulative, 18);
+  const UnsetVector<float> once = valuesOf(solver, scenario, kBegin_s);
+  const UnsetVector<float> thrice = overInterval(scenario, IntervalKind::cumulative, 18);
   EXPECT_EQ(overInterval(scenario, IntervalKind::max_hold, 18), once);
   double most = 0;
   for (std::size_t v = 0; v < once.size(); ++v) {
@@ -230,8 +230,8 @@ TEST_P(Intervals, CumulateTheLooksOfEachAzimuth) {
       SCOPED_TRACE(seconds);
       const auto scenario = radarAround(scan);
       FieldSolver solver = solverOf(scenario);
-      const std::vector<float> once = valuesOf(solver, scenario, kBegin_s);
-      const std::vector<float> found = overInterval(scenario, IntervalKind::cumulative, seconds);
+      const UnsetVector<float> once = valuesOf(solver, scenario, kBegin_s);
+      const UnsetVector<float> found = overInterval(scenario, IntervalKind::cumulative, seconds);
       const volume::Grid grid = gridOf(scenario->region);
       int compared = 0;
       for (int j = 0; j < grid.dims.y; ++j) {
@@ -276,11 +276,11 @@ TEST_P(Intervals, KnowTheAgeOfTheLastDetection) {
                   t_s < scenario->emitters[0].active_s[1].end_s);
         };
         FieldSolver solver = solverOf(scenario);
-        const std::vector<float> once = valuesOf(solver, scenario, kBegin_s);
+        const UnsetVector<float> once = valuesOf(solver, scenario, kBegin_s);
         auto aged = std::make_shared<Scenario>(*scenario);
         aged->output.quantities = {"detection_age_s"};
         aged->output.detection_threshold = 0.3;
-        const std::vector<float> found = overInterval(aged, IntervalKind::cumulative, seconds);
+        const UnsetVector<float> found = overInterval(aged, IntervalKind::cumulative, seconds);
         const double rate_deg_s =
             scan.kind == ScanKind::rotate ? 6 * std::abs(scan.rate_rpm) : scan.rate_deg_s;
         const double step_s = 4.0 / 20 / rate_deg_s;
@@ -322,11 +322,11 @@ TEST_P(Intervals, ARadarThatStaysDetectsAllTheTime) {
   scan.kind = ScanKind::track;
   const auto scenario = radarAround(scan);
   FieldSolver solver = solverOf(scenario);
-  const std::vector<float> once = valuesOf(solver, scenario, kBegin_s);
+  const UnsetVector<float> once = valuesOf(solver, scenario, kBegin_s);
   scenario->output.quantities = {"detection_age_s"};
   for (const float age_s : {0.0f, 2.0f}) {
     if (age_s > 0) scenario->emitters[0].active_s = {{0, kBegin_s + 8}};
-    const std::vector<float> found = overInterval(scenario, IntervalKind::cumulative, 10);
+    const UnsetVector<float> found = overInterval(scenario, IntervalKind::cumulative, 10);
     int detected = 0;
     for (std::size_t v = 0; v < once.size(); ++v) {
       const bool is_detected = once[v] >= 0.5f;

@@ -41,7 +41,7 @@ class Occupancy : public test::OnBackends {
     options.backend = GetParam();
     return FieldSolver(scenario, nullptr, options);
   }
-  std::vector<float> valuesOf(FieldSolver& solver, const std::shared_ptr<Scenario>& scenario, double t_s) {
+  UnsetVector<float> valuesOf(FieldSolver& solver, const std::shared_ptr<Scenario>& scenario, double t_s) {
     solver.update(scenario::snapshotAt(scenario, nullptr, t_s));
     return solver.volumes().front().host()->values;
   }
@@ -51,7 +51,7 @@ class Occupancy : public test::OnBackends {
     copy->output.interval = {IntervalKind::mean, seconds, {}};
     return copy;
   }
-  std::vector<float> over(const std::shared_ptr<Scenario>& scenario, double seconds) {
+  UnsetVector<float> over(const std::shared_ptr<Scenario>& scenario, double seconds) {
     const auto occupancy = occupancyOf(scenario, seconds);
     FieldSolver solver = solverOf(occupancy);
     return valuesOf(solver, occupancy, kBegin_s);
@@ -61,7 +61,7 @@ class Occupancy : public test::OnBackends {
     FieldSolver solver = solverOf(scenario);
     std::vector<double> share;
     for (int n = 0; n < steps; ++n) {
-      const std::vector<float> values = valuesOf(solver, scenario, kBegin_s + seconds * (n + 0.5) / steps);
+      const UnsetVector<float> values = valuesOf(solver, scenario, kBegin_s + seconds * (n + 0.5) / steps);
       share.resize(values.size());
       for (std::size_t v = 0; v < values.size(); ++v) {
         if (static_cast<double>(values[v]) > kThreshold_dbwm2) share[v] += 1.0 / steps;
@@ -71,7 +71,7 @@ class Occupancy : public test::OnBackends {
   }
   void expectAsCounted(const std::shared_ptr<Scenario>& scenario, double seconds, int steps) {
     const std::vector<double> expected = counted(scenario, seconds, steps);
-    const std::vector<float> found = over(scenario, seconds);
+    const UnsetVector<float> found = over(scenario, seconds);
     ASSERT_EQ(found.size(), expected.size());
     int between = 0;
     for (std::size_t v = 0; v < found.size(); ++v) {
@@ -120,7 +120,7 @@ TEST_P(Occupancy, CountsBothRaysAndTheTimesOfActivity) {
 TEST_P(Occupancy, OfAStillBeamIsItsTimeOfActivity) {
   auto scenario = countedAround(scenario::makeIsotropic(30), ScanSpec{});
   scenario->emitters.front().active_s = {{0, 2.5}, {4, 4.5}};
-  const std::vector<float> found = over(scenario, 6);
+  const UnsetVector<float> found = over(scenario, 6);
   EXPECT_NEAR(*std::max_element(found.begin(), found.end()), (0.8 + 0.5) / 6, 1e-5);
 }
 
@@ -130,7 +130,7 @@ TEST_P(Occupancy, OfSeveralEmittersIsThatOfAny) {
   auto both = std::make_shared<Scenario>(*first);
   both->emitters.push_back(second->emitters.front());
   both->emitters.back().name = "other";
-  const std::vector<float> a = over(first, 60), b = over(second, 60), any = over(both, 60);
+  const UnsetVector<float> a = over(first, 60), b = over(second, 60), any = over(both, 60);
   for (std::size_t v = 0; v < any.size(); ++v) EXPECT_NEAR(any[v], a[v] + b[v] - a[v] * b[v], 1e-5f);
 }
 

@@ -184,12 +184,12 @@ TEST_P(ReceiverQuantities, AnInterceptOverAnIntervalIsTheLargest) {
   const auto solver = solve(scenario);
   for (int n = 0; n < 180; ++n) {  // a turn in steps of 2 degrees
     solver->update(scenario::snapshotAt(scenario, nullptr, 12.0 * n / 180));
-    const std::vector<float> values = solver->volumes()[0].host()->values;
+    const UnsetVector<float> values = solver->volumes()[0].host()->values;
     for (std::size_t v = 0; v < values.size(); ++v) largest[v] = std::max(largest[v], values[v]);
   }
   scenario->output.interval = {scenario::IntervalKind::max_hold, {}, 1.0};
   const auto over = solve(scenario);
-  const std::vector<float> found = over->volumes()[0].host()->values;
+  const UnsetVector<float> found = over->volumes()[0].host()->values;
   for (std::size_t v = 0; v < found.size(); ++v) EXPECT_NEAR(found[v], largest[v], 0.1f);
 }
 

@@ -34,7 +34,7 @@ TEST(DifferenceSource, OfEqualScenariosIsZeroEverywhere) {
   const auto source = openFrameSource(selectionOf(quickScenario(folder, kSmall)), {});
   for (int index = 0; index < source->count(); ++index) {
     const auto volume = source->frame(index).volume.host();
-    EXPECT_EQ(volume->values, std::vector<float>(volume->values.size(), 0.0F)) << index;
+    EXPECT_EQ(volume->values, UnsetVector<float>(volume->values.size(), 0.0F)) << index;
   }
 }
 
@@ -75,7 +75,7 @@ TEST(DifferenceSource, AnEditDoesNotComputeTheReferenceAgain) {
   source.frame(0);
   EXPECT_EQ(opened, 0) << "nothing is compared yet";
   source.setComparison(true);
-  EXPECT_EQ(source.frame(1).volume.host()->values, std::vector<float>(MadeFrames::kVoxels, 0.0F));
+  EXPECT_EQ(source.frame(1).volume.host()->values, UnsetVector<float>(MadeFrames::kVoxels, 0.0F));
   source.frame(1);
   source.setComparison(false);
   EXPECT_EQ(source.frame(1).volume.info().quantity, "made");

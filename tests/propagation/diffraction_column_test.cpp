@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "propagation/diffraction/obstacle_maxima.h"
 #include "propagation/diffraction/profile_posts.h"
 #include "tests/emfield/random_profile.h"
 
@@ -129,6 +130,45 @@ TEST(DiffractionColumn, OverRealTerrainIsThatOfEachPathInDouble) {
   }
   RecordProperty("largest_db", std::to_string(largest));
   EXPECT_LT(largest, 0.002);
+}
+
+TEST(ObstacleMaxima, AreThoseOfEachPathInDouble) {
+  const scenario::TerrainPtr terrain = whiteMountainsTile();
+  std::mt19937 random(14);
+  std::uniform_real_distribution<double> part(0, 1);
+  double largest = 0;
+  int blocked = 0, clear = 0;
+  for (int n = 0; n < 2000; ++n) {
+    const ProfileData data = randomProfile(*terrain, random, 3 + n % 200);
+    const TerrainProfile profile = data.view();
+    const DiffractionParameters parameters = anyParameters(random);
+    const auto model = diffractionModel<double>(parameters);
+    const auto single = diffractionModel<float>(parameters);
+    const int last = profile.count - 1;
+    const float base = profile.height_msl_m[0], tx_m = n % 3 == 0 ? 2.0f : n % 3 == 1 ? 30.0f : 1500.0f;
+    float rx_m[3];
+    for (float& height_m : rx_m) {
+      height_m = profile.height_msl_m[last] - base + float(1 + 3000 * std::pow(part(random), 3.0));
+    }
+    ObstacleMaxima<float, 3> obstacles(single, float(profile.range_m[last]), tx_m, rx_m);
+    for (int i = 1; i < last; ++i) obstacles.add(float(profile.range_m[i]), profile.height_msl_m[i] - base);
+    for (int j = 0; j < 3; ++j) {
+      const double truth_db =
+          deltaBullington(model, profile, double(base) + double(tx_m), double(base) + double(rx_m[j]))
+              .terrain_db;
+      ++(truth_db > 6.1 ? blocked : clear);
+      largest = std::max(largest, std::abs(double(obstacles.lossDb(single, j)) - truth_db));
+    }
+  }
+  RecordProperty("largest_db", std::to_string(largest));
+  EXPECT_LT(largest, 0.002);
+  EXPECT_GT(blocked, 500);
+  EXPECT_GT(clear, 500);
+}
+
+TEST(ObstacleMaxima, WithoutAnObstacleThereIsNoLoss) {
+  const auto model = diffractionModel<float>(parametersAt(1e9));
+  EXPECT_EQ((ObstacleMaxima<float, 1>(model, 100, 20, {30}).lossDb(model, 0)), 0);
 }
 
 TEST(DiffractionColumn, MissingTerrainIsUnknown) {

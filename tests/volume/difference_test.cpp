@@ -9,7 +9,7 @@
 namespace emscape::volume {
 namespace {
 
-DenseVolume volumeOf(const std::vector<float>& values, std::vector<std::uint16_t> first_valid_k = {}) {
+DenseVolume volumeOf(const UnsetVector<float>& values, std::vector<std::uint16_t> first_valid_k = {}) {
   DenseVolume volume;
   volume.grid.dims = {2, 1, static_cast<int>(values.size()) / 2};
   volume.grid.spacing_m = {10, 10, 10};
@@ -27,7 +27,7 @@ std::string errorOf(const DenseVolume& a, const DenseVolume& b) {
 
 TEST(Difference, IsThatOfTheValuesAndToTheFloorWhereOneHasNoField) {
   const DenseVolume made = difference(volumeOf({-40, -120, -50, -120}), volumeOf({-50, -60, -120, -120}));
-  EXPECT_EQ(made.values, (std::vector<float>{10, -60, 70, 0}));
+  EXPECT_EQ(made.values, (UnsetVector<float>{10, -60, 70, 0}));
   EXPECT_EQ(made.info.floor, 0);
   EXPECT_EQ(made.info.range_min, -60);
   EXPECT_EQ(made.info.range_max, 70);
@@ -36,7 +36,7 @@ TEST(Difference, IsThatOfTheValuesAndToTheFloorWhereOneHasNoField) {
 TEST(Difference, OfEqualVolumesIsZeroEverywhere) {
   const DenseVolume volume = volumeOf({-40, -120, -50, -120});
   const DenseVolume made = difference(volume, volume);
-  EXPECT_EQ(made.values, std::vector<float>(4, 0.0F));
+  EXPECT_EQ(made.values, UnsetVector<float>(4, 0.0F));
   EXPECT_EQ(made.info.range_min, 0);
   EXPECT_EQ(made.info.range_max, 0);
 }
@@ -45,7 +45,7 @@ TEST(Difference, WhatIsMaskedInEitherStaysMasked) {
   const DenseVolume made =
       difference(volumeOf({-120, -40, -40, -40}, {1, 0}), volumeOf({-60, -120, -60, -60}, {0, 1}));
   EXPECT_EQ(made.first_valid_k, (std::vector<std::uint16_t>{1, 1}));
-  EXPECT_EQ(made.values, (std::vector<float>{0, 0, 20, 20}));
+  EXPECT_EQ(made.values, (UnsetVector<float>{0, 0, 20, 20}));
 }
 
 TEST(Difference, HasTheUnitOfDifferences) {

@@ -39,7 +39,7 @@ TEST(Raw, ReadsAFileWithoutHeaderByItsName) {
   TemporaryFolder folder;
   writeBytes(folder / "scan_3x2x1_uint16.raw", {1, 0, 2, 0, 3, 0, 4, 0, 5, 0, 0, 1});
   const DenseVolume volume = readRaw(folder / "scan_3x2x1_uint16.raw");
-  EXPECT_EQ(volume.values, (std::vector<float>{1, 2, 3, 4, 5, 256}));
+  EXPECT_EQ(volume.values, (UnsetVector<float>{1, 2, 3, 4, 5, 256}));
   EXPECT_EQ(volume.info.quantity, "scan");
   EXPECT_EQ(volume.info.range_max, 256);
   RawLayout layout;
@@ -100,7 +100,7 @@ TEST(Dat, ReadsSizesAndVoxels) {
   writeBytes(folder / "a.dat", {2, 0, 1, 0, 1, 0, 7, 0, 0, 2});
   const DenseVolume volume = readDat(folder / "a.dat");
   EXPECT_EQ(volume.grid.dims, (Dims{2, 1, 1}));
-  EXPECT_EQ(volume.values, (std::vector<float>{7, 512}));
+  EXPECT_EQ(volume.values, (UnsetVector<float>{7, 512}));
   survivesDamage(folder / "a.dat", [&] { readDat(folder / "a.dat"); });
 }
 

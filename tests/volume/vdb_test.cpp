@@ -153,7 +153,7 @@ TEST_F(ForeignVdb, MayHoldDoublesOrIntegers) {
   auto integers = openvdb::Int64Grid::create(0);
   integers->tree().setValueOn({1, 2, 3}, 7);
   write(integers);
-  EXPECT_EQ(readVdb(path_).values, std::vector<float>{7.F});
+  EXPECT_EQ(readVdb(path_).values, UnsetVector<float>{7.F});
   EXPECT_TRUE(readVdb(path_).info.categorical);
 }
 

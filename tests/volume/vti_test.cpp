@@ -80,7 +80,7 @@ DenseVolume readText(const std::string& text) {
 TEST(ForeignVti, MayBeInlineBase64) {
   // 4 bytes: 4 0 0 0 | 1 2 3 250
   const DenseVolume volume = readText(vti("", "type=\"UInt8\" format=\"binary\">\n BAAAAAECA/o=\n", ""));
-  EXPECT_EQ(volume.values, (std::vector<float>{1, 2, 3, 250}));
+  EXPECT_EQ(volume.values, (UnsetVector<float>{1, 2, 3, 250}));
   EXPECT_EQ(volume.grid.dims, (Dims{2, 2, 1}));
   EXPECT_EQ(volume.grid.first_center_m, (Vec3d{12, 20, 30}));
   EXPECT_EQ(volume.info.quantity, "d");
@@ -89,7 +89,7 @@ TEST(ForeignVti, MayBeInlineBase64) {
 
 TEST(ForeignVti, ZeroIsAValue) {
   const DenseVolume volume = readText(vti("", "type=\"UInt8\" format=\"binary\">BAAAAAAAAAE=", ""));
-  EXPECT_EQ(volume.values, (std::vector<float>{0, 0, 0, 1}));
+  EXPECT_EQ(volume.values, (UnsetVector<float>{0, 0, 0, 1}));
   EXPECT_EQ(volume.info.range_min, 0);
   EXPECT_EQ(volume.info.range_max, 1);
   EXPECT_EQ(statisticsOf(volume).at_floor, 0);
@@ -99,7 +99,7 @@ TEST(ForeignVti, MayBeAppendedBase64WithPaddingAfterTheHeader) {
   const DenseVolume volume =
       readText(vti("", "type=\"UInt8\" format=\"appended\" offset=\"0\">",
                    "<AppendedData encoding=\"base64\">_BAAAAA==AQID+g==</AppendedData>"));
-  EXPECT_EQ(volume.values, (std::vector<float>{1, 2, 3, 250}));
+  EXPECT_EQ(volume.values, (UnsetVector<float>{1, 2, 3, 250}));
 }
 
 TEST(ForeignVti, MayBeCompressedWithZlib) {
@@ -108,7 +108,7 @@ TEST(ForeignVti, MayBeCompressedWithZlib) {
                              "AgAAAAMAAAABAAAACwAAAAkAAAA=eJxjZGIGAAANAAd4nPsFAAD7APs="}) {
     const DenseVolume volume = readText(vti("compressor=\"vtkZLibDataCompressor\"",
                                             std::string("type=\"UInt8\" format=\"binary\">") + blocks, ""));
-    EXPECT_EQ(volume.values, (std::vector<float>{1, 2, 3, 250}));
+    EXPECT_EQ(volume.values, (UnsetVector<float>{1, 2, 3, 250}));
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "apps/emscape/bench/bench.h"
@@ -31,16 +32,21 @@ struct BenchCoverageOptions {
   std::string quantity = "detection_probability";
 };
 
-/// Median times of the steps that compute maps at some heights (ms).
-struct MapTimes {
-  double places_ms = 0, update_ms = 0, values_ms = 0;
-  emfield::StageTimes stages;
+/// A step of the computation of maps.
+struct Step {
+  const char* name;
+  double first_ms;    ///< median time for the first height
+  double further_ms;  ///< that each further height adds
+};
 
-  double all_ms() const { return places_ms + update_ms + values_ms; }
-  /// Of the update, outside the stages.
-  double rest_ms() const {
-    return update_ms - stages.columns_ms - stages.march_ms - stages.excess_ms - stages.combine_ms -
-           stages.product_ms;
+/// Median times of the steps that compute maps at some heights, by name.
+struct MapTimes {
+  std::vector<std::pair<const char*, double>> steps_ms;
+
+  double all_ms() const {
+    double sum_ms = 0;
+    for (const auto& [name, ms] : steps_ms) sum_ms += ms;
+    return sum_ms;
   }
 };
 
@@ -57,27 +63,29 @@ MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
   options.surface = surface;
   options.allow_missing_terrain = true;
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain.get(), 0);
-  std::vector<double> places, update, values, columns, march, excess, combine, product;
+  std::vector<std::vector<double>> times;  // of each step, by repeat
+  MapTimes medians;
   for (int repeat = 0; repeat < repeats; ++repeat) {
     stopIfInterrupted();
     Stopwatch watch;
     emfield::FieldSolver solver(scenario, terrain, options);
-    places.push_back(watch.lap_ms());
+    const double places_ms = watch.lap_ms();
     solver.update(snapshot);
-    update.push_back(watch.lap_ms());
+    const double update_ms = watch.lap_ms();
     for (const volume::Volume& volume : solver.volumes()) volume.host();
-    values.push_back(watch.lap_ms());
+    const double values_ms = watch.lap_ms();
     const emfield::StageTimes stages = solver.stageTimes();
-    columns.push_back(stages.columns_ms);
-    march.push_back(stages.march_ms);
-    excess.push_back(stages.excess_ms);
-    combine.push_back(stages.combine_ms);
-    product.push_back(stages.product_ms);
+    const double stages_ms =
+        stages.columns_ms + stages.march_ms + stages.excess_ms + stages.combine_ms + stages.product_ms;
+    medians.steps_ms = {{"places", places_ms},           {"columns", stages.columns_ms},
+                        {"march", stages.march_ms},      {"excess", stages.excess_ms},
+                        {"combine", stages.combine_ms},  {"product", stages.product_ms},
+                        {"rest", update_ms - stages_ms}, {"values", values_ms}};
+    times.resize(medians.steps_ms.size());
+    for (std::size_t n = 0; n < times.size(); ++n) times[n].push_back(medians.steps_ms[n].second);
   }
-  return {medianOf(places),
-          medianOf(update),
-          medianOf(values),
-          {medianOf(columns), medianOf(march), medianOf(excess), medianOf(combine), medianOf(product)}};
+  for (std::size_t n = 0; n < times.size(); ++n) medians.steps_ms[n].second = medianOf(times[n]);
+  return medians;
 }
 
 int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& global) {
@@ -110,9 +118,20 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
     return target.device();
   });
   const double first_ms = grid_ms + first.all_ms();
+  std::vector<Step> steps{{"pixels", grid_ms, 0}};
+  for (std::size_t n = 0; n < first.steps_ms.size(); ++n) {
+    const auto& [name, of_first_ms] = first.steps_ms[n];
+    const double added_ms = all.steps_ms[n].second - of_first_ms;
+    steps.push_back({name, of_first_ms, options.further == 0 ? 0 : added_ms / options.further});
+  }
   const double further_ms = options.further == 0 ? 0 : (all.all_ms() - first.all_ms()) / options.further;
   const double pixels_per_s = static_cast<double>(pixels) / (first_ms / 1000);
   if (global.json) {
+    Json steps_ms, further_steps_ms;
+    for (const Step& step : steps) {
+      steps_ms[step.name] = step.first_ms;
+      further_steps_ms[step.name] = step.further_ms;
+    }
     printJson({{"device", device},
                {"threads", threadCount()},
                {"map", {grid.width, grid.height}},
@@ -121,30 +140,18 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
                {"first_height_ms", first_ms},
                {"further_height_ms", further_ms},
                {"pixels_per_s", pixels_per_s},
-               {"steps_ms",
-                {{"pixels", grid_ms},
-                 {"places", first.places_ms},
-                 {"columns", first.stages.columns_ms},
-                 {"march", first.stages.march_ms},
-                 {"excess", first.stages.excess_ms},
-                 {"combine", first.stages.combine_ms},
-                 {"product", first.stages.product_ms},
-                 {"rest", first.rest_ms()},
-                 {"values", first.values_ms}}}});
+               {"steps_ms", steps_ms},
+               {"further_steps_ms", further_steps_ms}});
     return 0;
   }
   print("device {} ({} threads), map of {} x {} pixels of {:g} m, {} within the area, medians of {}\n\n",
         device, threadCount(), grid.width, grid.height, grid.cell_m, pixels, options.repeats);
-  print("first height (ms)     {:10.2f}\n", first_ms);
-  print("  pixels              {:10.2f}\n  places              {:10.2f}\n", grid_ms, first.places_ms);
-  print("  field: columns      {:10.2f}\n  field: march        {:10.2f}\n  field: excess       {:10.2f}\n",
-        first.stages.columns_ms, first.stages.march_ms, first.stages.excess_ms);
-  print("  field: combine      {:10.2f}\n  field: product      {:10.2f}\n  field: rest         {:10.2f}\n",
-        first.stages.combine_ms, first.stages.product_ms, first.rest_ms());
-  print("  values              {:10.2f}\n", first.values_ms);
-  print("each further height   {:10.2f}  ({:.0f} % of the first; of {})\n", further_ms,
+  print("{:20}{:>14}{:>24}\n", "ms", "first height", "each further height");
+  print("{:20}{:14.2f}{:24.2f}  ({:.0f} % of the first; of {})\n", "all", first_ms, further_ms,
         100 * further_ms / first_ms, options.further);
-  print("million pixels per s  {:10.2f}\n", pixels_per_s / 1e6);
+  for (const Step& step : steps)
+    print("  {:18}{:14.2f}{:24.2f}\n", step.name, step.first_ms, step.further_ms);
+  print("\nmillion pixels per s{:14.2f}\n", pixels_per_s / 1e6);
   return 0;
 }
 
@@ -156,7 +163,7 @@ void addBenchCoverage(CLI::App& bench, const GlobalOptions& global, Action& acti
   command->footer(R"(
 Time of a map from its area to the values of its pixels, without reading the terrain and without writing files, and the time that each
 further height adds. pixels: their positions in the projection; places: terrain below them, and memory (on a GPU also the copy of the
-terrain to it); field: the stages of the computation, and the rest of its wall-clock time; values: copied from the GPU. Work that a
+terrain to it); columns to product: the stages of the field; rest: of its wall-clock time; values: copied from the GPU. Work that a
 program does once (start of the GPU, database of projections) is in the first repeat, not in the medians.
 
 Example:

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
+#include "emscape/base/unset_vector.h"
 #include "emscape/volume/grid.h"
 
 namespace emscape::volume {
@@ -47,7 +48,7 @@ constexpr const char* kLegendNoteKey = "legend_note";
 struct DenseVolume {
   Grid grid;
   VolumeInfo info;
-  std::vector<float> values;  ///< grid.dims.count() values
+  UnsetVector<float> values;  ///< grid.dims.count() values
   /// For each column (i, j), i fastest: the lowest k with a field; dims.z if there is none. Empty: no voxel
   /// is masked.
   std::vector<std::uint16_t> first_valid_k;
