@@ -18,6 +18,13 @@ namespace emscape::propagation {
 /// Fraction (0..1) of the angle's and the range's limits over which two models are blended, in dB.
 constexpr float kPeBlendPart = 0.2f;
 
+/// Angle (rad) inside the edge of the band up to which the edge diffracts the field at a range, as a knife
+/// edge does up to the Fresnel parameter 1.
+template <class Real>
+EMSCAPE_HD Real bandEdgeWidth_rad(Real half_wavelength_m, Real range_m) {
+  return std::sqrt(half_wavelength_m / range_m);
+}
+
 /// Loss over free space at one position, and its contributions.
 struct PeLoss {
   float equation_db = 0;         ///< of the parabolic equation, no larger than the floor's
@@ -82,10 +89,10 @@ struct PeOthers {
     return walk.sight(profile.count > 0 ? profile.height_msl_m[profile.count - 1] : 0);
   }
 
-  /// Largest angle (rad) of the equation at a range: the edge of the band, at max_angle_rad, diffracts the
-  /// field at angles below it, as a knife edge does up to the Fresnel parameter 1. 0 at short ranges.
+  /// Largest angle (rad) of the equation at a range: the edge of the band is at max_angle_rad. 0 at short
+  /// ranges.
   EMSCAPE_HD float maxAngle(float range_m) const {
-    const float angle_rad = max_angle_rad - std::sqrt(half_wavelength_m / range_m);
+    const float angle_rad = max_angle_rad - bandEdgeWidth_rad(half_wavelength_m, range_m);
     return angle_rad > 0 ? angle_rad : 0;
   }
 

@@ -11,6 +11,7 @@
 #include "propagation/parabolic_equation/direct_ray.h"
 #include "propagation/parabolic_equation/march_lanes.h"
 #include "propagation/parabolic_equation/march_start.h"
+#include "propagation/parabolic_equation/others.h"
 #include "propagation/parabolic_equation/path_air.h"
 
 namespace emscape::propagation {
@@ -303,8 +304,9 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   planRanges(radials, plan);
   plan.min_range_m = std::max({2 * plan.grid.range_step_m, 20 * wavelength_m(inputs.emitter.frequency_hz),
                                2 * plan.cells.meanRange_m()});
-  const auto blurred_deg = [&](double range_m) {  // PeOthers::maxAngle()
-    return radToDeg(std::sqrt(wavelength_m(inputs.emitter.frequency_hz) / (2 * range_m)));
+  const double half_wavelength_m = wavelength_m(inputs.emitter.frequency_hz) / 2;
+  const auto blurred_deg = [&](double range_m) {
+    return radToDeg(bandEdgeWidth_rad(half_wavelength_m, range_m));
   };
   plan.choices.push_back(
       {"extent",
