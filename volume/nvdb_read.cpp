@@ -45,7 +45,14 @@ class NanoGrid {
   }
 
   float background() const { return static_cast<float>(root_->mBackground); }
-  std::uint64_t activeVoxels() const { return tree_->mVoxelCount; }
+  /// Upper bound of the number of active voxels and tiles with a value in the grid.
+  std::uint64_t storedVoxels() const {
+    const std::uint64_t tiles =
+        std::uint64_t{tree_->mTileCount[0]} + tree_->mTileCount[1] + tree_->mTileCount[2];
+    const std::uint64_t listed =
+        std::uint64_t{tree_->mNodeCount[0]} * (kLeafEdge * kLeafEdge * kLeafEdge) + tiles;
+    return std::min({listed, std::uint64_t{tree_->mVoxelCount}, size_ / sizeof(Value)});
+  }
   nano::Coord firstActive() const { return root_->mBBox[0]; }
   nano::Coord lastActive() const { return root_->mBBox[1]; }
 
@@ -280,8 +287,9 @@ class NvdbFile {
       volume.info.floor = grid.background();
       volume.info.categorical = categorical;
       placeForeign(volume.grid, data, first, grid.lastActive());
-      checkSparseness(volume.grid.dims, grid.activeVoxels(), {path_.string()});
+      checkSparseness(volume.grid.dims, grid.storedVoxels(), {path_.string()});
     }
+    requireDenseMemory(volume.grid.dims, {path_.string()});
     volume.values.resize(static_cast<std::size_t>(volume.grid.dims.count()));
     DenseBox box{first, volume.grid.dims, volume.values};
     grid.copyTo(box);

@@ -210,6 +210,7 @@ openvdb::CoordBBox boxOf(const Dims& dims) {
 /// The values of `box` into a volume whose grid and info are set.
 template <class GridType>
 void copyValues(const GridType& grid, const openvdb::CoordBBox& box, DenseVolume& volume) {
+  requireDenseMemory(volume.grid.dims, {});
   volume.values.resize(static_cast<std::size_t>(volume.grid.dims.count()));
   openvdb::tools::Dense<float, openvdb::tools::LayoutXYZ> dense(box, volume.values.data());
   openvdb::tools::copyToDense(grid.tree(), dense);
@@ -238,7 +239,8 @@ bool makeDense(const openvdb::GridBase& base, const VdbGrid& entry, const VdbFil
     volume.grid.dims = {size.x(), size.y(), size.z()};
     volume.info.floor = static_cast<float>(grid->background());
     volume.info.categorical = std::is_integral_v<typename GridType::ValueType>;
-    checkSparseness(volume.grid.dims, grid->activeVoxelCount(), {});
+    const auto& tree = grid->tree();
+    checkSparseness(volume.grid.dims, tree.activeLeafVoxelCount() + tree.activeTileCount(), {});
   }
   placeGrid(volume, grid->transform(), box.min(), file);
   copyValues(*grid, box, volume);

@@ -10,6 +10,7 @@
 namespace emscape::volume {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using namespace test;
 
@@ -207,6 +208,17 @@ TEST_F(ForeignVdb, TooSparseToBeDenseIsRefused) {
   grid->tree().setValueOn({100000, 0, 0}, 1.F);
   write(grid);
   EXPECT_THAT(errorOf([&] { readVdb(path_); }), HasSubstr("foreign.vdb: dims"));
+}
+
+// A file of a few hundred bytes, which would take 8 GiB.
+TEST_F(ForeignVdb, LargeTilesOfOneValueAreRefused) {
+  auto grid = openvdb::FloatGrid::create();
+  grid->fill(openvdb::CoordBBox({0, 0, 0}, {1407, 2047, 767}), 1.F);
+  write(grid);
+  EXPECT_THAT(errorOf([&] { readVdb(path_); }),
+              AllOf(HasSubstr("foreign.vdb: the box of the active voxels holds 2214592512"),
+                    HasSubstr("too sparse")));
+  EXPECT_THAT(errorOf([&] { describeVdb(path_); }), HasSubstr("too sparse"));
 }
 
 TEST_F(ForeignVdb, ThatKeptOurMetadataWithOtherVoxelsIsReadAsForeign) {
