@@ -19,8 +19,9 @@ using emscape::cuda::check;
 using emscape::cuda::downloadStaged;
 using emscape::cuda::uploadStaged;
 
-/// Surfaces of more heights keep the posts of their paths.
-constexpr int kMostHeightsOfOnePass = 32;
+/// Up to this number of heights fillClear() is used, which reads each path once for every eight of them.
+/// Measured to ten heights.
+constexpr int kMostClearHeights = 32;
 
 bool isDiffraction(const propagation::ExcessModel& model) {
   return std::holds_alternative<DiffractionExcess>(model);
@@ -315,7 +316,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
   const DiffractionTask* const on_device = diffraction_.send(tasks, stream);
   const int count = static_cast<int>(tasks.size());
   const std::uint8_t* left = nullptr;
-  if (setup_.columns.every_height && columns_.layers <= kMostHeightsOfOnePass) {
+  if (setup_.columns.every_height && columns_.layers <= kMostClearHeights) {
     left = fillClearColumns(on_device, count, stream);
     if (left == nullptr) return;
   }

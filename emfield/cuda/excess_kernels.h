@@ -40,8 +40,8 @@ struct DiffractionTask {
 void fillDiffraction(const DiffractionTask* tasks, int count, int ranges, const ExcessGrid& grid, int row,
                      const std::uint8_t* left, const ScratchMemory& scratch, cudaStream_t stream);
 
-/// The columns of a surface whose receivers are all clear of the smooth earth: each reads its posts once, and
-/// keeps none of them.
+/// The columns of a surface whose receivers are all clear of the smooth earth: each reads its posts once for
+/// every eight heights, and keeps none of them.
 /// @param grid        not tilted, with few layers
 /// @param left        one per task and column; receives 1 if the column was not filled, else 0
 /// @param left_count  in device memory, 0; receives the number of such columns

@@ -27,8 +27,7 @@ class ObstacleMaxima {
     }
   }
 
-  /// Adds an obstacle: a post of the path except the first and the last. @param range_m between 0 and the
-  /// distance
+  /// Adds an obstacle: a post between the transmitter and the receivers.
   EMSCAPE_HD void add(Real range_m, Real height_m) {
     const Real beyond_m = distance_m_ - range_m;
     const Real root = inverseRoot(range_m * beyond_m);
@@ -43,7 +42,8 @@ class ObstacleMaxima {
     }
   }
 
-  /// Bullington's loss (dB) of a receiver; 0 without an obstacle. @param model that of the constructor
+  /// Bullington's loss (dB) of receiver j; 0 without an obstacle.
+  /// @param model  that of the constructor
   EMSCAPE_HD Real lossDb(const DiffractionModel<Real>& model, int j) const {
     const Real scale = std::sqrt(2 * distance_m_ / model.earth.wavelength_m);
     const Real from_tx = from_tx_ - slope_[j];

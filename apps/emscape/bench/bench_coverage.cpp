@@ -163,7 +163,7 @@ void addBenchCoverage(CLI::App& bench, const GlobalOptions& global, Action& acti
   command->footer(R"(
 Time of a map from its area to the values of its pixels, without reading the terrain and without writing files, and the time that each
 further height adds. pixels: their positions in the projection; places: terrain below them, and memory (on a GPU also the copy of the
-terrain to it); columns to product: the stages of the field; rest: of its wall-clock time; values: copied from the GPU. Work that a
+terrain to it); columns to product: the stages of the field; rest: the remainder of its wall-clock time; values: copied from the GPU. Work that a
 program does once (start of the GPU, database of projections) is in the first repeat, not in the medians.
 
 Example:
