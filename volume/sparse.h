@@ -20,8 +20,8 @@ inline void checkSparseness(const Dims& dims, std::uint64_t stored, const Source
   if (dims.count() > kAlwaysDense && static_cast<std::uint64_t>(dims.count()) / kSparsest > stored) {
     throw Error(ErrorCode::bad_input, location,
                 "the box of the active voxels holds " + std::to_string(dims.count()) +
-                    " voxels, of which only " + std::to_string(stored) +
-                    " are stored: too sparse to be made dense");
+                    " voxels, but the file stores only " + std::to_string(stored) +
+                    " values for them: too sparse to be made dense");
   }
 }
 
