@@ -2,12 +2,15 @@
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
+#include <fmt/format.h>
 #include <gdal_alg.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -36,6 +39,8 @@ constexpr double kMaxCrsCoordinate = 1e9;
 constexpr double kMinCrsStep = 1e-9;
 constexpr double kMaxLongitude_deg = 1080;
 constexpr int kMaxPostsPerAxis = 1 << 22;  ///< the whole earth in a third of an arc second
+/// Largest block of a file, decoded: GDAL holds one or two of them at a time, whatever is read.
+constexpr double kMaxBlockBytes = double{1 << 29};
 
 /// Elevation formats; GDAL's other drivers read databases, network services and application files.
 constexpr const char* kAllowedDrivers[] = {"GTiff",   "SRTMHGT", "DTED", "VRT",
@@ -113,6 +118,46 @@ void transform(const gdal::Transformation& transformation, std::vector<double>& 
   }
 }
 
+/// Null if no allowed driver reads the file.
+/// @param siblings  names of other files of its folder; null: GDAL lists the folder
+gdal::Dataset openRaster(const std::string& file, const char* const* siblings = nullptr) {
+  return gdal::Dataset(GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                                  kAllowedDrivers, nullptr, siblings));
+}
+
+/// @param interleaved_bands  number of bands that one block holds
+std::string faultOfBlock(GDALRasterBandH band, int interleaved_bands) {
+  int columns = 0, rows = 0;
+  GDALGetBlockSize(band, &columns, &rows);
+  const double bytes =
+      1.0 * GDALGetDataTypeSizeBytes(GDALGetRasterDataType(band)) * columns * rows * interleaved_bands;
+  if (bytes <= kMaxBlockBytes) return "";
+  constexpr double kMebibyte = 1 << 20;
+  return fmt::format(
+      "its blocks of {} x {} posts{} take {:.0f} MiB each, more than the allowed {:.0f} MiB; "
+      "gdal_translate -b 1 -co TILED=YES writes smaller ones",
+      columns, rows, interleaved_bands > 1 ? fmt::format(" in {} bands", interleaved_bands) : "",
+      bytes / kMebibyte, kMaxBlockBytes / kMebibyte);
+}
+
+/// Says that a block of the first band or of its mask is larger than kMaxBlockBytes, which a small file may
+/// also say, since blocks without values take no room in it. Empty if not.
+std::string faultOfBlocks(GDALDatasetH dataset) {
+  GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
+  if (band == nullptr) return "";
+  const char* interleave = GDALGetMetadataItem(dataset, "INTERLEAVE", "IMAGE_STRUCTURE");
+  const bool by_pixel = interleave != nullptr && EQUAL(interleave, "PIXEL");
+  const std::string fault = faultOfBlock(band, by_pixel ? GDALGetRasterCount(dataset) : 1);
+  return fault.empty() ? faultOfBlock(GDALGetMaskBand(band), 1) : fault;
+}
+
+/// A GDALTransformerFunc. @param transformation  an OGRCoordinateTransformationH; only applied forwards
+int transformPoints(void* transformation, int /*backwards*/, int count, double* x, double* y, double* /*z*/,
+                    int* done) {
+  OCTTransformEx(static_cast<OGRCoordinateTransformationH>(transformation), count, x, y, nullptr, done);
+  return TRUE;
+}
+
 }  // namespace
 
 struct TerrainFile::Impl {
@@ -133,14 +178,15 @@ struct TerrainFile::Impl {
   bool geographic = false;
   std::string plane_name;
   gdal::Transformation to_wgs84, from_wgs84;
-  gdal::Owned<GDALDestroyReprojectionTransformer> reprojection;
   gdal::Owned<GDALDestroyApproxTransformer> line_transformer;
 
   [[noreturn]] void fail(const std::string& problem) const {
     throw Error(ErrorCode::bad_input, location, "elevation file " + name + ": " + problem);
   }
 
-  gdal::Dataset open() const;
+  std::set<std::filesystem::path> checkedSources() const;  ///< none if the file is not a VRT
+  gdal::Dataset open() const;                              ///< after checkedSources()
+  void checkBlocks(GDALDatasetH dataset, const std::set<std::filesystem::path>& sources) const;
   void readHead();
   void readBand(GDALRasterBandH band);
   void placePosts(GDALDatasetH dataset);
@@ -150,12 +196,17 @@ struct TerrainFile::Impl {
   void planeOfCrs(std::vector<double>& x, std::vector<double>& y) const;
 };
 
+std::set<std::filesystem::path> TerrainFile::Impl::checkedSources() const {
+  try {
+    return sourcesOfVrt(name);
+  } catch (const Error& error) {
+    fail(error.message());
+  }
+}
+
 gdal::Dataset TerrainFile::Impl::open() const {
   GdalMessages messages;
-  const std::string foreign = foreignSourceOfVrt(name);
-  if (!foreign.empty()) fail(foreign);
-  gdal::Dataset dataset(GDALOpenEx(name.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                                   kAllowedDrivers, nullptr, nullptr));
+  gdal::Dataset dataset = openRaster(name);
   if (!dataset) {
     VSIStatBufL status;
     const bool exists = VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
@@ -164,9 +215,23 @@ gdal::Dataset TerrainFile::Impl::open() const {
   return dataset;
 }
 
+void TerrainFile::Impl::checkBlocks(GDALDatasetH dataset,
+                                    const std::set<std::filesystem::path>& sources) const {
+  const std::string fault = faultOfBlocks(dataset);
+  if (!fault.empty()) fail(fault);
+  const GdalMessages quiet;
+  const char* const no_siblings = nullptr;  // listing the folder for each of many tiles takes too long
+  for (const std::filesystem::path& source : sources) {
+    const gdal::Dataset opened = openRaster(source, &no_siblings);
+    const std::string fault_of_source = opened ? faultOfBlocks(opened.get()) : "";
+    if (!fault_of_source.empty()) fail("source " + source.string() + ": " + fault_of_source);
+  }
+}
+
 void TerrainFile::Impl::readHead() {
   const GdalMessages quiet;  // constructed before the dataset, whose destructor may report errors
   GDALAllRegister();
+  const std::set<std::filesystem::path> sources = checkedSources();
   const gdal::Dataset dataset = open();
   const int bands = GDALGetRasterCount(dataset.get());
   if (bands == 0) {
@@ -184,6 +249,7 @@ void TerrainFile::Impl::readHead() {
   if (bands > 1) {
     notes.push_back("has " + std::to_string(bands) + " bands: heights are taken from the first");
   }
+  checkBlocks(dataset.get(), sources);
   readBand(GDALGetRasterBand(dataset.get(), 1));
   placePosts(dataset.get());
   placeOnEarth(GDALGetSpatialRef(dataset.get()));
@@ -259,16 +325,15 @@ void TerrainFile::Impl::placeOnEarth(OGRSpatialReferenceH given) {
   OSRSetAxisMappingStrategy(wgs84.get(), OAMS_TRADITIONAL_GIS_ORDER);
   to_wgs84.reset(OCTNewCoordinateTransformation(crs.get(), wgs84.get()));
   from_wgs84.reset(OCTNewCoordinateTransformation(wgs84.get(), crs.get()));
-  reprojection.reset(GDALCreateReprojectionTransformerEx(wgs84.get(), crs.get(), nullptr));
-  if (!to_wgs84 || !from_wgs84 || !reprojection) {
+  if (!to_wgs84 || !from_wgs84) {
     fail(messages.explain(std::string("its coordinate reference system '") + OSRGetName(crs.get()) +
                           "' cannot be brought to latitude and longitude"));
   }
   const double* g = pixel_to_crs;
   const double post = turned ? std::min(std::hypot(g[1], g[4]), std::hypot(g[2], g[5]))
                              : std::min(lattice.step_x, lattice.step_y);
-  line_transformer.reset(GDALCreateApproxTransformer(GDALReprojectionTransform, reprojection.get(),
-                                                     kLineTolerance_posts * post));
+  line_transformer.reset(
+      GDALCreateApproxTransformer(transformPoints, from_wgs84.get(), kLineTolerance_posts * post));
 
   geographic = OSRIsGeographic(crs.get()) && !turned && liesOnWgs84();
   if (geographic) {
@@ -383,6 +448,7 @@ const std::string& TerrainFile::planeName() const {
 
 void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
   const GdalMessages messages;  // constructed before the dataset, whose destructor may report errors
+  impl_->checkedSources();
   const gdal::Dataset dataset = impl_->open();
   GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
   GDALRasterBandH mask_band = (GDALGetMaskFlags(band) & GMF_ALL_VALID) == 0 ? GDALGetMaskBand(band) : nullptr;

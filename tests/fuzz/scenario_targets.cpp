@@ -6,6 +6,7 @@
 #include "emscape/scenario/clock.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
+#include "emscape/scenario/target.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/refractivity_file.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -68,9 +69,19 @@ void readEdits(const std::string& text) {
   useScenario(result.scenario);
 }
 
-/// A scenario in the input's folder whose edits name the input.
-void readNamed(const fs::path& file, const std::vector<Edit>& edits) {
-  const scenario::ParseResult result = scenario::parseScenario(file.parent_path() / "quick.yaml", edits);
+/// A small scenario, whose only platform follows the input.
+void writeTracked(const fs::path& folder) {
+  writeFile(folder / "tracked.json",
+            R"({"schema_version": 1, "name": "tracked", "epoch": "2026-06-01T06:00:00Z", "duration_s": 4,
+"step_s": 1, "region": {"origin": {"latitude_deg": 52, "longitude_deg": 5, "height_msl_m": 0},
+"size_m": [20000, 20000, 5000], "dims": [40, 40, 20]},
+"platforms": [{"name": "aircraft", "track": {"file": "input.csv"}}],
+"emitters": [{"name": "transmitter", "platform": "aircraft", "kind": "transmitter", "frequency_hz": 1e8,
+"power_w": 1000, "antenna": {"pattern": "isotropic"}}]})");
+}
+
+void readTracked(const fs::path& file, const std::string&) {
+  const scenario::ParseResult result = scenario::parseScenario(file.parent_path() / "tracked.json");
   checkProblems(result);
   useScenario(result.scenario);
 }
@@ -109,23 +120,16 @@ const FuzzTargetsAdded added({
      [] {
        return std::vector<std::string>{"0:120:0.5", "1:4", "2.5"};
      }},
-    {"track_csv", "input.csv",
-     [](const fs::path& file, const std::string&) {
-       readNamed(file, {{"platforms.mast.position", "null"}, {"platforms.mast.track", "{file: input.csv}"}});
-     },
+    {"track_csv", "input.csv", readTracked,
      [] {
        return std::vector<std::string>{readFile(sourceFile("tests/scenario/data/track.csv")),
                                        readFile(sourceFile("scenarios/data/helicopter.csv")),
                                        "t_s,latitude_deg,longitude_deg,height_agl_m,heading_deg,pitch_deg,"
                                        "roll_deg\n0,52,5,100,10,1,2\n4,52.1,5.1,200,350,-1,0\n"};
      },
-     copyScenarios},
-    {"rcs_csv", "input.csv",
-     [](const fs::path& file, const std::string&) {
-       readNamed(file, {{"targets", "[{name: aircraft, platform: mast, rcs_file: input.csv}]"}});
-     },
-     [] { return std::vector<std::string>{readFile(sourceFile("scenarios/data/helicopter_rcs.csv"))}; },
-     copyScenarios},
+     writeTracked},
+    {"rcs_csv", "input.csv", [](const fs::path& file, const std::string&) { scenario::readRcsTable(file); },
+     [] { return std::vector<std::string>{readFile(sourceFile("scenarios/data/helicopter_rcs.csv"))}; }},
     {"antenna_csv", "input.csv",
      [](const fs::path& file, const std::string&) { scenario::readAntenna(file, 20); },
      [] {

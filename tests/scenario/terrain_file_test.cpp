@@ -3,14 +3,20 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <set>
 #include <sstream>
+#include <string>
+#include <vector>
 
 #include "emscape/base/units.h"
 #include "emscape/scenario/terrain.h"
 #include "scenario/terrain/view.h"
+#include "scenario/terrain/vrt.h"
 #include "tests/scenario/dem_file.h"
 #include "tests/support/errors.h"
 #include "tests/support/temporary_folder.h"
@@ -357,6 +363,62 @@ TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {
   }
   EXPECT_THAT(vrt("<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>", "2147483647"),
               HasSubstr("more than the allowed 4194304 in a row or column"));
+}
+
+/// A GeoTIFF of one block without values. @return its name
+std::string writeBlock(const std::string& path, int edge, int bands) {
+  GDALAllRegister();
+  const std::string size = std::to_string(edge);
+  const std::string x = "BLOCKXSIZE=" + size, y = "BLOCKYSIZE=" + size;
+  std::vector<const char*> options{
+      "TILED=YES", "SPARSE_OK=TRUE", "COMPRESS=DEFLATE", "INTERLEAVE=PIXEL", x.c_str(), y.c_str(), nullptr};
+  const std::unique_ptr<GDALDataset> dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      path.c_str(), 100, 100, bands, GDT_Float32, const_cast<char**>(options.data())));
+  OGRSpatialReference wgs84;
+  wgs84.SetWellKnownGeogCS("WGS84");
+  std::array<double, 6> corners{10, 0.01, 0, 50, 0, -0.01};
+  dataset->SetSpatialRef(&wgs84);
+  dataset->SetGeoTransform(corners.data());
+  return path;
+}
+
+TEST_F(TerrainFileTest, BlocksThatTakeMuchMemoryAreRefused) {
+  EXPECT_THAT(problemOf(writeBlock(folder_ / "tile.tif", 16384, 1)),
+              AllOf(HasSubstr("tile.tif: its blocks of 16384 x 16384 posts take 1024 MiB each"),
+                    HasSubstr("allowed 512 MiB")));
+  const std::string bands = writeBlock(folder_ / "bands.tif", 256, 3000);
+  EXPECT_LT(std::filesystem::file_size(bands), 1U << 20);
+  EXPECT_THAT(problemOf(bands), HasSubstr("its blocks of 256 x 256 posts in 3000 bands take 750 MiB each"));
+  EXPECT_EQ(problemOf(writeBlock(folder_ / "few.tif", 256, 3)), "");
+
+  const std::string file = folder_ / "a.vrt";
+  std::ofstream(file) << "<VRTDataset rasterXSize=\"100\" rasterYSize=\"100\"><SRS>EPSG:4326</SRS>"
+                      << "<GeoTransform>10, 0.01, 0, 50, 0, -0.01</GeoTransform>"
+                      << "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>"
+                      << "<SourceFilename relativeToVRT=\"1\">tile.tif</SourceFilename>"
+                      << "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+  EXPECT_THAT(problemOf(file), AllOf(HasSubstr("a.vrt: source "), HasSubstr("tile.tif: its blocks")));
+}
+
+TEST_F(TerrainFileTest, AVrtThatNamesVrtsManyTimesIsReadOnce) {
+  write("0.tif", geographicDem(10, 50, 0.1, 10, 10, flat));
+  const auto vrt = [&](int level, int sources) {
+    const std::string file = folder_ / std::to_string(level) + ".vrt";
+    std::ofstream out(file);
+    out << "<VRTDataset rasterXSize=\"10\" rasterYSize=\"10\"><SRS>EPSG:4326</SRS>"
+        << "<GeoTransform>10, 0.1, 0, 50, 0, -0.1</GeoTransform><VRTRasterBand dataType=\"Float32\" "
+           "band=\"1\">";
+    for (int k = 0; k < sources; ++k) {
+      out << "<SimpleSource><SourceFilename relativeToVRT=\"1\">" << level - 1
+          << (level == 1 ? ".tif" : ".vrt") << "</SourceFilename><SourceBand>1</SourceBand></SimpleSource>";
+    }
+    out << "</VRTRasterBand></VRTDataset>";
+    return file;
+  };
+  vrt(1, 300);
+  vrt(2, 300);
+  vrt(3, 300);
+  EXPECT_EQ(sourcesOfVrt(vrt(4, 300)), std::set<std::filesystem::path>{folder_ / "0.tif"});
 }
 
 TEST_F(TerrainFileTest, ATruncatedFileIsAnErrorAndNotSeaLevel) {

@@ -1,5 +1,8 @@
 #include "volume/nvdb.h"
 
+#include <nanovdb/util/OpenToNanoVDB.h>
+#include <openvdb/openvdb.h>
+
 #include "tests/volume/sample_volumes.h"
 #include "volume/nanovdb_wrapper.h"
 
@@ -62,6 +65,17 @@ TEST(Nvdb, WithoutSidecarIsReadOverTheBoxOfItsActiveVoxels) {
                 volume.values[static_cast<std::size_t>(volume.grid.index(i + 1, 5, k))]);
     }
   }
+}
+
+TEST(Nvdb, LargeTilesOfOneValueAreRefused) {
+  TemporaryFolder folder;
+  const auto grid = openvdb::FloatGrid::create();
+  grid->fill(openvdb::CoordBBox({0, 0, 0}, {1407, 2047, 767}), 1.F);
+  const nano::Handle handle = nanovdb::openToNanoVDB(*grid);
+  nanovdb::io::writeGrid(folder / "tiles.nvdb", handle);
+  const std::string error = errorOf([&] { readNvdb(folder / "tiles.nvdb"); });
+  EXPECT_THAT(error, HasSubstr("tiles.nvdb: the box of the active voxels holds 2214592512"));
+  EXPECT_THAT(error, HasSubstr("too sparse"));
 }
 
 TEST(Nvdb, SurvivesDamage) {
