@@ -2,7 +2,6 @@
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>
-#include <fmt/format.h>
 #include <gdal_alg.h>
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 #include "emscape/base/units.h"
 #include "scenario/terrain/file.h"
 #include "scenario/terrain/gdal_messages.h"
+#include "scenario/terrain/raster_blocks.h"
 #include "scenario/terrain/vrt.h"
 
 namespace emscape::scenario {
@@ -39,8 +39,6 @@ constexpr double kMaxCrsCoordinate = 1e9;
 constexpr double kMinCrsStep = 1e-9;
 constexpr double kMaxLongitude_deg = 1080;
 constexpr int kMaxPostsPerAxis = 1 << 22;  ///< the whole earth in a third of an arc second
-/// Largest block of a file, decoded: GDAL holds one or two of them at a time, whatever is read.
-constexpr double kMaxBlockBytes = double{1 << 29};
 
 /// Elevation formats; GDAL's other drivers read databases, network services and application files.
 constexpr const char* kAllowedDrivers[] = {"GTiff",   "SRTMHGT", "DTED", "VRT",
@@ -123,32 +121,6 @@ void transform(const gdal::Transformation& transformation, std::vector<double>& 
 gdal::Dataset openRaster(const std::string& file, const char* const* siblings = nullptr) {
   return gdal::Dataset(GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
                                   kAllowedDrivers, nullptr, siblings));
-}
-
-/// @param interleaved_bands  number of bands that one block holds
-std::string faultOfBlock(GDALRasterBandH band, int interleaved_bands) {
-  int columns = 0, rows = 0;
-  GDALGetBlockSize(band, &columns, &rows);
-  const double bytes =
-      1.0 * GDALGetDataTypeSizeBytes(GDALGetRasterDataType(band)) * columns * rows * interleaved_bands;
-  if (bytes <= kMaxBlockBytes) return "";
-  constexpr double kMebibyte = 1 << 20;
-  return fmt::format(
-      "its blocks of {} x {} posts{} take {:.0f} MiB each, more than the allowed {:.0f} MiB; "
-      "gdal_translate -b 1 -co TILED=YES writes smaller ones",
-      columns, rows, interleaved_bands > 1 ? fmt::format(" in {} bands", interleaved_bands) : "",
-      bytes / kMebibyte, kMaxBlockBytes / kMebibyte);
-}
-
-/// Says that a block of the first band or of its mask is larger than kMaxBlockBytes, which a small file may
-/// also say, since blocks without values take no room in it. Empty if not.
-std::string faultOfBlocks(GDALDatasetH dataset) {
-  GDALRasterBandH band = GDALGetRasterBand(dataset, 1);
-  if (band == nullptr) return "";
-  const char* interleave = GDALGetMetadataItem(dataset, "INTERLEAVE", "IMAGE_STRUCTURE");
-  const bool by_pixel = interleave != nullptr && EQUAL(interleave, "PIXEL");
-  const std::string fault = faultOfBlock(band, by_pixel ? GDALGetRasterCount(dataset) : 1);
-  return fault.empty() ? faultOfBlock(GDALGetMaskBand(band), 1) : fault;
 }
 
 /// A GDALTransformerFunc. @param transformation  an OGRCoordinateTransformationH; only applied forwards
