@@ -311,7 +311,7 @@ void TerrainFile::Impl::placeOnEarth(OGRSpatialReferenceH given) {
   if (geographic) {
     snapToDegrees(lattice.x0, lattice.step_x, columns);
     snapToDegrees(lattice.y0, lattice.step_y, rows);
-    const double west_deg = lattice.x(0), east_deg = lattice.x(columns - 1);
+    const double west_deg = lattice.x(-0.5), east_deg = lattice.x(columns - 0.5);
     if (west_deg < -kMaxLongitude_deg || east_deg > kMaxLongitude_deg) {
       fail("its longitudes run from " + shortText(west_deg) + " to " + shortText(east_deg) +
            " deg, outside the allowed range " + shortText(-kMaxLongitude_deg) + " to " +

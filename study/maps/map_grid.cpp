@@ -23,6 +23,7 @@ constexpr double kPatch_m = 3000;
 /// Longest side of a map: once around the earth.
 constexpr double kLargestSide_m = 4.1e7;
 constexpr double kPolar_deg = 85;
+constexpr double kMaxPolarPixels = 1 << 24;  ///< whose positions take seconds
 constexpr int kMaxPatchPixels = 64;
 
 struct Middle {
@@ -174,8 +175,16 @@ Lattice latticeOf(const Projection& toEarth, const MapGrid& grid, bool is_polar 
   }
   const auto isPolar = [](double latitude_deg) { return std::abs(latitude_deg) > kPolar_deg; };
   const std::vector<double>& latitudes_deg = lattice.latitudes_deg;
-  if (!is_polar && std::any_of(latitudes_deg.begin(), latitudes_deg.end(), isPolar))
+  if (!is_polar && std::any_of(latitudes_deg.begin(), latitudes_deg.end(), isPolar)) {
+    if (static_cast<double>(grid.width) * grid.height > kMaxPolarPixels) {
+      throw Error(
+          ErrorCode::usage,
+          fmt::format("a map of {} x {} pixels of {} m that reaches beyond {} degrees of latitude has "
+                      "more than {:.0f}: a larger cell or a smaller area",
+                      grid.width, grid.height, grid.cell_m, kPolar_deg, kMaxPolarPixels));
+    }
     return latticeOf(toEarth, grid, true);
+  }
   for (const double latitude_deg : latitudes_deg) {
     lattice.metres2_per_degree2.push_back(metres2PerDegree2(latitude_deg));
   }

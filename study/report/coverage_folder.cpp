@@ -127,8 +127,12 @@ std::shared_ptr<const MapGrid> gridOf(const fs::path& file, const std::string& c
   const Pixels pixels(dataset);
   OGRSpatialReferenceH reference = GDALGetSpatialRef(dataset.get());
   if (!(pixels.cell_m > 0) || reference == nullptr) fail(file, "has no projection");
-  return std::make_shared<const MapGrid>(mapGridAt(wkt2Of(reference), crs, pixels.cell_m, pixels.left_m,
-                                                   pixels.top_m, pixels.width, pixels.height));
+  try {
+    return std::make_shared<const MapGrid>(mapGridAt(wkt2Of(reference), crs, pixels.cell_m, pixels.left_m,
+                                                     pixels.top_m, pixels.width, pixels.height));
+  } catch (const Error& error) {
+    fail(file, error.message());
+  }
 }
 
 }  // namespace

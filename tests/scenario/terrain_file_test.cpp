@@ -322,8 +322,11 @@ TEST_F(TerrainFileTest, AbsurdPositionsAreRefused) {
   file.transform[0] = 5000;
   EXPECT_THAT(
       problemOf(write("round.tif", file)),
-      HasSubstr(
-          "its longitudes run from 5000.05 to 5000.95 deg, outside the allowed range -1080 to 1080 deg"));
+      HasSubstr("its longitudes run from 5000 to 5001 deg, outside the allowed range -1080 to 1080 deg"));
+  DemFile column = geographicDem(10, 50, 0.1, 1, 10, flat);
+  column.transform[0] = -4e6 + 10;
+  column.transform[1] = 8e6;
+  EXPECT_THAT(problemOf(write("column.tif", column)), HasSubstr("its longitudes run from"));
   file.transform[0] = 10;
   file.transform[1] = 1e300;
   EXPECT_THAT(problemOf(write("wide.tif", file)), HasSubstr("its posts are not on the earth"));

@@ -134,6 +134,10 @@ TEST(MapGrid, RefusesWhatIsNoMap) {
   EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100, "mercator"); }), HasSubstr("'mercator'"));
   EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 0, "utm"); }), HasSubstr("positive"));
   EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 0.5, "utm"); }), HasSubstr("larger cell"));
+  EXPECT_THAT(test::errorOf([&] {
+                makeMapGrid(circularArea({88, 0, 40e3}), 20, "EPSG:3413");
+              }),
+              HasSubstr("beyond 85 degrees of latitude has more than 16777216: a larger cell"));
   EXPECT_THAT(test::errorOf([&] { circularArea({91, 0, 1e3}); }), HasSubstr("-90..90"));
   EXPECT_THAT(test::errorOf([&] { circularArea({1, 0, 1e7}); }), HasSubstr("2000000"));
 }
