@@ -7,7 +7,7 @@ namespace emscape::scenario {
 namespace {
 
 constexpr double kMebibyte = 1 << 20;
-constexpr double kMaxBlockBytes = 512 * kMebibyte;
+constexpr double kMaxBlockBytes = 256 * kMebibyte;
 
 /// @param interleaved_bands  number of bands that one block holds
 std::string faultOfBlock(GDALRasterBandH band, int interleaved_bands) {

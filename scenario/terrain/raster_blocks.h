@@ -7,9 +7,9 @@
 
 namespace emscape::scenario {
 
-/// Says that a decoded block of the first band or of its mask takes more than 512 MiB. GDAL holds one or two
-/// blocks at a time, whatever is read, and a small file may have large ones: without values they take no room
-/// in it. Empty if all are smaller.
+/// Says that a decoded block of the first band or of its mask takes more than 256 MiB. GDAL holds all blocks
+/// that a window touches, and a small file may have large ones: without values they take no room in it. Empty
+/// if all are smaller.
 std::string faultOfBlocks(GDALDatasetH dataset);
 
 }  // namespace emscape::scenario

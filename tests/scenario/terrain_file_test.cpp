@@ -388,7 +388,7 @@ std::string writeBlock(const std::string& path, int edge, int bands) {
 TEST_F(TerrainFileTest, BlocksThatTakeMuchMemoryAreRefused) {
   EXPECT_THAT(problemOf(writeBlock(folder_ / "tile.tif", 16384, 1)),
               AllOf(HasSubstr("tile.tif: its blocks of 16384 x 16384 values take 1024 MiB each"),
-                    HasSubstr("allowed 512 MiB")));
+                    HasSubstr("allowed 256 MiB")));
   const std::string bands = writeBlock(folder_ / "bands.tif", 256, 3000);
   EXPECT_LT(std::filesystem::file_size(bands), 1U << 20);
   EXPECT_THAT(problemOf(bands), HasSubstr("its blocks of 256 x 256 values in 3000 bands take 750 MiB each"));
