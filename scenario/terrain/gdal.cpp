@@ -17,6 +17,7 @@
 #include "scenario/terrain/file.h"
 #include "scenario/terrain/gdal_messages.h"
 #include "scenario/terrain/raster_blocks.h"
+#include "scenario/terrain/transformation.h"
 #include "scenario/terrain/vrt.h"
 
 namespace emscape::scenario {
@@ -295,8 +296,8 @@ void TerrainFile::Impl::placeOnEarth(OGRSpatialReferenceH given) {
   const gdal::SpatialReference wgs84(OSRNewSpatialReference(nullptr));
   OSRSetWellKnownGeogCS(wgs84.get(), "WGS84");
   OSRSetAxisMappingStrategy(wgs84.get(), OAMS_TRADITIONAL_GIS_ORDER);
-  to_wgs84.reset(OCTNewCoordinateTransformation(crs.get(), wgs84.get()));
-  from_wgs84.reset(OCTNewCoordinateTransformation(wgs84.get(), crs.get()));
+  to_wgs84 = newTransformation(crs.get(), wgs84.get());
+  from_wgs84 = newTransformation(wgs84.get(), crs.get());
   if (!to_wgs84 || !from_wgs84) {
     fail(messages.explain(std::string("its coordinate reference system '") + OSRGetName(crs.get()) +
                           "' cannot be brought to latitude and longitude"));

@@ -187,17 +187,37 @@ bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double lati
   return false;
 }
 
+/// Reads all heights of a file, or of a very large one a part: kStrips strips of rows from the first to the
+/// last.
 void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
-  file.read({0, 0, file.columns(), file.rows()}, [&](long long, const float* heights_m) {
-    for (int column = 0; column < file.columns(); ++column) {
-      if (std::isnan(heights_m[column])) {
-        ++info.void_posts;
-      } else {
-        info.lowest_m = std::fmin(info.lowest_m, heights_m[column]);
-        info.highest_m = std::fmax(info.highest_m, heights_m[column]);
+  constexpr long long kMostPosts = 1LL << 29;
+  constexpr int kStrips = 64;
+  const long long rows = file.rows(), columns = file.columns();
+  const bool is_partial = rows * columns > kMostPosts;
+  const int strips = is_partial ? kStrips : 1;
+  const long long rows_of_strip = is_partial ? std::max(1LL, kMostPosts / columns / kStrips) : rows;
+  for (int strip = 0; strip < strips; ++strip) {
+    const long long first_row = strip == 0 ? 0 : (rows - rows_of_strip) * strip / (strips - 1);
+    file.read({0, first_row, columns, rows_of_strip}, [&](long long, const float* heights_m) {
+      int voids = 0;
+      float lowest_m = HUGE_VALF, highest_m = -HUGE_VALF;
+      for (long long column = 0; column < columns; ++column) {
+        const float height_m = heights_m[column];  // NaN is neither smaller nor larger
+        lowest_m = height_m < lowest_m ? height_m : lowest_m;
+        highest_m = height_m > highest_m ? height_m : highest_m;
+        voids += std::isnan(height_m) ? 1 : 0;
       }
-    }
-  });
+      info.void_posts += voids;
+      if (voids == columns) return;
+      info.lowest_m = std::fmin(info.lowest_m, lowest_m);
+      info.highest_m = std::fmax(info.highest_m, highest_m);
+    });
+  }
+  if (is_partial) {
+    info.notes.push_back("is large: its range and voids are those of " +
+                         std::to_string(strips * rows_of_strip) + " of its " + std::to_string(rows) +
+                         " rows");
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
+#include "scenario/terrain/transformation.h"
 
 namespace emscape::study {
 namespace {
@@ -103,7 +104,7 @@ gdal::SpatialReference wgs84Reference() {
 gdal::Transformation transformationBetween(const gdal::SpatialReference& from,
                                            const gdal::SpatialReference& to) {
   const scenario::GdalMessages messages;
-  gdal::Transformation transformation(OCTNewCoordinateTransformation(from.get(), to.get()));
+  gdal::Transformation transformation = scenario::newTransformation(from.get(), to.get());
   if (transformation == nullptr) {
     throw Error(ErrorCode::other, messages.explain("PROJ cannot transform between the coordinate systems"));
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
+#include "scenario/terrain/transformation.h"
 #include "study/maps/gdal_support.h"
 
 namespace emscape::study {
@@ -21,13 +22,17 @@ std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& g
   std::vector<gdal::Geometry> geometries;
   for (int n = 0; n < GDALDatasetGetLayerCount(polygons.get()); ++n) {
     OGRLayerH layer = GDALDatasetGetLayer(polygons.get(), n);
+    gdal::Transformation to_map;
+    if (OGR_L_GetSpatialRef(layer) != nullptr) {
+      to_map = scenario::newTransformation(OGR_L_GetSpatialRef(layer), map.get());
+      if (to_map == nullptr) fail("its polygons cannot be brought to the map's projection");
+    }
     OGR_L_ResetReading(layer);
     while (const gdal::Feature feature{OGR_L_GetNextFeature(layer)}) {
       OGRGeometryH geometry = OGR_F_GetGeometryRef(feature.get());
       if (geometry == nullptr || OGR_G_GetDimension(geometry) != 2) continue;
       geometries.emplace_back(OGR_G_Clone(geometry));
-      if (OGR_L_GetSpatialRef(layer) != nullptr &&
-          OGR_G_TransformTo(geometries.back().get(), map.get()) != OGRERR_NONE) {
+      if (to_map != nullptr && OGR_G_Transform(geometries.back().get(), to_map.get()) != OGRERR_NONE) {
         fail("a polygon cannot be brought to the map's projection");
       }
     }

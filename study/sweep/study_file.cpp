@@ -60,8 +60,10 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
   StudySpec& spec = reading.spec;
   spec.file = file;
   const std::string base = reading.resolve(root.text("scenario"));
-  if (!fs::exists(base)) {
-    throw Error(ErrorCode::bad_input, root.locationOf("scenario"), base + ": no such file; a scenario");
+  std::error_code failed;
+  if (!fs::exists(base, failed)) {
+    throw Error(ErrorCode::bad_input, root.locationOf("scenario"),
+                base + ": " + (failed ? failed.message() : "no such file") + "; a scenario");
   }
   spec.base = scenario::loadScenario(base, edits, scenario::ReadFor::chosen_times);
   readMaps(reading, root);

@@ -88,7 +88,8 @@ void readMeasures(StudyReading& reading, const Section& root) {
     readFigure(reading, item, measure);
     if (item.text("over") != "region") {
       measure.over = reading.resolve(item.text("over"));
-      if (!std::filesystem::is_regular_file(measure.over)) {
+      std::error_code ignored;  // such as a name that is too long
+      if (!std::filesystem::is_regular_file(measure.over, ignored)) {
         reading.fault(item.locationOf("over"), measure.over + ": no such file; polygons, or 'region'");
       } else {
         reading.files.push_back(measure.over);

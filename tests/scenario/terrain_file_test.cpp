@@ -368,31 +368,31 @@ TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {
               HasSubstr("more than the allowed 4194304 in a row or column"));
 }
 
-/// A GeoTIFF of one block without values. @return its name
-std::string writeBlock(const std::string& path, int edge, int bands) {
+/// A GeoTIFF without values, in square blocks. @param size  posts along each axis  @return its name
+std::string writeBlocks(const std::string& path, int edge, int bands, int size = 100) {
   GDALAllRegister();
-  const std::string size = std::to_string(edge);
-  const std::string x = "BLOCKXSIZE=" + size, y = "BLOCKYSIZE=" + size;
+  const std::string pixels = std::to_string(edge);
+  const std::string x = "BLOCKXSIZE=" + pixels, y = "BLOCKYSIZE=" + pixels;
   std::vector<const char*> options{
       "TILED=YES", "SPARSE_OK=TRUE", "COMPRESS=DEFLATE", "INTERLEAVE=PIXEL", x.c_str(), y.c_str(), nullptr};
   const std::unique_ptr<GDALDataset> dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      path.c_str(), 100, 100, bands, GDT_Float32, const_cast<char**>(options.data())));
+      path.c_str(), size, size, bands, GDT_Float32, const_cast<char**>(options.data())));
   OGRSpatialReference wgs84;
   wgs84.SetWellKnownGeogCS("WGS84");
-  std::array<double, 6> corners{10, 0.01, 0, 50, 0, -0.01};
+  std::array<double, 6> corners{10, 1.0 / size, 0, 50, 0, -1.0 / size};
   dataset->SetSpatialRef(&wgs84);
   dataset->SetGeoTransform(corners.data());
   return path;
 }
 
 TEST_F(TerrainFileTest, BlocksThatTakeMuchMemoryAreRefused) {
-  EXPECT_THAT(problemOf(writeBlock(folder_ / "tile.tif", 16384, 1)),
+  EXPECT_THAT(problemOf(writeBlocks(folder_ / "tile.tif", 16384, 1)),
               AllOf(HasSubstr("tile.tif: its blocks of 16384 x 16384 values take 1024 MiB each"),
                     HasSubstr("allowed 256 MiB")));
-  const std::string bands = writeBlock(folder_ / "bands.tif", 256, 3000);
+  const std::string bands = writeBlocks(folder_ / "bands.tif", 256, 3000);
   EXPECT_LT(std::filesystem::file_size(bands), 1U << 20);
   EXPECT_THAT(problemOf(bands), HasSubstr("its blocks of 256 x 256 values in 3000 bands take 750 MiB each"));
-  EXPECT_EQ(problemOf(writeBlock(folder_ / "few.tif", 256, 3)), "");
+  EXPECT_EQ(problemOf(writeBlocks(folder_ / "few.tif", 256, 3)), "");
 
   const std::string file = folder_ / "a.vrt";
   std::ofstream(file) << "<VRTDataset rasterXSize=\"100\" rasterYSize=\"100\"><SRS>EPSG:4326</SRS>"
@@ -401,6 +401,13 @@ TEST_F(TerrainFileTest, BlocksThatTakeMuchMemoryAreRefused) {
                       << "<SourceFilename relativeToVRT=\"1\">tile.tif</SourceFilename>"
                       << "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
   EXPECT_THAT(problemOf(file), AllOf(HasSubstr("a.vrt: source "), HasSubstr("tile.tif: its blocks")));
+}
+
+TEST_F(TerrainFileTest, OfAVeryLargeFileAPartIsDescribed) {
+  const TerrainFileInfo info = Terrain::describe(writeBlocks(folder_ / "large.tif", 512, 1, 30000));
+  EXPECT_EQ(info.rows, 30000);
+  EXPECT_EQ(info.highest_m, 0);
+  EXPECT_THAT(info.notes, Contains(HasSubstr("its range and voids are those of 17856 of its 30000 rows")));
 }
 
 TEST_F(TerrainFileTest, AVrtThatNamesVrtsManyTimesIsReadOnce) {

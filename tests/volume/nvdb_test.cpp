@@ -3,6 +3,7 @@
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>
 
+#include "tests/support/files.h"
 #include "tests/volume/sample_volumes.h"
 #include "volume/nanovdb_wrapper.h"
 
@@ -86,6 +87,18 @@ TEST(Nvdb, SurvivesDamage) {
   writeNvdb(folder / "a.nvdb", {&volume});
   std::filesystem::remove(folder / "a.nvdb.json");
   survivesDamage(folder / "a.nvdb", [&] { readNvdb(folder / "a.nvdb"); });
+}
+
+TEST(Nvdb, ASidecarWithoutTheNumberOfVoxelsIsRefused) {
+  TemporaryFolder folder;
+  const DenseVolume volume = fieldVolume();
+  writeNvdb(folder / "a.nvdb", {&volume});
+  std::string sidecar = emscape::test::readFile(folder / "a.nvdb.json");
+  const std::size_t at = sidecar.find("\"voxels\"");
+  ASSERT_NE(at, std::string::npos);
+  sidecar.replace(at, 8, "\"others\"");
+  emscape::test::writeFile(folder / "a.nvdb.json", sidecar);
+  EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb"); }), HasSubstr("a.nvdb.json: key voxels"));
 }
 
 TEST(Nvdb, RefusesWhatIsNotOne) {
