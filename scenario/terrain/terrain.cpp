@@ -190,7 +190,7 @@ bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double lati
 /// Reads all heights of a file, or of a very large one a part: kStrips strips of rows from the first to the
 /// last.
 void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
-  constexpr long long kMostPosts = 1LL << 29;
+  constexpr long long kMostPosts = 1LL << 28;
   constexpr int kStrips = 64;
   const long long rows = file.rows(), columns = file.columns();
   const bool is_partial = rows * columns > kMostPosts;
