@@ -266,7 +266,8 @@ Json describeElevation(const std::string& file) {
           {"post_spacing_lon_deg", twelveDigits(info.post_spacing_lon_deg)},
           {"lowest_m", info.lowest_m},
           {"highest_m", info.highest_m},
-          {"void_posts", info.void_posts}};
+          {"void_posts", info.void_posts},
+          {"notes", info.notes}};
 }
 
 Json describeAntenna(const std::string& file) {
