@@ -19,6 +19,7 @@
 #include "scenario/terrain/vrt.h"
 #include "tests/scenario/dem_file.h"
 #include "tests/support/errors.h"
+#include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::scenario {
@@ -401,6 +402,14 @@ TEST_F(TerrainFileTest, BlocksThatTakeMuchMemoryAreRefused) {
                       << "<SourceFilename relativeToVRT=\"1\">tile.tif</SourceFilename>"
                       << "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
   EXPECT_THAT(problemOf(file), AllOf(HasSubstr("a.vrt: source "), HasSubstr("tile.tif: its blocks")));
+}
+
+TEST_F(TerrainFileTest, TheEpsgCodeOfAnotherKindOfSystemIsRefused) {
+  const std::string file = folder_ / "code.tif";
+  std::filesystem::copy_file(
+      test::sourceFile("tests/fuzz/regressions/terrain_tif/code_of_a_geocentric_system"), file);
+  EXPECT_THAT(problemOf(file), AllOf(HasSubstr("code.tif: its coordinate reference system"),
+                                     HasSubstr("EPSG:4342, which is of another kind of system")));
 }
 
 TEST_F(TerrainFileTest, OfAVeryLargeFileAPartIsDescribed) {
