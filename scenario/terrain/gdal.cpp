@@ -16,12 +16,14 @@
 #include "emscape/base/units.h"
 #include "scenario/terrain/file.h"
 #include "scenario/terrain/gdal_messages.h"
-#include "scenario/terrain/raster_blocks.h"
+#include "scenario/terrain/raster_access.h"
 #include "scenario/terrain/transformation.h"
 #include "scenario/terrain/vrt.h"
 
 namespace emscape::scenario {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// Values that mean void in HGT and DTED whatever a file's header says.
 constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
@@ -40,10 +42,6 @@ constexpr double kMaxCrsCoordinate = 1e9;
 constexpr double kMinCrsStep = 1e-9;
 constexpr double kMaxLongitude_deg = 1080;
 constexpr int kMaxPostsPerAxis = 1 << 22;  ///< the whole earth in a third of an arc second
-
-/// Elevation formats; GDAL's other drivers read databases, network services and application files.
-constexpr const char* kAllowedDrivers[] = {"GTiff",   "SRTMHGT", "DTED", "VRT",
-                                           "AAIGrid", "USGSDEM", "EHdr", nullptr};
 
 /// Metres of a band's unit; 0 if it is unknown.
 double metresOf(std::string unit) {
@@ -117,13 +115,6 @@ void transform(const gdal::Transformation& transformation, std::vector<double>& 
   }
 }
 
-/// Null if no allowed driver reads the file.
-/// @param siblings  names of other files of its folder; null: GDAL lists the folder
-gdal::Dataset openRaster(const std::string& file, const char* const* siblings = nullptr) {
-  return gdal::Dataset(GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                                  kAllowedDrivers, nullptr, siblings));
-}
-
 /// A GDALTransformerFunc. @param transformation  an OGRCoordinateTransformationH; only applied forwards
 int transformPoints(void* transformation, int /*backwards*/, int count, double* x, double* y, double* /*z*/,
                     int* done) {
@@ -157,9 +148,9 @@ struct TerrainFile::Impl {
     throw Error(ErrorCode::bad_input, location, "elevation file " + name + ": " + problem);
   }
 
-  std::set<std::filesystem::path> checkedSources() const;  ///< none if the file is not a VRT
-  gdal::Dataset open() const;                              ///< after checkedSources()
-  void checkBlocks(GDALDatasetH dataset, const std::set<std::filesystem::path>& sources) const;
+  std::set<fs::path> checkedSources() const;  ///< none if the file is not a VRT
+  gdal::Dataset open() const;                 ///< after checkedSources()
+  void checkDatasets(GDALDatasetH dataset, const std::set<fs::path>& sources) const;
   void readHead();
   void readBand(GDALRasterBandH band);
   void placePosts(GDALDatasetH dataset);
@@ -169,7 +160,7 @@ struct TerrainFile::Impl {
   void planeOfCrs(std::vector<double>& x, std::vector<double>& y) const;
 };
 
-std::set<std::filesystem::path> TerrainFile::Impl::checkedSources() const {
+std::set<fs::path> TerrainFile::Impl::checkedSources() const {
   try {
     return sourcesOfVrt(name);
   } catch (const Error& error) {
@@ -179,7 +170,7 @@ std::set<std::filesystem::path> TerrainFile::Impl::checkedSources() const {
 
 gdal::Dataset TerrainFile::Impl::open() const {
   GdalMessages messages;
-  gdal::Dataset dataset = openRaster(name);
+  gdal::Dataset dataset = openElevation(name);
   if (!dataset) {
     VSIStatBufL status;
     const bool exists = VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
@@ -188,15 +179,16 @@ gdal::Dataset TerrainFile::Impl::open() const {
   return dataset;
 }
 
-void TerrainFile::Impl::checkBlocks(GDALDatasetH dataset,
-                                    const std::set<std::filesystem::path>& sources) const {
-  const std::string fault = faultOfBlocks(dataset);
+void TerrainFile::Impl::checkDatasets(GDALDatasetH dataset, const std::set<fs::path>& sources) const {
+  const std::string fault = faultOfDataset(dataset);
   if (!fault.empty()) fail(fault);
-  const GdalMessages quiet;
-  const char* const no_siblings = nullptr;  // listing the folder for each of many tiles takes too long
-  for (const std::filesystem::path& source : sources) {
-    const gdal::Dataset opened = openRaster(source, &no_siblings);
-    const std::string fault_of_source = opened ? faultOfBlocks(opened.get()) : "";
+  std::error_code ignored;
+  for (const fs::path& source : sources) {
+    if (!fs::exists(source, ignored)) continue;  // GDAL reports it if its heights are read
+    const GdalMessages messages;
+    const gdal::Dataset opened = openElevationSource(source);
+    const std::string fault_of_source =
+        opened ? faultOfDataset(opened.get()) : messages.explain("cannot be read as an elevation file");
     if (!fault_of_source.empty()) fail("source " + source.string() + ": " + fault_of_source);
   }
 }
@@ -204,7 +196,7 @@ void TerrainFile::Impl::checkBlocks(GDALDatasetH dataset,
 void TerrainFile::Impl::readHead() {
   const GdalMessages quiet;  // constructed before the dataset, whose destructor may report errors
   GDALAllRegister();
-  const std::set<std::filesystem::path> sources = checkedSources();
+  const std::set<fs::path> sources = checkedSources();
   const gdal::Dataset dataset = open();
   const int bands = GDALGetRasterCount(dataset.get());
   if (bands == 0) {
@@ -222,7 +214,7 @@ void TerrainFile::Impl::readHead() {
   if (bands > 1) {
     notes.push_back("has " + std::to_string(bands) + " bands: heights are taken from the first");
   }
-  checkBlocks(dataset.get(), sources);
+  checkDatasets(dataset.get(), sources);
   readBand(GDALGetRasterBand(dataset.get(), 1));
   placePosts(dataset.get());
   placeOnEarth(GDALGetSpatialRef(dataset.get()));

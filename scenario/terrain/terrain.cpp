@@ -190,12 +190,12 @@ bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double lati
 /// Reads all heights of a file, or of a very large one a part: kStrips strips of rows from the first to the
 /// last.
 void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
-  constexpr long long kMostPosts = 1LL << 28;
+  constexpr long long kMaxPosts = 1LL << 28;
   constexpr int kStrips = 64;
   const long long rows = file.rows(), columns = file.columns();
-  const bool is_partial = rows * columns > kMostPosts;
+  const bool is_partial = rows * columns > kMaxPosts;
   const int strips = is_partial ? kStrips : 1;
-  const long long rows_of_strip = is_partial ? std::max(1LL, kMostPosts / columns / kStrips) : rows;
+  const long long rows_of_strip = is_partial ? std::max(1LL, kMaxPosts / columns / kStrips) : rows;
   for (int strip = 0; strip < strips; ++strip) {
     const long long first_row = strip == 0 ? 0 : (rows - rows_of_strip) * strip / (strips - 1);
     file.read({0, first_row, columns, rows_of_strip}, [&](long long, const float* heights_m) {

@@ -2,13 +2,18 @@
 
 #include <cpl_minixml.h>
 
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <set>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
+#include "scenario/terrain/raster_access.h"
 
 namespace emscape::scenario {
 namespace {
@@ -18,6 +23,43 @@ namespace fs = std::filesystem;
 constexpr std::size_t kHeadBytes = 4096;
 constexpr std::uintmax_t kMaxVrtBytes = std::uintmax_t{16} << 20;
 constexpr int kMaxNesting = 4;
+
+using Names = std::set<std::string_view>;
+
+/// Elements and attributes, in lower case, of the mosaics, extracts and reprojections that gdalbuildvrt,
+/// gdal_translate and gdalwarp write. GDAL knows others, which name files in other ways or call functions.
+const Names kAllowedNames = {
+    "?xml", "version", "encoding", "vrtdataset", "subclass", "rasterxsize", "rasterysize", "srs",
+    "dataaxistosrsaxismapping", "mapping", "coordinateepoch", "geotransform", "blockxsize", "blockysize",
+    "overviewlist", "resampling", "maskband", "overview",
+    // bands
+    "vrtrasterband", "datatype", "band", "nodatavalue", "hidenodatavalue", "description", "unittype",
+    "offset", "scale",
+    // sources
+    "simplesource", "complexsource", "averagedsource", "kernelfilteredsource", "sourceband",
+    "sourceproperties", "srcrect", "dstrect", "xoff", "yoff", "xsize", "ysize", "shared", "nodata",
+    "usemaskband", "scaleoffset", "scaleratio", "colortablecomponent", "exponent", "srcmin", "srcmax",
+    "dstmin", "dstmax", "clamp", "lut", "kernel", "normalized", "size", "coefs",
+    // reprojections
+    "gdalwarpoptions", "warpmemorylimit", "resamplealg", "workingdatatype", "option", "name", "bandlist",
+    "bandmapping", "src", "dst", "srcnodatareal", "srcnodataimag", "dstnodatareal", "dstnodataimag",
+    "srcalphaband", "dstalphaband", "cutline", "cutlineblenddist", "transformer", "approxtransformer",
+    "maxerror", "basetransformer", "genimgprojtransformer", "srcgeotransform", "srcinvgeotransform",
+    "dstgeotransform", "dstinvgeotransform", "reprojecttransformer", "reprojectiontransformer", "sourcesrs",
+    "targetsrs", "options", "key", "srcgcptransformer", "gcptransformer", "srctpstransformer",
+    "tpstransformer", "order", "reversed"};
+/// Elements that hold descriptions, in any form.
+const Names kDescriptions = {"metadata", "categorynames",           "colorinterp", "colortable", "histograms",
+                             "gcplist",  "gdalrasterattributetable"};
+/// Elements that name a source, and their attribute. GDAL takes an attribute of such a name for one, too.
+const Names kSources = {"sourcefilename", "sourcedataset"};
+constexpr const char* kIsRelative = "relativetovrt";
+
+/// GDAL does not distinguish upper and lower case.
+std::string lowerCase(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
 
 bool looksLikeVrt(const fs::path& file) {
   std::string head(kHeadBytes, '\0');
@@ -33,6 +75,7 @@ class Sources {
   /// Adds the file, or what it names if it is a VRT.
   void add(const fs::path& file, int nesting) {
     if (!visited_.insert(file).second) return;
+    if (std::string fault = sidecars_.faultOf(file); !fault.empty()) refuse(fault);
     std::error_code ignored;  // invalid names, for example too long ones, are refused by GDAL
     if (!fs::is_regular_file(file, ignored) || !looksLikeVrt(file)) {
       if (nesting > 0) files_.insert(file);
@@ -54,31 +97,46 @@ class Sources {
 
   void addElements(const CPLXMLNode* first, const fs::path& vrt, int nesting) {
     for (const CPLXMLNode* node = first; node != nullptr; node = node->psNext) {
-      if (node->eType != CXT_Element) continue;
-      const std::string name = node->pszValue;
-      if (name == "SourceFilename" || name == "SourceDataset") {
+      if (node->eType != CXT_Element && node->eType != CXT_Attribute) continue;
+      const std::string name = lowerCase(node->pszValue);
+      if (node->eType == CXT_Element && kSources.count(name) != 0) {
         addSource(*node, vrt, nesting);
-      } else {
+      } else if (kAllowedNames.count(name) != 0) {
         addElements(node->psChild, vrt, nesting);
+      } else if (kDescriptions.count(name) == 0) {
+        refuse("has '" + std::string(node->pszValue) +
+               "', which is not allowed: only mosaics, extracts and reprojections of files are read, as "
+               "gdalbuildvrt, gdal_translate and gdalwarp write them");
       }
     }
   }
 
   /// @param element  an element that names a source
   void addSource(const CPLXMLNode& element, const fs::path& vrt, int nesting) {
+    for (const CPLXMLNode* node = element.psChild; node != nullptr; node = node->psNext) {
+      const bool is_known = node->eType != CXT_Attribute || lowerCase(node->pszValue) == kIsRelative ||
+                            kAllowedNames.count(lowerCase(node->pszValue)) != 0;
+      if (!is_known || node->eType == CXT_Element)
+        refuse("has '" + std::string(node->pszValue) + "' in a source's name");
+    }
     const std::string name = CPLGetXMLValue(&element, nullptr, "");
     if (name.empty()) refuse("names a source without a name");
-    const bool relative = std::string(CPLGetXMLValue(&element, "relativeToVRT", "0")) == "1";
+    const std::string is_relative = CPLGetXMLValue(&element, kIsRelative, "0");
+    if (is_relative != "0" && is_relative != "1")
+      refuse("has relativeToVRT=\"" + is_relative + "\", which must be 0 or 1");
     const fs::path folder = fs::absolute(vrt).parent_path().lexically_normal();
-    const fs::path source = fs::absolute(relative ? folder / name : fs::path(name)).lexically_normal();
+    const fs::path source =
+        fs::absolute(is_relative == "1" ? folder / name : fs::path(name)).lexically_normal();
     const fs::path inside = source.lexically_relative(folder);
-    const bool is_file = name.find('<') == std::string::npos && name.compare(0, 4, "/vsi") != 0;
+    // GDAL takes names with colons, such as http://..., for those of servers and databases.
+    const bool is_file = name.find_first_of("<{:") == std::string::npos && name.compare(0, 4, "/vsi") != 0;
     if (!is_file || inside.empty() || *inside.begin() == "..")
-      refuse("names '" + name + "', which is not in its own folder");
+      refuse("names '" + name + "', which is not a file in its own folder");
     add(source, nesting + 1);
   }
 
   std::set<fs::path> visited_, files_;
+  Sidecars sidecars_;
 };
 
 }  // namespace

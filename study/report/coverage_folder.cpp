@@ -11,7 +11,7 @@
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/scenario_file.h"
-#include "scenario/terrain/raster_blocks.h"
+#include "scenario/terrain/raster_access.h"
 #include "study/maps/gdal_support.h"
 #include "study/maps/surface_maps.h"
 
@@ -97,7 +97,7 @@ gdal::Dataset openGeoTiff(const scenario::GdalMessages& messages, const fs::path
       GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kGeoTiff, nullptr, nullptr));
   if (dataset == nullptr || GDALGetRasterCount(dataset.get()) != 1)
     fail(file, messages.explain("cannot be read as a map"));
-  const std::string fault = scenario::faultOfBlocks(dataset.get());
+  const std::string fault = scenario::faultOfDataset(dataset.get());
   if (!fault.empty()) fail(file, fault);
   return dataset;
 }

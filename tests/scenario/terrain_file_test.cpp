@@ -346,27 +346,98 @@ TEST_F(TerrainFileTest, DescribeRefusesPostsThatAreNotOnTheEarth) {
             "elevation file " + name + ": its posts are not on the earth");
 }
 
+/// Writes a VRT of 10 rows. @param bands  the elements of its bands  @param attributes  of its root
+void writeVrt(const std::string& file, const std::string& bands,
+              const std::string& attributes = "rasterXSize=\"10\"") {
+  std::ofstream(file) << "<VRTDataset rasterYSize=\"10\" " << attributes << "><SRS>EPSG:4326</SRS>"
+                      << "<GeoTransform>10, 0.1, 0, 50, 0, -0.1</GeoTransform>" << bands << "</VRTDataset>";
+}
+
+/// A band with one source. @param name  the element that names it
+std::string bandOf(const std::string& name) {
+  return "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>" + name +
+         "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand>";
+}
+
 TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {
-  const auto vrt = [&](const std::string& source, const std::string& size = "10") {
-    const std::string file = folder_ / "a.vrt";
-    std::ofstream(file) << "<VRTDataset rasterXSize=\"" << size
-                        << "\" rasterYSize=\"10\"><SRS>EPSG:4326</SRS>"
-                        << "<GeoTransform>10, 0.1, 0, 50, 0, -0.1</GeoTransform>"
-                        << "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>" << source
-                        << "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
-    return problemOf(file);
+  const auto problemWith = [&](const std::string& bands, const std::string& columns = "10") {
+    writeVrt(folder_ / "a.vrt", bands, "rasterXSize=\"" + columns + "\"");
+    return problemOf(folder_ / "a.vrt");
   };
+  const std::string own = "<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>";
   write("a.tif", geographicDem(10, 50, 0.1, 10, 10, flat));
-  EXPECT_EQ(vrt("<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>"), "");
-  EXPECT_EQ(vrt("<SourceFilename>" + folder_ / "a.tif" + "</SourceFilename>"), "");
+  EXPECT_EQ(problemWith(bandOf(own)), "");
+  EXPECT_EQ(problemWith(bandOf("<SourceFilename>" + folder_ / "a.tif" + "</SourceFilename>")), "");
   for (const char* source : {"<SourceFilename relativeToVRT=\"1\">../a.tif</SourceFilename>",
+                             "<sourcefilename relativetovrt=\"1\">../a.tif</sourcefilename>",
                              "<SourceFilename>/etc/hostname</SourceFilename>",
                              "<SourceFilename>/vsicurl/http://127.0.0.1:1/x.tif</SourceFilename>",
+                             "<SourceFilename relativeToVRT=\"1\">http://127.0.0.1:1/x.tif</SourceFilename>",
+                             "<SourceFilename relativeToVRT=\"1\">PG:host=127.0.0.1</SourceFilename>",
                              "<SourceFilename>&lt;VRTDataset/></SourceFilename>"}) {
-    EXPECT_THAT(vrt(source), HasSubstr("is not in its own folder")) << source;
+    EXPECT_THAT(problemWith(bandOf(source)), HasSubstr("is not a file in its own folder")) << source;
   }
-  EXPECT_THAT(vrt("<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>", "2147483647"),
+  EXPECT_THAT(problemWith(bandOf("<SourceFilename relativeToVRT=\"2\">a.tif</SourceFilename>")),
+              HasSubstr("relativeToVRT=\"2\", which must be 0 or 1"));
+  EXPECT_THAT(problemWith(bandOf(own), "2147483647"),
               HasSubstr("more than the allowed 4194304 in a row or column"));
+}
+
+TEST_F(TerrainFileTest, AVrtIsAMosaicOrAReprojection) {
+  const auto problemWith = [&](const std::string& bands, const std::string& kind = "VRTDataset") {
+    writeVrt(folder_ / "a.vrt", bands, "rasterXSize=\"10\" subClass=\"" + kind + "\"");
+    return problemOf(folder_ / "a.vrt");
+  };
+  write("a.tif", geographicDem(10, 50, 0.1, 10, 10, flat));
+  const std::string own = "<SourceFilename relativeToVRT=\"1\">a.tif</SourceFilename>";
+  EXPECT_THAT(problemWith("<VRTRasterBand dataType=\"Float32\" band=\"1\">"
+                          "<SimpleSource SourceFilename=\"../a.tif\"/></VRTRasterBand>"),
+              HasSubstr("has 'SourceFilename', which is not allowed"));
+  EXPECT_THAT(problemWith(bandOf(own + "<PixelFunctionType>sum</PixelFunctionType>")),
+              HasSubstr("has 'PixelFunctionType', which is not allowed"));
+  const auto reprojection = [](const std::string& transformer) {
+    return "<VRTRasterBand dataType=\"Float32\" band=\"1\" subClass=\"VRTWarpedRasterBand\"/>"
+           "<BlockXSize>10</BlockXSize><BlockYSize>10</BlockYSize><GDALWarpOptions>"
+           "<SourceDataset relativeToVRT=\"1\">a.tif</SourceDataset><Transformer><GenImgProjTransformer>"
+           "<SrcGeoTransform>10,0.1,0,50,0,-0.1</SrcGeoTransform>"
+           "<DstGeoTransform>10,0.1,0,50,0,-0.1</DstGeoTransform>" +
+           transformer +
+           "</GenImgProjTransformer></Transformer><BandList><BandMapping src=\"1\" dst=\"1\"/></BandList>"
+           "</GDALWarpOptions>";
+  };
+  const std::string by_system =
+      "<ReprojectTransformer><ReprojectionTransformer><SourceSRS>EPSG:4326</SourceSRS>"
+      "<TargetSRS>EPSG:4326</TargetSRS></ReprojectionTransformer></ReprojectTransformer>";
+  EXPECT_EQ(problemWith(reprojection(by_system), "VRTWarpedDataset"), "");
+  EXPECT_THAT(problemWith(reprojection("<SrcRPCTransformer><RPCTransformer><DEMPath>/etc/hostname</DEMPath>"
+                                       "</RPCTransformer></SrcRPCTransformer>")),
+              HasSubstr("has 'SrcRPCTransformer', which is not allowed"));
+}
+
+TEST_F(TerrainFileTest, FilesThatGdalReadsWithAnotherAreRefusedIfTheyNameServers) {
+  const std::string server =
+      "<GDAL_WMS><Service name=\"WMS\"><Version>1.1.1</Version><ServerUrl>http://127.0.0.1:1/?</ServerUrl>"
+      "<Layers>a</Layers></Service><DataWindow><UpperLeftX>10</UpperLeftX><UpperLeftY>50</UpperLeftY>"
+      "<LowerRightX>11</LowerRightX><LowerRightY>49</LowerRightY><SizeX>10</SizeX><SizeY>10</SizeY>"
+      "</DataWindow><BandsCount>1</BandsCount></GDAL_WMS>";
+  std::ofstream(folder_ / "server.xml") << server;
+  writeVrt(folder_ / "a.vrt",
+           bandOf("<SourceFilename relativeToVRT=\"1\">server.xml</SourceFilename>"
+                  "<SourceProperties RasterXSize=\"10\" RasterYSize=\"10\" DataType=\"Float32\"/>"));
+  EXPECT_THAT(problemOf(folder_ / "a.vrt"),
+              AllOf(HasSubstr("server.xml: cannot be read as an elevation file"), HasSubstr("WMS")));
+
+  const std::string file = write("a.tif", geographicDem(10, 50, 0.1, 10, 10, flat));
+  for (const char* sidecar : {"a.tif.msk", "a.tif.ovr", "A.TIF.MSK", "a.tif.msk.ovr"}) {
+    std::ofstream(folder_ / sidecar) << server;
+    EXPECT_THAT(problemOf(file), AllOf(HasSubstr(sidecar), HasSubstr("is not a GeoTIFF"))) << sidecar;
+    std::filesystem::remove(folder_ / sidecar);
+  }
+  write("a.tif.msk", geographicDem(10, 50, 0.1, 10, 10, flat));
+  EXPECT_EQ(problemOf(file), "");
+  std::ofstream(file + ".aux.xml") << "<PAMDataset><Metadata domain=\"OVERVIEWS\"><MDI key=\"OVERVIEW_FILE\">"
+                                      "/vsicurl/http://127.0.0.1:1/o.tif</MDI></Metadata></PAMDataset>";
+  EXPECT_THAT(problemOf(file), HasSubstr("its metadata names a file of overviews, '/vsicurl/http"));
 }
 
 /// A GeoTIFF without values, in square blocks. @param size  posts along each axis  @return its name
@@ -396,11 +467,7 @@ TEST_F(TerrainFileTest, BlocksThatTakeMuchMemoryAreRefused) {
   EXPECT_EQ(problemOf(writeBlocks(folder_ / "few.tif", 256, 3)), "");
 
   const std::string file = folder_ / "a.vrt";
-  std::ofstream(file) << "<VRTDataset rasterXSize=\"100\" rasterYSize=\"100\"><SRS>EPSG:4326</SRS>"
-                      << "<GeoTransform>10, 0.01, 0, 50, 0, -0.01</GeoTransform>"
-                      << "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource>"
-                      << "<SourceFilename relativeToVRT=\"1\">tile.tif</SourceFilename>"
-                      << "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+  writeVrt(file, bandOf("<SourceFilename relativeToVRT=\"1\">tile.tif</SourceFilename>"));
   EXPECT_THAT(problemOf(file), AllOf(HasSubstr("a.vrt: source "), HasSubstr("tile.tif: its blocks")));
 }
 
@@ -423,15 +490,11 @@ TEST_F(TerrainFileTest, AVrtThatNamesVrtsManyTimesIsReadOnce) {
   write("0.tif", geographicDem(10, 50, 0.1, 10, 10, flat));
   const auto vrt = [&](int level, int sources) {
     const std::string file = folder_ / std::to_string(level) + ".vrt";
-    std::ofstream out(file);
-    out << "<VRTDataset rasterXSize=\"10\" rasterYSize=\"10\"><SRS>EPSG:4326</SRS>"
-        << "<GeoTransform>10, 0.1, 0, 50, 0, -0.1</GeoTransform><VRTRasterBand dataType=\"Float32\" "
-           "band=\"1\">";
-    for (int k = 0; k < sources; ++k) {
-      out << "<SimpleSource><SourceFilename relativeToVRT=\"1\">" << level - 1
-          << (level == 1 ? ".tif" : ".vrt") << "</SourceFilename><SourceBand>1</SourceBand></SimpleSource>";
-    }
-    out << "</VRTRasterBand></VRTDataset>";
+    const std::string source = "<SourceFilename relativeToVRT=\"1\">" + std::to_string(level - 1) +
+                               (level == 1 ? ".tif" : ".vrt") + "</SourceFilename>";
+    std::string bands;
+    for (int k = 0; k < sources; ++k) bands += bandOf(source);
+    writeVrt(file, bands);
     return file;
   };
   vrt(1, 300);
