@@ -7,11 +7,13 @@
 #include "apps/emscape/common/command_line.h"
 #include "emscape/study/area.h"
 #include "emscape/study/coverage_folder.h"
+#include "emscape/study/map_grid.h"
 #include "emscape/study/part_journal.h"
 #include "emscape/study/products.h"
 #include "emscape/study/study_folder.h"
 #include "emscape/study/study_runner.h"
 #include "study/sweep/candidate_sites.h"
+#include "study/sweep/measure.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
@@ -155,6 +157,21 @@ const FuzzTargetsAdded added({
            R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {"name": "hill"},
 "geometry": {"type": "Point", "coordinates": [5.1, 52.1]}}, {"type": "Feature", "properties": {},
 "geometry": {"type": "Point", "coordinates": [5.2, 52.2]}}]})"};
+     }},
+    {"polygons", "input.geojson",
+     [](const fs::path& file, const std::string&) {
+       static const study::MapGrid grid = study::makeMapGrid(study::parseArea("52,5,10000"), 500, "utm");
+       study::pixelsWithin(file, grid);
+     },
+     [] {
+       return std::vector<std::string>{
+           R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {},
+"geometry": {"type": "Polygon", "coordinates": [[[5, 52], [5.05, 52], [5.02, 52.04], [5, 52]]]}},
+{"type": "Feature", "properties": {}, "geometry": {"type": "MultiPolygon", "coordinates":
+[[[[4.9, 51.9], [5.1, 51.9], [5, 52.1], [4.9, 51.9]], [[4.95, 51.95], [5, 51.95], [5, 52], [4.95, 51.95]]]]}}]})",
+           R"({"type": "FeatureCollection", "crs": {"type": "name", "properties": {"name": "EPSG:32631"}},
+"features": [{"type": "Feature", "geometry": {"type": "Polygon", "coordinates":
+[[[635000, 5760000], [640000, 5760000], [640000, 5765000], [635000, 5760000]]]}}]})"};
      }},
     {"map_area", "", [](const fs::path&, const std::string& text) { study::parseArea(text); },
      [] {

@@ -35,13 +35,33 @@ std::string converted(const std::string& driver, const std::string& raster, cons
   return readFile(folder / wanted);
 }
 
-/// Describes the file and reads its heights around the seeds' location.
-void readElevation(const fs::path& file, const std::string&) {
+/// Describes the file and reads its heights around a location.
+void readAround(const fs::path& file, double latitude_deg, double longitude_deg) {
   scenario::TerrainSpec spec;
   spec.files = {file.string()};
-  const scenario::TerrainPtr terrain = scenario::Terrain::load(spec, {51.9, 52.1, 4.9, 5.1});
-  terrain->heightMsl_m(51.97, 5.03);
+  const scenario::TerrainPtr terrain = scenario::Terrain::load(
+      spec, {latitude_deg - 0.1, latitude_deg + 0.1, longitude_deg - 0.1, longitude_deg + 0.1});
+  terrain->heightMsl_m(latitude_deg - 0.03, longitude_deg + 0.03);
   scenario::Terrain::describe(file.string());
+}
+
+/// At the location of smallDem().
+void readElevation(const fs::path& file, const std::string&) {
+  readAround(file, 52, 5);
+}
+
+/// The first columns of a tile of DTED level 0 from 40 to 41 degrees north and 5 to 6 degrees east.
+std::string dtedColumns() {
+  constexpr int kTilePosts = 121, kColumns = 12;
+  constexpr std::size_t kHeaderBytes = 3428, kCountAt = 47, kColumnBytes = 12 + 2 * kTilePosts;
+  const TemporaryFolder folder;
+  geographicPointDem(5, 41, 1.0 / (kTilePosts - 1), kTilePosts, kTilePosts, [](double latitude_deg, double) {
+    return 10 * latitude_deg;
+  }).write(folder / "a.tif");
+  convertDem(folder / "a.tif", "DTED", folder / "a.dt0");
+  std::string bytes = readFile(folder / "a.dt0");
+  bytes.resize(kHeaderBytes + kColumns * kColumnBytes);
+  return bytes.replace(kCountAt, 4, "0012");
 }
 
 std::vector<std::string> geotiffs() {
@@ -62,6 +82,9 @@ const FuzzTargetsAdded added({
      [] { return std::vector<std::string>{converted("AAIGrid", "a.asc", "a.asc")}; }},
     {"terrain_dem", "input.dem", readElevation,
      [] { return std::vector<std::string>{converted("USGSDEM", "a.dem", "a.dem")}; }},
+    {"terrain_dted", "input.dt0",
+     [](const fs::path& file, const std::string&) { readAround(file, 40.5, 5.02); },
+     [] { return std::vector<std::string>{dtedColumns()}; }},
     {"terrain_bil_header", "input.hdr",
      [](const fs::path& file, const std::string& bytes) {
        readElevation(fs::path(file).replace_extension(".bil"), bytes);

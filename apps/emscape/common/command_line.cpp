@@ -270,9 +270,15 @@ std::shared_ptr<const CLI::App> commandLineParser() {
   return {line, &line->app};
 }
 
-void checkCommandLine(const std::vector<std::string>& arguments) {
+struct CommandLineCheck::Impl {
   CommandLine line;
-  parse(line.app, arguments);
+};
+
+CommandLineCheck::CommandLineCheck() : impl_(std::make_unique<Impl>()) {}
+CommandLineCheck::~CommandLineCheck() = default;
+
+void CommandLineCheck::parse(const std::vector<std::string>& arguments) {
+  app::parse(impl_->line.app, arguments);
 }
 
 CommandResult commandResult(const std::vector<std::string>& arguments, const ProgressSink& progress) {

@@ -22,10 +22,20 @@ int runCommandLine(int argc, char** argv);
 /// The parser of the command line, for generating its documentation.
 std::shared_ptr<const CLI::App> commandLineParser();
 
-/// Parses a command line without running it.
-/// @param arguments  the subcommand and its options, without the program's name
-/// @throws Error (usage) for arguments that cannot be parsed or that request help or version
-void checkCommandLine(const std::vector<std::string>& arguments);
+/// Parses command lines without running them. To make one takes eight times as long as to parse.
+class CommandLineCheck {
+ public:
+  CommandLineCheck();
+  ~CommandLineCheck();
+  /// Options of earlier calls that may be repeated keep their values, so that memory grows with the calls.
+  /// @param arguments  the subcommand and its options, without the program's name
+  /// @throws Error (usage) for arguments that cannot be parsed or that request help or version
+  void parse(const std::vector<std::string>& arguments);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
 
 /// Result of a subcommand.
 struct CommandResult {
