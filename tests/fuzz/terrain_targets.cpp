@@ -50,6 +50,11 @@ void readElevation(const fs::path& file, const std::string&) {
   readAround(file, 52, 5);
 }
 
+/// A description beside a raster: the raster is the file without the ending .aux.xml.
+void readDescribed(const fs::path& file, const std::string& bytes) {
+  readElevation(fs::path(file).replace_extension().replace_extension(), bytes);
+}
+
 /// The first columns of a tile of DTED level 0 from 40 to 41 degrees north and 5 to 6 degrees east.
 std::string dtedColumns() {
   constexpr int kTilePosts = 121, kColumns = 12;
@@ -91,6 +96,30 @@ const FuzzTargetsAdded added({
      },
      [] { return std::vector<std::string>{converted("EHdr", "a.bil", "a.hdr")}; },
      [](const fs::path& folder) { writeFile(folder / "input.bil", converted("EHdr", "a.bil", "a.bil")); }},
+    {"terrain_aux_xml", "input.tif.aux.xml", readDescribed,
+     [] {
+       return std::vector<std::string>{
+           R"(<PAMDataset><SRS>EPSG:4326</SRS><GeoTransform>5, 0.01, 0, 52, 0, -0.01</GeoTransform>
+<Metadata><MDI key="AREA_OR_POINT">Point</MDI></Metadata><Metadata domain="IMAGE_STRUCTURE">
+<MDI key="INTERLEAVE">PIXEL</MDI></Metadata><PAMRasterBand band="1"><NoDataValue>-9999</NoDataValue>
+<UnitType>ft</UnitType><Offset>1</Offset><Scale>0.5</Scale><Histograms><HistItem><HistMin>0</HistMin>
+<HistMax>1</HistMax><BucketCount>2</BucketCount><HistCounts>1|2</HistCounts></HistItem></Histograms>
+<Metadata><MDI key="STATISTICS_MAXIMUM">7</MDI></Metadata></PAMRasterBand></PAMDataset>)"};
+     },
+     [](const fs::path& folder) { writeFile(folder / "input.tif", bytesOf(smallDem())); }},
+    {"terrain_prj", "input.prj",
+     [](const fs::path& file, const std::string& bytes) {
+       readElevation(fs::path(file).replace_extension(".asc"), bytes);
+     },
+     [] {
+       return std::vector<std::string>{
+           converted("AAIGrid", "a.asc", "a.prj"),
+           R"(PROJCS["WGS_1984_UTM_Zone_31N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",
+SPHEROID["WGS_1984",6378137.0,298.257223563]],PRIMEM["Greenwich",0.0],UNIT["Degree",0.0174532925199433]],
+PROJECTION["Transverse_Mercator"],PARAMETER["False_Easting",500000.0],PARAMETER["Central_Meridian",3.0],
+PARAMETER["Scale_Factor",0.9996],UNIT["Meter",1.0]])"};
+     },
+     [](const fs::path& folder) { writeFile(folder / "input.asc", converted("AAIGrid", "a.asc", "a.asc")); }},
     {"terrain_vrt", "input.vrt", readElevation,
      [] {
        return std::vector<std::string>{
