@@ -29,9 +29,9 @@ using Names = std::set<std::string_view>;
 /// Elements and attributes, in lower case, of the mosaics, extracts and reprojections that gdalbuildvrt,
 /// gdal_translate and gdalwarp write. GDAL knows others, which name files in other ways or call functions.
 const Names kAllowedNames = {
-    "?xml", "version", "encoding", "vrtdataset", "subclass", "rasterxsize", "rasterysize", "srs",
-    "dataaxistosrsaxismapping", "mapping", "coordinateepoch", "geotransform", "blockxsize", "blockysize",
-    "overviewlist", "resampling", "maskband", "overview",
+    "?xml", "version", "encoding", "standalone", "vrtdataset", "subclass", "rasterxsize", "rasterysize",
+    "srs", "dataaxistosrsaxismapping", "mapping", "coordinateepoch", "geotransform", "blockxsize",
+    "blockysize", "overviewlist", "resampling", "maskband", "overview",
     // bands
     "vrtrasterband", "datatype", "band", "nodatavalue", "hidenodatavalue", "description", "unittype",
     "offset", "scale",
@@ -117,7 +117,7 @@ class Sources {
       const bool is_known = node->eType != CXT_Attribute || lowerCase(node->pszValue) == kIsRelative ||
                             kAllowedNames.count(lowerCase(node->pszValue)) != 0;
       if (!is_known || node->eType == CXT_Element)
-        refuse("has '" + std::string(node->pszValue) + "' in a source's name");
+        refuse("has '" + std::string(node->pszValue) + "' in the name of a source");
     }
     const std::string name = CPLGetXMLValue(&element, nullptr, "");
     if (name.empty()) refuse("names a source without a name");
