@@ -12,6 +12,12 @@ namespace {
 
 using document::Section;
 
+/// Unit of the values of a measure's map; may be empty.
+std::string unitOfValues(const StudyMeasure& measure) {
+  const char* const unit = info(measure.product).unit;
+  return unit != nullptr ? unit : scenario::info(measure.quantity).unit;
+}
+
 void readFigure(StudyReading& reading, const Section& item, StudyMeasure& measure) {
   using Figure = StudyMeasure::Figure;
   const bool has_area = info(measure.product).area_class >= 0;
@@ -31,9 +37,11 @@ void readFigure(StudyReading& reading, const Section& item, StudyMeasure& measur
   } else {
     measure.figure = unit == "percent" ? Figure::percent : Figure::km2;
     if (!has_area) {
+      const std::string values = unitOfValues(measure);
       reading.fault(item.locationOf("unit"),
-                    fmt::format("product '{}' has no area; its unit is '{}', with statistic mean, min or max",
-                                info(measure.product).name, info(measure.product).unit));
+                    fmt::format("product '{}' has no area; its values {}, with statistic mean, min or max",
+                                info(measure.product).name,
+                                values.empty() ? "have no unit" : "are in '" + values + "'"));
     }
   }
 }
@@ -49,8 +57,7 @@ std::string unitOf(const StudyMeasure& measure) {
     default:
       break;
   }
-  const char* const unit = info(measure.product).unit;
-  return unit != nullptr ? unit : scenario::info(measure.quantity).unit;
+  return unitOfValues(measure);
 }
 
 void readMeasures(StudyReading& reading, const Section& root) {

@@ -323,6 +323,8 @@ TEST(Study, RefusesFaultsWithTheirPlace) {
   EXPECT_THAT(ofMeasure("{name: a, product: gap}"), HasSubstr("'product' must be one of value, covered"));
   EXPECT_THAT(ofMeasure("{name: a, product: fraction}"), HasSubstr("is over time"));
   EXPECT_THAT(ofMeasure("{name: a, product: min_height, unit: km2}"), HasSubstr("has no area"));
+  EXPECT_THAT(ofMeasure("{name: a, product: value, height: \"agl:300\", unit: percent}"),
+              HasSubstr("product 'value' has no area; its values"));
   EXPECT_THAT(ofMeasure("{name: a, height: 30}"), HasSubstr("study.yaml:6:"));
   EXPECT_THAT(ofMeasure("{name: a, product: min_height, height: agl:30}"),
               HasSubstr("product 'min_height' has no 'height'"));
