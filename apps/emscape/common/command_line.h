@@ -27,7 +27,7 @@ class CommandLineCheck {
  public:
   CommandLineCheck();
   ~CommandLineCheck();
-  /// Options of earlier calls that may be repeated keep their values, so that memory grows with the calls.
+  /// Memory grows with the number of calls, as the parser keeps parts of earlier ones.
   /// @param arguments  the subcommand and its options, without the program's name
   /// @throws Error (usage) for arguments that cannot be parsed or that request help or version
   void parse(const std::vector<std::string>& arguments);
