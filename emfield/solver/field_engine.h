@@ -113,11 +113,11 @@ constexpr std::size_t kDeviceScratchBytes = std::size_t{1} << 30;
 /// Bytes of a terrain's posts.
 std::size_t postBytes(const scenario::TerrainView& terrain);
 
-/// Upper bound of the host memory of a CPU engine.
+/// Upper bound of the host memory of a CPU engine, without the columns.
 /// @param slot_bytes  bytes cached for the emitters
 std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes);
 
-/// Upper bound of the GPU memory of a CUDA engine.
+/// Upper bound of the GPU memory of a CUDA engine, without the columns.
 /// @param slot_bytes  bytes cached for the emitters
 std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
                             volume::VoxelPrecision precision);

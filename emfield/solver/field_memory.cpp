@@ -27,7 +27,7 @@ std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes) {
 std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
                             volume::VoxelPrecision precision) {
   const auto voxels = static_cast<std::size_t>(setup.grid.dims.count());
-  std::size_t bytes = slot_bytes + setup.columns.bytes();
+  std::size_t bytes = slot_bytes;
   for (const ChannelPlan& plan : setup.channel_plans) {
     const std::size_t accumulators = hasSecond(plan.reduction) ? 2 : 1;
     // sums of all and of the resting emitters; one displayed volume and one being written

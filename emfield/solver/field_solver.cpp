@@ -28,13 +28,16 @@ bool sameTerrainFiles(const scenario::Scenario& a, const scenario::Scenario& b) 
   return a.terrain->files == b.terrain->files && a.terrain->vertical_datum == b.terrain->vertical_datum;
 }
 
-/// Checked first, because columns are made before the estimate of everything else, and many columns take
-/// gigabytes.
-void requireColumnsMemory(Dims dims, const std::string& file) {
-  const auto columns = static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
-  requireMemory({fmt::format("a field of {} x {} x {} voxels, without its values,", dims.x, dims.y, dims.z),
-                 columns * sizeof(GridColumn), "fewer voxels (region.dims) take less"},
-                {file});
+/// Its layers are the heights.
+volume::Grid gridOf(const Surface& surface) {
+  volume::Grid grid;
+  grid.dims = {surface.width, surface.height, static_cast<int>(surface.heights_m.size())};
+  grid.spacing_m = {1, 1, 1};
+  return grid;
+}
+
+std::size_t columnsOf(Dims dims) {
+  return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y);
 }
 
 }  // namespace
@@ -56,6 +59,7 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
     : options(std::move(options_in)) {
   static_cast<FieldPlan&>(setup) = makePlan(std::move(scenario), options);
   setup.terrain = std::move(terrain);
+  setup.grid = options.surface == nullptr ? gridOf(setup.scenario->region) : gridOf(*options.surface);
   emitters.resize(setup.scenario->emitters.size());
   masks.resize(setup.channels.size());
   volumes.resize(setup.channels.size());
@@ -63,28 +67,29 @@ FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scen
       options.backend,
       [&](const ResolvedBackend& resolved) {
         backend = resolved.backend;
-        makeColumns();
         const std::vector<bool> cached = chooseCached(setup, &estimate.emitters);
         for (std::size_t e = 0; e < emitters.size(); ++e) emitters[e].is_cached = cached[e];
-        return makeEngine();
+        requireFieldMemory();
+        makeColumns();
+        const int slots = static_cast<int>(emitters.size()) + 1;
+        return backend == Backend::cpu ? makeCpuEngine(setup, slots)
+                                       : makeCudaEngine(setup, slots, options.device_precision);
       },
       logInfo);
+}
+
+bool FieldSolver::Impl::hasDeviceColumns() const {
+  return options.surface != nullptr && backend == Backend::cuda && !needsHostColumns(*setup.scenario);
 }
 
 /// Makes the columns where the backend needs them. Those of a region are the same for all backends.
 void FieldSolver::Impl::makeColumns() {
   if (options.surface == nullptr) {
-    if (!setup.columns.of_grid.empty()) return;
-    setup.grid = gridOf(setup.scenario->region);
-    requireColumnsMemory(setup.grid.dims, setup.scenario->file);
-    setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
+    if (setup.columns.of_grid.empty()) setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
   } else {
-    const bool on_device = backend == Backend::cuda && !needsHostColumns(*setup.scenario);
     setup.columns = {};
-    setup.columns = on_device ? makeDeviceColumns(*options.surface, setup.terrain.get())
-                              : makeGridColumns(*options.surface, setup.terrain.get());
-    setup.grid.dims = setup.columns.dims;
-    setup.grid.spacing_m = {1, 1, 1};
+    setup.columns = hasDeviceColumns() ? makeDeviceColumns(*options.surface, setup.terrain.get())
+                                       : makeGridColumns(*options.surface, setup.terrain.get());
   }
   checkHoles();
 }
@@ -95,9 +100,9 @@ std::vector<bool> FieldSolver::Impl::chooseCached(const FieldPlan& plan, std::si
   std::vector<bool> cached;
   std::size_t cached_bytes = 0, largest_uncached = 0;
   for (std::size_t e = 0; e < plan.scenario->emitters.size(); ++e) {
-    const std::size_t bytes = EmitterGeometry::bytesOf(
-        *plan.scenario, plan.scenario->emitters[e], setup.columns.count(),
-        static_cast<int>(setup.columns.t_m.size()), setup.columns.every_height, plan.needs[e]);
+    const std::size_t bytes =
+        EmitterGeometry::bytesOf(*plan.scenario, plan.scenario->emitters[e], columnsOf(setup.grid.dims),
+                                 setup.grid.dims.z, options.surface != nullptr, plan.needs[e]);
     cached.push_back(options.cache_bytes == 0 || cached_bytes + bytes <= options.cache_bytes);
     if (cached.back()) {
       cached_bytes += bytes;
@@ -109,27 +114,33 @@ std::vector<bool> FieldSolver::Impl::chooseCached(const FieldPlan& plan, std::si
   return cached;
 }
 
-std::unique_ptr<FieldEngine> FieldSolver::Impl::makeEngine() {
-  const int slots = static_cast<int>(emitters.size()) + 1;
+/// Estimates the memory of the field and checks it, before anything of it is made: the columns alone can take
+/// gigabytes and seconds.
+void FieldSolver::Impl::requireFieldMemory() {
+  const Dims dims = setup.grid.dims;
   const bool on_host = backend == Backend::cpu;
-  const std::size_t needed = on_host ? cpuEngineBytes(setup, estimate.emitters)
-                                     : cudaEngineBytes(setup, estimate.emitters, options.device_precision);
+  const std::size_t columns_bytes =
+      columnsOf(dims) * (options.surface == nullptr ? sizeof(GridColumn) : sizeof(PlaceColumn));
+  const std::size_t needed =
+      on_host ? cpuEngineBytes(setup, estimate.emitters)
+              : columns_bytes + cudaEngineBytes(setup, estimate.emitters, options.device_precision);
   estimate.volumes = needed - estimate.emitters;
-  const bool has_half = !on_host && options.device_precision != volume::VoxelPrecision::float16;
-  const MemoryNeed need{
-      fmt::format("the field of {} x {} x {} voxels, {} emitters and {} channels", setup.grid.dims.x,
-                  setup.grid.dims.y, setup.grid.dims.z, emitters.size(), setup.channels.size()),
-      needed,
-      fmt::format("fewer voxels (region.dims){} and a bound on what emitters keep take less",
-                  has_half ? ", volumes of 16 bit" : "")};
+  const std::string what = fmt::format("the field of {} x {} x {} voxels, {} emitters and {} channels",
+                                       dims.x, dims.y, dims.z, emitters.size(), setup.channels.size());
+  const std::string fewer = "fewer voxels (region.dims)",
+                    bound = " and a bound on what emitters keep take less";
+  const bool has_columns = hasDeviceColumns() || !setup.columns.of_grid.empty();
+  const std::size_t host_columns_bytes = has_columns ? 0 : columns_bytes;
   if (on_host) {
-    requireMemory(need, {setup.scenario->file});
-    return makeCpuEngine(setup, slots);
+    requireMemory({what, host_columns_bytes + needed, fewer + bound}, {setup.scenario->file});
+    return;
   }
+  requireMemory({"the columns of " + what, host_columns_bytes, fewer + " take less"}, {setup.scenario->file});
+  const bool has_half = options.device_precision != volume::VoxelPrecision::float16;
+  const MemoryNeed need{what, needed, fewer + (has_half ? ", volumes of 16 bit" : "") + bound};
   const std::size_t free = findDevice().free_bytes;
   if (needed > free)
     throw Error(ErrorCode::device, {setup.scenario->file}, memoryShortage(need, "GPU's", free));
-  return makeCudaEngine(setup, slots, options.device_precision);
 }
 
 std::string FieldSolver::Impl::placeOf(std::size_t column) const {

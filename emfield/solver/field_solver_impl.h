@@ -55,8 +55,10 @@ struct FieldSolver::Impl {
        FieldOptions options_in);
 
   std::vector<bool> chooseCached(const FieldPlan& plan, std::size_t* slot_bytes) const;
+  /// True if the columns are only in the memory of the GPU.
+  bool hasDeviceColumns() const;
+  void requireFieldMemory();
   void makeColumns();
-  std::unique_ptr<FieldEngine> makeEngine();
   void checkHoles() const;
   std::string placeOf(std::size_t column) const;
 

@@ -16,9 +16,10 @@ double sinc(double u) {
 
 /// Array factor sin(N x) / (N sin x) of N uniformly weighted elements.
 double evenArray(int elements, double x) {
+  const double sine = std::sin(x);
   // At the main and the grating lobes the limit is the ratio of the derivatives.
-  if (std::abs(std::sin(x)) < 1e-9) return std::cos(elements * x) / std::cos(x);
-  return std::sin(elements * x) / (elements * std::sin(x));
+  if (std::abs(sine) < 1e-9) return std::cos(elements * x) / std::cos(x);
+  return std::sin(elements * x) / (elements * sine);
 }
 
 /// Taylor's coefficients F_1 .. F_(n-bar - 1) of the distribution: its pattern at the whole numbers.
