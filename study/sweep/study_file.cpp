@@ -53,7 +53,7 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
     document::requireNoProblem(reading.problems);
     throw Error(ErrorCode::bad_input, {file, 0, 0}, "the file is empty");
   }
-  const document::DocumentNodePtr node = checkable(*reading.original);
+  const document::DocumentNodePtr node = checkable(file, *reading.original);
   document::checkObject(file, *node, studyFormat(), reading.problems);
   document::requireNoProblem(reading.problems);
   const Section root(file, node.get(), studyFormat());

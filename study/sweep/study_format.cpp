@@ -1,8 +1,11 @@
 #include "study/sweep/study_format.h"
 
+#include <fmt/format.h>
+
 #include <functional>
 
 #include "document/text_edit.h"
+#include "emscape/base/error.h"
 #include "emscape/study/products.h"
 #include "study/sweep/sample_points.h"
 
@@ -130,9 +133,13 @@ DocumentNodePtr withFlowTexts(const DocumentNodePtr& list) {
   return copy;
 }
 
-/// A map as the list of its values.
-DocumentNodePtr asList(const DocumentNodePtr& node) {
-  if (node->kind != NodeKind::map) return node;
+/// The values of a map as a list. @throws Error (bad_input) where it is not a map
+DocumentNodePtr asList(const std::string& file, const std::string& key, const std::string& values,
+                       const DocumentNodePtr& node) {
+  if (node->kind != NodeKind::map) {
+    throw Error(ErrorCode::bad_input, {file, node->position.line, node->position.column},
+                fmt::format("'{}' must be a map from the scenario's paths to {}", key, values));
+  }
   auto list = std::make_shared<DocumentNode>();
   list->kind = NodeKind::sequence;
   list->position = node->position;
@@ -171,15 +178,18 @@ const ObjectSpec& studyFormat() {
   return kStudy;
 }
 
-DocumentNodePtr checkable(const DocumentNode& root) {
+DocumentNodePtr checkable(const std::string& file, const DocumentNode& root) {
   DocumentNodePtr study = std::make_shared<DocumentNode>(root);
   for (const char* key : {"times", "area", "crs"}) study = withKey(study, key, asText);
-  study = withKey(study, "sweep", [](const DocumentNodePtr& sweep) {
-    return eachItem(asList(sweep),
+  study = withKey(study, "sweep", [&](const DocumentNodePtr& sweep) {
+    return eachItem(asList(file, "sweep", "their values", sweep),
                     [](const DocumentNodePtr& one) { return withKey(one, "values", withFlowTexts); });
   });
-  study = withKey(study, "samples",
-                  [](const DocumentNodePtr& samples) { return withKey(samples, "parameters", asList); });
+  study = withKey(study, "samples", [&](const DocumentNodePtr& samples) {
+    return withKey(samples, "parameters", [&](const DocumentNodePtr& parameters) {
+      return asList(file, "parameters", "their distributions", parameters);
+    });
+  });
   study = withKey(study, "variants", [](const DocumentNodePtr& variants) {
     return eachItem(variants, [](const DocumentNodePtr& variant) {
       return withKey(withKey(variant, "name", asText), "set", [](const DocumentNodePtr& set) {

@@ -302,6 +302,11 @@ TEST(Study, RefusesFaultsWithTheirPlace) {
   EXPECT_THAT(
       errorOf("sweep:\n  emitters.jammer.power_w: {values: [1, -2]}"),
       AllOf(HasSubstr("study.yaml:5:3: emitters.jammer.power_w=-2"), HasSubstr("outside the allowed")));
+  EXPECT_THAT(errorOf("sweep:\n  - {values: [1, 2]}"),
+              HasSubstr("study.yaml:5:3: 'sweep' must be a map from the scenario's paths to their values"));
+  EXPECT_THAT(errorOf("sweep:"), HasSubstr("'sweep' must be a map"));
+  EXPECT_THAT(errorOf("samples: {count: 2, parameters: [{uniform: {from: 1, to: 2}}]}"),
+              HasSubstr("study.yaml:4:33: 'parameters' must be a map from the scenario's paths to their"));
   EXPECT_THAT(errorOf("sweep: {emitters.jamer.power_w: {values: [1]}}"), HasSubstr("jamer"));
   EXPECT_THAT(errorOf("sweep: {emitters.jammer.power_w: {linear: {from: 1, to: 2}}}"),
               HasSubstr("missing key 'count'"));
