@@ -2,17 +2,23 @@
 //   PROGRAM --list                   names of the targets
 //   PROGRAM TARGET --seeds FOLDER    writes FOLDER/TARGET/seed-N and FOLDER/TARGET.dict
 //   PROGRAM TARGET ARGUMENT...       libFuzzer, with its own arguments
+// A quarter of the inputs of readers of documents have a value changed, not bytes.
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <string>
 
+#include "tests/fuzz/document_changes.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 
+extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
+
 namespace {
 
+using emscape::test::DocumentChanges;
 using emscape::test::FuzzTarget;
 
 const FuzzTarget* chosen = nullptr;
@@ -29,6 +35,12 @@ const FuzzTarget* chosen = nullptr;
     emscape::test::writeFile(folder / chosen->name / ("seed-" + std::to_string(++number)), seed);
   emscape::test::writeFile(folder / (chosen->name + ".dict"), emscape::test::fuzzDictionary(*chosen));
   std::exit(0);
+}
+
+bool readsDocuments(const FuzzTarget& target) {
+  const std::vector<std::string> seeds = target.seeds();
+  return std::any_of(seeds.begin(), seeds.end(),
+                     [](const std::string& seed) { return DocumentChanges(seed).count() > 0; });
 }
 
 }  // namespace
@@ -55,4 +67,21 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   emscape::test::runFuzzInput(*chosen, {reinterpret_cast<const char*>(data), size});
   return 0;
+}
+
+extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t max_size,
+                                               unsigned seed) {
+  static const bool reads_documents = readsDocuments(*chosen);
+  constexpr unsigned kOneIn = 4;
+  if (reads_documents && seed % kOneIn == 0) {
+    const DocumentChanges changes({reinterpret_cast<const char*>(data), size});
+    if (changes.count() > 0) {
+      const std::string changed = changes.changed(seed / kOneIn % changes.count());
+      if (changed.size() <= max_size) {
+        std::copy(changed.begin(), changed.end(), data);
+        return changed.size();
+      }
+    }
+  }
+  return LLVMFuzzerMutate(data, size, max_size);
 }

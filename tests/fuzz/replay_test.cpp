@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "tests/fuzz/document_changes.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 
@@ -12,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Damaged inputs per target; EMSCAPE_DAMAGED_INPUTS overrides it.
+/// Damaged inputs per target, and a fifth of the changes of documents; EMSCAPE_DAMAGED_INPUTS overrides it.
 int damagedInputs() {
   const char* const number = std::getenv("EMSCAPE_DAMAGED_INPUTS");
   return number == nullptr ? 60 : std::atoi(number);
@@ -54,6 +55,26 @@ TEST_P(Fuzz, SeedsAndDamagedOnesAreReadOrRefusedWithAnError) {
   for (int n = 0; n < damagedInputs(); ++n) {
     const std::string input = damaged(seeds[random() % seeds.size()], random);
     ASSERT_NO_THROW(runFuzzInput(target, input)) << testing::PrintToString(input);
+  }
+}
+
+TEST_P(Fuzz, DocumentsWithAChangedValueAreReadOrRefusedWithAnError) {
+  const FuzzTarget& target = fuzzTarget(GetParam());
+  std::vector<DocumentChanges> documents;
+  std::size_t changes = 0;
+  for (const std::string& seed : target.seeds()) {
+    documents.emplace_back(seed);
+    changes += documents.back().count();
+  }
+  // evenly spread over all of them
+  const auto step = std::max<std::size_t>(1, changes / (5 * static_cast<std::size_t>(damagedInputs())));
+  std::size_t first = 0;
+  for (const DocumentChanges& document : documents) {
+    for (; first < document.count(); first += step) {
+      const std::string input = document.changed(first);
+      ASSERT_NO_THROW(runFuzzInput(target, input)) << input;
+    }
+    first -= document.count();
   }
 }
 
