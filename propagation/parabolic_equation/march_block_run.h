@@ -132,6 +132,7 @@ class BlockMarch {
   /// Stores the initial state of the next march.
   EMSCAPE_HD void save(bool halve) {
     finishScreen();
+    team_.each([&](int, BlockThread&) {});  // the sums of all threads are written
     StoredComplex* const field = task_.fields + std::size_t(azimuth_) * task_.pitch;
     state_.intervals = halve ? N / 2 : N;
     team_.each([&](int t, BlockThread& x) {

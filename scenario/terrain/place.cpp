@@ -1,8 +1,11 @@
 #include "scenario/terrain/place.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/error.h"
 #include "emscape/base/units.h"
 
 namespace emscape::scenario {
@@ -131,10 +134,26 @@ PostLattice geographicLattice(const GeoBox& part, double spacing_m) {
   return lattice;
 }
 
+/// Refuses a narrow strip across the meridians, or posts far closer along one axis than along the other,
+/// where a few posts take gigabytes.
+void requirePosts(const TerrainSheet& sheet, long long columns, long long rows) {
+  constexpr double kAlwaysAllowed = 1e7, kMostForEach = 100;
+  const double posts = static_cast<double>(columns) * static_cast<double>(rows);
+  const double own = static_cast<double>(sheet.columns) * sheet.rows;
+  if (posts <= std::max(kAlwaysAllowed, kMostForEach * own)) return;
+  throw Error(ErrorCode::bad_input,
+              fmt::format("elevation file {}: {} x {} of its posts take {} x {} posts at latitudes and "
+                          "longitudes, more than {:.0f} for each; bring it to a geographic coordinate system "
+                          "with square posts (gdalwarp)",
+                          sheet.file->name(), sheet.columns, sheet.rows, columns, rows, kMostForEach));
+}
+
 TerrainSheet resample(const TerrainSheet& sheet, const GeoBox& part) {
   const PostLattice lattice = geographicLattice(part, sheet.finest_m);
-  TerrainSheet result(sheet.file, lattice, std::llround(std::ceil(lattice.column(part.east_deg))) + 2,
-                      std::llround(std::ceil(lattice.row(part.north_deg))) + 2);
+  const long long columns = std::llround(std::ceil(lattice.column(part.east_deg))) + 2;
+  const long long rows = std::llround(std::ceil(lattice.row(part.north_deg))) + 2;
+  requirePosts(sheet, columns, rows);
+  TerrainSheet result(sheet.file, lattice, columns, rows);
   result.spacing_m = sheet.spacing_m;
   result.finest_m = sheet.finest_m;
   const TerrainRaster source = sheet.raster();

@@ -18,6 +18,7 @@ std::vector<RasterTile> tilesWithin(const TerrainFilePtr& file, const GeoBox& bo
 /// Resamples a sheet in its own plane to longitudes and latitudes within the box: bilinear, on a lattice
 /// twice as fine as the sheet's, so that peaks and ridges keep most of their height.
 /// @accuracy at the sheet's own posts, 30 m apart in the White Mountains: 0.23 m rms, 2.4 m at most
+/// @throws Error (bad_input) for more than 10 million posts if they are more than 100 for each of the sheet's
 std::vector<TerrainSheet> toGeographicSheets(TerrainSheet sheet, const GeoBox& box);
 
 }  // namespace emscape::scenario

@@ -209,6 +209,22 @@ TEST_F(TerrainTest, SouthUpAndTurnedRastersLieWhereTheirTransformSays) {
   EXPECT_TRUE(std::isnan(diamond->heightMsl_m(49.9, 10.2))) << "outside the diamond";
 }
 
+TEST_F(TerrainTest, AThinStripAcrossTheMeridiansIsRefusedNotMadeDense) {
+  DemFile strip;
+  strip.columns = 6;
+  strip.rows = 20000;
+  strip.transform = {10, 1e-5, 1e-5, 49.5, 1e-5, -1e-5};
+  strip.value = [](int, int) { return 100.0; };
+  const std::string file = write("strip.tif", strip);
+  EXPECT_THAT(test::errorOf(
+                  [&] {
+                    load({file}, {49, 50, 9.5, 10.5});
+                  },
+                  ErrorCode::bad_input),
+              testing::HasSubstr("strip.tif: 8 x 20002 of its posts take "));
+  EXPECT_NEAR(load({file}, {49.4995, 49.5001, 9.9999, 10.0005})->heightMsl_m(49.49988, 10.00019), 100, 1e-3);
+}
+
 TEST_F(TerrainTest, TheViewGivesTheSameHeightsAndTakesAnyTurnOfLongitude) {
   const auto file = write("a.tif", geographicDem(-85, 37, 0.01, 100, 100, slope));
   const TerrainPtr terrain = load({file}, {36, 37, -85, -84});
