@@ -95,8 +95,10 @@ gdal::SpatialReference referenceOf(const MapGrid& grid) {
 }
 
 gdal::SpatialReference wgs84Reference() {
+  const scenario::GdalMessages messages;
   gdal::SpatialReference reference(OSRNewSpatialReference(nullptr));
-  OSRImportFromEPSG(reference.get(), 4326);
+  if (OSRImportFromEPSG(reference.get(), 4326) != OGRERR_NONE)
+    throw Error(ErrorCode::other, messages.explain("PROJ does not know EPSG:4326, longitude and latitude"));
   OSRSetAxisMappingStrategy(reference.get(), OAMS_TRADITIONAL_GIS_ORDER);
   return reference;
 }

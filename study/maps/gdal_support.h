@@ -51,7 +51,7 @@ gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::fi
 std::string wkt2Of(OGRSpatialReferenceH reference);
 /// x to the east, y to the north, whatever the authority's order.
 gdal::SpatialReference referenceOf(const MapGrid& grid);
-/// WGS84: longitude, latitude.
+/// WGS84: longitude, latitude. @throws Error (other) with PROJ's reason, as where its database is missing
 gdal::SpatialReference wgs84Reference();
 /// @throws Error (other) with PROJ's reason if there is no transformation
 gdal::Transformation transformationBetween(const gdal::SpatialReference& from,

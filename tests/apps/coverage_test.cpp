@@ -94,5 +94,13 @@ TEST(Coverage, RefusesWhatItCannotDo) {
   EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
 }
 
+TEST(Coverage, SaysThatTheDatabaseOfCoordinateSystemsIsMissing) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run(coverage(folder, {}), "PROJ_DATA=/nonexistent PROJ_LIB=/nonexistent");
+  EXPECT_EQ(result.status, 1) << result.out;
+  EXPECT_THAT(result.err, testing::StartsWith("emscape: error: PROJ does not know EPSG:4326"));
+  EXPECT_THAT(result.err, HasSubstr("Cannot find proj.db"));
+}
+
 }  // namespace
 }  // namespace emscape::test
