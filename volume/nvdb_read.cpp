@@ -271,7 +271,7 @@ class NvdbFile {
     const std::vector<std::uint8_t> text = readWhole(path);
     const auto json = parseJson({text.begin(), text.end()}, path.string());
     for (const auto& volume : requiredFromJson<nlohmann::ordered_json>(json, "volumes", path.string())) {
-      requiredFromJson<long long>(volume, "voxels", path.string());  // compared with the dims by fromJson()
+      requiredFromJson<double>(volume, "voxels", path.string());  // compared with the dims by fromJson()
       sidecar_.push_back(fromJson(volume, path.string()));
     }
   }
