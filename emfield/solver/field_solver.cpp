@@ -127,7 +127,8 @@ void FieldSolver::Impl::requireFieldMemory() {
   estimate.volumes = needed - estimate.emitters;
   const std::string what = fmt::format("the field of {} x {} x {} voxels, {} emitters and {} channels",
                                        dims.x, dims.y, dims.z, emitters.size(), setup.channels.size());
-  const std::string fewer = "fewer voxels (region.dims)",
+  const std::string fewer =
+                        options.surface == nullptr ? "fewer voxels (region.dims)" : "fewer places or heights",
                     bound = " and a bound on what emitters keep take less";
   const bool has_columns = hasDeviceColumns() || !setup.columns.of_grid.empty();
   const std::size_t host_columns_bytes = has_columns ? 0 : columns_bytes;

@@ -195,8 +195,7 @@ void TerrainFile::Impl::checkDatasets(GDALDatasetH dataset, const std::set<fs::p
 
 void TerrainFile::Impl::readHead() {
   const GdalMessages quiet;  // constructed before the dataset, whose destructor may report errors
-  static const bool registered = (GDALAllRegister(), true);  // which takes as long as opening a small file
-  static_cast<void>(registered);
+  GDALAllRegister();
   const std::set<fs::path> sources = checkedSources();
   const gdal::Dataset dataset = open();
   const int bands = GDALGetRasterCount(dataset.get());

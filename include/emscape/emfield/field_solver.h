@@ -85,7 +85,7 @@ struct MemoryUse {
 };
 
 /// Upper bounds of the memory (bytes) of a field, on the host or GPU that computes it. The constructor
-/// refuses a field if their sum exceeds the free memory.
+/// refuses a field if their sum exceeds the free memory; on the host the columns are added to it.
 struct MemoryEstimate {
   std::size_t volumes = 0;   ///< sums over the emitters and the channels' volumes; with cuda also columns and
                              ///< ground
