@@ -1,5 +1,7 @@
 #include "emscape/scenario/terrain.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -58,15 +60,46 @@ void toMeanSeaLevel(TerrainSheet& sheet, VerticalDatum datum, const SourceLocati
   });
 }
 
+/// Notes on elevation files; a note on many files is logged once.
+class FileNotes {
+ public:
+  void add(const TerrainFile& file) {
+    for (const std::string& note : file.notes()) {
+      const auto known =
+          std::find_if(notes_.begin(), notes_.end(), [&](const Note& other) { return other.text == note; });
+      if (known != notes_.end()) {
+        ++known->files;
+      } else {
+        notes_.push_back({note, file.name(), 1});
+      }
+    }
+  }
+  void log() const {
+    for (const Note& note : notes_) {
+      const std::string others = note.files > 1 ? fmt::format(" and {} more", note.files - 1) : "";
+      logInfo(fmt::format("elevation file {}{}: {}", note.first_file, others, note.text));
+    }
+  }
+
+ private:
+  struct Note {
+    std::string text, first_file;
+    int files;
+  };
+  std::vector<Note> notes_;
+};
+
 /// Sheets of longitudes and latitudes, the finest first, with closed seams.
 std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& box) {
+  FileNotes notes;
   std::vector<RasterTile> tiles;
   for (std::size_t k = 0; k < spec.files.size(); ++k) {
     const SourceLocation location = k < spec.locations.size() ? spec.locations[k] : SourceLocation{};
     const auto file = std::make_shared<const TerrainFile>(spec.files[k], location);
-    for (const std::string& note : file->notes()) logInfo("elevation file " + file->name() + ": " + note);
+    notes.add(*file);
     for (RasterTile& tile : tilesWithin(file, box)) tiles.push_back(std::move(tile));
   }
+  notes.log();
   std::vector<TerrainSheet> sheets;
   for (TerrainSheet& sheet : readSheets(tiles)) {
     if (sheet.file->isGeographic()) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/log.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/terrain.h"
 #include "scenario/terrain/view.h"
@@ -29,6 +30,7 @@ using test::DemFile;
 using test::geographicDem;
 using testing::AllOf;
 using testing::Contains;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 double flat(double, double) {
@@ -96,6 +98,24 @@ TEST_F(TerrainFileTest, OfSeveralBandsTheFirstHoldsHeights) {
   const auto path = write("a.tif", file);
   EXPECT_EQ(load({path}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100);
   EXPECT_THAT(Terrain::describe(path).notes, Contains(HasSubstr("3 bands")));
+}
+
+TEST_F(TerrainFileTest, ANoteOnManyFilesIsLoggedOnce) {
+  std::vector<std::string> files;
+  for (const double longitude_deg : {10, 11, 12}) {
+    DemFile file = geographicDem(longitude_deg, 50, 0.1, 10, 10, flat);
+    file.bands = 3;
+    if (longitude_deg == 12) file.unit = "ft";
+    files.push_back(write("e" + std::to_string(int(longitude_deg)) + ".tif", file));
+  }
+  std::vector<std::string> messages;
+  setLogSink([&](LogLevel, const std::string& message) { messages.push_back(message); });
+  load(files, {49, 50, 10, 13});
+  setLogSink({});
+  EXPECT_THAT(
+      messages,
+      ElementsAre("elevation file " + files[0] + " and 2 more: has 3 bands: heights are taken from the first",
+                  "elevation file " + files[2] + ": heights in 'ft' are converted to metres"));
 }
 
 // --- projections
