@@ -125,8 +125,10 @@ void FieldSolver::Impl::requireFieldMemory() {
       on_host ? cpuEngineBytes(setup, estimate.emitters)
               : columns_bytes + cudaEngineBytes(setup, estimate.emitters, options.device_precision);
   estimate.volumes = needed - estimate.emitters;
-  const std::string what = fmt::format("the field of {} x {} x {} voxels, {} emitters and {} channels",
-                                       dims.x, dims.y, dims.z, emitters.size(), setup.channels.size());
+  const std::size_t channels = setup.channels.size();
+  const std::string what =
+      fmt::format("the field of {} x {} x {} voxels, {} emitter{} and {} channel{}", dims.x, dims.y, dims.z,
+                  emitters.size(), emitters.size() == 1 ? "" : "s", channels, channels == 1 ? "" : "s");
   const std::string fewer =
                         options.surface == nullptr ? "fewer voxels (region.dims)" : "fewer places or heights",
                     bound = " and a bound on what emitters keep take less";

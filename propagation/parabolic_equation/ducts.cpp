@@ -8,7 +8,7 @@
 namespace emscape::propagation {
 namespace {
 
-constexpr double kLeastStrength = 0.1;
+constexpr double kMinStrength_m_units = 0.1;
 
 /// Integral of sqrt(2e-6 x) over a height in which x is linear from a to b, both >= 0.
 double pieceOfPhase_m(double height_m, double a, double b) {
@@ -79,7 +79,7 @@ std::vector<Duct> ductsOf(const RefractivityProfile& profile) {
   for (std::size_t base = 0; base + 1 < levels.size();) {
     std::size_t top = base;
     while (top + 1 < levels.size() && levels[top + 1].m_units < levels[top].m_units) ++top;
-    if (levels[base].m_units - levels[top].m_units >= kLeastStrength) {
+    if (levels[base].m_units - levels[top].m_units >= kMinStrength_m_units) {
       ducts.push_back(ductBelow(profile, base, top));
     }
     base = std::max(top, base + 1);

@@ -21,8 +21,9 @@ constexpr int kPeStaircaseShift = 4;
 
 /// Warning bits that encode the number of terrain segments replaced by steps of a staircase.
 EMSCAPE_HD inline unsigned staircaseWarning(int staircases) {
-  constexpr int kMost = (1 << (31 - kPeStaircaseShift)) - 1;
-  return static_cast<unsigned>(staircases < kMost ? staircases : kMost) << kPeStaircaseShift;
+  constexpr int kMaxStaircases = (1 << (31 - kPeStaircaseShift)) - 1;
+  return static_cast<unsigned>(staircases < kMaxStaircases ? staircases : kMaxStaircases)
+         << kPeStaircaseShift;
 }
 
 /// Interpolates in dB between azimuths, ranges (cubic) and heights; outside the equation's limits other

@@ -271,8 +271,8 @@ double CellRasterizer::drawMs() const {
 void CellRasterizer::setTransfer(const LinearTransfer& transfer) {
   std::vector<float> texels;
   const auto put = [&](double value) {
-    constexpr double kMost = std::numeric_limits<float>::max();
-    texels.push_back(static_cast<float>(std::clamp(value, -kMost, kMost)));
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    texels.push_back(static_cast<float>(std::clamp(value, -kLargest, kLargest)));
   };
   for (const TransferInterval& interval : transfer.intervals()) {
     put(interval.lower), put(interval.upper), put(interval.extinction[0]), put(interval.extinction[1]);
