@@ -28,10 +28,26 @@ __device__ float power(float loss_db) {
   return exp10f(-loss_db / 10);
 }
 
-/// Mean power of the polarisations, and finite losses.
+/// The cells that a march reaches, by azimuth and range.
+struct KnownCells {
+  const int* ranges_by_azimuth;  ///< null: all
+  int ranges, heights;           ///< of the grid of cells
+
+  __device__ bool contain(std::size_t i) const {
+    if (ranges_by_azimuth == nullptr) return true;
+    const std::size_t of_range = i / std::size_t(heights);
+    return int(of_range % std::size_t(ranges)) < ranges_by_azimuth[of_range / std::size_t(ranges)];
+  }
+};
+
+/// Mean power of the polarisations, and finite losses; NaN in cells that are not known.
 /// @param other_db  null: one polarisation
-__global__ void finishMember(float* losses_db, const float* other_db, std::size_t count) {
+__global__ void finishMember(float* losses_db, const float* other_db, KnownCells known, std::size_t count) {
   each(count, [&](std::size_t i) {
+    if (!known.contain(i)) {
+      losses_db[i] = NAN;
+      return;
+    }
     float loss_db = losses_db[i];
     if (other_db != nullptr) loss_db = -10 * log10f((power(loss_db) + power(other_db[i])) / 2);
     losses_db[i] = loss_db > kPeNoField_db ? kPeNoField_db : loss_db;
@@ -67,16 +83,6 @@ __global__ void ofMembers(const float* losses_db, std::size_t count, int members
   });
 }
 
-/// Sets NaN in unknown cells.
-__global__ void forgetUnknown(float* losses_db, const int* known_ranges, int ranges, int heights,
-                              std::size_t count) {
-  each(count, [&](std::size_t i) {
-    const std::size_t of_range = i / std::size_t(heights);
-    if (int(of_range % std::size_t(ranges)) >= known_ranges[of_range / std::size_t(ranges)])
-      losses_db[i] = NAN;
-  });
-}
-
 }  // namespace
 
 std::vector<BlockInput> FieldMarchCuda::inputs(FieldMarch& field) {
@@ -94,13 +100,19 @@ const float* FieldMarchCuda::start(FieldMarch& field, std::vector<BlockInput> in
   const bool has_two = field.surfaces.size() > 1;
   const std::size_t needed = (members + (has_two || members > 1 ? 1 : 0)) * count;
   float* const last_db = losses_db_.atLeast(needed) + members * count;
+  KnownCells known{nullptr, field.march.cells.ranges, field.march.cells.heights};
+  if (!field.known_ranges.empty()) {
+    known_ranges_.send(field.known_ranges, stream);
+    known.ranges_by_azimuth = known_ranges_.data();
+  }
   for (std::size_t m = 0; m < members; ++m) {
     float* const member_db = losses_db_.data() + m * count;
     march_.start(field.set(field.members[m], field.surfaces.front()), std::move(*input++), member_db, stream);
     if (has_two) {
       march_.start(field.set(field.members[m], field.surfaces.back()), std::move(*input++), last_db, stream);
     }
-    finishMember<<<blocksFor(count), kThreads, 0, stream>>>(member_db, has_two ? last_db : nullptr, count);
+    finishMember<<<blocksFor(count), kThreads, 0, stream>>>(member_db, has_two ? last_db : nullptr, known,
+                                                            count);
     checkLaunch("finishMember");
   }
   march_.addWarnings(warnings);
@@ -110,12 +122,6 @@ const float* FieldMarchCuda::start(FieldMarch& field, std::vector<BlockInput> in
     ofMembers<<<blocksFor(count), kThreads, 0, stream>>>(losses_db_.data(), count, int(members), place,
                                                          result_db);
     checkLaunch("ofMembers");
-  }
-  if (!field.known_ranges.empty()) {
-    known_ranges_.send(field.known_ranges, stream);
-    forgetUnknown<<<blocksFor(count), kThreads, 0, stream>>>(
-        result_db, known_ranges_.data(), field.march.cells.ranges, field.march.cells.heights, count);
-    checkLaunch("forgetUnknown");
   }
   return result_db;
 }
