@@ -6,6 +6,7 @@
 #include <cpl_http.h>
 
 #include <algorithm>
+#include <cstring>
 #include <string>
 
 namespace emscape::scenario {
@@ -36,6 +37,8 @@ class GdalMessages {
   static void CPL_STDCALL take(CPLErr severity, CPLErrorNum, const char* message) {
     auto* self = static_cast<GdalMessages*>(CPLGetErrorHandlerUserData());
     if (severity < CE_Failure || !self->first_failure_.empty()) return;
+    // PROJ reads a name that contains a brace as JSON.
+    if (std::strstr(message, "[json.exception") != nullptr) return;
     self->first_failure_ = message;
     self->first_failure_.resize(std::min(self->first_failure_.find('\n'), self->first_failure_.size()));
   }

@@ -17,6 +17,11 @@ void addWarnings(Comparison& comparison, const std::vector<std::string>& warning
 
 void checkRequest(const CompareRequest& request, const scenario::Scenario& a, const scenario::Scenario& b) {
   requireDifferences(request.coverage.products);
+  const scenario::QuantityInfo& quantity = scenario::info(request.coverage.quantity);
+  if (quantity.categorical) {
+    throw Error(ErrorCode::usage,
+                fmt::format("quantity '{}' is an index: it has no difference", quantity.name));
+  }
   checkRequest(request.coverage, a);
   checkRequest(request.coverage, b);
 }

@@ -49,7 +49,7 @@ bool isChosen(const CoverageMap& map, const MapChoice& choice) {
   };
   const bool is_of_product =
       choice.products.empty()
-          ? map.product != Product::best
+          ? map.kind != MapKind::category
           : holds(choice.products, [&](Product product) { return product == map.product; });
   return is_of_product &&
          (!map.height ||
@@ -91,7 +91,7 @@ void requireChoice(const CoverageFolder& folder, const MapChoice& choice) {
   std::set<std::string> products, heights, times;
   bool has_time = choice.times_s.empty();
   for (const CoverageMap& map : folder.maps) {
-    if (map.product != Product::best) products.insert(info(map.product).name);
+    if (map.kind != MapKind::category) products.insert(info(map.product).name);
     if (map.height) heights.insert(describe(*map.height));
     if (!map.time_s) continue;
     times.insert(fmt::format("{:g} s", *map.time_s));
@@ -121,6 +121,8 @@ std::vector<std::pair<std::size_t, std::size_t>> pairsOf(const CoverageFolder& a
   for (std::size_t m = 0; m < a.maps.size(); ++m) {
     const CoverageMap& map = a.maps[m];
     if (!isChosen(map, choice)) continue;
+    if (map.kind == MapKind::category)
+      throw Error(ErrorCode::usage, fmt::format("{}: an index has no difference", nameOf(map)));
     const auto n = static_cast<std::size_t>(indexOf(b, map));
     if (map.unit != b.maps[n].unit) {
       failDiffer(a, b, "the unit of " + nameOf(map), "'" + map.unit + "'", "'" + b.maps[n].unit + "'");

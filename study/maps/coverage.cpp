@@ -117,10 +117,24 @@ std::optional<double> defaultThreshold(Quantity quantity) {
   }
 }
 
+void requireThreshold(Quantity quantity, double threshold) {
+  const char* const name = scenario::info(quantity).name;
+  if (!std::isfinite(threshold))
+    throw Error(ErrorCode::usage, fmt::format("threshold {} of {} must be a finite number", threshold, name));
+  if (quantity == Quantity::detection_probability && !(threshold > 0 && threshold < 1))
+    throw Error(ErrorCode::usage, fmt::format("threshold {} of {} must be between 0 and 1", threshold, name));
+}
+
 void checkRequest(const CoverageRequest& request, const scenario::Scenario& scenario) {
   const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
   if (request.heights.empty()) throw Error(ErrorCode::usage, "a map needs a height");
   if (request.times_s.empty()) throw Error(ErrorCode::usage, "a map needs a time");
+  for (std::size_t t = 0; t < request.times_s.size(); ++t) {
+    const double time_s = request.times_s[t];
+    if (!std::isfinite(time_s) || (t > 0 && time_s <= request.times_s[t - 1]))
+      throw Error(ErrorCode::usage, fmt::format("times of maps must ascend; {} s follows {} s", time_s,
+                                                t > 0 ? request.times_s[t - 1] : -INFINITY));
+  }
   const bool in_decibels = std::string(quantity.unit).rfind("dB", 0) == 0;
   for (const Product product : request.products) {
     const auto refuse = [&](const std::string& why) {
@@ -143,6 +157,9 @@ void checkRequest(const CoverageRequest& request, const scenario::Scenario& scen
       refuse("is over time: give two times or more");
     }
   }
+  const bool has_threshold = std::any_of(request.products.begin(), request.products.end(),
+                                         [](Product product) { return product != Product::value; });
+  if (has_threshold) requireThreshold(request.quantity, request.threshold);
 }
 
 struct CoverageSolver::Impl {

@@ -9,6 +9,7 @@
 #include "emscape/base/geo_frame.h"
 #include "emscape/base/units.h"
 #include "study/maps/gdal_support.h"
+#include "study/sweep/study_reading.h"
 
 namespace emscape::study {
 namespace {
@@ -32,14 +33,24 @@ void addLayer(OGRLayerH layer, const std::string& file, std::vector<CandidateSit
   OGR_L_ResetReading(layer);
   while (const gdal::Feature feature{OGR_L_GetNextFeature(layer)}) {
     OGRGeometryH geometry = OGR_F_GetGeometryRef(feature.get());
-    if (geometry == nullptr || wkbFlatten(OGR_G_GetGeometryType(geometry)) != wkbPoint) continue;
+    const OGRwkbGeometryType type =
+        geometry == nullptr ? wkbNone : wkbFlatten(OGR_G_GetGeometryType(geometry));
+    const auto fail = [&](const std::string& problem) {
+      throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("point {} {}", sites.size() + 1, problem));
+    };
+    if (type == wkbMultiPoint) {
+      if (OGR_G_GetGeometryCount(geometry) != 1)
+        fail(fmt::format("is a multipoint of {} places; a candidate is one",
+                         OGR_G_GetGeometryCount(geometry)));
+      geometry = OGR_G_GetGeometryRef(geometry, 0);
+    } else if (type != wkbPoint) {
+      continue;
+    }
     double x = OGR_G_GetX(geometry, 0), y = OGR_G_GetY(geometry, 0);
     const bool is_placed =
-        transformation == nullptr || OCTTransform(transformation.get(), 1, &x, &y, nullptr) != 0;
-    if (!is_placed || !(std::abs(y) <= 90 && std::abs(x) <= 180)) {
-      throw Error(ErrorCode::bad_input, {file, 0, 0},
-                  fmt::format("point {} has no longitude and latitude", sites.size() + 1));
-    }
+        OGR_G_IsEmpty(geometry) == 0 &&
+        (transformation == nullptr || OCTTransform(transformation.get(), 1, &x, &y, nullptr) != 0);
+    if (!is_placed || !(std::abs(y) <= 90 && std::abs(x) <= 180)) fail("has no longitude and latitude");
     const bool has_name = name_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature.get(), name_field) != 0;
     sites.push_back({has_name ? OGR_F_GetFieldAsString(feature.get(), name_field)
                               : fmt::format("site {}", sites.size() + 1),
@@ -58,10 +69,15 @@ std::vector<CandidateSite> readCandidates(const std::string& file) {
   }
   if (sites.empty() || sites.size() > kMaxCandidates) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
-                fmt::format("{} points, outside the allowed range 1 to {}", sites.size(), kMaxCandidates));
+                fmt::format("{} points, outside the allowed range 1 to {}; a CSV file needs a column WKT",
+                            sites.size(), kMaxCandidates));
   }
   std::set<std::string> names;
   for (const CandidateSite& site : sites) {
+    if (hasControlCharacter(site.name)) {
+      throw Error(ErrorCode::bad_input, {file, 0, 0},
+                  "the name of a point has a line break or another control character");
+    }
     if (!names.insert(site.name).second) {
       throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("two points are named '{}'", site.name));
     }

@@ -1,57 +1,9 @@
 #include "study/sweep/measure.h"
 
-#include <gdal_alg.h>
-
 #include <algorithm>
 #include <cmath>
 
-#include "emscape/base/error.h"
-#include "scenario/terrain/transformation.h"
-#include "study/maps/gdal_support.h"
-
 namespace emscape::study {
-
-std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& grid) {
-  const scenario::GdalMessages messages;
-  const auto fail = [&](const std::string& why) {
-    throw Error(ErrorCode::bad_input, {file, 0, 0}, messages.explain(why.c_str()));
-  };
-  const gdal::Dataset polygons = openVectors(messages, file);
-  const gdal::Dataset raster = memoryRaster(grid, GDT_Byte, file);
-  const gdal::SpatialReference map = referenceOf(grid);
-  std::vector<gdal::Geometry> geometries;
-  for (int n = 0; n < GDALDatasetGetLayerCount(polygons.get()); ++n) {
-    OGRLayerH layer = GDALDatasetGetLayer(polygons.get(), n);
-    gdal::Transformation to_map;
-    if (OGR_L_GetSpatialRef(layer) != nullptr) {
-      to_map = scenario::newTransformation(OGR_L_GetSpatialRef(layer), map.get());
-      if (to_map == nullptr) fail("its polygons cannot be brought to the map's projection");
-    }
-    OGR_L_ResetReading(layer);
-    while (const gdal::Feature feature{OGR_L_GetNextFeature(layer)}) {
-      OGRGeometryH geometry = OGR_F_GetGeometryRef(feature.get());
-      if (geometry == nullptr || OGR_G_GetDimension(geometry) != 2) continue;
-      geometries.emplace_back(OGR_G_Clone(geometry));
-      if (to_map != nullptr && OGR_G_Transform(geometries.back().get(), to_map.get()) != OGRERR_NONE) {
-        fail("a polygon cannot be brought to the map's projection");
-      }
-    }
-  }
-  if (geometries.empty()) fail("has no polygon");
-  std::vector<OGRGeometryH> handles;
-  for (const gdal::Geometry& geometry : geometries) handles.push_back(geometry.get());
-  const int band = 1;
-  const std::vector<double> ones(handles.size(), 1.0);
-  std::vector<std::uint8_t> pixels(grid.pixels());
-  if (GDALRasterizeGeometries(raster.get(), 1, &band, static_cast<int>(handles.size()), handles.data(),
-                              nullptr, nullptr, ones.data(), nullptr, nullptr, nullptr) != CE_None ||
-      GDALRasterIO(GDALGetRasterBand(raster.get(), 1), GF_Read, 0, 0, grid.width, grid.height, pixels.data(),
-                   grid.width, grid.height, GDT_Byte, 0, 0) != CE_None) {
-    fail("cannot be drawn on the map");
-  }
-  if (std::find(pixels.begin(), pixels.end(), 1) == pixels.end()) fail("has no pixel of the map");
-  return pixels;
-}
 
 void MeasureOverTime::add(const StudyMeasure& measure, const CoverageMap& map, const MapGrid& grid,
                           const std::vector<std::uint8_t>& pixels) {

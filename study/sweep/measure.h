@@ -2,17 +2,12 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 #include <vector>
 
 #include "emscape/study/map_grid.h"
 #include "emscape/study/study_file.h"
 
 namespace emscape::study {
-
-/// The pixels whose centres are in the polygons of a file, in any CRS: 1, others 0.
-/// @throws Error (bad_input) that names the file: not readable, no polygon, none of the map's pixels
-std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& grid);
 
 /// Measures maps of one product and height, one per time or one for all.
 class MeasureOverTime {

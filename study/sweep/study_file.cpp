@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 
@@ -40,6 +41,27 @@ void readMaps(StudyReading& reading, const Section& root) {
 
 std::string StudyReading::resolve(const std::string& name) const {
   return (fs::path(file).parent_path() / name).lexically_normal().string();
+}
+
+bool hasControlCharacter(const std::string& text) {
+  return std::any_of(text.begin(), text.end(),
+                     [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; });
+}
+
+std::string StudyReading::nameOf(const Section& section) {
+  std::string name = section.text("name");
+  if (hasControlCharacter(name))
+    fault(section.locationOf("name"), "'name' has a line break or another control character");
+  return name;
+}
+
+MapGrid mapGridOf(const StudySpec& study) {
+  try {
+    return makeMapGrid(study.area, study.cell_m, study.crs);
+  } catch (const Error& error) {
+    if (error.code() != ErrorCode::usage) throw;
+    throw Error(ErrorCode::bad_input, {study.file, 0, 0}, error.message());
+  }
 }
 
 StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& edits,

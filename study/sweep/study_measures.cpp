@@ -27,6 +27,15 @@ void readFigure(StudyReading& reading, const Section& item, StudyMeasure& measur
     reading.fault(item.locationOf("statistic"),
                   fmt::format("'statistic' goes with values, not with areas in {}", unit));
   } else if (item.has("statistic") || !is_area) {
+    const bool is_index = measure.product == Product::best ||
+                          (measure.product == Product::value && scenario::info(measure.quantity).categorical);
+    if (is_index) {
+      reading.fault(item.locationOf("product"),
+                    fmt::format("measure '{}': {} is an index, which has no mean, min and max", measure.name,
+                                measure.product == Product::best
+                                    ? "product 'best'"
+                                    : fmt::format("quantity '{}'", scenario::info(measure.quantity).name)));
+    }
     measure.figure = item.has("statistic")
                          ? static_cast<Figure>(static_cast<int>(Figure::mean) + item.choiceIndex("statistic"))
                          : Figure::mean;
@@ -64,7 +73,7 @@ void readMeasures(StudyReading& reading, const Section& root) {
   StudySpec& spec = reading.spec;
   for (const Section& item : root.sections("measures")) {
     StudyMeasure measure;
-    measure.name = item.text("name");
+    measure.name = reading.nameOf(item);
     measure.product = productNamed(item.text("product"));
     const ProductInfo& product = info(measure.product);
     if (item.has("height") && !product.at_heights) {
@@ -87,6 +96,10 @@ void readMeasures(StudyReading& reading, const Section& root) {
                                 scenario::info(measure.quantity).name));
     }
     measure.threshold = given.value_or(usual.value_or(0));
+    if (measure.product != Product::value) {
+      reading.reportAt((item.has("threshold") ? item : root).locationOf("threshold"),
+                       [&] { requireThreshold(measure.quantity, measure.threshold); });
+    }
     if (product.over_time && spec.times_s.size() < 2) {
       reading.fault(item.location(),
                     fmt::format("product '{}' is over time: give the study 'times' with two times or more",

@@ -11,6 +11,9 @@
 
 namespace emscape::study {
 
+/// True for a text with a line break or another control character, which does not fit a line of a table.
+bool hasControlCharacter(const std::string& text);
+
 /// A study being read. Faults are collected.
 struct StudyReading {
   std::string file;
@@ -29,6 +32,8 @@ struct StudyReading {
   void fault(const SourceLocation& location, const std::string& message) {
     problems.addError(location, message);
   }
+  /// The name of a measure or a variant. Tables hold one line each: control characters are a fault.
+  std::string nameOf(const document::Section& section);
   /// Calls a function; its error becomes a fault at a location of the study.
   template <class Read>
   void reportAt(const SourceLocation& location, const Read& read) {

@@ -96,7 +96,7 @@ class ReportWriter {
 
   void addSites() {
     const std::size_t m = study_.sites->measure;
-    const MapGrid grid = makeMapGrid(study_.area, study_.cell_m, study_.crs);
+    const MapGrid grid = mapGridOf(study_);
     std::vector<std::vector<std::uint8_t>> pixels;
     for (const std::size_t v : computed_) pixels.push_back(results_.pixels[v]);
     const std::vector<std::size_t> chosen =

@@ -9,6 +9,7 @@
 #include "emscape/scenario/scenario_file.h"
 #include "study/maps/warnings.h"
 #include "study/sweep/measure.h"
+#include "study/sweep/polygon_mask.h"
 
 namespace emscape::study {
 namespace {
@@ -178,16 +179,7 @@ struct StudyRunner::Impl {
 
 StudyRunner::StudyRunner(const StudySpec& study, const StudyPlan& plan, scenario::TerrainPtr terrain,
                          emfield::FieldOptions options, VariantFiles* files)
-    : impl_(new Impl{study,
-                     plan,
-                     terrain,
-                     makeMapGrid(study.area, study.cell_m, study.crs),
-                     {},
-                     {},
-                     {},
-                     study.base,
-                     terrain,
-                     files}) {
+    : impl_(new Impl{study, plan, terrain, mapGridOf(study), {}, {}, {}, study.base, terrain, files}) {
   options.move_tolerance_m = 0;  // results must not depend on previous computations
   impl_->addGroups(options);
 }

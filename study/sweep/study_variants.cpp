@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "base/random.h"
+#include "document/edit_path.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
 #include "emscape/scenario/scenario_file.h"
+#include "scenario/schema.h"
+#include "scenario/source.h"
 #include "study/sweep/candidate_sites.h"
 #include "study/sweep/sample_points.h"
 #include "study/sweep/study_format.h"
@@ -28,6 +32,48 @@ std::string numberText(double value) {
   return fmt::format("{}", std::stod(fmt::format("{:.12g}", value)));
 }
 
+/// The values that edits set, by their place in the scenario: a path can be spelled in several ways.
+class SetPaths {
+ public:
+  explicit SetPaths(const scenario::Scenario& base) : base_(base) {}
+
+  void add(const std::string& path) { paths_.emplace(stepsOf(path), path); }
+  /// An added path to the same value, to a part of it, or to a value that contains it; empty: none.
+  std::string conflictOf(const std::string& path) const {
+    document::NodePath steps = stepsOf(path);
+    const auto part = paths_.lower_bound(steps);
+    if (part != paths_.end() && part->first.size() >= steps.size() &&
+        std::equal(steps.begin(), steps.end(), part->first.begin())) {
+      return part->second;
+    }
+    for (; !steps.empty(); steps.pop_back()) {
+      const auto whole = paths_.find(steps);
+      if (whole != paths_.end()) return whole->second;
+    }
+    return "";
+  }
+
+ private:
+  /// A path that leads nowhere is one step; it is a fault already.
+  document::NodePath stepsOf(const std::string& path) const {
+    try {
+      return document::resolvePath(path, base_.source->root, scenario::scenarioSpec()).steps;
+    } catch (const Error&) {
+      return {path};
+    }
+  }
+
+  const scenario::Scenario& base_;
+  std::map<document::NodePath, std::string> paths_;
+};
+
+/// @param by  what is added if both paths are the same
+std::string sameValueFault(const std::string& path, const std::string& other, const char* by) {
+  return path == other
+             ? fmt::format("'{}' is set twice{}", path, by)
+             : fmt::format("'{}' and '{}' set the same value, or one a part of the other", other, path);
+}
+
 class VariantReader {
  public:
   explicit VariantReader(StudyReading& reading) : reading_(reading) {}
@@ -45,20 +91,37 @@ class VariantReader {
     if (factors.empty()) {
       reading_.fault(root.location(), "the study has none of 'variants', 'sweep', 'samples' and 'sites'");
     }
-    std::set<std::string> paths;
-    for (const Factor& factor : factors) {
-      for (const std::string& path : factor.paths) {
-        if (!paths.insert(path).second) {
-          reading_.fault(root.location(),
-                         fmt::format("'{}' is set twice: by two of variants, sweep and samples", path));
-        }
-      }
-    }
+    requireSeparate(root, factors);
     document::requireNoProblem(reading_.problems);
     reading_.spec.variants = VariantSet(std::move(factors));
   }
 
  private:
+  /// No value is set by two factors.
+  void requireSeparate(const Section& root, const std::vector<Factor>& factors) {
+    SetPaths paths(*reading_.spec.base);
+    for (const Factor& factor : factors) {
+      const bool is_list =
+          factor.kind == Factor::Kind::list;  // one variant's paths were compared by readList()
+      for (const std::string& path : factor.paths) {
+        const std::string other = paths.conflictOf(path);
+        if (!other.empty()) {
+          reading_.fault(locationOf(root, factor),
+                         sameValueFault(path, other, " by two of variants, sweep, samples and sites"));
+        }
+        if (!is_list) paths.add(path);
+      }
+      for (const std::string& path : factor.paths) {
+        if (is_list) paths.add(path);
+      }
+    }
+  }
+
+  static SourceLocation locationOf(const Section& root, const Factor& factor) {
+    static constexpr const char* kKeys[] = {"variants", "sweep", "samples", "sites"};
+    return root.locationOf(kKeys[static_cast<int>(factor.kind)]);
+  }
+
   /// Checks edits in the scenario.
   void tryEdits(const std::vector<scenario::Edit>& edits, const SourceLocation& location) {
     if (!reading_.tries_values) return;
@@ -98,7 +161,7 @@ class VariantReader {
     const DocumentNode* const originals = childOf(reading_.original.get(), "variants");
     std::vector<std::vector<scenario::Edit>> edits(items.size());
     for (std::size_t i = 0; i < items.size(); ++i) {
-      factor.names.push_back(items[i].text("name"));
+      factor.names.push_back(reading_.nameOf(items[i]));
       const DocumentNode* const set = childOf(originals->items[i].get(), "set");
       if (set == nullptr) continue;
       for (const document::MapEntry& entry : set->entries) {
@@ -114,15 +177,17 @@ class VariantReader {
     factor.count = items.size();
     factor.values.resize(factor.count * factor.paths.size());
     for (std::size_t i = 0; i < factor.count; ++i) {
+      SetPaths paths(*reading_.spec.base);
       for (const scenario::Edit& edit : edits[i]) {
-        const auto path = std::find(factor.paths.begin(), factor.paths.end(), edit.path);
-        std::string& value =
-            factor.values[i * factor.paths.size() + static_cast<std::size_t>(path - factor.paths.begin())];
-        if (!value.empty()) {
-          reading_.fault(items[i].location(),
-                         fmt::format("variant '{}' sets '{}' twice", factor.names[i], edit.path));
+        const std::string other = paths.conflictOf(edit.path);
+        if (!other.empty()) {
+          reading_.fault(items[i].location(), fmt::format("variant '{}': {}", factor.names[i],
+                                                          sameValueFault(edit.path, other, "")));
         }
-        value = edit.value;
+        paths.add(edit.path);
+        const auto path = std::find(factor.paths.begin(), factor.paths.end(), edit.path);
+        factor.values[i * factor.paths.size() + static_cast<std::size_t>(path - factor.paths.begin())] =
+            edit.value;
       }
     }
     return factor;

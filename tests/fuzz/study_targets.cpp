@@ -13,7 +13,7 @@
 #include "emscape/study/study_folder.h"
 #include "emscape/study/study_runner.h"
 #include "study/sweep/candidate_sites.h"
-#include "study/sweep/measure.h"
+#include "study/sweep/polygon_mask.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

@@ -74,6 +74,20 @@ xmlns:a="http://a/" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:sc
   }
 }
 
+TEST(CandidateSites, AreOnePlaceEach) {
+  const test::TemporaryFolder folder;
+  const auto sitesOf = [&](const std::string& wkt) {
+    return readCandidates(folder.write("a.csv", "WKT,name\n\"POINT (5 52)\",a\n\"" + wkt + "\",b\n"));
+  };
+  const auto sites = sitesOf("MULTIPOINT ((5.5 52.5))");
+  ASSERT_EQ(sites.size(), 2u);
+  EXPECT_EQ(sites[1].longitude_deg, 5.5);
+  EXPECT_THAT(test::errorOf([&] { sitesOf("POINT EMPTY"); }),
+              HasSubstr("a.csv: point 2 has no longitude and latitude"));
+  EXPECT_THAT(test::errorOf([&] { sitesOf("MULTIPOINT ((5 52), (5.1 52))"); }),
+              HasSubstr("point 2 is a multipoint of 2 places"));
+}
+
 TEST(CandidateSites, AreReadFromFormatsThatNameNoOtherFile) {
   const test::TemporaryFolder folder;
   folder.write("other.csv", "name,X,Y\nhill,5,52\n");

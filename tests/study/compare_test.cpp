@@ -101,6 +101,11 @@ TEST(Compare, SaysWhyTheLargestAreasChanged) {
 TEST(Compare, RefusesIndices) {
   EXPECT_THAT(test::errorOf([] { Compared(jacksboro(), jacksboro(), {Product::best}); }),
               HasSubstr("'best' is an index"));
+  CompareRequest request;
+  request.coverage = {{kLow}, {Product::value}, scenario::Quantity::dominant_emitter, 0, {kTime_s}};
+  const auto scenario = jacksboro().scenario;
+  EXPECT_THAT(test::errorOf([&] { checkRequest(request, *scenario, *scenario); }),
+              HasSubstr("quantity 'dominant_emitter' is an index"));
 }
 
 TEST(LargestAreas, AreConnectedAndCutOffAtTheEdge) {

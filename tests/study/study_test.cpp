@@ -319,6 +319,18 @@ TEST(Study, RefusesFaultsWithTheirPlace) {
                       "sweep: {emitters.jammer.power_w: {values: [1]}}"),
               HasSubstr("'emitters.jammer.power_w' is set twice"));
   EXPECT_THAT(
+      errorOf("sweep: {emitters.jammer.power_w: {values: [1]}, emitters.\"jammer\".power_w: {values: [2]}}"),
+HasSubstr("study.yaml:4:8: 'emitters.jammer.power_w' and 'emitters.\"jammer\".power_w' set the same"));
+  EXPECT_THAT(
+      errorOf("variants: [{name: a, set: {emitters.search radar.receiver.noise_figure_db: 3}}]\n"
+              "sweep: {emitters.search radar.receiver: {values: [{noise_figure_db: 4, bandwidth_hz: 1e6}]}}"),
+      HasSubstr("and 'emitters.search radar.receiver' set the same value, or one a part of the other"));
+  EXPECT_THAT(
+      errorOf("variants: [{name: a, set: {emitters.search radar.receiver: {noise_figure_db: 4, bandwidth_hz: "
+              "1e6}, emitters.search radar.receiver.noise_figure_db: 3}}]"),
+      HasSubstr("variant 'a': 'emitters.search radar.receiver' and"));
+  EXPECT_THAT(errorOf("variants: [{name: \"a\\nb\"}]"), HasSubstr("'name' has a line break"));
+  EXPECT_THAT(
       errorOf("samples: {count: 3, parameters: {emitters.jammer.power_w: {normal: {mean: 1, deviation: "
               "1000}}}}"),
       HasSubstr("outside the allowed"));
@@ -327,6 +339,12 @@ TEST(Study, RefusesFaultsWithTheirPlace) {
   };
   EXPECT_THAT(ofMeasure("{name: a, product: gap}"), HasSubstr("'product' must be one of value, covered"));
   EXPECT_THAT(ofMeasure("{name: a, product: fraction}"), HasSubstr("is over time"));
+  EXPECT_THAT(ofMeasure("{name: a, product: best}"), HasSubstr("product 'best' is an index"));
+  EXPECT_THAT(ofMeasure("{name: a, product: value, quantity: dominant_emitter}"),
+              HasSubstr("quantity 'dominant_emitter' is an index"));
+  EXPECT_THAT(ofMeasure("{name: a, threshold: 2}"),
+              HasSubstr("threshold 2 of detection_probability must be between 0 and 1"));
+  EXPECT_THAT(ofMeasure("{name: \"a\\nb\"}"), HasSubstr("'name' has a line break"));
   EXPECT_THAT(ofMeasure("{name: a, product: min_height, unit: km2}"), HasSubstr("has no area"));
   EXPECT_THAT(ofMeasure("{name: a, product: value, height: \"agl:300\", unit: percent}"),
               HasSubstr("product 'value' has no area; its values"));

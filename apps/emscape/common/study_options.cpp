@@ -52,10 +52,7 @@ double thresholdOf(double threshold, scenario::Quantity quantity) {
                 fmt::format("--threshold: quantity '{}' has no default threshold; give one{}", info.name,
                             unit.empty() ? "" : " in " + unit));
   }
-  if (quantity == scenario::Quantity::detection_probability && !(threshold > 0 && threshold < 1)) {
-    throw Error(ErrorCode::usage,
-                fmt::format("--threshold: {} of {} must be between 0 and 1", threshold, info.name));
-  }
+  study::requireThreshold(quantity, threshold);
   return threshold;
 }
 

@@ -35,6 +35,8 @@ struct CoverageMap : Map {
 /// The default threshold: 0.5 for a probability, 0 dB for a margin or ratio over a required level; none for
 /// other quantities.
 std::optional<double> defaultThreshold(scenario::Quantity quantity);
+/// @throws Error (usage) for a threshold that is not finite, or of a probability not between 0 and 1
+void requireThreshold(scenario::Quantity quantity, double threshold);
 
 /// Receives a finished map, on the thread that computes.
 using MapSink = std::function<void(CoverageMap)>;
@@ -71,7 +73,8 @@ class CoverageSolver {
   std::unique_ptr<Impl> impl_;
 };
 
-/// @throws Error (usage) for a product that the scenario, the quantity or the times do not have
+/// @throws Error (usage) for a product that the scenario, the quantity or the times do not have, a threshold
+/// as requireThreshold(), and times that do not ascend
 void checkRequest(const CoverageRequest& request, const scenario::Scenario& scenario);
 
 /// Computes maps with the functions of the field: the value of a pixel equals that of `emscape profile`

@@ -9,6 +9,7 @@
 #include "emscape/scenario/scenario.h"
 #include "emscape/study/area.h"
 #include "emscape/study/coverage.h"
+#include "emscape/study/map_grid.h"
 #include "emscape/study/variants.h"
 
 namespace emscape::study {
@@ -63,5 +64,8 @@ struct StudySpec {
 /// @throws Error (bad_input) that lists all faults with file, line and column
 StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& edits,
                     const std::string& version, bool tries_values = true);
+
+/// The pixels of a study's maps. @throws Error (bad_input) that names the study, as makeMapGrid()
+MapGrid mapGridOf(const StudySpec& study);
 
 }  // namespace emscape::study
