@@ -148,6 +148,28 @@ double groundBelow(const scenario::Terrain& terrain, const GridColumn& column, d
   return terrain.heightMsl_m(foot.latitude_deg, foot.longitude_deg);
 }
 
+/// Sets first_valid_k, and with terrain the ground; without it the ground is at mean sea level.
+void setGround(const scenario::Terrain* terrain, GridColumns& columns) {
+  columns.first_valid_k.resize(columns.count());
+  if (terrain != nullptr) columns.ground_msl_m.resize(columns.count());
+  parallelFor(static_cast<int>(columns.count()), 1024, [&](int begin, int end) {
+    for (int c = begin; c < end; ++c) {
+      const GridColumn& column = columns.of_grid[c];
+      const auto groundAt = [&](float t_m) {
+        return terrain != nullptr ? groundBelow(*terrain, column, t_m) : 0.0;
+      };
+      double ground = groundAt(columns.t_m.front());
+      if (terrain != nullptr) columns.ground_msl_m[c] = static_cast<float>(ground);
+      int k = 0;
+      while (k < columns.dims.z && !(heightMsl_m(column, columns.t_m[k]) >= ground)) {
+        ++k;
+        if (columns.tilted && k < columns.dims.z) ground = groundAt(columns.t_m[k]);
+      }
+      columns.first_valid_k[c] = static_cast<std::uint16_t>(k);
+    }
+  });
+}
+
 }  // namespace
 
 double tiltOf(const GridColumns& columns) {
@@ -166,11 +188,6 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
   const int column_count = grid.dims.x * grid.dims.y;
   result.of_grid.resize(column_count);
   for (int k = 0; k < grid.dims.z; ++k) result.t_m.push_back(static_cast<float>(grid.center_m(0, 0, k).z));
-  if (terrain != nullptr) {
-    result.ground_msl_m.resize(column_count);
-    result.first_valid_k.assign(column_count, 0);
-  }
-
   parallelFor(grid.dims.y, 1, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
       for (int i = 0; i < grid.dims.x; ++i) {
@@ -180,20 +197,11 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
         GridColumn& column = result.of_grid[c];
         column =
             result.tilted ? tiltedColumn(frame, base_m, grid.upper_m().z) : verticalColumn(frame, base_m);
-        if (terrain == nullptr) continue;
-        double ground = groundBelow(*terrain, column, result.t_m.front());
-        result.ground_msl_m[c] = static_cast<float>(ground);
-        int k = 0;
-        while (k < grid.dims.z && !(heightMsl_m(column, result.t_m[k]) >= ground)) {
-          ++k;
-          if (result.tilted && k < grid.dims.z) ground = groundBelow(*terrain, column, result.t_m[k]);
-        }
-        result.first_valid_k[c] = static_cast<std::uint16_t>(k);
       }
     }
   });
-
   setOutlineOfGrid(result);
+  if (terrain != nullptr || result.lowest_msl_m < 0) setGround(terrain, result);
   for (std::size_t c = 0; c < result.ground_msl_m.size(); ++c) {
     if (std::isnan(result.ground_msl_m[c])) countHole(c, result);
   }

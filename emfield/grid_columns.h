@@ -79,7 +79,8 @@ struct GridColumns {
   std::vector<float> t_m;           ///< z of each layer
   std::vector<float> ground_msl_m;  ///< ground below each column (m); NaN over holes; empty without terrain
   std::vector<std::uint16_t>
-      first_valid_k;  ///< lowest layer whose centre is not below ground; dims.z over holes and if left out
+      first_valid_k;  ///< lowest layer whose centre is not below ground, nor, without terrain, below mean sea
+                      ///< level; dims.z over holes and if left out; empty: 0
   long long hole_columns = 0;
   /// A column over a hole, for messages; -1 if there is none.
   long long first_hole = -1;
@@ -97,7 +98,7 @@ struct GridColumns {
 /// Largest ground distance (m) of a point of a column from its middle; 0 for vertical columns.
 double tiltOf(const GridColumns& columns);
 
-/// @param terrain  null: nothing is below ground
+/// @param terrain  null: the ground is at mean sea level
 /// @accuracy enu: heights along a column within 1 mm, its foot within 1 m, for regions to 500 km
 GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* terrain);
 /// The same for a surface. dims: width, height, number of heights.

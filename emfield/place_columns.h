@@ -121,7 +121,7 @@ struct PlaceTask {
   /// The lowest layer that is not below ground.
   EMSCAPE_HD int firstValid(double base_msl_m, double ground_m) const {
     int k = 0;
-    if (has_terrain && !above_ground) {
+    if (!above_ground) {
       while (k < layers && !(base_msl_m + heights_m[k] >= ground_m)) ++k;
     }
     return k;

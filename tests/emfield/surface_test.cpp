@@ -182,6 +182,17 @@ TEST_P(SurfaceField, AboveSeaLevelIsMaskedBelowGround) {
   EXPECT_LT(compared, 120);
 }
 
+TEST_P(SurfaceField, WithoutTerrainIsMaskedBelowMeanSeaLevel) {
+  const auto scenario = emptyScenario(FrameKind::altitude, 36.3, -84.25, {4000, 4000, 400}, {4, 4, 4});
+  scenario->region.origin.height_msl_m = -200;
+  addEmitter(*scenario, {36.3, -84.25, 100}, plainEmitter("mast", 0));
+  FieldOptions options;
+  options.backend = GetParam();
+  EXPECT_EQ(solve(scenario, nullptr, options)->first_valid_k, std::vector<std::uint16_t>(16, 2));
+  options.surface = places(HeightReference::mean_sea_level, {-100, -0.5, 0, 50});
+  EXPECT_EQ(solve(scenario, nullptr, options)->first_valid_k, std::vector<std::uint16_t>(40, 2));
+}
+
 TEST_P(SurfaceField, TakesALowestHeightPerPlace) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
   const auto surface = places(HeightReference::ground, {0, 10});
