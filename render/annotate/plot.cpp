@@ -42,6 +42,11 @@ const Ink& plotInk(std::size_t index) {
   return kInks[index % kInks.size()];
 }
 
+PlotAxis timeAxis(double begin_s, double end_s) {
+  if (begin_s == end_s) return {begin_s - 0.5, end_s + 0.5, 10, "time (s)"};
+  return {begin_s, end_s, 10, "time (s)"};
+}
+
 Point2 PlotPanel::at(double x, double y) const {
   return {frame_.x + frame_.width * (x - x_.lowest) / (x_.highest - x_.lowest),
           frame_.y +
@@ -102,6 +107,7 @@ void PlotPanel::drawBand(double x_begin, double x_end, const Ink& ink) const {
 }
 
 void PlotPanel::drawLine(const PlotLine& line) {
+  drawLonePoints(line);
   if (line.is_dashed) {
     drawDashed(line);
     return;
@@ -110,6 +116,17 @@ void PlotPanel::drawLine(const PlotLine& line) {
     const PlotLine::Point &a = line.points[i], &b = line.points[i + 1];
     if (!std::isfinite(a.y) || !std::isfinite(b.y)) continue;
     canvas_.line(at(a.x, a.y), at(b.x, b.y), line.ink, (a.is_strong ? 3 : 1.2) * unit_, line.is_dashed);
+  }
+}
+
+void PlotPanel::drawLonePoints(const PlotLine& line) {
+  const auto isKnown = [&](std::size_t i) {
+    return i < line.points.size() && std::isfinite(line.points[i].y);
+  };
+  for (std::size_t i = 0; i < line.points.size(); ++i) {
+    const PlotLine::Point& point = line.points[i];
+    if (isKnown(i) && !isKnown(i + 1) && (i == 0 || !isKnown(i - 1)))
+      canvas_.disc(at(point.x, point.y), (point.is_strong ? 5 : 3) * unit_, line.ink);
   }
 }
 

@@ -31,6 +31,9 @@ struct PlotAxis {
   std::vector<PlotTick> marks = {};  ///< instead of round values, for scales that are not linear
 };
 
+/// Of times (s); a single one is in the middle of a second.
+PlotAxis timeAxis(double begin_s, double end_s);
+
 struct PlotLine {
   struct Point {
     double x, y;            ///< y infinite or NaN: a gap
@@ -58,6 +61,7 @@ class PlotPanel {
   void drawGrid();
   /// A band over the whole height.
   void drawBand(double x_begin, double x_end, const Ink& ink) const;
+  /// Points without a neighbour are discs.
   void drawLine(const PlotLine& line);
   /// The ground below a line of heights, in pieces with gaps where a height is NaN.
   /// @param heights  x, y on the axes
@@ -71,6 +75,7 @@ class PlotPanel {
   static double namesWidth(const Canvas& canvas, const std::vector<PlotLine>& lines, double unit);
 
  private:
+  void drawLonePoints(const PlotLine& line);
   void drawDashed(const PlotLine& line);
 
   Canvas& canvas_;

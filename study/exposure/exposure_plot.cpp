@@ -95,9 +95,7 @@ void plotExposure(const Exposure& exposure, render::ImageSize size, const std::s
     canvas.rectangle({0, 0, width, height}, render::kPlotPaper);
     const std::vector<PlotLine> lines = linesOf(exposure);
     const double right = PlotPanel::namesWidth(canvas, lines, unit);
-    const double begin_s = exposure.rows.front().time_s,
-                 end_s = std::max(exposure.rows.back().time_s, begin_s + 1e-3);
-    const PlotAxis times{begin_s, end_s, 10, "time (s)"};
+    const PlotAxis times = render::timeAxis(exposure.rows.front().time_s, exposure.rows.back().time_s);
     const std::string quantity =
         render::quantityTitle(scenario::info(exposure.request.quantity).name, exposure.unit);
     const std::string in_unit = exposure.unit.empty() ? "" : " (" + render::unitText(exposure.unit) + ")";

@@ -81,8 +81,8 @@ void plotLinks(const NamedLinks& links, render::ImageSize size, const std::strin
     const auto drawPanel = [&](const std::string& title, const std::vector<PlotLine>& lines, double lowest,
                                double highest) {
       const std::vector<PlotLine::Point>& points = lines.front().points;
-      const double begin_s = points.front().x, end_s = std::max(points.back().x, begin_s + 1e-3);
-      PlotPanel panel(canvas, frame, unit, {begin_s, end_s, 10, "time (s)"}, {lowest, highest, 8, ""});
+      PlotPanel panel(canvas, frame, unit, render::timeAxis(points.front().x, points.back().x),
+                      {lowest, highest, 8, ""});
       panel.drawTitle(title);
       panel.drawGrid();
       for (const PlotLine& line : lines) panel.drawLine(line);

@@ -63,6 +63,20 @@ TEST(Plot, DashesDoNotDependOnTheNumberOfPoints) {
   EXPECT_NEAR(inkOf(1000), inkOf(2), 10);
 }
 
+TEST(Plot, PointsWithoutANeighbourAreDrawn) {
+  for (const bool is_dashed : {false, true}) {
+    Canvas canvas({600, 100});
+    canvas.rectangle({0, 0, 600, 100}, kPlotPaper);
+    PlotPanel panel(canvas, {0, 0, 600, 100}, 1, {0, 1, 4, ""}, {0, 1, 4, ""});
+    PlotLine line{"", {{0.25, NAN, false}, {0.5, 0.5, false}, {0.75, NAN, false}}, plotInk(0)};
+    line.is_dashed = is_dashed;
+    panel.drawLine(line);
+    const Image8 image = canvas.pixels();
+    EXPECT_TRUE(isDrawn(image, {298, 45, 4, 10}));
+    EXPECT_FALSE(isDrawn(image, {100, 0, 100, 100}));
+  }
+}
+
 TEST(Plot, NamesStayBesideTheirFrame) {
   for (const std::size_t count : {3, 8, 9, 40}) {
     Canvas canvas({600, 600});
