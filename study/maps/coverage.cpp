@@ -131,9 +131,11 @@ void checkRequest(const CoverageRequest& request, const scenario::Scenario& scen
   if (request.times_s.empty()) throw Error(ErrorCode::usage, "a map needs a time");
   for (std::size_t t = 0; t < request.times_s.size(); ++t) {
     const double time_s = request.times_s[t];
-    if (!std::isfinite(time_s) || (t > 0 && time_s <= request.times_s[t - 1]))
+    if (!std::isfinite(time_s))
+      throw Error(ErrorCode::usage, fmt::format("time {} s of a map is not a finite number", time_s));
+    if (t > 0 && time_s <= request.times_s[t - 1])
       throw Error(ErrorCode::usage, fmt::format("times of maps must ascend; {} s follows {} s", time_s,
-                                                t > 0 ? request.times_s[t - 1] : -INFINITY));
+                                                request.times_s[t - 1]));
   }
   const bool in_decibels = std::string(quantity.unit).rfind("dB", 0) == 0;
   for (const Product product : request.products) {

@@ -321,6 +321,20 @@ TEST(Coverage, RefusesProductsThatTheQuantityOrTheTimesDoNotHave) {
   EXPECT_THAT(test::errorOf([] { productNamed("gap"); }), HasSubstr("longest_gap"));
 }
 
+TEST(Coverage, RefusesThresholdsAndTimesThatMeanNothing) {
+  const auto messageOf = [](double threshold, const std::vector<double>& times_s) {
+    return test::errorOf([&] {
+      CoverageOf("quick.yaml", 5000,
+                 {{kLow}, {Product::covered}, scenario::Quantity::detection_probability, threshold, times_s});
+    });
+  };
+  EXPECT_THAT(messageOf(2, {0}), HasSubstr("threshold 2 of detection_probability must be between 0 and 1"));
+  EXPECT_THAT(messageOf(NAN, {0}),
+              HasSubstr("threshold nan of detection_probability must be a finite number"));
+  EXPECT_THAT(messageOf(0.5, {0, 2, 1}), HasSubstr("times of maps must ascend; 1 s follows 2 s"));
+  EXPECT_THAT(messageOf(0.5, {NAN}), HasSubstr("time nan s of a map"));
+}
+
 TEST(Coverage, HeightsAreListsAndRanges) {
   const std::vector<MapHeight> heights = parseHeights("agl:30,150;msl:500:1500:500");
   ASSERT_EQ(heights.size(), 5u);
