@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ._field import Field, Solver
 from ._native import native
-from ._scenario import Scenario, Times
+from ._scenario import Scenario, Times, listed
 
 try:
     import xarray
@@ -33,6 +33,9 @@ _UDUNITS = {
 _SPATIAL_REF = "spatial_ref"
 CONVENTIONS = {"Conventions": "CF-1.8", "source": "emscape", "history": "emscape"}
 """Attributes of every dataset."""
+
+_NANOSECONDS_REACH_S = 9.2e9
+"""Largest distance from 1970 in datetime64[ns] (s): 1678-06 to 2261-07."""
 
 NO_FILL = {"_FillValue": None}
 """Encoding of coordinates, which may not have a fill value."""
@@ -95,14 +98,21 @@ def wkt_crs(wkt: str) -> xarray.Variable:
 
 
 def time_coordinate(times_s: Sequence[float], epoch: datetime.datetime | None, dims: tuple[str, ...]) -> xarray.Variable:
-    """Times as datetime64[ns]; in seconds without an epoch."""
+    """Times as datetime64, in ns or, where these would overflow, in us; in seconds without an epoch."""
     values = np.asarray(times_s, dtype=np.float64)
     shaped = values if dims else values[0]
     if epoch is None:
         return xarray.Variable(dims, shaped, {"long_name": "time since the beginning", "units": "s", "axis": "T"}, NO_FILL)
-    start = np.datetime64(epoch.astimezone(datetime.timezone.utc).replace(tzinfo=None), "ns")
-    moments = start + np.rint(np.asarray(shaped) * 1e9).astype("timedelta64[ns]")
-    encoding = {"units": f"seconds since {epoch:%Y-%m-%d %H:%M:%S}", "calendar": "standard", "dtype": "float64", **NO_FILL}
+    utc = epoch.astimezone(datetime.timezone.utc).replace(tzinfo=None)
+    start_s = epoch.timestamp()
+    reach_s = np.abs(np.concatenate([[start_s], values, start_s + values])).max()
+    unit, per_second = ("ns", 1e9) if reach_s < _NANOSECONDS_REACH_S else ("us", 1e6)
+    start = np.datetime64(utc, "us").astype(f"datetime64[{unit}]")
+    moments = start + np.rint(np.asarray(shaped) * per_second).astype(f"timedelta64[{unit}]")
+    # Before 1582-10-15 the standard calendar is the Julian one, that of datetime64 is not.
+    calendar = "standard" if np.all(moments >= np.datetime64("1582-10-15")) else "proleptic_gregorian"
+    since = utc.isoformat(" ", "seconds")
+    encoding = {"units": f"seconds since {since}", "calendar": calendar, "dtype": "float64", **NO_FILL}
     return xarray.Variable(dims, moments, {"standard_name": "time", "long_name": "time", "axis": "T"}, encoding)
 
 
@@ -226,7 +236,7 @@ class _SeriesArray(BackendArray):
 def open_series(
     scenario: Scenario,
     times: Times = "",
-    quantities: Sequence[str] = (),
+    quantities: str | Sequence[str] = (),
     *,
     chunks: Any = "auto",
     backend: str = "auto",
@@ -244,11 +254,12 @@ def open_series(
     Raises UsageError for invalid times, InputError for quantities that the scenario cannot have.
     """
     times_s = scenario.times(times)
+    names = listed(quantities)
     grid = scenario._handle.grid()
     options = {
         "backend": backend,
         "threads": threads,
-        "quantities": list(quantities),
+        "quantities": names,
         "allow_missing_terrain": allow_missing_terrain,
         "move_tolerance_m": 0.0,  # values do not depend on what was computed before
     }
@@ -260,7 +271,7 @@ def open_series(
             indexing.LazilyIndexedArray(_SeriesArray(frames, name, shape)),
             _attributes(name, grid, scenario),
         )
-        for name in scenario._handle.channels(list(quantities))
+        for name in scenario._handle.channels(names)
     }
     coordinates = _space(grid)
     coordinates["time"] = time_coordinate(times_s, scenario.epoch, ("time",))

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._native import native
-from ._scenario import Scenario
+from ._scenario import Scenario, listed
 
 if TYPE_CHECKING:
     import pyvista
@@ -157,15 +157,15 @@ class Field:
         """
         return self._handle.geodetic(x_m, y_m, z_m)
 
-    def write(self, file: str | os.PathLike[str], quantities: Sequence[str] = ()) -> None:
+    def write(self, file: str | os.PathLike[str], quantities: str | Sequence[str] = ()) -> None:
         """Writes a volume file in the format of its extension: .vdb, .nvdb, .vti, .raw. The file appears when it is complete.
 
         :param quantities: empty: all; formats for a single volume take one
         Raises InputError for an unknown extension or too many quantities, OtherError if the file cannot be written.
         """
-        self._handle.write(os.fspath(file), list(quantities))
+        self._handle.write(os.fspath(file), listed(quantities))
 
-    def to_xarray(self, quantities: Sequence[str] = ()) -> xarray.Dataset:
+    def to_xarray(self, quantities: str | Sequence[str] = ()) -> xarray.Dataset:
         """The field as a dataset of (z, y, x) with coordinates, units and projection by the CF conventions; NaN in masked
         voxels. The values are copied. Needs xarray.
 
@@ -173,9 +173,9 @@ class Field:
         """
         from ._arrays import dataset_of
 
-        return dataset_of(self, quantities)
+        return dataset_of(self, listed(quantities))
 
-    def to_pyvista(self, quantities: Sequence[str] = ()) -> pyvista.ImageData:
+    def to_pyvista(self, quantities: str | Sequence[str] = ()) -> pyvista.ImageData:
         """The field as point data of an ImageData whose points are the voxels' centres (frame metres). Needs pyvista.
 
         :param quantities: empty: all
@@ -186,7 +186,7 @@ class Field:
             raise ImportError("to_pyvista() needs pyvista: pip install 'emscape[view]'") from missing
         grid = self.grid
         image = pyvista.ImageData(dimensions=grid["dims"], spacing=grid["spacing_m"], origin=grid["first_center_m"])
-        for name in quantities or self.quantities:
+        for name in listed(quantities) or self.quantities:
             image.point_data[name] = self.numpy(name).ravel()  # VTK has the same order of points: x fastest
         return image
 
@@ -209,7 +209,7 @@ class Solver:
         backend: str = "auto",
         threads: int = 0,
         *,
-        quantities: Sequence[str] = (),
+        quantities: str | Sequence[str] = (),
         allow_missing_terrain: bool = False,
         cache_mib: float = 0,
         move_tolerance_m: float = 0.5,
@@ -217,15 +217,16 @@ class Solver:
         """Reads the terrain and prepares the grid.
 
         :param backend: "auto" (a GPU if there is a usable one), "cpu" or "cuda"
-        :param threads: CPU threads; 0: one per core, or as many as the caller's oneTBB arena has
+        :param threads: CPU threads, 0 to 4096; 0: one per core, or as many as the caller's oneTBB arena has
         :param quantities: names; empty: those of the scenario
         :param allow_missing_terrain: columns over holes in the terrain are masked instead of raising an error
-        :param cache_mib: limit of the memory for kept results of emitters (MiB); 0: none is kept
+        :param cache_mib: limit of the memory for kept results of emitters (MiB), 0 to 1e6; 0: no limit
         :param move_tolerance_m: an emitter that moves less than this (m) over time keeps its geometry
-        Raises InputError for missing terrain, DeviceError for a GPU that is missing or has too little memory.
+        Raises UsageError for an argument outside its range, InputError for missing terrain,
+        DeviceError for a GPU that is missing or has too little memory.
         """
         self._handle = native.Solver(
-            scenario._handle, backend, threads, list(quantities), allow_missing_terrain, cache_mib, move_tolerance_m
+            scenario._handle, backend, threads, listed(quantities), allow_missing_terrain, cache_mib, move_tolerance_m
         )
 
     @property

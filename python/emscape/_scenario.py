@@ -5,16 +5,24 @@ from __future__ import annotations
 import datetime
 import json
 import logging
+import math
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Union
 
-from ._errors import Problem, ScenarioError
+from ._errors import InputError, Problem, ScenarioError, UsageError
 from ._native import native
 
 Times = Union[str, float, Sequence[float]]
 """Times in seconds since the epoch: "BEGIN:END:STEP", "BEGIN:END" (the scenario's step), one number, or an ascending sequence of
 numbers. An empty string: all steps of the scenario's clock."""
+
+
+def listed(names: str | Sequence[Any]) -> list[Any]:
+    """Names as a list; a text is one name, an empty text none."""
+    if isinstance(names, str):
+        return [names] if names else []
+    return list(names)
 
 
 def _yaml(value: Any) -> str:
@@ -29,7 +37,8 @@ def _yaml(value: Any) -> str:
 class Scenario:
     """A scenario: emitters, platforms, terrain and time. Immutable; ``with_set`` returns a changed copy.
 
-    Made by ``load``. It can be pickled: unpickling reads its file again and applies its edits.
+    Made by ``load``. It can be pickled: unpickling reads its file again and applies its edits; InputError if the file, or one
+    that it names, has changed. A copy is the object itself.
     """
 
     __slots__ = ("_handle",)
@@ -121,8 +130,25 @@ class Scenario:
         """
         if isinstance(times, str):
             return self._handle.times(times)
-        values: Any = times  # numpy's arrays and numbers, too
-        return [float(time_s) for time_s in values] if hasattr(values, "__iter__") else [float(values)]
+        items: Any = times  # numpy's arrays and numbers, too
+        try:
+            items = list(items)
+        except TypeError:
+            items = [items]
+        values: list[float] = []
+        for item in items:
+            try:
+                time_s = float(item)
+            except (TypeError, ValueError, OverflowError):
+                time_s = math.nan
+            if not math.isfinite(time_s):
+                raise UsageError(f"times: '{item}' is not a number of seconds")
+            if values and time_s <= values[-1]:
+                raise UsageError(f"times: {time_s} s follows {values[-1]} s; times must be ascending")
+            values.append(time_s)
+        if not values:
+            raise UsageError("times: the sequence is empty; give at least one time")
+        return values
 
     def positions(self, time_s: float = 0.0) -> dict[str, tuple[float, float, float]]:
         """Positions of all platforms at a time (s): name to (latitude deg, longitude deg, height above mean sea level m)."""
@@ -150,8 +176,14 @@ class Scenario:
         z, y, x = self.shape
         return f"<emscape.Scenario {self.name!r}: {x} x {y} x {z} voxels, {len(self.emitters)} emitters, {self.duration_s:g} s>"
 
+    def __copy__(self) -> Scenario:
+        return self
+
+    def __deepcopy__(self, _: dict[int, Any]) -> Scenario:
+        return self
+
     def __reduce__(self) -> tuple[Any, ...]:
-        return _load_text, (self.file, self._handle.edits)
+        return _unpickled, (self.file, self._handle.edits, self.hash)
 
 
 def _checked(handle: native.Scenario | None, rows: Iterable[tuple[str, int, int, str, str]]) -> Scenario:
@@ -168,6 +200,13 @@ def _checked(handle: native.Scenario | None, rows: Iterable[tuple[str, int, int,
 
 def _load_text(file: str, edits: list[tuple[str, str]]) -> Scenario:
     return _checked(*native.load(file, edits))
+
+
+def _unpickled(file: str, edits: list[tuple[str, str]], expected_hash: str) -> Scenario:
+    scenario = _load_text(file, edits)
+    if scenario.hash != expected_hash:
+        raise InputError("has changed since the pickled scenario was loaded from it", file)
+    return scenario
 
 
 def load(file: str | os.PathLike[str], edits: Mapping[str, Any] | None = None) -> Scenario:

@@ -8,16 +8,16 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
-from ._errors import InputError
+from ._errors import InputError, UsageError
 from ._native import native
 from ._progress import Progress, callback
-from ._scenario import Scenario, Times, _yaml, load
+from ._scenario import Scenario, Times, _yaml, listed
 
 if TYPE_CHECKING:
     import xarray
 
 Json = dict[str, Any]
-_Option = Union[str, float, bool, Sequence[Any], None]
+_Option = Union[str, float, bool, list[Any], None]
 
 
 def command(*arguments: str, progress: Progress = None) -> Any:
@@ -32,17 +32,15 @@ def command(*arguments: str, progress: Progress = None) -> Any:
 
 
 def _options(options: Mapping[str, _Option]) -> list[str]:
-    """Options of the command line; None and False are omitted, list items are separated by commas."""
+    """Options of the command line; None, False and empty texts are omitted. A list gives an option per item, because items may
+    have commas."""
     words: list[str] = []
     for name, value in options.items():
-        if value is None or value is False or value == "" or (isinstance(value, (list, tuple)) and not value):
-            continue
-        words.append("--" + name)
-        if isinstance(value, str):
-            words[-1] += "=" + value
-        elif value is not True:
-            items = value if isinstance(value, Sequence) else [value]
-            words[-1] += "=" + ",".join(item if isinstance(item, str) else repr(float(item)) for item in items)
+        if value is True:
+            words.append("--" + name)
+        elif value is not None and value is not False and value != "":
+            for item in value if isinstance(value, list) else [value]:
+                words.append(f"--{name}=" + (item if isinstance(item, str) else repr(float(item))))
     return words
 
 
@@ -53,9 +51,15 @@ def _times(scenario: Scenario, times: Times | None) -> str | None:
     values = scenario.times(times)
     if len(values) == 1:
         return repr(values[0])
-    step = values[1] - values[0]
-    if any(abs(values[0] + i * step - value) > 1e-9 * max(1.0, abs(value)) for i, value in enumerate(values)):
-        raise ValueError("times: evenly spaced ones only, or a text BEGIN:END:STEP")
+    import numpy as np
+
+    step, rounding = values[1] - values[0], 1e-9
+    dtype = np.asarray(times).dtype
+    if dtype.kind == "f" and dtype.itemsize < 8:  # rounded to fewer digits
+        step, rounding = (values[-1] - values[0]) / (len(values) - 1), 2 * float(np.finfo(dtype).eps)
+    for i, value in enumerate(values):
+        if abs(values[0] + i * step - value) > rounding * max(1.0, abs(values[0]), abs(values[-1])):
+            raise UsageError(f"times: {value} s is not in steps of {step} s; give evenly spaced times or a text BEGIN:END:STEP")
     return f"{values[0]!r}:{values[-1]!r}:{step!r}"
 
 
@@ -92,7 +96,7 @@ def profile(
     *,
     agl: bool = False,
     time_s: float = 0.0,
-    models: Sequence[str] = (),
+    models: str | Sequence[str] = (),
 ) -> Json:
     """Explains one path, term by term, from the transmitter's power to the power density at a point.
 
@@ -102,7 +106,7 @@ def profile(
     Raises UsageError for an unknown emitter or a point outside the earth, InputError for one below ground.
     """
     place = ",".join(repr(float(value)) for value in to)
-    options: dict[str, _Option] = {"emitter": emitter, "to": place, "agl": agl, "time": time_s, "model": list(models)}
+    options: dict[str, _Option] = {"emitter": emitter, "to": place, "agl": agl, "time": time_s, "model": listed(models)}
     result: Json = _run("profile", scenario, options, None)
     return result
 
@@ -110,9 +114,9 @@ def profile(
 def link(
     scenario: Scenario,
     *,
-    emitters: Sequence[str] = (),
-    receivers: Sequence[str] = (),
-    targets: Sequence[str] = (),
+    emitters: str | Sequence[str] = (),
+    receivers: str | Sequence[str] = (),
+    targets: str | Sequence[str] = (),
     times: Times | None = None,
     model: str = "",
     progress: Progress = None,
@@ -122,8 +126,9 @@ def link(
     :param times: as ``Scenario.times``; None: the scenario's clock
     :return: ``links`` and ``detections``, each with rows by time (powers in dBm, ratios in dB)
     """
-    options = {"emitter": list(emitters), "receiver": list(receivers), "target": list(targets), "model": model}
-    result: Json = _run("link", scenario, {**options, "times": _times(scenario, times)}, progress)
+    options: dict[str, _Option] = {"emitter": listed(emitters), "receiver": listed(receivers), "target": listed(targets)}
+    options |= {"times": _times(scenario, times), "model": model}
+    result: Json = _run("link", scenario, options, progress)
     return result
 
 
@@ -181,7 +186,7 @@ def vertical(
 
     from ._arrays import udunit_of
 
-    options: dict[str, _Option] = {"emitter": emitter, "azimuth": list(azimuths_deg), "quantity": quantity}
+    options: dict[str, _Option] = {"emitter": emitter, "azimuth": listed(azimuths_deg), "quantity": quantity}
     options |= {"threshold": threshold, "time": time_s, "height-axis": height_axis, "blake": blake, "range": range_m}
     options |= {"max-height": max_height_m, "backend": backend}
     result = _run_into_file("vertical", scenario, options, progress)
@@ -213,14 +218,14 @@ def compare(
     output: str | os.PathLike[str] | None = None,
     *,
     heights: str = "agl:150",
-    products: Sequence[str] = (),
+    products: str | Sequence[str] = (),
     quantity: str = "detection_probability",
     threshold: float | None = None,
     times: Times | None = None,
     cell_m: float | None = None,
     area: str = "",
     crs: str = "utm",
-    formats: Sequence[str] = (),
+    formats: str | Sequence[str] = (),
     explain: int | None = None,
     backend: str = "auto",
     progress: Progress = None,
@@ -233,9 +238,9 @@ def compare(
     :param explain: number of explained areas of gain, and of loss
     :return: report.json of the folder: areas in km2, differences, changed areas with the decisive paths
     """
-    options: dict[str, _Option] = {"heights": heights, "products": list(products), "quantity": quantity}
+    options: dict[str, _Option] = {"heights": heights, "products": listed(products), "quantity": quantity}
     options |= {"threshold": threshold, "times": _times(a, times), "cell": cell_m, "area": area, "crs": crs}
-    options |= {"format": list(formats), "explain": str(explain) if explain is not None else None, "backend": backend}
+    options |= {"format": listed(formats), "explain": str(explain) if explain is not None else None, "backend": backend}
     with tempfile.TemporaryDirectory() as folder:
         options["output"] = os.fspath(output) if output is not None else os.path.join(folder, "compare")
         if output is None and not formats:
@@ -249,18 +254,23 @@ def _subjects(a: Scenario, b: Scenario, folder: str) -> list[str]:
 
     :param folder: for copies of scenarios that the options cannot express
     """
-    words_a, words_b, common = _subject(a), _subject(b), a.edits
-    if a.file == b.file and common.keys() <= b.edits.keys():
-        words = words_a
-    elif not common:
-        words = [*words_a, b.file]
-    else:
+    words = _subject(a)
+    _subject(b)
+    common, own = a._handle.edits, list(b._handle.edits)
+    for edit in common:
+        if own[:1] != [edit]:
+            break
+        del own[0]
+    both, _ = native.load(b.file, common + own)
+    if both is None or both.hash != b.hash:
         words = [os.path.join(folder, name) for name in ("a.yaml", "b.yaml")]
         a.save(words[0])
         b.save(words[1])
         return words
-    for word in words_b[2::2]:
-        words += ["--set-b", word]
+    if a.file != b.file or not own:
+        words.append(b.file)
+    for path, value in own:
+        words += ["--set-b", f"{path}={value}"]
     return words
 
 
@@ -302,10 +312,10 @@ def check(folder: str | os.PathLike[str]) -> Json:
 def simulate(
     scenario: Scenario,
     output: str | os.PathLike[str],
-    formats: Sequence[str] = ("vdb",),
+    formats: str | Sequence[str] = ("vdb",),
     *,
     times: Times | None = None,
-    quantities: Sequence[str] = (),
+    quantities: str | Sequence[str] = (),
     resume: bool = False,
     backend: str = "auto",
     progress: Progress = None,
@@ -316,6 +326,6 @@ def simulate(
     :param times: as ``Scenario.times``; None: the scenario's clock
     :return: what ``emscape simulate --json`` prints
     """
-    options: dict[str, _Option] = {"output": os.fspath(output), "format": list(formats), "quantity": list(quantities)}
+    options: dict[str, _Option] = {"output": os.fspath(output), "format": listed(formats), "quantity": listed(quantities)}
     options |= {"times": _times(scenario, times), "resume": resume, "backend": backend}
     return _run("simulate", scenario, options, progress)

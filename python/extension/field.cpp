@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 
 #include "emscape/base/error.h"
@@ -75,6 +76,13 @@ std::vector<std::string> namesOf(const emfield::FieldSolver& solver) {
   return names;
 }
 
+/// @throws Error (usage) with the name, the value and the limits
+void requireWithin(const char* name, double value, double min, double max, const char* unit) {
+  if (value >= min && value <= max) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("{} is {}, outside the allowed range {} to {}{}", name, value, min, max, unit));
+}
+
 /// FieldSolver for several threads, one at a time. The lock is taken with the interpreter unlocked, since its
 /// holder may wait for the interpreter in order to log.
 class Solver {
@@ -92,12 +100,15 @@ class Solver {
          double move_tolerance_m)
       : arena_(threads > 0 ? threads : tbb::task_arena::automatic), is_limited_(threads > 0) {
     refuseForkedProcess();
+    requireWithin("threads", threads, 0, 4096, "");
+    requireWithin("cache_mib", cache_mib, 0, 1e6, " MiB");
+    requireWithin("move_tolerance_m", move_tolerance_m, 0, std::numeric_limits<double>::infinity(), " m");
     constexpr double kMebibyte = 1 << 20;
     emfield::FieldOptions options;
     options.quantities = std::move(quantities);
     options.backend = parseBackend(backend);
     options.allow_missing_terrain = allow_missing_terrain;
-    options.cache_bytes = static_cast<std::size_t>(std::max(0.0, cache_mib) * kMebibyte);
+    options.cache_bytes = static_cast<std::size_t>(cache_mib * kMebibyte);
     options.move_tolerance_m = move_tolerance_m;
     const nb::gil_scoped_release unlocked;
     within([&] {

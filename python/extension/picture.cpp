@@ -1,4 +1,9 @@
 /// Pictures of fields as arrays of pixels.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/painter.h"
 #include "emscape/playback/scene.h"
@@ -10,6 +15,19 @@ namespace emscape::python {
 namespace {
 
 using playback::ComputeTarget;
+
+/// @throws Error (usage), as the command line does for --range and --iso-value
+void checkValues(const std::optional<std::pair<float, float>>& range,
+                 const std::optional<double>& iso_value) {
+  if (range &&
+      !(std::isfinite(range->first) && std::isfinite(range->second) && range->first < range->second)) {
+    throw Error(ErrorCode::usage, fmt::format("range ({}, {}) must be (MIN, MAX), two numbers with MIN < MAX",
+                                              range->first, range->second));
+  }
+  if (iso_value && !std::isfinite(*iso_value)) {
+    throw Error(ErrorCode::usage, fmt::format("iso_value {} is not a number", *iso_value));
+  }
+}
 
 /// A frame of a field's volume, with the scenario's emitters and the tracks of its platforms.
 playback::Frame frameOf(const Field& field, std::size_t index,
@@ -36,6 +54,7 @@ nb::object render(const Field& field, const std::string& quantity, std::pair<int
                   const std::string& theme, bool terrain, bool emitters, bool shading,
                   std::optional<double> iso_value, double exaggeration, const std::string& note) {
   refuseForkedProcess();
+  checkValues(range, iso_value);
   render::Image8 picture;
   {
     const nb::gil_scoped_release unlocked;

@@ -37,6 +37,22 @@ def test_a_series_can_be_pickled(quick):
     assert np.array_equal(again.power_density_dbwm2.values, series.power_density_dbwm2.values)
 
 
+@pytest.mark.parametrize("year", ["0900", "1600", "1800", "2200", "2500"])
+def test_time_is_right_in_all_years(quick, tmp_path, year):
+    scenario = quick.with_set({"epoch": f"{year}-01-01T00:00:00.250Z"})
+    moments = [np.datetime64(f"{year}-01-01T00:00:0{seconds}") for seconds in ("0.250", "1.750")]
+    series = em.open_series(scenario, [0, 1.5], "power_density_dbwm2", chunks=None)
+    assert list(series.data_vars) == ["power_density_dbwm2"]
+    assert series.time.values.tolist() == np.array(moments, series.time.dtype).tolist()
+    assert em.Solver(scenario, "cpu").at(1.5).to_xarray().time.values == moments[1]
+    assert em.coverage(scenario, times=1.5, cell_m=1000, threshold=0.5).time.values == moments[1]
+    pytest.importorskip("netCDF4")
+    series.to_netcdf(tmp_path / "series.nc")
+    coder = xarray.coders.CFDatetimeCoder(use_cftime=True)
+    with xarray.open_dataset(tmp_path / "series.nc", decode_times=coder) as again:
+        assert again.time.values[1].isoformat() == f"{year}-01-01T00:00:01.750000"
+
+
 def test_without_an_epoch_time_is_in_seconds(quick):
     series = em.open_series(quick.with_set({"epoch": None}), [0, 2.5], chunks=None)
     assert series.time.values.tolist() == [0, 2.5]

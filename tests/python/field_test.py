@@ -215,6 +215,13 @@ def test_threads_share_a_solver(jamming):
     assert not wrong
 
 
+def test_a_text_is_one_quantity(quick, tmp_path):
+    field = em.Solver(quick, "cpu", quantities="snr_db").at(0)
+    assert field.quantities == ["snr_db"]
+    field.write(tmp_path / "field.vti", "snr_db")
+    assert em.read(tmp_path / "field.vti").quantities == ["snr_db"]
+
+
 def _solve(file):
     try:
         em.Solver(em.load(file), "cpu").at(0)

@@ -1,5 +1,6 @@
 """Reading and editing scenarios; errors with their places."""
 
+import copy
 import datetime
 import os
 import pickle
@@ -28,6 +29,27 @@ def test_says_what_the_file_holds(quick):
     assert height_msl_m == pytest.approx(50)
 
 
+def test_times_are_numbers_or_arrays(quick):
+    assert quick.times(np.array(5.0)) == quick.times(np.float32(5)) == quick.times(5) == [5]
+    assert quick.times(np.array([0.5, 2])) == [0.5, 2]
+
+
+@pytest.mark.parametrize(
+    ("times", "message"),
+    [
+        ([], "the sequence is empty"),
+        ([0, float("nan")], "'nan' is not a number of seconds"),
+        (float("inf"), "'inf' is not a number of seconds"),
+        (None, "'None' is not a number of seconds"),
+        ([2, 1], r"1.0 s follows 2.0 s; times must be ascending"),
+        ([1, 1], r"1.0 s follows 1.0 s; times must be ascending"),
+    ],
+)
+def test_times_are_finite_and_ascending(quick, times, message):
+    with pytest.raises(em.UsageError, match=message):
+        quick.times(times)
+
+
 def test_an_edit_gives_another_scenario(quick):
     edited = quick.with_set({"emitters.radar.power_w": np.float64(500), "name": 'a "name": #1'})
     assert edited.edits == {"emitters.radar.power_w": "500.0", "name": '"a \\"name\\": #1"'}
@@ -45,6 +67,17 @@ def test_a_pickled_scenario_is_the_same(quick):
     edited = quick.with_set({"emitters.radar.power_w": 500})
     again = pickle.loads(pickle.dumps(edited))
     assert (again.hash, again.edits) == (edited.hash, edited.edits)
+
+
+def test_a_pickled_scenario_whose_file_has_changed_is_refused(tmp_path):
+    file = tmp_path / "quick.yaml"
+    file.write_text((SCENARIOS / "quick.yaml").read_text())
+    scenario = em.load(file)
+    pickled = pickle.dumps(scenario)
+    file.write_text(file.read_text().replace("10000", "20000"))
+    with pytest.raises(em.InputError, match="quick.yaml: has changed since the pickled scenario was loaded"):
+        pickle.loads(pickled)
+    assert copy.copy(scenario) is scenario and copy.deepcopy([scenario])[0] is scenario
 
 
 def test_a_saved_scenario_is_the_same(quick, tmp_path):
@@ -94,6 +127,21 @@ def test_errors_have_the_class_and_the_status_of_their_kind(quick, tmp_path):
     statuses = {cls: cls.status for cls in (em.OtherError, em.UsageError, em.InputError, em.DeviceError, em.CheckError)}
     assert sorted(statuses.values()) == [1, 2, 3, 4, 5]
     assert all(issubclass(cls, em.Error) for cls in statuses)
+
+
+@pytest.mark.parametrize(
+    ("argument", "message"),
+    [
+        ({"threads": -5}, "threads is -5, outside the allowed range 0 to 4096"),
+        ({"cache_mib": -1}, "cache_mib is -1, outside the allowed range 0 to 1000000 MiB"),
+        ({"cache_mib": float("inf")}, "cache_mib is inf"),
+        ({"cache_mib": float("nan")}, "cache_mib is nan"),
+        ({"move_tolerance_m": float("nan")}, "move_tolerance_m is nan, outside the allowed range 0 to inf m"),
+    ],
+)
+def test_arguments_of_a_solver_have_ranges(quick, argument, message):
+    with pytest.raises(em.UsageError, match=message):
+        em.Solver(quick, "cpu", **argument)
 
 
 def test_a_gpu_that_is_missing_is_a_device_error(quick):

@@ -51,6 +51,49 @@ def test_compare_tells_what_is_won_and_lost(jamming):
     assert lost["gained_km2"] == won["lost_km2"] == 0
 
 
+def test_compare_applies_edits_of_both_scenarios_once(quick):
+    options = {"quantity": "power_density_dbwm2", "threshold": -60, "times": 0, "cell_m": 2000, "products": "covered"}
+    silent = quick.with_set({"emitters.transmitter": None})
+    weaker = silent.with_set({"emitters.radar.power_w": 100})
+    assert em.compare(silent, weaker, **options)["comparison"][0]["lost_km2"] > 0
+    assert em.compare(weaker, silent, **options)["comparison"][0]["gained_km2"] > 0
+    also_silent = quick.with_set({"emitters.radar.power_w": 100, "emitters.transmitter": None})
+    assert em.compare(weaker, also_silent, **options)["comparison"][0]["lost_km2"] == 0
+    assert em.compare(weaker, weaker, **options)["comparison"][0]["gained_km2"] == 0
+
+
+def test_times_are_evenly_spaced_within_the_rounding_of_their_type(tmp_path):
+    scenario = em.load(SCENARIOS / "links.yaml")
+    single = np.arange(0, 2, 0.1, dtype=np.float32)
+    rows = em.link(scenario, targets="drone", times=single)["detections"][0]["rows"]
+    assert [row["time_s"] for row in rows] == pytest.approx(single.tolist(), abs=1e-6)
+    with pytest.raises(em.UsageError, match=r"times: 3.0 s is not in steps of 1.0 s"):
+        em.link(scenario, times=[0, 1, 3])
+    for refused in (
+        lambda: em.link(scenario, times=[]),
+        lambda: em.exposure(scenario, scenario.platforms[0], times=[]),
+        lambda: em.compare(scenario, scenario, times=[]),
+        lambda: em.simulate(scenario, tmp_path / "series", times=[]),
+    ):
+        with pytest.raises(em.UsageError, match="times: the sequence is empty"):
+            refused()
+
+
+def test_names_are_texts_or_lists(jamming):
+    links = em.load(SCENARIOS / "links.yaml")
+    assert em.link(links, emitters="search radar", times=0) == em.link(links, emitters=["search radar"], times=0)
+    profile = em.profile(jamming, "search radar", (36.3, -84.2, 500), agl=True, models="free_space")
+    assert profile == em.profile(jamming, "search radar", (36.3, -84.2, 500), agl=True, models=["free_space"])
+
+
+def test_a_name_may_have_a_comma():
+    links = em.load(SCENARIOS / "links.yaml", {"emitters.search radar.name": "radar, upper"})
+    for names in ("radar, upper", ["radar, upper"], ["radar, upper", "mast"]):
+        report = em.link(links, emitters=names, times=0)
+        found = {row["emitter"] for row in report["links"]}
+        assert found == ({names} if isinstance(names, str) else set(names))
+
+
 def test_a_study_in_processes_equals_one_in_this_process(tmp_path):
     file = SCENARIOS / "study" / "jammer_power.yaml"
     one = em.study(file, tmp_path / "one")
@@ -112,6 +155,19 @@ def test_a_picture_has_ground_field_and_labels(jamming):
     assert np.array_equal(picture, em.render(field, "detection_probability", size=(320, 200), camera="orbit:azimuth_deg=200,elevation_deg=35"))
     with pytest.raises(em.UsageError, match="azimuth_degrees"):
         em.render(field, camera={"azimuth_degrees": 3})
+
+
+@pytest.mark.parametrize("bounds", [(10, -10), (5, 5), (float("nan"), 1), (0, float("inf")), (0, 1e300)])
+def test_a_range_of_colours_has_ascending_numbers(quick, bounds):
+    field = em.Solver(quick, "cpu").at(0)
+    with pytest.raises(em.UsageError, match=r"range \(.*\) must be \(MIN, MAX\), two numbers with MIN < MAX"):
+        em.render(field, size=(64, 48), range=bounds)
+
+
+def test_the_value_of_an_isosurface_is_a_number(quick):
+    field = em.Solver(quick, "cpu").at(0)
+    with pytest.raises(em.UsageError, match="iso_value nan is not a number"):
+        em.render(field, size=(64, 48), mode="iso", iso_value=float("nan"))
 
 
 def test_a_picture_is_that_of_the_command_line(jamming, program, tmp_path):
