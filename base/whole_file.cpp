@@ -109,24 +109,11 @@ class Descriptor {
   const int number_;
 };
 
-/// Renaming to a folder fails late, and renaming to a device would replace it; both are refused before work
-/// begins.
-void checkTarget(const fs::path& path) {
-  std::error_code ignored;
-  if (!fs::is_directory(folderOf(path), ignored)) {
-    failWriting(path, "the folder " + folderOf(path).string() + " does not exist");
-  }
-  const fs::file_status status = fs::status(path, ignored);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    failWriting(path, fs::is_directory(status) ? "a folder of that name exists" : "it is not a regular file");
-  }
-}
-
 /// A file under its temporary name; removed unless kept.
 class Temporary {
  public:
   explicit Temporary(const OutputFile& file) : path_(temporaryFor(file.path)) {
-    checkTarget(file.path);
+    requireFileTarget(file.path);
     std::ofstream stream;
     try {
       errno = 0;
@@ -210,6 +197,18 @@ fs::path temporaryFor(const fs::path& path) {
   fs::path temporary = path;
   temporary += kMarker + std::to_string(::getpid()) + '-' + machineName();
   return temporary;
+}
+
+// Renaming to a folder fails late, and renaming to a device would replace it.
+void requireFileTarget(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(folderOf(path), ignored)) {
+    failWriting(path, "the folder " + folderOf(path).string() + " does not exist");
+  }
+  const fs::file_status status = fs::status(path, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    failWriting(path, fs::is_directory(status) ? "a folder of that name exists" : "it is not a regular file");
+  }
 }
 
 bool isTemporary(const fs::path& path) {

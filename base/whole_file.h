@@ -34,6 +34,10 @@ const std::string& machineName();
 /// True if a process of this machine runs.
 bool isRunning(long process);
 
+/// Refuses a file that cannot be written because of its folder or of what has its name, before work begins.
+/// @throws Error (other) that names the path and the cause: missing folder, a folder or device of that name
+void requireFileTarget(const std::filesystem::path& path);
+
 /// The temporary name of a file, for programs that write it themselves:
 /// NAME.part-PID-MACHINE.
 std::filesystem::path temporaryFor(const std::filesystem::path& path);

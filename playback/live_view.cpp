@@ -126,6 +126,7 @@ struct LiveView::Impl {
     status.state = cast.state;
     status.reason = cast.reason;
     status.computing = !is_field_shown && !has_failed;
+    status.failed = !is_field_shown && has_failed;
     status.exact = progress.complete && progress.scene == cast.scene && cast.view_revision == view.revision &&
                    !status.computing;
     status.asked_s = nearestOf(solve.times_s, field.time_s);
@@ -185,6 +186,13 @@ void LiveView::seek(double time_s) {
 
 void LiveView::setScenario(std::shared_ptr<const scenario::Scenario> scenario) {
   impl_->askField([&](FieldRequest& field) { field.scenario = std::move(scenario); });
+}
+
+void LiveView::setScenario(std::shared_ptr<const scenario::Scenario> scenario, const std::string& quantity) {
+  impl_->askField([&](FieldRequest& field) {
+    field.scenario = std::move(scenario);
+    field.quantity = quantity;
+  });
 }
 
 void LiveView::setQuantity(const std::string& quantity) {

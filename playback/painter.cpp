@@ -90,7 +90,9 @@ void Painter::setFrame(const Frame& frame) {
   setGround();
   if (is_other_grid) fitCamera();
   if (is_first_of_colors && style_.settings.mode == render::CompositingMode::iso) {
-    render::checkIsoValue(renderer_.isoValue(), *frame.volume.host());
+    const std::string missing = render::missingIsosurface(renderer_.isoValue(), *frame.volume.host());
+    if (!missing.empty() && style_.must_show_isosurface) throw Error(ErrorCode::bad_input, missing);
+    if (!missing.empty()) logWarning(missing + "; no surface is drawn");
   }
 }
 
@@ -127,6 +129,7 @@ void Painter::setTransferFunction(const render::TransferFunction& function) {
 
 void Painter::fitColors() {
   style_.transfer.clear();
+  style_.function.reset();
   style_.colors_span_range = false;
   has_colors_ = false;
   if (frame_) setTransferFunction(functionFor(*frame_));

@@ -28,6 +28,7 @@ Error failure(const std::filesystem::path& path, const std::string& what) {
 
 VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double frames_per_s)
     : path_(std::move(path)), temporary_(temporaryFor(path_)), size_(size) {
+  requireFileTarget(path_);
   const std::vector<std::string> arguments{
       "ffmpeg", "-hide_banner", "-loglevel", "error", "-xerror", "-nostdin", "-y", "-f", "rawvideo",
       "-pixel_format", "rgb24", "-video_size", fmt::format("{}x{}", size.width, size.height), "-framerate",

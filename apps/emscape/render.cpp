@@ -10,6 +10,7 @@
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/common/value_range.h"
 #include "apps/emscape/report/real_time_report.h"
@@ -24,6 +25,7 @@
 #include "emscape/playback/picture_sink.h"
 #include "emscape/playback/real_time_loop.h"
 #include "emscape/playback/view_state.h"
+#include "emscape/scenario/scenario_file.h"
 #include "playback/background_writer.h"
 #include "render/reconstruction.h"
 
@@ -109,17 +111,19 @@ ViewState viewOf(const RenderOptions& options) {
   return view;
 }
 
-PictureStyle styleOf(const ViewState& view, const RenderOptions& options) {
-  PictureStyle style = playback::pictureStyleOf(view);
-  style.transfer = options.transfer;
-  style.cells = options.cells;
-  return style;
-}
-
 bool isOnePicture(const std::vector<std::string>& outputs) {
   return std::all_of(outputs.begin(), outputs.end(), [](const std::string& output) {
     return std::filesystem::path(output).extension() == ".png";
   });
+}
+
+PictureStyle styleOf(const ViewState& view, const RenderOptions& options) {
+  PictureStyle style = playback::pictureStyleOf(view);
+  style.transfer = options.transfer;
+  style.cells = options.cells;
+  style.must_show_isosurface =
+      options.command->count("--iso-value") > 0 && !options.realtime && isOnePicture(options.outputs);
+  return style;
 }
 
 playback::FrameSelection selectionOf(const ViewState& view, const RenderOptions& options) {
@@ -165,6 +169,33 @@ void checkMeshOptions(const RenderOptions& options, const ViewState& view) {
                 "--rays " + options.rays + ": has no effect on a field on tetrahedra, all pixels are cast");
   }
   if (!view.compare.empty()) throw Error(ErrorCode::usage, "comparison: has no effect on tetrahedra");
+}
+
+/// checkOutputs(). Scenarios are read for it only if an output exists already; their faults are reported
+/// later.
+void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
+  std::vector<NamedFile> outputs = outputsOf("--output", options.outputs);
+  outputs.push_back({"--save-state", options.save_state});
+  const playback::FrameSelection& selection = options.selection;
+  std::vector<std::shared_ptr<const scenario::Scenario>> scenarios;
+  const auto addScenario = [&](const std::string& file, const std::vector<scenario::Edit>& edits) {
+    if (!std::filesystem::is_regular_file(file)) return;
+    // --scenario is a scenario whatever its ending.
+    if (file != selection.scenario && playback::inputKindOf(file) != playback::InputKind::scenario) return;
+    if (const auto scenario = scenario::parseScenario(file, edits).scenario) scenarios.push_back(scenario);
+  };
+  if (std::any_of(outputs.begin(), outputs.end(),
+                  [](const NamedFile& output) { return std::filesystem::is_regular_file(output.file); })) {
+    addScenario(selection.input, view.edits);
+    addScenario(selection.scenario, {});
+    addScenario(view.compare, {});
+  }
+  checkOutputs(outputs,
+               {{"the input", selection.input},
+                {"the scenario", selection.scenario},
+                {"the comparison", view.compare},
+                {"the transfer function", options.transfer}},
+               scenarios);
 }
 
 using Sinks = std::vector<std::unique_ptr<PictureSink>>;
@@ -232,6 +263,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   }
   const ViewState view = viewOf(options);
   checkMeshOptions(options, view);
+  checkOutputFiles(options, view);
   const PictureStyle style = styleOf(view, options);
   const std::string mode = render::toString(view.settings.mode);
   // `auto` casts every pixel for files.
@@ -297,6 +329,7 @@ RealTimeOptions realTimeOptionsOf(const RenderOptions& options, bool keeps_event
 int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   const ViewState view = viewOf(options);
   checkMeshOptions(options, view);
+  checkOutputFiles(options, view);
   const PictureStyle style = styleOf(view, options);
   const RealTimeOptions loop_options = realTimeOptionsOf(options, global.json);
   if (loop_options.orbit_rate_deg_s != 0 && style.camera.kind != render::CameraSpec::Kind::orbit) {

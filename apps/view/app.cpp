@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "apps/emscape/common/interrupt.h"
 #include "apps/view/panels/theme.h"
 #include "base/stopwatch.h"
 #include "emscape/base/backend.h"
@@ -186,14 +187,15 @@ void App::run() {
   session_->shown("");
   if (!session_->hasInput()) session_->perform({"open"});
   // Files that are being written are finished, and their errors reported, before the window closes.
-  while (!quits_ || session_->writing()) {
+  const auto ends = [this] { return quits_ || app::stopFlag(); };
+  while (!ends() || session_->writing()) {
     window_.waitEvents(waitTime_s());
     if (window_.takeDirty()) frames_left_ = kFramesAfterEvent;
     handleRequests();
     if (session_->update()) frames_left_ = std::max(frames_left_, 1);
     failIfNothingOpens();
     if (ImGui::GetIO().WantTextInput) frames_left_ = std::max(frames_left_, 1);
-    if (!quits_ && !script_.finished() && !isFitting()) script_.run(*session_, *this, log_.now_s());
+    if (!ends() && !script_.finished() && !isFitting()) script_.run(*session_, *this, log_.now_s());
     if (panelsChanged()) frames_left_ = kFramesAfterEvent;  // the layout takes more than one frame
     const bool script_waits_for_frames = script_.nextRun_s(log_.now_s()) == 0.0;
     if (!window_.input().empty() || screenshot_ || script_waits_for_frames || flies_) {
@@ -201,7 +203,7 @@ void App::run() {
     }
     if (frames_left_ > 0 && (untilDrawing_s() == 0 || !window_.input().empty())) frame();
   }
-  session_->leave(false);
+  session_->leave(!quits_);
   log_.write("end", session_->report());
 }
 

@@ -4,6 +4,7 @@
 #include <exception>
 #include <optional>
 
+#include "apps/emscape/common/interrupt.h"
 #include "apps/view/app.h"
 #include "base/failure_text.h"
 #include "emscape/base/error.h"
@@ -28,7 +29,9 @@ void show(const ViewOptions& options) {
       std::fprintf(stderr, "%s\n", line.c_str());
   });
   setThreadLimit(options.threads);
-  std::signal(SIGPIPE, SIG_IGN);  // after ffmpeg has ended, writes fail instead
+  app::catchInterrupts();
+  // After ffmpeg has ended, and at the limit of a file's size, writes fail instead.
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   // A wrong name and all errors in a scenario are reported before a window appears.
   using playback::InputKind;
   const std::optional<InputKind> kind =
@@ -49,7 +52,9 @@ void show(const ViewOptions& options) {
 int viewMain(int argc, char** argv) {
   try {
     if (const std::optional<ViewOptions> options = parseOptions(argc, argv)) show(*options);
-    return 0;
+    if (app::caughtSignal() == 0) return 0;
+    std::fprintf(stderr, "emscape-view: stopped by signal %d\n", app::caughtSignal());
+    return 128 + app::caughtSignal();
   } catch (const Error& error) {
     return fail(error.code(), error.what());
   } catch (const std::exception& error) {

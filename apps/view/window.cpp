@@ -5,10 +5,13 @@
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
+#include <dlfcn.h>
 #include <imgui.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
@@ -38,6 +41,23 @@ void keepError(int, const char* text) {
   last_error.erase(last_error.find_last_not_of(' ') + 1);
   throw Error(ErrorCode::device, what + (last_error.empty() ? "" : ": " + last_error) +
                                      "; 'emscape render' draws pictures and videos without a window");
+}
+
+/// Xlib ends the process when this returns.
+[[noreturn]] int endWithoutDisplay(void* /*display*/) {
+  std::fputs("emscape-view: error: the connection to the display is lost\n", stderr);
+  std::_Exit(static_cast<int>(ErrorCode::device));
+}
+
+/// The library is GLFW's: with other systems of windows it is not loaded.
+void catchLostDisplay() {
+  using Handler = int (*)(void*);
+  void* const xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+  if (!xlib) return;
+  if (void* const set = dlsym(xlib, "XSetIOErrorHandler")) {
+    reinterpret_cast<Handler (*)(Handler)>(set)(endWithoutDisplay);
+  }
+  dlclose(xlib);
 }
 
 Window& windowOf(GLFWwindow* window) {
@@ -87,6 +107,7 @@ Window::Window(const std::string& title, render::ImageSize size, double scale) {
   last_error.clear();
   glfwSetErrorCallback(keepError);
   if (glfwInit() == GLFW_FALSE) refuse("no window can be opened");
+  catchLostDisplay();
   glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

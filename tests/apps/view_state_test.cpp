@@ -34,6 +34,18 @@ Arguments with(Arguments arguments, const Arguments& more) {
   return arguments;
 }
 
+TEST(ViewState, AnIsosurfaceOutsideOfTheValuesIsAWarning) {
+  const TemporaryFolder folder;
+  const std::string state = folder.write(
+      "a.view.json", R"({"schema_version": 1, "mode": "iso", "iso_value": 999, "size": [64, 48]})");
+  const ProgramResult drawn = render({"--state", state, "-o", folder / "a.png"});
+  EXPECT_EQ(drawn.status, 0) << drawn.err;
+  EXPECT_THAT(drawn.err, HasSubstr("warning: iso value 999 dBW/m2: power_density_dbwm2 ranges from "));
+  EXPECT_THAT(drawn.err, HasSubstr("; no surface is drawn\n"));
+  EXPECT_EQ(render({"--state", state, "-o", folder / "frames", "--iso-value", "998"}).status, 0);
+  EXPECT_EQ(render({"--state", state, "-o", folder / "b.png", "--iso-value", "998"}).status, 3);
+}
+
 TEST(ViewState, DrawsThePictureThatTheOptionsDrew) {
   const TemporaryFolder folder;
   const ProgramResult saved =

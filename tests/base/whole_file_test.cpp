@@ -42,6 +42,15 @@ TEST_F(WholeFile, AppearsWithItsText) {
   EXPECT_EQ(filesInFolder(), 1);
 }
 
+TEST_F(WholeFile, ATargetIsRefusedBeforeItIsWritten) {
+  requireFileTarget(folder_ / "a");
+  EXPECT_EQ(errorOf([&] { requireFileTarget(folder_ / "none/a"); }),
+            (folder_ / "none/a") + ": cannot write: the folder " + (folder_ / "none") + " does not exist");
+  EXPECT_EQ(errorOf([&] { requireFileTarget(folder_.path()); }),
+            folder_.path().string() + ": cannot write: a folder of that name exists");
+  EXPECT_EQ(filesInFolder(), 0);
+}
+
 TEST_F(WholeFile, LeavesWhatWasThereWhenTheWriterThrows) {
   writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "one"; });
   EXPECT_THROW(writeWhole(folder_ / "a",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "emscape/base/log.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {
@@ -47,6 +48,25 @@ TEST(Painter, ACameraThatCameBackGivesTheSamePicture) {
   painter.setCamera(style.camera);
   painter.draw({});
   EXPECT_EQ(render::compare(render::quantize(painter.image()), render::quantize(before)).erroneous, 0);
+}
+
+TEST(Painter, AnIsosurfaceThatShowsNothingIsAnErrorOrAWarning) {
+  MadeFrames source(seconds(2));
+  PictureStyle style;
+  style.size = {160, 120};
+  style.settings.mode = render::CompositingMode::iso;
+  style.settings.iso_value = 99;
+  Painter strict(style, source, {});
+  EXPECT_EQ(errorOf([&] { strict.setFrame(source.frame(1)); }), "iso value 99: made ranges from 0 to 2");
+  std::vector<std::string> messages;
+  setLogSink([&](LogLevel, const std::string& message) { messages.push_back(message); });
+  style.must_show_isosurface = false;
+  Painter painter(style, source, {});
+  painter.setFrame(source.frame(1));
+  painter.setFrame(source.frame(0));
+  setLogSink({});
+  EXPECT_THAT(messages, testing::ElementsAre("iso value 99: made ranges from 0 to 2; no surface is drawn"));
+  EXPECT_TRUE(painter.draw({}).complete);
 }
 
 }  // namespace

@@ -188,6 +188,8 @@ TEST(IsoValue, OutsideTheValuesIsRefusedWithTheirRange) {
   EXPECT_THAT(messageOf(-1, *volume), ::testing::HasSubstr("from 0 to 80"));
   volume->info.range_max = 20;  // of the colours, as the user wants them
   EXPECT_EQ(messageOf(30, *volume), "");
+  EXPECT_EQ(missingIsosurface(30, *volume), "");
+  EXPECT_EQ(missingIsosurface(-1, *volume), "iso value -1 dBW/m2: test ranges from 0 to 30");
   volume->info.categorical = true;
   EXPECT_THAT(messageOf(1, *volume), ::testing::HasSubstr("test holds indices"));
 }

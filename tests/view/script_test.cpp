@@ -24,6 +24,7 @@ TEST(Script, CommentsAndEmptyLinesAreSkipped) {
 TEST(Script, FaultsNameTheLine) {
   EXPECT_EQ(faultOf("{\"do\":\"play\"}\n{\"do\":\"step\"}\n"), ":2: step: steps is missing");
   EXPECT_EQ(faultOf("play\n"), ":1: not JSON");
+  EXPECT_EQ(faultOf("\n{\"do\":\"key\",\"key\":\"Ctrl+Nokey\"}\n"), ":2: unknown key 'Nokey'");
   EXPECT_EQ(faultOf("{\"do\":\"play\",\"at_s\":\"soon\"}\n"), ":1: at_s: expected a number");
 }
 

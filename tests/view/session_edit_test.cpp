@@ -1,4 +1,5 @@
 #include "apps/view/session/platform_drag.h"
+#include "apps/view/session/shown_quantity.h"
 #include "emscape/playback/pick.h"
 #include "tests/view/session_sample.h"
 
@@ -80,6 +81,47 @@ TEST(SessionEdits, TheShownQuantityFollowsTheScenarioUnlessItWasChosen) {
   sample.perform(R"({"do":"set","path":"output.quantities","value":"[field_strength_dbuvm]"})");
   sample.settle();
   EXPECT_EQ(shown(), "emitter_count");
+}
+
+TEST(SessionEdits, AQuantityThatTheScenarioDoesNotHaveIsRefused) {
+  SessionSample sample("quick.yaml");
+  EXPECT_EQ(sample.perform(R"({"do":"quantity","name":"sinr_db"})"),
+            "quantity 'sinr_db' needs an entry under 'receivers' without a platform");
+  EXPECT_EQ(sample->quantity(), "");
+  EXPECT_THAT(sample.perform(R"({"do":"quantity","name":"foo"})"), HasSubstr("unknown quantity 'foo'"));
+  EXPECT_EQ(sample.perform(R"({"do":"quantity","name":"snr_db:mast"})"),
+            "quantity 'snr_db:mast': there is no such channel; there are snr_db");
+  sample.perform(R"({"do":"seek","time_s":1})");
+  sample.settle();
+  EXPECT_EQ(sample->report()["shown_s"], 1);
+  EXPECT_EQ(sample->viewState().quantity, "");
+  const std::vector<std::string> offered = quantitiesOf(*sample->scenario());
+  EXPECT_THAT(offered, testing::Contains("snr_db"));
+  EXPECT_THAT(offered, testing::Each(testing::AllOf(testing::Not("sinr_db"), testing::Not("detection_age_s"),
+                                                    testing::Not("jammer_to_signal_db"))));
+}
+
+TEST(SessionEdits, AnEditThatTakesTheShownQuantityAwayShowsTheFirstOne) {
+  SessionSample sample("quick.yaml");
+  const auto shown = [&] { return sample->picture()->volume.info().quantity; };
+  sample.perform(R"({"do":"set_together","edits":[
+    "receivers=[{name: rx, gain_dbi: 0, noise_figure_db: 5, bandwidth_hz: 1000000}]",
+    "output.receiver=rx", "output.wanted_emitter=transmitter"]})");
+  ASSERT_EQ(sample.error(), "");
+  EXPECT_THAT(quantitiesOf(*sample->scenario()), testing::Contains("sinr_db"));
+  sample.perform(R"({"do":"quantity","name":"sinr_db"})");
+  sample.settle();
+  ASSERT_EQ(shown(), "sinr_db");
+  sample.perform(R"({"do":"undo"})");
+  sample.settle();
+  EXPECT_EQ(sample.error(),
+            "quantity 'sinr_db' needs an entry under 'receivers' without a platform; power_density_dbwm2 is "
+            "shown instead");
+  EXPECT_EQ(shown(), "power_density_dbwm2");
+  EXPECT_EQ(sample->viewState().quantity, "");
+  sample.perform(R"({"do":"seek","time_s":2})");
+  sample.settle();
+  EXPECT_EQ(sample->report()["shown_s"], 2);
 }
 
 /// The pixel of an emitter's marker.

@@ -10,6 +10,7 @@
 #include "apps/view/session/session_opener.h"
 #include "emscape/base/error.h"
 #include "emscape/render/image.h"
+#include "emscape/volume/file.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {
@@ -55,6 +56,22 @@ TEST(SessionOfTetrahedra, ShowsEditsAndRefusesWhatTheyDoNotHave) {
   shown.perform(R"({"do": "copy_command"})");
   ASSERT_TRUE(shown.waitUntil([&] { return !shown.window.clipboard.empty(); }));
   EXPECT_THAT(shown.window.clipboard, HasSubstr(" --mesh terrain:4,50 "));
+}
+
+TEST(SessionOfVolumes, AQuantityThatTheyDoNotHoldIsRefused) {
+  const StateFolder folder;
+  {
+    SessionSample computed(optionsFor(shippedScenario("quick.yaml"), {160, 120}));
+    ASSERT_TRUE(computed.settle());
+    volume::writeVolumes(folder / "one.vdb", {computed->picture()->volume.host().get()});
+  }
+  SessionSample shown(optionsFor(folder / "one.vdb", {160, 120}));
+  ASSERT_TRUE(shown.settle());
+  shown.perform(R"({"do":"quantity","name":"snr_db"})");
+  ASSERT_TRUE(shown.settle());
+  EXPECT_THAT(shown.error(), HasSubstr("one.vdb: there is no volume of 'snr_db'"));
+  EXPECT_EQ(shown->viewState().quantity, "");
+  EXPECT_TRUE(shown->viewState().transfer);
 }
 
 // --- recent files ---
@@ -326,6 +343,14 @@ TEST_F(Opener, RecordsThePicturesOfTheWindow) {
   const render::ImageDifference difference = render::compare(
       render::readPng(folder_ / "picture.png"), render::readPng(folder_ / "frames/quick_0003.png"));
   for (const int max : difference.max) EXPECT_LE(max, 1);
+}
+
+TEST_F(Opener, AVideoInNoFolderIsRefused) {
+  ASSERT_TRUE(shown_.settle());
+  const std::string video = folder_ / "none/film.mp4";
+  shown_.perform(fmt::format(R"({{"do":"record","file":"{}"}})", video));
+  ASSERT_TRUE(waitUntilRecorded(shown_));
+  EXPECT_EQ(shown_.error(), video + ": cannot write: the folder " + (folder_ / "none") + " does not exist");
 }
 
 TEST_F(Opener, ACancelledVideoLeavesNothing) {

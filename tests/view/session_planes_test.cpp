@@ -78,6 +78,10 @@ TEST_F(Comparison, WhatHasNoDifferenceIsTold) {
   perform(R"({"do":"compare"})");
   waitUntil([this] { return !error().empty(); });
   EXPECT_EQ(error(), "dominant_emitter: indices have no difference; compare another quantity");
+  EXPECT_FALSE(session->compares());
+  perform(R"({"do":"seek","time_s":1})");
+  settle();
+  EXPECT_EQ(session->report()["shown_s"], 1);
 }
 
 }  // namespace

@@ -167,6 +167,40 @@ TEST(SessionState, IsSavedAndShownAgain) {
   EXPECT_EQ(again->timeline().visible().end_s, 3);
 }
 
+TEST(SessionState, AnotherQuantityIsShownInColoursOfItsOwn) {
+  const StateFolder folder;
+  ViewOptions options = optionsFor(shippedScenario("quick.yaml"));
+  {
+    SessionSample shown(options);
+    ASSERT_TRUE(shown.settle());
+    options.view = shown->viewState();
+  }
+  ASSERT_TRUE(options.view.transfer);
+  SessionSample shown(options);
+  ASSERT_TRUE(shown.settle());
+  shown.perform(R"({"do":"quantity","name":"snr_db"})");
+  ASSERT_TRUE(shown.settle());
+  EXPECT_EQ(shown.error(), "");
+  EXPECT_EQ(shown->picture()->transfer.unit, "dB");
+}
+
+TEST(SessionState, WritesFilesOnlyUnderNamesOfTheirKind) {
+  const StateFolder folder;
+  SessionSample shown(optionsFor(shippedScenario("quick.yaml")));
+  ASSERT_TRUE(shown.settle());
+  const auto fault = [&](const std::string& verb, const std::string& name) {
+    return shown.perform(fmt::format(R"({{"do":"{}","file":"{}"}})", verb, name));
+  };
+  EXPECT_EQ(fault("picture", "p.jpg"), "p.jpg: must end in .png");
+  EXPECT_EQ(fault("screenshot", "s"), "s: must end in .png");
+  EXPECT_EQ(fault("save", "s.vdb"), "s.vdb: must end in .yaml or .yml or .json");
+  EXPECT_EQ(fault("save_transfer", "t.png"), "t.png: must end in .json");
+  EXPECT_EQ(fault("save_state", "a.txt"), "a.txt: must end in .json");
+  ASSERT_TRUE(shown.settle());
+  for (const char* name : {"p.jpg", "s", "s.vdb", "t.png", "a.txt"})
+    EXPECT_FALSE(std::filesystem::exists(name));
+}
+
 TEST(SessionState, AViewThatCannotBeWrittenIsTold) {
   const StateFolder folder;
   SessionSample shown(optionsFor(shippedScenario("quick.yaml")));

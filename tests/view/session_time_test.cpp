@@ -12,6 +12,8 @@ class SessionTime : public SessionTest {};
 TEST_F(SessionTime, StepsRatesAndTheirFaults) {
   perform(R"({"do":"step","steps":2})");
   EXPECT_EQ(session->timeline().step_s(), 2);
+  perform(R"({"do":"step","steps":0.5})");
+  EXPECT_EQ(error(), "step: steps is 0.5: expected a whole number");
   perform(R"({"do":"step","steps":-1e300})");
   EXPECT_EQ(session->timeline().step_s(), 0);
   perform(R"({"do":"last"})");

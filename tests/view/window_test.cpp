@@ -322,6 +322,54 @@ TEST_F(Window, RestoresEditsAfterAKill) {
             0);
 }
 
+TEST_F(Window, ASignalEndsARecordingAndKeepsEdits) {
+  const std::string films = folder_ / "films";
+  std::filesystem::create_directory(films);
+  RunningProgram program(viewOf(quick(), R"({"do":"wait_state","state":"exact"}
+{"do":"set","path":"emitters.radar.power_w","value":"500"}
+{"do":"wait_state","state":"exact"}
+{"do":"record","file":")" + films + R"(/film.mp4","step_s":0.001}
+{"do":"wait_s","seconds":1}
+{"do":"mark","text":"recording"}
+{"do":"wait_s","seconds":60}
+)"),
+                         environment());
+  for (int i = 0; i < 600 && log("mark").empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  ASSERT_EQ(log("mark").size(), 1U);
+  program.signal(SIGTERM);
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.status, 128 + SIGTERM);
+  EXPECT_THAT(result.err, HasSubstr("emscape-view: stopped by signal 15\n"));
+  EXPECT_TRUE(std::filesystem::is_empty(films));
+  EXPECT_EQ(log("end").size(), 1U);
+  EXPECT_EQ(runScript(R"({"do":"wait_state","state":"exact"}
+{"do":"expect","key":"kept","op":"==","value":true}
+{"do":"discard"}
+{"do":"quit"}
+)")
+                .status,
+            0);
+}
+
+TEST_F(Window, ALostDisplayEndsItWithTheStatusOfNone) {
+  RunningProgram program(viewOf(quick(), R"({"do":"wait_state","state":"exact"}
+{"do":"mark","text":"open"}
+{"do":"wait_s","seconds":60}
+)"),
+                         environment());
+  for (int i = 0; i < 600 && log("mark").empty(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  }
+  ASSERT_EQ(log("mark").size(), 1U);
+  display_.reset();
+  const ProgramResult result = program.wait();
+  EXPECT_EQ(result.status, 4);
+  EXPECT_EQ(result.err.substr(result.err.find("emscape-view: error")),
+            "emscape-view: error: the connection to the display is lost\n");
+}
+
 TEST_F(Window, BrowsesAndOpensAnotherInput) {
   const std::string inputs = folder_ / "inputs";
   std::filesystem::create_directory(inputs);

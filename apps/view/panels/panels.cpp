@@ -194,8 +194,12 @@ void drawStatusBar(PanelContext& context, const Area& area) {
                                                                              status.asked_s, status.shown_s);
     const float right_x = area.width - ImGui::CalcTextSize(right.c_str()).x - 12 * s;
     const float room = right_x - ImGui::GetCursorPosX() - 12 * s;
-    ImGui::TextUnformatted(statusText(session, room).c_str());
-    ImGui::SameLine(std::max(ImGui::GetCursorPosX(), right_x));
+    const std::string left = statusText(session, room);
+    if (ImGui::CalcTextSize(left.c_str()).x <= room) {
+      ImGui::TextUnformatted(left.c_str());
+      ImGui::SameLine();
+    }
+    ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), right_x));
     if (status.shown_s == status.asked_s) {
       ImGui::TextUnformatted(right.c_str());
     } else {

@@ -8,8 +8,8 @@
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/parameter_rows.h"
 #include "apps/view/panels/theme.h"
+#include "apps/view/session/shown_quantity.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/quantities.h"
 
 namespace emscape::view {
 namespace {
@@ -99,27 +99,6 @@ void drawSwitch(PanelContext& context, ParameterRows& rows, const PanelState& st
           {"value", on ? std::string("null") : fmt::format("[[{:g}, {:g}]]", never_s, never_s + 1)}}});
   }
   ParameterRows::end();
-}
-
-/// Names for the verb `quantity`: channels, if a quantity has several.
-std::vector<std::string> quantitiesOf(const scenario::Scenario& scenario) {
-  std::vector<std::string> parts{""};
-  if (scenario.output.combine == scenario::CombineMode::per_emitter) {
-    parts.clear();
-    for (const scenario::Emitter& emitter : scenario.emitters) parts.push_back(":" + emitter.name);
-  } else if (scenario.output.combine == scenario::CombineMode::per_band) {
-    parts.clear();
-    for (const scenario::Band& band : scenario.bands) parts.push_back(":" + band.name);
-  }
-  std::vector<std::string> names = scenario.output.quantities;
-  for (const scenario::QuantityInfo& info : scenario::quantityTable()) {
-    if (std::find(names.begin(), names.end(), info.name) == names.end()) names.emplace_back(info.name);
-  }
-  std::vector<std::string> all;
-  for (const std::string& name : names) {
-    for (const std::string& part : parts) all.push_back(name + part);
-  }
-  return all;
 }
 
 void drawQuantity(PanelContext& context, ParameterRows& rows, const scenario::Scenario& scenario) {

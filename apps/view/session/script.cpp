@@ -7,6 +7,7 @@
 #include <map>
 #include <sstream>
 
+#include "apps/view/session/input_queue.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 
@@ -82,7 +83,7 @@ Script::Script(const std::string& file) {
         if (!object["at_s"].is_number()) throw Error(ErrorCode::bad_input, "at_s: expected a number");
         lines_.back().at_s = object["at_s"].get<double>();
       }
-      if (lines_.back().command.verb == "key") parseChord(lines_.back().command.text("key"));
+      if (lines_.back().command.verb == "key") eventsOf(parseChord(lines_.back().command.text("key")));
     } catch (const Error& error) {
       throw Error(ErrorCode::bad_input, location, error.message());
     }

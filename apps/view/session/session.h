@@ -172,6 +172,10 @@ class Session {
 
   void switchPlanes(const Command& command);
   void changePlane(const Command& command);
+  void showQuantity(const std::string& name);
+  void takeBackRefused();
+  /// The scenario that the field is computed from; null for volumes.
+  playback::ScenarioPtr computedScenario() const { return options_.scenario.empty() ? scenario() : nullptr; }
   void browse(FileBrowser::Purpose purpose);
   void ask(OpenRequest request);
   /// @throws Error (bad_input) if nothing is open
@@ -255,6 +259,10 @@ class Session {
   playback::EditQueue edit_queue_;
   playback::ScenarioPtr shown_scenario_;  // the scenario of the live view
   std::string shown_quantity_;            // the same
+  struct {
+    std::string quantity;
+    bool compares = false;
+  } last_shown_;  // requests of the last computed field
   std::optional<Rejection> rejection_;
   Prober prober_;
   UndoOrder undo_order_;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "apps/view/session/file_endings.h"
 #include "apps/view/session/recent_files.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
@@ -198,7 +199,10 @@ std::vector<Verb> Session::fileVerbs() {
       {"save",
        {{"file", kText, false}},
        "Writes the changed scenario; default: NAME.edited.yaml next to the input",
-       [](Session& session, const Command& command) { session.saveScenario(command.text("file"), false); }},
+       [](Session& session, const Command& command) {
+         requireEnding(command.text("file"), kScenarioEndings);
+         session.saveScenario(command.text("file"), false);
+       }},
       {"restore",
        {},
        "Shows the view with its edits that was kept when the program did not exit normally",

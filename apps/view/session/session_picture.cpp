@@ -3,11 +3,43 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 #include "apps/view/session/session.h"
+#include "apps/view/session/shown_quantity.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
+
+/// @throws Error (bad_input) for a quantity that the scenario does not have
+void Session::showQuantity(const std::string& name) {
+  if (const playback::ScenarioPtr computed = computedScenario()) {
+    const std::string missing = missingQuantity(*computed, name);
+    if (!missing.empty()) throw Error(ErrorCode::bad_input, missing);
+    shown_quantity_ = name.empty() ? computed->output.quantities.front() : name;
+  }
+  quantity_ = name;
+  takes_colors_ = true;
+  live_.setQuantity(name);
+}
+
+/// Returns from a quantity or comparison that cannot be shown to those of the last field.
+void Session::takeBackRefused() {
+  if (!status_.failed) {
+    if (picture_ && !status_.computing) last_shown_ = {quantity_, compares_};
+    return;
+  }
+  if (last_shown_.quantity == quantity_ && last_shown_.compares == compares_) return;
+  if (quantity_ != last_shown_.quantity) live_.setQuantity(last_shown_.quantity);
+  if (compares_ != last_shown_.compares) live_.setComparison(last_shown_.compares);
+  quantity_ = last_shown_.quantity;
+  compares_ = last_shown_.compares;
+  if (const playback::ScenarioPtr computed = computedScenario()) {
+    shown_quantity_ = quantity_.empty() ? computed->output.quantities.front() : quantity_;
+  }
+  takes_colors_ = true;
+  status_ = live_.status();
+}
 
 std::vector<Verb> Session::pictureVerbs() {
   return {
@@ -64,12 +96,7 @@ std::vector<Verb> Session::pictureVerbs() {
       {"quantity",
        {{"name", kText}},
        "Shows another quantity",
-       [](Session& session, const Command& command) {
-         session.quantity_ = command.text("name");
-         session.shown_quantity_ = session.quantity_;
-         session.takes_colors_ = true;
-         session.live_.setQuantity(session.quantity_);
-       }},
+       [](Session& session, const Command& command) { session.showQuantity(command.text("name")); }},
       {"pattern",
        {{"pattern", kText, false}},
        "auto or a pattern of rays; without a name the next one",

@@ -25,6 +25,7 @@ void Session::record(const RecordRange& range, const std::string& output) {
   job.selection.times = recordTimes(range);
   job.style = playback::pictureStyleOf(view);
   job.style.cells = options_.cells;
+  job.style.must_show_isosurface = false;
   job.target = target_;
   job.frames_per_s = range.frames_per_s;
   job.output = output;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "apps/view/session/session.h"
+#include "apps/view/session/shown_quantity.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/parameters.h"
 
@@ -109,12 +110,18 @@ void Session::showScenario() {
   shown_scenario_ = edits_->scenario();
   watchFiles();
   timeline_.setScenario(*shown_scenario_);
-  live_.setScenario(shown_scenario_);
+  if (!computedScenario()) return live_.setScenario(shown_scenario_);
   // Without a choice by the user the scenario's first quantity is shown, as in `render`.
-  const std::string quantity = quantity_.empty() ? shown_scenario_->output.quantities.front() : quantity_;
-  if (std::exchange(shown_quantity_, quantity) == quantity) return;
+  const std::string& first = shown_scenario_->output.quantities.front();
+  const std::string missing = missingQuantity(*shown_scenario_, quantity_);
+  if (!missing.empty()) {
+    tell(fmt::format("{}; {} is shown instead", missing, first), true);
+    quantity_.clear();
+  }
+  const std::string quantity = quantity_.empty() ? first : quantity_;
+  if (std::exchange(shown_quantity_, quantity) == quantity) return live_.setScenario(shown_scenario_);
   takes_colors_ = true;
-  live_.setQuantity(quantity);
+  live_.setScenario(shown_scenario_, quantity);
 }
 
 std::vector<Verb> Session::scenarioVerbs() {

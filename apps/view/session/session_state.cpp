@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "apps/view/session/file_endings.h"
 #include "apps/view/session/render_command.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
@@ -148,7 +149,10 @@ std::vector<Verb> Session::stateVerbs() {
        {{"file", kText, false}},
        "Writes the view: camera, colours, time, edits and the rest; default: NAME.view.json next to the "
        "input",
-       [](Session& session, const Command& command) { session.saveView(command.text("file")); }},
+       [](Session& session, const Command& command) {
+         requireEnding(command.text("file"), kJsonEndings);
+         session.saveView(command.text("file"));
+       }},
       {"load_state",
        {{"file", kText, false}},
        "Shows the view of a file; without one: asks for it",
@@ -165,7 +169,8 @@ std::vector<Verb> Session::stateVerbs() {
        "new emscape-NNNN.png",
        [](Session& session, const Command& command) {
          session.requireInput();
-         session.picture_file_ = command.has("file") ? command.text("file") : newPictureName();
+         requireEnding(command.text("file"), kPictureEndings);
+         session.picture_file_ = command.text("file").empty() ? newPictureName() : command.text("file");
        }},
       {"copy_command",
        {},

@@ -29,8 +29,12 @@ std::vector<Verb> Session::timeVerbs() {
        "Moves by so many steps of the series, backwards if negative; pauses",
        [](Session& session, const Command& command) {
          constexpr double kMaxSteps = 1e9;
-         session.timeline_.stepBy(
-             static_cast<int>(std::clamp(command.number("steps"), -kMaxSteps, kMaxSteps)));
+         const double steps = command.number("steps");
+         if (steps != std::trunc(steps)) {
+           throw Error(ErrorCode::bad_input,
+                       fmt::format("step: steps is {:g}: expected a whole number", steps));
+         }
+         session.timeline_.stepBy(static_cast<int>(std::clamp(steps, -kMaxSteps, kMaxSteps)));
          session.askTime();
        }},
       {"seek",

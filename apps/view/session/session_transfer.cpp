@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "apps/view/session/file_endings.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 
@@ -190,7 +191,10 @@ std::vector<Verb> Session::transferVerbs() {
       {"save_transfer",
        {{"file", kText, false}},
        "Writes colours and opacities, for `--transfer`; default: NAME.transfer.json",
-       [](Session& session, const Command& command) { session.saveTransfer(command.text("file")); }},
+       [](Session& session, const Command& command) {
+         requireEnding(command.text("file"), kJsonEndings);
+         session.saveTransfer(command.text("file"));
+       }},
       {"reset_transfer",
        {},
        "Fits colours and opacities to the histogram of the step on screen",

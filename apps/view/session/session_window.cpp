@@ -1,6 +1,7 @@
 /// Verbs of the window.
 #include <fmt/format.h>
 
+#include "apps/view/session/file_endings.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 
@@ -72,7 +73,10 @@ std::vector<Verb> Session::windowVerbs() {
       {"screenshot",
        {{"file", kText, false}},
        "Writes the window as PNG; default: a new emscape-NNNN.png",
-       [](Session& session, const Command& command) { session.window_.screenshot(command.text("file")); }},
+       [](Session& session, const Command& command) {
+         requireEnding(command.text("file"), kPictureEndings);
+         session.window_.screenshot(command.text("file"));
+       }},
       {"back",
        {},
        "Closes what is open",

@@ -67,6 +67,7 @@ struct LiveStatus {
   double asked_s = 0;      ///< time of the last requested step
   double shown_s = 0;      ///< time of the picture's step
   bool computing = false;  ///< the last requested field is being computed
+  bool failed = false;     ///< the last requested field cannot be computed; the picture shows an earlier one
   bool searching = false;  ///< searchSeriesRange() is in progress
   std::optional<volume::ValueRange>
       series_range;               ///< result of the search; none before, and if there are no values
@@ -145,6 +146,8 @@ class LiveView {
   /// If a model refuses an input, the message is in status().error and the picture stays. @param scenario
   /// not null
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario);
+  /// setScenario() and setQuantity() in one request, for a scenario that does not have the present quantity.
+  void setScenario(std::shared_ptr<const scenario::Scenario> scenario, const std::string& quantity);
   /// Shows another quantity or channel; empty: the first. Colours are fitted again.
   void setQuantity(const std::string& quantity);
 

@@ -56,6 +56,8 @@ struct PictureStyle {
   bool show_terrain = true;
   bool show_emitters = true;
   CellStyle cells;
+  /// True: an isosurface that shows nothing of the first volume is an error; false: a warning.
+  bool must_show_isosurface = true;
 };
 
 /// Draws frames. Colours are fitted to the first frame; the camera is kept as long as frames have the same
@@ -74,8 +76,9 @@ class Painter {
   void setScene(const std::string& title, const LoadedScenario* scene);
   /// Sets the frame of the next pictures.
   /// @throws Error (bad_input) for the transfer file, after which nothing is changed; or if the isosurface
-  /// shows nothing of the first frame, which is set all the same. Error (usage) for settings that tetrahedra
-  /// do not have (render::checkCellSettings()), after which nothing is changed. Error (device)
+  /// shows nothing of the first frame (PictureStyle::must_show_isosurface), which is set all the same. Error
+  /// (usage) for settings that tetrahedra do not have (render::checkCellSettings()), after which nothing is
+  /// changed. Error (device)
   void setFrame(const Frame& frame);
   bool hasFrame() const { return frame_.has_value(); }
   /// Turns an orbiting camera to another azimuth. A frame must be set.

@@ -95,9 +95,11 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Checks that an isosurface can be visible in a volume or in its series.
-/// @throws Error (bad_input) that states the range of values: for indices, and for a value that is neither in
-/// the range of the volume nor in that of its series
+/// @return one line with the range of values if an isosurface cannot be visible in a volume or in its series:
+/// its value is neither in the range of the volume nor in that of its series; else empty
+/// @throws Error (bad_input) for indices
+std::string missingIsosurface(double value, const volume::DenseVolume& volume);
+/// The same. @throws Error (bad_input) with that line
 void checkIsoValue(double value, const volume::DenseVolume& volume);
 
 }  // namespace emscape::render
