@@ -1,11 +1,14 @@
 #include "playback/series_files.h"
 
+#include <optional>
 #include <regex>
 
+#include "emscape/base/error.h"
 #include "emscape/playback/series_writer.h"
 #include "emscape/volume/file.h"
 #include "emscape/volume/mesh_file.h"
 #include "playback/file_names.h"
+#include "playback/series_state.h"
 #include "volume/vti.h"
 
 namespace emscape::playback {
@@ -22,6 +25,18 @@ bool hasSidecar(const fs::path& file) {
 
 std::string sidecarOf(const std::string& name) {
   return name + ".json";
+}
+
+/// The name in the files of a folder's series; none without a readable description.
+std::optional<std::string> nameOfOld(const fs::path& folder) {
+  try {
+    const std::optional<SeriesState> state = readSeriesState(folder);
+    const Json scenario = state ? state->recipe.value("scenario", Json()) : Json();
+    if (scenario.is_string()) return fileNameOf(scenario.get<std::string>());
+  } catch (const Error&) {
+    // A damaged description is replaced, too.
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -125,14 +140,30 @@ void SeriesFiles::writeIndex(const std::vector<bool>& finished) const {
   volume::writePvd(folder_ / (name_ + ".pvd"), entries);
 }
 
+bool SeriesFiles::isReadWithSeries(const fs::path& file) const {
+  for (const volume::FileFormat& format : volume::fileFormats()) {
+    if (volume::isVolumeFile(file) && volume::formatOf(file).name == format.name) return true;
+    if (formats_.count(format.name) != 0) return false;
+  }
+  return volume::isMeshFile(file);
+}
+
 void SeriesFiles::removeOld() const {
-  // name_ has only letters, digits, '_' and '-', which need no escaping in a regular expression.
-  const std::regex ours(name_ + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|vtu|raw|nvdb\.json|raw\.json)|)" + name_ +
+  // The names have only letters, digits, '_' and '-', which need no escaping in a regular expression.
+  const std::string name = "(" + name_ + "|" + nameOfOld(folder_).value_or(name_) + ")";
+  const std::regex ours(name + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|vtu|raw|nvdb\.json|raw\.json)|)" + name +
                         R"(\.pvd|series\.json|series\.steps)");
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-    if (entry.is_regular_file() && std::regex_match(entry.path().filename().string(), ours))
+    if (!entry.is_regular_file()) continue;
+    if (std::regex_match(entry.path().filename().string(), ours)) {
       files.push_back(entry);
+    } else if (isReadWithSeries(entry)) {
+      throw Error(
+          ErrorCode::usage, {entry.path().string()},
+          "is not a file of the present series, and would be read with the new one; remove it, or use "
+          "another folder");
+    }
   }
   for (const fs::path& file : files) fs::remove(file);
 }

@@ -39,7 +39,10 @@ class SeriesFiles {
   /// Writes the list. @param finished  one per step
   void writeIndex(const std::vector<bool>& finished) const;
 
-  /// Removes the files of any series of this name, and its description, from the folder.
+  /// Removes the present series from the folder: its description, and the files with its name or the name of
+  /// this one.
+  /// @throws Error (usage) if a reader of the folder would take another volume as part of this series; then
+  /// nothing is removed
   void removeOld() const;
 
  private:
@@ -49,6 +52,9 @@ class SeriesFiles {
     std::vector<std::size_t> channels;
   };
   std::vector<VolumeFile> volumeFilesOf(int step) const;
+  /// True for a file that volume::seriesOf() of the folder returns besides, or instead of, files of this
+  /// series.
+  bool isReadWithSeries(const std::filesystem::path& file) const;
   void writeOnMesh(const std::string& name,
                    const std::vector<std::shared_ptr<const volume::DenseVolume>>& channels) const;
 

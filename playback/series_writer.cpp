@@ -28,7 +28,10 @@ std::vector<std::string> namesOf(const std::vector<emfield::Channel>& channels) 
 const fs::path& made(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error) throw Error(ErrorCode::other, {folder.string()}, "cannot make the folder: " + error.message());
+  if (error) {
+    throw Error(ErrorCode::other,
+                fmt::format("'{}': cannot make the folder: {}", folder.string(), error.message()));
+  }
   return folder;
 }
 

@@ -12,6 +12,7 @@
 #include "document/text_edit.h"
 #include "document/text_file.h"
 #include "emscape/base/error.h"
+#include "emscape/render/image.h"
 #include "render/transfer_format.h"
 
 namespace emscape::playback {
@@ -88,7 +89,9 @@ class ViewFormat {
          spec::optional("theme", spec::choice(kThemes), ""),
          spec::optional("show_terrain", boolean, ""),
          spec::optional("show_emitters", boolean, ""),
-         spec::optional("size", spec::listOf(spec::simple(ValueType::integer).from(1).to(32768), 2, 2), ""),
+         spec::optional(
+             "size", spec::listOf(spec::simple(ValueType::integer).from(1).to(render::kMaxImageSide), 2, 2),
+             ""),
          spec::optional("edits", spec::listOf(text(1), 0, kMaxItems), ""),
          spec::optional("compare", text(), ""),
          spec::optional("open_panels", spec::listOf(text(1), 0, kMaxItems), "")}};

@@ -15,8 +15,6 @@
 namespace emscape::render {
 namespace {
 
-constexpr int kMaxSide = 32768;
-
 /// PNG requires colours that are not premultiplied.
 std::vector<std::uint8_t> straightAlpha(const Image8& image) {
   std::vector<std::uint8_t> straight(image.rgba);
@@ -55,9 +53,9 @@ ImageSize parseImageSize(const std::string& text) {
   int used = 0;
   const bool whole = std::sscanf(text.c_str(), "%6dx%6d%n", &width, &height, &used) == 2 &&
                      static_cast<std::size_t>(used) == text.size();
-  if (!whole || width < 1 || height < 1 || width > kMaxSide || height > kMaxSide) {
+  if (!whole || width < 1 || height < 1 || width > kMaxImageSide || height > kMaxImageSide) {
     throw Error(ErrorCode::usage, "image size '" + text + "': expected WIDTHxHEIGHT, each 1.." +
-                                      std::to_string(kMaxSide) + " pixels, for example 1200x900");
+                                      std::to_string(kMaxImageSide) + " pixels, for example 1200x900");
   }
   return {width, height};
 }

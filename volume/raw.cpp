@@ -87,6 +87,9 @@ Described describe(const fs::path& path) {
 }
 
 Described describeDatFile(const fs::path& path) {
+  // A stream would wait for the other end of a pipe.
+  if (fs::exists(path) && !fs::is_regular_file(path))
+    throw Error(ErrorCode::bad_input, {path.string()}, "cannot read: it is not a regular file");
   std::ifstream stream(path, std::ios::binary);
   std::uint8_t head[6] = {};
   stream.read(reinterpret_cast<char*>(head), sizeof(head));

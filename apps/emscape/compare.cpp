@@ -16,6 +16,7 @@
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
 #include "apps/emscape/common/map_options.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/report/compare_report.h"
 #include "base/quantity_text.h"
@@ -102,6 +103,7 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
   study::ComparedScenario b{scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b,
                                                    scenario::ReadFor::chosen_times),
                             nullptr};
+  checkOutputs({{"--volume", command.volume}}, {}, {a.scenario, b.scenario});
   study::CompareRequest request;
   request.coverage = requestOf(command.maps, a.scenario->clock);
   request.areas = command.areas;
@@ -200,6 +202,10 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
 }
 
 int compare(const CompareCommand& command, const GlobalOptions& global) {
+  for (const std::string& read : {command.a, command.b}) {
+    if (!read.empty() && !std::filesystem::exists(read))
+      throw Error(ErrorCode::bad_input, {read, 0, 0}, "there is no such file or folder");
+  }
   const bool is_folder = std::filesystem::is_directory(command.a);
   if (!command.b.empty() && is_folder != std::filesystem::is_directory(command.b)) {
     throw Error(ErrorCode::usage,
@@ -217,6 +223,7 @@ int compare(const CompareCommand& command, const GlobalOptions& global) {
                   fmt::format("--output: {} is one of the folders to compare; give another", command.folder));
     }
   }
+  checkMapFolder(command.folder);
   return is_folder ? compareFolders(command, global) : compareScenarios(command, global);
 }
 

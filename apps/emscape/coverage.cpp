@@ -11,6 +11,7 @@
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
 #include "apps/emscape/common/map_options.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/target.h"
 #include "base/quantity_text.h"
 #include "emscape/base/log.h"
@@ -44,6 +45,7 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   const study::CoverageRequest request = requestOf(command.maps, scenario->clock);
   study::checkRequest(request, *scenario);
+  checkMapFolder(command.folder);
   const study::MapArea area = areaOf(command.maps, *scenario);
   const auto grid = gridOf(command.maps, *scenario, area);
   const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);

@@ -10,6 +10,7 @@
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/report/exposure_report.h"
@@ -57,6 +58,7 @@ int exposure(const ExposureCommand& command, const GlobalOptions& global) {
   const render::ImageSize size = render::parseImageSize(command.size);
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
+  checkOutputs(outputsOf("--output", command.outputs), {}, {scenario});
   const study::ExposureRequest request = requestOf(command, *scenario);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const ProgressSink show = progressSink(global);

@@ -9,6 +9,7 @@
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/report/link_plot.h"
 #include "apps/emscape/report/link_report.h"
@@ -31,30 +32,20 @@ struct LinkCommand {
   std::string size = "1400x800";
 };
 
-/// Indices of the named items; all items if no names are given.
-/// @throws Error (usage) that lists the existing names
-template <class Item>
-std::vector<int> chosen(const std::vector<Item>& items, const std::vector<std::string>& names,
-                        const char* option, const char* kind, const std::string& file) {
-  std::vector<int> indices;
-  for (std::size_t i = 0; names.empty() && i < items.size(); ++i) indices.push_back(static_cast<int>(i));
-  for (const std::string& name : names) indices.push_back(namedIndex(items, name, option, kind, file));
-  return indices;
-}
-
 int link(const LinkCommand& command, const GlobalOptions& global) {
   NamedLinks links{command.scenario, scenario::loadScenario(command.scenario, command.edits), {}};
   const scenario::Scenario& scenario = *links.scenario;
+  checkOutputs({{"--csv", command.csv}, {"--plot", command.plot}}, {}, {links.scenario});
   emfield::LinkOptions options;
   options.times_s = command.times.empty() ? scenario::timesOf(scenario.clock)
                                           : scenario::parseTimes(command.times, scenario.clock);
-  options.emitters = chosen(scenario.emitters, command.emitters, "--emitter", "emitter", scenario.file);
+  options.emitters = namedIndices(scenario.emitters, command.emitters, "--emitter", "emitter", scenario.file);
   // Naming only receivers excludes the targets, and vice versa.
   if (!command.receivers.empty() || command.targets.empty())
-    options.receivers = chosen(scenario.placed_receivers, command.receivers, "--receiver",
-                               "receiver with a platform", scenario.file);
+    options.receivers = namedIndices(scenario.placed_receivers, command.receivers, "--receiver",
+                                     "receiver with a platform", scenario.file);
   if (!command.targets.empty() || command.receivers.empty())
-    options.targets = chosen(scenario.targets, command.targets, "--target", "target", scenario.file);
+    options.targets = namedIndices(scenario.targets, command.targets, "--target", "target", scenario.file);
   if (!command.model.empty()) options.model = propagation::modelNamed(command.model)->model;
 
   const scenario::TerrainPtr terrain = scenario::loadTerrain(scenario);
@@ -114,10 +105,11 @@ terrain and a scenario without receivers and targets.)");
   addSetOption(*command, options->edits);
   command->add_option("--times", options->times,
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
-  addListOption(*command, "--emitter", options->emitters, "Emitters, with commas between them; default: all");
-  addListOption(*command, "--receiver", options->receivers,
-                "Receivers; default: all, unless --target is given");
-  addListOption(*command, "--target", options->targets, "Targets; default: all, unless --receiver is given");
+  addNamesOption(*command, "--emitter", options->emitters,
+                 "Emitters, with commas between them, or the option again; default: all");
+  addNamesOption(*command, "--receiver", options->receivers,
+                 "Receivers; default: all, unless --target is given");
+  addNamesOption(*command, "--target", options->targets, "Targets; default: all, unless --receiver is given");
   command->add_option("--model", options->model, "Propagation model in place of the emitters' own")
       ->check(CLI::IsMember(names));
   command->add_option("--csv", options->csv, "Write all rows into a CSV file");

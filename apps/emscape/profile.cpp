@@ -8,6 +8,7 @@
 
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/report/profile_plot.h"
 #include "apps/emscape/report/profile_report.h"
@@ -110,6 +111,7 @@ ProfileReport makeReport(const ProfileOptions& options) {
   const auto scenario = withPoint(
       *scenario::loadScenario(options.scenario, options.edits, scenario::ReadFor::chosen_times), to);
   const int emitter = namedIndex(scenario->emitters, options.emitter, "--emitter", "emitter", scenario->file);
+  checkOutputs({{"--plot", options.plot}}, {}, {scenario});
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain.get(), options.time_s);
   const emfield::PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};

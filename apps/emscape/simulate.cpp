@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
@@ -59,6 +60,15 @@ playback::SeriesOptions seriesOptionsOf(const SimulateOptions& options) {
   return series;
 }
 
+/// @throws Error (usage) for a quantity that is given twice
+void checkQuantities(const SimulateOptions& options) {
+  std::set<std::string> given;
+  for (const std::string& quantity : options.quantities) {
+    if (!given.insert(quantity).second)
+      throw Error(ErrorCode::usage, fmt::format("--quantity: '{}' is given twice", quantity));
+  }
+}
+
 /// @throws Error (usage) if the folder contains a series and neither --resume nor --overwrite is given
 void checkFolderIsFree(const SimulateOptions& options) {
   if (options.resume || options.force) return;
@@ -90,6 +100,7 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
   playback::SeriesOptions series_options = seriesOptionsOf(options);
   std::optional<emfield::TerrainMeshSpec> mesh;
   if (!options.mesh.empty()) mesh = emfield::parseTerrainMesh(options.mesh);
+  checkQuantities(options);
   checkFolderIsFree(options);
   const playback::LoadedScenario input = playback::loadScenarioWithTerrain(options.scenario, options.edits);
   const std::vector<double> times_s = options.times.empty()

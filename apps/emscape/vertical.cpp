@@ -10,6 +10,7 @@
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/report/vertical_report.h"
@@ -67,6 +68,7 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
     study::checkVerticalPlot(size, command.azimuths_deg.size());
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
+  checkOutputs(outputsOf("--output", command.outputs), {}, {scenario});
   const study::VerticalRequest request = requestOf(command, *scenario);
   const scenario::Emitter& emitter = scenario->emitters[request.emitter];
   const scenario::TrackPoint site = scenario::pointAt(scenario->platforms[emitter.platform], command.time_s);

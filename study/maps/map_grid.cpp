@@ -171,7 +171,10 @@ Lattice latticeOf(const Projection& toEarth, const MapGrid& grid, bool is_polar 
     }
   }
   if (!toEarth(lattice.longitudes_deg, lattice.latitudes_deg)) {
-    throw Error(ErrorCode::usage, fmt::format("crs '{}' does not reach over the whole area", grid.crs));
+    throw Error(ErrorCode::usage,
+                fmt::format("crs '{}' does not reach over all pixels of {} m of the area: a smaller "
+                            "cell or another projection",
+                            grid.crs, grid.cell_m));
   }
   const auto isPolar = [](double latitude_deg) { return std::abs(latitude_deg) > kPolar_deg; };
   const std::vector<double>& latitudes_deg = lattice.latitudes_deg;
@@ -416,7 +419,7 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   if (!(count <= kMaxPixels)) {
     throw Error(
         ErrorCode::usage,
-        fmt::format("a map of {:.0f} x {:.0f} pixels of {} m has more than {:.0f}: a larger cell or a "
+        fmt::format("a map of {:.9g} x {:.9g} pixels of {} m has more than {:.0f}: a larger cell or a "
                     "smaller area",
                     end_column - first_column, end_row - first_row, cell_m, kMaxPixels));
   }

@@ -302,7 +302,8 @@ class VerticalPlot {
 render::ImageSize verticalPlotSize(std::size_t azimuths) {
   constexpr int kWidth_px = 1400, kHeight_px = 800;
   const double needed_px = kHeader_px + kUsualPanel_px * static_cast<double>(azimuths);
-  return {kWidth_px, std::max(kHeight_px, static_cast<int>(std::min(needed_px, 32768.0)))};
+  return {kWidth_px,
+          std::max(kHeight_px, static_cast<int>(std::min(needed_px, double{render::kMaxImageSide})))};
 }
 
 void checkVerticalPlot(render::ImageSize size, std::size_t azimuths) {

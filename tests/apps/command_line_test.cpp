@@ -92,6 +92,53 @@ TEST(CommandLine, AnOptionWithoutItsValueIsNamed) {
   EXPECT_THAT(errorOf({"--resume", "0"}), HasSubstr("unexpected argument '0'\n"));
 }
 
+TEST(CommandLine, AnEmptyValueIsRefusedAndNotTakenAsNotGiven) {
+  const TemporaryFolder folder;
+  const std::string scenario = shippedScenario("quick.yaml"), out = folder / "out";
+  const std::vector<std::pair<Arguments, std::string>> refused{
+      {{"simulate", scenario, "-o", out, "--compare", ""}, "--compare"},
+      {{"simulate", scenario, "-o", out, "--times", ""}, "--times"},
+      {{"simulate", scenario, "-o", out, "--range", ""}, "--range"},
+      {{"simulate", scenario, "-o", out, "--mesh", ""}, "--mesh"},
+      {{"simulate", scenario, "-o", ""}, "--output"},
+      {{"render", scenario, "-o", out, "--state", ""}, "--state"},
+      {{"render", scenario, "-o", out, "--iso-value", ""}, "--iso-value"},
+      {{"coverage", scenario, "-o", out, "--area", ""}, "--area"},
+      {{"coverage", scenario, "-o", out, "--cell", ""}, "--cell"},
+      {{"exposure", scenario, "--platform", "mast", "-o", out + ".csv", "--rcs-target", ""}, "--rcs-target"},
+      {{"profile", scenario, "--emitter", "radar", "--to", "52,5,100", "--time", ""}, "--time"},
+      {{"link", scenario, "--emitter", ""}, "--emitter"},
+      {{"info", ""}, "FILE"}};
+  for (const auto& [arguments, name] : refused) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, kUsage) << name;
+    EXPECT_THAT(result.err, StartsWith("emscape: error: " + name + ": the value is empty\n"));
+  }
+  EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(CommandLine, ValuesThatAreTooManyAreToldWithTheirNumber) {
+  const std::string scenario = shippedScenario("quick.yaml");
+  EXPECT_THAT(run({"simulate", scenario, "-o", "a", "-o", "b"}).err,
+              StartsWith("emscape: error: --output takes 1 value, not 2\n"));
+  EXPECT_THAT(
+      run({"vertical", scenario, "--emitter", "radar", "--azimuth", "0", "-o", "x.csv", "--grid", "5"}).err,
+      StartsWith("emscape: error: --grid takes 2 values, not 1\n"));
+  const ProgramResult twice =
+      run({"simulate", scenario, "-o", "a", "--quantity", "power_density_dbwm2,power_density_dbwm2"});
+  EXPECT_EQ(twice.status, kUsage);
+  EXPECT_THAT(twice.err, HasSubstr("--quantity: 'power_density_dbwm2' is given twice"));
+}
+
+TEST(CommandLine, NumbersOfAnyMagnitudeAreShort) {
+  const std::string scenario = shippedScenario("quick.yaml");
+  EXPECT_THAT(run({"simulate", scenario, "-o", "a", "--times", "0:4:1e-300"}).err,
+              HasSubstr("error: 4e+300 times are more than the allowed 10000000\n"));
+  EXPECT_LT(run({"coverage", scenario, "-o", "a", "--cell", "1e-300"}).err.size(), 200U);
+  EXPECT_THAT(run({"coverage", scenario, "-o", "a", "--cell", "1e9"}).err,
+              HasSubstr("does not reach over all pixels of 1000000000 m"));
+}
+
 TEST(CommandLine, MessagesThatCannotBeWrittenDoNotStopTheWork) {
   const TemporaryFolder folder;
   for (const std::string redirection : {"2>&-", "2>/dev/full", "<&- 2>&-"}) {
@@ -112,6 +159,9 @@ TEST(CommandLine, AResultThatCannotBeWrittenIsAnError) {
     EXPECT_EQ(statusOf(arguments + quick() + " >&- 2>/dev/null"), 1) << arguments;
   }
   EXPECT_EQ(statusOf("--help >/dev/full 2>/dev/null"), 1);
+  const TemporaryFolder folder;
+  EXPECT_EQ(statusOf("--version >/dev/full 2>" + (folder / "err")), 1);
+  EXPECT_THAT(readFile(folder / "err"), HasSubstr("cannot write the result: No space left on device"));
 }
 
 TEST(CommandLine, FaultsThatNeedNoFieldAreToldBeforeOneIsComputed) {

@@ -173,7 +173,9 @@ TEST(Compare, RefusesFoldersThatDoNotFit) {
               HasSubstr("has no map of covered at 100 m above ground, t = 80 s, which"));
   with("pictures", {"--format", "png"});
   EXPECT_THAT(errorOf("pictures", {}, 3), HasSubstr("has no GeoTIFFs"));
-  EXPECT_THAT(errorOf("none", {}, 2), HasSubstr("is a folder and"));
+  EXPECT_THAT(errorOf("none", {}, 3), HasSubstr("none: there is no such file or folder"));
+  folder.write("file", "");
+  EXPECT_THAT(errorOf("file", {}, 2), HasSubstr("is a folder and"));
   const std::string report = readFile(folder / "a/report.json");
   const ProgramResult onto_itself = run({"compare", folder / "a", folder / "a", "-o", folder / "a/."});
   EXPECT_EQ(onto_itself.status, 2);

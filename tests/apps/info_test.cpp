@@ -25,7 +25,14 @@ TEST(Info, EndsAtTheFirstSignalWhateverItReads) {
   const TemporaryFolder folder;
   const std::string pipe = folder / "never_written.tif";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  RunningProgram info({"info", pipe});
+  // The pipe itself is refused.
+  const std::string list = folder.write(
+      "list.vrt",
+      "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><SRS>EPSG:4326</SRS>"
+      "<GeoTransform>5, 0.1, 0, 52, 0, -0.1</GeoTransform><VRTRasterBand dataType=\"Float32\" band=\"1\">"
+      "<SimpleSource><SourceFilename relativeToVRT=\"1\">never_written.tif</SourceFilename>"
+      "<SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>");
+  RunningProgram info({"info", list});
   int writer = -1;  // can be opened once the program reads
   for (int n = 0; n < 1000 && writer < 0; ++n) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -44,6 +44,29 @@ TEST(Link, HasTheKeysThatOthersRelyOn) {
   }
 }
 
+TEST(Link, ANameMayContainACommaAndIsTakenOnce) {
+  const TemporaryFolder folder;
+  std::string text = readFile(quick());
+  text.replace(text.find("name: transmitter"), 17, "name: \"a,b\"");
+  text +=
+      "receivers:\n  - {name: set, platform: radar site, gain_dbi: 0, noise_figure_db: 5, "
+      "center_frequency_hz: 100.0e6, bandwidth_hz: 1.0e5}\n";
+  const std::string file = folder.write("comma.yaml", text);
+  const auto linksOf = [&](const Arguments& more) {
+    Arguments arguments{"link", file, "--times", "0", "--receiver", "set", "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    return json::parse(result.out).at("links").size();
+  };
+  EXPECT_EQ(linksOf({"--emitter", "a,b"}), 1u);
+  EXPECT_EQ(linksOf({"--emitter", "radar", "--emitter", "a,b"}), linksOf({}));
+  EXPECT_EQ(linksOf({"--emitter", "a,b", "--emitter", "a,b"}), 1u);
+  const ProgramResult unknown = run({"link", file, "--emitter", "radar,b"});
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("--emitter: no emitter 'b' in"));
+}
+
 TEST(Link, ARowIsWhatProfileSaysOfThePath) {
   const ProgramResult result = run(links({"--json", "--emitter", "jammer", "--receiver", "handset"}));
   ASSERT_EQ(result.status, 0) << result.err;

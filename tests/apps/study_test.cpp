@@ -129,6 +129,26 @@ TEST(Study, AKilledProcessIsReplacedAndNothingIsLost) {
   expectSameResults(folder, "whole", "out");
 }
 
+TEST(Study, ASignalIsReportedOnceForAllProcesses) {
+  const TemporaryFolder folder;
+  RunningProgram running({"study", study(folder, 50), "-o", folder / "out", "--jobs", "2"});
+  pid_t program = 0;
+  for (int wait = 0; wait < 600 && program == 0; ++wait) {
+    usleep(10000);
+    for (const pid_t child : childrenOf(getpid())) {
+      if (childrenOf(child).size() == 2) program = child;
+    }
+  }
+  ASSERT_NE(program, 0);
+  usleep(300000);
+  running.signal(SIGINT);
+  const ProgramResult result = running.wait();
+  EXPECT_EQ(result.status, 128 + SIGINT);
+  EXPECT_EQ(result.err.find("stopped by signal"), result.err.find("stopped by signal 2; finished files"))
+      << result.err;
+  EXPECT_EQ(result.err.find("stopped by signal"), result.err.rfind("stopped by signal")) << result.err;
+}
+
 /// Number of times that each variant is in the journals of a folder.
 std::map<int, int> variantsInJournals(const std::filesystem::path& parts) {
   std::map<int, int> counts;

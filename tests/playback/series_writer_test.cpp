@@ -287,6 +287,33 @@ TEST_F(SeriesWriter, AFolderThatHoldsASeriesIsRefusedResumedOrReplaced) {
   EXPECT_THAT(names, ElementsAre("quick_0001.vdb", "series.json", "series.steps"));
 }
 
+TEST_F(SeriesWriter, ReplacingRemovesASeriesOfAnotherName) {
+  FieldSeries other = series(3, {{"name: quick", "name: other one"}});
+  writeSeries(other, into("s", {"vti", "raw"}));
+  writeFile(*this / "s/notes.txt", "mine");
+  writeFile(*this / "s/other_one_plan.json", "{}");
+  write(1, into("s", {"vdb"}, Existing::replace));
+  std::vector<std::string> names;
+  for (const auto& [name, content] : contents("s")) names.push_back(name);
+  EXPECT_THAT(names, ElementsAre("notes.txt", "other_one_plan.json", "quick_0001.vdb", "series.json",
+                                 "series.steps"));
+}
+
+TEST_F(SeriesWriter, ReplacingRefusesVolumesThatWouldBeReadWithTheSeries) {
+  write(2, into("s", {"vti"}));
+  const std::map<std::string, std::string> before = contents("s");
+  for (const char* name : {"mine.vti", "mine.vdb"}) {
+    writeFile(*this / "s/" + name, "");
+    EXPECT_THAT(errorOf([&] { write(1, into("s", {"vti"}, Existing::replace)); }),
+                AllOf(HasSubstr(name), HasSubstr("is not a file of the present series")));
+    fs::remove(*this / "s/" + name);
+    EXPECT_EQ(contents("s"), before) << "nothing is removed";
+  }
+  writeFile(*this / "s/mine.raw", "");  // readers of the folder take only .vti
+  write(1, into("s", {"vti"}, Existing::replace));
+  EXPECT_THAT(contents("s"), testing::Contains(testing::Key("mine.raw")));
+}
+
 TEST_F(SeriesWriter, AnotherElevationFileOfTheSameSizeIsNotTheSameSeries) {
   std::string heights(std::size_t{2} * 1201 * 1201,
                       '\0');  // a tile of SRTM: 16 bits a post, the high byte first

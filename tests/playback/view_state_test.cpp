@@ -181,7 +181,7 @@ TEST(ViewState, RefusalsSayWhereAndWhat) {
   EXPECT_EQ(refusalOf(head + "\"rat\": 1}"),
             "a.json:2:2: unknown key 'rat' of the view; did you mean 'rate'?");
   EXPECT_EQ(refusalOf(head + "\"size\": [0, 10]}"),
-            "a.json:2:11: item 1 of 'size' is 0, outside the allowed range 1 to 32768");
+            "a.json:2:11: item 1 of 'size' is 0, outside the allowed range 1 to 32767");
   EXPECT_EQ(refusalOf(head + "\"loop\": 1}"), "a.json:2:10: 'loop' must be true or false, not '1'");
   EXPECT_EQ(refusalOf(head + "\"play_range\": {\"begin_s\": 2, \"end_s\": 2}}"),
             "a.json:2:40: 'end_s' is 2, not above 'begin_s', 2");

@@ -34,6 +34,7 @@ TEST(Image, QuantisesToTheNearestLevelAndClamps) {
 TEST(Image, SizesAreParsedStrictly) {
   EXPECT_EQ(parseImageSize("1200x900"), (ImageSize{1200, 900}));
   EXPECT_EQ(parseImageSize("1x1"), (ImageSize{1, 1}));
+  EXPECT_EQ(parseImageSize("32767x1"), (ImageSize{32767, 1}));
   for (const char* bad : {"", "12", "x", "12x", "0x5", "5x-1", "12x12x12", "99999x2", "12 x12 "}) {
     EXPECT_THROW(parseImageSize(bad), Error) << bad;
   }

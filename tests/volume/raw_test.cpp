@@ -1,5 +1,7 @@
 #include "volume/raw.h"
 
+#include <sys/stat.h>
+
 #include "emscape/volume/statistics.h"
 #include "tests/volume/sample_volumes.h"
 
@@ -102,6 +104,12 @@ TEST(Dat, ReadsSizesAndVoxels) {
   EXPECT_EQ(volume.grid.dims, (Dims{2, 1, 1}));
   EXPECT_EQ(volume.values, (UnsetVector<float>{7, 512}));
   survivesDamage(folder / "a.dat", [&] { readDat(folder / "a.dat"); });
+}
+
+TEST(Dat, RefusesAPipeWithoutWaitingForIt) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(mkfifo((folder / "a.dat").c_str(), 0600), 0);
+  EXPECT_THAT(errorOf([&] { describeDat(folder / "a.dat"); }), HasSubstr("it is not a regular file"));
 }
 
 TEST(Raw, ReadsAScanOfTheSizeOfTheEngine) {

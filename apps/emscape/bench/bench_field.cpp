@@ -11,6 +11,7 @@
 #include "apps/emscape/bench/bench_statistics.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/study_options.h"
 #include "apps/emscape/common/target.h"
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
@@ -29,26 +30,6 @@ struct BenchFieldOptions {
   std::string device_volume = "float";
   std::vector<std::string> emitters;  ///< emitters that move and turn; empty: all
 };
-
-/// Indices of the emitters that an option names. @throws Error (usage) for an unknown name
-std::vector<std::size_t> chosenEmitters(const scenario::Scenario& scenario,
-                                        const std::vector<std::string>& names) {
-  std::vector<std::size_t> chosen;
-  std::string known;
-  for (const scenario::Emitter& emitter : scenario.emitters)
-    known += (known.empty() ? "'" : ", '") + emitter.name + "'";
-  for (const std::string& name : names) {
-    const auto found = std::find_if(scenario.emitters.begin(), scenario.emitters.end(),
-                                    [&](const scenario::Emitter& emitter) { return emitter.name == name; });
-    if (found == scenario.emitters.end()) {
-      throw Error(ErrorCode::usage,
-                  fmt::format("--emitters: no emitter '{}' in {}; it has {}", name, scenario.file, known));
-    }
-    chosen.push_back(static_cast<std::size_t>(found - scenario.emitters.begin()));
-  }
-  for (std::size_t e = 0; names.empty() && e < scenario.emitters.size(); ++e) chosen.push_back(e);
-  return chosen;
-}
 
 /// The medians of repeated updates of one kind.
 struct Measured {
@@ -133,7 +114,9 @@ class FieldBench {
 
 int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
   const playback::LoadedScenario input = playback::loadScenarioWithTerrain(options.scenario, options.edits);
-  const std::vector<std::size_t> chosen = chosenEmitters(*input.scenario, options.emitters);
+  const scenario::Scenario& scenario = *input.scenario;
+  const std::vector<int> chosen =
+      namedIndices(scenario.emitters, options.emitters, "--emitters", "emitter", scenario.file);
   const std::unique_ptr<FieldBench> opened =
       openOnTarget(global, options.device_volume, [&](const ComputeTarget& target) {
         return std::make_unique<FieldBench>(input, options.repeats, target);
@@ -143,13 +126,13 @@ int benchField(const BenchFieldOptions& options, const GlobalOptions& global) {
   const double tolerance_m = bench.tolerance_m();
   constexpr double kTurn_rad = 0.1;
   const Measured moved = bench.measure([&](scenario::Snapshot& snapshot, int repeat) {
-    for (std::size_t e : chosen) move(snapshot.emitters[e], tolerance_m, repeat);
+    for (const int e : chosen) move(snapshot.emitters[e], tolerance_m, repeat);
   });
   const Measured one_moved = bench.measure([&](scenario::Snapshot& snapshot, int repeat) {
     move(snapshot.emitters[chosen.front()], tolerance_m, repeat);
   });
   const Measured turned = bench.measure([&](scenario::Snapshot& snapshot, int) {
-    for (std::size_t e : chosen) turn(snapshot.emitters[e], kTurn_rad);
+    for (const int e : chosen) turn(snapshot.emitters[e], kTurn_rad);
   });
 
   const Dims dims = bench.solver().grid().dims;
@@ -235,8 +218,9 @@ Example:
   addSetOption(*command, options->edits);
   command->add_option("--repeats", options->repeats, "Updates of each kind; the median is reported")
       ->check(CLI::Range(1, 1000));
-  addListOption(*command, "--emitters", options->emitters,
-                "Names of the emitters that move and turn, with commas between them; default: all");
+  addNamesOption(*command, "--emitters", options->emitters,
+                 "Names of the emitters that move and turn, with commas between them, or the option again; "
+                 "default: all");
   addDeviceVolumeOption(*command, options->device_volume);
   command->callback(
       [options, &global, &action] { action = [options, &global] { return benchField(*options, global); }; });

@@ -31,6 +31,13 @@ inline CLI::Option* addListOption(CLI::App& command, const std::string& name,
   return command.add_option(name, values, description)->delimiter(',')->allow_extra_args(false);
 }
 
+/// Adds an option with names of a scenario's items: separated by commas, and it may be given several times,
+/// for names that contain a comma; see namedIndices().
+inline CLI::Option* addNamesOption(CLI::App& command, const std::string& name,
+                                   std::vector<std::string>& values, const std::string& description) {
+  return command.add_option(name, values, description)->allow_extra_args(false);
+}
+
 /// The check of an option that is a setting of pictures.
 inline CLI::Range within(const render::SettingLimits& limits) {
   return {limits.min, limits.max};

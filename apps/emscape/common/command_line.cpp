@@ -2,11 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <exception>
 #include <new>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "apps/emscape/common/command.h"
@@ -123,6 +125,14 @@ std::string plainMessage(const CLI::App& app, const std::string& message) {
   const std::size_t colon = message.find(": ");
   if (!startsWith(message, "--") || colon == std::string::npos) return message;
   const std::string name = message.substr(0, colon), rest = message.substr(colon + 2);
+  const std::string received = " required but received ";
+  if (const std::size_t at = rest.find(received);
+      at != std::string::npos && (startsWith(rest, "At Most ") || startsWith(rest, "At least "))) {
+    const std::size_t number = rest.rfind(' ', at - 1) + 1;
+    const std::string allowed = rest.substr(number, at - number);
+    return fmt::format("{} takes {} value{}, not {}", name, allowed, allowed == "1" ? "" : "s",
+                       rest.substr(at + received.size()));
+  }
   const std::string in_range = " not in range ", to = " to ", in_names = " not in {";
   const std::size_t range = rest.rfind(in_range), names = rest.rfind(in_names);
   if (startsWith(rest, "1 required ") && rest.rfind(" missing") == rest.size() - 8)
@@ -170,11 +180,15 @@ std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
   return plainMessage(*last, error.what());
 }
 
-/// Rejects missing values, and 'nan' and 'inf', which CLI11 accepts as numbers.
+/// Rejects missing values, empty ones, which CLI11 takes as 0 or as none, and 'nan' and 'inf', which it
+/// accepts as numbers.
 /// @throws CLI::ValidationError naming the first such option of the program or its subcommands
 void checkValues(const CLI::App& app) {
   if (const auto missing = missingValue(app)) throw CLI::ValidationError(*missing);
   for (const CLI::Option* option : app.get_options()) {
+    const auto is_empty = [](const std::string& text) { return text.empty(); };
+    if (std::any_of(option->results().begin(), option->results().end(), is_empty))
+      throw CLI::ValidationError(option->get_name(), "the value is empty");
     if (option->get_type_name().rfind("FLOAT", 0) != 0) continue;
     for (const std::string& text : option->results()) {
       double value = 0;
@@ -192,7 +206,10 @@ int parse(CLI::App& app, int argc, char** argv) {
     checkValues(app);
     return -1;
   } catch (const CLI::Success& help) {
-    return app.exit(help);
+    std::ostringstream text;
+    app.exit(help, text, text);
+    printResult(text.str());
+    return 0;
   } catch (const CLI::ParseError& error) {
     printMessage("emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n",
                  messageOf(app, error));
@@ -259,7 +276,8 @@ int runCommandLine(int argc, char** argv) {
     if (const int status = parse(line.app, argc, argv); status >= 0) return status;
     installLog(line.global);
     setThreadLimit(line.global.threads);
-    std::signal(SIGPIPE, SIG_IGN);  // a closed pipe is reported as an error of the write
+    // A closed pipe and the limit of a file's size are reported as errors of the write.
+    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
     catchInterrupts();
     return line.action();
   });

@@ -35,14 +35,16 @@ void catchSignal(int signal) {
   if (sigaction(signal, nullptr, &before) != 0 || before.sa_handler == SIG_IGN) return;
   struct sigaction action {};
   action.sa_handler = onSignal;
-  action.sa_flags = SA_RESTART | static_cast<int>(SA_RESETHAND);
+  action.sa_flags = SA_RESTART;
+  // SIGXCPU is repeated each second; the limit's maximum ends the program.
+  if (signal != SIGXCPU) action.sa_flags |= static_cast<int>(SA_RESETHAND);
   sigaction(signal, &action, nullptr);
 }
 
 }  // namespace
 
 void catchInterrupts() {
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) catchSignal(signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) catchSignal(signal);
 }
 
 void endAtInterrupts() {

@@ -1,12 +1,13 @@
-/// Orderly shutdown on SIGINT, SIGTERM and SIGHUP.
+/// Orderly shutdown on SIGINT, SIGTERM, SIGHUP and SIGXCPU.
 #pragma once
 
 #include "emscape/playback/stop.h"
 
 namespace emscape::app {
 
-/// Makes the first SIGINT, SIGTERM or SIGHUP set stopFlag(); a second one ends the program at once. A signal
-/// that is ignored at the start stays ignored.
+/// Makes the first SIGINT, SIGTERM or SIGHUP set stopFlag(); a second one ends the program at once. So does
+/// SIGXCPU (the limit of processor time), which does not end the program when it is repeated. A signal that
+/// is ignored at the start stays ignored.
 void catchInterrupts();
 
 /// For commands that write no files and may spend a long time in a library's reader: from now on the first

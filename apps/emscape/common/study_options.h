@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,31 @@ int namedIndex(const std::vector<Item>& items, const std::string& name, const ch
   for (const Item& item : items) known += (known.empty() ? "'" : ", '") + item.name + "'";
   throw Error(ErrorCode::usage, fmt::format("{}: no {} '{}' in {}; it has {}", option, kind, name, file,
                                             known.empty() ? "none" : known));
+}
+
+/// Indices of the named items, each once; all items if no values are given.
+/// @param values  of addNamesOption(): a value that is a name is that name; any other one is a list
+/// @throws Error (usage) that lists the existing names
+template <class Item>
+std::vector<int> namedIndices(const std::vector<Item>& items, const std::vector<std::string>& values,
+                              const char* option, const char* kind, const std::string& file) {
+  std::vector<int> indices;
+  const auto add = [&](const std::string& name) {
+    const int index = namedIndex(items, name, option, kind, file);
+    if (std::find(indices.begin(), indices.end(), index) == indices.end()) indices.push_back(index);
+  };
+  for (std::size_t i = 0; values.empty() && i < items.size(); ++i) indices.push_back(static_cast<int>(i));
+  for (const std::string& value : values) {
+    const bool is_name =
+        std::any_of(items.begin(), items.end(), [&](const Item& item) { return item.name == value; });
+    std::istringstream list(value);
+    if (is_name) {
+      add(value);
+    } else {
+      for (std::string name; std::getline(list, name, ',');) add(name);
+    }
+  }
+  return indices;
 }
 
 /// Adds -o FILE.png|.svg|.csv|.json, which may be given several times.

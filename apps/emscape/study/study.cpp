@@ -10,6 +10,7 @@
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/study/study_jobs.h"
 #include "apps/emscape/study/study_parts.h"
 #include "apps/emscape/study/study_plan.h"
@@ -122,15 +123,20 @@ int mergeParts(const LoadedStudy& loaded, study::StudyFolder& folder, bool parti
   return 0;
 }
 
-/// Computes the parts whose numbers are read from standard input.
+/// Computes the parts whose numbers are read from standard input. The parent process reports that it was
+/// stopped.
 int work(const LoadedStudy& loaded, study::StudyFolder& folder, const GlobalOptions& global) {
-  PartComputer computer(loaded, folder, global);
-  for (int part; std::cin >> part;) {
-    computer.compute(part, {});
-    print("{}\n", part);
-    finishResult();
+  try {
+    PartComputer computer(loaded, folder, global);
+    for (int part; std::cin >> part;) {
+      computer.compute(part, {});
+      print("{}\n", part);
+      finishResult();
+    }
+    return 0;
+  } catch (const playback::Stopped&) {
+    return 128 + caughtSignal();
   }
-  return 0;
 }
 
 /// The files that --keep names; empty if it was not given.
@@ -164,6 +170,10 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
     const int parts =
         command.slurm.chunks > 0 ? command.slurm.chunks : study::usualParts(loaded.spec.variants.count());
     return showPlan(loaded, parts, command.jobs, watch.lap_ms() / 1000, global);
+  }
+  if (!command.slurm.script.empty()) {
+    checkOutputs(outputsOf("--slurm", {command.slurm.script, mergeScriptOf(command.slurm)}),
+                 {{"the study", command.study}}, {loaded.spec.base});
   }
   study::StudyFolder folder(command.folder, loaded.spec, loaded.plan, kVersion);
   const std::optional<int> planned = folder.partsOfManifest();

@@ -197,6 +197,10 @@ void computeInProcesses(const std::vector<int>& parts, int jobs, const std::vect
         const int code = WIFEXITED(status) && WEXITSTATUS(status) > 0 && WEXITSTATUS(status) < 6
                              ? WEXITSTATUS(status)
                              : static_cast<int>(ErrorCode::other);
+        if (WIFEXITED(status) && WEXITSTATUS(status) > 128) {
+          throw Error(ErrorCode::other, fmt::format("the process of part {} was stopped by signal {}", part,
+                                                    WEXITSTATUS(status) - 128));
+        }
         throw Error(static_cast<ErrorCode>(code),
                     fmt::format("the process of part {} failed; its message stands above", part));
       }

@@ -53,6 +53,10 @@ std::string submit(const std::string& command) {
 
 }  // namespace
 
+std::string mergeScriptOf(const SlurmOptions& options) {
+  return options.script + ".merge.sh";
+}
+
 int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& arguments, int parts,
                    const GlobalOptions& global) {
   static const std::regex kTime("([0-9]+-)?[0-9]{1,2}(:[0-9]{2}){0,2}");
@@ -69,7 +73,7 @@ int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& 
     }
     command += " " + shellWord(arguments[i]);
   }
-  const fs::path script = options.script, merge = script.string() + ".merge.sh";
+  const fs::path script = options.script, merge = mergeScriptOf(options);
   const std::string array = fmt::format("--array=1-{}%{}", parts, kTasksAtOnce);
   const std::string gpus = options.gpus > 0 ? fmt::format("#SBATCH --gpus-per-task={}\n", options.gpus) : "";
   writeScript(

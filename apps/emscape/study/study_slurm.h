@@ -16,8 +16,11 @@ struct SlurmOptions {
   bool submit = false;
 };
 
-/// Writes the script of a job array with one task per part, and next to it NAME.merge.sh, which merges them;
-/// both run in the current folder.
+/// The script that merges the parts: NAME.merge.sh.
+std::string mergeScriptOf(const SlurmOptions& options);
+
+/// Writes the script of a job array with one task per part, and mergeScriptOf(), which merges them; both run
+/// in the current folder.
 /// @param arguments  of a process that computes parts: study, FILE, -o, DIR, --worker, ...
 /// @return the exit status
 /// @throws Error (other)

@@ -29,7 +29,10 @@ struct ImageSize {
   EMSCAPE_HD bool operator!=(const ImageSize& o) const { return !(*this == o); }
 };
 
-/// Parses "WxH". @throws Error (usage) unless both are 1..32768
+/// Longest side of a picture (pixels): the limit of cairo, which draws texts.
+constexpr int kMaxImageSide = 32767;
+
+/// Parses "WxH". @throws Error (usage) unless both are 1..kMaxImageSide
 ImageSize parseImageSize(const std::string& text);
 
 /// A cast picture.

@@ -1,0 +1,79 @@
+#include "apps/emscape/common/output_files.h"
+
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "base/whole_file.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/scenario_file.h"
+
+namespace emscape::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isSame(const fs::path& a, const fs::path& b) {
+  std::error_code failed;
+  if (fs::exists(a, failed) && fs::exists(b, failed)) return fs::equivalent(a, b, failed);
+  // An absolute path, because weakly_canonical() leaves a name in the working folder relative.
+  return fs::weakly_canonical(fs::absolute(a, failed), failed) ==
+         fs::weakly_canonical(fs::absolute(b, failed), failed);
+}
+
+[[noreturn]] void refuse(const NamedFile& output, const std::string& what) {
+  throw Error(ErrorCode::usage, fmt::format("{}: {} is {}", output.name, output.file, what));
+}
+
+/// True for a report that this program wrote.
+bool isOwnReport(const fs::path& file) {
+  const std::string text = readWholeText(file);
+  if (file.extension() == ".html") return text.find("<p class=\"subtitle\">") != std::string::npos;
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  return json.is_object() && json.contains("emscape");
+}
+
+}  // namespace
+
+std::vector<NamedFile> outputsOf(const std::string& option, const std::vector<std::string>& files) {
+  std::vector<NamedFile> outputs;
+  for (const std::string& file : files) outputs.push_back({option, file});
+  return outputs;
+}
+
+void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
+                  const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const NamedFile& output = outputs[i];
+    if (output.file.empty()) continue;
+    for (std::size_t other = 0; other < i; ++other) {
+      if (!outputs[other].file.empty() && isSame(output.file, outputs[other].file))
+        refuse(output, "also the output of " + outputs[other].name);
+    }
+    if (!fs::is_regular_file(output.file)) continue;
+    for (const NamedFile& input : inputs) {
+      if (!input.file.empty() && isSame(output.file, input.file)) refuse(output, input.name);
+    }
+    for (const auto& scenario : scenarios) {
+      for (const std::string& file : scenario::filesOf(*scenario)) {
+        if (!file.empty() && isSame(output.file, file))
+          refuse(output, file == scenario->file ? "the scenario" : "a file that the scenario names");
+      }
+    }
+  }
+}
+
+void checkMapFolder(const fs::path& folder) {
+  for (const char* name : {"study.json", "report.json", "report.html"}) {
+    const fs::path file = folder / name;
+    if (fs::exists(file) && !isOwnReport(file)) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("--output: {} would be replaced, which is no report of emscape; use another "
+                              "folder",
+                              file.string()));
+    }
+  }
+}
+
+}  // namespace emscape::app

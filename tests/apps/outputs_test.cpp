@@ -1,0 +1,141 @@
+// Files that subcommands write: never an input or another output, and whole or not at all.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr int kOther = 1, kUsage = 2, kBadInput = 3;
+
+/// Copies of two scenarios with their files.
+class Outputs : public testing::Test {
+ protected:
+  Outputs() {
+    fs::create_directory(folder_ / "data");
+    for (const char* name : {"links.yaml", "quick.yaml", "data/drone.csv", "data/jammer_helicopter.csv",
+                             "data/jacksboro.tif", "data/helicopter_rcs.csv", "data/helicopter.csv"}) {
+      fs::copy_file(shippedScenario(name), folder_ / name);
+    }
+    links_ = folder_ / "links.yaml";
+    quick_ = folder_ / "quick.yaml";
+  }
+
+  /// Expects that arguments are refused with a message, and change no file.
+  void expectRefused(const Arguments& arguments, const std::string& message) {
+    const std::vector<std::string> files = folder_.files();
+    const std::string links = readFile(links_), quick = readFile(quick_),
+                      drone = readFile(folder_ / "data/drone.csv");
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, kUsage) << result.err;
+    EXPECT_THAT(result.err, HasSubstr("emscape: error: " + message));
+    EXPECT_EQ(folder_.files(), files);
+    EXPECT_EQ(readFile(links_), links);
+    EXPECT_EQ(readFile(quick_), quick);
+    EXPECT_EQ(readFile(folder_ / "data/drone.csv"), drone);
+  }
+
+  TemporaryFolder folder_;
+  std::string links_, quick_;
+};
+
+TEST_F(Outputs, AreNotTheScenarioOrAFileThatItNames) {
+  const std::string drone = folder_ / "data/drone.csv";
+  expectRefused({"link", links_, "--csv", links_}, "--csv: " + links_ + " is the scenario");
+  expectRefused({"link", links_, "--csv", drone}, "--csv: " + drone + " is a file that the scenario names");
+  expectRefused({"exposure", links_, "--platform", "drone", "-o", folder_ / "data/../data/drone.csv"},
+                "--output: " + (folder_ / "data/../data/drone.csv") + " is a file that the scenario names");
+  expectRefused({"render", quick_, "--times", "0", "--save-state", quick_},
+                "--save-state: " + quick_ + " is the input");
+  expectRefused({"render", links_, "--times", "0", "--save-state", drone},
+                "--save-state: " + drone + " is a file that the scenario names");
+  fs::create_symlink(links_, folder_ / "same.json");
+  expectRefused(
+      {"vertical", links_, "--emitter", "search radar", "--azimuth", "30", "-o", folder_ / "same.json"},
+      "--output: " + (folder_ / "same.json") + " is the scenario");
+  const std::string study =
+      folder_.write("study.yaml",
+                    "schema_version: 1\nscenario: quick.yaml\ntimes: 0\nsweep:\n  emitters.radar.power_w: "
+                    "{values: [1, 2]}\nmeasures:\n  - {name: covered, height: \"agl:300\"}\n");
+  expectRefused({"study", study, "-o", folder_ / "st", "--slurm", quick_},
+                "--slurm: " + quick_ + " is the scenario");
+  expectRefused({"study", study, "-o", folder_ / "st", "--slurm", study},
+                "--slurm: " + study + " is the study");
+}
+
+TEST_F(Outputs, AreDifferentFiles) {
+  const std::string picture = folder_ / "x.png";
+  expectRefused({"link", links_, "--csv", picture, "--plot", folder_ / "data/../x.png"},
+                "--plot: " + (folder_ / "data/../x.png") + " is also the output of --csv");
+  expectRefused({"render", quick_, "-o", picture, "--save-state", picture},
+                "--save-state: " + picture + " is also the output of --output");
+}
+
+TEST_F(Outputs, OfCoverageDoNotReplaceAUsersFile) {
+  folder_.write("study.json", "{\"schema_version\": 1}");
+  expectRefused({"coverage", quick_, "-o", folder_.path().string()},
+                "--output: " + (folder_ / "study.json") + " would be replaced");
+  const Arguments again{"coverage", quick_, "-o", folder_ / "maps", "--cell", "2000",
+                        "--format", "png",  "-q"};
+  EXPECT_EQ(run(again).status, 0);
+  const ProgramResult second = run(again);
+  EXPECT_EQ(second.status, 0) << second.err;
+}
+
+TEST_F(Outputs, BeyondTheLimitOfAFilesSizeAreAnErrorWithoutRemains) {
+  const std::vector<std::string> files = folder_.files();
+  const ProgramResult result =
+      run({"render", quick_, "--times", "0", "-o", folder_ / "x.png", "-q"}, "ulimit -f 20;");
+  EXPECT_EQ(result.status, kOther);
+  EXPECT_THAT(result.err, HasSubstr("x.png: cannot write: File too large"));
+  EXPECT_EQ(folder_.files(), files);
+}
+
+TEST_F(Outputs, AreWholeAtTheLimitOfProcessorTime) {
+  const ProgramResult result =
+      run({"simulate", longScenario(folder_, 100000), "-o", folder_ / "s"}, "ulimit -S -t 1;");
+  EXPECT_EQ(result.status, 128 + SIGXCPU);
+  EXPECT_THAT(result.err, HasSubstr("stopped by signal 24; finished files are kept"));
+  EXPECT_THAT(folder_.files(), Not(Contains(HasSubstr(".part-"))));
+}
+
+TEST_F(Outputs, ReplaceAForeignSeriesAsAWhole) {
+  const auto simulate = [&](const std::string& scenario, const std::string& times) {
+    const ProgramResult result = run({"simulate", scenario, "-o", folder_ / "s", "--times", times, "--set",
+                                      "region.dims=[8, 8, 2]", "--force", "-q"});
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  simulate(links_, "0:1");
+  simulate(quick_, "0:2");
+  EXPECT_THAT(run({"info", folder_ / "s"}).out, HasSubstr("steps: 3\n"));
+  EXPECT_THAT(folder_.files(), Not(Contains(HasSubstr("s/links"))));
+}
+
+TEST(Inputs, ThatArePipesAreRefused) {
+  const TemporaryFolder folder;
+  for (const char* name : {"f", "f.dat", "f.vti", "f.tif", "f.yaml", "f.csv"}) {
+    const std::string pipe = folder / name;
+    ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+    const ProgramResult info = run({"info", pipe});
+    EXPECT_EQ(info.status, kBadInput);
+    EXPECT_EQ(info.err, "emscape: error: " + pipe + ": cannot read: it is not a regular file\n");
+  }
+  for (const char* name : {"f.dat", "f.vti", "f.yaml"}) {
+    const ProgramResult render = run({"render", folder / name, "-o", folder / "x.png", "-q"});
+    EXPECT_EQ(render.status, kBadInput);
+    EXPECT_THAT(render.err, HasSubstr("cannot read: it is not a regular file\n"));
+  }
+}
+
+}  // namespace
+}  // namespace emscape::test
