@@ -6,6 +6,8 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
+#include <charconv>
 #include <map>
 #include <set>
 #include <sstream>
@@ -27,12 +29,76 @@ struct FatalFault {
   std::string message;
 };
 
-/// Turns the parser's marks (line from 0, byte of the line) into positions.
+/// JSON escapes a character beyond U+FFFF as a pair of surrogates, "\ud83c\udf89", YAML as "\U0001f389".
+constexpr std::size_t kPairLength = 12, kEscapeLength = 10;
+
+/// The code unit of an escape "\uXXXX" that begins at a position; 0: there is none.
+unsigned escapedUnit(std::string_view text, std::size_t at) {
+  unsigned unit = 0;
+  const char* const begin = text.data() + at + 2;
+  const char* const end = begin + 4;
+  if (at + 6 > text.size() || text[at] != '\\' || text[at + 1] != 'u') return 0;
+  return std::from_chars(begin, end, unit, 16).ptr == end ? unit : 0;
+}
+
+/// The character that a pair of surrogate escapes stands for; 0: no pair begins at this position.
+unsigned escapedPair(std::string_view text, std::size_t at) {
+  const unsigned high = escapedUnit(text, at);
+  const unsigned low = high >= 0xD800 && high < 0xDC00 ? escapedUnit(text, at + kPairLength / 2) : 0;
+  return low >= 0xDC00 && low < 0xE000 ? 0x10000 + ((high - 0xD800) << 10) + (low - 0xDC00) : 0;
+}
+
+/// The text for the YAML parser.
+struct YamlText {
+  std::string text;
+  std::vector<std::size_t> pair_ends;  ///< of each escape that was a pair: its end in `text`
+
+  /// Position in the original text.
+  std::size_t originalOf(std::size_t at) const {
+    const auto pairs = std::upper_bound(pair_ends.begin(), pair_ends.end(), at) - pair_ends.begin();
+    return at + static_cast<std::size_t>(pairs) * (kPairLength - kEscapeLength);
+  }
+};
+
+/// Writes JSON's pairs of surrogate escapes as YAML needs them, in texts that begin as JSON does.
+YamlText yamlTextOf(const std::string& text) {
+  constexpr std::string_view kBlank = " \t\r\n", kBeforeValue = "{[,:";
+  const std::size_t first = text.find_first_not_of(kBlank);
+  const bool has_pairs = text.find("\\ud") != std::string::npos || text.find("\\uD") != std::string::npos;
+  if (!has_pairs || (text[first] != '{' && text[first] != '[' && text[first] != '"')) return {text, {}};
+  YamlText yaml;
+  char quote = '\0';  // of the text in quotes that has begun
+  char before = ',';  // last one that is not blank
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quote == '"' && c == '\\') {
+      if (const unsigned character = escapedPair(text, i)) {
+        yaml.text += fmt::format("\\U{:08x}", character);
+        yaml.pair_ends.push_back(yaml.text.size());
+        i += kPairLength - 1;
+      } else {
+        yaml.text += text.substr(i++, 2);
+      }
+      continue;
+    }
+    if (c == quote) {
+      quote = '\0';
+    } else if (quote == '\0' && (c == '"' || c == '\'') &&
+               kBeforeValue.find(before) != std::string_view::npos) {
+      quote = c;
+    }
+    if (kBlank.find(c) == std::string_view::npos) before = c;
+    yaml.text += c;
+  }
+  return yaml;
+}
+
+/// Turns the parser's marks (line from 0, byte of the line) into positions in the original text.
 class PositionFinder {
  public:
-  explicit PositionFinder(std::string_view text) : text_(text), line_begins_{0} {
-    for (std::size_t i = 0; i < text.size(); ++i) {
-      if (text[i] == '\n') line_begins_.push_back(i + 1);
+  PositionFinder(std::string_view text, const YamlText& yaml) : text_(text), yaml_(yaml), line_begins_{0} {
+    for (std::size_t i = 0; i < yaml.text.size(); ++i) {
+      if (yaml.text[i] == '\n') line_begins_.push_back(i + 1);
     }
   }
 
@@ -41,10 +107,10 @@ class PositionFinder {
     const std::size_t line = static_cast<std::size_t>(mark.line);
     if (line >= line_begins_.size()) return {mark.line + 1, 1, text_.size()};
     const std::size_t byte =
-        std::min(line_begins_[line] + static_cast<std::size_t>(mark.column), text_.size());
+        std::min(yaml_.originalOf(line_begins_[line] + static_cast<std::size_t>(mark.column)), text_.size());
     if (line != line_ || byte < byte_) {
       line_ = line;
-      byte_ = line_begins_[line];
+      byte_ = yaml_.originalOf(line_begins_[line]);
       column_ = 1;
     }
     column_ += static_cast<int>(characterCount(text_.substr(byte_, byte - byte_)));
@@ -54,7 +120,8 @@ class PositionFinder {
 
  private:
   std::string_view text_;
-  std::vector<std::size_t> line_begins_;
+  const YamlText& yaml_;
+  std::vector<std::size_t> line_begins_;  ///< in yaml_
   // The last position: the next one is usually after it, which saves time in a file with one long line.
   std::size_t line_ = 0, byte_ = 0;
   int column_ = 1;
@@ -62,8 +129,8 @@ class PositionFinder {
 
 class TreeBuilder : public YAML::EventHandler {
  public:
-  TreeBuilder(const std::string& file, const std::string& text, ProblemList& problems)
-      : file_(file), positions_(text), problems_(problems) {}
+  TreeBuilder(const std::string& file, const std::string& text, const YamlText& yaml, ProblemList& problems)
+      : file_(file), positions_(text, yaml), problems_(problems) {}
 
   TextPosition positionOf(const YAML::Mark& mark) { return positions_(mark); }
   DocumentNodePtr root() const { return root_; }
@@ -228,8 +295,9 @@ bool hasTabsAsIndentation(const std::string& file, const std::string& text, Prob
 
 DocumentNodePtr readDocument(const std::string& file, const std::string& text, ProblemList& problems) {
   if (hasTabsAsIndentation(file, text, problems)) return nullptr;
-  TreeBuilder builder(file, text, problems);
-  std::istringstream stream(text);
+  const YamlText yaml = yamlTextOf(text);
+  TreeBuilder builder(file, text, yaml, problems);
+  std::istringstream stream(yaml.text);
   const auto fail = [&](const TextPosition& position, const std::string& message) {
     problems.addError({file, position.line, position.column}, message);
     return nullptr;
@@ -240,7 +308,7 @@ DocumentNodePtr readDocument(const std::string& file, const std::string& text, P
       return fail({1, 1, 0}, "the file is empty");
     }
     const DocumentNodePtr root = builder.root();
-    TreeBuilder second(file, text, problems);
+    TreeBuilder second(file, text, yaml, problems);
     if (parser.HandleNextDocument(second)) {
       return fail(second.root() ? second.root()->position : TextPosition{1, 1, 0},
                   "a second document begins here; the file must be one document");
@@ -249,7 +317,20 @@ DocumentNodePtr readDocument(const std::string& file, const std::string& text, P
   } catch (const FatalFault& fault) {
     return fail(fault.position, fault.message);
   } catch (const YAML::Exception& exception) {
-    return fail(builder.positionOf(exception.mark), "not valid YAML: " + exception.msg);
+    TextPosition position = builder.positionOf(exception.mark);
+    std::string reason = exception.msg;
+    if (reason.rfind(YAML::ErrorMsg::INVALID_UNICODE, 0) == 0) {
+      const std::size_t begin = text.rfind('\\', position.offset);  // the mark is at the escape's end
+      if (begin != std::string::npos) {
+        const std::string escape = text.substr(begin, position.offset - begin);
+        position.column -= static_cast<int>(escape.size());
+        position.offset = begin;
+        reason = escape + " is not a character";
+        if (escapedUnit(text, begin) != 0) reason += ", but one half of a surrogate pair";
+      }
+    }
+    const bool is_json = file.size() > 5 && file.compare(file.size() - 5, 5, ".json") == 0;
+    return fail(position, fmt::format("not valid {}: {}", is_json ? "JSON" : "YAML", reason));
   }
 }
 

@@ -87,6 +87,12 @@ ValueSpec ValueSpec::distinct() const {
   return spec;
 }
 
+ValueSpec ValueSpec::printable() const {
+  ValueSpec spec = *this;
+  spec.is_printable = true;
+  return spec;
+}
+
 ValueSpec ValueSpec::orWord(std::string word) const {
   ValueSpec spec = *this;
   spec.choices.push_back(std::move(word));

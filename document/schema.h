@@ -26,12 +26,14 @@ struct ValueSpec {
   std::shared_ptr<const ValueSpec> item;  ///< list
   int min_items = 0;                      ///< list; text, file: characters
   int max_items = 0;
+  bool is_printable = false;  ///< text: without control characters (but tabs, line ends), noncharacters
   bool items_differ = false;  ///< list: no two items are equal; objects have different names
 
   ValueSpec from(double lowest) const;  ///< with this minimum
   ValueSpec above(double bound) const;  ///< with this minimum, excluded
   ValueSpec to(double highest) const;   ///< with this maximum
   ValueSpec distinct() const;           ///< with items_differ
+  ValueSpec printable() const;          ///< with is_printable
   /// A number, or this word instead.
   ValueSpec orWord(std::string word) const;
   /// A number, or these keys instead. Keeps a pointer to `fields`, which must outlive the table.

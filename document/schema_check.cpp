@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numeric>
 #include <set>
 
 #include "base/quantity_text.h"
 #include "base/utc.h"
+#include "base/utf8.h"
 #include "document/text_file.h"
 
 namespace emscape::document {
@@ -228,6 +230,15 @@ class Checker {
     } else if (spec.type == ValueType::timestamp) {
       if (!parseUtc_ms(node.text)) wrongType();
     } else {
+      const std::optional<char32_t> unprintable =
+          spec.is_printable ? firstUnprintable(node.text) : std::nullopt;
+      if (unprintable) {
+        const auto code_point = static_cast<std::uint32_t>(*unprintable);
+        fault(node.position,
+              fmt::format("{} contains U+{:04X}, {}", name, code_point,
+                          code_point < 0xA0 ? "a control character" : "which is no character"));
+        return;
+      }
       const auto length = static_cast<long long>(characterCount(node.text));
       if (length >= spec.min_items && length <= spec.max_items) return;
       fault(node.position, fmt::format("{} has {} characters, outside the allowed range {} to {}", name,

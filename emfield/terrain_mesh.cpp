@@ -19,6 +19,7 @@ namespace {
 
 constexpr int kMaxLayers = 4096;
 constexpr double kDefaultFirst_m = 5;
+constexpr double kMaxHeight_m = 100e3;  ///< above ground, of layers that need not end at the region's top
 
 [[noreturn]] void refuse(const std::string& text, const std::string& what) {
   throw Error(ErrorCode::usage,
@@ -135,6 +136,15 @@ std::vector<double> layerHeights_m(const TerrainMeshSpec& spec, double height_m)
   std::vector<double> heights_m;
   for (int n = 0; n <= spec.layers; ++n) heights_m.push_back(totalOf(n, first_m, ratio));
   if (!spec.ratio) heights_m.back() = height_m;
+  const double allowed_m = std::max(kMaxHeight_m, height_m);
+  if (!(heights_m.back() <= allowed_m)) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("mesh: {} layers (LAYERS), the first of {} m (FIRST_M), each {} times as thick as "
+                    "the one below it (RATIO), reach {:.6g} m above ground, outside the allowed "
+                    "range up to {:.10g} m",
+                    spec.layers, first_m, ratio, heights_m.back(), allowed_m));
+  }
   return heights_m;
 }
 

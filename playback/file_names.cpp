@@ -3,7 +3,16 @@
 #include <algorithm>
 #include <set>
 
+#include "document/text_file.h"
+
 namespace emscape::playback {
+namespace {
+
+/// So that two names, a step, an ending and the suffix of an unfinished file are shorter than the 255 bytes
+/// that file systems allow.
+constexpr std::size_t kMaxLength = 80;
+
+}  // namespace
 
 std::string fileNameOf(const std::string& name) {
   const auto isForeign = [](char c) {
@@ -12,6 +21,11 @@ std::string fileNameOf(const std::string& name) {
   };
   std::string result = name;
   std::replace_if(result.begin(), result.end(), isForeign, '_');
+  if (result.size() > kMaxLength) {
+    document::ContentHash hash;
+    hash.add(name);
+    result = result.substr(0, kMaxLength - 1 - hash.hex().size()) + "-" + hash.hex();
+  }
   return result;
 }
 

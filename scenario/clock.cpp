@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 
+#include "base/quantity_text.h"
 #include "base/utc.h"
 #include "emscape/base/error.h"
 
@@ -26,11 +29,35 @@ double secondsOf(const std::string& text, const std::string& whole) {
   return value;
 }
 
+/// As of the years 0001 to 9999, which parseUtc_ms() reads.
+constexpr const char* kFirstUtc = "0001-01-01T00:00:00.000Z";
+constexpr const char* kLastUtc = "9999-12-31T23:59:59.999Z";
+
+/// Why a time cannot be used; empty: it can.
+std::string timeFault(const Clock& clock, double t_s) {
+  if (!(std::abs(t_s) <= kMaxTime_s)) {
+    constexpr int kDigits = 12;  // limits are shown in full
+    return fmt::format("{} s is outside the allowed range {}", t_s,
+                       rangeText(-kMaxTime_s, kMaxTime_s, "s", kDigits));
+  }
+  if (!clock.epoch_utc.empty() && utcAt(clock, t_s).empty()) {
+    return fmt::format("{} s after the epoch, {}, is outside the allowed range {} to {}", t_s,
+                       clock.epoch_utc, kFirstUtc, kLastUtc);
+  }
+  return "";
+}
+
 }  // namespace
 
+void requireTime(const Clock& clock, double t_s) {
+  const std::string fault = timeFault(clock, t_s);
+  if (!fault.empty()) throw Error(ErrorCode::usage, "time " + fault);
+}
+
 std::vector<double> timesOf(double begin_s, double end_s, double step_s) {
-  if (!std::isfinite(begin_s) || !std::isfinite(end_s) || !(step_s > 0) || !std::isfinite(step_s) ||
-      end_s < begin_s) {
+  requireTime({}, begin_s);
+  requireTime({}, end_s);
+  if (!(step_s > 0) || !std::isfinite(step_s) || end_s < begin_s) {
     throw Error(ErrorCode::usage,
                 fmt::format("times from {} s to {} s in steps of {} s: the end must not be before "
                             "the beginning and the step must be above 0 s",
@@ -39,7 +66,8 @@ std::vector<double> timesOf(double begin_s, double end_s, double step_s) {
   // A step that reaches the end within rounding includes it.
   const double steps = std::floor((end_s - begin_s) / step_s * (1 + 1e-12) + 1e-9);
   if (steps >= kMaxTimes) {
-    throw Error(ErrorCode::usage, fmt::format("{} times are more than the allowed {}", steps + 1, kMaxTimes));
+    throw Error(ErrorCode::usage,
+                fmt::format("{:.9g} times are more than the allowed {}", steps + 1, kMaxTimes));
   }
   std::vector<double> times(static_cast<std::size_t>(steps) + 1);
   for (std::size_t i = 0; i < times.size(); ++i) times[i] = begin_s + static_cast<double>(i) * step_s;
@@ -57,10 +85,14 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock) {
     values.push_back(secondsOf(text.substr(begin, end - begin), text));
     begin = end + 1;
   }
-  if (values.size() == 1) return {values[0]};
   if (values.size() > 3) {
     throw Error(ErrorCode::usage, fmt::format("times '{}': write BEGIN:END:STEP, BEGIN:END or T", text));
   }
+  for (std::size_t i = 0; i < std::min<std::size_t>(values.size(), 2); ++i) {
+    const std::string fault = timeFault(clock, values[i]);
+    if (!fault.empty()) throw Error(ErrorCode::usage, fmt::format("times '{}': {}", text, fault));
+  }
+  if (values.size() == 1) return {values[0]};
   return timesOf(values[0], values[1], values.size() == 3 ? values[2] : clock.step_s);
 }
 
@@ -71,7 +103,11 @@ std::string utcAt(const Clock& clock, double t_s) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("epoch '{}' is not a UTC time such as 2026-06-01T06:00:00Z", clock.epoch_utc));
   }
-  return utcText(*epoch_ms + std::llround(t_s * 1000));
+  if (!(std::abs(t_s) <= kMaxTime_s)) return "";
+  static const std::int64_t first_ms = parseUtc_ms(kFirstUtc).value(),
+                            last_ms = parseUtc_ms(kLastUtc).value();
+  const std::int64_t time_ms = *epoch_ms + std::llround(t_s * 1000);
+  return time_ms < first_ms || time_ms > last_ms ? "" : utcText(time_ms);
 }
 
 }  // namespace emscape::scenario

@@ -14,6 +14,7 @@
 #include "propagation/air/sky_noise.h"
 #include "propagation/registry/model_info.h"
 #include "scenario/antenna/shapes.h"
+#include "scenario/antenna/tables.h"
 
 namespace emscape::scenario {
 
@@ -34,15 +35,24 @@ AntennaPtr makeAntenna(const Section& section, const ParseContext& context,
   const auto gainOr = [&](double formula_dbi) {
     return section.optionalNumber("gain_dbi").value_or(std::isnan(default_dbi) ? formula_dbi : default_dbi);
   };
+  const auto gainOfBeam = [&] {
+    const double formula_dbi = gainFromBeamwidths_dbi(azimuth_deg, elevation_deg);
+    if (!section.has("gain_dbi") && formula_dbi > kMaxGain_dbi) {
+      throw Error(
+          ErrorCode::bad_input,
+          fmt::format("beamwidths of {:g} deg by {:g} deg are those of a gain of {:.4g} dBi, above {:g} "
+                      "dBi; give wider ones, or 'gain_dbi'",
+                      azimuth_deg, elevation_deg, formula_dbi, kMaxGain_dbi));
+    }
+    return gainOr(formula_dbi);
+  };
   switch (section.choice<AntennaForm>("pattern")) {
     case AntennaForm::isotropic:
       return makeIsotropic(section.number("gain_dbi"));
     case AntennaForm::gaussian:
-      return makeGaussian(gainOr(gainFromBeamwidths_dbi(azimuth_deg, elevation_deg)), azimuth_deg,
-                          elevation_deg, side_lobe_db);
+      return makeGaussian(gainOfBeam(), azimuth_deg, elevation_deg, side_lobe_db);
     case AntennaForm::sinc:
-      return makeSinc(gainOr(gainFromBeamwidths_dbi(azimuth_deg, elevation_deg)), azimuth_deg, elevation_deg,
-                      side_lobe_db, taperOf(section));
+      return makeSinc(gainOfBeam(), azimuth_deg, elevation_deg, side_lobe_db, taperOf(section));
     case AntennaForm::cosecant2:
       return makeCosecant2(section.number("gain_dbi"), azimuth_deg, elevation_deg,
                            section.number("max_elevation_deg"), side_lobe_db);

@@ -38,7 +38,9 @@ class TrackReader {
     if (columns_.empty()) {
       fault(1, 1, "the track file is empty; it begins with " + header());
     } else if (faults_ == 0 && points_.size() < 2) {
-      fault(reader.lines(), 0, fmt::format("the track has {} rows; it needs at least 2", points_.size()));
+      fault(reader.lines(), 0,
+            fmt::format("the track has {} row{}; it needs at least 2", points_.size(),
+                        points_.size() == 1 ? "" : "s"));
     }
     return std::move(points_);
   }

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
+#include "base/utc.h"
 #include "base/whole_file.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
@@ -31,6 +33,14 @@ Clock parseClock(const Section& root, ParseContext& context) {
     context.problems.addError(root.locationOf("step_s"),
                               fmt::format("steps of {} s over {} s are more than the allowed {}",
                                           clock.step_s, clock.duration_s, kMaxSteps));
+  }
+  // A wrong epoch or duration has been reported already.
+  if (parseUtc_ms(clock.epoch_utc) && std::isfinite(clock.duration_s)) {
+    try {
+      requireTime(clock, clock.duration_s);
+    } catch (const Error& error) {
+      context.problems.addError(root.locationOf("epoch"), "the scenario's end: " + error.message());
+    }
   }
   return clock;
 }
@@ -78,9 +88,16 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
     if (known) continue;
     std::error_code failure;
     const std::uintmax_t size = std::filesystem::file_size(file, failure);
-    if (failure || !std::ifstream(file)) {
-      context.problems.addError(location, fmt::format("elevation file {}: {}", file,
-                                                      failure ? failure.message() : "cannot be read"));
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+    const bool is_other = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+                          !std::filesystem::is_directory(status);
+    errno = 0;
+    if (failure || is_other || !std::ifstream(file)) {
+      if (!failure) failure = std::error_code(errno, std::generic_category());
+      context.problems.addError(
+          location,
+          fmt::format("elevation file {}: {}", file, is_other ? "is not a regular file" : failure.message()));
       continue;
     }
     digest += fmt::format("{}:{}", names[i], size);

@@ -139,6 +139,7 @@ namespace {
 /// @param interval  in which emitters are active
 Snapshot snapshotOf(const std::shared_ptr<const Scenario>& scenario, const IntervalSpec& interval,
                     const Terrain* terrain, double t_s) {
+  requireTime(scenario->clock, t_s);
   Snapshot snapshot;
   snapshot.time_s = t_s;
   snapshot.time_utc = utcAt(scenario->clock, t_s);

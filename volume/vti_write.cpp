@@ -1,5 +1,6 @@
 #include <pugixml.hpp>
 
+#include "base/utf8.h"
 #include "base/whole_file.h"
 #include "emscape/base/parallel.h"
 #include "volume/stored_range.h"
@@ -83,7 +84,7 @@ void writeVti(const std::filesystem::path& path, const std::vector<const DenseVo
   pugi::xml_node piece = image.append_child("Piece");
   piece.append_attribute("Extent") = extentText(grid.dims).c_str();
   pugi::xml_node points = piece.append_child("PointData");
-  points.append_attribute("Scalars") = volumes.front()->info.quantity.c_str();
+  points.append_attribute("Scalars") = xmlCharacters(volumes.front()->info.quantity).c_str();
   AppendedArrays appended;
   for (const AppendedArray& array : arrays) appended.add(points, array);
   appended.write(path, document);

@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "base/utf8.h"
 #include "base/whole_file.h"
 #include "volume/stored_range.h"
 #include "volume/volume_json.h"
@@ -54,7 +55,7 @@ void appendFieldData(pugi::xml_node data_set, double time_s,
                             const std::string& text) {
     pugi::xml_node array = field.append_child(element);
     array.append_attribute("type") = type;
-    array.append_attribute("Name") = name.c_str();
+    array.append_attribute("Name") = xmlCharacters(name).c_str();
     array.append_attribute("NumberOfTuples") = 1;
     array.append_attribute("format") = "ascii";
     array.text() = text.c_str();
@@ -68,7 +69,7 @@ void appendFieldData(pugi::xml_node data_set, double time_s,
 void AppendedArrays::add(pugi::xml_node parent, const AppendedArray& array) {
   pugi::xml_node node = parent.append_child("DataArray");
   node.append_attribute("type") = array.type;
-  node.append_attribute("Name") = array.name.c_str();
+  node.append_attribute("Name") = xmlCharacters(array.name).c_str();
   if (array.components > 1) node.append_attribute("NumberOfComponents") = array.components;
   node.append_attribute("format") = "appended";
   node.append_attribute("offset") = static_cast<unsigned long long>(offset_);
@@ -96,7 +97,7 @@ void setVtkRange(const std::filesystem::path& path, const char* type,
   const VtkXmlFile file(path, type);
   std::vector<FilePatch> patches;
   for (const StoredRange& range : ranges) {
-    const std::string before = file.fieldText("emscape:" + range.quantity);
+    const std::string before = file.fieldText("emscape:" + xmlCharacters(range.quantity));
     if (before.empty()) failNoSuchQuantity(path, range.quantity);
     Json description = parseJson(spelledText(before), path.string());
     if (!description.contains("range_min")) failNoSuchQuantity(path, range.quantity);

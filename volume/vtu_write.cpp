@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/utf8.h"
 #include "emscape/volume/mesh_file.h"
 #include "volume/volume_json.h"
 #include "volume/vtk_xml.h"
@@ -64,7 +65,7 @@ void writeMesh(const std::filesystem::path& path, const std::vector<const MeshFi
   piece.append_attribute("NumberOfCells") = static_cast<unsigned long long>(mesh.cells.size());
   AppendedArrays appended;
   pugi::xml_node values = piece.append_child("PointData");
-  values.append_attribute("Scalars") = fields.front()->info.quantity.c_str();
+  values.append_attribute("Scalars") = xmlCharacters(fields.front()->info.quantity).c_str();
   for (const MeshField* field : fields) {
     const bool categorical = field->info.categorical;
     if (categorical) indices.push_back(indicesOf(*field));

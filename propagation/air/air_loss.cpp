@@ -1,11 +1,15 @@
 #include "propagation/air/air_loss.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <list>
 #include <memory>
 #include <mutex>
 
+#include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "propagation/air/gases.h"
 #include "propagation/air/rain.h"
@@ -138,6 +142,11 @@ AirLoss airLoss(const PathInputs& inputs, bool with_gases, std::vector<float>& g
   }
 
   if (with_gases) {
+    if (!std::isfinite(extent.lowest_msl_m) || !std::isfinite(extent.highest_msl_m)) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("gases: heights from {} m to {} m above mean sea level are not finite",
+                              extent.lowest_msl_m, extent.highest_msl_m));
+    }
     air.range_count = 49;
     air.height_count = 129;
     const double range_step_m = std::max(extent.farthest_m, 1.0) / (air.range_count - 1);

@@ -127,6 +127,7 @@ double rainHeight_m(double latitude_deg);
 /// Atmospheric attenuation on an emitter's paths.
 /// @param with_gases  true: adds the gases; rain is always added
 /// @param gases       receives the table to which the result points
+/// @throws Error (bad_input) with gases if a height of the extent is not finite
 AirLoss airLoss(const PathInputs& inputs, bool with_gases, std::vector<float>& gases);
 
 }  // namespace emscape::propagation

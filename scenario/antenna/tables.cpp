@@ -192,7 +192,7 @@ AntennaPtr describedAntenna(const std::shared_ptr<Antenna>& antenna, double gain
 }
 
 void requireGain(double gain_dbi) {
-  requireWithin("gain_dbi", gain_dbi, -100, 100, "dBi");
+  requireWithin("gain_dbi", gain_dbi, -kMaxGain_dbi, kMaxGain_dbi, "dBi");
 }
 
 void requireWithin(const char* name, double value, double low, double high, const char* unit) {

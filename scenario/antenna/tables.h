@@ -99,7 +99,8 @@ AntennaPtr makeGridAntenna(const GridNodes& nodes, std::vector<float> amplitudes
 AntennaPtr describedAntenna(const std::shared_ptr<Antenna>& antenna, double gain_dbi, double beamwidth_az_deg,
                             double beamwidth_el_deg, const std::string& name);
 
-/// @throws Error (bad_input) unless -100 <= gain_dbi <= 100
+constexpr double kMaxGain_dbi = 100;
+/// @throws Error (bad_input) unless -kMaxGain_dbi <= gain_dbi <= kMaxGain_dbi
 void requireGain(double gain_dbi);
 /// @throws Error (bad_input) unless low <= value <= high; names the value, the range and the unit
 void requireWithin(const char* name, double value, double low, double high, const char* unit);

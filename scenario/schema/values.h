@@ -19,7 +19,7 @@ ValueSpec choiceUpTo(Enum last) {
 }
 
 inline const ValueSpec kInteger = document::spec::simple(document::ValueType::integer);
-inline const ValueSpec kName = document::spec::textOf(document::ValueType::text, 200);
+inline const ValueSpec kName = document::spec::textOf(document::ValueType::text, 200).printable();
 inline const ValueSpec kFile = document::spec::textOf(document::ValueType::file, 4096);
 inline const ValueSpec kLatitude = document::spec::number("deg").from(-90).to(90);
 inline const ValueSpec kLongitude = document::spec::number("deg").from(-180).to(180);

@@ -73,38 +73,25 @@ std::string hexOf(const render::Rgb& color) {
   return fmt::format("#{:02x}{:02x}{:02x}", level(color.r), level(color.g), level(color.b));
 }
 
+/// GDAL's reason without the SQL statement that failed.
+[[noreturn]] void failWithoutSql(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
+  std::string text = messages.explain("cannot be written");
+  const std::string after = ") failed: ";
+  const std::size_t begin = text.find("sqlite3_"), end = text.rfind(after);
+  if (begin < end && end != std::string::npos) text.erase(begin, end + after.size() - begin);
+  throw Error(ErrorCode::other, file.string() + ": " + text);
+}
+
 class GeoPackage : public MapCollection {
  public:
   GeoPackage(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
     const Scope scope(*this);
-    dataset_.reset(GDALCreate(driverOf("GPKG"), file_.temporary(), 0, 0, 0, GDT_Unknown, nullptr));
-    check(scope, dataset_ != nullptr);
-    GDALDatasetStartTransaction(dataset_.get(), FALSE);
-    const gdal::SpatialReference map_reference = referenceOf(*study.grid), earth = wgs84Reference();
-    bands_ = addLayer(scope, "bands", map_reference.get(), wkbMultiPolygon,
-                      {{"product", OFTString},
-                       {"height", OFTReal},
-                       {"height_above", OFTString},
-                       {"time", OFTDateTime},
-                       {"time_end", OFTDateTime},
-                       {"min", OFTReal},
-                       {"max", OFTReal},
-                       {"unit", OFTString},
-                       {"label", OFTString},
-                       {"color", OFTString},
-                       {"description", OFTString}});
-    contours_ = addLayer(scope, "contours", map_reference.get(), wkbLineString,
-                         {{"product", OFTString},
-                          {"height", OFTReal},
-                          {"height_above", OFTString},
-                          {"time", OFTDateTime},
-                          {"time_end", OFTDateTime},
-                          {"level", OFTReal},
-                          {"unit", OFTString},
-                          {"description", OFTString}});
-    addEmitters(scope, earth.get());
-    addSites(scope, earth.get());
-    addTracks(scope, earth.get());
+    try {
+      makeLayers(scope);
+    } catch (...) {
+      dataset_.reset();  // in the scope, which holds back GDAL's messages
+      throw;
+    }
   }
 
   ~GeoPackage() override {
@@ -154,7 +141,38 @@ class GeoPackage : public MapCollection {
   };
 
   void check(const Scope& scope, bool is_done) const {
-    if (!is_done || scope.messages.hasFailure()) failWriting(scope.messages, file_.file());
+    if (!is_done || scope.messages.hasFailure()) failWithoutSql(scope.messages, file_.file());
+  }
+
+  void makeLayers(const Scope& scope) {
+    dataset_.reset(GDALCreate(driverOf("GPKG"), file_.temporary(), 0, 0, 0, GDT_Unknown, nullptr));
+    check(scope, dataset_ != nullptr);
+    GDALDatasetStartTransaction(dataset_.get(), FALSE);
+    const gdal::SpatialReference map_reference = referenceOf(*study_.grid), earth = wgs84Reference();
+    bands_ = addLayer(scope, "bands", map_reference.get(), wkbMultiPolygon,
+                      {{"product", OFTString},
+                       {"height", OFTReal},
+                       {"height_above", OFTString},
+                       {"time", OFTDateTime},
+                       {"time_end", OFTDateTime},
+                       {"min", OFTReal},
+                       {"max", OFTReal},
+                       {"unit", OFTString},
+                       {"label", OFTString},
+                       {"color", OFTString},
+                       {"description", OFTString}});
+    contours_ = addLayer(scope, "contours", map_reference.get(), wkbLineString,
+                         {{"product", OFTString},
+                          {"height", OFTReal},
+                          {"height_above", OFTString},
+                          {"time", OFTDateTime},
+                          {"time_end", OFTDateTime},
+                          {"level", OFTReal},
+                          {"unit", OFTString},
+                          {"description", OFTString}});
+    addEmitters(scope, earth.get());
+    addSites(scope, earth.get());
+    addTracks(scope, earth.get());
   }
 
   OGRLayerH addLayer(const Scope& scope, const char* name, OGRSpatialReferenceH reference,

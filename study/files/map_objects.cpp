@@ -120,7 +120,8 @@ double endOf(const MapStudy& study, double time_s) {
   const std::vector<double>& times_s = study.times_s;
   const auto next = std::upper_bound(times_s.begin(), times_s.end(), time_s);
   if (next != times_s.end()) return *next;
-  return time_s + (times_s.size() > 1 ? times_s.back() - times_s[times_s.size() - 2] : 1);
+  const double end_s = time_s + (times_s.size() > 1 ? times_s.back() - times_s[times_s.size() - 2] : 1);
+  return utcOf(study, end_s).empty() ? time_s : end_s;
 }
 
 }  // namespace emscape::study

@@ -1,10 +1,12 @@
 #include "study/files/xml_text.h"
 
+#include "base/utf8.h"
+
 namespace emscape::study {
 
 std::string escapedXml(std::string_view text) {
   std::string result;
-  for (const char c : text) {
+  for (const char c : xmlCharacters(text)) {
     switch (c) {
       case '&':
         result += "&amp;";

@@ -6,7 +6,8 @@
 
 namespace emscape::study {
 
-/// Text with the characters that XML reserves escaped, for elements and attributes.
+/// Text with the characters that XML reserves escaped, for elements and attributes. Characters that XML does
+/// not allow become U+FFFD.
 std::string escapedXml(std::string_view text);
 
 }  // namespace emscape::study

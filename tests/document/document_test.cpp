@@ -39,6 +39,37 @@ TEST(Document, TellsAnchorsApart) {
   EXPECT_FALSE(root->entries[2].value->anchored);
 }
 
+TEST(Document, ReadsPairsOfSurrogateEscapesAsJsonWritesThem) {
+  ProblemList problems;
+  const std::string text =
+      R"({"a\\ud83c": "\ud83c\udf89 \uD83C\uDF89", "b": ["it's \u00fc", "\ud83d\ude00"], "c": 'x\ud83c\udf89', "d": 1})";
+  const DocumentNodePtr root = readDocument("a.json", text, problems);
+  ASSERT_TRUE(root);
+  ASSERT_EQ(root->entries.size(), 4u);
+  EXPECT_EQ(root->entries[0].key, R"(a\ud83c)");
+  EXPECT_EQ(root->entries[0].value->text, "\xF0\x9F\x8E\x89 \xF0\x9F\x8E\x89");
+  EXPECT_EQ(root->entries[1].value->items[0]->text, "it's \xC3\xBC");
+  EXPECT_EQ(root->entries[1].value->items[1]->text, "\xF0\x9F\x98\x80");
+  EXPECT_EQ(root->entries[2].value->text, R"(x\ud83c\udf89)") << "no escape between single quotes";
+  const TextPosition& position = root->entries[3].value->position;
+  EXPECT_EQ(text[position.offset], '1') << "positions are those of the file";
+  EXPECT_EQ(position.column, static_cast<int>(position.offset) + 1);
+}
+
+TEST(Document, RefusesHalfASurrogatePair) {
+  const std::string why = " is not a character, but one half of a surrogate pair";
+  EXPECT_EQ(faultOf("{\"a\": 1,\n \"b\": \"\\ud83c\\udf89 \\ud83c.\"}"),
+            "a.yaml:2:21: not valid YAML: \\ud83c" + why);
+  EXPECT_EQ(faultOf("b: \"\xC3\xBC \\udf89\"\n"), "a.yaml:1:7: not valid YAML: \\udf89" + why);
+  EXPECT_EQ(faultOf("b: \"\\U00110000\"\n"), "a.yaml:1:5: not valid YAML: \\U00110000 is not a character");
+}
+
+TEST(Document, FaultsOfJsonDoNotNameYaml) {
+  ProblemList problems;
+  readDocument("a.json", "{\"a\": [1, 2}", problems);
+  EXPECT_THAT(problems.inOrder().at(0).message, HasSubstr("not valid JSON: "));
+}
+
 TEST(Document, RefusalsSayWhere) {
   EXPECT_EQ(faultOf(""), "a.yaml:1:1: the file is empty");
   EXPECT_EQ(faultOf("a:\n\tb: 1\n"), "a.yaml:2:1: tab as indentation; use spaces");

@@ -64,6 +64,20 @@ TEST(TerrainMeshSpec, LayersGrowUpToTheTop) {
                         "lowest ground; FIRST_M must be at most 2"));
 }
 
+TEST(TerrainMeshSpec, LayersWithARatioEndAtTheHighestHeight) {
+  const auto errorAt = [](const TerrainMeshSpec& spec) {
+    return errorOf([&] { layerHeights_m(spec, 5000); }, ErrorCode::usage);
+  };
+  EXPECT_THAT(
+      errorAt({40, 5.0, 2.0}),
+      HasSubstr("mesh: 40 layers (LAYERS), the first of 5 m (FIRST_M), each 2 times as thick as the "
+                "one below it (RATIO), reach 5.49756e+12 m above ground, outside the allowed range up "
+                "to 100000 m"));
+  EXPECT_THAT(errorAt({4096, 5.0, 3.0}), HasSubstr("reach inf m above ground"));
+  EXPECT_EQ(layerHeights_m({10, 1e4, 1.0}, 5000).back(), 100e3);
+  EXPECT_EQ(layerHeights_m({20, 1e4, 1.0}, 200e3).back(), 200e3) << "as high as the region";
+}
+
 class JacksboroMesh : public ::testing::Test {
  protected:
   std::shared_ptr<scenario::Scenario> load(

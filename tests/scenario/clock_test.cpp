@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/utc.h"
 #include "tests/support/errors.h"
 
@@ -48,6 +50,29 @@ TEST(Clock, UtcCountsFromTheEpoch) {
   EXPECT_EQ(utcAt({"2024-02-28T23:59:59.25Z", 0, 1}, 1), "2024-02-29T00:00:00.250Z");
   EXPECT_EQ(utcAt({"1900-03-01T00:00:00Z", 0, 1}, -1), "1900-02-28T23:59:59.000Z");
   EXPECT_EQ(utcAt({"", 0, 1}, 1), "");
+}
+
+TEST(Clock, RefusesTimesOutsideTheLimits) {
+  const Clock clock{"2026-06-01T06:00:00Z", 10, 2};
+  EXPECT_EQ(parseTimes("1e9", clock), (std::vector<double>{1e9}));
+  const auto errorAt = [](const char* text, const Clock& of) {
+    return test::errorOf([&] { parseTimes(text, of); }, ErrorCode::usage);
+  };
+  const std::string range = "is outside the allowed range -1000000000 to 1000000000 s";
+  EXPECT_EQ(errorAt("1e308", clock), "times '1e308': 1e+308 s " + range);
+  EXPECT_EQ(errorAt("-1e11", {}), "times '-1e11': -100000000000 s " + range);
+  EXPECT_EQ(errorAt("0:1e10:1e9", clock), "times '0:1e10:1e9': 10000000000 s " + range);
+  EXPECT_EQ(test::errorOf([] { timesOf(-2e9, 0, 1e9); }, ErrorCode::usage), "time -2000000000 s " + range);
+  const Clock last{"9999-12-31T23:59:59Z", 0, 1}, first{"0001-01-01T00:00:00Z", 0, 1};
+  EXPECT_EQ(errorAt("0:1", last),
+            "times '0:1': 1 s after the epoch, 9999-12-31T23:59:59Z, is outside the allowed range "
+            "0001-01-01T00:00:00.000Z to 9999-12-31T23:59:59.999Z");
+  EXPECT_THAT(errorAt("-1", first), testing::HasSubstr("-1 s after the epoch, 0001-01-01T00:00:00Z"));
+  EXPECT_EQ(utcAt(last, 0.999), "9999-12-31T23:59:59.999Z");
+  EXPECT_EQ(utcAt(last, 1), "");
+  EXPECT_EQ(utcAt(first, -0.001), "");
+  EXPECT_EQ(utcAt(clock, 1e308), "");
+  EXPECT_EQ(utcAt(clock, std::nan("")), "");
 }
 
 TEST(Clock, UtcOfTheUnixEpochIsZero) {

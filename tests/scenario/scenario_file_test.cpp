@@ -7,6 +7,7 @@
 #include "emscape/base/units.h"
 #include "scenario/schema.h"
 #include "tests/scenario/scenario_files.h"
+#include "tests/support/errors.h"
 
 namespace emscape::scenario {
 namespace {
@@ -82,6 +83,32 @@ TEST_F(ScenarioYaml, ReadsEverySection) {
   EXPECT_EQ(scenario->bands.at(1).end_hz, 4e9);
   EXPECT_EQ(scenario->output.combine, CombineMode::per_band);
   EXPECT_EQ(scenario->output.quantities.at(2), "snr_db");
+}
+
+TEST_F(ScenarioYaml, BeamwidthsWithoutAGainAreNotTooNarrow) {
+  EXPECT_THAT(test::errorOf([&] {
+                load(replaced(valid_, "beamwidth_az_deg: 60, beamwidth_el_deg: 30",
+                              "beamwidth_az_deg: 1e-300, beamwidth_el_deg: 1e-300"));
+              }),
+              HasSubstr("beamwidths of 1e-300 deg by 1e-300 deg are those of a gain of inf dBi, above 100 "
+                        "dBi; give wider ones, or 'gain_dbi'"));
+}
+
+TEST_F(ScenarioYaml, ElevationFilesAreRegularFiles) {
+  EXPECT_THAT(test::errorOf([&] { load(valid_ + "terrain: {files: [/dev/zero]}\n"); }),
+              HasSubstr("elevation file /dev/zero: is not a regular file"));
+}
+
+TEST_F(ScenarioYaml, NamesHaveNoControlCharactersAndNoncharacters) {
+  const auto faultOf = [this](const std::string& from, const std::string& to) {
+    return test::errorOf([&] { load(replaced(valid_, from, to)); }, ErrorCode::bad_input);
+  };
+  EXPECT_THAT(faultOf("name: valid", R"(name: "a\u0085b")"),
+              HasSubstr(":3:7: 'name' contains U+0085, a control character"));
+  EXPECT_THAT(faultOf("name: mast", R"(name: "\u001b[31mred")"),
+              HasSubstr("'name' contains U+001B, a control character"));
+  EXPECT_THAT(faultOf("{name: intercept", R"({name: "a\uFFFE")"),
+              HasSubstr("'name' contains U+FFFE, which is no character"));
 }
 
 TEST_F(ScenarioYaml, ReadsWhatModelsAreTold) {

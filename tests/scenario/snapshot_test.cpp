@@ -75,6 +75,15 @@ void expectMessage(const Scenario& scenario, const Terrain* terrain, double t_s,
   EXPECT_NE(error.message().find(message), std::string::npos) << error.message();
 }
 
+TEST(Snapshot, RefusesTimesOutsideTheLimits) {
+  for (const double t_s : {std::nan(""), HUGE_VAL, -HUGE_VAL, 1.1e9, -1e11}) {
+    EXPECT_NE(test::errorOf([&] { snap(oneEmitter(atMsl(10)), t_s); }, ErrorCode::usage)
+                  .find("is outside the allowed range -1000000000 to 1000000000 s"),
+              std::string::npos)
+        << t_s;
+  }
+}
+
 TEST(Snapshot, SaysWhenItIs) {
   EXPECT_EQ(snap(oneEmitter(atMsl(100)), 1.5).time_utc, "2026-06-01T06:00:01.500Z");
   EXPECT_EQ(snap(oneEmitter(atMsl(100)), 1.5).time_s, 1.5);

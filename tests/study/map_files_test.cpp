@@ -408,6 +408,22 @@ TEST_F(MapFiles, TheCzmlHasPolygonsForTheirTimes) {
                                  "2026-06-01T06:01:20.000Z/2026-06-01T06:01:30.000Z"));
 }
 
+TEST_F(MapFiles, AFullGeoPackageIsToldWithoutSqlAndGdalPrintsNothing) {
+  for (const rlim_t bytes : {0, 50000, 100000, 150000}) {
+    const test::TemporaryFolder full;
+    testing::internal::CaptureStderr();
+    const std::string message = test::errorOf([&] {
+      MapFolder maps(full.path() / "out", fixture.study(), {"gpkg"});
+      const test::FileSizeLimit limit(bytes);
+      for (const Map& map : mapsOf(70)) maps.add(map);
+      maps.finish({});
+    });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << bytes;
+    EXPECT_THAT(message, HasSubstr("coverage.gpkg: cannot be written (")) << bytes;
+    EXPECT_THAT(message, testing::Not(HasSubstr("sqlite3_exec"))) << bytes;
+  }
+}
+
 TEST_F(MapFiles, AFileThatCannotBeWrittenIsNamedAndRemoved) {
   for (const char* format : {"cog", "gpkg", "nc", "kmz", "czml"}) {
     const test::TemporaryFolder full;

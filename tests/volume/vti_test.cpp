@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "emscape/volume/file.h"
 #include "emscape/volume/statistics.h"
 #include "tests/volume/sample_volumes.h"
 
@@ -55,6 +56,19 @@ TEST(Vti, QuantitiesMayHaveNamesThatXmlMustEscape) {
   volume.info.quantity = "power:radar <\"A\"> & co";
   writeVti(folder / "a.vti", {&volume});
   expectSame(readVti(folder / "a.vti", volume.info.quantity), volume);
+}
+
+TEST(Vti, CharactersThatXmlDoesNotAllowAreReplaced) {
+  TemporaryFolder folder;
+  DenseVolume volume = plainVolume();
+  volume.info.quantity = "power:\x1B[31mred\xEF\xBF\xBF";
+  writeVti(folder / "a.vti", {&volume});
+  setStoredRange(folder / "a.vti", {{volume.info.quantity, -2, 3}});
+  const DenseVolume read = readVti(folder / "a.vti");
+  EXPECT_EQ(read.info.quantity, volume.info.quantity) << "of the description, whose texts are numbers";
+  const std::string name = "Name=\"power:\xEF\xBF\xBD[31mred\xEF\xBF\xBD\"";
+  EXPECT_THAT(readWholeText(folder / "a.vti", 100000), HasSubstr(name));
+  EXPECT_EQ(read.info.range_min, -2);
 }
 
 TEST(Vti, SurvivesDamage) {

@@ -28,7 +28,8 @@ TerrainMeshSpec parseTerrainMesh(const std::string& text);
 
 /// Heights of the points above ground (m): layers + 1, from 0.
 /// @param height_m  of the region's top above its lowest ground, > 0
-/// @throws Error (usage) if layers of this first thickness do not fit in it
+/// @throws Error (usage) if layers of this first thickness do not fit in it, and if layers with a ratio reach
+/// above 100 km and above height_m
 std::vector<double> layerHeights_m(const TerrainMeshSpec& spec, double height_m);
 
 /// The points are above the centres of the region's columns, at layerHeights_m() above ground (above mean sea

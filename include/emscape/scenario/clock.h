@@ -12,14 +12,22 @@ struct Clock {
   double step_s = 1;
 };
 
+/// Limit of all times, before and after the epoch (s): 31 years.
+constexpr double kMaxTime_s = 1e9;
+
+/// @throws Error (usage) if a time is not within kMaxTime_s of t = 0, or in UTC outside the years 0001 to
+/// 9999
+void requireTime(const Clock& clock, double t_s);
 /// The times begin + i * step up to end, inclusive; no error accumulates.
-/// @throws Error (usage) if a value is not finite, end < begin, step <= 0, or there are more than 10^7 times
+/// @throws Error (usage) if begin or end is not within kMaxTime_s, end < begin, step <= 0, or there are more
+/// than 10^7 times
 std::vector<double> timesOf(double begin_s, double end_s, double step_s);
 /// All times of the clock: 0, step, ... duration.
 std::vector<double> timesOf(const Clock& clock);
-/// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T". @throws Error (usage)
+/// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T". @throws Error (usage), as requireTime()
+/// too
 std::vector<double> parseTimes(const std::string& text, const Clock& clock);
-/// ISO 8601 time (UTC, milliseconds) at t_s; empty without an epoch.
+/// ISO 8601 time (UTC, milliseconds) at t_s; empty without an epoch, and at times that requireTime() refuses.
 /// @throws Error (bad_input) if the epoch is not a valid time
 std::string utcAt(const Clock& clock, double t_s);
 

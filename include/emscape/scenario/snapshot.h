@@ -62,8 +62,8 @@ bool isSteered(const Emitter& emitter);
 
 /// The scenario at t_s seconds since its epoch. A pure, thread-safe function.
 /// @param terrain  for heights above ground; may be null if no platform uses them
-/// @throws Error (bad_input) if a platform has a height above ground where terrain is missing, or is below
-/// ground
+/// @throws Error (usage) as requireTime(); (bad_input) if a platform has a height above ground where terrain
+/// is missing, or is below ground
 Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s);
 
 /// The same for paths and links, which have no interval: an emitter is active if it is active at t_s itself.
