@@ -13,6 +13,7 @@
 #include "document/text_file.h"
 #include "emscape/base/error.h"
 #include "emscape/render/image.h"
+#include "emscape/scenario/clock.h"
 #include "render/transfer_format.h"
 
 namespace emscape::playback {
@@ -30,7 +31,6 @@ namespace spec = document::spec;
 
 constexpr int kVersion = 1;
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{16} << 20;
-constexpr double kMaxTime_s = 1e9;
 constexpr double kMaxRate = 1e4;
 constexpr double kMaxValue = 1e30;
 constexpr int kMaxItems = 10000;
@@ -54,7 +54,7 @@ ValueSpec within(const render::SettingLimits& limits, const char* unit = "") {
 class ViewFormat {
  public:
   explicit ViewFormat(const DocumentNode* transfer) : transfer_(transfer) {
-    const ValueSpec time = spec::number("s").from(-kMaxTime_s).to(kMaxTime_s);
+    const ValueSpec time = spec::number("s").from(-scenario::kMaxTime_s).to(scenario::kMaxTime_s);
     const ValueSpec boolean = spec::simple(ValueType::boolean);
     const ValueSpec value = spec::number().from(-kMaxValue).to(kMaxValue);
     bookmark_ = {"bookmark",

@@ -42,20 +42,12 @@ class NetCdf : public MapCollection {
  public:
   NetCdf(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
     const scenario::GdalMessages messages;
-    const char* const options[] = {"FORMAT=NC4", "CONVENTIONS=CF-1.8", nullptr};
-    dataset_ = createArrayFile(file_.temporary(), options);
-    root_ = rootOf(dataset_);
-    check(messages, root_ != nullptr);
-    setText(root_, "title", study.title);
-    setText(root_, "source",
-            fmt::format("emscape {}, computed from the scenario {}", EMSCAPE_VERSION,
-                        study.scenarios.front()->name));
-    setText(root_, "history", "emscape " + study.command);
-    setText(root_, "comment", "Radars look at the target, wherever their scan points.");
-    for (const auto& [name, value] : metadataOf(study, {})) {
-      if (name != "EMSCAPE_PRODUCT") setText(root_, name.c_str(), value);
+    try {
+      create(messages);
+    } catch (...) {
+      close();  // in the scope, which holds back GDAL's messages
+      throw;
     }
-    addCoordinates(messages);
   }
 
   ~NetCdf() override {
@@ -99,6 +91,23 @@ class NetCdf : public MapCollection {
  private:
   void check(const scenario::GdalMessages& messages, bool is_done) const {
     if (!is_done || messages.hasFailure()) failWriting(messages, file_.file());
+  }
+
+  void create(const scenario::GdalMessages& messages) {
+    const char* const options[] = {"FORMAT=NC4", "CONVENTIONS=CF-1.8", nullptr};
+    dataset_ = createArrayFile(file_.temporary(), options);
+    root_ = rootOf(dataset_);
+    check(messages, root_ != nullptr);
+    setText(root_, "title", study_.title);
+    setText(root_, "source",
+            fmt::format("emscape {}, computed from the scenario {}", EMSCAPE_VERSION,
+                        study_.scenarios.front()->name));
+    setText(root_, "history", "emscape " + study_.command);
+    setText(root_, "comment", "Radars look at the target, wherever their scan points.");
+    for (const auto& [name, value] : metadataOf(study_, {})) {
+      if (name != "EMSCAPE_PRODUCT") setText(root_, name.c_str(), value);
+    }
+    addCoordinates(messages);
   }
 
   void close() {

@@ -424,6 +424,21 @@ TEST_F(MapFiles, AFullGeoPackageIsToldWithoutSqlAndGdalPrintsNothing) {
   }
 }
 
+TEST_F(MapFiles, AFullNetCdfIsToldAndGdalPrintsNothing) {
+  for (const rlim_t bytes : {0, 600, 3000, 20000}) {
+    const test::TemporaryFolder full;
+    testing::internal::CaptureStderr();
+    const std::string message = test::errorOf([&] {
+      MapFolder maps(full.path() / "out", fixture.study(), {"nc"});
+      const test::FileSizeLimit limit(bytes);
+      for (const Map& map : mapsOf(70)) maps.add(map);
+      maps.finish({});
+    });
+    EXPECT_EQ(testing::internal::GetCapturedStderr(), "") << bytes;
+    EXPECT_THAT(message, HasSubstr("coverage.nc: cannot be written")) << bytes;
+  }
+}
+
 TEST_F(MapFiles, AFileThatCannotBeWrittenIsNamedAndRemoved) {
   for (const char* format : {"cog", "gpkg", "nc", "kmz", "czml"}) {
     const test::TemporaryFolder full;
