@@ -320,7 +320,7 @@ TEST(Study, RefusesFaultsWithTheirPlace) {
               HasSubstr("'emitters.jammer.power_w' is set twice"));
   EXPECT_THAT(
       errorOf("sweep: {emitters.jammer.power_w: {values: [1]}, emitters.\"jammer\".power_w: {values: [2]}}"),
-HasSubstr("study.yaml:4:8: 'emitters.jammer.power_w' and 'emitters.\"jammer\".power_w' set the same"));
+      HasSubstr("study.yaml:4:8: 'emitters.jammer.power_w' and 'emitters.\"jammer\".power_w' set the same"));
   EXPECT_THAT(
       errorOf("variants: [{name: a, set: {emitters.search radar.receiver.noise_figure_db: 3}}]\n"
               "sweep: {emitters.search radar.receiver: {values: [{noise_figure_db: 4, bandwidth_hz: 1e6}]}}"),
