@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -108,6 +109,10 @@ int mergeParts(const LoadedStudy& loaded, study::StudyFolder& folder, bool parti
     return 0;
   }
   for (const study::MeasureSummary& summary : report.measures) {
+    if (std::isnan(summary.max)) {
+      print("{:<24} no value in any variant\n", summary.name);
+      continue;
+    }
     const std::string unit = summary.unit.empty() ? "" : " " + summary.unit;
     print("{:<24} {} to {}{}; the largest: {}\n", summary.name, study::figureText(summary.min, summary.unit),
           study::figureText(summary.max, summary.unit), unit,
