@@ -91,7 +91,7 @@ class VariantReader {
     if (factors.empty()) {
       reading_.fault(root.location(), "the study has none of 'variants', 'sweep', 'samples' and 'sites'");
     }
-    requireSeparate(root, factors);
+    if (reading_.tries_values) requireSeparate(root, factors);
     document::requireNoProblem(reading_.problems);
     reading_.spec.variants = VariantSet(std::move(factors));
   }
@@ -101,8 +101,7 @@ class VariantReader {
   void requireSeparate(const Section& root, const std::vector<Factor>& factors) {
     SetPaths paths(*reading_.spec.base);
     for (const Factor& factor : factors) {
-      const bool is_list =
-          factor.kind == Factor::Kind::list;  // one variant's paths were compared by readList()
+      const bool is_list = factor.kind == Factor::Kind::list;  // its variants are alternatives
       for (const std::string& path : factor.paths) {
         const std::string other = paths.conflictOf(path);
         if (!other.empty()) {
@@ -114,6 +113,19 @@ class VariantReader {
       for (const std::string& path : factor.paths) {
         if (is_list) paths.add(path);
       }
+    }
+  }
+
+  /// No value is set by two edits of a variant.
+  void requireSeparate(const std::vector<scenario::Edit>& edits, const std::string& variant,
+                       const SourceLocation& location) {
+    SetPaths paths(*reading_.spec.base);
+    for (const scenario::Edit& edit : edits) {
+      const std::string other = paths.conflictOf(edit.path);
+      if (!other.empty())
+        reading_.fault(location,
+                       fmt::format("variant '{}': {}", variant, sameValueFault(edit.path, other, "")));
+      paths.add(edit.path);
     }
   }
 
@@ -177,14 +189,8 @@ class VariantReader {
     factor.count = items.size();
     factor.values.resize(factor.count * factor.paths.size());
     for (std::size_t i = 0; i < factor.count; ++i) {
-      SetPaths paths(*reading_.spec.base);
+      if (reading_.tries_values) requireSeparate(edits[i], factor.names[i], items[i].location());
       for (const scenario::Edit& edit : edits[i]) {
-        const std::string other = paths.conflictOf(edit.path);
-        if (!other.empty()) {
-          reading_.fault(items[i].location(), fmt::format("variant '{}': {}", factor.names[i],
-                                                          sameValueFault(edit.path, other, "")));
-        }
-        paths.add(edit.path);
         const auto path = std::find(factor.paths.begin(), factor.paths.end(), edit.path);
         factor.values[i * factor.paths.size() + static_cast<std::size_t>(path - factor.paths.begin())] =
             edit.value;
