@@ -7,11 +7,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdlib>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/apps/program.h"
@@ -99,6 +101,12 @@ class Window : public testing::Test {
       if (!object.is_discarded() && (event.empty() || object["event"] == event)) lines.push_back(object);
     }
     return lines;
+  }
+  /// Waits for an event, at most a minute. @return false if it did not come
+  bool comesToLog(const std::string& event) const {
+    for (int i = 0; i < 600 && log(event).empty(); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return !log(event).empty();
   }
   /// "BUSY RESTORE IDLE": the states in the order in which they came.
   std::string states() const {

@@ -1,11 +1,9 @@
 /// The window as a user sees it: the program in a virtual display, with real events of keyboard and mouse.
 #include <gmock/gmock.h>
 
-#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
-#include <thread>
 
 #include "emscape/render/image.h"
 #include "tests/view/window_fixture.h"
@@ -298,10 +296,7 @@ TEST_F(Window, RestoresEditsAfterAKill) {
 {"do":"wait_s","seconds":60}
 )"),
                          environment());
-  for (int i = 0; i < 600 && log("autosave").empty(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
-  ASSERT_EQ(log("autosave").size(), 1U);
+  ASSERT_TRUE(comesToLog("autosave"));
   program.signal(SIGKILL);
   program.wait();
   const ProgramResult result = runScript(R"({"do":"wait_state","state":"exact"}
@@ -334,10 +329,7 @@ TEST_F(Window, ASignalEndsARecordingAndKeepsEdits) {
 {"do":"wait_s","seconds":60}
 )"),
                          environment());
-  for (int i = 0; i < 600 && log("mark").empty(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
-  ASSERT_EQ(log("mark").size(), 1U);
+  ASSERT_TRUE(comesToLog("mark"));
   program.signal(SIGTERM);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.status, 128 + SIGTERM);
@@ -359,10 +351,7 @@ TEST_F(Window, ALostDisplayEndsItWithTheStatusOfNone) {
 {"do":"wait_s","seconds":60}
 )"),
                          environment());
-  for (int i = 0; i < 600 && log("mark").empty(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
-  ASSERT_EQ(log("mark").size(), 1U);
+  ASSERT_TRUE(comesToLog("mark"));
   display_.reset();
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.status, 4);
@@ -442,9 +431,7 @@ TEST_F(Window, RealEventsOfTheServerArrive) {
 {"do":"quit"}
 )"),
                          environment());
-  for (int i = 0; i < 300 && log("first_picture").empty(); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  }
+  ASSERT_TRUE(comesToLog("first_picture"));
   const std::string hands =
       environment() +
       "w=$(xdotool search --name emscape | head -n 1);"
