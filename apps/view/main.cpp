@@ -1,5 +1,4 @@
 /// emscape-view: the window; started by `emscape view`.
-#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <optional>
@@ -29,9 +28,7 @@ void show(const ViewOptions& options) {
       std::fprintf(stderr, "%s\n", line.c_str());
   });
   setThreadLimit(options.threads);
-  app::catchInterrupts();
-  // After ffmpeg has ended, and at the limit of a file's size, writes fail instead.
-  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
+  app::handleSignals();
   // A wrong name and all errors in a scenario are reported before a window appears.
   using playback::InputKind;
   const std::optional<InputKind> kind =

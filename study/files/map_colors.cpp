@@ -25,6 +25,17 @@ int categoryOf(const Map& map, int value) {
   return value >= 0 && value < static_cast<int>(map.colors.size()) ? map.colors[value] : value;
 }
 
+/// The number that has no colour: no category, or the first class.
+int transparentOf(MapKind kind) {
+  return kind == MapKind::category ? -1 : 0;
+}
+
+/// What a pixel with that number is: "no coverage", "out of reach", "none".
+std::string nameOfTransparent(const Map& map) {
+  if (map.kind == MapKind::category || map.labels.empty()) return "none";
+  return map.labels.front() == "no" ? "no " + map.title : map.labels.front();
+}
+
 }  // namespace
 
 render::Legend legendOf(const Map& map) {
@@ -63,6 +74,7 @@ render::Legend legendOf(const Map& map) {
       const std::string label = n < static_cast<int>(map.labels.size()) ? map.labels[n] : std::to_string(n);
       legend.categories.push_back({categoryOf(map, n), label});
     }
+    if (present.count(transparentOf(map.kind)) != 0) legend.note = "no colour: " + nameOfTransparent(map);
     return legend;
   }
   if (!(least <= largest)) least = largest = 0;
@@ -92,8 +104,8 @@ std::optional<render::Rgb> colorOf(const Map& map, const render::Legend& legend,
     return n < legend.categories.size() ? legend.categories[n].color
                                         : legend.function.color(static_cast<double>(value));
   }
-  const int index = static_cast<int>(value), none = map.kind == MapKind::category ? -1 : 0;
-  if (index == none) return std::nullopt;
+  const int index = static_cast<int>(value);
+  if (index == transparentOf(map.kind)) return std::nullopt;
   return render::categoryColor(categoryOf(map, index));
 }
 

@@ -68,7 +68,7 @@ class MapPicture {
         style_({options.width, options.width * 3 / 4}, render::Theme::light),
         left_(84 * style_.unit),
         top_(96 * style_.unit) {
-    if (legend_.note.empty() && hasUnknown()) legend_.note = "no colour: no value";
+    if (hasUnknown()) legend_.note += legend_.note.empty() ? "no colour: no value" : ", or no value";
     const double room =
         options.width - left_ - std::max(190 * style_.unit, render::legendWidth(style_, legend_));
     scale_ = room / grid.width;
@@ -93,7 +93,6 @@ class MapPicture {
  private:
   /// True if a pixel of the area has no value.
   bool hasUnknown() const {
-    if (map_.kind == MapKind::classes || map_.kind == MapKind::category) return false;
     for (std::size_t p = 0; p < map_.values.size(); ++p)
       if (std::isnan(map_.values[p]) && !std::isnan(grid_.places[p].latitude_deg)) return true;
     return false;

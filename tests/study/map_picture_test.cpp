@@ -60,6 +60,7 @@ TEST(MapPicture, ClassesThatDoNotOccurAreInTheLegend) {
   const render::Legend legend = legendOf(jamLoss(grid));
   ASSERT_EQ(legend.categories.size(), 1u);
   EXPECT_EQ(legend.categories[0].name, "yes");
+  EXPECT_EQ(legend.note, "no colour: no jam_loss");
 }
 
 TEST(MapPicture, TheLegendOfManyEmittersHoldsAllThatAreOnTheMap) {
@@ -71,6 +72,7 @@ TEST(MapPicture, TheLegendOfManyEmittersHoldsAllThatAreOnTheMap) {
   map.values.assign(grid.pixels(), -1.0f);
   map.values[0] = 2;
   EXPECT_EQ(legendOf(map).categories.size(), 1u);
+  EXPECT_EQ(legendOf(map).note, "no colour: none");
   Map few = map;
   few.labels.resize(4);
   EXPECT_EQ(legendOf(few).categories.size(), 3u) << "of few also those that win nowhere, up to the last";
@@ -81,6 +83,7 @@ TEST(MapPicture, TheLegendOfManyEmittersHoldsAllThatAreOnTheMap) {
   for (std::size_t p = 0; p < grid.pixels(); ++p) map.values[p] = static_cast<float>(p % 40);
   legend = legendOf(map);
   ASSERT_EQ(legend.categories.size(), 40u);
+  EXPECT_EQ(legend.note, "") << "all pixels have an emitter";
   const render::Image8 image = drawMap(grid, map, {});
   const int right = image.size.width - 8, bottom = image.size.height;
   EXPECT_TRUE(isPlain(image, right - 150, bottom - 10, right, bottom));

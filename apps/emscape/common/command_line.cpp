@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <exception>
 #include <new>
 #include <optional>
@@ -276,9 +275,7 @@ int runCommandLine(int argc, char** argv) {
     if (const int status = parse(line.app, argc, argv); status >= 0) return status;
     installLog(line.global);
     setThreadLimit(line.global.threads);
-    // A closed pipe and the limit of a file's size are reported as errors of the write.
-    for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
-    catchInterrupts();
+    handleSignals();
     return line.action();
   });
 }

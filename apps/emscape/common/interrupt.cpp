@@ -43,7 +43,8 @@ void catchSignal(int signal) {
 
 }  // namespace
 
-void catchInterrupts() {
+void handleSignals() {
+  for (const int signal : {SIGPIPE, SIGXFSZ}) std::signal(signal, SIG_IGN);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXCPU}) catchSignal(signal);
 }
 

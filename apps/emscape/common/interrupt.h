@@ -1,4 +1,4 @@
-/// Orderly shutdown on SIGINT, SIGTERM, SIGHUP and SIGXCPU.
+/// Signals of the programs: an orderly shutdown on SIGINT, SIGTERM, SIGHUP and SIGXCPU.
 #pragma once
 
 #include "emscape/playback/stop.h"
@@ -7,11 +7,12 @@ namespace emscape::app {
 
 /// Makes the first SIGINT, SIGTERM or SIGHUP set stopFlag(); a second one ends the program at once. So does
 /// SIGXCPU (the limit of processor time), which does not end the program when it is repeated. A signal that
-/// is ignored at the start stays ignored.
-void catchInterrupts();
+/// is ignored at the start stays ignored. At SIGPIPE (a closed pipe) and SIGXFSZ (the limit of a file's size)
+/// the write fails instead.
+void handleSignals();
 
 /// For commands that write no files and may spend a long time in a library's reader: from now on the first
-/// signal that catchInterrupts() catches ends the program at once, with status 128 + N.
+/// signal that handleSignals() catches ends the program at once, with status 128 + N.
 void endAtInterrupts();
 
 /// Is set when the user stops the program.
