@@ -11,6 +11,7 @@
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/report/choices_report.h"
 #include "apps/emscape/report/refractivity_report.h"
 #include "apps/emscape/report/waveform_report.h"
@@ -351,6 +352,7 @@ struct InfoOptions {
 
 int info(const InfoOptions& options, const GlobalOptions& global) {
   if (options.plot.empty()) endAtInterrupts();
+  checkOutputs({{"--plot", options.plot}}, {{"the input", options.file}}, {});
   const Description description = describe(options.file);
   if (!options.plot.empty()) {
     if (!description.refractivity) {

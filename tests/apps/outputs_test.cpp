@@ -63,6 +63,9 @@ TEST_F(Outputs, AreNotTheScenarioOrAFileThatItNames) {
   expectRefused(
       {"vertical", links_, "--emitter", "search radar", "--azimuth", "30", "-o", folder_ / "same.json"},
       "--output: " + (folder_ / "same.json") + " is the scenario");
+  fs::create_symlink(links_, folder_ / "same.png");
+  expectRefused({"info", links_, "--plot", folder_ / "same.png"},
+                "--plot: " + (folder_ / "same.png") + " is the input");
   const std::string study =
       folder_.write("study.yaml",
                     "schema_version: 1\nscenario: quick.yaml\ntimes: 0\nsweep:\n  emitters.radar.power_w: "

@@ -11,6 +11,7 @@
 #include "apps/emscape/bench/bench_scene.h"
 #include "apps/emscape/bench/bench_statistics.h"
 #include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/target.h"
 #include "base/stopwatch.h"
 #include "emscape/base/parallel.h"
@@ -137,6 +138,8 @@ class CellScene {
 };
 
 int benchCells(const BenchCellsOptions& options, const GlobalOptions& global) {
+  checkOutputs({{"--picture", options.picture}},
+               {{"the input", options.selection.input}, {"the transfer function", options.transfer}}, {});
   const auto scene = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     return std::make_unique<CellScene>(options, global, target);
   });
