@@ -57,8 +57,13 @@ UnfinishedFile::~UnfinishedFile() {
 }
 
 void UnfinishedFile::publish() {
-  const std::string auxiliary = temporary_.string() + kAuxiliary;
-  if (std::filesystem::exists(auxiliary)) emscape::publish(auxiliary, file_.string() + kAuxiliary);
+  const std::string made = temporary_.string() + kAuxiliary, auxiliary = file_.string() + kAuxiliary;
+  std::error_code ignored;
+  if (std::filesystem::exists(made)) {
+    emscape::publish(made, auxiliary);
+  } else {
+    std::filesystem::remove(auxiliary, ignored);
+  }
   emscape::publish(temporary_, file_);
 }
 

@@ -34,7 +34,8 @@ class UnfinishedFile {
 
   const std::filesystem::path& file() const { return file_; }
   const char* temporary() const { return temporary_.c_str(); }
-  /// Renames the file, and FILE.aux.xml if GDAL made one. @throws Error (other) naming it
+  /// Renames the file, and FILE.aux.xml if GDAL made one; else that of an earlier file is removed.
+  /// @throws Error (other) naming it
   void publish();
 
  private:

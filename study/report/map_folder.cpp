@@ -17,6 +17,7 @@
 #include "study/files/map_collection.h"
 #include "study/files/map_metadata.h"
 #include "study/files/netcdf.h"
+#include "study/report/earlier_outputs.h"
 #include "study/report/map_report.h"
 
 namespace emscape::study {
@@ -96,6 +97,7 @@ struct MapFolder::State {
   std::filesystem::path folder;
   MadeFolder maps_folder;
   FolderLock lock;
+  EarlierOutputs earlier_outputs;
   MapStudy study;
   bool has_cog = false, has_png = false;
   std::vector<float> ground_msl_m;
@@ -105,7 +107,11 @@ struct MapFolder::State {
   std::string report_json;
 
   State(const std::filesystem::path& path, MapStudy of)
-      : folder(path), maps_folder(path / "maps"), lock(path, ".maps.lock"), study(std::move(of)) {
+      : folder(path),
+        maps_folder(path / "maps"),
+        lock(path, ".maps.lock"),
+        earlier_outputs(path),
+        study(std::move(of)) {
     if (study.terrain != nullptr) ground_msl_m = groundOf(*study.grid, *study.terrain);
   }
 
@@ -233,6 +239,7 @@ void MapFolder::finish(const std::vector<std::string>& warnings, const std::stri
   const std::string inputs = studyJsonOf(state.study, state.folder, files);
   writeWhole({{state.folder / "study.json", [&](std::ostream& out) { out << inputs; }},
               {state.folder / "report.json", [&](std::ostream& out) { out << state.report_json; }}});
+  state.earlier_outputs.removeExcept(files);
 }
 
 const std::vector<MapRecord>& MapFolder::records() const {

@@ -63,11 +63,6 @@ std::set<std::string> terrainFilesOf(const MapStudy& study) {
   return files;
 }
 
-Json digestJson(const std::string& name, const std::filesystem::path& file) {
-  const FileDigest digest = digestOf(file);
-  return {{"file", name}, {"bytes", digest.bytes}, {"crc32", fmt::format("{:08x}", digest.crc32)}};
-}
-
 /// A word of a command line.
 std::string quoted(const std::string& word) {
   if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/") ==
@@ -147,6 +142,11 @@ std::string reportJsonOf(const MapStudy& study, const std::vector<MapRecord>& re
   for (const MapRecord& record : records) report["maps"].push_back(toJson(record));
   report["warnings"] = warnings;
   return report.dump(2) + "\n";
+}
+
+Json digestJson(const std::string& name, const std::filesystem::path& file) {
+  const FileDigest digest = digestOf(file);
+  return {{"file", name}, {"bytes", digest.bytes}, {"crc32", fmt::format("{:08x}", digest.crc32)}};
 }
 
 std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& folder,

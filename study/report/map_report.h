@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,9 @@ std::string reportJsonOf(const MapStudy& study, const std::vector<MapRecord>& re
 /// @param folder  of the outputs  @param files  relative to it
 std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& folder,
                         const std::vector<std::string>& files);
+
+/// A file in study.json: {"file", "bytes", "crc32"}. @throws Error (bad_input) naming the file
+nlohmann::ordered_json digestJson(const std::string& name, const std::filesystem::path& file);
 
 /// The table of the maps, their areas and ranges.
 ReportTable tableOf(const std::vector<MapRecord>& records);

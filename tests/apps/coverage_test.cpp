@@ -72,6 +72,29 @@ TEST(Coverage, TwoRunsWriteTheSameBytes) {
     EXPECT_EQ(readFile(first / file), readFile(second / file)) << file;
 }
 
+TEST(Coverage, RemovesTheOutputsOfAnEarlierRun) {
+  const TemporaryFolder folder;
+  const auto runWith = [&](const Arguments& more) {
+    const ProgramResult result = run(coverage(folder, more));
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  runWith({"--products", "value,count,best", "--quantity", "detection_probability", "--times", "80",
+           "--format", "cog,png,gpkg"});
+  const std::string kept = folder / "out/maps/count_agl150m_t80s.png";
+  folder.write("out/maps/count_agl150m_t80s.png", "changed by the user");
+  folder.write("out/maps/notes.txt", "of the user");
+  runWith({"--products", "value", "--quantity", "dominant_emitter", "--times", "80", "--format", "cog"});
+  EXPECT_THAT(folder.files(),
+              ElementsAre("out/maps/count_agl150m_t80s.png", "out/maps/notes.txt",
+                          "out/maps/value_agl150m_t80s.tif", "out/maps/value_agl150m_t80s.tif.aux.xml",
+                          "out/report.html", "out/report.json", "out/study.json"));
+  EXPECT_EQ(readFile(kept), "changed by the user");
+  folder.write("out/study.json", R"({"emscape": "0.1.0"})");
+  runWith({"--products", "value", "--times", "80", "--format", "cog"});
+  EXPECT_THAT(folder.files(), testing::Not(testing::Contains(HasSubstr(".aux.xml"))))
+      << "names of emitters beside values of another quantity";
+}
+
 TEST(Coverage, RefusesWhatItCannotDo) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const Arguments& more, int status) {

@@ -43,7 +43,8 @@ struct MapRecord {
 };
 
 /// Writes DIR/maps/*, DIR/report.json, DIR/report.html and DIR/study.json. Each file is written atomically.
-/// The same maps give the same bytes. The folder is locked against other processes.
+/// The same maps give the same bytes. The folder is locked against other processes. Outputs of an earlier run
+/// that were not written again are removed at the end, if they are unchanged.
 class MapFolder {
  public:
   /// @param formats  names of mapFormats()
