@@ -16,6 +16,8 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from . import datasets as datasets
+    from . import distributed as distributed
     from ._arrays import open_series as open_series
     from ._errors import CheckError as CheckError
     from ._errors import DeviceError as DeviceError
@@ -54,6 +56,7 @@ _NAMES = {
     "_scenario": ("Scenario", "load", "path_step"),
     "_studies": ("check", "command", "compare", "exposure", "link", "profile", "simulate", "study", "vertical"),
 }
+_MODULES = ("datasets", "distributed")
 _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}
 
 __all__ = sorted([*_MODULE_OF, "__version__"])  # pyright: ignore[reportUnsupportedDunderAll]
@@ -64,6 +67,8 @@ def __getattr__(name: str) -> Any:
         from importlib.metadata import version
 
         return version("emscape")
+    if name in _MODULES:
+        return importlib.import_module("." + name, __name__)
     if name not in _MODULE_OF:
         raise AttributeError(f"module 'emscape' has no attribute '{name}'")
     value = getattr(importlib.import_module("." + _MODULE_OF[name], __name__), name)
@@ -72,4 +77,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return __all__
+    return sorted([*__all__, *_MODULES])

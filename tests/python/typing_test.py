@@ -1,4 +1,4 @@
-"""Types and stubs: mypy --strict over the package and the examples, and the stub against the extension."""
+"""Names, types and stubs: mypy --strict over the package and the examples, and the stub against the extension."""
 
 import os
 import pathlib
@@ -42,3 +42,9 @@ def test_the_stub_is_that_of_the_extension(environment, tmp_path):
     words = [sys.executable, "-m", "mypy.stubtest", "--allowlist", "nanobind", "--ignore-unused-allowlist", "_emscape"]
     result = subprocess.run(words, capture_output=True, text=True, env=environment, cwd=tmp_path)
     assert result.returncode == 0, result.stdout + result.stderr
+
+
+def test_modules_are_imported_when_they_are_first_used():
+    command = "import emscape; print(emscape.datasets.VolumeDataset.__name__, emscape.distributed.study.__name__)"
+    result = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True)
+    assert result.stdout == "VolumeDataset study\n", result.stderr
