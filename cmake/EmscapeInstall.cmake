@@ -9,9 +9,17 @@ install(DIRECTORY "${share}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COM
 install(FILES "${share}/completion/emscape" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
 install(FILES "${share}/completion/_emscape" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions"  # where Debian's zsh looks
   COMPONENT program)
-install(FILES README.md CHANGELOG.md LICENSE "${share}/emscape.cdx.json" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+# The documentation, and what it links to, at the same relative places as in the source folder.
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE "${share}/emscape.cdx.json"
+  DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program
-  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.gif" PATTERN notebooks EXCLUDE PATTERN notes EXCLUDE)
+  FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.gif" PATTERN "*.ipynb" PATTERN ".*" EXCLUDE)
+install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program
+  FILES_MATCHING PATTERN "*.cpp" PATTERN "*.py" PATTERN CMakeLists.txt)
+install(FILES tests/data/README.md DESTINATION "${CMAKE_INSTALL_DOCDIR}/tests/data" COMPONENT program)
+file(RELATIVE_PATH scenarios_from_doc "${CMAKE_INSTALL_FULL_DOCDIR}" "${CMAKE_INSTALL_FULL_DATADIR}/emscape/scenarios")
+file(CREATE_LINK "${scenarios_from_doc}" "${PROJECT_BINARY_DIR}/scenarios" SYMBOLIC)
+install(FILES "${PROJECT_BINARY_DIR}/scenarios" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 
 set(config_dir "${CMAKE_INSTALL_LIBDIR}/cmake/emscape")
 

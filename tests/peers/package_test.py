@@ -72,6 +72,11 @@ expected |= {f"bin/{name}" for name in ("emscape", "emscape-view") if (build / "
 check(expected <= files, f"missing: {sorted(expected - files)}")
 check(not {file for file in files if file.startswith(("include", "lib"))}, "emscape has files of libemscape-dev")
 
+documents = usr / "share/doc/emscape"
+broken = [f"{page.relative_to(documents)}: {link}" for page in documents.rglob("*.md")
+          for link in re.findall(r"\]\(([^)#\s]+)", page.read_text()) if "://" not in link and not (page.parent / link).exists()]
+check(not broken, f"links to files that are not installed: {broken}")
+
 headers = {f"include/{file}" for file in files_below(source / "include")}
 check(headers <= files_dev, f"missing: {sorted(headers - files_dev)}")
 check(any(file.endswith("libemscape_emfield.a") for file in files_dev), "no libraries")
