@@ -112,8 +112,8 @@ Examples:
   emscape check reference/pe         one family only
   emscape check reference --json     {"datasets": [{"name", "cases", "max_abs_error", "tolerance", "unit", "pass"}], "pass"}
 
-Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not or none was run, 3 for a file that
-is malformed.)");
+Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not or none of the datasets has a model, 3 for
+a folder without known datasets and for a file that is malformed.)");
   auto dir = std::make_shared<std::string>();
   command->add_option("DIR", *dir, "Folder of datasets, one per folder; or of one family")->required();
   command->callback([dir, &global, &action] { action = [dir, &global] { return check(*dir, global); }; });

@@ -89,11 +89,12 @@ void addExposure(CLI::App& app, const GlobalOptions& global, Action& action) {
       "exposure", "A platform on its track through the field: by time and emitter, first detection, gaps");
   command->fallthrough();
   command->footer(R"(
-The value of each emitter by itself and of all together at the platform's position, as `emscape profile` gives it there. The
-platform's own emitters are left out; its jammers jam the radars. Radars look at the platform wherever their scan points
-(--look target: the probability of one look), and the probability of detection in any look so far counts a look per scan.
-With --look scan the beam is where it is at each time. Radars see the target that the platform carries, by aspect; without
-one, or with --rcs-target none, the cross section that each radar assumes.
+The value of each emitter by itself and of all together at the platform's position, as `emscape profile` gives it there
+(parabolic_equation: the mean over cells between marched azimuths, which differs over terrain). The platform's own emitters are
+left out; its jammers jam the radars. Radars look at the platform wherever their scan points (--look target: the probability of
+one look), and the probability of detection in any look so far counts a look per scan. With --look scan the beam is where it is
+at each time. Radars see the target that the platform carries, by aspect; without one, or with --rcs-target none, the cross
+section that each radar assumes.
 
 Examples:
   emscape exposure scenarios/jacksboro.yaml --platform helicopter -o exposure.png

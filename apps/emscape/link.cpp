@@ -94,7 +94,7 @@ Examples:
   emscape link scenarios/links.yaml
   emscape link scenarios/links.yaml --emitter "search radar" --receiver "warning receiver" --times 0:60:5
   emscape link scenarios/links.yaml --csv links.csv --plot links.png
-  emscape link scenarios/links.yaml --target airliner --set targets.airliner.rcs_m2=1 --json
+  emscape link scenarios/links.yaml --target drone --set targets.drone.rcs_m2=1 --json
 
 Exit status: 0, whether there is reception or not; 2 for a name that the scenario does not have; 3 for a path over missing
 terrain and a scenario without receivers and targets.)");

@@ -448,12 +448,13 @@ Examples:
                       "orbit:azimuth_deg=..,elevation_deg=..,distance=..,fov_deg=.. or "
                       "lookat:eye_x_m=..,..,target_x_m=..,..");
   command->add_option("--transfer", options->transfer,
-                      "Colours and opacities (JSON); default: fitted to the value range");
+                      "Colours and opacities (JSON); default: fitted to the values of the first picture");
   command->add_option("--times", options->selection.times,
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: all steps, or the first if the "
                       "only output is a .png");
   command->add_option("--quantity", options->quantity, "Quantity or channel to draw; default: the first");
-  command->add_option("--range", options->range, "MIN:MAX of the colours; default: the range of the series");
+  command->add_option("--range", options->range,
+                      "MIN:MAX of the colours; default: fitted to the values of the first picture");
   command->add_option("--scenario", options->selection.scenario,
                       "Scenario of the ground and emitters to draw with volumes");
   command
