@@ -41,23 +41,17 @@ std::string dateText(std::int64_t days) {
   return fmt::format("{:04}-{:02}-{:02}", year_of_era + era * 400 + (month <= 2), month, day);
 }
 
-}  // namespace
+/// The numbers of a text of the form of a UTC time; they may be out of range.
+struct Fields {
+  int year, month, day, hour, minute, second, millisecond;
+};
 
-std::optional<std::int64_t> parseUtc_ms(const std::string& text) {
+std::optional<Fields> fieldsOf(const std::string& text) {
   static const std::string kForm = "dddd-dd-ddTdd:dd:dd";
   const auto isDigit = [&](std::size_t i) { return text[i] >= '0' && text[i] <= '9'; };
   if (text.size() < kForm.size() + 1 || text.back() != 'Z') return std::nullopt;
   for (std::size_t i = 0; i < kForm.size(); ++i) {
     if (kForm[i] == 'd' ? !isDigit(i) : text[i] != kForm[i]) return std::nullopt;
-  }
-  const auto field = [&](std::size_t begin, std::size_t length) {
-    return std::stoi(text.substr(begin, length));
-  };
-  const int year = field(0, 4), month = field(5, 2), day = field(8, 2);
-  const int hour = field(11, 2), minute = field(14, 2), second = field(17, 2);
-  if (year < 1 || month < 1 || month > 12 || day < 1 || day > daysInMonth(year, month) || hour > 23 ||
-      minute > 59 || second > 59) {
-    return std::nullopt;
   }
   int milliseconds = 0;
   const std::size_t last = text.size() - 1;
@@ -69,8 +63,40 @@ std::optional<std::int64_t> parseUtc_ms(const std::string& text) {
       milliseconds += weight * (text[i] - '0');
     }
   }
-  return daysFromDate(year, month, day) * kMillisecondsPerDay +
-         ((hour * 60LL + minute) * 60 + second) * 1000 + milliseconds;
+  const auto field = [&](std::size_t begin, std::size_t length) {
+    return std::stoi(text.substr(begin, length));
+  };
+  return Fields{field(0, 4),  field(5, 2),  field(8, 2), field(11, 2),
+                field(14, 2), field(17, 2), milliseconds};
+}
+
+/// The first number that is out of range, with the range; empty if there is none.
+std::string faultOf(const Fields& at) {
+  const auto outside = [](const char* what, int value, int first, int last) {
+    return fmt::format("{} {:02} is outside {} to {}", what, value, first, last);
+  };
+  if (at.year < 1) return "year 0000 is outside 0001 to 9999";
+  if (at.month < 1 || at.month > 12) return outside("month", at.month, 1, 12);
+  const int days = daysInMonth(at.year, at.month);
+  if (at.day < 1 || at.day > days) return outside("day of the month", at.day, 1, days);
+  if (at.hour > 23) return outside("hour", at.hour, 0, 23);
+  if (at.minute > 59) return outside("minute", at.minute, 0, 59);
+  if (at.second > 59) return outside("second", at.second, 0, 59) + "; there are no leap seconds";
+  return "";
+}
+
+}  // namespace
+
+std::optional<std::int64_t> parseUtc_ms(const std::string& text) {
+  const std::optional<Fields> at = fieldsOf(text);
+  if (!at || !faultOf(*at).empty()) return std::nullopt;
+  return daysFromDate(at->year, at->month, at->day) * kMillisecondsPerDay +
+         ((at->hour * 60LL + at->minute) * 60 + at->second) * 1000 + at->millisecond;
+}
+
+std::string utcFault(const std::string& text) {
+  const std::optional<Fields> at = fieldsOf(text);
+  return at ? faultOf(*at) : "";
 }
 
 std::string utcText(std::int64_t time_ms) {

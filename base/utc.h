@@ -11,6 +11,10 @@ namespace emscape {
 /// 1..9999, no leap seconds, the fraction truncated to milliseconds); empty if the text is not such a time.
 std::optional<std::int64_t> parseUtc_ms(const std::string& text);
 
+/// The number of such a text that is out of range: "month 13 is outside 1 to 12". Empty if there is none or
+/// the text has another form.
+std::string utcFault(const std::string& text);
+
 /// ISO 8601 text, with milliseconds, of a time in milliseconds from 1970-01-01T00:00:00Z.
 std::string utcText(std::int64_t time_ms);
 

@@ -27,6 +27,8 @@ def kind_of(spec):
         return ("list" if few != most else f"list of {few}") + " of " + kind_of(spec["items"])
     if spec["type"] == "string":
         return "UTC time" if spec.get("format") == "date-time" else "text"
+    if spec["type"] == "boolean":
+        return "`true`, `false`"
     text = "whole number" if spec["type"] == "integer" else "number"
     if "x-unit" in spec:
         text += f", {spec['x-unit']}"

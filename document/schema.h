@@ -21,7 +21,7 @@ struct ValueSpec {
   double minimum = -std::numeric_limits<double>::infinity();  ///< number, integer
   double maximum = std::numeric_limits<double>::infinity();
   bool minimum_excluded = false;
-  std::vector<std::string> choices;       ///< choice; number: words that are allowed instead
+  std::vector<std::string> choices;       ///< choice; number, integer: words that are allowed instead
   const ObjectSpec* object = nullptr;     ///< object; number: keys that are allowed instead
   std::shared_ptr<const ValueSpec> item;  ///< list
   int min_items = 0;                      ///< list; text, file: characters

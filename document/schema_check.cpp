@@ -64,10 +64,10 @@ std::string describe(const DocumentNode& node) {
 std::string expectation(const ValueSpec& spec) {
   switch (spec.type) {
     case ValueType::number:
-      return "a number" + withUnit(spec.unit) + (spec.choices.empty() ? "" : " or " + joined(spec.choices)) +
-             (spec.object != nullptr ? " or the keys of a " + spec.object->name : "");
     case ValueType::integer:
-      return "a whole number";
+      return (spec.type == ValueType::integer ? "a whole number" : "a number") + withUnit(spec.unit) +
+             (spec.choices.empty() ? "" : " or " + joined(spec.choices)) +
+             (spec.object != nullptr ? " or the keys of a " + spec.object->name : "");
     case ValueType::boolean:
       return "true or false";
     case ValueType::text:
@@ -187,7 +187,7 @@ class Checker {
       const auto entry = std::find_if(node.entries.begin(), node.entries.end(),
                                       [&, &name = key](const MapEntry& e) { return e.key == name; });
       fault(entry->position,
-            fmt::format("'{}' goes with '{}', which the {} does not have", key, companion, spec.name));
+            fmt::format("'{}' needs '{}', which the {} does not have", key, companion, spec.name));
     }
   }
 
@@ -202,10 +202,8 @@ class Checker {
       node.kind == NodeKind::sequence ? list(name, node, spec) : wrongType();
     } else if (node.kind != NodeKind::scalar) {
       wrongType();
-    } else if (spec.type == ValueType::number && !node.quoted &&
-               std::count(spec.choices.begin(), spec.choices.end(), node.text) > 0) {
-      return;
     } else if (spec.type == ValueType::number || spec.type == ValueType::integer) {
+      if (std::count(spec.choices.begin(), spec.choices.end(), node.text) > 0) return;
       const std::optional<double> number = node.quoted ? std::nullopt : numberOf(node.text);
       if (!number) return wrongType();
       const std::string message = rangeFault(name, node.text, *number, spec);
@@ -228,7 +226,10 @@ class Checker {
       fault(node.position, fmt::format("{} must be one of {}, not {}{}", name, joined(spec.choices),
                                        describe(node), didYouMean(node.text, spec.choices)));
     } else if (spec.type == ValueType::timestamp) {
-      if (!parseUtc_ms(node.text)) wrongType();
+      if (parseUtc_ms(node.text)) return;
+      const std::string reason = utcFault(node.text);
+      fault(node.position, fmt::format("{} must be {}, not {}{}", name, expectation(spec), quoted(node.text),
+                                       reason.empty() ? "" : ": " + reason));
     } else {
       const std::optional<char32_t> unprintable =
           spec.is_printable ? firstUnprintable(node.text) : std::nullopt;

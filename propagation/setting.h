@@ -17,6 +17,7 @@ struct Setting {
   std::string unit;                  ///< of a number
   double min = 0, max = 0;           ///< of a number, both allowed
   bool has_auto = false;             ///< a number may be `auto` in files, which is 0 here
+  bool is_whole = false;             ///< only whole numbers are allowed
   /// The number, or the index of the choice.
   double (*get)(const ModelSettings&) = nullptr;
   void (*set)(ModelSettings&, double value) = nullptr;

@@ -86,7 +86,8 @@ std::string textOf(const document::DefaultValue& value) {
 }
 
 Parameter::Type typeOf(const document::ValueSpec& spec) {
-  if (spec.type == ValueType::number && !spec.choices.empty()) return Parameter::Type::text;
+  const bool is_numeric = spec.type == ValueType::number || spec.type == ValueType::integer;
+  if (is_numeric && !spec.choices.empty()) return Parameter::Type::text;
   switch (spec.type) {
     case ValueType::number:
       return Parameter::Type::number;

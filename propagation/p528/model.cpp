@@ -11,7 +11,8 @@ namespace emscape::propagation {
 
 std::vector<Setting> p528Settings() {
   return {numberSetting<&ModelSettings::p528, &P528Settings::time_percent>(
-      "time_percent", "percent", 0.01, 99.99, "percentage of time for which the loss is not exceeded")};
+      "time_percent", "percent", kP528Percentage.min, kP528Percentage.max,
+      "percentage of time for which the loss is not exceeded")};
 }
 
 InputFaults checkP528(const EmitterInputs& inputs) {

@@ -229,6 +229,7 @@ std::vector<Setting> peSettings() {
       "range_step_m", "m", 1, 2000, "step of the march in range"));
   settings.push_back(automaticSetting<kPe, &ParabolicEquationSettings::azimuths>(
       "azimuths", "", 2, 7200, "directions that are marched; the field is interpolated between them"));
+  settings.back().is_whole = true;
   settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::source>(
       "source", PeRadiator::pattern,
       "what is marched: isotropic serves every beam; pattern, the antenna's elevation cut with its tilt, for "

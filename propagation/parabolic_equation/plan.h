@@ -11,7 +11,7 @@
 
 namespace emscape::propagation {
 
-constexpr ModelLimit kPeTriedFrequency{"frequency, of measurements",
+constexpr ModelLimit kPeTriedFrequency{"frequency",
                                        "MHz",
                                        1e6,
                                        30,

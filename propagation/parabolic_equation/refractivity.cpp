@@ -203,10 +203,10 @@ RefractivityProfile surfaceDuct(double top_m, double deficit_m_units, double sur
 RefractivityProfile trilinearRefractivity(double base_m, double top_m, double deficit_m_units,
                                           double surface_m_units) {
   if (!(base_m >= 0)) refuse("base of the layer", base_m, "m", "0 m or more");
-  if (!(top_m > base_m && top_m <= kMaxHeight_m)) {
-    refuse("top of the layer", top_m, "m",
-           fmt::format("above its base of {} m, up to {} m", base_m, kMaxHeight_m));
-  }
+  if (!(top_m > base_m))
+    refuse("top of the layer", top_m, "m", fmt::format("above its base of {} m", base_m));
+  if (!(top_m <= kMaxHeight_m))
+    refuse("top of the layer", top_m, "m", fmt::format("{} m or less", kMaxHeight_m));
   if (!(deficit_m_units > 0 && deficit_m_units <= kMaxM)) {
     refuse("deficit of the layer", deficit_m_units, "M-units",
            fmt::format("above 0, up to {} M-units", kMaxM));

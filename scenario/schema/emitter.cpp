@@ -31,7 +31,8 @@ const ObjectSpec& settingsSpec(const ModelInfo& model) {
       ObjectSpec& spec = all[row.model] = {row.name, "", {}};
       for (const propagation::Setting& setting : row.settings) {
         const double value = setting.get(defaults);
-        const ValueSpec plain = number(setting.unit).from(setting.min).to(setting.max);
+        const ValueSpec any = setting.is_whole ? kInteger : number(setting.unit);
+        const ValueSpec plain = any.from(setting.min).to(setting.max);
         if (setting.has_auto) {
           spec.keys.push_back(byDefault(setting.key, plain.orWord("auto"), "auto", setting.description));
           continue;
@@ -92,7 +93,8 @@ const ObjectSpec& mtiSpec() {
           required(
               "kind", choiceUpTo(MtiKind::pulse_doppler),
               "canceller: binomial weights of alternating sign; pulse_doppler: a bank of coherent filters"),
-          byDefault("pulses", kInteger.from(2).to(1024), double(Mti{}.pulses), "that the filter weighs"),
+          byDefault("pulses", kInteger.from(2).to(1024), double(Mti{}.pulses),
+                    "that the filter weighs; canceller: at most 10"),
           byDefault("surface_spread_m_s", spread, Mti{}.surface_spread_mps,
                     "standard deviation of the radial velocities of land and sea, the scanning included"),
           byDefault("rain_spread_m_s", spread, Mti{}.rain_spread_mps, "the same of rain"),

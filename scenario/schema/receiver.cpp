@@ -1,4 +1,6 @@
 // Sections of receivers: of radars, at every voxel, and on platforms; targets.
+#include <string>
+
 #include "emscape/scenario/scenario.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"
@@ -19,11 +21,13 @@ KeySpec crossPolarKey() {
                    "isolation of the orthogonal polarisation by the antenna");
 }
 
-KeySpec antennaNoiseKey() {
+/// @param condition  end of the description
+KeySpec antennaNoiseKey(const std::string& condition = "") {
   return optional(
       "antenna_noise", choice({"sky"}),
       "in place of antenna_temperature_k: the clear sky at the frequency and the boresight's "
-      "elevation (galaxy by P.372, gases by P.676), and the ground at 290 K in 0.124 of the pattern");
+      "elevation (galaxy by P.372, gases by P.676), and the ground at 290 K in 0.124 of the pattern" +
+          condition);
 }
 
 }  // namespace
@@ -81,13 +85,15 @@ const ObjectSpec& receiverSpec() {
           optional("platform", kName,
                    "name of its platform, for `emscape link`; without it the receiver is at every voxel"),
           byDefault("gain_dbi", kGain, ReceiverProfile{}.gain_dbi, "in every direction"),
-          optional("antenna", object(antennaSpec()), "pattern and gain, in place of gain_dbi"),
-          optional("scan", object(scanSpec()), "motion of the beam; by default fixed along the heading"),
+          optional("antenna", object(antennaSpec()),
+                   "pattern and gain, in place of gain_dbi; needs platform"),
+          optional("scan", object(scanSpec()),
+                   "motion of the beam; by default fixed along the heading; needs antenna"),
           byDefault("losses_db", kLoss, ReceiverProfile{}.losses_db, "between antenna and receiver"),
           optional("noise_figure_db", kNoiseFigure,
                    "referred to 290 K; required with a platform and for sinr_db"),
           optional("antenna_temperature_k", kNoiseTemperature, "noise from sky and ground; by default 290"),
-          antennaNoiseKey(),
+          antennaNoiseKey("; needs platform"),
           optional("polarization", choiceUpTo(Polarization::circular_left),
                    "by default that of each emitter"),
           crossPolarKey(),

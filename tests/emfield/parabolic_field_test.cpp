@@ -986,7 +986,7 @@ TEST(ParabolicField, WarnsBeyondWhatWasMeasured) {
   EXPECT_EQ(warningsOf(measuredTo(200)), "");
   EXPECT_THAT(warningsOf(measuredTo(150)), ::testing::HasSubstr("the profile of the air ends below"));
   EXPECT_THAT(warningsOf([](auto& s) { s.emitters[0].frequency_hz = 25e9; }),
-              ::testing::HasSubstr("frequency, of measurements 25000 MHz is outside 30..20000"));
+              ::testing::HasSubstr("frequency 25000 MHz is outside 30..20000 MHz"));
   EXPECT_THAT(warningsOf([](auto& s) { s.ground.roughness_m = 3; }),
               ::testing::HasSubstr("roughness (rms) 3 m"));
 }

@@ -92,3 +92,13 @@ TEST(Clock, RefusesWhatIsNoUtcTime) {
 
 }  // namespace
 }  // namespace emscape::scenario
+TEST(Clock, SaysWhichNumberOfAUtcTimeIsOutOfRange) {
+  EXPECT_EQ(utcFault("2026-13-01T06:00:00Z"), "month 13 is outside 1 to 12");
+  EXPECT_EQ(utcFault("2026-02-29T06:00:00Z"), "day of the month 29 is outside 1 to 28");
+  EXPECT_EQ(utcFault("2026-06-01T24:00:00Z"), "hour 24 is outside 0 to 23");
+  EXPECT_EQ(utcFault("2026-06-01T06:60:00Z"), "minute 60 is outside 0 to 59");
+  EXPECT_EQ(utcFault("0000-06-01T06:00:00Z"), "year 0000 is outside 0001 to 9999");
+  EXPECT_EQ(utcFault("2026-06-01T06:00:00Z"), "");
+  EXPECT_EQ(utcFault("2026-06-01"), "");
+}
+

@@ -207,6 +207,28 @@ TEST_F(EditScenario, FaultsNameTheEditAndLeaveTheScenario) {
   EXPECT_THAT(faultOf(scenario, "receivers.r.gain_dbi", "1"), HasSubstr("there is no receiver 'r'"));
 }
 
+TEST_F(EditScenario, FaultsSayWhatIsAllowed) {
+  Scenario scenario = load(kSmall);
+  EXPECT_EQ(faultOf(scenario, "epoch", "2016-12-31T23:59:60Z"),
+            "epoch=2016-12-31T23:59:60Z: 'epoch' must be a UTC time such as 2026-06-01T06:00:00Z, not "
+            "'2016-12-31T23:59:60Z': second 60 is outside 0 to 59; there are no leap seconds");
+  const std::string receivers = "[{name: q, platform: site, bandwidth_hz: 1e6}]";
+  EXPECT_EQ(
+      faultOf(scenario, "receivers", receivers),
+      "receivers=" + receivers + ": 'platform' needs 'noise_figure_db', which the receiver does not have");
+  const std::string layer = "{kind: trilinear, base_m: 500, top_m: 400, deficit_m_units: 30}";
+  EXPECT_EQ(faultOf(scenario, "atmosphere.refractivity", layer),
+            "atmosphere.refractivity=" + layer + ": top of the layer: 400 m is not above its base of 500 m");
+  scenario.set("emitters.search radar.propagation", "parabolic_equation");
+  EXPECT_THAT(faultOf(scenario, "emitters.search radar.parabolic_equation.azimuths", "100.7"),
+              HasSubstr("'azimuths' must be a whole number, not 100.7"));
+  EXPECT_THAT(faultOf(scenario, "emitters.search radar.parabolic_equation.azimuths", "many"),
+              HasSubstr("'azimuths' must be a whole number or auto, not 'many'"));
+  scenario.set("emitters.search radar.propagation", "p528");
+  EXPECT_THAT(faultOf(scenario, "emitters.search radar.p528.time_percent", "0.5"),
+              HasSubstr("'time_percent' is 0.5, outside the allowed range 1 to 99 percent"));
+}
+
 TEST_F(EditScenario, FaultsElsewhereAreAtTheirPlaceInTheFile) {
   Scenario scenario = load(kSmall);
   scenario.set("platforms.site.attitude", "{roll_deg: 1}");  // a line more
@@ -311,6 +333,13 @@ TEST_F(EditScenario, EditsJson) {
                      "  ],\n  \"output\": {\"quantities\": [\"power_density_dbwm2\", \"emitter_count\"]}\n}");
   EXPECT_EQ(saved(scenario), expected);
   scenario.set("emitters.e.two_ray", "null");
+  scenario.set({{"emitters.e.propagation", "parabolic_equation"},
+                {"emitters.e.parabolic_equation", "{top_m: 500, azimuths: auto}"}});
+  EXPECT_EQ(scenario.emitters[0].propagation.parabolic_equation.top_m, 500);
+  scenario.set("emitters.e.parabolic_equation.top_m", "auto");
+  EXPECT_EQ(scenario.emitters[0].propagation.parabolic_equation.top_m, 0);
+  EXPECT_THAT(saved(scenario), HasSubstr(R"("parabolic_equation": {"top_m": "auto", "azimuths": "auto"})"));
+  scenario.set("emitters.e.parabolic_equation", "null");
   scenario.set("emitters.e.propagation", "null");
   scenario.set("output", "null");
   expected = test::replaced(text, "\"power_w\": 10", "\"power_w\": 5");

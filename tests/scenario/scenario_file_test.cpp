@@ -88,9 +88,9 @@ TEST_F(ScenarioYaml, ReadsEverySection) {
 TEST_F(ScenarioYaml, BeamwidthsWithoutAGainAreNotTooNarrow) {
   EXPECT_THAT(test::errorOf([&] {
                 load(replaced(valid_, "beamwidth_az_deg: 60, beamwidth_el_deg: 30",
-                              "beamwidth_az_deg: 1e-300, beamwidth_el_deg: 1e-300"));
+                              "beamwidth_az_deg: 0.001, beamwidth_el_deg: 0.001"));
               }),
-              HasSubstr("beamwidths of 1e-300 deg by 1e-300 deg are those of a gain of inf dBi, above 100 "
+              HasSubstr("beamwidths of 0.001 deg by 0.001 deg are those of a gain of 104.1 dBi, above 100 "
                         "dBi; give wider ones, or 'gain_dbi'"));
 }
 
