@@ -320,13 +320,20 @@ DocumentNodePtr readDocument(const std::string& file, const std::string& text, P
     TextPosition position = builder.positionOf(exception.mark);
     std::string reason = exception.msg;
     if (reason.rfind(YAML::ErrorMsg::INVALID_UNICODE, 0) == 0) {
-      const std::size_t begin = text.rfind('\\', position.offset);  // the mark is at the escape's end
+      // The mark is at the escape's end, where another escape may begin.
+      const std::size_t begin =
+          position.offset == 0 ? std::string::npos : text.rfind('\\', position.offset - 1);
       if (begin != std::string::npos) {
         const std::string escape = text.substr(begin, position.offset - begin);
         position.column -= static_cast<int>(escape.size());
         position.offset = begin;
         reason = escape + " is not a character";
-        if (escapedUnit(text, begin) != 0) reason += ", but one half of a surrogate pair";
+        if (const unsigned character = escapedPair(text, begin)) {
+          reason = fmt::format("{} is a pair of surrogates, which YAML writes as \\U{:08x}",
+                               text.substr(begin, kPairLength), character);
+        } else if (escapedUnit(text, begin) != 0) {
+          reason += ", but one half of a surrogate pair";
+        }
       }
     }
     const bool is_json = file.size() > 5 && file.compare(file.size() - 5, 5, ".json") == 0;

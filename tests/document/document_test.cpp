@@ -62,6 +62,10 @@ TEST(Document, RefusesHalfASurrogatePair) {
             "a.yaml:2:21: not valid YAML: \\ud83c" + why);
   EXPECT_EQ(faultOf("b: \"\xC3\xBC \\udf89\"\n"), "a.yaml:1:7: not valid YAML: \\udf89" + why);
   EXPECT_EQ(faultOf("b: \"\\U00110000\"\n"), "a.yaml:1:5: not valid YAML: \\U00110000 is not a character");
+  EXPECT_EQ(faultOf("b: \"\\ud83c\\ud83c\"\n"), "a.yaml:1:5: not valid YAML: \\ud83c" + why);
+  EXPECT_EQ(faultOf("name: \"\\ud83c\\udf89\"\n"),
+            "a.yaml:1:8: not valid YAML: \\ud83c\\udf89 is a pair of surrogates, which YAML writes as "
+            "\\U0001f389");
 }
 
 TEST(Document, FaultsOfJsonDoNotNameYaml) {
