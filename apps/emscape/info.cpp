@@ -132,7 +132,6 @@ Description describeScenario(const std::string& file) {
   }
   Json channels = Json::array();
   for (const emfield::Channel& channel : emfield::channelsOf(*scenario, {})) channels.push_back(channel.name);
-  const Json choices = choicesOf(scenario);
   Json json{{"kind", "scenario"},
             {"file", file},
             {"name", scenario->name},
@@ -149,6 +148,7 @@ Description describeScenario(const std::string& file) {
             {"receivers", receivers},
             {"targets", targets},
             {"channels", channels},
+            {"choices", choicesOf(scenario)},
             {"work", workOf(scenario)}};
   const auto& refractivity = scenario->atmosphere.refractivity;
   if (refractivity) json["refractivity"] = refractivityJson(*refractivity, frequenciesOf(*scenario));

@@ -109,6 +109,23 @@ emitters:
   }());
 }
 
+TEST(Info, ListsTheChoicesOfModelsAsValidateDoes) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("march.yaml", R"(schema_version: 1
+name: march
+region: {origin: {latitude_deg: 36, longitude_deg: -84}, size_m: [1000, 1000, 1000], dims: [4, 4, 4]}
+platforms: [{name: site, position: {latitude_deg: 36, longitude_deg: -84, height_msl_m: 100}}]
+emitters:
+  - {name: r, platform: site, kind: transmitter, frequency_hz: 1.0e9, power_w: 10, antenna: {pattern: isotropic},
+     propagation: parabolic_equation}
+)");
+  const json choices = json::parse(run({"info", file, "--json"}).out).at("choices");
+  ASSERT_FALSE(choices.empty());
+  EXPECT_EQ(choices.at(0).at("emitter"), "r");
+  EXPECT_EQ(choices, json::parse(run({"validate", file, "--json"}).out).at("choices"));
+  EXPECT_THAT(run({"info", file}).out, HasSubstr("choices:\n  -\n    emitter: r\n"));
+}
+
 TEST(Info, AHeaderOfValuesDescribesThem) {
   const TemporaryFolder folder;
   const ProgramResult written =
