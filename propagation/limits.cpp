@@ -11,6 +11,7 @@ std::string_view consequenceOf(Beyond beyond) {
     case Beyond::warned:
       return "computed, with a warning";
     case Beyond::clamped:
+    case Beyond::clamped_quietly:
       return "the nearest allowed value is used";
     case Beyond::refused:
       return "refused";

@@ -22,9 +22,10 @@ constexpr double kNoLimit = HUGE_VAL;
 
 /// Treatment of a value outside its limits.
 enum class Beyond {
-  warned,   ///< computed without change; the result has a warning
-  clamped,  ///< computed with the nearest allowed value; the result has a warning
-  refused,  ///< no result: NaN in loops, an error where input comes in
+  warned,           ///< computed without change; the result has a warning
+  clamped,          ///< computed with the nearest allowed value; the result has a warning
+  clamped_quietly,  ///< the same without a warning: it makes little difference
+  refused,          ///< no result: NaN in loops, an error where input comes in
 };
 
 /// One parameter's limits. Values are given and compared in SI units (m, Hz, rad, K, ...) and shown in

@@ -11,8 +11,8 @@ constexpr ModelLimit kGasesFrequency{"frequency",
                                      1e9,
                                      1,
                                      1000,
-                                     Beyond::clamped,
-                                     "line by line; below 1 GHz the attenuation is below 0.006 dB/km"};
+                                     Beyond::clamped_quietly,
+                                     "of this function; in the field line by line at every frequency"};
 constexpr ModelLimit kGasesSlantFrequency{
     "frequency (slant path)", "GHz", 1e9, 1, 350, Beyond::refused, "range of the equivalent heights"};
 constexpr ModelLimit kGasesElevation{
@@ -24,7 +24,7 @@ constexpr ModelLimit kGasesHeight{
     1000,
     -1,
     100,
-    Beyond::clamped,
+    Beyond::clamped_quietly,
     "no attenuation above 100 km; below sea level the lowest layer is continued"};
 constexpr const ModelLimit* kGasesLimits[] = {&kGasesFrequency, &kGasesSlantFrequency, &kGasesElevation,
                                               &kGasesHeight};

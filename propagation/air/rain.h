@@ -8,7 +8,13 @@
 
 namespace emscape::propagation {
 
-constexpr ModelLimit kRainFrequency{"frequency", "GHz", 1e9, 1, 1000, Beyond::clamped, "range of the fits"};
+constexpr ModelLimit kRainFrequency{"frequency",
+                                    "GHz",
+                                    1e9,
+                                    1,
+                                    1000,
+                                    Beyond::clamped_quietly,
+                                    "range of the fits; below 1 GHz rain attenuates by less than 0.01 dB/km"};
 constexpr ModelLimit kRainRate{
     "rain rate", "mm/h", 1, 0, 300, Beyond::warned, "beyond any rate that the recommendation's maps hold"};
 constexpr const ModelLimit* kRainLimits[] = {&kRainFrequency, &kRainRate};
