@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <mutex>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -15,10 +17,14 @@ namespace {
 class LogTest : public testing::Test {
  protected:
   LogTest() {
-    setLogSink([this](LogLevel level, const std::string& message) { lines_.emplace_back(level, message); });
+    setLogSink([this](LogLevel level, const std::string& message) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      lines_.emplace_back(level, message);
+    });
   }
   ~LogTest() override { setLogSink({}); }
 
+  std::mutex mutex_;
   std::vector<std::pair<LogLevel, std::string>> lines_;
 };
 
@@ -44,6 +50,20 @@ TEST_F(LogTest, TakesMessagesFromManyThreads) {
     for (int i = begin; i < end; ++i) logInfo(std::to_string(i));
   });
   EXPECT_EQ(lines_.size(), 1000u);
+}
+
+TEST(LogSink, MayLogWaitForAThreadThatLogsAndReplaceItself) {
+  std::vector<std::string> lines;
+  setLogSink([&lines](LogLevel, const std::string& message) {
+    lines.push_back(message);
+    if (message != "first") return;
+    logInfo("second");
+    std::thread([] { logInfo("third"); }).join();
+    setLogSink({});
+    logInfo("nobody hears this");
+  });
+  logInfo("first");
+  EXPECT_EQ(lines, (std::vector<std::string>{"first", "second", "third"}));
 }
 
 }  // namespace
