@@ -21,11 +21,13 @@ def main(file: str, time_s: float, volume: str) -> None:
     name = field.quantities[0]
     print(f"{name}: {values.min():.1f}..{values.max():.1f} {field.info()['unit']}, {field}")
 
-    # What if the first emitter had half the power? Only what depends on it is computed again.
+    # What if the first emitter had 1 kW? Only what depends on it is computed again.
     power = f"emitters.{em.path_step(scenario.emitters[0])}.power_w"
-    half = solver.at(time_s, scenario.with_set({power: 1000}))
-    print(f"with 1 kW: mean change {np.mean(half.numpy() - field.numpy()):.2f} dB")
+    weaker = solver.at(time_s, scenario.with_set({power: 1000}))
+    print(f"with 1 kW: mean change {np.mean(weaker.numpy() - field.numpy()):.2f} dB")
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 4:
+        sys.exit("usage: python examples/field.py SCENARIO TIME_S VOLUME")
     main(sys.argv[1], float(sys.argv[2]), sys.argv[3])
