@@ -71,10 +71,13 @@ const Format* findFormat(const fs::path& path) {
   return nullptr;
 }
 
-const Format& requireFormat(const fs::path& path) {
+/// @param to_write  the message lists only the formats that can be written
+const Format& requireFormat(const fs::path& path, bool to_write = false) {
   if (const Format* format = findFormat(path)) return *format;
   std::string known;
-  for (const Format& format : formats()) known += (known.empty() ? "." : ", .") + format.about.name;
+  for (const Format& format : formats()) {
+    if (format.about.writable || !to_write) known += (known.empty() ? "." : ", .") + format.about.name;
+  }
   throw Error(ErrorCode::bad_input, {path.string()}, "no volume file by its ending; known are " + known);
 }
 
@@ -149,7 +152,7 @@ bool isVolumeFile(const fs::path& path) {
 }
 
 void writeVolumes(const fs::path& path, const Volumes& volumes) {
-  const Format& format = requireFormat(path);
+  const Format& format = requireFormat(path, true);
   const auto fail = [&](const std::string& what) {
     throw Error(ErrorCode::bad_input, {path.string()}, what);
   };

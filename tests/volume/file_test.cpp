@@ -9,6 +9,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using namespace test;
 
@@ -67,6 +68,8 @@ TEST(File, UnknownEndingsAreRefusedWithTheKnownOnes) {
   const DenseVolume volume = plainVolume();
   EXPECT_THAT(errorOf([] { readVolume("a.tiff"); }),
               HasSubstr("a.tiff: no volume file by its ending; known are .vdb, .nvdb, .vti, .raw, .dat"));
+  EXPECT_THAT(errorOf([&] { writeVolumes("a.tiff", {&volume}); }),
+              EndsWith("known are .vdb, .nvdb, .vti, .raw"));
   EXPECT_THAT(errorOf([&] { writeVolumes("a.dat", {&volume}); }), HasSubstr("read, not written"));
   EXPECT_THAT(errorOf([&] {
                 writeVolumes("a.raw", {&volume, &volume});
