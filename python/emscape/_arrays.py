@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ._arguments import distinct
 from ._field import Field, Solver
 from ._native import native
-from ._scenario import Scenario, Times, listed
+from ._scenario import Scenario, Times
 
 try:
     import xarray
@@ -178,7 +179,10 @@ def dataset_of(field: Field, quantities: Sequence[str] = ()) -> xarray.Dataset:
     """A field as a dataset (``Field.to_xarray``)."""
     grid, scenario = field.grid, field.scenario
     coordinates = _space(grid)
-    coordinates["time"] = time_coordinate([field.time_s], scenario.epoch if scenario is not None else None, ())
+    if scenario is None and field.time is not None:  # the file states the time, not the epoch
+        coordinates["time"] = time_coordinate([0.0], field.time, ())
+    else:
+        coordinates["time"] = time_coordinate([field.time_s], scenario.epoch if scenario is not None else None, ())
     ground = field.ground_msl_m()
     if ground is not None:
         coordinates["ground_msl"] = xarray.Variable(
@@ -251,10 +255,10 @@ def open_series(
     :param times: as ``Scenario.times``
     :param quantities: empty: those of the scenario
     :param chunks: chunks for dask; "auto": one per time if dask is installed; None: without dask
-    Raises UsageError for invalid times, InputError for quantities that the scenario cannot have.
+    Raises UsageError for invalid times and a quantity that is given twice, InputError for quantities that the scenario cannot have.
     """
     times_s = scenario.times(times)
-    names = listed(quantities)
+    names = distinct(quantities, "quantities")
     grid = scenario._handle.grid()
     options = {
         "backend": backend,

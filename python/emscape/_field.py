@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import datetime
-import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from ._arguments import PathName, distinct, listed, path_text
 from ._native import native
-from ._scenario import Scenario, listed
+from ._scenario import Scenario, utc_time
 
 if TYPE_CHECKING:
     import pyvista
@@ -37,8 +37,11 @@ class Field:
 
         ``dims``, ``spacing_m`` and ``first_center_m`` along (x, y, z); of a grid with a position on the earth also ``frame``
         ("altitude": z is above mean sea level; "enu": z is along the vertical at the origin), and ``latitude_deg``,
-        ``longitude_deg``, ``height_msl_m`` of its origin, where x and y are 0.
+        ``longitude_deg``, ``height_msl_m`` of its origin, where x and y are 0. A new dict in every call.
         """
+        return dict(self._kept_grid())
+
+    def _kept_grid(self) -> dict[str, Any]:
         if self._grid is None:
             self._grid = self._handle.grid()
         return self._grid
@@ -51,7 +54,7 @@ class Field:
     @property
     def shape(self) -> tuple[int, int, int]:
         """Voxels along (z, y, x)."""
-        x, y, z = self.grid["dims"]
+        x, y, z = self._kept_grid()["dims"]
         return z, y, x
 
     @property
@@ -61,8 +64,10 @@ class Field:
 
     @property
     def time(self) -> datetime.datetime | None:
-        """Time (UTC); None without an epoch."""
-        epoch = self.scenario.epoch if self.scenario is not None else None
+        """Time (UTC), of a field from a file as the file states it; None without an epoch."""
+        if self.scenario is None:
+            return utc_time(self.info()["time_utc"])
+        epoch = self.scenario.epoch
         return epoch + datetime.timedelta(seconds=self.time_s) if epoch is not None else None
 
     @property
@@ -80,7 +85,7 @@ class Field:
         return quantity if quantity is not None else self.quantities[0]
 
     def _centers(self, axis: int) -> npt.NDArray[np.float64]:
-        grid = self.grid
+        grid = self._kept_grid()
         first, step, count = grid["first_center_m"][axis], grid["spacing_m"][axis], grid["dims"][axis]
         return np.asarray(first + np.arange(count) * step, dtype=np.float64)
 
@@ -157,13 +162,13 @@ class Field:
         """
         return self._handle.geodetic(x_m, y_m, z_m)
 
-    def write(self, file: str | os.PathLike[str], quantities: str | Sequence[str] = ()) -> None:
+    def write(self, file: PathName, quantities: str | Sequence[str] = ()) -> None:
         """Writes a volume file in the format of its extension: .vdb, .nvdb, .vti, .raw. The file appears when it is complete.
 
         :param quantities: empty: all; formats for a single volume take one
         Raises InputError for an unknown extension or too many quantities, OtherError if the file cannot be written.
         """
-        self._handle.write(os.fspath(file), listed(quantities))
+        self._handle.write(path_text(file), listed(quantities))
 
     def to_xarray(self, quantities: str | Sequence[str] = ()) -> xarray.Dataset:
         """The field as a dataset of (z, y, x) with coordinates, units and projection by the CF conventions; NaN in masked
@@ -221,12 +226,18 @@ class Solver:
         :param quantities: names; empty: those of the scenario
         :param allow_missing_terrain: columns over holes in the terrain are masked instead of raising an error
         :param cache_mib: limit of the memory for kept results of emitters (MiB), 0 to 1e6; 0: no limit
-        :param move_tolerance_m: an emitter that moves less than this (m) over time keeps its geometry
-        Raises UsageError for an argument outside its range, InputError for missing terrain,
+        :param move_tolerance_m: an emitter that moves less than this (m) over time keeps its geometry; 0 to 1e6
+        Raises UsageError for an argument outside its range or a name that is given twice, InputError for missing terrain,
         DeviceError for a GPU that is missing or has too little memory.
         """
         self._handle = native.Solver(
-            scenario._handle, backend, threads, listed(quantities), allow_missing_terrain, cache_mib, move_tolerance_m
+            scenario._handle,
+            backend,
+            threads,
+            distinct(quantities, "quantities"),
+            allow_missing_terrain,
+            cache_mib,
+            move_tolerance_m,
         )
 
     @property
@@ -265,9 +276,9 @@ class Solver:
         return f"<emscape.Solver of {self.scenario.name!r} on {self.backend}>"
 
 
-def read(file: str | os.PathLike[str]) -> Field:
+def read(file: PathName) -> Field:
     """Reads a volume file (.vdb, .nvdb, .vti, .raw) with all its quantities.
 
     Raises InputError.
     """
-    return Field(native.read(os.fspath(file)))
+    return Field(native.read(path_text(file)))

@@ -9,6 +9,7 @@ from typing import Any, overload
 import numpy as np
 import xarray
 
+from ._arguments import distinct
 from ._arrays import CONVENTIONS, NO_FILL, flags, time_coordinate, udunit_of, wkt_crs
 from ._errors import UsageError
 from ._native import native
@@ -92,7 +93,9 @@ def coverage(
         ground and above sea level. The projection is in ``spatial_ref``; with rioxarray imported, ``.rio.crs``
     Raises UsageError, InputError and DeviceError, as on the command line.
     """
-    names = [product] if isinstance(product, str) else list(product)
+    names = [product] if isinstance(product, str) else distinct(product, "product")
+    if not names:
+        raise UsageError("product: the sequence is empty; give at least one name")
     maps, grid, warnings = native.coverage(
         scenario._handle,
         heights,

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from typing import Union
 
 import numpy as np
 import numpy.typing as npt
 
+from ._arguments import PathName, path_text
 from ._field import Field
 from ._native import native
 
@@ -32,7 +32,7 @@ def render(
     camera: Camera = "orbit",
     mode: str = "dvr",
     range: tuple[float, float] | None = None,
-    transfer: str | os.PathLike[str] = "",
+    transfer: PathName = "",
     theme: str = "dark",
     terrain: bool = True,
     emitters: bool = True,
@@ -50,10 +50,10 @@ def render(
     :param transfer: file of a transfer function; empty: fitted
     :param theme: "dark" or "light"
     :param iso_value: of the isosurface, in the quantity's unit; None: the middle of the colours
-    :param exaggeration: of heights; 0: chosen from the shape of the region
+    :param exaggeration: of heights, up to 100; 0: chosen from the shape of the region
     :param note: small text at the bottom
     :return: (height, width, 4) uint8: red, green, blue and opacity, rows from the top
-    Raises UsageError for an invalid camera, mode or theme, InputError for an invalid transfer function file.
+    Raises UsageError for an argument that is not allowed, InputError for an invalid transfer function file.
     """
     return native.render(
         field._handle,
@@ -62,7 +62,7 @@ def render(
         _camera(camera),
         mode,
         range,
-        os.fspath(transfer),
+        path_text(transfer) if transfer else "",
         theme,
         terrain,
         emitters,

@@ -10,6 +10,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Union
 
+from ._arguments import PathName, path_text
 from ._errors import InputError, Problem, ScenarioError, UsageError
 from ._native import native
 
@@ -18,20 +19,49 @@ Times = Union[str, float, Sequence[float]]
 numbers. An empty string: all steps of the scenario's clock."""
 
 
-def listed(names: str | Sequence[Any]) -> list[Any]:
-    """Names as a list; a text is one name, an empty text none."""
-    if isinstance(names, str):
-        return [names] if names else []
-    return list(names)
-
-
-def _yaml(value: Any) -> str:
-    """A value as the text of an edit: JSON, which is YAML."""
-    if isinstance(value, (datetime.datetime, datetime.date)):
-        return json.dumps(value.isoformat())
+def _plain(value: Any) -> Any:
+    """A value that JSON lacks as one that it has; called by json.dumps. Raises TypeError or ValueError."""
+    if isinstance(value, datetime.datetime):
+        if value.utcoffset() is None:
+            raise ValueError(f"the time {value} has no time zone; give one, such as tzinfo=datetime.timezone.utc")
+        return value.astimezone(datetime.timezone.utc).replace(tzinfo=None).isoformat() + "Z"
+    if isinstance(value, datetime.date):
+        return value.isoformat()
+    if isinstance(value, os.PathLike):
+        return path_text(value)
     if hasattr(value, "tolist"):  # numpy's scalars and arrays
-        value = value.tolist()
-    return json.dumps(value, ensure_ascii=False)
+        import numpy as np
+
+        if isinstance(value, (np.datetime64, np.ndarray)) and value.dtype.kind == "M":
+            return np.datetime_as_string(value, unit="ms", timezone="UTC").tolist()
+        return value.tolist()
+    raise TypeError(f"a {type(value).__name__} is no value; give None, a bool, number, text, path or time, or a list or dict of these")
+
+
+def edit_texts(edits: Mapping[str, Any] | None) -> list[tuple[str, str]]:
+    """Edits as (path, value); values are JSON, which is YAML. Raises UsageError, which names the path."""
+    texts = []
+    for path, value in (edits or {}).items():
+        try:
+            texts.append((path, json.dumps(value, ensure_ascii=False, default=_plain)))
+        except (TypeError, ValueError, OverflowError) as fault:
+            raise UsageError(f"edit of '{path}': {fault}") from None
+    return texts
+
+
+def set_words(edits: Iterable[tuple[str, str]]) -> list[str]:
+    """Edits as options of the command line."""
+    return [word for path, value in edits for word in ("--set", f"{path}={value}")]
+
+
+def utc_time(text: str) -> datetime.datetime | None:
+    """The time of a UTC text "YYYY-MM-DDTHH:MM:SS[.fraction][Z]"; None if it has another form, or is empty."""
+    whole, _, fraction = text.removesuffix("Z").partition(".")
+    try:
+        # Python 3.10 requires fractions of 3 or 6 digits.
+        return datetime.datetime.fromisoformat(f"{whole}.{fraction[:6]:0<6}+00:00")
+    except ValueError:
+        return None
 
 
 class Scenario:
@@ -53,7 +83,7 @@ class Scenario:
 
     @property
     def file(self) -> str:
-        """File from which it was read."""
+        """File from which it was read, an absolute path."""
         return self._handle.file
 
     @property
@@ -64,8 +94,7 @@ class Scenario:
     @property
     def epoch(self) -> datetime.datetime | None:
         """Time 0 (UTC); None if the scenario has no epoch."""
-        text = self._handle.epoch_utc
-        return datetime.datetime.fromisoformat(text.replace("Z", "+00:00")) if text else None
+        return utc_time(self._handle.epoch_utc)
 
     @property
     def duration_s(self) -> float:
@@ -126,10 +155,12 @@ class Scenario:
     def times(self, times: Times = "") -> list[float]:
         """Times as a list of seconds since the epoch.
 
-        Raises UsageError for invalid times.
+        Raises UsageError for invalid times, such as ones beyond 1e9 s.
         """
         if isinstance(times, str):
             return self._handle.times(times)
+        if isinstance(times, (bytes, bytearray)):  # sequences of numbers
+            raise UsageError(f"times: {times!r} is not a number of seconds")
         items: Any = times  # numpy's arrays and numbers, too
         try:
             items = list(items)
@@ -148,6 +179,8 @@ class Scenario:
             values.append(time_s)
         if not values:
             raise UsageError("times: the sequence is empty; give at least one time")
+        for extreme_s in (values[0], values[-1]):
+            self._handle.times(repr(extreme_s))  # checks the range
         return values
 
     def positions(self, time_s: float = 0.0) -> dict[str, tuple[float, float, float]]:
@@ -159,18 +192,18 @@ class Scenario:
 
         Paths are those of the command line's ``--set``: keys of the scenario format separated by dots, items of lists by name or
         index: ``{"emitters.jammer.power_w": 500, "region.dims": [100, 100, 50]}``. None removes an optional key.
-        The result is checked after all edits.
+        Times are datetimes with a time zone, or numpy's datetime64, which are UTC. The result is checked after all edits.
 
-        Raises ScenarioError; the location of an error is the edit.
+        Raises ScenarioError, whose location is the edit; UsageError for a value that no scenario can have, such as a range.
         """
-        return _checked(*self._handle.edit([(path, _yaml(value)) for path, value in edits.items()]))
+        return _checked(*self._handle.edit(edit_texts(edits)))
 
-    def save(self, file: str | os.PathLike[str]) -> None:
+    def save(self, file: PathName) -> None:
         """Writes the scenario's text with its edits; comments and order are kept.
 
         Raises OtherError if the file cannot be written.
         """
-        self._handle.save(os.fspath(file))
+        self._handle.save(path_text(file))
 
     def __repr__(self) -> str:
         z, y, x = self.shape
@@ -187,6 +220,7 @@ class Scenario:
 
 
 def _checked(handle: native.Scenario | None, rows: Iterable[tuple[str, int, int, str, str]]) -> Scenario:
+    """A scenario that was read; logs its warnings. Raises ScenarioError for its errors."""
     errors = []
     for file, line, column, severity, message in rows:
         if severity == "error":
@@ -209,13 +243,15 @@ def _unpickled(file: str, edits: list[tuple[str, str]], expected_hash: str) -> S
     return scenario
 
 
-def load(file: str | os.PathLike[str], edits: Mapping[str, Any] | None = None) -> Scenario:
+def load(file: PathName, edits: Mapping[str, Any] | None = None) -> Scenario:
     """Reads a scenario (YAML or JSON) and the files that it names; elevation files are read when needed.
+
+    A relative name is resolved now: the scenario does not depend on the current folder later, nor in another process.
 
     :param edits: as for ``Scenario.with_set``
     Raises ScenarioError, whose ``problems`` lists all errors with file, line and column.
     """
-    return _load_text(os.fspath(file), [(path, _yaml(value)) for path, value in (edits or {}).items()])
+    return _load_text(os.path.join(os.getcwd(), path_text(file)), edit_texts(edits))
 
 
 def path_step(name: str) -> str:

@@ -8,10 +8,11 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any, Union
 
+from ._arguments import PathName, listed, path_text, utf8
 from ._errors import InputError, UsageError
 from ._native import native
 from ._progress import Progress, callback
-from ._scenario import Scenario, Times, _yaml, listed
+from ._scenario import Scenario, Times, _checked, edit_texts, set_words
 
 if TYPE_CHECKING:
     import xarray
@@ -20,14 +21,22 @@ Json = dict[str, Any]
 _Option = Union[str, float, bool, list[Any], None]
 
 
-def command(*arguments: str, progress: Progress = None) -> Any:
+def command(*arguments: PathName, progress: Progress = None) -> Any:
     """Runs a subcommand in this process and returns the JSON that ``emscape SUBCOMMAND ... --json`` prints.
 
-    :param arguments: as on the command line: ``command("info", "out/jacksboro_0001.vdb")``
+    :param arguments: words of the command line, texts or paths: ``command("info", "out/jacksboro_0001.vdb")``. Not "view",
+        whose window is a program of its own: ``python -m emscape view``
     Raises UsageError for arguments that cannot be parsed, otherwise the Error of the command's exit status. A failed check is a
     result, not an error.
     """
-    _, text = native.command(list(arguments), callback(progress))
+    words = []
+    for argument in arguments:
+        if not isinstance(argument, (str, bytes, os.PathLike)):
+            raise UsageError(f"command: {argument!r} is neither a text nor a path; give each word as an argument of its own")
+        words.append(utf8(argument) if isinstance(argument, str) else path_text(argument))
+    if next((word for word in words if not word.startswith("-")), "") == "view":
+        raise UsageError("command: 'view' has no result; start the window as a program: python -m emscape view ...")
+    _, text = native.command(words, callback(progress))
     return json.loads(text) if text.strip() else None
 
 
@@ -66,13 +75,11 @@ def _times(scenario: Scenario, times: Times | None) -> str | None:
 def _subject(scenario: Scenario) -> list[str]:
     """A scenario as arguments: its file, which must not have changed since it was loaded, and its edits."""
     edits = scenario._handle.edits
-    current, _ = native.load(scenario.file, edits)
-    if current is None or current.hash != scenario.hash:
+    current, rows = native.load(scenario.file, edits)
+    # Without the warnings, which the command logs.
+    if _checked(current, [row for row in rows if row[3] == "error"]).hash != scenario.hash:
         raise InputError("has changed since the scenario was loaded from it", scenario.file)
-    words = [scenario.file]
-    for path, value in edits:
-        words += ["--set", f"{path}={value}"]
-    return words
+    return [scenario.file, *set_words(edits)]
 
 
 def _run(verb: str, scenario: Scenario, options: Mapping[str, _Option], progress: Progress) -> Any:
@@ -105,7 +112,13 @@ def profile(
     :return: geometry, terms, obstacles and ``verdict``, a sentence that states the dominant cause; lengths in m, angles in deg
     Raises UsageError for an unknown emitter or a point outside the earth, InputError for one below ground.
     """
-    place = ",".join(repr(float(value)) for value in to)
+    try:
+        numbers = [float(value) for value in to]
+    except (TypeError, ValueError):
+        numbers = []
+    if len(numbers) != 3 or isinstance(to, (str, bytes)):
+        raise UsageError(f"to: {to!r} is not (latitude, longitude, height), three numbers")
+    place = ",".join(map(repr, numbers))
     options: dict[str, _Option] = {"emitter": emitter, "to": place, "agl": agl, "time": time_s, "model": listed(models)}
     result: Json = _run("profile", scenario, options, None)
     return result
@@ -178,8 +191,9 @@ def vertical(
     :param height_axis: heights above mean sea level ("msl") or ground ("agl")
     :param blake: use a smooth earth instead of the terrain
     :param range_m: ground range of the right edge; None: the instrumented range, or that of the region's edge
-    :return: the quantity (azimuth, height, range), NaN below ground, and ``ground_msl`` (azimuth, range) in m; attributes hold
-        station, threshold, and for each azimuth the output of ``emscape vertical --json``, including contours (range m, height m)
+    :return: the quantity (azimuth, height, range), NaN below ground, and ``ground_msl`` (azimuth, range) in m; attributes are
+        numbers and texts: station, threshold, warnings (a list as JSON), and in ``azimuths``, as JSON, the output of
+        ``emscape vertical --json`` for each azimuth, including contours (range m, height m)
     """
     import numpy as np
     import xarray
@@ -208,14 +222,21 @@ def vertical(
             height: (height, heights, {"units": "m"}),
             "range": ("range", ranges, {"units": "m", "long_name": "range over the ground"}),
         },
-        {**result, "azimuths": cuts},
+        {name: _attribute(value) for name, value in {**result, "azimuths": cuts}.items() if value is not None},
     )
+
+
+def _attribute(value: Any) -> str | int | float:
+    """A JSON value as an attribute that netCDF files can have: flags as 0 or 1, lists and objects as JSON texts."""
+    if isinstance(value, (str, int, float)):
+        return int(value) if isinstance(value, bool) else value
+    return json.dumps(value, ensure_ascii=False)
 
 
 def compare(
     a: Scenario,
     b: Scenario,
-    output: str | os.PathLike[str] | None = None,
+    output: PathName | None = None,
     *,
     heights: str = "agl:150",
     products: str | Sequence[str] = (),
@@ -242,7 +263,7 @@ def compare(
     options |= {"threshold": threshold, "times": _times(a, times), "cell": cell_m, "area": area, "crs": crs}
     options |= {"format": listed(formats), "explain": str(explain) if explain is not None else None, "backend": backend}
     with tempfile.TemporaryDirectory() as folder:
-        options["output"] = os.fspath(output) if output is not None else os.path.join(folder, "compare")
+        options["output"] = path_text(output) if output is not None else os.path.join(folder, "compare")
         if output is None and not formats:
             options["format"] = ["cog"]
         result: Json = command("compare", *_subjects(a, b, folder), *_options(options), progress=progress)
@@ -275,8 +296,8 @@ def _subjects(a: Scenario, b: Scenario, folder: str) -> list[str]:
 
 
 def study(
-    file: str | os.PathLike[str],
-    output: str | os.PathLike[str],
+    file: PathName,
+    output: PathName,
     *,
     jobs: int = 1,
     resume: bool = False,
@@ -292,40 +313,41 @@ def study(
     :param edits: of the scenario, applied before those of the variants
     :return: numbers of variants and parts, and the extremes of each measure
     """
-    words = ["study", os.fspath(file)]
-    for path, value in (edits or {}).items():
-        words += ["--set", f"{path}={_yaml(value)}"]
-    options: dict[str, _Option] = {"output": os.fspath(output), "jobs": str(jobs), "resume": resume, "backend": backend}
+    words = ["study", path_text(file), *set_words(edit_texts(edits))]
+    options: dict[str, _Option] = {"output": path_text(output), "jobs": str(jobs), "resume": resume, "backend": backend}
     result: Json = command(*words, *_options(options), progress=progress)
     return result
 
 
-def check(folder: str | os.PathLike[str]) -> Json:
+def check(folder: PathName) -> Json:
     """Compares the propagation models with a folder of reference figures.
 
     :return: ``datasets`` with the largest difference, tolerance and unit of each, and ``pass``
     """
-    result: Json = command("check", os.fspath(folder))
+    result: Json = command("check", path_text(folder))
     return result
 
 
 def simulate(
     scenario: Scenario,
-    output: str | os.PathLike[str],
+    output: PathName,
     formats: str | Sequence[str] = ("vdb",),
     *,
     times: Times | None = None,
     quantities: str | Sequence[str] = (),
     resume: bool = False,
+    force: bool = False,
     backend: str = "auto",
     progress: Progress = None,
 ) -> Any:
-    """Writes a scenario's field over time as files into a folder; an interrupted series is continued with ``resume``.
+    """Writes a scenario's field over time as files into a folder.
+
+    A folder that holds a series is refused, unless ``resume`` continues the series or ``force`` replaces it.
 
     :param formats: "vdb", "nvdb", "vti", "raw"
     :param times: as ``Scenario.times``; None: the scenario's clock
     :return: what ``emscape simulate --json`` prints
     """
-    options: dict[str, _Option] = {"output": os.fspath(output), "format": listed(formats), "quantity": listed(quantities)}
-    options |= {"times": _times(scenario, times), "resume": resume, "backend": backend}
+    options: dict[str, _Option] = {"output": path_text(output), "format": listed(formats), "quantity": listed(quantities)}
+    options |= {"times": _times(scenario, times), "resume": resume, "force": force, "backend": backend}
     return _run("simulate", scenario, options, progress)

@@ -30,6 +30,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ._arguments import PathName, path_text
 from ._field import Field, Solver
 from ._native import native
 from ._scenario import Scenario, load
@@ -69,7 +70,7 @@ class VolumeDataset:
         size_m: tuple[float, float, float] = (20000.0, 20000.0, 5000.0),
         max_emitters: int = 4,
         quantity: str = "power_density_dbwm2",
-        terrain: str | os.PathLike[str] | None = None,
+        terrain: PathName | None = None,
         origin_deg: tuple[float, float] = (52.0, 5.0),
         propagation: str = "horizon",
         backend: str = "auto",
@@ -84,9 +85,12 @@ class VolumeDataset:
         """
         if count < 0 or max_emitters < 1:
             raise ValueError(f"count is {count}, max_emitters {max_emitters}; at least 0 and 1 are needed")
-        self.count, self.seed, self.shape, self.size_m = count, seed, shape, size_m
-        self.max_emitters, self.quantity, self.origin_deg = max_emitters, quantity, origin_deg
-        self.terrain = os.path.abspath(os.fspath(terrain)) if terrain is not None else None
+        self.count, self.seed, self.max_emitters, self.quantity = count, seed, max_emitters, quantity
+        # Python's numbers, which JSON can hold; numpy's arrays are allowed, too.
+        self.shape = tuple(int(voxels) for voxels in shape)
+        self.size_m = tuple(float(length_m) for length_m in size_m)
+        self.origin_deg = tuple(float(angle_deg) for angle_deg in origin_deg)
+        self.terrain = os.path.abspath(path_text(terrain)) if terrain is not None else None
         self.propagation, self.backend = propagation, backend
         self._solver: Solver | None = None
 

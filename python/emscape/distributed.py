@@ -12,8 +12,9 @@ import sys
 from collections.abc import Mapping
 from typing import Any
 
-from ._errors import Error, OtherError, make
-from ._scenario import _yaml
+from ._arguments import PathName, path_text
+from ._errors import Error, OtherError, UsageError, make
+from ._scenario import edit_texts, set_words
 from ._studies import Json, command
 
 
@@ -25,8 +26,8 @@ def _compute_part(arguments: list[str], part: int, parts: int) -> str:
 
 
 def study(
-    file: str | os.PathLike[str],
-    output: str | os.PathLike[str],
+    file: PathName,
+    output: PathName,
     client: Any,
     *,
     parts: int,
@@ -36,14 +37,15 @@ def study(
 ) -> Json:
     """Runs a study like ``emscape.study``, with parts on the workers of a ``dask.distributed.Client``.
 
-    :param parts: number of parts, at most the number of variants; must be the same in each call for a folder
+    :param parts: number of parts, from 1 to the number of variants; must be the same in each call for a folder
     :param threads: threads per part; 0: all of the worker's machine
     :return: as ``emscape.study``
     Raises the error of the first failed part once all others are done.
     """
-    arguments = ["study", os.path.abspath(file), "-o", os.path.abspath(output), "--backend", backend, "--threads", str(threads)]
-    for path, value in (edits or {}).items():
-        arguments += ["--set", f"{path}={_yaml(value)}"]
+    if parts < 1:
+        raise UsageError(f"parts is {parts}, outside the allowed range 1 to the number of variants")
+    arguments = ["study", os.path.abspath(path_text(file)), "-o", os.path.abspath(path_text(output))]
+    arguments += ["--backend", backend, "--threads", str(threads), *set_words(edit_texts(edits))]
     futures = [client.submit(_compute_part, arguments, part, parts, pure=False) for part in range(1, parts + 1)]
     failures = [failure for failure in client.gather(futures) if failure]
     if failures:

@@ -6,7 +6,6 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <limits>
 #include <mutex>
 
 #include "emscape/base/error.h"
@@ -102,7 +101,7 @@ class Solver {
     refuseForkedProcess();
     requireWithin("threads", threads, 0, 4096, "");
     requireWithin("cache_mib", cache_mib, 0, 1e6, " MiB");
-    requireWithin("move_tolerance_m", move_tolerance_m, 0, std::numeric_limits<double>::infinity(), " m");
+    requireWithin("move_tolerance_m", move_tolerance_m, 0, 1e6, " m");
     constexpr double kMebibyte = 1 << 20;
     emfield::FieldOptions options;
     options.quantities = std::move(quantities);

@@ -7,6 +7,7 @@
 #include "emscape/base/log.h"
 #include "emscape/playback/painter.h"
 #include "emscape/playback/scene.h"
+#include "emscape/render/render_settings.h"
 #include "emscape/scenario/snapshot.h"
 #include "python/extension/field.h"
 #include "python/extension/module.h"
@@ -16,9 +17,9 @@ namespace {
 
 using playback::ComputeTarget;
 
-/// @throws Error (usage), as the command line does for --range and --iso-value
-void checkValues(const std::optional<std::pair<float, float>>& range,
-                 const std::optional<double>& iso_value) {
+/// @throws Error (usage), as the command line does for --range, --iso-value and --exaggeration
+void checkValues(const std::optional<std::pair<float, float>>& range, const std::optional<double>& iso_value,
+                 double exaggeration) {
   if (range &&
       !(std::isfinite(range->first) && std::isfinite(range->second) && range->first < range->second)) {
     throw Error(ErrorCode::usage, fmt::format("range ({}, {}) must be (MIN, MAX), two numbers with MIN < MAX",
@@ -26,6 +27,11 @@ void checkValues(const std::optional<std::pair<float, float>>& range,
   }
   if (iso_value && !std::isfinite(*iso_value)) {
     throw Error(ErrorCode::usage, fmt::format("iso_value {} is not a number", *iso_value));
+  }
+  const render::SettingLimits& limits = render::kExaggerationLimits;
+  if (!(exaggeration >= limits.min && exaggeration <= limits.max)) {
+    throw Error(ErrorCode::usage, fmt::format("exaggeration is {}, outside the allowed range {} to {}",
+                                              exaggeration, limits.min, limits.max));
   }
 }
 
@@ -54,7 +60,7 @@ nb::object render(const Field& field, const std::string& quantity, std::pair<int
                   const std::string& theme, bool terrain, bool emitters, bool shading,
                   std::optional<double> iso_value, double exaggeration, const std::string& note) {
   refuseForkedProcess();
-  checkValues(range, iso_value);
+  checkValues(range, iso_value, exaggeration);
   render::Image8 picture;
   {
     const nb::gil_scoped_release unlocked;

@@ -53,6 +53,22 @@ def test_time_is_right_in_all_years(quick, tmp_path, year):
         assert again.time.values[1].isoformat() == f"{year}-01-01T00:00:01.750000"
 
 
+def test_a_field_from_a_file_keeps_its_date(quick, tmp_path):
+    field = em.Solver(quick, "cpu").at(2.5)
+    field.write(tmp_path / "field.vdb")
+    again = em.read(tmp_path / "field.vdb").to_xarray()
+    assert again.time.values == field.to_xarray().time.values == np.datetime64("2026-06-01T06:00:02.5")
+
+
+def test_names_are_given_once(quick):
+    with pytest.raises(em.UsageError, match="quantities: 'snr_db' is given twice"):
+        em.open_series(quick, 0.0, ["snr_db", "snr_db"])
+    with pytest.raises(em.UsageError, match="product: 'covered' is given twice"):
+        em.coverage(quick, product=["covered", "value", "covered"])
+    with pytest.raises(em.UsageError, match="product: the sequence is empty"):
+        em.coverage(quick, product=[])
+
+
 def test_without_an_epoch_time_is_in_seconds(quick):
     series = em.open_series(quick.with_set({"epoch": None}), [0, 2.5], chunks=None)
     assert series.time.values.tolist() == [0, 2.5]

@@ -30,6 +30,13 @@ def test_a_seed_gives_the_same_bytes_in_any_order():
         one[6]
 
 
+def test_sizes_may_be_arrays_of_numpy():
+    tuples = datasets.VolumeDataset(1, 7, shape=(8, 9, 10), size_m=(20000, 20000, 5000), backend="cpu")
+    arrays = datasets.VolumeDataset(1, 7, shape=np.array([8, 9, 10]), size_m=np.array([20000, 20000, 5000]), backend="cpu")
+    assert arrays[0][0].shape == (1, 8, 9, 10)
+    assert digest(arrays) == digest(tuples)
+
+
 def test_labels_say_where_emitters_are():
     data = datasets.VolumeDataset(5, 1, shape=(10, 40, 40), backend="cpu")
     for i in range(len(data)):

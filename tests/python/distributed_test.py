@@ -21,3 +21,11 @@ def test_workers_compute_what_one_process_does(tmp_path):
                 studies.study(file, tmp_path / "dask", client, parts=2)
     for name in ("results.csv",):
         assert (tmp_path / "dask" / name).read_bytes() == (tmp_path / "processes" / name).read_bytes()
+
+
+@pytest.mark.parametrize("parts", [0, -1])
+def test_the_number_of_parts_has_a_range(parts, tmp_path):
+    from emscape import distributed as studies
+
+    with pytest.raises(em.UsageError, match=f"parts is {parts}, outside the allowed range 1 to the number of variants"):
+        studies.study(SCENARIOS / "study" / "jammer_power.yaml", tmp_path / "study", None, parts=parts)

@@ -119,6 +119,19 @@ def test_a_written_field_reads_back(jamming, tmp_path):
         for name in again.quantities:
             assert np.array_equal(again.numpy(name), field.numpy(name)), (ending, name)
         assert again.grid == field.grid and again.time_s == 40
+        assert again.time == field.time is not None
+
+
+def test_a_field_of_a_file_without_an_epoch_has_no_date(quick, tmp_path):
+    field = em.Solver(quick.with_set({"epoch": None}), "cpu").at(1)
+    field.write(tmp_path / "field.vdb")
+    assert field.time is None and em.read(tmp_path / "field.vdb").time is None
+
+
+def test_the_grid_is_a_copy(quick):
+    field = em.Solver(quick, "cpu").at(0)
+    field.grid["dims"] = (1, 1, 1)
+    assert field.grid["dims"] == (40, 40, 20) and field.shape == (20, 40, 40)
 
 
 def test_masked_voxels_are_those_below_ground(jamming):

@@ -2,6 +2,7 @@
 
 import copy
 import datetime
+import decimal
 import os
 import pickle
 import subprocess
@@ -43,6 +44,9 @@ def test_times_are_numbers_or_arrays(quick):
         (None, "'None' is not a number of seconds"),
         ([2, 1], r"1.0 s follows 2.0 s; times must be ascending"),
         ([1, 1], r"1.0 s follows 1.0 s; times must be ascending"),
+        (b"0", "b'0' is not a number of seconds"),
+        (1e10, "10000000000.* s is outside the allowed range"),
+        ([-1e10, 0], "-10000000000.* s is outside the allowed range"),
     ],
 )
 def test_times_are_finite_and_ascending(quick, times, message):
@@ -80,6 +84,16 @@ def test_a_pickled_scenario_whose_file_has_changed_is_refused(tmp_path):
     assert copy.copy(scenario) is scenario and copy.deepcopy([scenario])[0] is scenario
 
 
+def test_a_scenario_does_not_depend_on_the_folder_in_which_it_was_loaded(tmp_path, monkeypatch):
+    monkeypatch.chdir(SCENARIOS)
+    scenario = em.load("quick.yaml")
+    assert scenario.file == str(SCENARIOS / "quick.yaml")
+    pickled = pickle.dumps(scenario)
+    monkeypatch.chdir(tmp_path)
+    assert pickle.loads(pickled).hash == scenario.hash
+    assert em.profile(scenario, "radar", (52.05, 5.05, 500))["verdict"]
+
+
 def test_a_saved_scenario_is_the_same(quick, tmp_path):
     edited = quick.with_set({"emitters.radar.power_w": 500})
     edited.save(tmp_path / "saved.yaml")
@@ -108,6 +122,59 @@ def test_the_place_of_a_faulty_edit_is_the_edit(quick):
     assert caught.value.problems[0].file == "emitters.radar.power_w=-1"
 
 
+CENTRAL_EUROPE = datetime.timezone(datetime.timedelta(hours=2))
+
+
+@pytest.mark.parametrize(
+    ("epoch", "expected"),
+    [
+        (datetime.datetime(2026, 6, 1, 8, tzinfo=CENTRAL_EUROPE), "2026-06-01T06:00:00+00:00"),
+        (datetime.datetime(900, 6, 1, 8, 0, 0, 250000, datetime.timezone.utc), "0900-06-01T08:00:00.250000+00:00"),
+        (np.datetime64("2026-06-01T06:00:00.5"), "2026-06-01T06:00:00.500000+00:00"),
+        (np.datetime64("2026-06-01T06:00:00", "ns"), "2026-06-01T06:00:00+00:00"),
+    ],
+)
+def test_times_are_values_of_edits(quick, epoch, expected):
+    assert quick.with_set({"epoch": epoch}).epoch.isoformat() == expected
+
+
+def test_the_own_epoch_and_that_of_pandas_are_values_of_edits(quick):
+    assert quick.with_set({"epoch": quick.epoch}).epoch == quick.epoch
+    pandas = pytest.importorskip("pandas")
+    assert quick.with_set({"epoch": pandas.Timestamp("2026-06-01T08:00", tz="Europe/Paris")}).epoch == quick.epoch
+
+
+@pytest.mark.parametrize(
+    ("value", "message"),
+    [
+        (datetime.datetime(2026, 6, 1), "edit of 'epoch': the time 2026-06-01 00:00:00 has no time zone"),
+        (range(3), "edit of 'epoch': a range is no value; give None, a bool"),
+        ([decimal.Decimal(1)], "edit of 'epoch': a Decimal is no value"),
+    ],
+)
+def test_a_value_that_no_scenario_can_have_is_refused_with_its_path(quick, value, message):
+    with pytest.raises(em.UsageError, match=message):
+        quick.with_set({"epoch": value})
+    with pytest.raises(em.UsageError, match=message):
+        em.load(quick.file, {"epoch": value})
+
+
+def test_a_path_is_a_value_of_an_edit(jamming):
+    terrain = SCENARIOS / "data" / "jacksboro.tif"
+    assert jamming.with_set({"terrain.files": [terrain]}).edits["terrain.files"] == f'["{terrain}"]'
+
+
+def test_names_of_files_are_texts_bytes_or_paths_in_utf_8(quick, tmp_path):
+    name = os.fsencode(tmp_path / "höhe.yaml")
+    quick.save(name)
+    assert em.load(name).file == os.fsdecode(name)
+    with pytest.raises(em.UsageError, match=r"n\\xff.yaml' is not UTF-8"):
+        em.load(os.fsencode(tmp_path) + b"/n\xff.yaml")
+    for refused in (lambda: em.load(""), lambda: em.read(""), lambda: quick.save(b"")):
+        with pytest.raises(em.UsageError, match="the name of a file or folder is empty"):
+            refused()
+
+
 def test_errors_have_the_class_and_the_status_of_their_kind(quick, tmp_path):
     with pytest.raises(em.ScenarioError, match="nowhere.yaml") as caught:
         em.load(tmp_path / "nowhere.yaml")
@@ -122,7 +189,7 @@ def test_errors_have_the_class_and_the_status_of_their_kind(quick, tmp_path):
         field.numpy("loudness")
     with pytest.raises(em.OtherError, match="none"):
         field.write(tmp_path / "none" / "x.vdb")
-    with pytest.raises(em.InputError, match="vdb"):
+    with pytest.raises(em.InputError, match=r"known are \.vdb, \.nvdb, \.vti, \.raw$"):
         field.write(tmp_path / "x.txt")
     statuses = {cls: cls.status for cls in (em.OtherError, em.UsageError, em.InputError, em.DeviceError, em.CheckError)}
     assert sorted(statuses.values()) == [1, 2, 3, 4, 5]
@@ -136,7 +203,9 @@ def test_errors_have_the_class_and_the_status_of_their_kind(quick, tmp_path):
         ({"cache_mib": -1}, "cache_mib is -1, outside the allowed range 0 to 1000000 MiB"),
         ({"cache_mib": float("inf")}, "cache_mib is inf"),
         ({"cache_mib": float("nan")}, "cache_mib is nan"),
-        ({"move_tolerance_m": float("nan")}, "move_tolerance_m is nan, outside the allowed range 0 to inf m"),
+        ({"move_tolerance_m": float("nan")}, "move_tolerance_m is nan, outside the allowed range 0 to 1000000 m"),
+        ({"move_tolerance_m": float("inf")}, "move_tolerance_m is inf"),
+        ({"quantities": ["snr_db", "snr_db"]}, "quantities: 'snr_db' is given twice"),
     ],
 )
 def test_arguments_of_a_solver_have_ranges(quick, argument, message):

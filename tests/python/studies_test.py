@@ -39,7 +39,17 @@ def test_vertical_coverage_is_an_array(jamming):
     assert cuts.detection_probability.dims == ("azimuth", "height_msl_m", "range")
     below = cuts.height_msl_m < cuts.ground_msl
     assert np.all(np.isnan(cuts.detection_probability.where(below.transpose("azimuth", "height_msl_m", "range"), drop=False).values))
-    assert len(cuts.attrs["azimuths"]) == 2
+    assert len(json.loads(cuts.attrs["azimuths"])) == 2
+    assert json.loads(cuts.attrs["contour_columns"]) == ["range_m", "height_msl_m"]
+
+
+def test_vertical_coverage_goes_to_netcdf_and_back(quick, tmp_path):
+    pytest.importorskip("netCDF4")
+    cuts = em.vertical(quick, "radar", [30], blake=True)
+    cuts.to_netcdf(tmp_path / "cuts.nc")
+    with sys.modules["xarray"].open_dataset(tmp_path / "cuts.nc") as again:
+        assert again.attrs == cuts.attrs
+    assert cuts.attrs["smooth_earth"] == 1
 
 
 def test_compare_tells_what_is_won_and_lost(jamming):
@@ -111,6 +121,41 @@ def test_a_file_that_has_changed_is_refused(tmp_path):
         em.profile(scenario, "radar", (52.05, 5.05, 500))
 
 
+def test_a_file_that_is_missing_or_faulty_is_refused_with_its_errors(tmp_path):
+    file = tmp_path / "quick.yaml"
+    text = (SCENARIOS / "quick.yaml").read_text()
+    file.write_text(text)
+    scenario = em.load(file)
+    file.write_text(text.replace("step_s: 1", "step_s: 0"))
+    with pytest.raises(em.ScenarioError, match="quick.yaml:6:9: 'step_s' is 0, outside the allowed range"):
+        em.profile(scenario, "radar", (52.05, 5.05, 500))
+    file.unlink()
+    with pytest.raises(em.ScenarioError, match="quick.yaml: there is no such file"):
+        em.profile(scenario, "radar", (52.05, 5.05, 500))
+
+
+def test_a_series_is_replaced_only_on_request(quick, tmp_path):
+    em.simulate(quick, tmp_path / "series", "raw", times=0)
+    with pytest.raises(em.UsageError, match="holds a series"):
+        em.simulate(quick, tmp_path / "series", "raw", times=[0, 1])
+    assert em.simulate(quick, tmp_path / "series", "raw", times=[0, 1], force=True)["steps_computed"] == 2
+
+
+@pytest.mark.parametrize("to", ["36,-84,100", "123", (36, -84), (36, "north", 3), 36])
+def test_a_point_is_three_numbers(quick, to):
+    with pytest.raises(em.UsageError, match=r"to: .* is not \(latitude, longitude, height\), three numbers"):
+        em.profile(quick, "radar", to)
+
+
+def test_words_of_a_command_are_texts_or_paths(quick, tmp_path):
+    assert em.command("info", SCENARIOS / "quick.yaml") == em.command("info", quick.file)
+    with pytest.raises(em.UsageError, match=r"command: \['info', 'x.vdb'\] is neither a text nor a path"):
+        em.command(["info", "x.vdb"])
+    for words in (("view", quick.file), ("--quiet", "view")):
+        with pytest.raises(em.UsageError, match="python -m emscape view"):
+            em.command(*words)
+
+
 def test_progress_is_called_and_may_end_the_work(jamming):
     steps = []
     em.coverage(jamming, times=40, cell_m=500, progress=lambda step, fraction: steps.append((step, fraction)))
@@ -129,6 +174,30 @@ def test_messages_go_to_the_logger(jamming, caplog):
     with caplog.at_level(logging.WARNING, "emscape"):
         em.vertical(jamming, "search radar", [30])
     assert any("far field" in record.message or "terrain" in record.message for record in caplog.records)
+
+
+def test_a_handler_of_messages_may_compute():
+    # In a process of its own: a deadlock would hold up the interpreter.
+    probe = """
+import logging, sys, threading
+import emscape as em
+
+class Handler(logging.Handler):
+    def emit(self, record):
+        self.setLevel(logging.CRITICAL)  # once
+        other = threading.Thread(target=em.vertical, args=(scenario, "search radar", [30]))
+        other.start()
+        other.join()
+        em.vertical(scenario, "search radar", [30])
+        print("handled")
+
+scenario = em.load(sys.argv[1], {"region.dims": [20, 20, 10]})
+logging.getLogger("emscape").addHandler(Handler())
+em.vertical(scenario, "search radar", [30])
+"""
+    words = [sys.executable, "-c", probe, SCENARIOS / "jamming.yaml"]
+    result = subprocess.run(words, capture_output=True, text=True, timeout=120)
+    assert (result.stdout, result.returncode) == ("handled\n", 0), result.stderr
 
 
 def test_unknown_options_are_usage_errors(jamming):
@@ -168,6 +237,13 @@ def test_the_value_of_an_isosurface_is_a_number(quick):
     field = em.Solver(quick, "cpu").at(0)
     with pytest.raises(em.UsageError, match="iso_value nan is not a number"):
         em.render(field, size=(64, 48), mode="iso", iso_value=float("nan"))
+
+
+@pytest.mark.parametrize("exaggeration", [-1, 101, float("nan"), float("inf")])
+def test_the_exaggeration_has_a_range(quick, exaggeration):
+    field = em.Solver(quick, "cpu").at(0)
+    with pytest.raises(em.UsageError, match=f"exaggeration is {exaggeration}, outside the allowed range 0 to 100"):
+        em.render(field, size=(64, 48), exaggeration=exaggeration)
 
 
 def test_a_picture_is_that_of_the_command_line(jamming, program, tmp_path):
