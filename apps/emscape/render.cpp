@@ -26,6 +26,7 @@
 #include "emscape/playback/real_time_loop.h"
 #include "emscape/playback/view_state.h"
 #include "emscape/scenario/scenario_file.h"
+#include "emscape/volume/file.h"
 #include "playback/background_writer.h"
 #include "render/reconstruction.h"
 
@@ -171,13 +172,22 @@ void checkMeshOptions(const RenderOptions& options, const ViewState& view) {
   if (!view.compare.empty()) throw Error(ErrorCode::usage, "comparison: has no effect on tetrahedra");
 }
 
-/// checkOutputs(). Scenarios are read for it only if an output exists already; their faults are reported
-/// later.
+/// checkOutputs(). Scenarios and lists of volumes are read for it only if an output exists already.
 void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
   std::vector<NamedFile> outputs = outputsOf("--output", options.outputs);
   outputs.push_back({"--save-state", options.save_state});
   const playback::FrameSelection& selection = options.selection;
+  std::vector<NamedFile> inputs{{"the input", selection.input},
+                                {"the scenario", selection.scenario},
+                                {"the comparison", view.compare},
+                                {"the transfer function", options.transfer}};
   std::vector<std::shared_ptr<const scenario::Scenario>> scenarios;
+  const auto addSteps = [&](const std::string& file, const char* name) {
+    if (!std::filesystem::exists(file)) return;
+    const playback::InputKind kind = playback::inputKindOf(file);
+    if (kind != playback::InputKind::volume && kind != playback::InputKind::mesh) return;
+    for (const std::filesystem::path& step : volume::seriesOf(file)) inputs.push_back({name, step.string()});
+  };
   const auto addScenario = [&](const std::string& file, const std::vector<scenario::Edit>& edits) {
     if (!std::filesystem::is_regular_file(file)) return;
     // --scenario is a scenario whatever its ending.
@@ -189,13 +199,10 @@ void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
     addScenario(selection.input, view.edits);
     addScenario(selection.scenario, {});
     addScenario(view.compare, {});
+    addSteps(selection.input, "a file of the input");
+    addSteps(view.compare, "a file of the comparison");
   }
-  checkOutputs(outputs,
-               {{"the input", selection.input},
-                {"the scenario", selection.scenario},
-                {"the comparison", view.compare},
-                {"the transfer function", options.transfer}},
-               scenarios);
+  checkOutputs(outputs, inputs, scenarios);
 }
 
 using Sinks = std::vector<std::unique_ptr<PictureSink>>;

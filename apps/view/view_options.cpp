@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
+#include "apps/emscape/common/arguments.h"
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/value_range.h"
 #include "apps/view/session/action.h"
@@ -139,6 +140,7 @@ struct CommandLine {
     app.add_flag("--manual-tables", prints_manual, "Prints the tables of docs/viewer.md")->group("");
     app.option_defaults()->always_capture_default();
     addOptions(app, options, typed);
+    app::readWholeNumbersAsDecimal(app);
   }
 };
 
@@ -153,11 +155,12 @@ std::optional<ViewOptions> parseOptions(int argc, char** argv) {
   CommandLine line;
   try {
     line.app.parse(argc, argv);
+    app::checkValues(line.app);
   } catch (const CLI::Success& help) {
     line.app.exit(help);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
-    throw Error(ErrorCode::usage, std::string(error.what()) + "\nTry 'emscape view --help'.");
+    throw Error(ErrorCode::usage, app::messageOf(line.app, error) + "\nTry 'emscape view --help'.");
   }
   if (line.prints_manual) {
     std::cout << manualTables();

@@ -41,6 +41,22 @@ TEST(CommandLine, NumbersAreFinite) {
   }
 }
 
+TEST(CommandLine, ZerosBeforeAWholeNumberMeanNothing) {
+  for (const std::string frames : {"010", "008"}) {
+    const ProgramResult result = run({"bench", "render", shippedScenario("quick.yaml"), "--size", "16x16",
+                                      "--frames", frames, "--json", "--quiet"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(json::parse(result.out)["frames"], std::stoi(frames));
+  }
+}
+
+TEST(CommandLine, UnexpectedWordsAreNamedInTheirOrder) {
+  EXPECT_THAT(run({"validate", "x.yaml", "a", "b c"}).err,
+              StartsWith("emscape: error: unexpected arguments 'a', 'b c'\n"));
+  EXPECT_THAT(run({"info", "x.yaml", "--set", "a=1"}).err,
+              StartsWith("emscape: error: unexpected arguments '--set', 'a=1'\n"));
+}
+
 TEST(CommandLine, RefusedValuesAreToldWithWhatIsAllowed) {
   const auto errorOf = [](const Arguments& more) {
     Arguments arguments{"render", shippedScenario("quick.yaml"), "-o", "out.png"};
@@ -52,6 +68,10 @@ TEST(CommandLine, RefusedValuesAreToldWithWhatIsAllowed) {
   EXPECT_THAT(errorOf({"--step", "0"}),
               StartsWith("emscape: error: --step: '0' must be a number from 0.05 to 10\n"));
   EXPECT_THAT(errorOf({"--step", "one"}), HasSubstr("--step: 'one' must be a number from 0.05 to 10\n"));
+  EXPECT_THAT(errorOf({"--terrain", "maybe"}), HasSubstr("--terrain: 'maybe' must be on or off\n"));
+  EXPECT_THAT(errorOf({"--emitters", "3"}), HasSubstr("--emitters: '3' must be on or off\n"));
+  EXPECT_THAT(errorOf({"--exact=no"}), HasSubstr("--exact: takes no value, not 'no'\n"));
+  EXPECT_THAT(errorOf({"--scenario", "x.yaml"}), HasSubstr("--scenario has an effect on volumes only\n"));
   EXPECT_THAT(errorOf({"--iso-value", "one"}), HasSubstr("--iso-value: 'one' is not a number\n"));
   EXPECT_THAT(errorOf({"--mode", "xray"}), HasSubstr("--mode: 'xray' must be one of dvr, mida, mip, iso\n"));
   EXPECT_THAT(errorOf({"--mode", std::string(100000, 'x')}),

@@ -8,6 +8,7 @@
 #include "apps/emscape/bench/bench_scene.h"
 #include "apps/emscape/bench/bench_statistics.h"
 #include "apps/emscape/common/interrupt.h"
+#include "apps/emscape/common/output_files.h"
 
 namespace emscape::app {
 namespace {
@@ -24,6 +25,9 @@ struct BenchRenderOptions {
 int benchRender(const BenchRenderOptions& options, const GlobalOptions& global) {
   const render::FramePlan plan{render::parsePattern(options.rays),
                                render::parseInterpolation(options.interpolate), options.tolerance_levels};
+  checkOutputs(
+      {{"--picture", options.picture}},
+      {{"the input", options.scene.selection.input}, {"the transfer function", options.scene.transfer}}, {});
   const std::unique_ptr<BenchScene> opened = openBenchScene(options.scene, global);
   BenchScene& scene = *opened;
   render::FrameReport report;

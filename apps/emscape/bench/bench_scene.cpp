@@ -4,13 +4,16 @@
 
 #include <cmath>
 #include <ctime>
+#include <filesystem>
 
 #include "apps/emscape/common/interrupt.h"
 #include "apps/emscape/paper_transfer.h"
 #include "base/stopwatch.h"
+#include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/playback/inputs.h"
 
 namespace emscape::app {
 namespace {
@@ -98,6 +101,10 @@ BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& gl
       renderer_(target.rendererOptions()) {
   renderer_.setSettings(settingsOf(options));
   playback::FrameSelection selection = options.selection;
+  if (std::filesystem::exists(selection.input) &&
+      playback::inputKindOf(selection.input) == playback::InputKind::mesh)
+    throw Error(ErrorCode::usage,
+                selection.input + " is a field on tetrahedra: emscape bench cells takes it");
   selection.first_only = selection.times.empty();
   const std::unique_ptr<playback::FrameSource> source =
       playback::openFrameSource(selection, target, progressSink(global), &stopFlag());
