@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <limits>
 
 #include "base/quantity_text.h"
 #include "base/utc.h"
@@ -27,6 +28,21 @@ double secondsOf(const std::string& text, const std::string& whole) {
                     whole, text));
   }
   return value;
+}
+
+/// The double that is nearest to a decimal number of 12 digits, so that a third step of 0.1 is 0.3 and not
+/// 0.30000000000000004; the value itself if they differ by more than its rounding errors.
+/// @param largest  largest absolute value of the sequence; the 12 digits begin with its first
+double nearestDecimal(double value, double largest) {
+  constexpr int kDigits = 12;
+  // Powers of ten up to this one are exact.
+  constexpr double kMaxScale = 1e22;
+  const double scale = std::pow(10, kDigits - 1 - std::floor(std::log10(largest)));
+  if (!(scale <= kMaxScale)) return value;
+  const double decimal = std::round(value * scale) / scale + 0.0;  // not -0
+  // The errors of step, product and begin, each of half a unit of the last place, and of their sum.
+  const double error = 4 * std::numeric_limits<double>::epsilon() * largest;
+  return std::abs(decimal - value) <= error ? decimal : value;
 }
 
 /// As of the years 0001 to 9999, which parseUtc_ms() reads.
@@ -69,8 +85,10 @@ std::vector<double> timesOf(double begin_s, double end_s, double step_s) {
     throw Error(ErrorCode::usage,
                 fmt::format("{:.9g} times are more than the allowed {}", steps + 1, kMaxTimes));
   }
+  const double largest_s = std::max(std::abs(begin_s), std::abs(end_s));
   std::vector<double> times(static_cast<std::size_t>(steps) + 1);
-  for (std::size_t i = 0; i < times.size(); ++i) times[i] = begin_s + static_cast<double>(i) * step_s;
+  for (std::size_t i = 0; i < times.size(); ++i)
+    times[i] = nearestDecimal(begin_s + static_cast<double>(i) * step_s, largest_s);
   return times;
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "emscape/base/error.h"
@@ -38,8 +39,17 @@ bool isSame(const std::optional<MapHeight>& a, const std::optional<MapHeight>& b
   return a.has_value() == b.has_value() && (!a || (a->reference == b->reference && a->metres == b->metres));
 }
 
+/// Within the rounding errors of times that were computed from steps in different ways.
+bool isSameTime(double a_s, double b_s) {
+  return std::abs(a_s - b_s) <= 1e-9 + 1e-15 * std::abs(a_s);
+}
+
+bool isSame(const std::optional<double>& a_s, const std::optional<double>& b_s) {
+  return a_s.has_value() == b_s.has_value() && (!a_s || isSameTime(*a_s, *b_s));
+}
+
 bool isSameMap(const CoverageMap& a, const CoverageMap& b) {
-  return a.product == b.product && isSame(a.height, b.height) && a.time_s == b.time_s;
+  return a.product == b.product && isSame(a.height, b.height) && isSame(a.time_s, b.time_s);
 }
 
 /// True for maps of a choice. Maps for all heights or times belong to every choice.
@@ -54,7 +64,8 @@ bool isChosen(const CoverageMap& map, const MapChoice& choice) {
   return is_of_product &&
          (!map.height ||
           holds(choice.heights, [&](const MapHeight& height) { return isSame(height, map.height); })) &&
-         (!map.time_s || holds(choice.times_s, [&](double time_s) { return time_s == *map.time_s; }));
+         (!map.time_s ||
+          holds(choice.times_s, [&](double time_s) { return isSameTime(time_s, *map.time_s); }));
 }
 
 /// Index of the corresponding map; -1: none.
@@ -95,7 +106,8 @@ void requireChoice(const CoverageFolder& folder, const MapChoice& choice) {
     if (map.height) heights.insert(describe(*map.height));
     if (!map.time_s) continue;
     times.insert(fmt::format("{:g} s", *map.time_s));
-    has_time = has_time || std::count(choice.times_s.begin(), choice.times_s.end(), *map.time_s) > 0;
+    has_time = has_time || std::any_of(choice.times_s.begin(), choice.times_s.end(),
+                                       [&](double time_s) { return isSameTime(time_s, *map.time_s); });
   }
   for (const Product product : choice.products) {
     if (products.count(info(product).name) == 0)

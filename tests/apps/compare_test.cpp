@@ -147,6 +147,23 @@ TEST(Compare, FoldersWithoutTheirScenariosAreComparedButNotExplained) {
   EXPECT_THAT(readFile(folder / "out/report.html"), HasSubstr("Largest areas that changed"));
 }
 
+TEST(Compare, FoldersWhoseTimesDifferByARoundingErrorMatch) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a", "b"}) cover(folder / name, {"--times", "0:0.3:0.1", "--products", "value"});
+  EXPECT_THAT(folder.files(), testing::Contains("a/maps/value_agl100m_t0.3s.tif"));
+  std::string report = readFile(folder / "b/report.json");
+  const std::string time = "\"time_s\": 0.3,";
+  ASSERT_NE(report.find(time), std::string::npos);
+  report.replace(report.find(time), time.size(), "\"time_s\": 0.30000000000000004,");
+  writeFile(folder / "b/report.json", report);
+  for (const Arguments& order : {Arguments{"a", "b"}, {"b", "a"}}) {
+    const ProgramResult result = run({"compare", folder / order[0], folder / order[1], "-o", folder / "out",
+                                      "--times", "0.3", "--quiet", "--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(json::parse(result.out)["comparison"].size(), 1u);
+  }
+}
+
 TEST(Compare, RefusesFoldersThatDoNotFit) {
   const TemporaryFolder folder;
   const auto with = [&](const std::string& name, const Arguments& more) { cover(folder / name, more); };

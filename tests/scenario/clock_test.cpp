@@ -24,6 +24,27 @@ TEST(Clock, NoErrorAddsUp) {
   EXPECT_EQ(times.back(), 864000 * 0.1);
 }
 
+TEST(Clock, TimesAreThoseThatAUserWrites) {
+  EXPECT_EQ(timesOf(0, 0.5, 0.1), (std::vector<double>{0, 0.1, 0.2, 0.3, 0.4, 0.5}));
+  EXPECT_EQ(timesOf(-0.3, 0.3, 0.1), (std::vector<double>{-0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.3}));
+  EXPECT_FALSE(std::signbit(timesOf(-0.3, 0, 0.1).back()));
+  EXPECT_EQ(timesOf(999999.9, 1000000.3, 0.1),
+            (std::vector<double>{999999.9, 1000000, 1000000.1, 1000000.2, 1000000.3}));
+  const auto times = timesOf(1e-3, 10, 1e-3);
+  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_EQ(times[i], static_cast<double>(i + 1) / 1000);
+}
+
+TEST(Clock, TimesThatAreNoShortDecimalNumbersAreLeft) {
+  for (const double step_s : {1.0 / 3, 0.0009765625}) {
+    const auto times = timesOf(0.5, 0.5 + 30 * step_s, step_s);
+    ASSERT_EQ(times.size(), 31u);
+    for (std::size_t i = 0; i < times.size(); ++i)
+      EXPECT_EQ(times[i], 0.5 + static_cast<double>(i) * step_s) << step_s;
+  }
+  EXPECT_EQ(timesOf(1e9 - 1, 1e9, 0.125)[1], 999999999.125);
+  EXPECT_EQ(timesOf(0, 0, 1), (std::vector<double>{0}));
+}
+
 TEST(Clock, ParsesTimesInItsThreeForms) {
   const Clock clock{"", 10, 2};
   EXPECT_EQ(parseTimes("3.5", clock), (std::vector<double>{3.5}));
@@ -81,6 +102,16 @@ TEST(Clock, UtcOfTheUnixEpochIsZero) {
   EXPECT_EQ(parseUtc_ms("1969-12-31T23:59:59.9996Z"), -1);
 }
 
+TEST(Clock, SaysWhichNumberOfAUtcTimeIsOutOfRange) {
+  EXPECT_EQ(utcFault("2026-13-01T06:00:00Z"), "month 13 is outside 1 to 12");
+  EXPECT_EQ(utcFault("2026-02-29T06:00:00Z"), "day of the month 29 is outside 1 to 28");
+  EXPECT_EQ(utcFault("2026-06-01T24:00:00Z"), "hour 24 is outside 0 to 23");
+  EXPECT_EQ(utcFault("2026-06-01T06:60:00Z"), "minute 60 is outside 0 to 59");
+  EXPECT_EQ(utcFault("0000-06-01T06:00:00Z"), "year 0000 is outside 0001 to 9999");
+  EXPECT_EQ(utcFault("2026-06-01T06:00:00Z"), "");
+  EXPECT_EQ(utcFault("2026-06-01"), "");
+}
+
 TEST(Clock, RefusesWhatIsNoUtcTime) {
   for (const char* text : {"", "2026-06-01", "2026-06-01T06:00:00", "2026-06-01 06:00:00Z",
                            "2026-13-01T06:00:00Z", "2026-02-29T06:00:00Z", "2026-06-01T24:00:00Z",
@@ -92,13 +123,3 @@ TEST(Clock, RefusesWhatIsNoUtcTime) {
 
 }  // namespace
 }  // namespace emscape::scenario
-TEST(Clock, SaysWhichNumberOfAUtcTimeIsOutOfRange) {
-  EXPECT_EQ(utcFault("2026-13-01T06:00:00Z"), "month 13 is outside 1 to 12");
-  EXPECT_EQ(utcFault("2026-02-29T06:00:00Z"), "day of the month 29 is outside 1 to 28");
-  EXPECT_EQ(utcFault("2026-06-01T24:00:00Z"), "hour 24 is outside 0 to 23");
-  EXPECT_EQ(utcFault("2026-06-01T06:60:00Z"), "minute 60 is outside 0 to 59");
-  EXPECT_EQ(utcFault("0000-06-01T06:00:00Z"), "year 0000 is outside 0001 to 9999");
-  EXPECT_EQ(utcFault("2026-06-01T06:00:00Z"), "");
-  EXPECT_EQ(utcFault("2026-06-01"), "");
-}
-

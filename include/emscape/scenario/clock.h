@@ -18,7 +18,8 @@ constexpr double kMaxTime_s = 1e9;
 /// @throws Error (usage) if a time is not within kMaxTime_s of t = 0, or in UTC outside the years 0001 to
 /// 9999
 void requireTime(const Clock& clock, double t_s);
-/// The times begin + i * step up to end, inclusive; no error accumulates.
+/// The times begin + i * step up to end, inclusive; no error accumulates. If begin and step are decimal
+/// numbers, each time is the double nearest to the decimal number, as a user writes it.
 /// @throws Error (usage) if begin or end is not within kMaxTime_s, end < begin, step <= 0, or there are more
 /// than 10^7 times
 std::vector<double> timesOf(double begin_s, double end_s, double step_s);
