@@ -148,11 +148,31 @@ bool SeriesFiles::isReadWithSeries(const fs::path& file) const {
   return volume::isMeshFile(file);
 }
 
-void SeriesFiles::removeOld() const {
+std::regex SeriesFiles::names() const {
   // The names have only letters, digits, '_' and '-', which need no escaping in a regular expression.
   const std::string name = "(" + name_ + "|" + nameOfOld(folder_).value_or(name_) + ")";
-  const std::regex ours(name + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|vtu|raw|nvdb\.json|raw\.json)|)" + name +
-                        R"(\.pvd|series\.json|series\.steps)");
+  return std::regex(name + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|vtu|raw|nvdb\.json|raw\.json)|)" + name +
+                    R"(\.pvd|series\.json|series\.steps)");
+}
+
+void SeriesFiles::requireNone(const std::vector<fs::path>& inputs) const {
+  const std::regex ours = names();
+  for (const fs::path& input : inputs) {
+    std::error_code failed;
+    const fs::path target = fs::weakly_canonical(fs::absolute(input, failed), failed);
+    for (const fs::path& file : {fs::absolute(input, failed), target}) {
+      if (fs::equivalent(file.parent_path(), folder_, failed) &&
+          std::regex_match(file.filename().string(), ours)) {
+        throw Error(
+            ErrorCode::usage, {input.string()},
+            "is a file of the scenario, and has the name of a file of the series; use another folder");
+      }
+    }
+  }
+}
+
+void SeriesFiles::removeOld() const {
+  const std::regex ours = names();
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
     if (!entry.is_regular_file()) continue;

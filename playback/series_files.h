@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <regex>
 #include <set>
 #include <string>
 #include <vector>
@@ -39,6 +40,10 @@ class SeriesFiles {
   /// Writes the list. @param finished  one per step
   void writeIndex(const std::vector<bool>& finished) const;
 
+  /// @throws Error (usage) if one of the files is in the folder and has a name that a file of this or of the
+  /// present series may have: it would be replaced or removed
+  void requireNone(const std::vector<std::filesystem::path>& inputs) const;
+
   /// Removes the present series from the folder: its description, and the files with its name or the name of
   /// this one.
   /// @throws Error (usage) if a reader of the folder would take another volume as part of this series; then
@@ -46,6 +51,8 @@ class SeriesFiles {
   void removeOld() const;
 
  private:
+  /// Of the files of this and of the folder's present series, their description included.
+  std::regex names() const;
   /// A volume file of a step and the channels in it.
   struct VolumeFile {
     std::string name;

@@ -8,6 +8,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/stop.h"
+#include "emscape/scenario/scenario_file.h"
 #include "playback/background_writer.h"
 #include "playback/series_files.h"
 #include "playback/series_journal.h"
@@ -23,6 +24,18 @@ std::vector<std::string> namesOf(const std::vector<emfield::Channel>& channels) 
   std::vector<std::string> names;
   for (const emfield::Channel& channel : channels) names.push_back(channel.name);
   return names;
+}
+
+/// The scenarios of a series, with the files that they name.
+std::vector<fs::path> inputsOf(const FieldSeries& series) {
+  std::vector<fs::path> inputs;
+  for (const LoadedScenario* loaded : {&series.input(), series.reference()}) {
+    if (loaded == nullptr) continue;
+    for (const std::string& file : scenario::filesOf(*loaded->scenario)) {
+      if (!file.empty()) inputs.emplace_back(file);
+    }
+  }
+  return inputs;
 }
 
 const fs::path& made(const fs::path& folder) {
@@ -51,6 +64,7 @@ class SeriesWriter {
       throw Error(ErrorCode::usage,
                   fmt::format("a range is for one quantity, these are {}", series.channels().size()));
     }
+    files_.requireNone(inputsOf(series));
     removeStaleTemporaries(options.folder);
     if (options.existing == Existing::replace) files_.removeOld();
   }

@@ -103,6 +103,7 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
   study::ComparedScenario b{scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b,
                                                    scenario::ReadFor::chosen_times),
                             nullptr};
+  checkMapFolder(command.folder, {a.scenario, b.scenario});
   checkOutputs({{"--volume", command.volume}}, {}, {a.scenario, b.scenario});
   study::CompareRequest request;
   request.coverage = requestOf(command.maps, a.scenario->clock);
@@ -164,6 +165,7 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
   const auto isGiven = [&](const char* option) { return command.given.count(option) > 0; };
   const study::CoverageFolder a = study::openCoverageFolder(command.a),
                               b = study::openCoverageFolder(command.b);
+  checkMapFolder(command.folder, {a.scenario, b.scenario});
   study::MapChoice choice;
   if (isGiven("--products")) choice.products = productsOf(command.maps);
   if (isGiven("--heights")) choice.heights = study::parseHeights(command.maps.heights);
@@ -223,7 +225,6 @@ int compare(const CompareCommand& command, const GlobalOptions& global) {
                   fmt::format("--output: {} is one of the folders to compare; give another", command.folder));
     }
   }
-  checkMapFolder(command.folder);
   return is_folder ? compareFolders(command, global) : compareScenarios(command, global);
 }
 

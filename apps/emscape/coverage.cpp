@@ -45,7 +45,7 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   const study::CoverageRequest request = requestOf(command.maps, scenario->clock);
   study::checkRequest(request, *scenario);
-  checkMapFolder(command.folder);
+  checkMapFolder(command.folder, {scenario});
   const study::MapArea area = areaOf(command.maps, *scenario);
   const auto grid = gridOf(command.maps, *scenario, area);
   const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);

@@ -1,4 +1,5 @@
 // Files that subcommands write: never an input or another output, and whole or not at all.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -76,6 +77,17 @@ TEST_F(Outputs, AreNotTheScenarioOrAFileThatItNames) {
                 "--slurm: " + study + " is the study");
 }
 
+TEST_F(Outputs, AreNotAStepOfASeries) {
+  ASSERT_EQ(run({"simulate", quick_, "-o", folder_ / "s", "--format", "vti", "--times", "0:1", "-q"}).status,
+            0);
+  const std::string step = folder_ / "s/quick_0002.vti";
+  for (const char* input : {"s", "s/quick.pvd"}) {
+    expectRefused({"render", folder_ / input, "--save-state", step},
+                  "--save-state: " + step + " is a file of the input");
+  }
+  expectRefused({"bench", "render", quick_, "--picture", quick_}, "--picture: " + quick_ + " is the input");
+}
+
 TEST_F(Outputs, AreDifferentFiles) {
   const std::string picture = folder_ / "x.png";
   expectRefused({"link", links_, "--csv", picture, "--plot", folder_ / "data/../x.png"},
@@ -93,6 +105,56 @@ TEST_F(Outputs, OfCoverageDoNotReplaceAUsersFile) {
   EXPECT_EQ(run(again).status, 0);
   const ProgramResult second = run(again);
   EXPECT_EQ(second.status, 0) << second.err;
+}
+
+TEST_F(Outputs, OfCoverageAndCompareDoNotReplaceAnElevationFile) {
+  fs::create_directory(folder_ / "maps");
+  const auto withElevations = [&](const std::string& name) {
+    std::string text = readFile(shippedScenario("links.yaml"));
+    const std::string shipped = "data/jacksboro.tif";
+    text.replace(text.find(shipped), shipped.size(), name);
+    writeFile(links_, text);
+  };
+  const Arguments coverage{"coverage", links_, "-o", folder_.path().string(), "--cell", "2000", "-q"};
+  Arguments compare = coverage;
+  compare[0] = "compare";
+  compare.insert(compare.end(), {"--set-b", "step_s=1"});
+  const std::string map = "maps/value_agl150m_t0s.tif";
+  fs::copy_file(folder_ / "data/jacksboro.tif", folder_ / map);
+  fs::create_symlink(folder_ / map, folder_ / "data/same.tif");
+  for (const std::string& name : {map, std::string("data/same.tif")}) {
+    withElevations(name);
+    for (const Arguments& command : {coverage, compare})
+      expectRefused(command, "--output: " + (folder_ / name) +
+                                 " is a file that the scenario names, and has the name of a map");
+  }
+  EXPECT_TRUE(readFile(folder_ / map) == readFile(folder_ / "data/jacksboro.tif"));
+  fs::rename(folder_ / map, folder_ / "maps/elevations.tif");
+  withElevations("maps/elevations.tif");
+  const ProgramResult result = run(coverage);
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(readFile(folder_ / "maps/elevations.tif") == readFile(folder_ / "data/jacksboro.tif"));
+}
+
+TEST_F(Outputs, OfASeriesDoNotReplaceAFileOfTheScenario) {
+  const std::string scenario = readFile(quick_);
+  const std::string site = "position: {latitude_deg: 52.05, longitude_deg: 5.06, height_agl_m: 50}";
+  for (const char* name : {"quick.pvd", "quick_0001.nvdb.json"}) {
+    std::string moving = scenario;
+    moving.replace(moving.find(site), site.size(), fmt::format("track: {{file: {}}}", name));
+    const std::string file = folder_.write("o/moving.yaml", moving);
+    const std::string track =
+        folder_.write(std::string("o/") + name,
+                      "t_s,latitude_deg,longitude_deg,height_agl_m\n0,52.05,5.06,50\n4,52.06,5.06,50\n");
+    const std::string points = readFile(track);
+    for (const char* option : {"--force", "-q"}) {
+      expectRefused({"simulate", file, "-o", folder_ / "o", "--format", "vti,nvdb", "--times", "0", option},
+                    track + ": is a file of the scenario, and has the name of a file of the series");
+      EXPECT_EQ(readFile(track), points);
+    }
+  }
+  const ProgramResult beside = run({"simulate", quick_, "-o", folder_.path().string(), "--times", "0", "-q"});
+  EXPECT_EQ(beside.status, 0) << beside.err;
 }
 
 TEST_F(Outputs, BeyondTheLimitOfAFilesSizeAreAnErrorWithoutRemains) {

@@ -2,12 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <system_error>
 
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/scenario_file.h"
+#include "emscape/study/products.h"
 
 namespace emscape::app {
 namespace {
@@ -20,6 +22,28 @@ bool isSame(const fs::path& a, const fs::path& b) {
   // An absolute path, because weakly_canonical() leaves a name in the working folder relative.
   return fs::weakly_canonical(fs::absolute(a, failed), failed) ==
          fs::weakly_canonical(fs::absolute(b, failed), failed);
+}
+
+/// True for a name that `coverage` and `compare` give: of a product, or their own.
+bool isNameOfMap(const std::string& name) {
+  const auto begins = [&](const char* word) { return name.rfind(word, 0) == 0; };
+  const auto& products = study::productTable();
+  return begins("coverage.") || begins("compare.") ||
+         std::any_of(products.begin(), products.end(),
+                     [&](const auto& product) { return begins(product.name); });
+}
+
+/// True for a file in the folder maps, or a symbolic link to one, that has the name of a map.
+bool mayBeMapIn(const fs::path& maps, const fs::path& file) {
+  std::error_code failed;
+  const fs::path named = fs::absolute(file, failed), target = fs::weakly_canonical(named, failed);
+  return (isSame(named.parent_path(), maps) && isNameOfMap(named.filename())) ||
+         (isSame(target.parent_path(), maps) && isNameOfMap(target.filename()));
+}
+
+/// @param file  of scenario::filesOf()
+std::string whatIs(const std::string& file, const scenario::Scenario& scenario) {
+  return file == scenario.file ? "the scenario" : "a file that the scenario names";
 }
 
 [[noreturn]] void refuse(const NamedFile& output, const std::string& what) {
@@ -57,21 +81,36 @@ void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<Named
     }
     for (const auto& scenario : scenarios) {
       for (const std::string& file : scenario::filesOf(*scenario)) {
-        if (!file.empty() && isSame(output.file, file))
-          refuse(output, file == scenario->file ? "the scenario" : "a file that the scenario names");
+        if (!file.empty() && isSame(output.file, file)) refuse(output, whatIs(file, *scenario));
       }
     }
   }
 }
 
-void checkMapFolder(const fs::path& folder) {
-  for (const char* name : {"study.json", "report.json", "report.html"}) {
+void checkReports(const fs::path& folder, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
     const fs::path file = folder / name;
     if (fs::exists(file) && !isOwnReport(file)) {
       throw Error(ErrorCode::usage,
                   fmt::format("--output: {} would be replaced, which is no report of emscape; use another "
                               "folder",
                               file.string()));
+    }
+  }
+}
+
+void checkMapFolder(const fs::path& folder,
+                    const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios) {
+  checkReports(folder, {"study.json", "report.json", "report.html"});
+  const fs::path maps = folder / "maps";
+  if (!fs::is_directory(maps)) return;
+  for (const auto& scenario : scenarios) {
+    for (const std::string& file : scenario::filesOf(*scenario)) {
+      if (!file.empty() && mayBeMapIn(maps, file)) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("--output: {} is {}, and has the name of a map; use another folder", file,
+                                whatIs(file, *scenario)));
+      }
     }
   }
 }

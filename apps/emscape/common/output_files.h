@@ -26,8 +26,15 @@ std::vector<NamedFile> outputsOf(const std::string& option, const std::vector<st
 void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
                   const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios);
 
+/// Checks reports in a folder.
+/// @throws Error (usage) if one exists that none of `coverage`, `compare` and `study` wrote
+void checkReports(const std::filesystem::path& folder, const std::vector<std::string>& names);
+
 /// Checks the folder of `coverage` or `compare`.
-/// @throws Error (usage) if a report would replace a file that neither of them nor `study` wrote
-void checkMapFolder(const std::filesystem::path& folder);
+/// @param scenarios  inputs, with the files that they name
+/// @throws Error (usage) if a report would replace a file that neither of them nor `study` wrote, or an input
+/// in the folder's maps/ has a name as that of a map, which would replace it
+void checkMapFolder(const std::filesystem::path& folder,
+                    const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios);
 
 }  // namespace emscape::app

@@ -60,10 +60,11 @@ std::vector<std::string> writableFormats();
 /// journal; otherwise it is recomputed. The inputs and the elevation files (by their CRC-32) must be
 /// unchanged; files that a .vrt elevation file refers to are not checked.
 /// @param progress  receives the fraction of steps that are done; may be empty
-/// @throws Error (usage) if the folder has a series, or with Existing::replace volumes of other origin, or
-/// for a range with several channels; (bad_input) for a series.json or series.steps that is damaged or has
-/// other inputs; (other) where writing fails or another process writes the folder; (device); Stopped, after
-/// which the folder can be resumed
+/// @throws Error (usage) if the folder has a series, or with Existing::replace volumes of other origin, if a
+/// file that the scenario names is in the folder with the name of one of the series, or for a range with
+/// several channels; (bad_input) for a series.json or series.steps that is damaged or has other inputs;
+/// (other) where writing fails or another process writes the folder; (device); Stopped, after which the
+/// folder can be resumed
 SeriesResult writeSeries(FieldSeries& series, const SeriesOptions& options,
                          const ProgressSink& progress = {});
 
