@@ -208,6 +208,21 @@ TEST(Simulate, WarningsThatSayTheSameOfSeveralEmittersAreOneLine) {
       << result.err;
 }
 
+TEST(Simulate, AWarningOfEachStepNamesItsEmitterOnceWithTheRangeOfItsNumbers) {
+  const TemporaryFolder folder;
+  std::string scenario = readFile(quick());
+  const std::string site = "position: {latitude_deg: 52.05, longitude_deg: 5.06, height_agl_m: 50}";
+  scenario.replace(scenario.find(site), site.size(), "track: {file: track.csv}");
+  folder.write("track.csv",
+               "t_s,latitude_deg,longitude_deg,height_agl_m\n0,44.45,-71.6,300\n10,44.56,-71.4,300\n");
+  const ProgramResult result = run({"simulate", folder.write("moving.yaml", scenario), "-o", folder / "s",
+                                    "--times", "0:4", "--format", "raw"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err,
+              testing::ContainsRegex("warning: emitter 'transmitter': 'diffraction': distance [0-9.]+ to "
+                                     "[0-9.]+ km is outside 0.1..1000 km"));
+}
+
 TEST(Simulate, AHangUpStopsItLikeCtrlC) {
   const TemporaryFolder folder;
   RunningProgram program({"simulate", longScenario(folder, 80), "-o", folder / "s", "--format", "raw"});

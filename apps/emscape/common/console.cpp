@@ -168,17 +168,18 @@ ProgressSink progressSink(const GlobalOptions& global) {
 
 std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings) {
   static const std::regex kOfEmitter("emitter '([^']*)': (.*)");
-  static const std::regex kNumber(R"(\b\d+(\.\d+)?\b)");
+  static const std::regex kNumber(R"((\B-)?\b\d+(\.\d+)?\b)");
   struct Kind {
-    std::string form;  // the text with '#' for each number
-    std::vector<std::string> emitters;
-    std::vector<std::vector<std::string>> numbers;  // by position in the text, one per emitter
+    std::string form;                               // the text with '#' for each number
+    std::vector<std::string> emitters;              // each once
+    std::size_t count = 0;                          // warnings of this form
+    std::vector<std::vector<std::string>> numbers;  // by position in the text, one per warning
   };
   std::vector<Kind> kinds;
   for (const std::string& warning : warnings) {
     std::smatch parts;
     if (!std::regex_match(warning, parts, kOfEmitter)) {
-      kinds.push_back({warning, {}, {}});
+      kinds.push_back({warning, {}, 1, {}});
       continue;
     }
     const std::string text = parts[2];
@@ -186,8 +187,11 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
     auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const Kind& known) {
       return known.form == form && !known.emitters.empty();
     });
-    if (kind == kinds.end()) kind = kinds.insert(kinds.end(), Kind{form, {}, {}});
-    kind->emitters.push_back("'" + parts[1].str() + "'");
+    if (kind == kinds.end()) kind = kinds.insert(kinds.end(), Kind{form, {}, 0, {}});
+    const std::string emitter = "'" + parts[1].str() + "'";
+    if (std::find(kind->emitters.begin(), kind->emitters.end(), emitter) == kind->emitters.end())
+      kind->emitters.push_back(emitter);
+    ++kind->count;
     std::size_t place = 0;
     for (std::sregex_iterator number(text.begin(), text.end(), kNumber), end; number != end;
          ++number, ++place) {
@@ -210,9 +214,13 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
         continue;
       }
       const std::vector<std::string>& numbers = kind.numbers[place++];
-      const bool same =
-          std::all_of(numbers.begin(), numbers.end(), [&](const auto& n) { return n == numbers.front(); });
-      line += same ? numbers.front() : fmt::format("{}", fmt::join(numbers, ", "));
+      const auto [min, max] =
+          std::minmax_element(numbers.begin(), numbers.end(),
+                              [](const auto& a, const auto& b) { return std::stod(a) < std::stod(b); });
+      const bool is_one_each = kind.count == kind.emitters.size();
+      line += *min == *max  ? *min
+              : is_one_each ? fmt::format("{}", fmt::join(numbers, ", "))
+                            : fmt::format("{} to {}", *min, *max);
     }
     lines.push_back(line);
   }
