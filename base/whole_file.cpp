@@ -25,6 +25,9 @@ namespace {
 
 constexpr char kMarker[] = ".part-";
 
+/// Endings of files that SQLite and GDAL make beside a temporary, and of the temporary itself.
+constexpr const char* kEndings[] = {"", "-journal", "-wal", "-shm", ".aux.xml"};
+
 std::string causeOf(int error_number) {
   return error_number == 0 ? "the system gives no cause" : std::generic_category().message(error_number);
 }
@@ -47,14 +50,49 @@ fs::path folderOf(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+std::uint32_t crc32Of(const std::string& text) {
+  return static_cast<std::uint32_t>(::crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size()));
+}
+
+std::string hexText(std::uint32_t number) {
+  char digits[9];
+  std::snprintf(digits, sizeof digits, "%08x", number);
+  return digits;
+}
+
+/// The names of a file's temporaries up to the process: NAME.part-. So that they fit into a folder, the end
+/// of a long name is replaced by its checksum.
+std::string stemOfTemporaries(const fs::path& path) {
+  constexpr std::size_t kMaxName = 255;
+  constexpr std::size_t kMaxWriter = 9 + 1 + 8;  // process, machine
+  constexpr std::size_t kMaxEnding = 8;          // the longest of kEndings
+  constexpr std::size_t kMaxStem = kMaxName - (sizeof kMarker - 1) - kMaxWriter - kMaxEnding;
+  std::string name = path.filename().string();
+  if (name.size() > kMaxStem) {
+    const std::string checksum = '~' + hexText(crc32Of(name));
+    std::size_t kept = kMaxStem - checksum.size();
+    const auto isInsideCharacter = [&] { return (static_cast<unsigned char>(name[kept]) & 0xC0U) == 0x80; };
+    while (kept > 0 && isInsideCharacter()) --kept;  // UTF-8
+    name.replace(kept, std::string::npos, checksum);
+  }
+  return name + kMarker;
+}
+
 struct Writer {
   long process = 0;     ///< 0: the name is not one of a temporary
   std::string machine;  ///< machineName(); empty: not known
 };
 
-/// The process that wrote a temporary.
+/// The process that wrote a temporary, or a file beside it.
 Writer writerOf(const fs::path& path) {
-  const std::string name = path.filename().string();
+  std::string name = path.filename().string();
+  for (const std::string ending : kEndings) {
+    if (!ending.empty() && name.size() > ending.size() &&
+        name.compare(name.size() - ending.size(), ending.size(), ending) == 0) {
+      name.resize(name.size() - ending.size());
+      break;
+    }
+  }
   const std::size_t marker = name.rfind(kMarker);
   if (marker == std::string::npos || marker == 0) return {};
   const std::string text = name.substr(marker + std::strlen(kMarker));
@@ -180,11 +218,7 @@ const std::string& machineName() {
     char host[256] = "";
     ::gethostname(host, sizeof host - 1);
     std::error_code ignored;
-    const std::string text = host + ('|' + fs::read_symlink("/proc/self/ns/pid", ignored).string());
-    const uLong crc = ::crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size());
-    char digits[9];
-    std::snprintf(digits, sizeof digits, "%08lx", crc);
-    return std::string(digits);
+    return hexText(crc32Of(host + ('|' + fs::read_symlink("/proc/self/ns/pid", ignored).string())));
   }();
   return kName;
 }
@@ -194,9 +228,7 @@ bool isRunning(long process) {
 }
 
 fs::path temporaryFor(const fs::path& path) {
-  fs::path temporary = path;
-  temporary += kMarker + std::to_string(::getpid()) + '-' + machineName();
-  return temporary;
+  return path.parent_path() / (stemOfTemporaries(path) + std::to_string(::getpid()) + '-' + machineName());
 }
 
 // Renaming to a folder fails late, and renaming to a device would replace it.
@@ -237,6 +269,11 @@ void writeWhole(const fs::path& path, const std::function<void(std::ostream&)>& 
   writeWhole({{path, write}});
 }
 
+void removeTemporary(const fs::path& temporary) {
+  std::error_code ignored;
+  for (const char* ending : kEndings) fs::remove(temporary.string() + ending, ignored);
+}
+
 int removeStaleTemporaries(const fs::path& folder) {
   int removed = 0;
   std::error_code error;
@@ -248,7 +285,7 @@ int removeStaleTemporaries(const fs::path& folder) {
 
 void removeStaleTemporariesOf(const fs::path& path) {
   std::error_code error;
-  const std::string prefix = path.filename().string() + kMarker;
+  const std::string prefix = stemOfTemporaries(path);
   for (const fs::directory_entry& entry : fs::directory_iterator(folderOf(path), error)) {
     const std::string name = entry.path().filename().string();
     if (name.rfind(prefix, 0) == 0 && isStale(entry.path())) fs::remove(entry.path(), error);

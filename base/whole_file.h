@@ -39,15 +39,20 @@ bool isRunning(long process);
 void requireFileTarget(const std::filesystem::path& path);
 
 /// The temporary name of a file, for programs that write it themselves:
-/// NAME.part-PID-MACHINE.
+/// NAME.part-PID-MACHINE; the end of a long NAME is replaced by a checksum, so that the name fits into 255
+/// bytes, and so do those of isTemporary() beside it.
 std::filesystem::path temporaryFor(const std::filesystem::path& path);
 
 /// Flushes a complete temporary to the disk and renames it to its final name.
 /// @throws Error (other); the temporary is then removed
 void publish(const std::filesystem::path& temporary, const std::filesystem::path& path);
 
-/// True for names that temporaryFor() gives.
+/// True for names that temporaryFor() gives, and for files that SQLite and GDAL make beside a temporary:
+/// -journal, -wal, -shm, .aux.xml.
 bool isTemporary(const std::filesystem::path& path);
+
+/// Removes a temporary and the files beside it, as far as they exist.
+void removeTemporary(const std::filesystem::path& temporary);
 
 /// Removes the temporaries in a folder that belong to ended processes of this machine.
 /// @return their number; 0 if the folder does not exist

@@ -27,6 +27,8 @@ GDALDriverH driverOf(const char* name) {
 gdal::Dataset openVectors(const scenario::GdalMessages& messages, const std::string& file) {
   static const char* const kDrivers[] = {"GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf", "KML", "LIBKML",
                                          "GML",  "CSV",     nullptr};
+  // GML: no NAME.gfs beside the file. The @ is for the other drivers, which do not have the option.
+  static const char* const kOptions[] = {"@WRITE_GFS=NO", nullptr};
   std::error_code failure;
   const std::filesystem::file_status status = std::filesystem::status(file, failure);
   if (!std::filesystem::is_regular_file(status)) {
@@ -35,7 +37,7 @@ gdal::Dataset openVectors(const scenario::GdalMessages& messages, const std::str
   }
   GDALAllRegister();
   gdal::Dataset dataset(
-      GDALOpenEx(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, nullptr, nullptr));
+      GDALOpenEx(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, kOptions, nullptr));
   if (dataset == nullptr) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
                 messages.explain("not a file of points or polygons that can be read"));
@@ -49,11 +51,11 @@ void failWriting(const scenario::GdalMessages& messages, const std::filesystem::
 
 UnfinishedFile::UnfinishedFile(const std::filesystem::path& file)
     : file_(file), temporary_(temporaryFor(file)) {
-  remove();
+  removeTemporary(temporary_);
 }
 
 UnfinishedFile::~UnfinishedFile() {
-  remove();
+  removeTemporary(temporary_);
 }
 
 void UnfinishedFile::publish() {
@@ -65,13 +67,6 @@ void UnfinishedFile::publish() {
     std::filesystem::remove(auxiliary, ignored);
   }
   emscape::publish(temporary_, file_);
-}
-
-void UnfinishedFile::remove() const {
-  std::error_code ignored;
-  for (const char* ending : {"", "-journal", "-wal", "-shm", kAuxiliary}) {
-    std::filesystem::remove(temporary_.string() + ending, ignored);
-  }
 }
 
 gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {

@@ -39,8 +39,6 @@ class UnfinishedFile {
   void publish();
 
  private:
-  void remove() const;
-
   const std::filesystem::path file_, temporary_;
 };
 

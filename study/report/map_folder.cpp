@@ -112,6 +112,7 @@ struct MapFolder::State {
         lock(path, ".maps.lock"),
         earlier_outputs(path),
         study(std::move(of)) {
+    for (const std::filesystem::path& written : {path, path / "maps"}) removeStaleTemporaries(written);
     if (study.terrain != nullptr) ground_msl_m = groundOf(*study.grid, *study.terrain);
   }
 

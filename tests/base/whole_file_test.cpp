@@ -123,18 +123,47 @@ TEST_F(WholeFile, TemporariesOfKilledRunsAreKnownAndRemoved) {
   EXPECT_FALSE(isTemporary(".part-12"));
   EXPECT_TRUE(isTemporary("a.part-12"));
   EXPECT_FALSE(isTemporary("a.part-12-host"));
+  for (const char* ending : {"-journal", "-wal", "-shm", ".aux.xml"}) {
+    EXPECT_TRUE(isTemporary(mine.string() + ending)) << ending;
+    EXPECT_TRUE(isTemporary(std::string("a.part-12") + ending)) << ending;
+    EXPECT_FALSE(isTemporary(std::string("a.vdb") + ending)) << ending;
+  }
+  EXPECT_FALSE(isTemporary("a.part-12-note"));
   std::ofstream(mine) << "running";
   std::ofstream(folder_ / "a.vdb.part-999999999") << "killed";  // above the largest process number
+  std::ofstream(folder_ / "a.vdb.part-999999999-journal") << "of GDAL";
   const fs::path elsewhere = folder_ / "a.vdb.part-999999999-00000000";
   ASSERT_NE(machineName(), "00000000");
   std::ofstream(elsewhere) << "of another machine, where it may run";
-  EXPECT_EQ(removeStaleTemporaries(folder_.path()), 1);
+  EXPECT_EQ(removeStaleTemporaries(folder_.path()), 2);
   EXPECT_TRUE(fs::exists(mine));
   EXPECT_TRUE(fs::remove(elsewhere));
   publish(mine, folder_ / "a.vdb");
   EXPECT_EQ(textOf(folder_ / "a.vdb"), "running");
   EXPECT_EQ(filesInFolder(), 1);
   EXPECT_EQ(removeStaleTemporaries(folder_ / "none"), 0);
+}
+
+TEST_F(WholeFile, TheNameMayBeAsLongAsTheFileSystemAllows) {
+  std::string name = "1";
+  while (name.size() < 251) name += "\u00e9";
+  const std::string one = folder_ / (name + "1.a"), two = folder_ / (name + "2.a");
+  const auto write = [](std::ostream& stream) { stream << "text"; };
+  writeWhole({{one, write}, {two, write}});
+  EXPECT_EQ(textOf(one), "text");
+  EXPECT_EQ(textOf(two), "text");
+  EXPECT_EQ(filesInFolder(), 2);
+  const fs::path temporary = temporaryFor(one);
+  EXPECT_TRUE(isTemporary(temporary));
+  EXPECT_LE(temporary.filename().string().size() + std::string(".aux.xml").size(), 255U);
+  EXPECT_NE(temporary, temporaryFor(two));
+  const std::string stem = temporary.string().substr(0, temporary.string().rfind('-'));
+  const std::string killed = stem.substr(0, stem.rfind('-') + 1) + "999999999";
+  std::ofstream(killed) << "killed";
+  removeStaleTemporariesOf(two);
+  EXPECT_TRUE(fs::exists(killed));
+  removeStaleTemporariesOf(one);
+  EXPECT_FALSE(fs::exists(killed));
 }
 
 TEST_F(WholeFile, OnlyTheTemporariesOfAFileThatDeadProcessesLeftAreRemovedWithIt) {

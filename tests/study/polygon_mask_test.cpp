@@ -93,6 +93,17 @@ TEST_F(PolygonMask, AFileMayBeInAProjectionOrNameNoSystem) {
                 "latitudes: the file names no coordinate system"));
 }
 
+TEST_F(PolygonMask, ReadingLeavesNoFileBesideTheUsersFile) {
+  const std::string gml = folder_.write(
+      "p.gml",
+      R"(<c xmlns:g="http://www.opengis.net/gml"><g:featureMember><p><shape><g:Polygon srsName="EPSG:4326">)"
+      R"(<g:outerBoundaryIs><g:LinearRing><g:coordinates>4.95,51.95 5.05,51.95 5,52.05 4.95,51.95)"
+      R"(</g:coordinates></g:LinearRing></g:outerBoundaryIs></g:Polygon></shape></p></g:featureMember></c>)");
+  EXPECT_EQ(pixelsWithin(gml, grid_),
+            pixelsWithin(geojson("[[[4.95, 51.95], [5.05, 51.95], [5, 52.05]]]"), grid_));
+  EXPECT_THAT(folder_.files(), testing::ElementsAre("p.gml", "p1.geojson"));
+}
+
 TEST_F(PolygonMask, LongitudesMayPass180) {
   const MapGrid fiji = makeMapGrid(parseArea("bbox:179.8,-17,-179.8,-16.6"), 500, "utm");
   const auto beyond =
