@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "emscape/base/units.h"
 #include "emscape/playback/scene.h"
 #include "emscape/render/image.h"
 #include "render/annotate/overlay_parts.h"
@@ -31,6 +32,39 @@ std::array<std::uint8_t, 4> bytesOf(const std::optional<render::Rgb>& color) {
   return {level(color->r), level(color->g), level(color->b), 255};
 }
 
+/// Options of GDALWarp for the picture's projection, extent and size.
+std::vector<std::string> warpOptions(const MapGrid& grid) {
+  // Longitudes within 180 degrees of the map, so that a map across the antimeridian is not split.
+  const auto earth = [](double middle_deg) {
+    return fmt::format("+proj=longlat +datum=WGS84 +no_defs +lon_wrap={:.6f}", middle_deg);
+  };
+  std::vector<std::string> options{"-r", "near", "-of", "MEM", "-t_srs"};
+  const bool has_north = grid.pixelAt(90, 0) >= 0;
+  if (!has_north && grid.pixelAt(-90, 0) < 0) {
+    options.push_back(earth(grid.places[grid.pixels() / 2].longitude_deg));
+    return options;
+  }
+  // GDAL finds no extent around a pole. The picture has all longitudes; its pixels are about those of the map
+  // at its edge, and smaller nearer to the pole.
+  constexpr int kMaxWidth = 8192;
+  const double diagonal = std::hypot(grid.width, grid.height);
+  const int width = static_cast<int>(std::min<double>(kMaxWidth, std::ceil(kPi * diagonal)));
+  const int height = static_cast<int>(std::min<double>(kMaxWidth / 2, std::ceil(diagonal)));
+  double edge_deg = 90;  // the latitude that is farthest from the pole
+  for (const emfield::Surface::Place& place : grid.places) {
+    edge_deg = std::fmin(edge_deg, std::abs(place.latitude_deg));
+  }
+  const double pixel_deg = grid.cell_m / 111e3;
+  edge_deg = std::max(0.0, edge_deg - pixel_deg);  // places are the pixels' centres
+  const double south_deg = has_north ? edge_deg : -90, north_deg = has_north ? 90 : -edge_deg;
+  options.insert(options.end(),
+                 {earth(0), "-te", "-180", fmt::format("{}", south_deg), "180", fmt::format("{}", north_deg),
+                  "-ts", std::to_string(width), std::to_string(height),
+                  // So that the part of the map that GDAL reads contains the whole circle.
+                  "-wo", "SAMPLE_STEPS=101", "-wo", "SOURCE_EXTRA=10"});
+  return options;
+}
+
 Overlay overlayOf(const MapGrid& grid, const Map& map, const render::Legend& legend,
                   const std::filesystem::path& file) {
   const scenario::GdalMessages messages;
@@ -44,12 +78,11 @@ Overlay overlayOf(const MapGrid& grid, const Map& map, const render::Legend& leg
                           grid.height, GDT_Byte, 4, nullptr, 4, 4 * grid.width, 1) != CE_None) {
     failWriting(messages, file);
   }
-  // Longitudes within 180 degrees of the map, so that a map across the antimeridian is not split.
-  const std::size_t middle = grid.pixels() / 2;
-  const std::string earth =
-      fmt::format("+proj=longlat +datum=WGS84 +no_defs +lon_wrap={:.6f}", grid.places[middle].longitude_deg);
-  const char* const arguments[] = {"-t_srs", earth.c_str(), "-r", "near", "-of", "MEM", nullptr};
-  GDALWarpAppOptions* const options = GDALWarpAppOptionsNew(const_cast<char**>(arguments), nullptr);
+  std::vector<std::string> texts = warpOptions(grid);
+  std::vector<char*> arguments;
+  for (std::string& text : texts) arguments.push_back(text.data());
+  arguments.push_back(nullptr);
+  GDALWarpAppOptions* const options = GDALWarpAppOptionsNew(arguments.data(), nullptr);
   GDALDatasetH source = raster.get();
   const gdal::Dataset warped(GDALWarp("", nullptr, 1, &source, options, nullptr));
   GDALWarpAppOptionsFree(options);

@@ -1,4 +1,5 @@
 // Map files, read back by GDAL: contours at their levels, bands without gaps, contents of each format.
+#include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gdal_rat.h>
 #include <gmock/gmock.h>
@@ -192,6 +193,16 @@ class MapFiles : public testing::Test {
   const test::TemporaryFolder folder;
 };
 
+TEST_F(MapFiles, WhatAKilledProcessLeftIsRemoved) {
+  for (const char* left :
+       {"a/maps/coverage.gpkg.part-999999999", "a/maps/coverage.gpkg.part-999999999-journal",
+        "a/maps/x.tif.part-999999999.aux.xml", "a/report.html.part-999999999"})
+    folder.write(left, "unfinished");
+  folder.write("a/maps/notes.txt", "of the user");
+  { const MapFolder maps(folder.path() / "a", fixture.study(), {"cog"}); }
+  EXPECT_THAT(folder.files(), ElementsAre("a/maps/notes.txt"));
+}
+
 TEST_F(MapFiles, TwoRunsWriteTheSameBytes) {
   write("a");
   write("b");
@@ -354,40 +365,85 @@ TEST_F(MapFiles, TheNetCdfHoldsTheValuesOverTimeAndHeight) {
   EXPECT_EQ(root->OpenMDArray("time")->GetUnit(), "seconds since 2026-06-01T06:00:00.000Z");
 }
 
-TEST_F(MapFiles, TheKmzLaysAMapWhereItIs) {
-  write("a");
-  const std::string archive = "/vsizip/" + folder / "a/maps/coverage.kmz";
-  GByte* bytes = nullptr;
-  vsi_l_offset size = 0;
-  ASSERT_TRUE(VSIIngestFile(nullptr, (archive + "/doc.kml").c_str(), &bytes, &size, -1));
-  const std::string kml(reinterpret_cast<const char*>(bytes), size);
-  VSIFree(bytes);
-  EXPECT_THAT(kml, HasSubstr("Coverage of &lt;jacksboro&gt;"));
-  EXPECT_THAT(kml, HasSubstr("<begin>2026-06-01T06:01:10.000Z</begin><end>2026-06-01T06:01:20.000Z</end>"));
-  const auto edge = [&](const std::string& name) {
-    return std::stod(kml.substr(kml.find("<" + name + ">") + name.size() + 2));
-  };
-  const Opened overlay = open(archive + "/files/covered_msl1500m_t70s.png", GDAL_OF_RASTER);
-  ASSERT_NE(overlay, nullptr);
-  ASSERT_EQ(overlay->GetRasterCount(), 4);
-  const int width = overlay->GetRasterXSize(), height = overlay->GetRasterYSize();
-  std::vector<std::uint8_t> alpha(static_cast<std::size_t>(width) * height);
-  ASSERT_EQ(overlay->GetRasterBand(4)->RasterIO(GF_Read, 0, 0, width, height, alpha.data(), width, height,
-                                                GDT_Byte, 0, 0, nullptr),
-            CE_None);
-  const Map covered = mapsOf(70)[1];
+/// A picture of a KMZ file.
+struct KmzOverlay {
+  std::string kml;
+  double north_deg = 0, south_deg = 0, east_deg = 0, west_deg = 0;  ///< of the first picture
+  int width = 0, height = 0;
+  std::vector<std::uint8_t> alpha;
+
+  KmzOverlay(const std::string& file, const std::string& map) {
+    const std::string archive = "/vsizip/" + file;
+    GByte* bytes = nullptr;
+    vsi_l_offset size = 0;
+    if (VSIIngestFile(nullptr, (archive + "/doc.kml").c_str(), &bytes, &size, -1) == FALSE) return;
+    kml.assign(reinterpret_cast<const char*>(bytes), size);
+    VSIFree(bytes);
+    for (const auto& [name, edge_deg] :
+         {std::pair{"north", &north_deg}, {"south", &south_deg}, {"east", &east_deg}, {"west", &west_deg}}) {
+      const std::string tag = fmt::format("<{}>", name);
+      *edge_deg = std::stod(kml.substr(kml.find(tag) + tag.size()));
+    }
+    const Opened picture = open(archive + "/files/" + map + ".png", GDAL_OF_RASTER);
+    if (picture == nullptr || picture->GetRasterCount() != 4) return;
+    width = picture->GetRasterXSize();
+    height = picture->GetRasterYSize();
+    alpha.resize(static_cast<std::size_t>(width) * height);
+    EXPECT_EQ(picture->GetRasterBand(4)->RasterIO(GF_Read, 0, 0, width, height, alpha.data(), width, height,
+                                                  GDT_Byte, 0, 0, nullptr),
+              CE_None);
+  }
+};
+
+/// Expects that an overlay is opaque where a map's class is 1.
+void expectShows(const KmzOverlay& overlay, const MapGrid& grid, const Map& covered) {
+  ASSERT_FALSE(overlay.alpha.empty());
   int wrong = 0, compared = 0;
   for (std::size_t p = 0; p < covered.values.size(); ++p) {
     if (std::isnan(covered.values[p])) continue;
-    const auto [latitude_deg, longitude_deg] = fixture.grid->places[p];
-    const int x = static_cast<int>((longitude_deg - edge("west")) / (edge("east") - edge("west")) * width);
-    const int y = static_cast<int>((edge("north") - latitude_deg) / (edge("north") - edge("south")) * height);
-    ASSERT_TRUE(x >= 0 && x < width && y >= 0 && y < height);
-    if ((alpha[static_cast<std::size_t>(y) * width + x] > 0) != (covered.values[p] == 1)) ++wrong;
+    const auto [latitude_deg, longitude_deg] = grid.places[p];
+    const int x = static_cast<int>((longitude_deg - overlay.west_deg) /
+                                   (overlay.east_deg - overlay.west_deg) * overlay.width);
+    const int y = static_cast<int>((overlay.north_deg - latitude_deg) /
+                                   (overlay.north_deg - overlay.south_deg) * overlay.height);
+    ASSERT_TRUE(x >= 0 && x < overlay.width && y >= 0 && y < overlay.height);
+    if ((overlay.alpha[static_cast<std::size_t>(y) * overlay.width + x] > 0) != (covered.values[p] == 1))
+      ++wrong;
     ++compared;
   }
   EXPECT_GT(compared, 500);
   EXPECT_LT(wrong, compared / 20) << "only at the edges of what is covered";
+}
+
+TEST_F(MapFiles, TheKmzLaysAMapWhereItIs) {
+  write("a");
+  const KmzOverlay overlay(folder / "a/maps/coverage.kmz", "covered_msl1500m_t70s");
+  EXPECT_THAT(overlay.kml, HasSubstr("Coverage of &lt;jacksboro&gt;"));
+  EXPECT_THAT(overlay.kml,
+              HasSubstr("<begin>2026-06-01T06:01:10.000Z</begin><end>2026-06-01T06:01:20.000Z</end>"));
+  expectShows(overlay, *fixture.grid, mapsOf(70)[1]);
+}
+
+TEST_F(MapFiles, TheKmzLaysAMapOverAPoleWhereItIs) {
+  for (const double latitude_deg : {90.0, -89.97}) {
+    SCOPED_TRACE(latitude_deg);
+    Fixture polar;
+    polar.area = parseArea(fmt::format("{},10,20000", latitude_deg));
+    polar.grid = std::make_shared<const MapGrid>(makeMapGrid(polar.area, 400, "local"));
+    MapStudy study = fixture.study();
+    study.grid = polar.grid;
+    const std::string name = latitude_deg > 0 ? "north" : "south";
+    MapFolder maps(folder.path() / name, study, {"kmz"});
+    Map covered = polar.map(MapKind::classes, 70, 0, 1);
+    covered.labels = {"no", "yes"};
+    covered.area_class = 1;
+    maps.add(covered);
+    maps.finish({});
+    const KmzOverlay overlay(folder / (name + "/maps/coverage.kmz"), "covered_msl1500m_t70s");
+    EXPECT_EQ(overlay.east_deg - overlay.west_deg, 360);
+    EXPECT_EQ(latitude_deg > 0 ? overlay.north_deg : overlay.south_deg, latitude_deg > 0 ? 90 : -90);
+    expectShows(overlay, *polar.grid, covered);
+  }
 }
 
 TEST_F(MapFiles, TheCzmlHasPolygonsForTheirTimes) {
