@@ -10,6 +10,7 @@
 #include "emscape/base/units.h"
 #include "study/maps/gdal_support.h"
 #include "study/sweep/study_reading.h"
+#include "study/sweep/vector_file.h"
 
 namespace emscape::study {
 namespace {
@@ -21,7 +22,8 @@ double rounded(double degrees) {
   return std::round(degrees * 1e7) / 1e7;
 }
 
-void addLayer(OGRLayerH layer, const std::string& file, std::vector<CandidateSite>& sites) {
+void addLayer(const VectorFile& points, OGRLayerH layer, const std::string& file,
+              std::vector<CandidateSite>& sites) {
   const gdal::SpatialReference wgs84 = wgs84Reference();
   gdal::Transformation transformation;
   if (OGR_L_GetSpatialRef(layer) != nullptr) {
@@ -30,9 +32,8 @@ void addLayer(OGRLayerH layer, const std::string& file, std::vector<CandidateSit
     transformation = transformationBetween(own, wgs84);
   }
   const int name_field = OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer), "name");
-  OGR_L_ResetReading(layer);
-  while (const gdal::Feature feature{OGR_L_GetNextFeature(layer)}) {
-    OGRGeometryH geometry = OGR_F_GetGeometryRef(feature.get());
+  points.eachFeature(layer, [&](OGRFeatureH feature) {
+    OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
     const OGRwkbGeometryType type =
         geometry == nullptr ? wkbNone : wkbFlatten(OGR_G_GetGeometryType(geometry));
     const auto fail = [&](const std::string& problem) {
@@ -44,29 +45,29 @@ void addLayer(OGRLayerH layer, const std::string& file, std::vector<CandidateSit
                          OGR_G_GetGeometryCount(geometry)));
       geometry = OGR_G_GetGeometryRef(geometry, 0);
     } else if (type != wkbPoint) {
-      continue;
+      return;
     }
-    double x = OGR_G_GetX(geometry, 0), y = OGR_G_GetY(geometry, 0);
-    const bool is_placed =
-        OGR_G_IsEmpty(geometry) == 0 &&
-        (transformation == nullptr || OCTTransform(transformation.get(), 1, &x, &y, nullptr) != 0);
-    if (!is_placed || !(std::abs(y) <= 90 && std::abs(x) <= 180)) fail("has no longitude and latitude");
-    const bool has_name = name_field >= 0 && OGR_F_IsFieldSetAndNotNull(feature.get(), name_field) != 0;
-    sites.push_back({has_name ? OGR_F_GetFieldAsString(feature.get(), name_field)
-                              : fmt::format("site {}", sites.size() + 1),
-                     y, x});
-  }
+    if (OGR_G_IsEmpty(geometry) != 0) fail("is empty: it has no coordinates");
+    const double own_x = OGR_G_GetX(geometry, 0), own_y = OGR_G_GetY(geometry, 0);
+    double x = own_x, y = own_y;
+    if (transformation != nullptr && OCTTransform(transformation.get(), 1, &x, &y, nullptr) == 0)
+      fail(fmt::format("at ({}, {}) has no longitude and latitude", own_x, own_y));
+    if (!(std::abs(y) <= 90 && std::abs(x) <= 180))
+      fail(fmt::format("is at longitude {}, latitude {}, outside the allowed range -180 to 180, -90 to 90", x,
+                       y));
+    std::string name = name_field < 0 ? "" : OGR_F_GetFieldAsString(feature, name_field);
+    if (name.empty()) name = fmt::format("site {}", sites.size() + 1);
+    sites.push_back({std::move(name), y, x});
+  });
 }
 
 }  // namespace
 
 std::vector<CandidateSite> readCandidates(const std::string& file) {
+  const VectorFile points(file);
   const scenario::GdalMessages messages;
-  const gdal::Dataset dataset = openVectors(messages, file);
   std::vector<CandidateSite> sites;
-  for (int n = 0; n < GDALDatasetGetLayerCount(dataset.get()); ++n) {
-    addLayer(GDALDatasetGetLayer(dataset.get(), n), file, sites);
-  }
+  for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites);
   if (sites.empty() || sites.size() > kMaxCandidates) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
                 fmt::format("{} points, outside the allowed range 1 to {}; a CSV file needs a column WKT",

@@ -11,6 +11,7 @@
 #include "emscape/base/units.h"
 #include "scenario/terrain/transformation.h"
 #include "study/maps/gdal_support.h"
+#include "study/sweep/vector_file.h"
 
 namespace emscape::study {
 namespace {
@@ -98,19 +99,21 @@ class LayerSystem {
     from_wgs84_ = scenario::newTransformation(wgs84Reference().get(), system);
     if (from_wgs84_ == nullptr)
       throw Error(ErrorCode::bad_input, "the map cannot be brought to the coordinate system of its polygons");
-    if (OSRIsGeographic(system) != 0)
-      setGeographic(2 * kPi / OSRGetAngularUnits(system, nullptr), " of longitudes and latitudes");
+    if (OSRIsGeographic(system) == 0) return;
+    const double turn = 2 * kPi / OSRGetAngularUnits(system, nullptr);
+    const bool is_rounded = std::abs(turn - std::round(turn)) < 1e-9;  // files round a degree's radians
+    setGeographic(is_rounded ? std::round(turn) : turn, " of longitudes and latitudes");
   }
 
   /// Range of x after which a place repeats; infinity: none.
   double turn() const { return turn_; }
 
   /// @throws Error (bad_input): a corner that is not on the earth, or an edge that may lead either way around
-  /// it
+  /// it; an edge along a pole is a point and has no way
   void check(const std::vector<Corner>& ring) const {
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Corner& corner = ring[i];
-      const double next_x = ring[(i + 1) % ring.size()].x;
+      const Corner& next = ring[(i + 1) % ring.size()];
       if (!(std::abs(corner.x) <= max_x_ && std::abs(corner.y) <= max_y_)) {
         throw Error(
             ErrorCode::bad_input,
@@ -118,11 +121,12 @@ class LayerSystem {
                         "to {}{}",
                         corner.x, corner.y, max_x_, max_x_, max_y_, max_y_, kind_));
       }
-      if (std::abs(next_x - corner.x) > turn_ / 2) {
+      const bool is_at_pole = next.y == corner.y && std::abs(corner.y) == max_y_;
+      if (std::abs(next.x - corner.x) > turn_ / 2 && !is_at_pole) {
         throw Error(ErrorCode::bad_input,
                     fmt::format("an edge of a polygon from longitude {} to {} may lead either way around the "
                                 "earth; split long edges, and let longitudes pass 180",
-                                corner.x, next_x));
+                                corner.x, next.x));
       }
     }
   }
@@ -222,32 +226,30 @@ void eachPolygon(OGRGeometryH geometry, const LayerSystem& system, const Visit& 
 }  // namespace
 
 std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& grid) {
+  const VectorFile polygons(file);
   const scenario::GdalMessages messages;
   const auto fail = [&](const std::string& problem) {
     throw Error(ErrorCode::bad_input, {file, 0, 0}, messages.explain(problem));
   };
-  const gdal::Dataset dataset = openVectors(messages, file);
   std::vector<std::uint8_t> pixels(grid.pixels());
   bool has_polygon = false;
-  try {
-    for (int n = 0; n < GDALDatasetGetLayerCount(dataset.get()); ++n) {
-      OGRLayerH layer = GDALDatasetGetLayer(dataset.get(), n);
+  for (OGRLayerH layer : polygons.layers()) {
+    try {
       const LayerSystem system(OGR_L_GetSpatialRef(layer));
       const std::vector<PixelCentre> centres = centresIn(system, grid);
-      OGR_L_ResetReading(layer);
-      while (const gdal::Feature feature{OGR_L_GetNextFeature(layer)}) {
-        OGRGeometryH geometry = OGR_F_GetGeometryRef(feature.get());
-        if (geometry == nullptr) continue;
+      polygons.eachFeature(layer, [&](OGRFeatureH feature) {
+        OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
+        if (geometry == nullptr) return;
         const gdal::Geometry straight(OGR_G_GetLinearGeometry(geometry, 0, nullptr));
         eachPolygon(straight.get(), system, [&](const Polygon& polygon) {
           has_polygon = true;
           mark(polygon, centres, system.turn(), pixels);
         });
-      }
+      });
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::bad_input || !error.location().file.empty()) throw;
+      fail(error.message());
     }
-  } catch (const Error& error) {
-    if (error.code() != ErrorCode::bad_input) throw;
-    fail(error.message());
   }
   if (!has_polygon) fail("has no polygon");
   if (std::find(pixels.begin(), pixels.end(), 1) == pixels.end()) fail("has no pixel of the map");

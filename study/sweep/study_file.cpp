@@ -13,6 +13,7 @@
 #include "emscape/scenario/scenario_file.h"
 #include "study/sweep/study_format.h"
 #include "study/sweep/study_reading.h"
+#include "study/sweep/vector_file.h"
 
 namespace emscape::study {
 namespace {
@@ -46,6 +47,12 @@ std::string StudyReading::resolve(const std::string& name) const {
 bool hasControlCharacter(const std::string& text) {
   return std::any_of(text.begin(), text.end(),
                      [](char c) { return std::iscntrl(static_cast<unsigned char>(c)) != 0; });
+}
+
+void StudyReading::addVectors(const std::string& name) {
+  for (const std::string& part : VectorFile(name).files()) {
+    if (std::count(spec.files.begin(), spec.files.end(), part) == 0) spec.files.push_back(part);
+  }
 }
 
 std::string StudyReading::nameOf(const Section& section) {
@@ -92,12 +99,13 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
   readMeasures(reading, root);
   readVariants(reading, root);
   document::requireNoProblem(reading.problems);
+  addFilesOfVariants(reading);
 
   document::ContentHash hash;
   hash.add(version);
   hash.add(bytes);
   hash.add(spec.base->hash);
-  std::vector<std::string>& files = reading.files;
+  std::vector<std::string> files = spec.files;
   if (spec.base->terrain) {
     files.insert(files.end(), spec.base->terrain->files.begin(), spec.base->terrain->files.end());
   }

@@ -112,7 +112,7 @@ void readMeasures(StudyReading& reading, const Section& root) {
       if (!std::filesystem::is_regular_file(measure.over, ignored)) {
         reading.fault(item.locationOf("over"), measure.over + ": no such file; polygons, or 'region'");
       } else {
-        reading.files.push_back(measure.over);
+        reading.reportAt(item.locationOf("over"), [&] { reading.addVectors(measure.over); });
       }
     }
     spec.measures.push_back(std::move(measure));

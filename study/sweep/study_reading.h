@@ -20,7 +20,6 @@ struct StudyReading {
   document::ProblemList problems;
   /// The original document; checkable() rewrites its maps from paths to values.
   document::DocumentNodePtr original;
-  std::vector<std::string> files;  ///< named by the study, besides the scenario
   StudySpec spec;
   bool tries_values = true;  ///< see loadStudy()
 
@@ -32,6 +31,8 @@ struct StudyReading {
   void fault(const SourceLocation& location, const std::string& message) {
     problems.addError(location, message);
   }
+  /// Adds a file of points or polygons to the study's files. @throws Error (bad_input)
+  void addVectors(const std::string& name);
   /// The name of a measure or a variant. Tables hold one line each: control characters are a fault.
   std::string nameOf(const document::Section& section);
   /// Calls a function; its error becomes a fault at a location of the study.
@@ -49,5 +50,8 @@ struct StudyReading {
 void readMeasures(StudyReading& reading, const document::Section& root);
 /// Reads `variants`, `sweep`, `samples` and `sites`; after the measures. @throws Error (bad_input)
 void readVariants(StudyReading& reading, const document::Section& root);
+/// Adds to the study's files those that the scenarios of its variants name; after the variants. Only settings
+/// of values that can name a file are looked at.
+void addFilesOfVariants(StudyReading& reading);
 
 }  // namespace emscape::study

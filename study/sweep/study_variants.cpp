@@ -269,8 +269,10 @@ class VariantReader {
     std::vector<CandidateSite> candidates;
     if (sites.has("candidates")) {
       const std::string file = reading_.resolve(sites.text("candidates"));
-      reading_.reportAt(sites.locationOf("candidates"), [&] { candidates = readCandidates(file); });
-      if (!candidates.empty()) reading_.files.push_back(file);
+      reading_.reportAt(sites.locationOf("candidates"), [&] {
+        candidates = readCandidates(file);
+        reading_.addVectors(file);
+      });
     } else {
       reading_.reportAt(sites.locationOf("grid_m"),
                         [&] { candidates = candidatesOver(reading_.spec.area, sites.number("grid_m")); });

@@ -62,12 +62,13 @@ xmlns:a="http://a/" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:sc
       "a.geojson", R"({"type": "FeatureCollection", "crs": {"type": "link", "properties": {"href": ")" +
                        listener.url() + R"(crs.wkt", "type": "ogcwkt"}}, "features": [{"type": "Feature",
 "properties": {"name": "hill"}, "geometry": {"type": "Point", "coordinates": [5, 52]}}]})");
-  for (const std::string& file : {gml, geojson}) {
-    const std::vector<CandidateSite> sites = readCandidates(file);
-    ASSERT_EQ(sites.size(), 1u) << file;
-    EXPECT_EQ(sites[0].name, "hill");
-    EXPECT_FALSE(listener.wasReached()) << file;
-  }
+  const std::vector<CandidateSite> sites = readCandidates(gml);
+  ASSERT_EQ(sites.size(), 1u);
+  EXPECT_EQ(sites[0].name, "hill");
+  EXPECT_FALSE(listener.wasReached());
+  EXPECT_THAT(test::errorOf([&] { readCandidates(geojson); }), HasSubstr("cannot be read completely"))
+      << "its coordinate system is not known";
+  EXPECT_FALSE(listener.wasReached());
   for (const std::string& name : {"/vsicurl/" + listener.url() + "a.geojson", listener.url() + "a.geojson"}) {
     EXPECT_THAT(test::errorOf([&] { readCandidates(name); }), HasSubstr("no such file"));
     EXPECT_FALSE(listener.wasReached()) << name;
@@ -83,9 +84,36 @@ TEST(CandidateSites, AreOnePlaceEach) {
   ASSERT_EQ(sites.size(), 2u);
   EXPECT_EQ(sites[1].longitude_deg, 5.5);
   EXPECT_THAT(test::errorOf([&] { sitesOf("POINT EMPTY"); }),
-              HasSubstr("a.csv: point 2 has no longitude and latitude"));
+              HasSubstr("a.csv: point 2 is empty: it has no coordinates"));
+  EXPECT_THAT(
+      test::errorOf([&] { sitesOf("POINT (190 46)"); }),
+      HasSubstr("point 2 is at longitude 190, latitude 46, outside the allowed range -180 to 180, -90 to "
+                "90"));
   EXPECT_THAT(test::errorOf([&] { sitesOf("MULTIPOINT ((5 52), (5.1 52))"); }),
               HasSubstr("point 2 is a multipoint of 2 places"));
+}
+
+TEST(CandidateSites, WithoutANameAreNumbered) {
+  const test::TemporaryFolder folder;
+  const auto sites = readCandidates(
+      folder.write("a.csv", "WKT,name\nPOINT (5 52),\nPOINT (5.1 52),hill\nPOINT (5.2 52),\n"));
+  ASSERT_EQ(sites.size(), 3u);
+  EXPECT_EQ(sites[0].name, "site 1");
+  EXPECT_EQ(sites[2].name, "site 3");
+}
+
+TEST(CandidateSites, APointThatCannotBeReadIsNotLeftOut) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT(test::errorOf([&] {
+                readCandidates(folder.write("a.csv", "WKT,name\n\"POINT (5 52)\",a\n\"POINT(\",b\n"));
+              }),
+              HasSubstr("a.csv: the WKT of row 2 after the header is not a geometry: 'POINT('"));
+  EXPECT_THAT(test::errorOf([&] {
+                readCandidates(folder.write(
+                    "a.geojson", R"({"type": "Feature", "properties": {}, "geometry": {"type": "Point",
+"coordinates": ["10.02", 46]}})"));
+              }),
+              HasSubstr("Invalid 'x' coordinate"));
 }
 
 TEST(CandidateSites, AreReadFromFormatsThatNameNoOtherFile) {

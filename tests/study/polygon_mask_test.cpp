@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <string>
 
 #include "emscape/study/area.h"
+#include "tests/study/converted_vectors.h"
 #include "tests/support/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -102,6 +104,60 @@ TEST_F(PolygonMask, ReadingLeavesNoFileBesideTheUsersFile) {
   EXPECT_EQ(pixelsWithin(gml, grid_),
             pixelsWithin(geojson("[[[4.95, 51.95], [5.05, 51.95], [5, 52.05]]]"), grid_));
   EXPECT_THAT(folder_.files(), testing::ElementsAre("p.gml", "p1.geojson"));
+}
+
+TEST_F(PolygonMask, EdgesAlongAPoleMayBeLong) {
+  EXPECT_EQ(
+      count(pixelsWithin(geojson("[[[-180, -90], [180, -90], [180, 90], [-180, 90], [-180, -90]]]"), grid_)),
+      inArea(grid_));
+  const MapGrid south = makeMapGrid(parseArea("bbox:100,-80.1,100.2,-80"), 500, "utm");
+  const auto antarctica = pixelsWithin(
+      geojson("[[[180, -70], [180, -90], [-180, -90], [-180, -70], [-60, -70], [60, -70], [180, -70]]]"),
+      south);
+  EXPECT_EQ(count(antarctica), inArea(south));
+  EXPECT_THAT(problemOf(geojson("[[[-180, -89], [180, -89], [180, 90], [-180, 90], [-180, -89]]]"), grid_),
+              HasSubstr("from longitude -180 to 180 may lead either way around the earth"));
+}
+
+TEST_F(PolygonMask, APolygonThatCannotBeReadIsNotLeftOut) {
+  const std::string good = R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
+"coordinates": [[[4.95, 51.95], [5.05, 51.95], [5, 52.05], [4.95, 51.95]]]}})";
+  std::string bad = good;
+  bad.replace(bad.find("4.95"), 4, "\"4.95\"");
+  for (const std::string& text :
+       {R"({"type": "FeatureCollection", "features": [)" + good + ", " + bad + "]}", bad}) {
+    EXPECT_THAT(
+        problemOf(folder_.write("bad.geojson", text), grid_),
+        testing::AllOf(HasSubstr("bad.geojson: cannot be read completely"), HasSubstr("Invalid 'x'")));
+  }
+  EXPECT_THAT(
+      problemOf(folder_.write("bad.csv",
+                              "WKT,name\n\"POLYGON ((4.95 51.95, 5.05 51.95, 5 52.05, 4.95 "
+                              "51.95))\",a\n\"POLYGON ((4.95 51.95, 5\",b\n"),
+                grid_),
+      HasSubstr("bad.csv: the WKT of row 2 after the header is not a geometry: 'POLYGON ((4.95 51.95, 5'"));
+  EXPECT_EQ(count(pixelsWithin(folder_.write("empty.csv",
+                                             "WKT,name\n\"POLYGON ((4.95 51.95, 5.05 51.95, 5 52.05, "
+                                             "4.95 51.95))\",a\n\"\",b\n"),
+                               grid_)),
+            count(pixelsWithin(geojson("[[[4.95, 51.95], [5.05, 51.95], [5, 52.05]]]"), grid_)));
+}
+
+TEST_F(PolygonMask, AWholeFileIsReadAndACutOneRefusedInEachFormat) {
+  const std::string source = geojson("[[[4.95, 51.95], [5.05, 51.95], [5, 52.05], [4.95, 51.95]]]");
+  const auto expected = pixelsWithin(source, grid_);
+  for (const auto& [driver, ending] : {std::pair{"ESRI Shapefile", "shp"},
+                                       {"FlatGeobuf", "fgb"},
+                                       {"GPKG", "gpkg"},
+                                       {"GeoJSON", "geojson"},
+                                       {"KML", "kml"},
+                                       {"GML", "gml"}}) {
+    const std::string file = folder_ / ("converted." + std::string(ending));
+    test::convertVectors(source, driver, file);
+    EXPECT_EQ(pixelsWithin(file, grid_), expected) << driver;
+    std::filesystem::resize_file(file, std::filesystem::file_size(file) - 60);
+    EXPECT_NE(problemOf(file, grid_), "") << driver;
+  }
 }
 
 TEST_F(PolygonMask, LongitudesMayPass180) {

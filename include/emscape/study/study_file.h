@@ -51,6 +51,9 @@ struct StudySpec {
   std::vector<StudyMeasure> measures;
   VariantSet variants;
   std::optional<SiteSearch> sites;
+  /// Files that determine the results, besides those of `base`: polygons and candidates with the files beside
+  /// them that GDAL reads, such as a shapefile's .prj, and files that the variants' scenarios name.
+  std::vector<std::string> files;
   /// FNV-1a (64 bits, hex) of the study, the scenario with its edits and all files of both.
   std::string hash;
 };

@@ -1,0 +1,44 @@
+/// Files of points or polygons that a study names.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/gdal.h"
+#include "scenario/terrain/gdal_messages.h"
+
+namespace emscape::study {
+
+/// A file as of openVectors(). What GDAL cannot read is an error, never left out. For one thread and scope,
+/// as GdalMessages.
+class VectorFile {
+ public:
+  /// @throws Error (bad_input) that names the file and GDAL's reason
+  explicit VectorFile(const std::string& file);
+
+  /// Its own name and those of the files beside it that GDAL reads, such as a shapefile's .dbf and .prj; each
+  /// exists. In ascending order.
+  std::vector<std::string> files() const;
+
+  std::vector<OGRLayerH> layers() const;
+
+  /// Calls visit(feature) for each feature of a layer. GDAL's failures in these calls are not its own.
+  /// @throws Error (bad_input) that names the file and GDAL's reason; also for a row of a CSV file whose WKT
+  /// is not a geometry
+  template <class Visit>
+  void eachFeature(OGRLayerH layer, const Visit& visit) const {
+    OGR_L_ResetReading(layer);
+    while (const gdal::Feature feature = next(layer)) visit(feature.get());
+  }
+
+ private:
+  /// Null at the end.
+  gdal::Feature next(OGRLayerH layer) const;
+  void requireGeometry(OGRLayerH layer, OGRFeatureH feature) const;
+
+  const std::string file_;
+  const scenario::GdalMessages messages_;
+  const gdal::Dataset dataset_;
+};
+
+}  // namespace emscape::study
