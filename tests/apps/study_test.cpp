@@ -322,5 +322,38 @@ TEST(Study, RefusesWhatItCannotDo) {
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
+TEST(Study, DoesNotReplaceFilesOfTheStudy) {
+  const TemporaryFolder folder;
+  const std::string sites = "WKT,name\n\"POINT (-84.24 36.27)\",a\n\"POINT (-84.2 36.3)\",b\n";
+  for (const std::string name : {"results.csv", "sites.csv"}) folder.write(name, sites);
+  const auto studyOf = [&](const std::string& candidates) {
+    return folder.write(
+        "s.yaml", "schema_version: 1\nscenario: " + shippedScenario("jamming.yaml") +
+                      "\ntimes: 40\ncell_m: 1000\nsites: {platform: ridge site, candidates: " + candidates +
+                      "}\nmeasures: [{name: covered, height: \"agl:300\"}]\n");
+  };
+  const auto refused = [&](const Arguments& arguments) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 2) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(refused({"study", studyOf("results.csv"), "-o", folder.path()}),
+              HasSubstr("results.csv is a file that the study names"));
+  const std::string file = studyOf("sites.csv");
+  for (const std::string& script : {folder / "sites.csv", folder / "out/results.csv"}) {
+    EXPECT_THAT(refused({"study", file, "-o", folder / "out", "--slurm", script}),
+                AllOf(HasSubstr("--slurm: "), HasSubstr("is ")));
+  }
+  folder.write("out/report.html", "<html>another program's</html>");
+  EXPECT_THAT(refused({"study", file, "-o", folder / "out"}), HasSubstr("is no report of emscape"));
+  EXPECT_EQ(readFile(folder / "results.csv"), sites);
+  EXPECT_EQ(readFile(folder / "sites.csv"), sites);
+  EXPECT_EQ(readFile(folder / "out/report.html"), "<html>another program's</html>");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/manifest.json"));
+  std::filesystem::remove(folder / "out/report.html");
+  compute({"study", file, "-o", folder / "out"});
+  compute({"study", file, "-o", folder / "out", "--merge"});
+}
+
 }  // namespace
 }  // namespace emscape::test

@@ -144,6 +144,24 @@ int work(const LoadedStudy& loaded, study::StudyFolder& folder, const GlobalOpti
   }
 }
 
+/// Checks that neither the results nor the scripts replace a file of the study, or a report of another
+/// program.
+void checkStudyOutputs(const StudyCommand& command, const study::StudySpec& spec) {
+  std::vector<std::string> results;
+  for (const char* name : {"manifest.json", "results.csv", "results.nc", "report.html"}) {
+    results.push_back((std::filesystem::path(command.folder) / name).string());
+  }
+  std::vector<NamedFile> outputs = outputsOf("--output", results);
+  if (!command.slurm.script.empty()) {
+    outputs.push_back({"--slurm", command.slurm.script});
+    outputs.push_back({"--slurm", mergeScriptOf(command.slurm)});
+  }
+  std::vector<NamedFile> inputs{{"the study", command.study}};
+  for (const std::string& file : spec.files) inputs.push_back({"a file that the study names", file});
+  checkOutputs(outputs, inputs, {spec.base});
+  checkReports(command.folder, {"report.html"});
+}
+
 /// The files that --keep names; empty if it was not given.
 std::optional<study::KeptFiles> keptFiles(const StudyCommand& command) {
   if (command.kept.empty()) return std::nullopt;
@@ -176,10 +194,7 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
         command.slurm.chunks > 0 ? command.slurm.chunks : study::usualParts(loaded.spec.variants.count());
     return showPlan(loaded, parts, command.jobs, watch.lap_ms() / 1000, global);
   }
-  if (!command.slurm.script.empty()) {
-    checkOutputs(outputsOf("--slurm", {command.slurm.script, mergeScriptOf(command.slurm)}),
-                 {{"the study", command.study}}, {loaded.spec.base});
-  }
+  checkStudyOutputs(command, loaded.spec);
   study::StudyFolder folder(command.folder, loaded.spec, loaded.plan, kVersion);
   const std::optional<int> planned = folder.partsOfManifest();
   const std::size_t variants = loaded.spec.variants.count();
