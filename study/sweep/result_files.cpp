@@ -38,14 +38,15 @@ class NetcdfWriter {
     fail_ = !setText(root_, name.c_str(), text);
   }
 
-  /// @return valid until the file is finished
+  /// No array but its coordinate gets its name. @return valid until the file is finished
   GDALDimensionH dimension(const std::string& name, std::size_t size) {
     if (fail_) return nullptr;
-    dimensions_.push_back(addDimension(root_, unique(name, dimension_names_), "", size));
+    dimensions_.push_back(addDimension(root_, unique(name), "", size));
     fail_ = dimensions_.back() == nullptr;
     return dimensions_.back().get();
   }
 
+  /// @param name  empty: an array of one dimension that has the dimension's name, which makes it a coordinate
   void numbers(const std::string& name, const ArrayDimensions& dimensions, const std::vector<double>& values,
                const std::string& long_name, const std::string& unit) {
     array(name, dimensions, numberType(GDT_Float64), values.data(), long_name, unit);
@@ -63,22 +64,22 @@ class NetcdfWriter {
     return is_letter || (!is_first && ((c >= '0' && c <= '9') || c == '_'));
   }
 
-  /// A unique name of letters, digits and underscores, as CF requires; a coordinate has the name of its
-  /// dimension.
-  static std::string unique(const std::string& name, std::set<std::string>& before) {
+  /// A unique name of letters, digits and underscores, as CF requires.
+  std::string unique(const std::string& name) {
     std::string own = name;
     for (char& c : own) {
       if (!isPlain(c, false)) c = '_';
     }
     if (own.empty() || !isPlain(own[0], true)) own = "v_" + own;
-    while (!before.insert(own).second) own += "_";
+    while (!names_.insert(own).second) own += "_";
     return own;
   }
 
   void array(const std::string& name, const ArrayDimensions& dimensions, const gdal::ValueType& type,
              const void* values, const std::string& long_name, const std::string& unit) {
     if (fail_) return;
-    const gdal::Array made = addArray(root_, unique(name, names_), dimensions, type);
+    const std::string own = name.empty() ? GDALDimensionGetName(dimensions.front()) : unique(name);
+    const gdal::Array made = addArray(root_, own, dimensions, type);
     fail_ = made == nullptr;
     if (fail_) return;
     const std::vector<GUInt64> starts(dimensions.size(), 0);
@@ -96,7 +97,7 @@ class NetcdfWriter {
   gdal::Dataset dataset_;
   gdal::Group root_;
   std::vector<gdal::Dimension> dimensions_;
-  std::set<std::string> names_, dimension_names_;
+  std::set<std::string> names_;  ///< of dimensions and arrays
   bool fail_ = false;
 };
 
@@ -128,15 +129,16 @@ std::string unitOfPath(const std::string& path) {
 }
 
 /// A parameter's values, as numbers if all given values are numbers.
-void writeParameter(NetcdfWriter& writer, const std::string& path, const ArrayDimensions& dimensions,
-                    const std::vector<std::string>& values) {
+/// @param name  of the array; see NetcdfWriter
+void writeParameter(NetcdfWriter& writer, const std::string& name, const std::string& path,
+                    const ArrayDimensions& dimensions, const std::vector<std::string>& values) {
   std::vector<double> numbers;
   for (const std::string& value : values) {
     const std::optional<double> number = document::numberOf(value);
-    if (!number && !value.empty()) return writer.texts(path, dimensions, values, path);
+    if (!number && !value.empty()) return writer.texts(name, dimensions, values, path);
     numbers.push_back(number.value_or(NAN));
   }
-  writer.numbers(path, dimensions, numbers, path, unitOfPath(path));
+  writer.numbers(name, dimensions, numbers, path, unitOfPath(path));
 }
 
 }  // namespace
@@ -193,7 +195,7 @@ void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& stud
   if (is_grid) {
     for (const VariantFactor& factor : variants.factors()) {
       dimensions.push_back(writer.dimension(factor.paths.front(), factor.count));
-      writeParameter(writer, factor.paths.front(), {dimensions.back()}, factor.values);
+      writeParameter(writer, "", factor.paths.front(), {dimensions.back()}, factor.values);
     }
   } else {
     dimensions.push_back(writer.dimension("variant", variants.count()));
@@ -205,7 +207,7 @@ void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& stud
     for (std::size_t path = 0; path < variants.paths().size(); ++path) {
       std::vector<std::string> values;
       for (std::size_t v = 0; v < variants.count(); ++v) values.push_back(variants.value(v, path));
-      writeParameter(writer, variants.paths()[path], dimensions, values);
+      writeParameter(writer, variants.paths()[path], variants.paths()[path], dimensions, values);
     }
   }
   for (std::size_t m = 0; m < study.measures.size(); ++m) {

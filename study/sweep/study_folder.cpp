@@ -75,7 +75,11 @@ std::optional<StudyFolder::Manifest> StudyFolder::readManifest() const {
   const fs::path file = folder_ / "manifest.json";
   if (!fs::exists(file)) return std::nullopt;
   return readRecord(file, [&](const Json& json) {
-    const std::string hash = json.value("hash", "");
+    if (!json.is_object() || !json.contains("hash") || !json["hash"].is_string()) {
+      throw Error(ErrorCode::bad_input, {file.string(), 0, 0},
+                  "is no manifest of a study of emscape; choose another folder");
+    }
+    const std::string hash = json["hash"];
     if (hash != study_.hash) failForeign(file, hash, study_.hash);
     const Manifest manifest{partsOf(json), keptOf(json)};
     if (manifest.parts < 1) throw Error(ErrorCode::bad_input, "has no number of parts");

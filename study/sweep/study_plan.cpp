@@ -109,17 +109,19 @@ StudyPlan planStudy(const StudySpec& study, const scenario::TerrainPtr& terrain)
     column = path > 0 && variants.factorOf(path) == variants.factorOf(path - 1) ? column + 1 : 0;
     const VariantFactor& factor = variants.factors()[variants.factorOf(path)];
     std::map<std::string, std::uint32_t> known;
+    std::vector<const std::string*> set_values;  // different ones
     ranks.emplace_back();
     for (std::size_t setting = 0; setting < factor.count; ++setting) {
       const std::string& value = factor.value(setting, column);
-      ranks.back().push_back(known.emplace(value, static_cast<std::uint32_t>(known.size())).first->second);
+      const auto [rank, is_new] = known.emplace(value, static_cast<std::uint32_t>(known.size()));
+      ranks.back().push_back(rank->second);
+      if (is_new && !value.empty()) set_values.push_back(&value);
     }
     ChangeClass strongest = ChangeClass::product;
-    std::set<std::string> tried;
-    for (const std::size_t setting : {std::size_t{0}, factor.count / 2, factor.count - 1}) {
-      const std::string& value = factor.value(setting, column);
-      if (value.empty() || !tried.insert(value).second) continue;
-      strongest = std::min(strongest, probe.classOf({variants.paths()[path], value}));
+    const std::size_t values = set_values.size();
+    for (const std::size_t tried : std::set<std::size_t>{0, values / 2, values - 1}) {
+      if (tried >= values) continue;
+      strongest = std::min(strongest, probe.classOf({variants.paths()[path], *set_values[tried]}));
     }
     plan.classes.push_back(strongest);
   }

@@ -95,16 +95,17 @@ struct StudyRunner::Impl {
     if (study.times_s.size() > 1) together = std::max<std::size_t>(1, kMaxKeptBytes / kept_bytes);
   }
 
-  /// The terrain of a scenario, which depends only on the scenario.
-  const scenario::TerrainPtr& terrainFor(const ScenarioPtr& scenario) {
-    const bool is_same =
-        scenario->terrain == terrain_of->terrain &&
-        (!scenario->terrain || terrainBoxOf(*scenario, study.area) == terrainBoxOf(*terrain_of, study.area));
-    if (!is_same) {
-      terrain = loadTerrain(*scenario, study.area);
-      terrain_of = scenario;
-    }
-    return terrain;
+  /// True if a scenario has the files and the box of the terrain that is loaded.
+  bool hasTerrainOf(const scenario::Scenario& scenario) const {
+    return scenario.terrain == terrain_of->terrain &&
+           (!scenario.terrain || terrainBoxOf(scenario, study.area) == terrainBoxOf(*terrain_of, study.area));
+  }
+
+  /// Loads the terrain of a scenario, which depends only on the scenario.
+  void useTerrainOf(const ScenarioPtr& scenario) {
+    if (hasTerrainOf(*scenario)) return;
+    terrain = loadTerrain(*scenario, study.area);
+    terrain_of = scenario;
   }
 
   std::string nameOf(std::size_t variant) const {
@@ -124,7 +125,7 @@ struct StudyRunner::Impl {
     throw Error(ErrorCode::bad_input, {study.file, 0, 0}, nameOf(variant) + " is not a scenario");
   }
 
-  /// Variants of one geometry and terrain.
+  /// Variants of the terrain that is loaded. Those of one geometry are computed faster.
   void computeTogether(const std::vector<std::size_t>& variants, const std::vector<ScenarioPtr>& scenarios,
                        const std::function<void(VariantResult)>& take) {
     std::vector<VariantResult> results(variants.size());
@@ -198,6 +199,7 @@ void StudyRunner::run(const std::vector<std::size_t>& variants,
                       const std::function<void(VariantResult)>& take, const ProgressSink& progress) {
   std::vector<std::size_t> pending;
   std::vector<ScenarioPtr> scenarios;
+  impl_->warnings.clear();
   const auto compute = [&] {
     if (pending.empty()) return;
     impl_->computeTogether(pending, scenarios, take);
@@ -209,9 +211,10 @@ void StudyRunner::run(const std::vector<std::size_t>& variants,
     ScenarioPtr scenario = impl_->scenarioOf(variants[i]);
     const bool is_alike =
         !pending.empty() && pending.size() < impl_->together &&
-        changeBetween(impl_->study, impl_->plan, pending.back(), variants[i]) != ChangeClass::geometry;
+        changeBetween(impl_->study, impl_->plan, pending.back(), variants[i]) != ChangeClass::geometry &&
+        impl_->hasTerrainOf(*scenario);
     if (!is_alike) compute();
-    if (pending.empty()) impl_->terrainFor(scenario);
+    if (pending.empty()) impl_->useTerrainOf(scenario);
     pending.push_back(variants[i]);
     scenarios.push_back(std::move(scenario));
   }

@@ -8,6 +8,7 @@
 #include <set>
 #include <vector>
 
+#include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/snapshot.h"
 #include "emscape/study/geotiff.h"
@@ -74,6 +75,13 @@ struct VariantFiles::State {
   std::optional<emfield::FieldSolver> solver;
   std::shared_ptr<const scenario::Scenario> terrain_of;  ///< for which `terrain` was loaded
   scenario::TerrainPtr terrain;
+  std::set<std::size_t> begun;  ///< variants whose folder has no temporaries of ended processes
+
+  fs::path folderFor(std::size_t variant) {
+    fs::path own = madeFolder(folder / folderOfVariant(study, variant));
+    if (begun.insert(variant).second) removeStaleTemporaries(own);
+    return own;
+  }
 
   const scenario::TerrainPtr& terrainFor(const std::shared_ptr<const scenario::Scenario>& scenario) {
     const bool is_same = terrain_of != nullptr && scenario->terrain == terrain_of->terrain &&
@@ -88,7 +96,7 @@ struct VariantFiles::State {
 
 VariantFiles::VariantFiles(const StudySpec& study, fs::path folder, KeptFiles kept,
                            const emfield::FieldOptions& options)
-    : state_(new State{study, std::move(folder), kept, options, levelsOf(study).size() > 1, {}, {}, {}}) {
+    : state_(new State{study, std::move(folder), kept, options, levelsOf(study).size() > 1, {}, {}, {}, {}}) {
   std::set<std::string> quantities;
   for (const auto& [quantity, threshold] : levelsOf(study)) quantities.insert(scenario::info(quantity).name);
   state_->options.quantities.assign(quantities.begin(), quantities.end());
@@ -100,15 +108,13 @@ VariantFiles::~VariantFiles() = default;
 
 void VariantFiles::addMap(std::size_t variant, const scenario::Scenario& scenario, const MapGrid& grid,
                           const CoverageRequest& request, const CoverageMap& map) {
-  const State& state = *state_;
+  State& state = *state_;
   if (state.kept != KeptFiles::maps) return;
   const std::string level =
       state.has_levels ? fmt::format("{}_{}_", scenario::info(request.quantity).name, request.threshold) : "";
   auto metadata = metadataOf(scenario, request.quantity, request.threshold, map);
   metadata.emplace_back("EMSCAPE_VARIANT", fmt::format("{}", variant));
-  writeGeoTiff(
-      madeFolder(state.folder / folderOfVariant(state.study, variant)) / (level + fileNameOf(map) + ".tif"),
-      grid, map, metadata);
+  writeGeoTiff(state.folderFor(variant) / (level + fileNameOf(map) + ".tif"), grid, map, metadata);
 }
 
 void VariantFiles::addVolumes(std::size_t variant,
@@ -119,7 +125,7 @@ void VariantFiles::addVolumes(std::size_t variant,
   own->output.radar_look = scenario::RadarLook::target;
   if (own->output.combine != scenario::CombineMode::max) own->output.combine = scenario::CombineMode::sum;
   const scenario::TerrainPtr& terrain = state.terrainFor(scenario);
-  const fs::path folder = madeFolder(state.folder / folderOfVariant(state.study, variant));
+  const fs::path folder = state.folderFor(variant);
   for (const double time_s : state.study.times_s) {
     if (!state.solver) state.solver.emplace(own, terrain, state.options);
     state.solver->update(scenario::snapshotAt(own, terrain.get(), time_s), terrain);

@@ -2,15 +2,20 @@
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <set>
 
+#include "base/whole_file.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/study/study_folder.h"
 #include "emscape/study/study_report.h"
 #include "emscape/study/study_runner.h"
+#include "tests/study/converted_vectors.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
@@ -32,9 +37,9 @@ measures:
 class Study {
  public:
   explicit Study(const std::string& text, const std::string& measures = kMeasures,
-                 const std::string& scenario = "jacksboro.yaml")
-      : file_(folder_.write("study.yaml", "schema_version: 1\nscenario: " + test::shippedScenario(scenario) +
-                                              "\ncell_m: 1000\n" + text + measures)),
+                 const std::string& scenario = test::shippedScenario("jacksboro.yaml"))
+      : file_(folder_.write(
+            "study.yaml", "schema_version: 1\nscenario: " + scenario + "\ncell_m: 1000\n" + text + measures)),
         spec_(loadStudy(file_, {}, "test")),
         terrain_(loadTerrain(*spec_.base, spec_.area)),
         plan_(planStudy(spec_, terrain_)) {}
@@ -151,12 +156,130 @@ measures:
   EXPECT_NEAR(in_order[5][0], covered_km2, 1e-9 * covered_km2);
 }
 
+/// Elevations of 0.4 by 0.4 degrees around 46 N, 10 E: a plain at 100 m with a ridge 2 km north of its
+/// middle.
+std::string elevations(const test::TemporaryFolder& folder, const std::string& name, int ridge_m) {
+  std::string text = "ncols 20\nnrows 20\nxllcorner 9.8\nyllcorner 45.8\ncellsize 0.02\n";
+  for (int row = 0; row < 20; ++row) {
+    for (int column = 0; column < 20; ++column) text += row == 8 ? std::to_string(ridge_m) + " " : "100 ";
+    text += "\n";
+  }
+  folder.write(name + ".prj", R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],)"
+                              R"(PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]])");
+  return folder.write(name + ".asc", text);
+}
+
+TEST(Study, VariantsOnOtherTerrainAreComputedOnTheirOwn) {
+  const test::TemporaryFolder folder;
+  const std::string flat = elevations(folder, "flat", 100), ridge = elevations(folder, "ridge", 500);
+  const std::string scenario = folder.write("scenario.yaml", R"(schema_version: 1
+name: plain
+duration_s: 10
+step_s: 1
+region:
+  origin: {latitude_deg: 46, longitude_deg: 10, height_msl_m: 0}
+  size_m: [10000, 10000, 2000]
+  dims: [10, 10, 10]
+terrain: {files: [flat.asc]}
+platforms:
+  - {name: p, position: {latitude_deg: 46, longitude_deg: 10, height_agl_m: 20}}
+emitters:
+  - name: radar
+    platform: p
+    kind: radar
+    frequency_hz: 3.0e9
+    power_w: 2000
+    antenna: {pattern: isotropic, gain_dbi: 20}
+    propagation: horizon
+    receiver: {noise_figure_db: 4, bandwidth_hz: 1.0e6}
+)");
+  const Study study(R"(
+times: "0:1:1"
+variants:
+  - {name: a}
+  - {name: ridge, set: {terrain.files: [ridge.asc]}}
+  - {name: far, set: {platforms.p.position.latitude_deg: 45.85}}
+  - {name: less, set: {emitters.radar.losses_db: 1}}
+  - {name: least, set: {emitters.radar.losses_db: 2}}
+)",
+                    "\nmeasures: [{name: covered, height: \"agl:20\"}]\n", scenario);
+  EXPECT_THAT(study.plan().classes,
+              ElementsAre(ChangeClass::geometry, ChangeClass::geometry, ChangeClass::power));
+  std::vector<std::vector<double>> alone;
+  for (std::size_t v = 0; v < 5; ++v) {
+    const auto edited = scenario::editScenario(*study.spec().base, study.spec().variants.edits(v)).scenario;
+    double covered_km2 = 0;
+    computeCoverage(edited, loadTerrain(*edited, study.spec().area), mapGridOf(study.spec()),
+                    {{{emfield::HeightReference::ground, 20}},
+                     {Product::covered},
+                     scenario::Quantity::detection_probability,
+                     0.5,
+                     study.spec().times_s},
+                    {}, [&](const CoverageMap& map) { covered_km2 += map.class_area_m2 / 1e6 / 2; });
+    alone.push_back({covered_km2});
+  }
+  EXPECT_LT(alone[1][0], 0.95 * alone[0][0]);
+  EXPECT_EQ(study.run(study.order()), alone);
+  for (std::size_t v = 0; v < 5; ++v) EXPECT_EQ(study.run({v})[v], alone[v]) << v;
+
+  // Whatever the plan expects of the changes.
+  StudyPlan plan = study.plan();
+  plan.classes.assign(plan.classes.size(), ChangeClass::product);
+  std::vector<std::vector<double>> values(5);
+  StudyRunner(study.spec(), plan, study.terrain(), {}).run({0, 1, 2, 3, 4}, [&](const VariantResult& result) {
+    values[result.variant] = result.values;
+  });
+  EXPECT_EQ(values, alone);
+}
+
+TEST(Study, WarningsAreThoseOfTheLastRun) {
+  const Study study(R"(
+variants:
+  - {name: a}
+  - {name: silent, set: {emitters.search radar.active_s: [[50, 60]], emitters.tracking radar.active_s: [[50, 60]]}}
+)");
+  StudyRunner runner(study.spec(), study.plan(), study.terrain(), {});
+  const auto warningsOf = [&](std::size_t variant) {
+    runner.run({variant}, [](const VariantResult&) {});
+    return runner.warnings();
+  };
+  const std::set<std::string> without = warningsOf(0);
+  EXPECT_GT(warningsOf(1).size(), without.size());
+  EXPECT_EQ(warningsOf(0), without);
+}
+
+const char* const kWest =
+    R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": {"type":
+"Polygon", "coordinates": [[[-85, 36], [-84.246, 36], [-84.246, 37], [-85, 37], [-85, 36]]]}}]})";
+
+TEST(Study, TheHashIsOfAllFilesThatDetermineTheResults) {
+  const test::TemporaryFolder folder;
+  const std::string shapes = folder / "west.shp";
+  test::convertVectors(folder.write("west.geojson", kWest), "ESRI Shapefile", shapes);
+  const std::string track = folder.write("track.csv",
+                                         "t_s,latitude_deg,longitude_deg,height_msl_m\n0,36.3,-84.3,1500\n"
+                                         "100,36.3,-84.2,1500\n");
+  const std::string text =
+      "variants: [{name: a}, {name: other, set: {platforms.helicopter.track.file: " + track +
+      ", emitters.jammer.power_w: 1}}]\n";
+  const std::string measures = "measures: [{name: west, height: \"agl:300\", over: " + shapes + "}]\n";
+  const Study study(text, measures);
+  EXPECT_THAT(study.spec().files, ::testing::IsSupersetOf({shapes, folder / "west.dbf", folder / "west.prj",
+                                                           folder / "west.shx", track}));
+  EXPECT_EQ(study.spec().files.size(), 5u);
+  const std::string& hash = study.spec().hash;
+  const auto hashOf = [&] { return Study(text, measures).spec().hash; };
+  std::set<std::string> hashes{hashOf()};
+  test::writeFile(track, test::readFile(track) + "101,36.3,-84.2,1600\n");
+  hashes.insert(hashOf());
+  std::filesystem::remove(folder / "west.prj");
+  hashes.insert(hashOf());
+  EXPECT_EQ(hashes.size(), 3u) << hash;
+}
+
 TEST(Study, MeasuresOverPolygonsCountTheirPixelsAlone) {
   const test::TemporaryFolder folder;
-  const std::string west = folder.write(
-      "west.geojson",
-      R"({"type": "FeatureCollection", "features": [{"type": "Feature", "properties": {}, "geometry": {"type":
-      "Polygon", "coordinates": [[[-85, 36], [-84.246, 36], [-84.246, 37], [-85, 37], [-85, 36]]]}}]})");
+  const std::string west = folder.write("west.geojson", kWest);
   const Study study("variants: [{name: as it is}]", R"(
 measures:
   - {name: all, height: "agl:300"}
@@ -213,6 +336,31 @@ sweep:
   }
 }
 
+TEST(Study, NoMeasureIsTakenForACoordinate) {
+  const Study study(
+      "variants: [{name: a}, {name: b}]",
+      "\nmeasures: [{name: variant, height: \"agl:300\"}, {name: name, height: \"agl:600\"}]\n");
+  const test::TemporaryFolder folder;
+  StudyFolder files(folder.path(), study.spec(), study.plan(), "test");
+  files.begin(1);
+  computePart(study, files, 1);
+  files.writeResults(files.read());
+  EXPECT_THAT(arraysOf(folder.path() / "results.nc"),
+              ::testing::UnorderedElementsAre("name", "variant_", "name_"));
+}
+
+TEST(Study, AManifestOfAnotherProgramIsRefused) {
+  const Study study("sweep: {emitters.jammer.power_w: {values: [1, 2]}}");
+  for (const char* text : {"{\"name\": \"a page\"}", "[1]", "{\"hash\": 3}"}) {
+    const test::TemporaryFolder folder;
+    folder.write("manifest.json", text);
+    EXPECT_THAT(
+        test::errorOf([&] { StudyFolder(folder.path(), study.spec(), study.plan(), "test").begin(1); },
+                      ErrorCode::bad_input),
+        HasSubstr("manifest.json: is no manifest of a study of emscape; choose another folder"));
+  }
+}
+
 TEST(Study, APartOfAnotherStudyIsRefused) {
   const Study first("sweep: {emitters.jammer.power_w: {values: [1, 2]}}"),
       second("sweep: {emitters.jammer.power_w: {values: [1, 3]}}");
@@ -237,6 +385,12 @@ variants: [{name: "../as it is/ä"}, {name: no jammer, set: {emitters.jammer.pow
   StudyFolder files(folder.path(), study.spec(), study.plan(), "test");
   files.begin(1, KeptFiles::maps);
   VariantFiles kept(study.spec(), folder.path(), files.kept(), {});
+  const pid_t ended = fork();
+  if (ended == 0) _exit(0);
+  ASSERT_EQ(waitpid(ended, nullptr, 0), ended);
+  std::string left = temporaryFor("covered.tif");
+  left.replace(left.find(std::to_string(getpid())), std::to_string(getpid()).size(), std::to_string(ended));
+  folder.write("variants/1_no_jammer/" + left, "unfinished");
   std::size_t written = 0;
   StudyRunner(study.spec(), study.plan(), study.terrain(), {}, &kept)
       .run({0, 1}, [&](const VariantResult& result) {
@@ -245,6 +399,8 @@ variants: [{name: "../as it is/ä"}, {name: no jammer, set: {emitters.jammer.pow
         written += test::readFile(own / "value_msl900m_t0s.tif").size();
       });
   EXPECT_GT(written, 1000u);
+  EXPECT_THAT(folder.files(), ::testing::Not(::testing::Contains(HasSubstr(left))))
+      << "a process that ended before left it";
   EXPECT_THAT(test::errorOf([&] {
                 StudyFolder(folder.path(), study.spec(), study.plan(), "test").begin(1, KeptFiles::volumes);
               }),

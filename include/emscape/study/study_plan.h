@@ -30,7 +30,8 @@ struct StudyPlan {
 };
 
 /// Plans a study. The class of a parameter is determined by what FieldSolver::update() recomputes at the
-/// first, middle and last time, if only this parameter differs from the scenario.
+/// first, middle and last time, if only this parameter differs from the scenario: with the first, middle and
+/// last of its different values.
 /// @param terrain  as of loadTerrain(); null: none
 StudyPlan planStudy(const StudySpec& study, const scenario::TerrainPtr& terrain);
 

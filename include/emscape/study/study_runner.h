@@ -42,7 +42,7 @@ class StudyRunner {
   void run(const std::vector<std::size_t>& variants, const std::function<void(VariantResult)>& take,
            const ProgressSink& progress = {});
 
-  /// Warnings so far, each once, without counts.
+  /// Warnings of the variants of the last run() so far, each once, without counts.
   const std::set<std::string>& warnings() const;
 
  private:

@@ -22,7 +22,7 @@ const char* toString(KeptFiles kept);
 std::filesystem::path folderOfVariant(const StudySpec& study, std::size_t variant);
 
 /// Writes the files of variants, atomically. Files of a variant that is computed again are replaced by equal
-/// ones. For one thread.
+/// ones; temporaries that an ended process left in its folder are removed. For one thread.
 class VariantFiles {
  public:
   /// @param study    must outlive the object
