@@ -13,6 +13,20 @@ namespace {
 
 constexpr int kHeights = 48;
 constexpr int kRanges = 256;
+/// Range over the sum of both heights to which a ray is steep: at larger ones the reflection changes slowly.
+constexpr double kSteepRatio = 3;
+
+/// The inverse of P528Excess::positionOf (m), by bisection.
+double rangeAt(double position, double horizon_m, double steep_m, double farthest_ratio) {
+  constexpr int kBisections = 45;
+  double nearer_m = 0, farther_m = farthest_ratio * horizon_m;
+  for (int i = 0; i < kBisections; ++i) {
+    const double middle_m = (nearer_m + farther_m) / 2;
+    (P528Excess::positionOf(middle_m, horizon_m, steep_m, farthest_ratio) < position ? nearer_m : farther_m) =
+        middle_m;
+  }
+  return nearer_m;
+}
 
 }  // namespace
 
@@ -41,16 +55,20 @@ P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables) {
   }
   result.farthest_ratio = static_cast<float>(std::max(1.1, extent.farthest_m / curves.front().horizon_m()));
 
-  tables.resize(static_cast<std::size_t>(kHeights) * (kRanges + 1));
-  float* const horizons = tables.data();
-  float* const excess = horizons + kHeights;
+  tables.resize(static_cast<std::size_t>(kHeights) * (kRanges + 2));
+  float* const horizons_m = tables.data();
+  float* const steep_m = horizons_m + kHeights;
+  float* const excess = steep_m + kHeights;
   parallelFor(kHeights, 1, [&](int begin, int end) {
     for (int h = begin; h < end; ++h) {
-      horizons[h] = static_cast<float>(curves[h].horizon_m());
+      const double root = lowest_root + h * step_root;
+      horizons_m[h] = static_cast<float>(curves[h].horizon_m());
+      steep_m[h] = static_cast<float>(kSteepRatio * (allowed(tx_m) + allowed(root * root)));
       for (int r = 0; r < kRanges; ++r) {
-        const double ratio = static_cast<double>(
-            P528Excess::ratioAt(static_cast<float>(r) / (kRanges - 1), result.farthest_ratio));
-        const P528Loss loss = curves[h].at(ratio * curves[h].horizon_m(), emitter.settings.p528.time_percent);
+        const double range_m =
+            rangeAt(static_cast<double>(r) / (kRanges - 1), curves[h].horizon_m(),
+                    static_cast<double>(steep_m[h]), static_cast<double>(result.farthest_ratio));
+        const P528Loss loss = curves[h].at(range_m, emitter.settings.p528.time_percent);
         excess[static_cast<std::size_t>(h) * kRanges + r] =
             static_cast<float>(loss.loss_db - loss.free_space_db);
       }

@@ -12,16 +12,16 @@
 
 namespace emscape::propagation {
 
-/// A table of the loss minus free space and of the horizon's distance. Heights are tabulated by their square
-/// root, in which the horizon's distance is almost linear; ranges by their ratio to that of the horizon, so
-/// that lobes and horizon of neighbouring curves are at the same ratio. The nodes are densest near the
-/// horizon.
+/// A table of the loss minus free space. Heights are tabulated by their square root, in which the horizon's
+/// distance is almost linear; ranges by their ratio to that of the horizon, so that lobes and horizon of
+/// neighbouring curves are at the same ratio, and by the grazing angle, which determines the reflection near
+/// the station's nadir. The nodes are densest near the horizon and near the nadir.
 struct P528Excess {
   static constexpr bool kNeedsTerrain = false;
   static constexpr bool kInParts = false;
 
-  /// Distance (m) of the horizon, height_count; then the excess (dB), height_count x range_count, range
-  /// fastest.
+  /// Distance (m) of the horizon, height_count; range (m) to which rays are steep, height_count; then the
+  /// excess (dB), height_count x range_count, range fastest.
   const float* tables = nullptr;
   int height_count = 0, range_count = 0;
   float lowest_root = 0, heights_per_root = 0;
@@ -44,16 +44,19 @@ struct P528Excess {
     return 0;
   }
 
-  /// Position of a ratio of ranges among the nodes, 0..1: half of them are before the horizon, and they are
-  /// densest on both sides of it.
-  static EMSCAPE_HD float positionOf(float ratio, float farthest_ratio) {
-    if (ratio <= 1) return 0.5f * (1 - std::sqrt(1 - ratio));
-    const float beyond = (ratio - 1) / (farthest_ratio - 1);
-    return 0.5f + 0.5f * std::sqrt(beyond < 1 ? beyond : 1.0f);
-  }
-  static EMSCAPE_HD float ratioAt(float position, float farthest_ratio) {
-    if (position <= 0.5f) return 1 - (1 - 2 * position) * (1 - 2 * position);
-    return 1 + (farthest_ratio - 1) * (2 * position - 1) * (2 * position - 1);
+  /// Position of a range among the nodes, 0..1: half of them are before the horizon, and they are densest on
+  /// both sides of it and within the steep range.
+  template <class Real>
+  static EMSCAPE_HD Real positionOf(Real range_m, Real horizon_m, Real steep_m, Real farthest_ratio) {
+    constexpr Real kSteepPart = Real(0.4);
+    const Real ratio = range_m / horizon_m;
+    if (ratio <= 1) {
+      const Real steep = ratio * (horizon_m + steep_m) / (range_m + steep_m);
+      const Real level = 1 - std::sqrt(1 - ratio);
+      return Real(0.5) * (level + kSteepPart * (steep - level));
+    }
+    const Real beyond = (ratio - 1) / (farthest_ratio - 1);
+    return Real(0.5) + Real(0.5) * std::sqrt(beyond < 1 ? beyond : Real(1));
   }
 
  private:
@@ -63,14 +66,16 @@ struct P528Excess {
     row = row < 0 ? 0.0f : row > last ? last : row;
     const int lower = static_cast<int>(row) < height_count - 2 ? static_cast<int>(row) : height_count - 2;
     const float upwards = row - static_cast<float>(lower);
-    const float* const horizon_m = tables;
-    const float horizon = horizon_m[lower] + upwards * (horizon_m[lower + 1] - horizon_m[lower]);
+    const auto between = [&](const float* of_heights) {
+      return of_heights[lower] + upwards * (of_heights[lower + 1] - of_heights[lower]);
+    };
     const float position =
-        positionOf(range_m / horizon, farthest_ratio) * static_cast<float>(range_count - 1);
+        positionOf(range_m, between(tables), between(tables + height_count), farthest_ratio) *
+        static_cast<float>(range_count - 1);
     const int before =
         static_cast<int>(position) < range_count - 2 ? static_cast<int>(position) : range_count - 2;
     const float outwards = position - static_cast<float>(before);
-    const float* const low = tables + height_count + lower * range_count + before;
+    const float* const low = tables + 2 * height_count + lower * range_count + before;
     const float* const high = low + range_count;
     const float on_low = low[0] + outwards * (low[1] - low[0]);
     const float on_high = high[0] + outwards * (high[1] - high[0]);

@@ -177,21 +177,23 @@ P528Curve::TwoRays P528Curve::raysAt(double grazing_rad) const {
   double radius_km[2];
   double angle_rad[2];
   double above_tangent_km[2];
+  const bool steep = grazing_rad > 1.56;
   for (int end = 0; end < 2; ++end) {
     const double height_km = terminal_[end].height_km - share * terminal_[end].height_difference_km;  // (7-5)
     radius_km[end] = rays.earth_radius_km + height_km;
     angle_rad[end] =
-        std::acos(rays.earth_radius_km * std::cos(grazing_rad) / radius_km[end]) - grazing_rad;  // (7-7)
-    rays.to_reflection_km[end] = radius_km[end] * std::sin(angle_rad[end]);                      // (7-8)
-    above_tangent_km[end] =
-        grazing_rad > 1.56 ? height_km : rays.to_reflection_km[end] * std::tan(grazing_rad);  // (7-9)
+        std::acos(rays.earth_radius_km * std::cos(grazing_rad) / radius_km[end]) - grazing_rad;      // (7-7)
+    rays.to_reflection_km[end] = radius_km[end] * std::sin(angle_rad[end]);                          // (7-8)
+    above_tangent_km[end] = steep ? height_km : rays.to_reflection_km[end] * std::tan(grazing_rad);  // (7-9)
   }
   const double across_km = rays.to_reflection_km[0] + rays.to_reflection_km[1];
   rays.distance_km = std::max(0.0, rays.earth_radius_km * (angle_rad[0] + angle_rad[1]));     // (7-11)
   const double slope_rad = std::atan2(above_tangent_km[1] - above_tangent_km[0], across_km);  // (7-12)
   rays.direct_km =
       std::max(std::fabs(radius_km[0] - radius_km[1]), across_km / std::cos(slope_rad));  // (7-13)
-  rays.reflected_km = across_km / std::cos(grazing_rad);                                  // (7-14)
+  // (7-14); for a vertical ray its quotient is 0 / 0
+  rays.reflected_km = steep ? (above_tangent_km[0] + above_tangent_km[1]) / std::sin(grazing_rad)
+                            : across_km / std::cos(grazing_rad);
   rays.difference_km =
       4 * above_tangent_km[0] * above_tangent_km[1] / (rays.direct_km + rays.reflected_km);  // (7-15)
   rays.elevation_rad = slope_rad - angle_rad[0];                                             // (7-16)

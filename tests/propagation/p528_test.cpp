@@ -44,6 +44,25 @@ TEST(P528, StaysFiniteAtNoDistance) {
   EXPECT_NEAR(curveOf(1e9, 10, 10010).at(0, 50).loss_db, 32.45 + 60 + 20, 0.2);
 }
 
+TEST(P528, HasNoJumpStraightAboveOrBelow) {
+  for (const double frequency_hz : {300e6, 3e9, 15e9}) {
+    for (const double height_m : {2.0, 1000.0, 3125.0, 9000.0}) {
+      const P528Curve curve = curveOf(frequency_hz, 8000, height_m, true);
+      for (const double percent : {1.0, 5.0, 50.0, 95.0, 99.0}) {
+        for (const double distance_m : {0.0, 1e-6, 1e-3, 0.1}) {
+          EXPECT_NEAR(curve.at(distance_m, percent).loss_db, curve.at(5, percent).loss_db, 2e-3)
+              << frequency_hz << " Hz, " << height_m << " m, " << percent << " %, " << distance_m << " m";
+        }
+      }
+    }
+  }
+  // At right angles the ground reflects (15^1/2 - 1) / (15^1/2 + 1) of the field, and the lengths of the rays
+  // are 4.875 and 11.125 km: K = -11.8 dB.
+  const double fading_db = p528Fading_db(20 * std::log10(0.5896 * 4.875 / 11.125), 95);
+  const P528Curve curve = curveOf(3e9, 3125, 8000, true);
+  EXPECT_NEAR(curve.at(0, 95).loss_db - curve.at(0, 50).loss_db, fading_db, 0.05);
+}
+
 TEST(P528, IsFreeSpaceToAnAircraftHighAbove) {
   const P528Loss loss = curveOf(1e9, 20, 10000).at(30e3, 50);
   EXPECT_EQ(loss.mode, P528Mode::line_of_sight);
