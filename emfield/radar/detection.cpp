@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
@@ -211,53 +213,117 @@ double shnidmanSnrDb(const Detector& detector, double probability) {
   return ratioToDb(steady / n) + fluctuation_db;
 }
 
-double albersheimProbability(const Detector& detector, double snr_db) {
-  check(detector);
+namespace {
+
+double probabilityOfLogOdds(double log_odds) {
+  return 1 / (1 + std::exp(-log_odds));
+}
+
+/// The inverse of albersheimSnrDb, as the logarithm of the odds of a detection.
+double albersheimLogOdds(const Detector& detector, double snr_db) {
   const double a = std::log(0.62 / detector.false_alarm_probability);
   const double n = detector.pulses;
   const double z = (snr_db + 5 * std::log10(n)) / (6.2 + 4.54 / std::sqrt(n + 0.44));
-  const double b = (std::pow(10.0, z) - a) / (1.7 + 0.12 * a);
-  return 1 / (1 + std::exp(-b));
+  return (std::pow(10.0, z) - a) / (1.7 + 0.12 * a);
+}
+
+/// Albersheim's formula in its range of probabilities; below, the exact probability of a steady target at a
+/// signal-to-noise ratio that is shifted so that both meet.
+class Albersheim {
+ public:
+  explicit Albersheim(const Detector& detector)
+      : steady_(detector), threshold_(detectionThreshold(detector)) {
+    steady_.swerling = Swerling::steady;
+    // With many false alarms the formula's minimum is above its range.
+    const double minimum_log_odds = albersheimLogOdds(steady_, -std::numeric_limits<double>::infinity());
+    lowest_log_odds_ = std::max(std::log(kLowest / (1 - kLowest)), minimum_log_odds + 0.4);
+    lowest_ = probabilityOfLogOdds(lowest_log_odds_);
+    shift_db_ = emfield::requiredSnrDb(steady_, lowest_) - albersheimSnrDb(steady_, lowest_);
+  }
+
+  double probability(double snr_db) const {
+    const double log_odds = albersheimLogOdds(steady_, snr_db);
+    if (log_odds >= lowest_log_odds_) return probabilityOfLogOdds(log_odds);
+    return detectionProbability(steady_, threshold_, dbToRatio(snr_db + shift_db_));
+  }
+
+  /// The inverse of probability().
+  double requiredSnrDb(double probability) const {
+    return probability < lowest_ ? emfield::requiredSnrDb(steady_, probability) - shift_db_
+                                 : albersheimSnrDb(steady_, probability);
+  }
+
+ private:
+  static constexpr double kLowest = 0.1;
+  Detector steady_;
+  double threshold_;
+  double lowest_log_odds_, lowest_;  ///< of the formula's range
+  double shift_db_;
+};
+
+}  // namespace
+
+double albersheimProbability(const Detector& detector, double snr_db) {
+  return Albersheim(detector).probability(snr_db);
 }
 
 double shnidmanProbability(const Detector& detector, double snr_db) {
-  // In logits, for accuracy at both ends.
-  const auto probabilityOf = [](double logit) { return 1 / (1 + std::exp(-logit)); };
+  // In log-odds, for accuracy at both ends.
   const double pfa = detector.false_alarm_probability;
   double low = std::log(pfa / (1 - pfa)) + 1e-9, high = 30;
   while (high - low > 1e-9) {
     const double middle = (low + high) / 2;
-    (shnidmanSnrDb(detector, probabilityOf(middle)) <= snr_db ? low : high) = middle;
+    (shnidmanSnrDb(detector, probabilityOfLogOdds(middle)) <= snr_db ? low : high) = middle;
   }
-  return probabilityOf(low);
+  return probabilityOfLogOdds(low);
+}
+
+double requiredSnrDb(const Detector& detector, scenario::DetectionMethod method, double probability) {
+  switch (method) {
+    case scenario::DetectionMethod::albersheim:
+      return Albersheim(detector).requiredSnrDb(probability);
+    case scenario::DetectionMethod::shnidman:
+      return shnidmanSnrDb(detector, probability);
+    default:
+      return requiredSnrDb(detector, probability);
+  }
 }
 
 DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method, double loss_db)
     : detector_(detector), method_(method), loss_db_(loss_db) {
   const double threshold = detectionThreshold(detector);
+  std::optional<Albersheim> albersheim;
+  if (method == scenario::DetectionMethod::albersheim) albersheim.emplace(detector);
   const auto probabilityAt = [&](double snr_db) {
     switch (method) {
       case scenario::DetectionMethod::albersheim:
-        return albersheimProbability(detector, snr_db);
+        return albersheim->probability(snr_db);
       case scenario::DetectionMethod::shnidman:
         return shnidmanProbability(detector, snr_db);
       default:
         return detectionProbability(detector, threshold, dbToRatio(snr_db));
     }
   };
-  // Beyond the ends the curve is flat; the error is a fifth of the stated accuracy.
+  // Above the last knot the curve is flat; the error is a fifth of the stated accuracy. The same is the error
+  // of the first step, below which there are only false alarms: looks add up, so that their probability
+  // counts as such.
   constexpr double kTail = 2e-5;
-  const double first = requiredSnrDb(detector, detector.false_alarm_probability + kTail);
+  constexpr double kPrecision = 1e-9;
+  const double pfa = detector.false_alarm_probability;
+  const double low = requiredSnrDb(detector, pfa + kTail);
   const double last = requiredSnrDb(detector, 1 - kTail);
   constexpr double kStep_db = 0.1;
-  const int count = std::max(4, int(std::ceil((last - first) / kStep_db)) + 1);
-  const double step_db = (last - first) / (count - 1);
+  const int upper = std::max(3, int(std::ceil((last - low) / kStep_db)));
+  const double step_db = (last - low) / upper;
+  const double lowest = requiredSnrDb(detector, pfa + std::clamp(pfa, kPrecision, kTail));
+  const int lower = 1 + int(std::ceil((low - lowest) / step_db));
+  const int count = lower + upper + 1;
+  const double first = low - lower * step_db;
   first_snr_db_ = float(first + loss_db);
   steps_per_db_ = float(1 / step_db);
-  std::vector<double> values;
-  for (int i = 0; i < count; ++i) {
-    const double value = probabilityAt(first + i * step_db);
-    values.push_back(i > 0 ? std::max(value, values.back()) : value);
+  std::vector<double> values = {pfa};
+  for (int i = 1; i < count; ++i) {
+    values.push_back(std::max(probabilityAt(low + (i - lower) * step_db), values.back()));
   }
   for (int i = 0; i < count; ++i) {
     const double before = i > 0 ? values[i] - values[i - 1] : 0;

@@ -70,13 +70,21 @@ double albersheimSnrDb(const Detector& detector, double probability);
 /// @see D. A. Shnidman, IEEE Trans. AES-38 (2002), p. 1059
 double shnidmanSnrDb(const Detector& detector, double probability);
 
-/// Probability of detection by the inverse of Albersheim's formula. Within 0.05 of the exact probability for
-/// 0.1 to 0.9; its minimum is 0.01 to 0.03, that of the formula.
+/// Probability of detection of a steady target by the inverse of Albersheim's formula. Within 0.05 of the
+/// exact probability for 0.1 to 0.9. Below 0.1 the formula does not hold (its minimum is 0.01 to 0.03 for
+/// echoes of any weakness): there it is the exact probability, with its signal-to-noise ratio shifted so that
+/// both meet, and decreases to the probability of false alarm. For Pfa above 3e-3 both meet above 0.1.
 double albersheimProbability(const Detector& detector, double snr_db);
 
 /// The same by Shnidman's formula: the largest probability whose required ratio is at most the given one. It
 /// is constant where the formula jumps, at Pd = 0.872.
 double shnidmanProbability(const Detector& detector, double snr_db);
+
+/// Signal-to-noise ratio (dB) of one pulse at which a method has a probability of detection: the inverse of
+/// detectionProbability, albersheimProbability or shnidmanProbability.
+/// @param probability  above the probability of false alarm, below 1; 0.1 to 0.87 for shnidman
+/// @throws Error (bad_input) for a probability not above that of false alarm, or not below 1
+double requiredSnrDb(const Detector& detector, scenario::DetectionMethod method, double probability);
 
 /// Probability of detection over signal-to-noise in dB, for inner loops: monotone cubics between exact
 /// values.
@@ -90,8 +98,8 @@ struct DetectionCurveView {
   float first_snr_db = 0;
   float steps_per_db = 0;
 
-  /// Increases with snr_db; without branches, for SIMD. Constant below the first and above the last knot; NaN
-  /// for NaN.
+  /// Increases with snr_db; without branches, for SIMD. The probability of false alarm below the first knot,
+  /// constant above the last one; NaN for NaN.
   /// @accuracy 1e-4 absolute of detectionProbability; 2e-3 of the formulas
   EMSCAPE_HD float operator()(float snr_db) const {
     const float index = (snr_db - first_snr_db) * steps_per_db;

@@ -66,7 +66,8 @@ double requiredProbability(const RadarReceiver& receiver) {
 }
 
 double requiredSnrDb(const Emitter& radar) {
-  return requiredSnrDb(detectorOf(radar.receiver), requiredProbability(radar.receiver)) +
+  const RadarReceiver& receiver = radar.receiver;
+  return requiredSnrDb(detectorOf(receiver), receiver.detection, requiredProbability(receiver)) +
          detectionLosses(radar).total_db();
 }
 

@@ -28,8 +28,8 @@ double polarizationLossDb(const scenario::Emitter& radar, const scenario::Emitte
 /// boresight; 0 for a jammer outside its band.
 double jammingToNoise_m2_w(const scenario::Emitter& radar, const scenario::Emitter& jammer);
 
-/// Signal-to-noise ratio (dB) of one pulse, including detection losses, for which a target is detected with a
-/// probability of 1/2 (3/4 if the probability of false alarm is 1/2).
+/// Signal-to-noise ratio (dB) of one pulse, including detection losses, for which a target is detected, by
+/// the radar's method of detection, with a probability of 1/2 (3/4 if the probability of false alarm is 1/2).
 double requiredSnrDb(const scenario::Emitter& radar);
 /// The probability that requiredSnrDb() refers to.
 double requiredProbability(const scenario::RadarReceiver& receiver);

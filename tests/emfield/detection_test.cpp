@@ -169,6 +169,60 @@ TEST(Detection, CurvesOfFormulasAreNearThemAndNeverFall) {
   }
 }
 
+TEST(Detection, AlbersheimsFormulaContinuesToThePfa) {
+  for (const int pulses : {1, 4, 100, 10000}) {
+    for (const double pfa : {1e-12, 1e-6, 1e-3, 0.01, 0.1, 0.5}) {
+      SCOPED_TRACE(::testing::Message() << pulses << " pulses, Pfa " << pfa);
+      const Detector detector{Swerling::steady, pulses, pfa};
+      EXPECT_TRUE(std::isnan(albersheimProbability(detector, std::nan(""))));
+      double before = albersheimProbability(detector, -80);
+      EXPECT_NEAR(before / pfa, 1, 1e-4);
+      for (double snr_db = -50; snr_db < 25; snr_db += 0.05) {
+        const double pd = albersheimProbability(detector, snr_db);
+        ASSERT_GE(pd, before * (1 - 1e-9) - 1e-14) << snr_db;
+        ASSERT_LT(pd - before, 0.03) << snr_db;
+        before = pd;
+      }
+      EXPECT_GT(before, 0.99);
+    }
+  }
+}
+
+TEST(Detection, CurvesEndAtThePfa) {
+  using scenario::DetectionMethod;
+  for (const auto method : {DetectionMethod::exact, DetectionMethod::albersheim, DetectionMethod::shnidman}) {
+    for (const Swerling swerling : {Swerling::steady, Swerling::slow_exponential}) {
+      for (const double pfa : {1e-12, 1e-6, 1e-4, 0.5}) {
+        const DetectionCurve curve({swerling, 4, pfa}, method);
+        EXPECT_FLOAT_EQ(curve.view()(-60), float(pfa));
+        EXPECT_FLOAT_EQ(curve.view()(-HUGE_VALF), float(pfa));
+      }
+    }
+  }
+  // also where it is small the probability is that of the statistics
+  const Detector detector{Swerling::slow_exponential, 1, 1e-6};
+  const DetectionCurve curve(detector);
+  for (const float snr_db : {-10.0f, -6.0f, -3.0f}) {
+    EXPECT_NEAR(double(curve.view()(snr_db)) / probability(detector, dbToRatio(snr_db)), 1, 0.01);
+  }
+}
+
+TEST(Detection, RequiredSnrIsWhereTheMethodHasTheProbability) {
+  using scenario::DetectionMethod;
+  for (const auto method : {DetectionMethod::exact, DetectionMethod::albersheim, DetectionMethod::shnidman}) {
+    for (const int pulses : {1, 16}) {
+      for (const double pfa : {1e-6, 1e-3, 0.4}) {
+        for (const double pd : {0.5, 0.8}) {
+          const Detector detector{Swerling::steady, pulses, pfa};
+          const DetectionCurve curve(detector, method);
+          EXPECT_NEAR(curve.view()(float(requiredSnrDb(detector, method, pd))), pd, 1e-3)
+              << toString(method) << ", " << pulses << ", " << pfa;
+        }
+      }
+    }
+  }
+}
+
 TEST(Detection, RefusesWhatLiesOutsideItsRanges) {
   EXPECT_EQ(messageOf([] {
               detectionThreshold({Swerling::steady, 0, 1e-6});

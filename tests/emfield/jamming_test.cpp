@@ -212,6 +212,9 @@ TEST(BurnThrough, AsksByDefaultForWhatHalfTheDetectionsTake) {
   scenario::Emitter radar = trackingRadar();
   radar.receiver.pulses = 8;
   EXPECT_DOUBLE_EQ(requiredSignalToJammerDb(radar), requiredSnrDb(detectorOf(radar.receiver), 0.5));
+  scenario::Emitter by_formula = radar;
+  by_formula.receiver.detection = scenario::DetectionMethod::shnidman;
+  EXPECT_DOUBLE_EQ(requiredSignalToJammerDb(by_formula), shnidmanSnrDb(detectorOf(radar.receiver), 0.5));
   // If jamming is far above the noise both agree: where the margin is 0, Pd is 1/2.
   scenario::Emitter jammer = jammerOf(1e6);
   const auto scenario = duel(radar, jammer, 0, 60e3);
