@@ -21,8 +21,9 @@ std::optional<double> lerpIfBoth(const std::optional<double>& a, const std::opti
   return lerp(*a, *b, part);
 }
 
+/// Over the shorter arc; from a_deg on, thus also outside one turn.
 double lerpDegrees(double a_deg, double b_deg, double part) {
-  return positiveDegrees(a_deg + std::remainder(b_deg - a_deg, 360.0) * part);
+  return a_deg + std::remainder(b_deg - a_deg, 360.0) * part;
 }
 
 GeodesicInverse geodesic(const SitePosition& a, const SitePosition& b) {
@@ -89,10 +90,12 @@ TrackPoint pointAt(const Platform& platform, double t_s) {
     const TrackPoint& b = track[i + 1];
     const double part = std::clamp((t_s - a.t_s) / (b.t_s - a.t_s), 0.0, 1.0);
     point.position = positionOnLeg(a.position, b.position, part);
-    point.heading_deg = a.heading_deg && b.heading_deg ? lerpDegrees(*a.heading_deg, *b.heading_deg, part)
-                                                       : courseAt(track, i, point.position);
+    point.heading_deg = a.heading_deg && b.heading_deg
+                            ? positiveDegrees(lerpDegrees(*a.heading_deg, *b.heading_deg, part))
+                            : courseAt(track, i, point.position);
     point.pitch_deg = lerpIfBoth(a.pitch_deg, b.pitch_deg, part).value_or(0);
-    point.roll_deg = lerpIfBoth(a.roll_deg, b.roll_deg, part).value_or(0);
+    point.roll_deg =
+        a.roll_deg && b.roll_deg ? std::remainder(lerpDegrees(*a.roll_deg, *b.roll_deg, part), 360.0) : 0;
   }
   point.t_s = t_s;
   return point;

@@ -99,6 +99,20 @@ TEST(Platform, GivenHeadingTurnsOverTheShorterArc) {
   EXPECT_NEAR(*pointAt(ship, 10).heading_deg, 350, 1e-9);
 }
 
+TEST(Platform, RollTurnsOverTheShorterArc) {
+  Platform aircraft = moving({point(0, 0, 0, 0), point(10, 0, 1, 0), point(20, 0, 2, 0)});
+  aircraft.track[0].roll_deg = 350;
+  aircraft.track[1].roll_deg = 10;
+  aircraft.track[2].roll_deg = -170;
+  EXPECT_NEAR(*pointAt(aircraft, 0).roll_deg, -10, 1e-9);
+  EXPECT_NEAR(*pointAt(aircraft, 2.5).roll_deg, -5, 1e-9);
+  EXPECT_NEAR(*pointAt(aircraft, 5).roll_deg, 0, 1e-9);
+  EXPECT_NEAR(*pointAt(aircraft, 10).roll_deg, 10, 1e-9);
+  aircraft.track[0].roll_deg = 170;
+  aircraft.track[1].roll_deg = -170;
+  EXPECT_NEAR(std::abs(*pointAt(aircraft, 5).roll_deg), 180, 1e-9);
+}
+
 TEST(Platform, StandingStillKeepsTheLastCourse) {
   const Platform hover =
       moving({point(0, 0, 0, 0), point(1, 0, 0, 5), point(2, 1, 0, 5), point(3, 1, 0, 0), point(4, 1, 1, 0)});

@@ -46,9 +46,10 @@ struct Platform {
 };
 
 /// Position and attitude of a platform at t_s: position along the geodesic between the points before and
-/// after, height (above the datum of the track) and attitude linear in time, heading along the shorter arc.
-/// Without a heading in the track, the heading is the course; a stationary platform keeps its last course.
-/// @return a point with heading (0..360), pitch and roll set
+/// after, height (above the datum of the track) and attitude linear in time, heading and roll along the
+/// shorter arc. Without a heading in the track, the heading is the course; a stationary platform keeps its
+/// last course.
+/// @return a point with heading (0..360), pitch and roll (on a track -180..180) set
 TrackPoint pointAt(const Platform& platform, double t_s);
 
 }  // namespace emscape::scenario
