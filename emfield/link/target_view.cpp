@@ -1,11 +1,30 @@
 #include "emfield/link/target_view.h"
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "emfield/station.h"
 #include "emscape/base/units.h"
 
 namespace emscape::emfield {
+namespace {
+
+/// Shortens an interval around t_s to the leg of a track that begins at or before t_s, at the end of the
+/// track to the last one.
+void clipToLeg(const std::vector<scenario::TrackPoint>& track, double t_s, double& from_s, double& to_s) {
+  if (track.size() < 2) return;
+  for (const scenario::TrackPoint& point : track) {
+    const bool ends = point.t_s > t_s || (point.t_s == t_s && &point == &track.back());
+    if (ends) {
+      to_s = std::min(to_s, point.t_s);
+    } else {
+      from_s = std::max(from_s, point.t_s);
+    }
+  }
+}
+
+}  // namespace
 
 double rcsTowards_m2(const scenario::Snapshot& snapshot, const scenario::Target& target, int radar) {
   const scenario::PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(target.platform)];
@@ -21,14 +40,19 @@ double rcsTowards_m2(const scenario::Snapshot& snapshot, const scenario::Target&
 
 double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platform,
                        const scenario::Terrain* terrain) {
-  constexpr double kStep_s = 0.1;
-  const double step_s = snapshot.time_s + kStep_s > snapshot.scenario->clock.duration_s ? -kStep_s : kStep_s;
-  const scenario::Snapshot other = scenario::instantAt(snapshot.scenario, terrain, snapshot.time_s + step_s);
-  const auto range_m = [&](const scenario::Snapshot& at) {
+  constexpr double kHalfStep_s = 0.01;
+  const scenario::Scenario& scenario = *snapshot.scenario;
+  const int carrier = scenario.emitters[static_cast<std::size_t>(radar)].platform;
+  double from_s = snapshot.time_s - kHalfStep_s, to_s = snapshot.time_s + kHalfStep_s;
+  for (const int moving : {carrier, platform})
+    clipToLeg(scenario.platforms[static_cast<std::size_t>(moving)].track, snapshot.time_s, from_s, to_s);
+  if (!(to_s > from_s)) from_s = to_s - kHalfStep_s;  // one of them stops where the other turns
+  const auto range_m = [&](double t_s) {
+    const scenario::Snapshot at = scenario::instantAt(snapshot.scenario, terrain, t_s);
     return length(toEcef(at.platforms[static_cast<std::size_t>(platform)].position) -
                   toEcef(at.emitters[static_cast<std::size_t>(radar)].position));
   };
-  return (range_m(other) - range_m(snapshot)) / step_s;
+  return (range_m(to_s) - range_m(from_s)) / (to_s - from_s);
 }
 
 long long looksUntil(double first_s, double time_s, double period_s) {

@@ -9,8 +9,9 @@ namespace emscape::emfield {
 /// Radar cross section (m2) of a target in the direction of an emitter.
 double rcsTowards_m2(const scenario::Snapshot& snapshot, const scenario::Target& target, int radar);
 
-/// Speed (m/s) at which a platform moves away from a radar, computed over the next tenth of a second, at the
-/// end of the scenario over the last one.
+/// Speed (m/s) at which a platform moves away from a radar: the central difference over 20 ms, without the
+/// part beyond a point of a track, where the speed steps; at such a point that of the leg that begins there,
+/// at the end of a track that of the last leg.
 /// @param terrain  as for instantAt()
 double radialSpeed_mps(const scenario::Snapshot& snapshot, int radar, int platform,
                        const scenario::Terrain* terrain);

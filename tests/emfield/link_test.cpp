@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "emfield/link/target_view.h"
 #include "emfield/radar/receiver.h"
 #include "emscape/emfield/path_budget.h"
 #include "tests/emfield/radar_duel.h"
@@ -280,6 +281,43 @@ TEST(Detection, AccumulatesOverTheLooksOfTheScan) {
   const Detection silent = linksOf(scenario, times_s).detections.at(0);
   EXPECT_EQ(silent.rows.back().cumulative_probability, 0);
   EXPECT_EQ(silent.rows.back().snr_db, -HUGE_VAL);
+}
+
+TEST(Detection, ByAFormulaOfATargetOutOfReachIsAFalseAlarm) {
+  using scenario::DetectionMethod;
+  for (const auto method : {DetectionMethod::exact, DetectionMethod::albersheim, DetectionMethod::shnidman}) {
+    const auto scenario = radarAndTarget();
+    scenario->emitters[0].power_w = 1e-6;
+    scenario->emitters[0].receiver.pulses = 4;
+    scenario->emitters[0].receiver.swerling = 0;
+    scenario->emitters[0].receiver.detection = method;
+    scenario->targets[0].swerling = 0;
+    const Detection detection = linksOf(scenario, {0, 400}).detections.at(0);
+    EXPECT_NEAR(detection.rows[0].detection_probability, 1e-6, 1e-9);
+    EXPECT_NEAR(detection.rows[1].cumulative_probability, 101e-6, 1e-6) << "of 101 looks";
+  }
+}
+
+TEST(Detection, RadialSpeedIsThatAtTheTime) {
+  const auto scenario = radarAndTarget();
+  // 200 m/s to the north, 2 km east of the radar; then to the east
+  scenario::Platform& aircraft = scenario->platforms[1];
+  const struct {
+    double t_s, east_m, north_m;
+  } points[] = {{0, 2000, -2000}, {20, 2000, 2000}, {30, 4000, 2000}};
+  aircraft.track.clear();
+  for (const auto& point : points) {
+    aircraft.track.push_back(fixedPlatform(pointAt(*scenario, point.east_m, point.north_m)).track[0]);
+    aircraft.track.back().t_s = point.t_s;
+  }
+  const auto speed_mps = [&](double t_s) {
+    return radialSpeed_mps(scenario::instantAt(scenario, nullptr, t_s), 0, 1, nullptr);
+  };
+  EXPECT_NEAR(speed_mps(0), -200 * std::sqrt(0.5), 0.1) << "the beginning of the track";
+  EXPECT_NEAR(speed_mps(5), -200 * std::sqrt(0.2), 0.05);
+  EXPECT_NEAR(speed_mps(10), 0, 0.01) << "abeam";
+  EXPECT_NEAR(speed_mps(20), 200 * std::sqrt(0.5), 0.1) << "eastwards";
+  EXPECT_NEAR(speed_mps(30), 200 * std::sqrt(0.8), 0.1) << "the end of the track";
 }
 
 TEST(Detection, TakesTheCrossSectionFromTheRadarsAspect) {
