@@ -23,7 +23,6 @@
 namespace emscape::view {
 namespace {
 
-constexpr double kMinScale = 0.5, kMaxScale = 4;
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr float kFont_px = 14.5F;
 

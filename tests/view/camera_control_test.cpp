@@ -71,6 +71,16 @@ TEST(CameraControl, DollyHasLimits) {
   EXPECT_LE(*control.spec().distance, 50);
 }
 
+TEST(CameraControl, TheTargetStaysWhereTheCameraCanBeSaved) {
+  CameraControl control;
+  for (int i = 0; i < 50; ++i) control.dolly(2, 400, 300, kViewport);
+  for (int i = 0; i < 1000; ++i) control.pan(1e5, -1e5, kViewport);
+  control.focus({1e300, 0, 0}, 0.4, kViewport);
+  const double reach_m = 51 * kViewport.box.drawnDiagonal_m();
+  EXPECT_LE(length(*control.spec().target_m), 2 * reach_m);
+  EXPECT_NO_THROW(render::parseCamera(render::toString(control.spec())));
+}
+
 TEST(CameraControl, LookKeepsTheEye) {
   CameraControl control(render::parseCamera("orbit:azimuth_deg=120,distance=1.2"));
   control.orbit(0, 0, kViewport);

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/support/errors.h"
 
 namespace emscape::view {
@@ -27,6 +29,25 @@ TEST(Command, FaultsNameVerbAndArgument) {
   EXPECT_EQ(faultOf(R"({"do":"pause","fast":true})"), "pause: unknown argument 'fast'");
   EXPECT_EQ(faultOf(R"([1])"), "expected an object with \"do\": \"VERB\"");
   EXPECT_EQ(faultOf("seek"), "'seek' is not JSON");
+}
+
+TEST(Command, NumbersHaveLimits) {
+  const auto fault = [](const std::string& text) {
+    return test::errorOf([&] { requireAllowed(parseCommand(text)); }, ErrorCode::bad_input);
+  };
+  EXPECT_EQ(fault(R"({"do":"recall","number":1.5})"), "recall: number 1.5: expected a whole number 1..9");
+  EXPECT_EQ(fault(R"({"do":"open_recent","number":-1})"),
+            "open_recent: number -1: expected a whole number 1..10");
+  EXPECT_EQ(fault(R"({"do":"scale","factor":9})"), "scale: factor 9: expected a number 0.5..4");
+  EXPECT_EQ(fault(R"({"do":"rate","change":2})"),
+            "rate: change 2: expected a whole number -1..1 other than 0");
+  EXPECT_EQ(fault(R"({"do":"pan","right_px":1e300,"down_px":0})"),
+            "pan: right_px 1e+300: expected a number -100000..100000");
+  EXPECT_EQ(fault(R"({"do":"dolly","factor":0})"), "dolly: factor 0: expected a number 0.001..1000");
+  EXPECT_EQ(fault(R"({"do":"resize","width":0,"height":9})"), "resize: width 0: expected a number 1..16384");
+  const Command endless{"range", {{"min", INFINITY}}};
+  EXPECT_EQ(test::errorOf([&] { requireAllowed(endless); }), "range: min inf: expected a finite number");
+  EXPECT_EQ(fault(R"({"do":"pan","right_px":-40,"down_px":3})"), "");
 }
 
 TEST(Command, EveryVerbHasHelp) {

@@ -28,6 +28,24 @@ TEST(Script, FaultsNameTheLine) {
   EXPECT_EQ(faultOf("{\"do\":\"play\",\"at_s\":\"soon\"}\n"), ":1: at_s: expected a number");
 }
 
+TEST(Script, ArgumentsThatAreNotAllowedNameTheLine) {
+  EXPECT_EQ(faultOf("\n{\"do\":\"wait_state\",\"state\":\"idle\"}\n"),
+            ":2: wait_state: state 'idle': expected BUSY, RESTORE, IDLE, exact, recorded");
+  EXPECT_EQ(faultOf("{\"do\":\"expect\",\"key\":\"rate\",\"op\":\"=\",\"value\":1}\n"),
+            ":1: expect: op '=': expected ==, !=, <, <=, >, >=");
+  EXPECT_EQ(faultOf("{\"do\":\"mouse\",\"x\":1,\"y\":1,\"button\":\"x\"}\n"),
+            ":1: mouse: button 'x': expected left, middle, right");
+  EXPECT_EQ(faultOf("{\"do\":\"wait_s\",\"seconds\":-1}\n"),
+            ":1: wait_s: seconds -1: expected a number of at least 0");
+  EXPECT_EQ(faultOf("{\"do\":\"play\",\"at_s\":-5}\n"), ":1: at_s -5: expected a number of at least 0");
+  EXPECT_EQ(faultOf("{\"do\":\"bookmark\",\"number\":1.5}\n"),
+            ":1: bookmark: number 1.5: expected a whole number 1..9");
+}
+
+TEST(Script, KeysAreGivenOnce) {
+  EXPECT_EQ(faultOf("{\"do\":\"seek\",\"time_s\":1,\"time_s\":2}\n"), ":1: time_s is given twice");
+}
+
 TEST(Script, NoFileIsBadInput) {
   EXPECT_THROW(Script("no/such/script.jsonl"), Error);
 }

@@ -28,7 +28,11 @@ TEST_F(SessionTime, StepsRatesAndTheirFaults) {
     EXPECT_EQ(session->timeline().rate(), expected == 1 ? 0.25 : expected == 2 ? 0.1 : -0.1);
   }
   perform(R"({"do":"rate","value":0})");
-  EXPECT_THAT(error(), testing::HasSubstr("rate 0: expected a number -10000..10000 other than 0"));
+  EXPECT_THAT(error(), testing::HasSubstr("rate: value 0: expected a number -10000..10000 other than 0"));
+  perform(R"({"do":"rate"})");
+  EXPECT_EQ(error(), "rate: expected either value or change");
+  perform(R"({"do":"rate","change":2})");
+  EXPECT_EQ(error(), "rate: change 2: expected a whole number -1..1 other than 0");
   EXPECT_EQ(session->timeline().rate(), -0.1);
 }
 
@@ -58,6 +62,8 @@ TEST_F(SessionTime, ThePlayingRangeAndWhatIsVisibleAreSetByVerbs) {
   EXPECT_EQ(session->report()["visible_to_s"], 3.5);
   perform(R"({"do":"timeline","zoom":0})");
   EXPECT_THAT(error(), testing::HasSubstr("timeline: zoom 0: expected a number above 0"));
+  perform(R"({"do":"timeline","from_s":3,"to_s":1})");
+  EXPECT_EQ(error(), "timeline 3..1: expected from_s below to_s");
   perform(R"({"do":"timeline"})");
   EXPECT_EQ(session->report()["visible_from_s"], 0);
 }

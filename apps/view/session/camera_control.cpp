@@ -17,6 +17,17 @@ double wrapped_deg(double angle_deg) {
   return rest < 0 ? rest + 360 : rest;
 }
 
+/// Limits a target (frame metres) to kMaxDistance around the box along each axis: a camera can then be drawn
+/// and saved.
+Vec3d nearBox(const Vec3d& target_m, const render::SceneBox& box) {
+  const double reach_m = kMaxDistance * box.drawnDiagonal_m();
+  const Vec3d& low_m = box.lower_m;
+  const Vec3d& high_m = box.upper_m;
+  return {std::clamp(target_m.x, low_m.x - reach_m, high_m.x + reach_m),
+          std::clamp(target_m.y, low_m.y - reach_m, high_m.y + reach_m),
+          std::clamp(target_m.z, low_m.z - reach_m, high_m.z + reach_m)};
+}
+
 }  // namespace
 
 double CameraControl::Pose::metresPerPixel(render::ImageSize size) const {
@@ -62,7 +73,8 @@ void CameraControl::settle(const Viewport& viewport) {
 }
 
 void CameraControl::moveTarget(const Vec3d& drawn_m, const Viewport& viewport) {
-  spec_.target_m = viewport.box.toFrame(viewport.box.toDrawn(*spec_.target_m) + drawn_m);
+  spec_.target_m =
+      nearBox(viewport.box.toFrame(viewport.box.toDrawn(*spec_.target_m) + drawn_m), viewport.box);
 }
 
 void CameraControl::orbit(double azimuth_deg, double elevation_deg, const Viewport& viewport) {
@@ -107,7 +119,7 @@ void CameraControl::fly(double forward, double right, double up, const Viewport&
 
 void CameraControl::focus(const Vec3d& target_m, double distance, const Viewport& viewport) {
   settle(viewport);
-  spec_.target_m = target_m;
+  spec_.target_m = nearBox(target_m, viewport.box);
   spec_.distance = std::clamp(distance, kMinDistance, kMaxDistance);
 }
 

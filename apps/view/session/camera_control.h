@@ -14,7 +14,7 @@ struct Viewport {
 
 /// Holds a camera and moves it. After the first movement the camera is an orbit with a distance and a target:
 /// a fitted camera does not jump when it is first moved, and a lookat camera becomes the orbit with the same
-/// eye. For use by one thread.
+/// eye. A moved target stays within 50 diagonals of the drawn box. For use by one thread.
 class CameraControl {
  public:
   explicit CameraControl(const render::CameraSpec& spec = {}) : spec_(spec) {}

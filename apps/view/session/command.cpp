@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
@@ -50,18 +51,52 @@ const char* nameOf(ArgumentType type) {
   return "";
 }
 
+bool isWithin(double value, const NumberLimits& limits) {
+  return value >= limits.min && value <= limits.max && !(limits.is_whole && value != std::trunc(value)) &&
+         !(limits.is_not_zero && value == 0);
+}
+
+/// "a whole number 1..9", "a finite number".
+std::string textOf(const NumberLimits& limits) {
+  const NumberLimits none;
+  const bool has_min = limits.min != none.min, has_max = limits.max != none.max;
+  std::string text = limits.is_whole ? "a whole number" : has_min || has_max ? "a number" : "a finite number";
+  if (has_min && has_max) {
+    text += fmt::format(" {}..{}", limits.min, limits.max);
+  } else if (has_min) {
+    text += fmt::format(" of at least {}", limits.min);
+  }
+  return text + (limits.is_not_zero ? " other than 0" : "");
+}
+
+void requireAllowed(const std::string& verb, const Argument& argument, const Json& value) {
+  if (value.is_number() && !isWithin(value.get<double>(), argument.limits)) {
+    throw Error(ErrorCode::bad_input, fmt::format("{}: {} {:g}: expected {}", verb, argument.name,
+                                                  value.get<double>(), textOf(argument.limits)));
+  }
+  const std::vector<const char*>& choices = argument.choices;
+  if (!choices.empty() &&
+      std::find(choices.begin(), choices.end(), value.get<std::string>()) == choices.end()) {
+    throw Error(ErrorCode::bad_input, fmt::format("{}: {} '{}': expected {}", verb, argument.name,
+                                                  value.get<std::string>(), fmt::join(choices, ", ")));
+  }
+}
+
 }  // namespace
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all = [] {
     std::vector<Verb> list = Session::verbs();
+    const NumberLimits duration_s{0};
     const std::vector<Verb> of_scripts{
-        {"wait_s", {{"seconds"}}, "The script waits"},
+        {"wait_s", {{"seconds", kNumber, true, duration_s}}, "The script waits"},
         {"wait_state",
-         {{"state", kText}, {"timeout_s", kNumber, false}, {"must", kBoolean, false}},
+         {{"state", kText, true, {}, {"BUSY", "RESTORE", "IDLE", "exact", "recorded"}},
+          {"timeout_s", kNumber, false, duration_s},
+          {"must", kBoolean, false}},
          "The script waits until the picture is BUSY, RESTORE, IDLE or exact, or a recording is `recorded`; "
          "default: at most 60 s. `must` false: continues if that takes longer"},
-        {"wait_frame", {{"timeout_s", kNumber, false}}, "The script waits for the first picture"},
+        {"wait_frame", {{"timeout_s", kNumber, false, duration_s}}, "The script waits for the first picture"},
         {"mark",
          {{"text", kText}},
          "Writes a line with this text into the log, with the values of a `frame`"},
@@ -69,13 +104,15 @@ const std::vector<Verb>& verbs() {
         {"mouse",
          {{"x"},
           {"y"},
-          {"button", kText, false},
+          {"button", kText, false, {}, {"left", "middle", "right"}},
           {"to_x", kNumber, false},
           {"to_y", kNumber, false},
           {"wheel", kNumber, false}},
          "Moves the cursor; with `button` (left, middle, right) clicks, or drags to `to_x`, `to_y`"},
         {"expect",
-         {{"key", kText}, {"op", kText}, {"value", ArgumentType::any}},
+         {{"key", kText},
+          {"op", kText, true, {}, {"==", "!=", "<", "<=", ">", ">="}},
+          {"value", ArgumentType::any}},
          "Compares a value of the log (== != < <= > >=); the program ends with status 5 if it is another"}};
     list.insert(list.end(), of_scripts.begin(), of_scripts.end());
     return list;
@@ -121,6 +158,14 @@ Command parseCommand(const std::string& text) {
   const Json object = Json::parse(text, nullptr, false);
   if (object.is_discarded()) throw Error(ErrorCode::bad_input, fmt::format("'{}' is not JSON", text));
   return parseCommand(object);
+}
+
+void requireAllowed(const Command& command) {
+  for (const Argument& argument : verbNamed(command.verb).arguments) {
+    if (command.has(argument.name)) {
+      requireAllowed(command.verb, argument, command.arguments[argument.name]);
+    }
+  }
 }
 
 std::string toString(const Command& command) {

@@ -1,6 +1,7 @@
 /// The window's commands: verbs with arguments, used by scripts, keys and menus.
 #pragma once
 
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -11,10 +12,19 @@ using Json = nlohmann::ordered_json;
 
 enum class ArgumentType { number, text, boolean, texts, any };
 
+/// Allowed values of a number; all finite ones by default.
+struct NumberLimits {
+  double min = std::numeric_limits<double>::lowest(), max = std::numeric_limits<double>::max();
+  bool is_whole = false;
+  bool is_not_zero = false;
+};
+
 struct Argument {
   const char* name;
   ArgumentType type = ArgumentType::number;
   bool required = true;
+  NumberLimits limits = {};
+  std::vector<const char*> choices = {};  ///< allowed texts; empty: any
 };
 inline constexpr ArgumentType kNumber = ArgumentType::number;
 inline constexpr ArgumentType kText = ArgumentType::text;
@@ -53,6 +63,9 @@ struct Command {
 Command parseCommand(const Json& object);
 /// Parses a text.
 Command parseCommand(const std::string& text);
+/// Checks the arguments against the limits and choices of the verb's table.
+/// @throws Error (bad_input) that names verb, argument, value and what is allowed
+void requireAllowed(const Command& command);
 /// Text that parseCommand() reads.
 std::string toString(const Command& command);
 

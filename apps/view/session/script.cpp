@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include "apps/view/session/input_queue.h"
@@ -26,11 +27,7 @@ int buttonNamed(const std::string& name) {
   static const std::map<std::string, int> buttons{{"left", GLFW_MOUSE_BUTTON_LEFT},
                                                   {"middle", GLFW_MOUSE_BUTTON_MIDDLE},
                                                   {"right", GLFW_MOUSE_BUTTON_RIGHT}};
-  const auto found = buttons.find(name);
-  if (found == buttons.end()) {
-    throw Error(ErrorCode::bad_input, fmt::format("button '{}': expected left, middle or right", name));
-  }
-  return found->second;
+  return buttons.at(name);
 }
 
 /// Moves, clicks or drags (in ten parts) the mouse, or turns its wheel.
@@ -65,6 +62,33 @@ bool holds(const Json& actual, const std::string& op, const Json& value) {
   return op == ">=" && a >= b;
 }
 
+/// @throws Error (bad_input): not JSON; a key that is given twice
+Json parseLine(const std::string& line) {
+  std::set<std::string> keys;
+  std::string twice;
+  const auto noteKey = [&](int depth, Json::parse_event_t event, const Json& key) {
+    const bool is_key = event == Json::parse_event_t::key && depth == 1;
+    if (is_key && !keys.insert(key.get<std::string>()).second) twice = key.get<std::string>();
+    return true;
+  };
+  Json object = Json::parse(line, noteKey, false);
+  if (object.is_discarded()) throw Error(ErrorCode::bad_input, "not JSON");
+  if (!twice.empty()) throw Error(ErrorCode::bad_input, fmt::format("{} is given twice", twice));
+  return object;
+}
+
+/// Time (s) from the start; empty if the line has none. @throws Error (bad_input)
+std::optional<double> delayOf(const Json& object) {
+  if (!object.contains("at_s")) return std::nullopt;
+  const Json& at_s = object["at_s"];
+  if (!at_s.is_number()) throw Error(ErrorCode::bad_input, "at_s: expected a number");
+  if (!(at_s.get<double>() >= 0)) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("at_s {:g}: expected a number of at least 0", at_s.get<double>()));
+  }
+  return at_s.get<double>();
+}
+
 }  // namespace
 
 Script::Script(const std::string& file) {
@@ -75,14 +99,10 @@ Script::Script(const std::string& file) {
     const std::size_t begin = line.find_first_not_of(" \t\r");
     if (begin == std::string::npos || line[begin] == '#') continue;
     const SourceLocation location{file, number, 0};
-    const Json object = Json::parse(line, nullptr, false);
-    if (object.is_discarded()) throw Error(ErrorCode::bad_input, location, "not JSON");
     try {
-      lines_.push_back({location, parseCommand(object), std::nullopt});
-      if (object.contains("at_s")) {
-        if (!object["at_s"].is_number()) throw Error(ErrorCode::bad_input, "at_s: expected a number");
-        lines_.back().at_s = object["at_s"].get<double>();
-      }
+      const Json object = parseLine(line);
+      lines_.push_back({location, parseCommand(object), delayOf(object)});
+      requireAllowed(lines_.back().command);
       if (lines_.back().command.verb == "key") eventsOf(parseChord(lines_.back().command.text("key")));
     } catch (const Error& error) {
       throw Error(ErrorCode::bad_input, location, error.message());

@@ -14,7 +14,8 @@ namespace emscape::view {
 class Script {
  public:
   Script() = default;
-  /// @throws Error (bad_input) with file:line for a line that is not a command
+  /// @throws Error (bad_input) with file:line for a line that is not a command, or whose arguments are not
+  /// allowed
   explicit Script(const std::string& file);
 
   bool finished() const { return next_ >= lines_.size(); }

@@ -81,6 +81,7 @@ void Session::perform(const Command& command) {
   const Verb& verb = verbNamed(command.verb);
   if (!verb.run) throw Error(ErrorCode::bad_input, command.verb + ": only a script can do that");
   try {
+    requireAllowed(command);
     verb.run(*this, command);
   } catch (const Error& error) {
     tell(failureText(error), true);

@@ -12,12 +12,12 @@ namespace {
 
 constexpr double kFocus_diagonals = 0.45;  // distance of the target
 
-/// 1..9. @throws Error (bad_input)
+constexpr NumberLimits kTurn_deg{-36000, 36000};
+constexpr NumberLimits kShift_px{-1e5, 1e5};
+constexpr NumberLimits kBookmark{1, 9, true};
+
 int bookmarkNumber(const Command& command) {
-  const double number = command.number("number");
-  if (!(number >= 1 && number <= 9))
-    throw Error(ErrorCode::bad_input, fmt::format("{}: number {:g}: expected 1..9", command.verb, number));
-  return static_cast<int>(number);
+  return static_cast<int>(command.number("number"));
 }
 
 }  // namespace
@@ -56,7 +56,7 @@ void Session::focusGround(double x, double y) {
 std::vector<Verb> Session::cameraVerbs() {
   return {
       {"orbit",
-       {{"azimuth_deg", kNumber, false}, {"elevation_deg", kNumber, false}},
+       {{"azimuth_deg", kNumber, false, kTurn_deg}, {"elevation_deg", kNumber, false, kTurn_deg}},
        "Turns the camera about its target by these angles",
        [](Session& session, const Command& command) {
          const std::optional<Viewport> view = session.viewport();
@@ -65,7 +65,7 @@ std::vector<Verb> Session::cameraVerbs() {
          session.cameraMoved();
        }},
       {"pan",
-       {{"right_px"}, {"down_px"}},
+       {{"right_px", kNumber, true, kShift_px}, {"down_px", kNumber, true, kShift_px}},
        "Moves the scene with the cursor",
        [](Session& session, const Command& command) {
          const std::optional<Viewport> view = session.viewport();
@@ -74,11 +74,11 @@ std::vector<Verb> Session::cameraVerbs() {
          session.cameraMoved();
        }},
       {"dolly",
-       {{"factor"}},
-       "Multiplies the distance to the target",
+       {{"factor", kNumber, true, {1e-3, 1e3}}},
+       "Multiplies the distance to the target, 0.001..1000",
        [](Session& session, const Command& command) {
          const std::optional<Viewport> view = session.viewport();
-         if (!view || !(command.number("factor") > 0)) return;
+         if (!view) return;
          session.camera_.dolly(command.number("factor"), view->size.width / 2.0, view->size.height / 2.0,
                                *view);
          session.cameraMoved();
@@ -111,7 +111,7 @@ std::vector<Verb> Session::cameraVerbs() {
          }
        }},
       {"bookmark",
-       {{"number"}},
+       {{"number", kNumber, true, kBookmark}},
        "Stores camera and time under a number, 1..9",
        [](Session& session, const Command& command) {
          const int number = bookmarkNumber(command);
@@ -120,7 +120,7 @@ std::vector<Verb> Session::cameraVerbs() {
          session.tell(fmt::format("bookmark {} stored", number));
        }},
       {"recall",
-       {{"number"}},
+       {{"number", kNumber, true, kBookmark}},
        "Shows a bookmark",
        [](Session& session, const Command& command) {
          const int number = bookmarkNumber(command);

@@ -178,12 +178,12 @@ std::vector<Verb> Session::fileVerbs() {
          }
        }},
       {"open_recent",
-       {{"number", kNumber, false}},
+       {{"number", kNumber, false, {1, kMaxRecentFiles, true}}},
        "Opens one of the inputs that were opened last, 1..10; default: the one before this",
        [](Session& session, const Command& command) {
          const auto number = static_cast<std::size_t>(command.number("number", session.hasInput() ? 2 : 1));
          const std::vector<std::string>& recent = session.files_->recent;
-         if (number < 1 || number > recent.size()) {
+         if (number > recent.size()) {
            throw Error(ErrorCode::bad_input, fmt::format("open_recent: there are {} inputs", recent.size()));
          }
          session.ask({recent[number - 1], "", std::nullopt, false});

@@ -52,7 +52,7 @@ std::vector<Verb> Session::recordVerbs() {
         {"begin_s", kNumber, false},
         {"end_s", kNumber, false},
         {"step_s", kNumber, false},
-        {"frames_per_s", kNumber, false}},
+        {"frames_per_s", kNumber, false, {0.1, 240}}},
        "Records the view over the series, or from `begin_s` to `end_s`, into a folder of pictures or a .mp4; "
        "without a file: asks for it",
        [](Session& session, const Command& command) {
@@ -63,11 +63,8 @@ std::vector<Verb> Session::recordVerbs() {
          const auto given = [&command](const char* name) {
            return command.has(name) ? std::optional<double>(command.number(name)) : std::nullopt;
          };
-         RecordRange range{given("begin_s"), given("end_s"), given("step_s"),
-                           command.number("frames_per_s", 10)};
-         if (!(range.frames_per_s >= 0.1 && range.frames_per_s <= 240)) {
-           throw Error(ErrorCode::bad_input, "record: expected frames_per_s 0.1..240");
-         }
+         const RecordRange range{given("begin_s"), given("end_s"), given("step_s"),
+                                 command.number("frames_per_s", 10)};
          session.record(range, command.text("file"));
        }},
       {"record_cancel",

@@ -13,19 +13,6 @@
 namespace emscape::view {
 namespace {
 
-double finite(const Command& command, const char* name) {
-  const double value = command.number(name);
-  if (std::isfinite(value)) return value;
-  throw Error(ErrorCode::bad_input, fmt::format("{}: {}: expected a finite number", command.verb, name));
-}
-
-double opacityOf(const Command& command) {
-  const double opacity = command.number("opacity");
-  if (opacity >= 0 && opacity <= 1) return opacity;
-  throw Error(ErrorCode::bad_input,
-              fmt::format("{}: opacity {:g}: expected a number 0..1", command.verb, opacity));
-}
-
 /// Selects the point that a command names; without one, keeps the selection.
 void selectPoint(playback::TransferEditor& editor, const Command& command) {
   if (!command.has("index")) return;
@@ -44,13 +31,12 @@ void setPoint(playback::TransferEditor& editor, const Command& command) {
       throw Error(ErrorCode::bad_input,
                   "opacity_point: expected value and opacity of a new point, or the index of one");
     }
-    editor.add(finite(command, "value"), opacityOf(command));
+    editor.add(command.number("value"), command.number("opacity"));
     return;
   }
   selectPoint(editor, command);
   const auto& point = editor.function().opacities[static_cast<std::size_t>(*editor.selected())];
-  editor.moveSelected(command.has("value") ? finite(command, "value") : point.at,
-                      command.has("opacity") ? opacityOf(command) : point.opacity);
+  editor.moveSelected(command.number("value", point.at), command.number("opacity", point.opacity));
 }
 
 }  // namespace
@@ -203,7 +189,7 @@ std::vector<Verb> Session::transferVerbs() {
          session.fit_ = Fit::anew;
        }},
       {"opacity_point",
-       {{"index", kNumber, false}, {"value", kNumber, false}, {"opacity", kNumber, false}},
+       {{"index", kNumber, false}, {"value", kNumber, false}, {"opacity", kNumber, false, {0, 1}}},
        "Adds a point of the opacity curve; with `index` (0, 1, ...) selects one and moves it between its "
        "neighbours",
        [](Session& session, const Command& command) {
@@ -225,20 +211,16 @@ std::vector<Verb> Session::transferVerbs() {
        "`value`, else in the middle",
        [](Session& session, const Command& command) {
          std::optional<double> value;
-         if (command.has("value")) value = finite(command, "value");
+         if (command.has("value")) value = command.number("value");
          session.changeTransfer(
              [&](TransferEditor& editor) { editor.setOpacityPreset(command.text("name"), value); });
        }},
       {"opacity",
-       {{"factor"}},
+       {{"factor", kNumber, true, {1e-3, 1e3}}},
        "Multiplies the opacity of all points, 0.001..1000; limited to 1",
        [](Session& session, const Command& command) {
-         const double factor = command.number("factor");
-         if (!(factor >= 1e-3 && factor <= 1e3)) {
-           throw Error(ErrorCode::bad_input,
-                       fmt::format("opacity: factor {:g}: expected a number 0.001..1000", factor));
-         }
-         session.changeTransfer([&](TransferEditor& editor) { editor.scaleOpacities(factor); });
+         session.changeTransfer(
+             [&](TransferEditor& editor) { editor.scaleOpacities(command.number("factor")); });
        }},
       {"log_opacity",
        {{"on", kBoolean, false}},
@@ -257,8 +239,8 @@ std::vector<Verb> Session::transferVerbs() {
            session.fit_ = Fit::step;
            return;
          }
-         const double min = command.has("min") ? finite(command, "min") : function.lowest();
-         const double max = command.has("max") ? finite(command, "max") : function.highest();
+         const double min = command.number("min", function.lowest());
+         const double max = command.number("max", function.highest());
          if (!(min < max)) {
            throw Error(ErrorCode::bad_input,
                        fmt::format("range {:g}..{:g}: expected min below max", min, max));

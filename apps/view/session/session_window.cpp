@@ -8,6 +8,8 @@
 namespace emscape::view {
 namespace {
 
+constexpr NumberLimits kSize_px{1, 16384};
+
 std::string allPanels() {
   std::string names;
   for (const PanelName& panel : panelNames()) names += (names.empty() ? "" : ", ") + std::string(panel.name);
@@ -50,25 +52,23 @@ std::vector<Verb> Session::windowVerbs() {
          throw Error(ErrorCode::bad_input, fmt::format("panel '{}': expected {} or all", name, allPanels()));
        }},
       {"scale",
-       {{"factor", kNumber, false}, {"change", kNumber, false}},
-       "Size of texts and controls, 0.5..4",
+       {{"factor", kNumber, false, {kMinScale, kMaxScale}}, {"change", kNumber, false, {-1, 1, true, true}}},
+       "Size of texts and controls, 0.5..4; or `change`, 1 or -1: a step larger or smaller",
        [](Session& session, const Command& command) {
          constexpr double kStep = 1.125;
+         if (command.has("factor") == command.has("change")) {
+           throw Error(ErrorCode::bad_input, "scale: expected either factor or change");
+         }
          const double change = command.number("change") < 0 ? 1 / kStep : kStep;
          session.window_.setScale(command.has("factor") ? command.number("factor")
                                                         : session.window_.scale() * change);
        }},
       {"resize",
-       {{"width"}, {"height"}},
+       {{"width", kNumber, true, kSize_px}, {"height", kNumber, true, kSize_px}},
        "Size of the window in pixels",
        [](Session& session, const Command& command) {
-         const double width = command.number("width"), height = command.number("height");
-         const auto isSize = [](double size_px) { return size_px >= 1 && size_px <= 16384; };
-         if (!isSize(width) || !isSize(height)) {
-           throw Error(ErrorCode::bad_input,
-                       fmt::format("resize {:g} x {:g}: expected numbers 1..16384", width, height));
-         }
-         session.window_.resize(static_cast<int>(width), static_cast<int>(height));
+         session.window_.resize(static_cast<int>(command.number("width")),
+                                static_cast<int>(command.number("height")));
        }},
       {"screenshot",
        {{"file", kText, false}},

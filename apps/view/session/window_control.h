@@ -18,12 +18,16 @@ struct InputEvent {
   double x = 0, y = 0;  ///< cursor: position; wheel: offsets
 };
 
+/// Limits of the scale of texts and controls.
+inline constexpr double kMinScale = 0.5, kMaxScale = 4;
+
 class WindowControl {
  public:
   virtual ~WindowControl() = default;
   virtual void resize(int width, int height) = 0;
   /// Scale of text and controls.
   virtual double scale() const = 0;
+  /// @param factor  limited to kMinScale..kMaxScale
   virtual void setScale(double factor) = 0;
   /// Writes the next frame. @param file  empty: a new name
   virtual void screenshot(const std::string& file) = 0;
