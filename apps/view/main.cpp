@@ -5,6 +5,7 @@
 
 #include "apps/emscape/common/interrupt.h"
 #include "apps/view/app.h"
+#include "apps/view/session/opening.h"
 #include "base/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
@@ -33,6 +34,7 @@ void show(const ViewOptions& options) {
   using playback::InputKind;
   const std::optional<InputKind> kind =
       options.input.empty() ? std::nullopt : std::optional(playback::inputKindOf(options.input));
+  if (kind == InputKind::scenario) requireInputFile(options.input);
   if (!options.mesh.empty()) {
     emfield::parseTerrainMesh(options.mesh);
     if (kind != InputKind::scenario) throw Error(ErrorCode::usage, "--mesh: INPUT must be a scenario");

@@ -178,6 +178,34 @@ TEST(Opening, RefusesWhatCannotBeShown) {
   EXPECT_THAT(fault(ownScenario(folder, "power_w: 10000", "power_w: -1")), HasSubstr("power_w"));
 }
 
+TEST(Opening, SaysHowToOpenWhatIsNoInput) {
+  const StateFolder folder;
+  folder.write("a.view.json", "{}");
+  folder.write("view.json", R"({"schema_version": 1, "camera": "orbit"})");
+  folder.write("colours.json", R"({"schema_version": 1, "domain": "relative", "opacity": [], "colors": []})");
+  folder.write("field_0001.raw.json", R"({"dims": [2, 2, 2]})");
+  folder.write("series.json", R"({"format_version": 2, "recipe": {}})");
+  folder.write("scenario.json", R"({"schema_version": 1, "region": {}})");
+  const auto fault = [&](const char* name) {
+    return errorOf([&] { requireInputFile(folder / name); }, ErrorCode::bad_input);
+  };
+  const std::string view = ": a view file, not an input: give it with --state after a scenario or volumes";
+  EXPECT_EQ(fault("a.view.json"), (folder / "a.view.json") + view);
+  EXPECT_EQ(fault("view.json"), (folder / "view.json") + view);
+  EXPECT_THAT(fault("colours.json"),
+              HasSubstr(": a transfer function, not an input: give it with --transfer"));
+  EXPECT_THAT(fault("field_0001.raw.json"),
+              HasSubstr(": the header of a volume: open field_0001.raw beside it"));
+  EXPECT_THAT(fault("series.json"), HasSubstr(": describes a series of volumes: open its folder"));
+  EXPECT_NO_THROW(requireInputFile(folder / "scenario.json"));
+  EXPECT_NO_THROW(requireInputFile(shippedScenario("quick.yaml")));
+  const ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
+  EXPECT_THAT(errorOf([&] {
+                prepareOpening({folder / "series.json", "", std::nullopt, false}, present);
+              }),
+              HasSubstr("describes a series of volumes"));
+}
+
 TEST(Opening, LeavesOutEditsThatDoNotApplyAnyMore) {
   const StateFolder folder;
   ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
@@ -253,6 +281,31 @@ TEST_F(Opener, ShowsViewFiles) {
   EXPECT_FALSE(shown_->hasUnsavedEdits());
 }
 
+TEST_F(Opener, ShowsViewsWhoseIsosurfaceIsOutsideOfTheValues) {
+  ASSERT_TRUE(shown_.settle());
+  folder_.write(
+      "a.view.json",
+      R"({"schema_version": 1, "mode": "iso", "iso_value": -25, "edits": ["emitters.radar.power_w=1e-6"]})");
+  shown_.perform(fmt::format(R"({{"do":"load_state","file":"{}"}})", folder_ / "a.view.json"));
+  ASSERT_TRUE(waitUntilOpened(shown_, opener_));
+  EXPECT_EQ(shown_.error(), "");
+  EXPECT_EQ(shown_->settings().iso_value, -25);
+  EXPECT_EQ(shown_->viewState().edits.size(), 1U);
+}
+
+TEST_F(Opener, AFaultIsLoggedOnce) {
+  ASSERT_TRUE(shown_.settle());
+  shown_.log = EventLog(folder_ / "log.jsonl");
+  folder_.write("broken.vdb", "not a volume");
+  shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", folder_ / "broken.vdb"));
+  ASSERT_TRUE(waitUntilOpened(shown_, opener_));
+  EXPECT_THAT(shown_.error(), HasSubstr("broken.vdb"));
+  const std::string log = readFile(folder_ / "log.jsonl");
+  const std::size_t first = log.find(R"("event":"error")");
+  ASSERT_NE(first, std::string::npos) << log;
+  EXPECT_EQ(log.find(R"("event":"error")", first + 1), std::string::npos) << log;
+}
+
 // --- edits that are not saved ---
 
 bool waitForAutosave(SessionSample& shown, bool wanted) {
@@ -287,6 +340,26 @@ TEST_F(Opener, EditsAreKeptAMomentLaterAndRestored) {
   EXPECT_EQ(again->viewState().edits[0].value, "500");
   EXPECT_TRUE(again->hasUnsavedEdits());
   ASSERT_TRUE(waitForAutosave(again, true));
+  again->leave(false);
+  EXPECT_TRUE(waitForAutosave(again, false));
+}
+
+TEST_F(Opener, EditsThatLeaveNoIsosurfaceAreRestored) {
+  ASSERT_TRUE(shown_.settle());
+  shown_.perform(R"({"do":"iso","value":-25})");
+  shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"1e-6"})");
+  ASSERT_TRUE(waitForAutosave(shown_, true));
+  shown_.session.reset();
+  shown_.files->autosaves.reset();
+  SessionSample again(optionsFor(shippedScenario("quick.yaml")));
+  SessionOpener opener(again.files, [&again](const ViewOptions& options) { return again.make(options); });
+  again->shown("");
+  ASSERT_TRUE(again.settle());
+  again.perform(R"({"do":"restore"})");
+  ASSERT_TRUE(waitUntilOpened(again, opener));
+  EXPECT_EQ(again.error(), "");
+  ASSERT_EQ(again->viewState().edits.size(), 1U);
+  EXPECT_EQ(again->settings().mode, render::CompositingMode::iso);
   again->leave(false);
   EXPECT_TRUE(waitForAutosave(again, false));
 }

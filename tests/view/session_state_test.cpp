@@ -19,7 +19,8 @@ struct Rendered {
   render::Image8 picture;  ///< with background and labels
 };
 
-Rendered render(const std::string& input, const playback::ViewState& written) {
+Rendered render(const std::string& input, const playback::ViewState& written,
+                bool must_show_isosurface = true) {
   const playback::ViewState view =
       playback::parseViewState(playback::viewStateText(written), "test.view.json");
   playback::FrameSelection selection;
@@ -30,7 +31,9 @@ Rendered render(const std::string& input, const playback::ViewState& written) {
   selection.compare = view.compare;
   selection.times = fmt::format("{}", view.time_s);
   const auto source = playback::openFrameSource(selection, cpu());
-  playback::Painter painter(playback::pictureStyleOf(view), *source, cpu());
+  playback::PictureStyle style = playback::pictureStyleOf(view);
+  style.must_show_isosurface = must_show_isosurface;
+  playback::Painter painter(style, *source, cpu());
   painter.setFrame(source->frame(0));
   painter.draw({});
   return {render::quantize(painter.image()), painter.picture(painter.note(render::Pattern::full))};
@@ -165,6 +168,18 @@ TEST(SessionState, IsSavedAndShownAgain) {
   EXPECT_EQ(again->timeline().playRange().end_s, shown->timeline().end_s());
   EXPECT_EQ(again->timeline().visible().begin_s, 0.5);
   EXPECT_EQ(again->timeline().visible().end_s, 3);
+}
+
+TEST(SessionState, AnIsosurfaceOutsideOfTheValuesIsDrawnAsNone) {
+  const StateFolder folder;
+  ViewOptions options = optionsFor(shippedScenario("quick.yaml"));
+  options.view.settings.mode = render::CompositingMode::iso;
+  options.view.settings.iso_value = 999;
+  SessionSample shown(options);
+  ASSERT_TRUE(shown.settle());
+  EXPECT_EQ(shown.error(), "");
+  EXPECT_EQ(shown->status().error, "");
+  EXPECT_TRUE(shown->picture()->image.rgba == render(options.input, shown->viewState(), false).volume.rgba);
 }
 
 TEST(SessionState, AnotherQuantityIsShownInColoursOfItsOwn) {

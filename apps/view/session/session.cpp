@@ -35,6 +35,8 @@ playback::PictureStyle styleOf(const ViewOptions& options) {
   style.transfer = options.transfer;
   style.cells = options.cells;
   style.size = {};
+  // Such a view must open: its edits may have moved all values away from the surface.
+  style.must_show_isosurface = false;
   return style;
 }
 

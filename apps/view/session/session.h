@@ -154,6 +154,8 @@ class Session {
   const std::vector<std::optional<playback::Bookmark>>& bookmarks() const { return bookmarks_; }
   const Notice& notice() const { return notice_; }
   void tell(const std::string& text, bool is_error = false);
+  /// Shows a notice that another session of the window has told and logged.
+  void show(const Notice& notice) { notice_ = notice; }
   Panels panels;
   EventLog& log() { return log_; }
 

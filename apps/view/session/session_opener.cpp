@@ -28,7 +28,9 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
     replace(session);
     return true;
   }
-  if (!next_->status().error.empty()) giveUp(*session, next_->status().error);
+  if (next_->status().error.empty()) return false;
+  session->show(next_->notice());
+  giveUp();
   return false;
 }
 
@@ -43,7 +45,8 @@ void SessionOpener::take(Session& session) {
     }
     next_ = make_(opening_.options);
   } catch (const std::exception& error) {
-    giveUp(session, failureText(error));
+    session.tell(failureText(error), true);
+    giveUp();
   }
 }
 
@@ -57,10 +60,9 @@ void SessionOpener::replace(std::unique_ptr<Session>& session) {
   session->shown(opening_.left_out);
 }
 
-void SessionOpener::giveUp(Session& session, const std::string& why) {
+void SessionOpener::giveUp() {
   endBeside(std::move(next_));
   files_->is_opening = files_->request.has_value();
-  session.tell(why, true);
 }
 
 /// Destroys a session on a background thread, since it waits for its running field.

@@ -30,7 +30,7 @@ class SessionOpener {
  private:
   void take(Session& session);
   void replace(std::unique_ptr<Session>& session);
-  void giveUp(Session& session, const std::string& why);
+  void giveUp();
   void endBeside(std::unique_ptr<Session> session);
 
   std::shared_ptr<Files> files_;
