@@ -90,6 +90,15 @@ TEST(SessionProbe, CopiesTheCommandThatExplainsThePath) {
                                                  "--to=52.0200000,5.0300000,1500.00 --time 0"));
 }
 
+TEST(SessionProbe, CopiesNoCommandForAnUnknownEmitter) {
+  SessionSample sample("quick.yaml");
+  sample.perform(kProbe);
+  sample.settle();
+  sample.perform(R"({"do":"copy_profile","emitter":"nobody"})");
+  EXPECT_EQ(sample.error(), "there is no emitter 'nobody'; the scenario has 'radar', 'transmitter'");
+  EXPECT_EQ(sample.window.clipboard, "");
+}
+
 TEST(SessionProbe, SaysWhatIsNoPosition) {
   SessionSample sample("quick.yaml");
   sample.perform(R"({"do":"probe","x":3})");

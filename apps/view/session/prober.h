@@ -97,7 +97,7 @@ class Prober {
 };
 
 /// The `emscape profile` command for the path from an emitter to the reading's position.
-/// @throws Error (bad_input) if there is no scenario
+/// @throws Error (bad_input) if there is no scenario, or no such emitter
 std::string profileCommand(const ProbeResult& result, const std::string& emitter);
 
 }  // namespace emscape::view
