@@ -246,9 +246,44 @@ TEST_F(Window, BadInputIsOneMessageAndStatusThree) {
   result = run({"view", file}, environment());
   EXPECT_EQ(result.status, 3);
   EXPECT_THAT(result.err, HasSubstr("speed"));
+  result = runScript("{\"do\":\"wait_state\",\"state\":\"ready\"}\n");
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.err, HasSubstr("script.jsonl:1: wait_state: state 'ready': expected BUSY"));
   result = runScript("{\"do\":\"jump\"}\n");
   EXPECT_EQ(result.status, 3);
   EXPECT_THAT(result.err, HasSubstr("script.jsonl:1: unknown verb 'jump'"));
+}
+
+TEST_F(Window, AViewAsInputIsOneMessage) {
+  const std::string file = folder_ / "x.view.json";
+  writeFile(file, R"({"schema_version": 1})");
+  const ProgramResult result = run({"view", file}, environment());
+  EXPECT_EQ(result.status, 3);
+  EXPECT_EQ(result.err,
+            "emscape-view: error: " + file +
+                ": a view file, not an input: give it with --state after a scenario or volumes\n");
+}
+
+TEST_F(Window, NamesAreShownToTheirEnd) {
+  const auto headingOf = [this](const std::string& name) {
+    std::string text = readFile(quick());
+    const std::string plain = "- name: radar\n";
+    text.replace(text.find(plain), plain.size(), "- name: '" + name + "'\n");
+    writeFile(folder_ / "own.yaml", text);
+    const ProgramResult result = run(viewOf(folder_ / "own.yaml", R"({"do":"wait_state","state":"exact"}
+{"do":"screenshot","file":")" + (folder_ / "window.png") + R"("}
+{"do":"quit"}
+)"),
+                                     environment());
+    EXPECT_EQ(result.status, 0) << result.err;
+    const render::Image8 window = render::readPng(folder_ / "window.png");
+    std::vector<std::uint8_t> heading;
+    for (int y = 86; y < 105; ++y) heading.insert(heading.end(), window.at(380, y), window.at(590, y));
+    return heading;
+  };
+  const auto first = headingOf("r##1");
+  EXPECT_TRUE(first == headingOf("r##1"));
+  EXPECT_FALSE(first == headingOf("r##2"));
 }
 
 TEST_F(Window, AnInputThatCannotBeOpenedEndsWithItsOwnStatus) {

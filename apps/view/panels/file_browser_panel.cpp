@@ -4,6 +4,7 @@
 #include <cstring>
 #include <filesystem>
 
+#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 
@@ -65,7 +66,7 @@ void drawEntries(PanelContext& context) {
     const bool is_folder = entry.kind == FileKind::folder;
     const std::string name = is_folder ? entry.name + "/" : entry.name;
     if (is_folder) ImGui::PushStyleColor(ImGuiCol_Text, accentColor(session.theme()));
-    if (ImGui::Selectable(name.c_str(), i == browser.selected(), ImGuiSelectableFlags_AllowDoubleClick)) {
+    if (selectableName(name, i == browser.selected(), ImGuiSelectableFlags_AllowDoubleClick)) {
       browser.select(i);
       scrolled_to = i;
       if (ImGui::IsMouseDoubleClicked(0)) openFile(session, browser.choose());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/volume/difference.h"
@@ -40,7 +41,9 @@ void drawRecentMenu(PanelContext& context) {
   const std::vector<std::string> recent = context.session.files().recent;
   if (!ImGui::BeginMenu("Open recent", !recent.empty())) return;
   for (std::size_t i = 0; i < recent.size(); ++i) {
-    if (ImGui::MenuItem(recent[i].c_str())) context.session.perform({"open_recent", {{"number", i + 1}}});
+    ImGui::PushID(static_cast<int>(i));
+    if (selectableName(recent[i], false)) context.session.perform({"open_recent", {{"number", i + 1}}});
+    ImGui::PopID();
   }
   ImGui::EndMenu();
 }

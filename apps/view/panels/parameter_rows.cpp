@@ -8,6 +8,7 @@
 #include <cstring>
 #include <optional>
 
+#include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
 #include "base/quantity_text.h"
 
@@ -204,10 +205,12 @@ void ParameterRows::drawNumber(const Parameter& parameter) {
 }
 
 void ParameterRows::drawChoice(const Parameter& parameter) {
-  const char* shown = parameter.value.empty() ? "by default" : parameter.value.c_str();
-  if (!ImGui::BeginCombo("##value", shown)) return;
+  if (!beginComboOfName("##value", parameter.value.empty() ? "by default" : parameter.value)) return;
   for (const std::string& choice : parameter.choices) {
-    if (!ImGui::Selectable(choice.c_str(), choice == parameter.value) || choice == parameter.value) continue;
+    pushNameId(choice);
+    const bool is_chosen = selectableName(choice, choice == parameter.value);
+    ImGui::PopID();
+    if (!is_chosen || choice == parameter.value) continue;
     context_.session.perform({"choose", {{"path", parameter.path}, {"value", choice}}});
   }
   ImGui::EndCombo();

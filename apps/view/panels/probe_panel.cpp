@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/path_plot.h"
 #include "apps/view/panels/theme.h"
@@ -130,11 +131,8 @@ void drawEmitters(PanelContext& context, const ProbeResult& result) {
   for (std::size_t i = 0; i < shown; ++i) {
     const Contribution& contribution = result.contributions[i];
     const playback::EmitterProbe& emitter = emitters[contribution.emitter];
-    ImGui::PushID(emitter.emitter.c_str());
-    const bool is_open = ImGui::TreeNodeEx(
-        "emitter",
-        ImGuiTreeNodeFlags_Framed | ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen,
-        "%s", emitter.emitter.c_str());
+    pushNameId(emitter.emitter);
+    const bool is_open = headingOfName("emitter", emitter.emitter);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     const std::string value = render::unitText(contribution.text);
     const ImVec2 text = ImGui::CalcTextSize(value.c_str());

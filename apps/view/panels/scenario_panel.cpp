@@ -5,6 +5,7 @@
 #include <map>
 #include <unordered_set>
 
+#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/parameter_rows.h"
 #include "apps/view/panels/theme.h"
@@ -108,10 +109,11 @@ void drawQuantity(PanelContext& context, ParameterRows& rows, const scenario::Sc
   ImGui::SetNextItemWidth(-1);
   const std::string& chosen = context.session.quantity();
   const std::string shown = chosen.empty() ? scenario.output.quantities.front() : chosen;
-  if (ImGui::BeginCombo("##quantity", shown.c_str())) {
+  if (beginComboOfName("##quantity", shown)) {
     for (const std::string& name : quantitiesOf(scenario)) {
-      if (ImGui::Selectable(name.c_str(), name == shown))
-        context.session.perform({"quantity", {{"name", name}}});
+      pushNameId(name);
+      if (selectableName(name, name == shown)) context.session.perform({"quantity", {{"name", name}}});
+      ImGui::PopID();
     }
     ImGui::EndCombo();
   }
@@ -120,7 +122,7 @@ void drawQuantity(PanelContext& context, ParameterRows& rows, const scenario::Sc
 
 void drawBody(PanelContext& context, PanelState& state, const Section& section) {
   ParameterRows rows(context, state.edited, state.typing);
-  ImGui::PushID(section.path.c_str());
+  pushNameId(section.path);
   try {
     if (section.kind) drawSwitch(context, rows, state, section);
     if (section.path == "output") drawQuantity(context, rows, *state.scenario);
@@ -133,12 +135,9 @@ void drawBody(PanelContext& context, PanelState& state, const Section& section) 
 
 /// A collapsible heading, with a dot in the kind's colour.
 void drawHeading(PanelState& state, const Section& section, render::Theme theme, float scale) {
-  ImGui::PushID(section.path.c_str());
+  pushNameId(section.path);
   ImGui::SetNextItemOpen(state.open.count(section.path) > 0);
-  const bool open = ImGui::TreeNodeEx(
-      "section",
-      ImGuiTreeNodeFlags_Framed | ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen,
-      "%s", section.name.c_str());
+  const bool open = headingOfName("section", section.name);
   if (section.kind) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     ImGui::GetWindowDrawList()->AddCircleFilled(

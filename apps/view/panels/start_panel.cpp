@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 
@@ -13,9 +14,9 @@ void drawRecentFiles(PanelContext& context, std::size_t max_count) {
   for (std::size_t i = 0; i < std::min(max_count, recent.size()); ++i) {
     const std::filesystem::path file(recent[i]);
     ImGui::PushID(static_cast<int>(i));
-    if (ImGui::Selectable("##recent")) session.perform({"open_recent", {{"number", i + 1}}});
-    ImGui::SameLine();
-    ImGui::TextUnformatted(file.filename().c_str());
+    if (selectableName(file.filename().string(), false)) {
+      session.perform({"open_recent", {{"number", i + 1}}});
+    }
     ImGui::SameLine(0, 12 * context.scale);
     ImGui::TextDisabled("%s", file.parent_path().c_str());
     ImGui::PopID();
