@@ -3,9 +3,12 @@
 #include <cairo-svg.h>
 #include <cairo.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <vector>
 
+#include "base/utf8.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
@@ -230,6 +233,21 @@ void Canvas::textWithRim(const std::string& words, const Point2& at, double size
   cairo_stroke(cairo_.get());
   cairo_restore(cairo_.get());
   text(words, at, size_px, ink, align, weight, angle_rad);
+}
+
+std::string shortenedText(const Canvas& canvas, const std::string& text, double size_px, double width_px,
+                          Weight weight) {
+  const auto fits = [&](const std::string& some) {
+    return canvas.textBox(some, size_px, weight).width <= width_px;
+  };
+  if (fits(text)) return text;
+  std::vector<std::string> shorter{"…"};
+  for (std::size_t end = 0; end < text.size();) {
+    end += std::max<std::size_t>(1, utf8SequenceLength(std::string_view(text).substr(end)));
+    shorter.push_back(text.substr(0, end) + "…");
+  }
+  const auto first_too_long = std::partition_point(shorter.begin() + 1, shorter.end(), fits);
+  return *(first_too_long - 1);
 }
 
 }  // namespace emscape::render

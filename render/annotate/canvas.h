@@ -102,4 +102,8 @@ class Canvas {
   std::shared_ptr<_cairo> cairo_;
 };
 
+/// The whole text if it fits into a width, else as many of its first characters as fit with an ellipsis.
+std::string shortenedText(const Canvas& canvas, const std::string& text, double size_px, double width_px,
+                          Weight weight = Weight::normal);
+
 }  // namespace emscape::render

@@ -19,7 +19,9 @@ constexpr double kBarWidth = 20;
 constexpr double kOpacityWidth = 34;
 constexpr double kPixelsPerTick = 60;
 constexpr double kSwatch = 15;
+constexpr double kSwatchGap = 8;
 constexpr double kRowHeight = 25;
+constexpr double kNote = 0.85;   // size of small texts, in small_px
 constexpr double kBarTop = 0.2;  // fraction of the picture's height
 constexpr double kBarBottom = 0.8;
 
@@ -55,7 +57,7 @@ BarTicks ticksOf(const Legend& legend, int count) {
   return ticks;
 }
 
-/// Text is measured independently of the picture.
+/// Width of the longest text. Text is measured independently of the picture.
 double widestText(const std::vector<std::string>& texts, double size_px) {
   const Canvas measure({1, 1});
   double widest = 0;
@@ -88,6 +90,11 @@ std::vector<std::string> headingOf(const Legend& legend) {
   return lines;
 }
 
+/// Maximum width of a category's name.
+double nameRoom(const Style& style) {
+  return style.name_px - (kSwatch + kSwatchGap) * style.unit;
+}
+
 constexpr double kLine = 1.3;  // line height in text sizes
 
 /// Minimum height above the bar or the categories.
@@ -108,8 +115,10 @@ void drawHeading(Canvas& canvas, const Style& style, const Legend& legend, doubl
   double y = bottom - line_px * (static_cast<double>(lines.size()) - 0.5);
   for (std::size_t i = 0; i < lines.size(); ++i, y += line_px) {
     const bool unit = !legend.unit.empty() && i + 1 == lines.size();
-    canvas.textWithRim(lines[i], {left, y}, style.text_px, unit ? style.mutedInk() : style.textInk(),
-                       style.rimInk(), Align::left, unit ? Weight::normal : Weight::bold);
+    const Weight weight = unit ? Weight::normal : Weight::bold;
+    canvas.textWithRim(shortenedText(canvas, lines[i], style.text_px, style.name_px, weight), {left, y},
+                       style.text_px, unit ? style.mutedInk() : style.textInk(), style.rimInk(), Align::left,
+                       weight);
   }
 }
 
@@ -118,13 +127,21 @@ double contentWidth(const Style& style, const Legend& legend) {
   if (legend.function.categorical) {
     std::vector<std::string> names;
     for (const Category& category : legend.categories) names.push_back(category.name);
-    content = (kSwatch + 8) * style.unit + widestText(names, style.small_px);
+    content =
+        (kSwatch + kSwatchGap) * style.unit + std::min(widestText(names, style.small_px), nameRoom(style));
   } else {
     content =
         (kOpacityWidth + kBarWidth + 14) * style.unit + widestText(ticksOf(legend, 8).texts, style.small_px);
   }
-  if (!legend.note.empty()) content = std::max(content, widestText({legend.note}, 0.85 * style.small_px));
-  return std::max(content, widestText(headingOf(legend), style.text_px) * 1.08);
+  const double heading = widestText(headingOf(legend), style.text_px) * 1.08;
+  const double note = widestText({legend.note}, kNote * style.small_px);
+  return std::max(content, std::min(std::max(heading, note), style.name_px));
+}
+
+void drawNote(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
+  const double size_px = kNote * style.small_px;
+  canvas.textWithRim(shortenedText(canvas, legend.note, size_px, style.name_px), {left, y}, size_px,
+                     style.mutedInk(0.9), style.rimInk());
 }
 
 /// A line across the bar with an arrowhead at its left end.
@@ -181,11 +198,10 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
   }
   drawHeading(canvas, style, legend, left, top - 10 * style.unit);
   if (largest > 0) {
-    canvas.textWithRim("opacity", {left, bottom + 12 * style.unit}, 0.85 * style.small_px,
+    canvas.textWithRim("opacity", {left, bottom + 12 * style.unit}, kNote * style.small_px,
                        style.mutedInk(0.9), style.rimInk());
   }
-  canvas.textWithRim(legend.note, {left, bottom + 32 * style.unit}, 0.85 * style.small_px,
-                     style.mutedInk(0.9), style.rimInk());
+  drawNote(canvas, style, legend, left, bottom + 32 * style.unit);
 }
 
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
@@ -196,11 +212,11 @@ void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, do
     const double swatch = kSwatch * style.unit;
     canvas.rectangle({left, y - swatch / 2, swatch, swatch},
                      {category.color.value_or(categoryColor(category.index)), 1}, 3 * style.unit);
-    canvas.textWithRim(category.name, {left + swatch + 8 * style.unit, y}, style.small_px, style.textInk(),
+    canvas.textWithRim(shortenedText(canvas, category.name, style.small_px, nameRoom(style)),
+                       {left + swatch + kSwatchGap * style.unit, y}, style.small_px, style.textInk(),
                        style.rimInk());
   }
-  canvas.textWithRim(legend.note, {left, y + kRowHeight * style.unit}, 0.85 * style.small_px,
-                     style.mutedInk(0.9), style.rimInk());
+  drawNote(canvas, style, legend, left, y + kRowHeight * style.unit);
 }
 
 }  // namespace

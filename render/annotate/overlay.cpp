@@ -23,6 +23,8 @@ constexpr double kMargin = 26;
 constexpr double kTitle = 23;
 constexpr double kCompassRadius = 40;
 constexpr double kMinUnit = 0.62;
+constexpr double kNamePart = 1.0 / 3;  // maximum width of a name, of the picture's
+constexpr double kMinName = 160;
 
 /// Composites a cast picture over the drawing; the only quantisation of the cast picture.
 void drawCast(Canvas& canvas, const Image& cast) {
@@ -50,20 +52,24 @@ void drawCast(Canvas& canvas, const Image8& cast) {
   });
 }
 
-void drawTexts(Canvas& canvas, const Style& style, const Annotations& annotations) {
+/// A line of the header: a name at the left, shortened where it would reach the time at the right.
+void drawHeaderLine(Canvas& canvas, const Style& style, double y, const std::string& name,
+                    const std::string& time, double size_px, const Ink& ink, Weight weight) {
   const double left = kMargin * style.unit;
   const double right = canvas.size().width - left;
+  const double time_px = time.empty() ? 0 : canvas.textBox(time, size_px, weight).width + size_px;
+  canvas.textWithRim(shortenedText(canvas, name, size_px, right - left - time_px, weight), {left, y}, size_px,
+                     ink, style.rimInk(), Align::left, weight);
+  canvas.textWithRim(time, {right, y}, size_px, ink, style.rimInk(), Align::right, weight);
+}
+
+void drawTexts(Canvas& canvas, const Style& style, const Annotations& annotations) {
   const double top = (kMargin + 0.3 * kTitle) * style.unit;
   const double second = top + 1.25 * kTitle * style.unit;
-  const double title_px = kTitle * style.unit;
-  const Ink rim = style.rimInk();
-  canvas.textWithRim(annotations.title, {left, top}, title_px, style.textInk(), rim, Align::left,
-                     Weight::bold);
-  canvas.textWithRim(annotations.subtitle, {left, second}, style.text_px, style.mutedInk(), rim);
-  canvas.textWithRim(annotations.time, {right, top}, title_px, style.textInk(), rim, Align::right,
-                     Weight::bold);
-  canvas.textWithRim(annotations.time_utc, {right, second}, style.text_px, style.mutedInk(), rim,
-                     Align::right);
+  drawHeaderLine(canvas, style, top, annotations.title, annotations.time, kTitle * style.unit,
+                 style.textInk(), Weight::bold);
+  drawHeaderLine(canvas, style, second, annotations.subtitle, annotations.time_utc, style.text_px,
+                 style.mutedInk(), Weight::normal);
 }
 
 void drawFooter(Canvas& canvas, const Style& style, const SceneBox& box, const Annotations& annotations,
@@ -135,6 +141,7 @@ Style::Style(ImageSize size, Theme theme) {
   unit = std::max(kMinUnit, std::min(size.width / 1200.0, size.height / 900.0));
   text_px *= unit;
   small_px *= unit;
+  name_px = std::max(kNamePart * size.width, kMinName * unit);
   if (theme == Theme::dark) {
     background_top = parseColor("#10141b");
     background_bottom = parseColor("#1d242f");

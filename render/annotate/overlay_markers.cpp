@@ -123,14 +123,15 @@ struct PlacedMarker {
 
 void drawLabel(Canvas& canvas, const Style& style, const PlacedMarker& placed, std::vector<Rect>& taken) {
   if (placed.marker->label.empty()) return;
-  Rect extent = canvas.textBox(placed.marker->label, style.text_px);
+  const std::string label = shortenedText(canvas, placed.marker->label, style.text_px, style.name_px);
+  Rect extent = canvas.textBox(label, style.text_px);
   const double padding = 4 * style.unit;
   extent.width += 2 * padding;
   extent.height += padding;
   const Rect rect = placeLabel(placed.at, extent, 1.6 * kRadius * style.unit, canvas.size(), taken);
   taken.push_back(rect);
   canvas.rectangle(rect, style.rimInk(0.62 * placed.alpha), 3 * style.unit);
-  canvas.text(placed.marker->label, {rect.x + padding, rect.y + rect.height / 2}, style.text_px,
+  canvas.text(label, {rect.x + padding, rect.y + rect.height / 2}, style.text_px,
               style.textInk(placed.marker->active ? placed.alpha : 0.6 * placed.alpha));
 }
 

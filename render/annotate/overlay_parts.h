@@ -13,6 +13,7 @@ struct Style {
   double unit = 1;  ///< pixels per unit of length at 1200 x 900
   double text_px = 15;
   double small_px = 12.5;
+  double name_px = 400;  ///< maximum width of names in the legend and at markers; longer ones are shortened
   Rgb background_top, background_bottom;
   Rgb text, muted, rim;
 

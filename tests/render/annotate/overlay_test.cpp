@@ -157,6 +157,50 @@ TEST(Overlay, MarginsGrowWithTheLegend) {
   EXPECT_GT(with, overlayMargins(size, annotations).right + 0.03);
 }
 
+/// Whether pictures differ in columns from..to-1.
+bool differInColumns(const Image8& a, const Image8& b, int from, int to) {
+  for (int y = 0; y < a.size.height; ++y) {
+    if (!std::equal(a.at(from, y), a.at(from, y) + 4 * (to - from), b.at(from, y))) return true;
+  }
+  return false;
+}
+
+TEST(Overlay, ALongTitleEndsBeforeTheTime) {
+  const ImageSize size{640, 480};
+  Annotations annotations = everything(testing::fog(0.5));
+  annotations.subtitle = annotations.time_utc = "";
+  const Camera camera = makeCamera({}, kBox, size);
+  const Image8 named = compose(Image(size), camera, kBox, annotations);
+  annotations.title = std::string(80, 'm');
+  const Image8 long_named = compose(Image(size), camera, kBox, annotations);
+  annotations.title = std::string(200, 'm');
+  const Image8 longer = compose(Image(size), camera, kBox, annotations);
+  EXPECT_TRUE(differInColumns(named, long_named, 400, 500));
+  EXPECT_FALSE(differInColumns(named, long_named, 562, 640));  // the time
+  EXPECT_FALSE(differInColumns(long_named, longer, 0, 640));
+}
+
+TEST(Overlay, LongNamesDoNotSqueezeTheVolume) {
+  const ImageSize size{640, 480};
+  TransferFunction function = testing::fog(0);
+  function.categorical = true;
+  Annotations annotations = everything(function);
+  annotations.legend->categories = {{0, "first"}, {1, std::string(120, 'm')}};
+  EXPECT_LT(overlayMargins(size, annotations).right, 0.4);
+  const Camera camera = makeCamera({}, kBox, size, overlayMargins(size, annotations));
+  const Image8 picture = compose(Image(size), camera, kBox, annotations);
+  annotations.legend->categories[1].name += "m";
+  EXPECT_EQ(differingPixels(picture, compose(Image(size), camera, kBox, annotations)), 0);
+  annotations.markers[0].label = std::string(120, 'm');
+  const Image8 marked = compose(Image(size), camera, kBox, annotations);
+  annotations.markers[0].label += "m";
+  EXPECT_EQ(differingPixels(marked, compose(Image(size), camera, kBox, annotations)), 0);
+  annotations.legend->function = testing::fog(0.5);
+  annotations.legend->quantity = "SNR of " + std::string(120, 'm');
+  annotations.legend->note = std::string(120, 'm');
+  EXPECT_LT(overlayMargins(size, annotations).right, 0.4);
+}
+
 TEST(Overlay, DegenerateTransferFunctionsDoNotBreakTheLegend) {
   const ImageSize size{320, 240};
   TransferFunction function = testing::fog(0);

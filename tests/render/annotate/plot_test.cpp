@@ -19,6 +19,17 @@ TEST(Plot, TextsAreMadeToFit) {
   EXPECT_LE(canvas.textBox(text, smaller_px, Weight::bold).width, 0.62 * width);
 }
 
+TEST(Plot, TextsAreShortenedByWholeCharacters) {
+  const Canvas canvas({100, 100});
+  const std::string text = "Überhorizontradar";
+  const auto widthOf = [&](const std::string& some) { return canvas.textBox(some, 20).width; };
+  EXPECT_EQ(shortenedText(canvas, text, 20, widthOf(text)), text);
+  EXPECT_EQ(shortenedText(canvas, text, 20, widthOf("Über…")), "Über…");
+  EXPECT_EQ(shortenedText(canvas, text, 20, widthOf("Ü…") - 1), "…");
+  EXPECT_EQ(shortenedText(canvas, text, 20, -5), "…");
+  EXPECT_EQ(shortenedText(canvas, "", 20, 0), "");
+}
+
 TEST(Plot, LinesOfATextAreNoWiderThanTheirRoom) {
   const Canvas canvas({100, 100});
   const std::string text =
