@@ -169,7 +169,7 @@ class StoredFrames : public FrameSource {
   double time_s(int index) const override { return files_[static_cast<std::size_t>(index)].time_s; }
   Frame frame(int index) override {
     throwIfStopped(stop_);
-    const std::filesystem::path& file = files_[static_cast<std::size_t>(index)].file;
+    const VolumeFile& file = files_[static_cast<std::size_t>(index)];
     Frame frame{holds_meshes_ ? readCells(file) : readVoxels(file), {}, {}, true};
     if (scene_ && frame.grid().georeferenced) {
       const double time_s = frame.info().time_s;
@@ -207,15 +207,18 @@ class StoredFrames : public FrameSource {
     info.range_min = selection_.range->min;
     info.range_max = selection_.range->max;
   }
-  ShownField readVoxels(const std::filesystem::path& file) const {
-    auto volume = std::make_shared<const volume::DenseVolume>(volume::readVolume(file, quantity_));
+  ShownField readVoxels(const VolumeFile& file) const {
+    volume::DenseVolume read = volume::readVolume(file.file, quantity_);
+    read.info.time_s = file.time_s;
+    auto volume = std::make_shared<const volume::DenseVolume>(std::move(read));
     volume::VolumeInfo info = volume->info;
     setRange(info);
     return {{volume, info}, nullptr};
   }
-  ShownField readCells(const std::filesystem::path& file) {
-    volume::MeshFile read = volume::readMesh(file, quantity_);
+  ShownField readCells(const VolumeFile& file) {
+    volume::MeshFile read = volume::readMesh(file.file, quantity_);
     volume::MeshField& field = read.fields.front();
+    field.info.time_s = file.time_s;
     setRange(field.info);
     if (mesh_ && sameMesh(*mesh_, *read.mesh)) {
       field.mesh = mesh_;

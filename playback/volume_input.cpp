@@ -32,9 +32,10 @@ class FilesOfQuantity {
   /// @param quantity  empty: receives the first that is added
   explicit FilesOfQuantity(std::string& quantity) : quantity_(quantity) {}
 
-  void add(const fs::path& file, const volume::VolumeInfo& info) {
+  void add(const volume::SeriesStep& step, const volume::VolumeInfo& info) {
     if (quantity_.empty()) quantity_ = info.quantity;
-    if (info.quantity == quantity_) files_.push_back({file, info.time_s});
+    const double time_s = info.has_time ? info.time_s : step.time_s.value_or(info.time_s);
+    if (info.quantity == quantity_) files_.push_back({step.file, time_s});
     if (std::find(found_.begin(), found_.end(), info.quantity) == found_.end())
       found_.push_back(info.quantity);
   }
@@ -59,15 +60,17 @@ class FilesOfQuantity {
 };
 
 /// The .vtu files of a folder by name, or of a list.
-std::vector<fs::path> meshesOf(const fs::path& path) {
-  if (path.extension() == ".pvd") return volume::seriesOf(path);
-  if (!fs::is_directory(path)) return {path};
+std::vector<volume::SeriesStep> meshesOf(const fs::path& path) {
+  if (path.extension() == ".pvd") return volume::seriesSteps(path);
+  if (!fs::is_directory(path)) return {{path, std::nullopt}};
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
     if (entry.is_regular_file() && volume::isMeshFile(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
-  return files;
+  std::vector<volume::SeriesStep> steps;
+  for (const fs::path& file : files) steps.push_back({file, std::nullopt});
+  return steps;
 }
 
 }  // namespace
@@ -75,8 +78,10 @@ std::vector<fs::path> meshesOf(const fs::path& path) {
 std::vector<VolumeFile> volumeFilesOf(const fs::path& path, std::string& quantity) {
   const bool is_series = fs::is_directory(path) || path.extension() == ".pvd";
   FilesOfQuantity files(quantity);
-  for (const auto& file : is_series ? volume::seriesOf(path) : std::vector<fs::path>{path}) {
-    for (const volume::DenseVolume& volume : volume::listVolume(file).volumes) files.add(file, volume.info);
+  for (const volume::SeriesStep& step :
+       is_series ? volume::seriesSteps(path) : std::vector<volume::SeriesStep>{{path, std::nullopt}}) {
+    for (const volume::DenseVolume& volume : volume::listVolume(step.file).volumes)
+      files.add(step, volume.info);
   }
   return files.sorted(path);
 }
@@ -101,8 +106,8 @@ bool holdsMeshes(const fs::path& path) {
 
 std::vector<VolumeFile> meshFilesOf(const fs::path& path, std::string& quantity) {
   FilesOfQuantity files(quantity);
-  for (const fs::path& file : meshesOf(path)) {
-    for (const volume::VolumeInfo& info : volume::listMesh(file)) files.add(file, info);
+  for (const volume::SeriesStep& step : meshesOf(path)) {
+    for (const volume::VolumeInfo& info : volume::listMesh(step.file)) files.add(step, info);
   }
   return files.sorted(path);
 }

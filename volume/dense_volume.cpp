@@ -4,6 +4,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "volume/description_check.h"
+
 namespace emscape::volume {
 
 bool operator==(const VolumeInfo& a, const VolumeInfo& b) {
@@ -39,7 +41,8 @@ void checkVolume(const DenseVolume& volume, const SourceLocation& location) {
   const Dims& dims = volume.grid.dims;
   const std::string who = "volume " + volume.info.quantity + ": ";
   const auto fail = [&](const std::string& what) { throw Error(ErrorCode::bad_input, location, who + what); };
-  checkDims(dims, location);
+  checkGrid(volume.grid, location);
+  checkInfo(volume.info, location);
   if (volume.info.quantity.empty()) fail("a volume needs the name of its quantity");
   if (static_cast<long long>(volume.values.size()) != dims.count()) {
     fail(std::to_string(volume.values.size()) + " values for " + dimsText(dims) + " voxels");

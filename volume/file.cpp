@@ -118,7 +118,9 @@ std::vector<fs::path> filesOfFolder(const fs::path& folder) {
 }
 
 /// The files in the folder of a numbered one that differ from it only in the number.
-std::vector<fs::path> siblingFiles(const fs::path& path) {
+std::vector<fs::path> numberedFiles(const fs::path& path) {
+  requireFormat(path);
+  if (!fs::exists(path)) throw Error(ErrorCode::bad_input, {path.string()}, "there is no such file");
   const SeriesName own(path);
   if (own.number < 0) return {path};
   std::vector<fs::path> files;
@@ -194,19 +196,24 @@ fs::path seriesFile(const fs::path& folder, const std::string& name, int number,
   return folder / (name + "_" + digits + "." + format);
 }
 
-std::vector<fs::path> seriesOf(const fs::path& path) {
-  if (fs::is_directory(path)) return filesOfFolder(path);
-  if (path.extension() == ".pvd") {
-    std::vector<PvdEntry> entries = readPvd(path);
-    std::stable_sort(entries.begin(), entries.end(),
-                     [](const PvdEntry& a, const PvdEntry& b) { return a.time_s < b.time_s; });
-    std::vector<fs::path> files;
-    for (const PvdEntry& entry : entries) files.push_back(entry.file);
-    return files;
+std::vector<SeriesStep> seriesSteps(const fs::path& path) {
+  std::vector<SeriesStep> steps;
+  if (path.extension() == ".pvd" && !fs::is_directory(path)) {
+    for (const PvdEntry& entry : readPvd(path)) steps.push_back({entry.file, entry.time_s});
+    std::stable_sort(steps.begin(), steps.end(),
+                     [](const SeriesStep& a, const SeriesStep& b) { return a.time_s < b.time_s; });
+    return steps;
   }
-  requireFormat(path);
-  if (!fs::exists(path)) throw Error(ErrorCode::bad_input, {path.string()}, "there is no such file");
-  return siblingFiles(path);
+  for (const fs::path& file : fs::is_directory(path) ? filesOfFolder(path) : numberedFiles(path)) {
+    steps.push_back({file, std::nullopt});
+  }
+  return steps;
+}
+
+std::vector<fs::path> seriesOf(const fs::path& path) {
+  std::vector<fs::path> files;
+  for (const SeriesStep& step : seriesSteps(path)) files.push_back(step.file);
+  return files;
 }
 
 }  // namespace emscape::volume

@@ -1,9 +1,10 @@
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 #include "base/whole_file.h"
 #include "emscape/volume/statistics.h"
 #include "volume/byte_reader.h"
+#include "volume/description_check.h"
 #include "volume/nanovdb_wrapper.h"
 #include "volume/nvdb.h"
 #include "volume/sparse.h"
@@ -285,6 +286,7 @@ class NvdbFile {
     if (!ours) {
       first = grid.firstActive();
       volume.info.quantity = entry.name.empty() ? "density" : entry.name;
+      volume.info.has_time = false;
       volume.info.floor = grid.background();
       volume.info.categorical = categorical;
       placeForeign(volume.grid, data, first, grid.lastActive());
@@ -311,12 +313,10 @@ class NvdbFile {
     const nano::Vec3d center = data.applyMap(nano::Vec3d(first[0], first[1], first[2]));
     grid.first_center_m = {center[0], center[1], center[2]};
     grid.spacing_m = {data.mVoxelSize[0], data.mVoxelSize[1], data.mVoxelSize[2]};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (!(data.mVoxelSize[axis] > 0) || !std::isfinite(data.mVoxelSize[axis]) ||
-          !std::isfinite(center[axis])) {
-        fail("the grid has no positive, finite voxel size and place");
-      }
-    }
+    checkGrid(grid, {path_.string()});
+    std::array<double, 9> matrix{};
+    std::copy(std::begin(data.mMap.mMatD), std::end(data.mMap.mMatD), matrix.begin());
+    checkAxes(matrix, grid.spacing_m, {path_.string()});
   }
 
   std::filesystem::path path_;

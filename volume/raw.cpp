@@ -69,6 +69,7 @@ Described describeByLayout(const fs::path& path, const RawLayout& layout) {
   described.volume.grid.dims = layout.dims;
   described.volume.grid.spacing_m = layout.spacing_m;
   described.volume.info.quantity = quantityFromName(path);
+  described.volume.info.has_time = false;
   described.type = layout.type;
   described.big_endian = layout.big_endian;
   checkDims(layout.dims, {path.string()});

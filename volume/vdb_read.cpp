@@ -1,6 +1,7 @@
 #include <openvdb/io/io.h>
 #include <openvdb/tools/Dense.h>
 
+#include <array>
 #include <boost/iostreams/device/array.hpp>
 #include <boost/iostreams/stream.hpp>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "base/whole_file.h"
 #include "emscape/base/log.h"
 #include "emscape/volume/statistics.h"
+#include "volume/description_check.h"
 #include "volume/sparse.h"
 #include "volume/vdb.h"
 #include "volume/vdb_grid.h"
@@ -135,16 +137,21 @@ DenseVolume volumeOf(const VdbGrid& entry) {
   const VdbMetadata& metadata = entry.metadata;
   const auto text = [&](const char* key) { return metaText(metadata, std::string("emscape:") + key); };
   const auto number = [&](const char* key) { return metaNumber(metadata, std::string("emscape:") + key); };
+  const auto floatOf = [&](const char* key) {
+    return requireFloat(number(key).value_or(0), std::string("emscape:") + key);
+  };
   DenseVolume volume;
   VolumeInfo& info = volume.info;
   info.quantity =
       text("quantity").value_or(entry.descriptor.name.empty() ? "density" : entry.descriptor.name);
   info.unit = text("unit").value_or("");
-  info.time_s = number("time_s").value_or(0);
+  const std::optional<double> time_s = number("time_s");
+  info.time_s = time_s.value_or(0);
+  info.has_time = time_s.has_value();
   info.time_utc = text("time_utc").value_or("");
-  info.floor = static_cast<float>(number("floor").value_or(0));
-  info.range_min = static_cast<float>(number("range_min").value_or(0));
-  info.range_max = static_cast<float>(number("range_max").value_or(0));
+  info.floor = floatOf("floor");
+  info.range_min = floatOf("range_min");
+  info.range_max = floatOf("range_max");
   info.categorical = number("categorical").value_or(0) != 0;
   static const char* const kOwn[] = {"emscape:quantity", "emscape:unit", "emscape:time_utc", "emscape:frame"};
   for (const auto& [key, value] : metadata) {
@@ -174,19 +181,23 @@ DenseVolume volumeOf(const VdbGrid& entry) {
 }
 
 /// Sets the volume's grid from the transform's scale and the centre of the voxel `first`.
+/// @throws Error (bad_input) without a location if its axes are not x, y and z
 void placeGrid(DenseVolume& volume, const openvdb::math::Transform& transform, const openvdb::Coord& first,
                const VdbFile& file) {
   if (!transform.isLinear()) file.fail("grid " + volume.info.quantity + ": its transform is not linear");
   const openvdb::Vec3d spacing = transform.voxelSize();
   const openvdb::Vec3d center = transform.indexToWorld(first);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]) || !std::isfinite(center[axis])) {
-      file.fail("grid " + volume.info.quantity +
-                ": its transform has no positive, finite voxel size and place");
-    }
-  }
   volume.grid.spacing_m = {spacing.x(), spacing.y(), spacing.z()};
   volume.grid.first_center_m = {center.x(), center.y(), center.z()};
+  checkGrid(volume.grid, {});
+  std::array<double, 9> matrix{};
+  for (int axis = 0; axis < 3; ++axis) {
+    openvdb::Vec3d step(0);
+    step[axis] = 1;
+    const openvdb::Vec3d moved = transform.baseMap()->applyJacobian(step);
+    for (int row = 0; row < 3; ++row) matrix[static_cast<std::size_t>(3 * row + axis)] = moved[row];
+  }
+  checkAxes(matrix, volume.grid.spacing_m, {});
 }
 
 bool isOurs(const DenseVolume& description) {
@@ -230,6 +241,7 @@ bool makeDense(const openvdb::GridBase& base, const VdbGrid& entry, const VdbFil
         "it is read as that program's");
     volume = DenseVolume();
     volume.info.quantity = entry.descriptor.name;
+    volume.info.has_time = false;
   }
   const bool ours = isOurs(volume);
   if (!ours && active.empty()) file.fail(who + " has no active voxels and does not say its dims");
@@ -290,6 +302,7 @@ std::vector<DenseVolume> describeVdb(const std::filesystem::path& path) {
       DenseVolume volume = volumeOf(entry);
       if (isOurs(volume)) {
         placeGrid(volume, *entry.transform, openvdb::Coord(0, 0, 0), file);
+        checkInfo(volume.info, {});
       } else {
         volume = readGrid(file, entry);
         volume.values.clear();

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "base/utc.h"
+#include "volume/description_check.h"
 
 namespace emscape::volume {
 namespace {
@@ -69,11 +70,14 @@ std::string timeFromJson(const Json& value) {
 void setMember(VolumeInfo& info, const std::string& key, const Json& value) {
   if (key == "quantity") info.quantity = value.get<std::string>();
   if (key == "unit") info.unit = value.get<std::string>();
-  if (key == "time_s") info.time_s = numberFromJson(value);
+  if (key == "time_s") {
+    info.time_s = numberFromJson(value);
+    info.has_time = true;
+  }
   if (key == "time_utc") info.time_utc = timeFromJson(value);
-  if (key == "floor") info.floor = static_cast<float>(numberFromJson(value));
-  if (key == "range_min") info.range_min = static_cast<float>(numberFromJson(value));
-  if (key == "range_max") info.range_max = static_cast<float>(numberFromJson(value));
+  if (key == "floor") info.floor = requireFloat(numberFromJson(value));
+  if (key == "range_min") info.range_min = requireFloat(numberFromJson(value));
+  if (key == "range_max") info.range_max = requireFloat(numberFromJson(value));
   if (key == "categorical") info.categorical = value.get<bool>();
   if (key == "extra") info.extra = value.get<std::map<std::string, std::string>>();
 }
@@ -157,9 +161,14 @@ Json toJson(const DenseVolume& volume, bool with_mask) {
 DenseVolume fromJson(const Json& json, const std::string& file) {
   DenseVolume volume;
   volume.grid.spacing_m = {1, 1, 1};
+  volume.info.has_time = false;
   eachMember(json, file, "a volume",
              [&](const std::string& key, const Json& value) { setMember(volume, key, value); });
-  checkDims(volume.grid.dims, {file});
+  checkGrid(volume.grid, {file});
+  // One of the two is no range.
+  if (!json.contains("range_min") || !json.contains("range_max"))
+    volume.info.range_min = volume.info.range_max = 0;
+  checkInfo(volume.info, {file});
   if (json.contains("voxels") && json["voxels"] != volume.grid.dims.count()) {
     throw Error(ErrorCode::bad_input, {file},
                 "key voxels: " + json["voxels"].dump() + " is not the product of the dims");
@@ -178,6 +187,7 @@ Json toJson(const MeshField& field) {
 
 MeshField meshFieldFromJson(const Json& json, const std::string& file) {
   MeshField field;
+  field.info.has_time = false;
   auto mesh = std::make_shared<TetrahedralMesh>();
   eachMember(json, file, "a field", [&](const std::string& key, const Json& value) {
     setMember(field.info, key, value);
@@ -185,6 +195,8 @@ MeshField meshFieldFromJson(const Json& json, const std::string& file) {
     mesh->frame = frameFromJson(value);
     mesh->georeferenced = true;
   });
+  if (mesh->georeferenced) checkFrame(mesh->frame, {file});
+  checkInfo(field.info, {file});
   field.mesh = mesh;
   return field;
 }

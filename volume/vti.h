@@ -37,7 +37,8 @@ struct PvdEntry {
 /// list's folder are named relative to it.
 void writePvd(const std::filesystem::path& path, const std::vector<PvdEntry>& entries);
 
-/// The files of a series, relative to the list's folder. @throws Error (bad_input)
+/// The files of a series, relative to the list's folder. A step without a timestep is at 0.
+/// @throws Error (bad_input), among others for a timestep that is not a number or beyond kMaxTime_s
 std::vector<PvdEntry> readPvd(const std::filesystem::path& path);
 
 }  // namespace emscape::volume

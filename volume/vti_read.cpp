@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "emscape/volume/statistics.h"
+#include "volume/description_check.h"
 #include "volume/volume_json.h"
 #include "volume/voxel_type.h"
 #include "volume/vti.h"
@@ -74,9 +75,10 @@ class VtiFile {
     volume.grid = grid_;
     volume.info.quantity = name.empty() ? "scalars" : name;
     volume.info.floor = kNoFloor;
-    const std::string time = file_.fieldText("TimeValue");
-    if (!time.empty()) volume.info.time_s = std::strtod(time.c_str(), nullptr);
-    if (!std::isfinite(volume.info.time_s)) volume.info.time_s = 0;
+    const std::optional<double> time_s = file_.timeValue();
+    volume.info.time_s = time_s.value_or(0);
+    volume.info.has_time = time_s.has_value();
+    checkTime(volume.info.time_s, "TimeValue", {path_});
     return volume;
   }
 
@@ -106,14 +108,14 @@ class VtiFile {
       const long long count = static_cast<long long>(extent[2 * axis + 1]) - extent[2 * axis] + more;
       counts[axis] = static_cast<int>(std::clamp<long long>(count, 0, INT32_MAX));
       first[axis] = origin[axis] + (extent[2 * axis] + (cells_ ? 0.5 : 0.0)) * spacing[axis];
-      if (!(spacing[axis] > 0) || !std::isfinite(spacing[axis]) || !std::isfinite(first[axis])) {
-        file_.fail("Spacing and Origin must be finite, Spacing positive");
-      }
     }
     grid.dims = {counts[0], counts[1], counts[2]};
     grid.spacing_m = {spacing[0], spacing[1], spacing[2]};
     grid.first_center_m = {first[0], first[1], first[2]};
-    checkDims(grid.dims, {path_});
+    checkGrid(grid, {path_});
+    if (image_.attribute("Direction")) {
+      checkAxes(numbers<double, 9>(file_, image_, "Direction"), {1, 1, 1}, {path_});
+    }
     return grid;
   }
 
@@ -163,6 +165,21 @@ class VtiFile {
   Grid grid_;
 };
 
+/// The time of a series' step; 0 if it has none.
+double timestepOf(const pugi::xml_node& node, const std::filesystem::path& path) {
+  const pugi::xml_attribute attribute = node.attribute("timestep");
+  if (!attribute) return 0;
+  const std::string_view text = attribute.value();
+  const std::string name = "timestep=\"" + std::string(text) + "\"";
+  std::string_view rest = text;
+  const std::optional<double> time_s = leadingNumber(text, &rest);
+  if (!time_s || rest.find_first_not_of(' ') != std::string_view::npos) {
+    throw Error(ErrorCode::bad_input, {path.string()}, name + " is not a number of seconds");
+  }
+  checkTime(*time_s, name + ":", {path.string()});
+  return *time_s;
+}
+
 }  // namespace
 
 DenseVolume readVti(const std::filesystem::path& path, const std::string& array_name) {
@@ -199,7 +216,7 @@ std::vector<PvdEntry> readPvd(const std::filesystem::path& path) {
   for (const pugi::xml_node& node : file.root().child("Collection").children("DataSet")) {
     const std::filesystem::path name = node.attribute("file").value();
     if (name.empty()) file.fail("a DataSet names no file");
-    entries.push_back({node.attribute("timestep").as_double(), path.parent_path() / name});
+    entries.push_back({timestepOf(node, path), path.parent_path() / name});
   }
   if (entries.empty()) file.fail("the series has no file");
   return entries;

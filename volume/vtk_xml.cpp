@@ -15,6 +15,7 @@ namespace emscape::volume {
 namespace {
 
 constexpr std::string_view kEnd = "</VTKFile>";
+constexpr std::string_view kBlanks = " \t\r\n";
 /// Blanks and line ends that may follow the end.
 constexpr std::size_t kTail = 64;
 
@@ -167,7 +168,6 @@ std::vector<std::uint8_t> VtkXmlFile::spelledNumbers(const pugi::xml_node& array
   const std::string_view text = array.child_value();
   std::vector<std::uint8_t> bytes;
   bytes.reserve(std::min<std::uint64_t>(count, text.size()) * sizeof(Number));
-  constexpr std::string_view kBlanks = " \t\r\n";
   std::uint64_t found = 0;
   for (std::size_t at = text.find_first_not_of(kBlanks); at != std::string_view::npos; ++found) {
     if (found == count) fail("array " + name + ": more than " + std::to_string(count) + " values");
@@ -244,11 +244,37 @@ std::string VtkXmlFile::fieldText(const std::string& name) const {
   return "";
 }
 
+std::optional<double> VtkXmlFile::timeValue() const {
+  const pugi::xml_node array =
+      root_.child(type_.c_str()).child("FieldData").find_child_by_attribute("DataArray", "Name", "TimeValue");
+  const auto isAttribute = [&](const char* name, std::string_view value) {
+    return array.attribute(name).value() == value;
+  };
+  std::optional<double> time_s;
+  if (isAttribute("format", "ascii")) {
+    time_s = leadingNumber(array.child_value());
+  } else if (isAttribute("type", "Float64") && isAttribute("NumberOfTuples", "1")) {
+    std::vector<std::uint8_t> bytes = arrayBytes(array, sizeof(double));
+    if (bigEndian()) std::reverse(bytes.begin(), bytes.end());
+    std::memcpy(&time_s.emplace(), bytes.data(), sizeof(double));
+  }
+  return time_s && std::isfinite(*time_s) ? time_s : std::nullopt;
+}
+
 std::uint64_t VtkXmlFile::headOffsetOf(const std::string& text) const {
   const std::string_view whole(reinterpret_cast<const char*>(bytes_.data()), bytes_.size());
   const std::size_t offset = whole.substr(0, appended_ == 0 ? whole.size() : appended_).find(text);
   if (offset == std::string_view::npos) fail("a text of the head is written in another way");
   return offset;
+}
+
+std::optional<double> leadingNumber(std::string_view text, std::string_view* rest) {
+  const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+  double value = 0;
+  const auto result = std::from_chars(text.data() + begin, text.data() + text.size(), value);
+  if (result.ec != std::errc()) return std::nullopt;
+  if (rest != nullptr) *rest = text.substr(static_cast<std::size_t>(result.ptr - text.data()));
+  return value;
 }
 
 std::string spelledText(const std::string& numbers_text) {

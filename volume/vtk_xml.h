@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <pugixml.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "volume/byte_reader.h"
@@ -29,6 +31,8 @@ class VtkXmlFile {
 
   /// An array of the field data in text form; empty if there is none.
   std::string fieldText(const std::string& name) const;
+  /// The number of the field data's array TimeValue; none if there is none, or it is not finite.
+  std::optional<double> timeValue() const;
   /// Position of a text of the head in the file. @throws Error (bad_input) unless it is there
   std::uint64_t headOffsetOf(const std::string& text) const;
 
@@ -52,6 +56,10 @@ class VtkXmlFile {
 
 /// Name of a DataArray in errors: its Name; if it has none, its parent, such as `of Points`.
 std::string arrayName(const pugi::xml_node& array);
+
+/// The number at the beginning of a text, after blanks; none if there is none. @param rest  receives the text
+/// after it
+std::optional<double> leadingNumber(std::string_view text, std::string_view* rest = nullptr);
 
 /// The text of an array of character codes, up to its zero.
 std::string spelledText(const std::string& numbers_text);

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "emscape/volume/mesh_file.h"
+#include "volume/description_check.h"
 #include "volume/volume_json.h"
 #include "volume/voxel_type.h"
 #include "volume/vtk_xml.h"
@@ -87,9 +88,10 @@ class VtuFile {
     field.mesh = std::make_shared<TetrahedralMesh>();
     field.info.quantity = name.empty() ? "scalars" : name;
     field.info.floor = kNoFloor;
-    const std::string time = file_.fieldText("TimeValue");
-    if (!time.empty()) field.info.time_s = std::strtod(time.c_str(), nullptr);
-    if (!std::isfinite(field.info.time_s)) field.info.time_s = 0;
+    const std::optional<double> time_s = file_.timeValue();
+    field.info.time_s = time_s.value_or(0);
+    field.info.has_time = time_s.has_value();
+    checkTime(field.info.time_s, "TimeValue", {path_});
     return field;
   }
 

@@ -210,7 +210,9 @@ Json describeVolumeFiles(const std::string& path) {
   const std::vector<playback::VolumeFile> files = playback::volumeFilesOf(path, quantity);
   Json volumes = Json::array();
   for (const volume::DenseVolume& volume : volume::listVolume(files.front().file).volumes) {
-    volumes.push_back(describeVolume(volume::readVolume(files.front().file, volume.info.quantity)));
+    volume::DenseVolume read = volume::readVolume(files.front().file, volume.info.quantity);
+    if (!read.info.has_time) read.info.time_s = files.front().time_s;
+    volumes.push_back(describeVolume(read));
   }
   Json json{{"kind", "volume"}, {"file", path}, {"steps", files.size()}};
   json["times_s"] = Json::array();
@@ -223,7 +225,7 @@ Json describeVolumeFiles(const std::string& path) {
 Json describeMeshFiles(const std::string& path) {
   std::string quantity;
   const std::vector<playback::VolumeFile> files = playback::meshFilesOf(path, quantity);
-  const volume::MeshFile file = volume::readMesh(files.front().file);
+  volume::MeshFile file = volume::readMesh(files.front().file);
   const volume::MeshBounds bounds = volume::boundsOf(*file.mesh);
   Json json{{"kind", "mesh"},
             {"file", path},
@@ -238,7 +240,8 @@ Json describeMeshFiles(const std::string& path) {
             {"upper_m", toJson(bounds.upper_m)},
             {"frame", file.mesh->georeferenced ? toJson(file.mesh->frame) : Json(nullptr)}};
   for (const playback::VolumeFile& step : files) json["times_s"].push_back(step.time_s);
-  for (const volume::MeshField& field : file.fields) {
+  for (volume::MeshField& field : file.fields) {
+    if (!field.info.has_time) field.info.time_s = files.front().time_s;
     const volume::Statistics statistics = volume::statisticsOf(field);
     Json described{{"quantity", field.info.quantity}, {"unit", field.info.unit}};
     addValues(described, field.info, statistics);

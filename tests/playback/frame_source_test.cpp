@@ -88,6 +88,54 @@ TEST(FrameSource, ReadsVolumesNearestToTheTimesThatAreAskedFor) {
   EXPECT_EQ(source->frame(1).volume.info().range_min, -5);
 }
 
+TEST(FrameSource, AStepWithoutATimeOfItsOwnHasThatOfTheList) {
+  const TemporaryFolder folder;
+  const std::string image =
+      "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 1 0 1 0 1\" "
+      "Origin=\"0 0 0\" Spacing=\"1 1 1\">TIME<Piece Extent=\"0 1 0 1 0 1\"><PointData>"
+      "<DataArray Name=\"d\" type=\"Float32\" format=\"ascii\">N 1 1 1 1 1 1 1</DataArray>"
+      "</PointData></Piece></ImageData></VTKFile>";
+  const std::string mesh =
+      "<VTKFile type=\"UnstructuredGrid\" byte_order=\"LittleEndian\"><UnstructuredGrid>TIME"
+      "<Piece NumberOfPoints=\"4\" NumberOfCells=\"1\"><PointData>"
+      "<DataArray type=\"Float32\" Name=\"d\" format=\"ascii\">N 0 0 1</DataArray></PointData><Points>"
+      "<DataArray type=\"Float32\" NumberOfComponents=\"3\" format=\"ascii\">0 0 0 1 0 0 0 1 0 0 0 1"
+      "</DataArray></Points><Cells>"
+      "<DataArray type=\"Int64\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray>"
+      "<DataArray type=\"Int64\" Name=\"offsets\" format=\"ascii\">4</DataArray>"
+      "<DataArray type=\"UInt8\" Name=\"types\" format=\"ascii\">10</DataArray>"
+      "</Cells></Piece></UnstructuredGrid></VTKFile>";
+  for (const std::string ending : {".vti", ".vtu"}) {
+    std::string list;
+    for (int step = 0; step < 4; ++step) {
+      std::string text = ending == ".vti" ? image : mesh;
+      // The last step's own time differs from the list's.
+      const std::string time =
+          step < 3 ? ""
+                   : "<FieldData><DataArray Name=\"TimeValue\" type=\"Float64\" format=\"ascii\">35"
+                     "</DataArray></FieldData>";
+      text.replace(text.find("TIME"), 4, time);
+      text.replace(text.find("N "), 1, std::to_string(step + 2));
+      writeFile(folder / (std::to_string(step) + ending), text);
+      list += "<DataSet timestep=\"" + std::to_string(10 * step) + "\" file=\"" + std::to_string(step) +
+              ending + "\"/>";
+    }
+    writeFile(folder / "a.pvd",
+              "<VTKFile type=\"Collection\"><Collection>" + list + "</Collection></VTKFile>");
+    FrameSelection selection;
+    selection.input = folder / "a.pvd";
+    const auto source = openFrameSource(selection, {});
+    ASSERT_EQ(source->count(), 4);
+    EXPECT_EQ(source->time_s(1), 10);
+    EXPECT_EQ(source->frame(2).info().time_s, 20);
+    EXPECT_EQ(source->time_s(3), 35);
+    selection.times = "21";
+    const auto chosen = openFrameSource(selection, {});
+    ASSERT_EQ(chosen->count(), 1);
+    EXPECT_EQ(chosen->frame(0).info().range_max, 4);
+  }
+}
+
 TEST(FrameSource, AQuantityThatAFolderLacksIsRefusedWithThoseThatItHas) {
   const TemporaryFolder folder;
   volume::DenseVolume volume = *MadeFrames(seconds(1)).frame(0).volume.host();

@@ -68,6 +68,26 @@ TEST(Nvdb, WithoutSidecarIsReadOverTheBoxOfItsActiveVoxels) {
   }
 }
 
+TEST(Nvdb, OnOtherAxesIsRefused) {
+  TemporaryFolder folder;
+  const auto grid = openvdb::FloatGrid::create();
+  grid->tree().setValueOn({1, 2, 3}, 1.F);
+  const auto writeGrid = [&] {
+    nanovdb::io::writeGrid(folder / "a.nvdb", nano::Handle(nanovdb::openToNanoVDB(*grid)));
+  };
+  grid->transform().postScale(openvdb::Vec3d(1, 2, 3));
+  writeGrid();
+  EXPECT_EQ(readNvdb(folder / "a.nvdb").grid.spacing_m, (Vec3d{1, 2, 3}));
+  grid->transform().postRotate(0.3, openvdb::math::Z_AXIS);
+  writeGrid();
+  EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb"); }),
+              HasSubstr("a.nvdb: the grid is rotated, sheared or mirrored"));
+  grid->setTransform(openvdb::math::Transform::createLinearTransform());
+  grid->transform().postScale(openvdb::Vec3d(1, 1, -1));
+  writeGrid();
+  EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb"); }), HasSubstr("mirrored"));
+}
+
 TEST(Nvdb, LargeTilesOfOneValueAreRefused) {
   TemporaryFolder folder;
   const auto grid = openvdb::FloatGrid::create();

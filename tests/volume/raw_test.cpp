@@ -91,6 +91,46 @@ TEST(Raw, NamesWhatIsWrongInAHeader) {
               HasSubstr("a mask that begins at layer 2 of 1"));
 }
 
+TEST(Raw, AHeaderBeyondTheLimitsIsRefused) {
+  TemporaryFolder folder;
+  const auto with = [&](const std::string& member) {
+    const std::string header =
+        "{\"dims\": [2, 1, 1], \"type\": \"float32\", \"endianness\": \"little\", "
+        "\"order\": \"x fastest, then y, then z\", " +
+        member + "}";
+    writeBytes(folder / "a.raw", std::vector<std::uint8_t>(8));
+    writeBytes(folder / "a.raw.json", {header.begin(), header.end()});
+    const std::string error = errorOf([&] { readRaw(folder / "a.raw"); }, ErrorCode::bad_input);
+    EXPECT_EQ(errorOf([&] { describeRaw(folder / "a.raw"); }, ErrorCode::bad_input), error);
+    return error;
+  };
+  EXPECT_EQ(with("\"spacing_m\": [1, 2, 0]"),
+            folder / "a.raw.json: spacing_m in z 0 m is outside the allowed range 1e-20 to 1e+20 m");
+  EXPECT_THAT(with("\"spacing_m\": [-1, 2, 3]"), HasSubstr("spacing_m in x -1 m is outside"));
+  EXPECT_THAT(with("\"spacing_m\": [1, 1e30, 1]"), HasSubstr("spacing_m in y 1e+30 m is outside"));
+  EXPECT_THAT(with("\"spacing_m\": [1, \"nan\", 1]"), HasSubstr("spacing_m in y nan m is outside"));
+  EXPECT_THAT(with("\"first_center_m\": [0, 0, 1e300]"),
+              HasSubstr("first_center_m in z 1e+300 m is outside the allowed range -1e+12 to 1e+12 m"));
+  EXPECT_THAT(with("\"range_min\": 3, \"range_max\": 2"), HasSubstr("range_min 3 is above range_max 2"));
+  EXPECT_THAT(with("\"range_min\": \"-inf\", \"range_max\": 2"),
+              HasSubstr("range_min -inf is outside the allowed range"));
+  EXPECT_THAT(with("\"time_s\": 1e99"),
+              HasSubstr("time_s 1e+99 s is outside the allowed range -1000000000 to 1000000000 s"));
+  EXPECT_THAT(with("\"floor\": 1e300"), HasSubstr("key floor: 1e+300 is outside the allowed range -3.4"));
+  const auto withFrame = [&](const std::string& place) {
+    return with("\"frame\": {\"kind\": \"enu\", " + place + "}");
+  };
+  EXPECT_THAT(
+      withFrame("\"latitude_deg\": 95, \"longitude_deg\": 0, \"height_msl_m\": 0"),
+      HasSubstr("latitude_deg of the frame's origin 95 deg is outside the allowed range -90 to 90 deg"));
+  EXPECT_THAT(withFrame("\"latitude_deg\": 9, \"longitude_deg\": 181, \"height_msl_m\": 0"),
+              HasSubstr("longitude_deg of the frame's origin 181 deg"));
+  EXPECT_THAT(withFrame("\"latitude_deg\": 9, \"longitude_deg\": 0, \"height_msl_m\": 1e9"),
+              HasSubstr("height_msl_m of the frame's origin 1000000000 m"));
+  EXPECT_THAT(with("\"range_min\": 1e400"), HasSubstr("number overflow parsing '1e400'"));
+  EXPECT_EQ(with("\"range_min\": 3"), "") << "not a range";
+}
+
 TEST(Raw, SurvivesADamagedHeader) {
   TemporaryFolder folder;
   writeRaw(folder / "a.raw", plainVolume());

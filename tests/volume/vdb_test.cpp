@@ -189,6 +189,34 @@ TEST_F(ForeignVdb, MayBeWrittenAsAStreamAndHoldGridsOfOneName) {
   EXPECT_EQ(readVdb(path_, "density[1]").values.front(), 9.F);
 }
 
+TEST_F(ForeignVdb, OnOtherAxesIsRefused) {
+  const auto withTransform = [&](const auto& change) {
+    auto grid = cloud();
+    change(grid->transform());
+    write(grid);
+    return path_;
+  };
+  const DenseVolume volume = readVdb(withTransform([](openvdb::math::Transform& transform) {
+    transform.postScale({1e-4, 2, 3e3});
+    transform.postTranslate({10, -20, 30});
+  }));
+  EXPECT_EQ(volume.grid.spacing_m, (Vec3d{0.5e-4, 1, 1.5e3}));
+  const std::vector<std::function<void(openvdb::math::Transform&)>> others = {
+      [](auto& transform) {
+        transform.postScale({-1, 1, 1});
+      },
+      [](auto& transform) { transform.postRotate(0.3, openvdb::math::Z_AXIS); },
+      [](auto& transform) { transform.postRotate(3.14159265358979 / 2, openvdb::math::X_AXIS); },
+      [](auto& transform) { transform.postShear(0.1, openvdb::math::X_AXIS, openvdb::math::Y_AXIS); }};
+  for (const auto& change : others) {
+    withTransform(change);
+    EXPECT_THAT(
+        errorOf([&] { readVdb(path_); }),
+        HasSubstr("foreign.vdb: the grid is rotated, sheared or mirrored; grids whose axes are x, y and z"));
+    EXPECT_THAT(errorOf([&] { describeVdb(path_); }), HasSubstr("rotated"));
+  }
+}
+
 TEST_F(ForeignVdb, OfAnotherTypeIsRefusedByName) {
   write(openvdb::Vec3SGrid::create());
   EXPECT_THAT(errorOf([&] { readVdb(path_); }),

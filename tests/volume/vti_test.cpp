@@ -145,6 +145,47 @@ TEST(ForeignVti, MayBeText) {
   EXPECT_THAT(refusal("type=\"UInt8\" format=\"ascii\">1 2 3 4 5"), HasSubstr("array d: more than 4 values"));
 }
 
+TEST(ForeignVti, MayStateItsTime) {
+  const auto readWith = [](const std::string& time) {
+    std::string text = vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "");
+    text.insert(text.find("<Piece"), "<FieldData><DataArray Name=\"TimeValue\" type=\"Float64\" " + time +
+                                         "</DataArray></FieldData>");
+    return readText(text).info;
+  };
+  EXPECT_EQ(readWith("format=\"ascii\">\n 2.5\n").time_s, 2.5);
+  EXPECT_EQ(readWith("NumberOfTuples=\"1\" format=\"binary\">CAAAAAAAAAAAAARA").time_s, 2.5);
+  EXPECT_TRUE(readWith("format=\"ascii\">0").has_time);
+  EXPECT_FALSE(readWith("format=\"ascii\">nan").has_time);
+  EXPECT_FALSE(readText(vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "")).info.has_time);
+  EXPECT_THAT(errorOf([&] { readWith("format=\"ascii\">1e99"); }),
+              HasSubstr("a.vti: TimeValue 1e+99 s is outside the allowed range -1000000000 to 1000000000 s"));
+}
+
+TEST(ForeignVti, OnOtherAxesIsRefused) {
+  const auto textWith = [](const std::string& direction) {
+    std::string text = vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "");
+    return text.insert(text.find(" Origin"), " Direction=\"" + direction + "\"");
+  };
+  EXPECT_EQ(readText(textWith("1 0 0 0 1 -1e-17 0 0 1")).grid.spacing_m, (Vec3d{1, 2, 3}));
+  for (const char* direction : {"0 -1 0 1 0 0 0 0 1", "-1 0 0 0 1 0 0 0 1", "1 0.1 0 0 1 0 0 0 1"}) {
+    EXPECT_THAT(
+        errorOf([&] { readText(textWith(direction)); }),
+        HasSubstr("a.vti: the grid is rotated, sheared or mirrored; grids whose axes are x, y and z"));
+  }
+}
+
+TEST(ForeignVti, OnAGridBeyondTheLimitsIsRefused) {
+  const auto refusal = [](const std::string& from, const std::string& to) {
+    std::string text = vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "");
+    text.replace(text.find(from), from.size(), to);
+    return errorOf([&] { readText(text); });
+  };
+  EXPECT_THAT(refusal("Spacing=\"1 2 3\"", "Spacing=\"1 0 3\""),
+              HasSubstr("a.vti: spacing_m in y 0 m is outside the allowed range 1e-20 to 1e+20 m"));
+  EXPECT_THAT(refusal("Origin=\"10", "Origin=\"1e300"),
+              HasSubstr("first_center_m in x 1e+300 m is outside the allowed range -1e+12 to 1e+12 m"));
+}
+
 TEST(ForeignVti, IsRefusedWhereItCannotBeRead) {
   const auto refusal = [](const std::string& text) { return errorOf([&] { readText(text); }); };
   EXPECT_THAT(refusal(vti("", "type=\"UInt8\" format=\"hex\">1 2 3 4", "")),
@@ -160,6 +201,26 @@ TEST(ForeignVti, IsRefusedWhereItCannotBeRead) {
   EXPECT_THAT(refusal("<VTKFile type=\"PolyData\"></VTKFile>"), HasSubstr("of type \"PolyData\""));
   EXPECT_THAT(refusal("<VTKFile type=\"ImageData\">\n<x></VTKFile>"), HasSubstr("a.vti:2: XML:"));
   EXPECT_THAT(refusal("nothing"), HasSubstr("no VTK XML file"));
+}
+
+TEST(Pvd, AStepNeedsATimeThatTheProgramCanUse) {
+  TemporaryFolder folder;
+  const auto read = [&](const std::string& timestep) {
+    const std::string text = "<VTKFile type=\"Collection\"><Collection><DataSet " + timestep +
+                             " file=\"a.vti\"/></Collection></VTKFile>";
+    writeBytes(folder / "a.pvd", {text.begin(), text.end()});
+    return readPvd(folder / "a.pvd").at(0).time_s;
+  };
+  EXPECT_EQ(read("timestep=\" 1.5e1 \""), 15);
+  EXPECT_EQ(read(""), 0);
+  for (const char* text : {"", "noon", "1.5 s", "1,5"}) {
+    EXPECT_THAT(errorOf([&] { read("timestep=\"" + std::string(text) + "\""); }),
+                HasSubstr("a.pvd: timestep=\"" + std::string(text) + "\" is not a number of seconds"));
+  }
+  for (const char* text : {"nan", "inf", "1e99"}) {
+    EXPECT_THAT(errorOf([&] { read("timestep=\"" + std::string(text) + "\""); }),
+                HasSubstr(" s is outside the allowed range -1000000000 to 1000000000 s"));
+  }
 }
 
 TEST(Pvd, ListsASeriesAndCanBeWrittenAnew) {

@@ -10,7 +10,7 @@ namespace emscape::playback {
 /// One instant of a series on disk.
 struct VolumeFile {
   std::filesystem::path file;
-  double time_s = 0;
+  double time_s = 0;  ///< of the file; of the list (.pvd) for a file without a time
 };
 
 /// One volume file, the steps of a .pvd, or the volumes of a folder, in the order of time.

@@ -17,6 +17,9 @@ namespace emscape::volume {
 /// no floor.
 constexpr float kNoFloor = std::numeric_limits<float>::lowest();
 
+/// Limit of all times, before and after the epoch (s), as in scenarios.
+constexpr double kMaxTime_s = 1e9;
+
 /// Description of the values. Every volume file contains it, as `emscape:*` if the format has metadata.
 struct VolumeInfo {
   std::string
@@ -29,6 +32,8 @@ struct VolumeInfo {
   float range_max = 0;
   bool categorical = false;  ///< indices (dominant_emitter): nearest sampling, int grid in .vdb
   std::map<std::string, std::string> extra;  ///< further metadata by key: scenario hash, version, warnings
+  /// False if the file that was read does not state its time; time_s is then 0. Not compared by ==.
+  bool has_time = true;
 };
 
 bool operator==(const VolumeInfo& a, const VolumeInfo& b);
@@ -64,7 +69,8 @@ constexpr long long kMaxVoxels = 1LL << 32;  ///< 16 GiB of values
 /// @throws Error (bad_input) at `location` if one of the dims or their product exceeds the limits above
 void checkDims(const Dims& dims, const SourceLocation& location);
 
-/// Checks that a volume has a name, one value per voxel and, if it has a mask, one entry per column.
+/// Checks that a volume has a name, one value per voxel and, if it has a mask, one entry per column, and that
+/// spacing, place, frame, time and range are within their limits.
 /// @throws Error (bad_input) at `location`, the file being read or written
 void checkVolume(const DenseVolume& volume, const SourceLocation& location);
 

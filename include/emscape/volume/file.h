@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,10 +65,19 @@ FileListing listVolume(const std::filesystem::path& path);
 std::filesystem::path seriesFile(const std::filesystem::path& folder, const std::string& name, int number,
                                  const std::string& format);
 
+/// A step of a series.
+struct SeriesStep {
+  std::filesystem::path file;
+  /// As the list (.pvd) states it, for a file without a time of its own; none without a list.
+  std::optional<double> time_s;
+};
+
 /// The steps of a series: for a .pvd the files that it lists, in the order of their times; for a folder its
 /// volume files in the first of fileFormats() that occurs; for NAME_NNNN.EXT all files with that name and
 /// extension; these in the order of their numbers. For any other volume file, the file itself.
 /// @throws Error (bad_input) if there is none
+std::vector<SeriesStep> seriesSteps(const std::filesystem::path& path);
+/// The files of seriesSteps().
 std::vector<std::filesystem::path> seriesOf(const std::filesystem::path& path);
 
 }  // namespace emscape::volume

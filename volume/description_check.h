@@ -1,0 +1,41 @@
+/// Checks of what files state about volumes and fields on meshes; the same for all formats. Internal to the
+/// module.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "emscape/volume/dense_volume.h"
+
+namespace emscape::volume {
+
+/// Limits of the distance of voxels (m).
+constexpr double kMinSpacing_m = 1e-20;
+constexpr double kMaxSpacing_m = 1e20;
+/// Limit of a coordinate of the first voxel, as a multiple of the spacing, which doubles resolve there.
+constexpr double kMaxFirstVoxel = 1e12;
+
+/// Checks dims, spacing, place and, if georeferenced, frame.
+/// @throws Error (bad_input) at `location` with value and allowed range
+void checkGrid(const Grid& grid, const SourceLocation& location);
+
+/// Checks latitude, longitude and height. @throws Error (bad_input) as checkGrid()
+void checkFrame(const FrameOrigin& frame, const SourceLocation& location);
+
+/// Checks the time and the range. @throws Error (bad_input) as checkGrid()
+void checkInfo(const VolumeInfo& info, const SourceLocation& location);
+
+/// @param name  of the time in errors @throws Error (bad_input) beyond kMaxTime_s, or for NaN
+void checkTime(double time_s, const std::string& name, const SourceLocation& location);
+
+/// The value as float, which may be infinite or NaN. @throws Error (bad_input), without a location, for
+/// finite values beyond the floats; @param name  of the value in it; may be empty
+float requireFloat(double value, const std::string& name = "");
+
+/// Checks that voxels lie along the axes of the frame: that the matrix from indices to positions has the
+/// spacing on its diagonal and, within 1e-6 of the smallest spacing, 0 elsewhere.
+/// @param matrix  row-major
+/// @throws Error (bad_input) at `location`: the grid is rotated, sheared or mirrored
+void checkAxes(const std::array<double, 9>& matrix, const Vec3d& spacing_m, const SourceLocation& location);
+
+}  // namespace emscape::volume
