@@ -29,13 +29,14 @@ Error failure(const std::filesystem::path& path, const std::string& what) {
 VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double frames_per_s)
     : path_(std::move(path)), temporary_(temporaryFor(path_)), size_(size) {
   requireFileTarget(path_);
+  // Without "file:" ffmpeg takes a name with a colon for an address.
   const std::vector<std::string> arguments{
       "ffmpeg", "-hide_banner", "-loglevel", "error", "-xerror", "-nostdin", "-y", "-f", "rawvideo",
       "-pixel_format", "rgb24", "-video_size", fmt::format("{}x{}", size.width, size.height), "-framerate",
       fmt::format("{}", frames_per_s), "-i", "pipe:0", "-an",
       // 4:2:0 needs even sizes
       "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "medium", "-crf", "18",
-      "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", temporary_.string()};
+      "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", "file:" + temporary_.string()};
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
