@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "base/whole_file.h"
@@ -12,6 +13,7 @@
 #include "document/text_edit.h"
 #include "document/text_file.h"
 #include "emscape/base/error.h"
+#include "emscape/playback/frame_source.h"
 #include "emscape/render/image.h"
 #include "emscape/scenario/clock.h"
 #include "render/transfer_format.h"
@@ -27,6 +29,7 @@ using document::Section;
 using document::ValueSpec;
 using document::ValueType;
 using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
 namespace spec = document::spec;
 
 constexpr int kVersion = 1;
@@ -35,6 +38,7 @@ constexpr double kMaxRate = 1e4;
 constexpr double kMaxValue = 1e30;
 constexpr int kMaxItems = 10000;
 constexpr int kMaxText = 1 << 20;
+static_assert(volume::kMaxTime_s == scenario::kMaxTime_s);
 
 // In the order of the enumerations.
 const std::vector<std::string> kModes{"dvr", "mida", "mip", "iso"};
@@ -250,6 +254,28 @@ void addSettings(const render::RenderSettings& settings, Json& json) {
   for (const render::CutPlane& plane : settings.planes) json["planes"].push_back(toString(plane));
 }
 
+bool isRelativeFile(const std::string& compare) {
+  return !compare.empty() && compare != kOriginal && fs::path(compare).is_relative();
+}
+
+/// The compared file as it is named in the view file `view`, relative to its folder.
+std::string nameInView(const std::string& compare, const fs::path& view) {
+  if (!isRelativeFile(compare)) return compare;
+  const fs::path folder = fs::absolute(view).parent_path().lexically_normal();
+  const std::string name =
+      fs::absolute(compare).lexically_normal().lexically_relative(folder).generic_string();
+  return name == kOriginal ? "./" + name : name;
+}
+
+/// The compared file that the view file `view` names. If there is none, that of the working folder, to which
+/// earlier versions of the program wrote the names.
+std::string comparedFile(const fs::path& view, const std::string& name) {
+  if (!isRelativeFile(name)) return name;
+  const fs::path beside = (view.parent_path() / name).lexically_normal();
+  std::error_code ignored;
+  return !fs::exists(beside, ignored) && fs::exists(name, ignored) ? name : beside.string();
+}
+
 Json toJson(const std::vector<Bookmark>& bookmarks) {
   Json json = Json::array();
   for (const Bookmark& bookmark : bookmarks) {
@@ -281,7 +307,9 @@ ViewState parseViewState(const std::string& text, const std::string& file) {
 }
 
 ViewState readViewState(const std::string& file) {
-  return parseViewState(readWholeText(file, kMaxFileBytes), file);
+  ViewState state = parseViewState(readWholeText(file, kMaxFileBytes), file);
+  state.compare = comparedFile(file, state.compare);
+  return state;
 }
 
 std::string viewStateText(const ViewState& state) {
@@ -313,7 +341,9 @@ std::string viewStateText(const ViewState& state) {
 }
 
 void writeViewState(const std::string& file, const ViewState& state) {
-  const std::string text = viewStateText(state);
+  ViewState stored = state;
+  stored.compare = nameInView(state.compare, file);
+  const std::string text = viewStateText(stored);
   parseViewState(text, file);
   writeWhole(file, [&text](std::ostream& out) { out << text; });
 }

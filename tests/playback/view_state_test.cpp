@@ -4,10 +4,12 @@
 #include <random>
 
 #include "tests/playback/playback_samples.h"
+#include "tests/support/working_folder.h"
 
 namespace emscape::playback::test {
 namespace {
 
+using emscape::test::WorkingFolder;
 using testing::HasSubstr;
 
 class RandomState {
@@ -238,6 +240,41 @@ TEST(ViewState, WhatCouldNotBeReadAgainIsNotWritten) {
               HasSubstr("fov_deg '500': expected a number 1..150"));
   EXPECT_EQ(readFile(file), before);
   EXPECT_EQ(viewStateText(readViewState(file)), before);
+}
+
+TEST(ViewState, AComparedFileIsNamedRelativeToTheViewFile) {
+  const TemporaryFolder folder;
+  for (const char* name : {"views", "data", "elsewhere"}) std::filesystem::create_directory(folder / name);
+  writeFile(folder / "data/other.yaml", "");
+  ViewState state;
+  {
+    const WorkingFolder in(folder.path());
+    state.compare = "data/other.yaml";
+    writeViewState("views/a.view.json", state);
+    EXPECT_EQ(readViewState("views/a.view.json").compare, "data/other.yaml");
+  }
+  EXPECT_THAT(readFile(folder / "views/a.view.json"), HasSubstr("\"compare\": \"../data/other.yaml\""));
+  EXPECT_EQ(readViewState(folder / "views/a.view.json").compare, folder / "data/other.yaml");
+  const WorkingFolder in(folder / "elsewhere");
+  EXPECT_EQ(readViewState("../views/a.view.json").compare, "../data/other.yaml");
+  state.compare = folder / "data/other.yaml";
+  writeViewState("b.view.json", state);
+  EXPECT_THAT(readFile("b.view.json"), HasSubstr("\"compare\": \"" + state.compare + "\""));
+  state.compare = "original";
+  writeViewState("b.view.json", state);
+  EXPECT_EQ(readViewState("b.view.json").compare, "original");
+}
+
+TEST(ViewState, AComparedFileOfAnOldViewFileMayBeInTheWorkingFolder) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder / "views");
+  writeFile(folder / "views/a.view.json", "{\"schema_version\": 1, \"compare\": \"other.yaml\"}");
+  const WorkingFolder in(folder.path());
+  EXPECT_EQ(readViewState("views/a.view.json").compare, "views/other.yaml") << "there is neither";
+  writeFile(folder / "other.yaml", "");
+  EXPECT_EQ(readViewState("views/a.view.json").compare, "other.yaml");
+  writeFile(folder / "views/other.yaml", "");
+  EXPECT_EQ(readViewState("views/a.view.json").compare, "views/other.yaml");
 }
 
 /// What a painter that is set to a view draws of a frame.
