@@ -38,7 +38,7 @@ class SweepBuilder {
     } else if (scan_.kind == ScanKind::rotate) {
       const double width_deg = 6 * std::abs(scan_.rate_rpm) * duration_s;
       const double first_deg = beamAt(scan_, begin_s).azimuth_deg - (scan_.rate_rpm < 0 ? width_deg : 0);
-      sweep_.arcs.push_back({first_deg, width_deg, scan_.elevation_deg, duration_s / interval_s_, 1});
+      addArc({first_deg, width_deg, scan_.elevation_deg, duration_s / interval_s_, 1});
     } else {
       constexpr double kRounding = 1e-9;
       const double cycles = std::floor(duration_s / cycle_s + kRounding);
@@ -64,7 +64,7 @@ class SweepBuilder {
               times * (to_s - from_s) / interval_s_, times});
     }
   }
-  /// Sweeps over the same azimuths in both directions are one arc.
+  /// Sweeps over the same azimuths, in either direction, are one arc.
   void addArc(const SweptArc& arc) {
     constexpr double kSame_deg = 1e-9;
     for (SweptArc& known : sweep_.arcs) {
@@ -123,13 +123,25 @@ void addLastPasses(const ScanSpec& scan, double begin_s, double end_s, std::vect
   }
 }
 
-/// Calls visit(from_s, to_s) for each time in [begin, end) at which an emitter is active.
+/// Calls visit(from_s, to_s, span_s) for each time in [begin, begin + duration) at which an emitter is
+/// active, in their order. Times that overlap or touch are one. The span of the whole interval is its
+/// duration, without rounding.
 template <class Visit>
-void visitActive(const Emitter& emitter, double begin_s, double end_s, const Visit& visit) {
-  if (emitter.active_s.empty()) visit(begin_s, end_s);
+void visitActive(const Emitter& emitter, double begin_s, double duration_s, const Visit& visit) {
+  const double end_s = begin_s + duration_s;
+  if (emitter.active_s.empty()) return visit(begin_s, end_s, duration_s);
+  std::vector<TimeInterval> parts;
   for (const TimeInterval& active : emitter.active_s) {
     const double from_s = std::max(active.begin_s, begin_s), to_s = std::min(active.end_s, end_s);
-    if (to_s > from_s) visit(from_s, to_s);
+    if (to_s > from_s) parts.push_back({from_s, to_s});
+  }
+  std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.begin_s < b.begin_s; });
+  for (std::size_t i = 0; i < parts.size();) {
+    TimeInterval joined = parts[i++];
+    for (; i < parts.size() && parts[i].begin_s <= joined.end_s; ++i)
+      joined.end_s = std::max(joined.end_s, parts[i].end_s);
+    const bool is_whole = joined.begin_s == begin_s && joined.end_s == end_s;
+    visit(joined.begin_s, joined.end_s, is_whole ? duration_s : joined.end_s - joined.begin_s);
   }
 }
 
@@ -158,6 +170,12 @@ double scanCycle_s(const ScanSpec& scan) {
   return 0;
 }
 
+double activeTime_s(const Emitter& emitter, double begin_s, double duration_s) {
+  double active_s = 0;
+  visitActive(emitter, begin_s, duration_s, [&](double, double, double span_s) { active_s += span_s; });
+  return active_s;
+}
+
 double intervalDuration_s(const IntervalSpec& interval, const ScanSpec& scan, const Clock& clock) {
   if (interval.kind == IntervalKind::instant) return 0;
   if (interval.seconds) return *interval.seconds;
@@ -169,18 +187,15 @@ double intervalDuration_s(const IntervalSpec& interval, const ScanSpec& scan, co
 ScanSweep sweepOf(const Emitter& emitter, double begin_s, double duration_s) {
   ScanSweep sweep;
   SweepBuilder builder(emitter, duration_s, sweep);
-  const double end_s = begin_s + duration_s;
-  visitActive(emitter, begin_s, end_s, [&](double from_s, double to_s) {
-    const bool is_whole = from_s == begin_s && to_s == end_s;
-    builder.add(from_s, is_whole ? duration_s : to_s - from_s);
-  });
+  visitActive(emitter, begin_s, duration_s,
+              [&](double from_s, double, double span_s) { builder.add(from_s, span_s); });
   return sweep;
 }
 
 std::vector<TimedPass> lastPassesOf(const Emitter& emitter, double begin_s, double duration_s) {
   std::vector<TimedPass> passes;
-  visitActive(emitter, begin_s, begin_s + duration_s,
-              [&](double from_s, double to_s) { addLastPasses(emitter.scan, from_s, to_s, passes); });
+  visitActive(emitter, begin_s, duration_s,
+              [&](double from_s, double to_s, double) { addLastPasses(emitter.scan, from_s, to_s, passes); });
   return passes;
 }
 

@@ -34,7 +34,7 @@ struct SweptDwell {
 
 /// The sum of the shares is the part of the interval in which the emitter is active.
 struct ScanSweep {
-  std::vector<SweptArc> arcs;      ///< of an antenna that turns; each once
+  std::vector<SweptArc> arcs;      ///< of an antenna that turns; equal arcs of sweeps are one
   std::vector<SweptDwell> dwells;  ///< of an array that is steered
 
   bool empty() const { return arcs.empty() && dwells.empty(); }
@@ -44,6 +44,10 @@ bool operator==(const ScanSweep& a, const ScanSweep& b);
 /// Duration (s) of one turn, one sweep there and back, one raster or one cycle of dwells; 0: the beam does
 /// not move.
 double scanCycle_s(const ScanSpec& scan);
+
+/// Time (s) in [begin, begin + duration) at which an emitter is active. Times in several of Emitter::active_s
+/// count once, here and below.
+double activeTime_s(const Emitter& emitter, double begin_s, double duration_s);
 
 /// Duration (s) of an emitter's interval. For a beam that does not move, turns are counted in steps of the
 /// clock.
