@@ -92,7 +92,8 @@ struct AimedVoxel {
   Aim aim;
   float range_m;
 };
-EMSCAPE_HD inline AimedVoxel aimedVoxel(const RadarLook& look, const EmitterBeam& beam, std::size_t column,
+template <class Look>
+EMSCAPE_HD inline AimedVoxel aimedVoxel(const Look& look, const EmitterBeam& beam, std::size_t column,
                                         float t_m) {
   const Vec3f target = inAntennaFrame(beam, directRay(beam.geometry, column, t_m));
   const float along_m = t_m - beam.geometry.nearest_t_m[column];

@@ -48,6 +48,8 @@ struct RadarTask {
   RadarMeasure measure = RadarMeasure::root_of_signal_to_noise;
   Reduction reduction = Reduction::maximum;  ///< for detections, sum means independent detections
   RadarLook look;
+  const LookArc* look_arcs = nullptr;  ///< of ArcLook
+  int look_arc_count = 0;
   bool is_cumulative = false;  ///< detection: at least one in all looks
   LookCount looks;             ///< of is_cumulative
   LastPasses last_passes;      ///< of detection_age
@@ -62,10 +64,10 @@ struct RadarTask {
 
 /// Root of an echo's signal-to-noise over RadarTask::echo_root, without the excess loss of the path; 0 in
 /// shadow.
+/// @param look  RadarLook or ArcLook
 /// @param beam  with the look's frame as its forward, right and up
-template <scenario::PatternKind kind>
-EMSCAPE_HD inline float echoWeight(const RadarLook& look, const EmitterBeam& beam, std::size_t column,
-                                   float t_m) {
+template <scenario::PatternKind kind, class Look>
+EMSCAPE_HD inline float echoWeight(const Look& look, const EmitterBeam& beam, std::size_t column, float t_m) {
   const VoxelRay ray = voxelRay(beam, column, t_m);
   const Aim aim = aimAt(look, ray.direction);
   const Vec3f unit = ray.direction * (1 / std::sqrt(ray.length2_m2 + 1e-12f));
@@ -74,9 +76,9 @@ EMSCAPE_HD inline float echoWeight(const RadarLook& look, const EmitterBeam& bea
 }
 
 /// The same with the reflected ray: the amplitude F of both rays applies in both directions.
-template <scenario::PatternKind kind>
-EMSCAPE_HD inline float echoWeight(const RadarLook& look, const EmitterBeam& beam,
-                                   const ReflectedRayCode& code, std::size_t column, float t_m) {
+template <scenario::PatternKind kind, class Look>
+EMSCAPE_HD inline float echoWeight(const Look& look, const EmitterBeam& beam, const ReflectedRayCode& code,
+                                   std::size_t column, float t_m) {
   const VoxelRay ray = voxelRay(beam, column, t_m);
   const ReflectedRay reflected = reflectedRay(code);
   const Aim aim = aimAt(look, ray.direction);
@@ -89,17 +91,17 @@ EMSCAPE_HD inline float echoWeight(const RadarLook& look, const EmitterBeam& bea
 
 /// One jammer's power over the noise while the radar looks at the voxel, over
 /// JammerAtRadar::boresight_to_noise.
-template <scenario::PatternKind kind>
-EMSCAPE_HD inline float jammingWeight(const RadarLook& look, const EmitterBeam& beam,
-                                      const JammerAtRadar& jammer, std::size_t column, float t_m) {
+template <scenario::PatternKind kind, class Look>
+EMSCAPE_HD inline float jammingWeight(const Look& look, const EmitterBeam& beam, const JammerAtRadar& jammer,
+                                      std::size_t column, float t_m) {
   const Aim aim = aimAt(look, voxelRay(beam, column, t_m).direction);
   const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, jammer.direction);
   return amplitude * amplitude;
 }
 
 /// The same for a jammer with a reflected ray.
-template <scenario::PatternKind kind>
-EMSCAPE_HD inline float jammingWeightOfBothRays(const RadarLook& look, const EmitterBeam& beam,
+template <scenario::PatternKind kind, class Look>
+EMSCAPE_HD inline float jammingWeightOfBothRays(const Look& look, const EmitterBeam& beam,
                                                 const JammerAtRadar& jammer, std::size_t column, float t_m) {
   const Aim aim = aimAt(look, voxelRay(beam, column, t_m).direction);
   const float direct = amplitudeTowards<kind, true>(beam.pattern, aim, jammer.direction);
@@ -189,34 +191,35 @@ struct RadarPass {
   ClutterMapView clutter_map;        ///< without cells: no surface clutter
 };
 
-/// One voxel of a pass. The CPU does the same row by row.
+/// One voxel of a pass. The CPU does the same row by row if the look has no arcs.
 /// @tparam kReflected  false: for passes without reflected rays
 /// @tparam kClutter    false: for passes without clutter
 /// @tparam kAge        true: for RadarMeasure::detection_age
 template <scenario::PatternKind kind, bool kReflected = true, bool kClutter = true, bool kAge = false>
 EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k) {
   const RadarTask& task = pass.task;
+  const ArcLook look{task.look, task.look_arcs, task.look_arc_count};
   const std::size_t voxel = static_cast<std::size_t>(k) * pass.dims.x * pass.dims.y + column;
   const float t_m = pass.t_m[k];
   float weight;
   if (kReflected && weighsReflectedRays(pass.beam)) {
-    weight = echoWeight<kind>(task.look, pass.beam, pass.beam.geometry.reflected[voxel], column, t_m);
+    weight = echoWeight<kind>(look, pass.beam, pass.beam.geometry.reflected[voxel], column, t_m);
   } else {
-    weight = echoWeight<kind>(task.look, pass.beam, column, t_m);
+    weight = echoWeight<kind>(look, pass.beam, column, t_m);
   }
   if (!pass.beam.geometry.excess.isEmpty()) weight *= pass.beam.geometry.excess.factor(voxel);
   const float root = task.echo_root * weight;
   float jamming = 0;
   for (int n = 0; n < task.jammer_count; ++n) {
     const JammerAtRadar& jammer = task.jammers[n];
-    jamming += jammer.boresight_to_noise *
-               (kReflected && jammer.has_reflected_ray
-                    ? jammingWeightOfBothRays<kind>(task.look, pass.beam, jammer, column, t_m)
-                    : jammingWeight<kind>(task.look, pass.beam, jammer, column, t_m));
+    jamming +=
+        jammer.boresight_to_noise * (kReflected && jammer.has_reflected_ray
+                                         ? jammingWeightOfBothRays<kind>(look, pass.beam, jammer, column, t_m)
+                                         : jammingWeight<kind>(look, pass.beam, jammer, column, t_m));
   }
   if constexpr (kClutter) {
     if (!task.clutter.isNone()) {
-      const AimedVoxel aimed = aimedVoxel(task.look, pass.beam, column, t_m);
+      const AimedVoxel aimed = aimedVoxel(look, pass.beam, column, t_m);
       jamming += clutterToNoise<kind>(task.clutter, pass.clutter_map, pass.beam, aimed.aim, aimed.range_m);
     }
   }
@@ -231,15 +234,17 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
 }
 
 /// Runs a pass on the CPU. Voxels below first_row_k are not changed.
+/// @param weights  none for a look with arcs
 void radarCpu(const RadarPass& pass, const LookWeights& weights = {});
 
 /// A radar's contribution to a channel, with the data to which it points.
 struct RadarShare {
   int channel = 0;
-  RadarTask task;  ///< without jammers and curve
+  RadarTask task;  ///< without jammers, arcs and curve
   /// The look's frame in the emitter's east-north-up axes.
   Vec3f forward, right, up;
   std::vector<JammerAtRadar> jammers;
+  IntervalArcs arcs;
 };
 
 /// @param beam         with views of its geometry and pattern
@@ -258,6 +263,12 @@ inline RadarPass radarPass(const RadarShare& share, const EmitterBeam& beam,
   pass.beam.up = share.up;
   pass.task.jammers = share.jammers.data();
   pass.task.jammer_count = static_cast<int>(share.jammers.size());
+  pass.task.look_arcs = share.arcs.looks.data();
+  pass.task.look_arc_count = static_cast<int>(share.arcs.looks.size());
+  pass.task.looks.arcs = share.arcs.counts.data();
+  pass.task.looks.arc_count = static_cast<int>(share.arcs.counts.size());
+  pass.task.last_passes.arcs = share.arcs.passes.data();
+  pass.task.last_passes.arc_count = static_cast<int>(share.arcs.passes.size());
   return pass;
 }
 

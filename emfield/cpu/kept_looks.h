@@ -21,6 +21,7 @@ class KeptLooks {
   /// The arrays for the next pass, which must be run with them.
   /// @param slot     of the radar; slots other than those of the constructor have no arrays
   /// @param antenna  of the radar
+  /// @param share    none of its arrays are kept if its look has arcs
   LookWeights choose(std::size_t slot, const scenario::AntennaPtr& antenna, const RadarShare& share);
   /// The geometry of a slot has changed.
   void forget(std::size_t slot);

@@ -6,6 +6,7 @@
 #include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/clutter_rows.h"
 #include "emfield/cpu/echo_rows.h"
+#include "emfield/cpu/radar_of_arcs.h"
 #include "emfield/cpu/row.h"
 #include "emfield/radar_product.h"
 #include "emscape/base/parallel.h"
@@ -112,6 +113,7 @@ EMSCAPE_SIMD_CLONES void accumulateRow(const RadarTask& task, int count, const f
 }  // namespace
 
 void radarCpu(const RadarPass& pass, const LookWeights& weights) {
+  if (pass.task.look_arc_count > 0) return radarOfArcsCpu(pass);
   const Dims& dims = pass.dims;
   parallelFor(dims.y, 1, [&](int begin, int end) {
     std::vector<float> buffer(dims.x), echo(dims.x), jamming(dims.x), looks(dims.x, 1.0f);

@@ -53,6 +53,9 @@ struct ChannelBuffers {
 struct RadarTables {
   Buffer<DetectionCurveView::Knot> knots;
   Buffer<JammerAtRadar> jammers;
+  Buffer<LookArc> looks;
+  Buffer<CountedArc> counts;
+  Buffer<PassedArc> passes;
 };
 
 /// Copies of a beam's positions.
@@ -179,6 +182,12 @@ void CudaEngine::combine(const CombinePass& pass) {
       tables.jammers.upload(share.jammers, stream_);
       radar.task.curve.knots = tables.knots.data();
       radar.task.jammers = tables.jammers.data();
+      tables.looks.upload(share.arcs.looks, stream_);
+      tables.counts.upload(share.arcs.counts, stream_);
+      tables.passes.upload(share.arcs.passes, stream_);
+      radar.task.look_arcs = tables.looks.data();
+      radar.task.looks.arcs = tables.counts.data();
+      radar.task.last_passes.arcs = tables.passes.data();
       cuda::addRadar(radar, geometry_.firstValidK(), stream_);
     }
     for (const OccupancyShare& share : pass.members[m].occupancies) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <vector>
 
 #include "base/fast_math.h"
 #include "emscape/base/host_device.h"
@@ -19,6 +20,15 @@ enum class LookKind {
   steered  ///< the array is steered to the target; the antenna does not turn
 };
 
+/// Directions that a turned beam may have: a run of azimuths of the look's frame, and elevations.
+struct LookArc {
+  float cos_middle = 1, sin_middle = 0;     ///< the azimuth of its middle
+  float cos_azimuth = -1, sin_azimuth = 0;  ///< half its width; cosine -1: full circle
+  /// Sines and cosines of the lowest and of the highest elevation.
+  float sin_lowest = -1, cos_lowest = 0;
+  float sin_highest = 1, cos_highest = 0;
+};
+
 /// A look as plain data.
 struct RadarLook {
   LookKind kind = LookKind::held;
@@ -31,35 +41,56 @@ struct RadarLook {
   float steer_u = 0, steer_v = 0;
 };
 
+/// A look as plain data; for LookKind::turned, if there are arcs, each look is at the nearest direction of
+/// any arc, whatever the limits of `plain`.
+struct ArcLook {
+  RadarLook plain;
+  const LookArc* arcs = nullptr;
+  int arc_count = 0;
+};
+
+/// Directions with more passes of a beam than others: azimuths of the look's frame, and elevations.
+struct CountedArc {
+  float cos_middle = 1, sin_middle = 0;    ///< the azimuth of its middle
+  float cos_half = -2;                     ///< of half its width; below -1: all azimuths
+  float sin_lowest = -2, sin_highest = 2;  ///< of the elevations; beyond -1..1: without limit
+  float passes = 0;                        ///< number of additional passes
+};
+
 /// Number of passes of a beam over a direction in an interval, as plain data.
 struct LookCount {
-  static constexpr int kMaxArcs = 4;
   float everywhere = 1;  ///< number of passes
-  int arc_count = 0;     ///< azimuths with one more pass
-  /// Of each arc: the azimuth of its middle in the look's frame, and the cosine of half its width.
-  float cos_middle[kMaxArcs] = {}, sin_middle[kMaxArcs] = {}, cos_half[kMaxArcs] = {};
+  const CountedArc* arcs = nullptr;
+  int arc_count = 0;
 
   /// At least 1: outside all arcs the beam is that of the nearest arc.
   EMSCAPE_HD float towards(const Vec3f& direction) const {
     const float level = std::sqrt(direction.x * direction.x + direction.y * direction.y);
+    const float length = std::sqrt(dot(direction, direction) + 1e-12f);
     float times = everywhere;
     for (int n = 0; n < arc_count; ++n) {
-      const float along = direction.x * cos_middle[n] + direction.y * sin_middle[n];
-      times += along >= cos_half[n] * level ? 1.0f : 0.0f;
+      const CountedArc& arc = arcs[n];
+      const float along = direction.x * arc.cos_middle + direction.y * arc.sin_middle;
+      const bool is_inside = (along >= arc.cos_half * level) & (direction.z >= arc.sin_lowest * length) &
+                             (direction.z < arc.sin_highest * length);
+      times += is_inside ? arc.passes : 0.0f;
     }
     return times < 1 ? 1.0f : times;
   }
 };
 
+/// The pass of a beam over a run of azimuths of the look's frame.
+struct PassedArc {
+  float middle_rad = 0, half_width_rad = 0;
+  float age_s = 0;      ///< time from the pass of its middle to the interval's end
+  float age_s_rad = 0;  ///< increase of that time with azimuth
+};
+
 /// Time of the last pass of a beam over each azimuth of the look's frame in an interval, as plain data.
 struct LastPasses {
-  static constexpr int kMaxArcs = 8;
   static constexpr float kNever_s = 1e30f;
+  const PassedArc* arcs = nullptr;
   int arc_count = 0;
-  /// Of each arc: the azimuth of its middle and half its width (rad), the time (s) from the pass of its
-  /// middle to the interval's end, and its increase with azimuth (s/rad).
-  float middle_rad[kMaxArcs] = {}, half_width_rad[kMaxArcs] = {}, age_s[kMaxArcs] = {},
-        age_s_rad[kMaxArcs] = {};
 
   /// Time (s) from the last pass of a direction to the interval's end; kNever_s: none.
   EMSCAPE_HD float ageTowards(const Vec3f& direction) const {
@@ -67,13 +98,21 @@ struct LastPasses {
     const float azimuth_rad = fastAtan2(direction.y, direction.x);
     float age = kNever_s;
     for (int n = 0; n < arc_count; ++n) {
-      const float off_rad = azimuth_rad - middle_rad[n];
+      const PassedArc& arc = arcs[n];
+      const float off_rad = azimuth_rad - arc.middle_rad;
       const float nearest_rad = off_rad - kTurn_rad * std::floor(off_rad / kTurn_rad + 0.5f);
-      const float of_arc = age_s[n] + nearest_rad * age_s_rad[n];
-      age = std::abs(nearest_rad) <= half_width_rad[n] + kRounding_rad && of_arc < age ? of_arc : age;
+      const float of_arc = arc.age_s + nearest_rad * arc.age_s_rad;
+      age = std::abs(nearest_rad) <= arc.half_width_rad + kRounding_rad && of_arc < age ? of_arc : age;
     }
     return age < 0 ? 0.0f : age;
   }
+};
+
+/// The arcs to which a radar's ArcLook, LookCount and LastPasses point.
+struct IntervalArcs {
+  std::vector<LookArc> looks;
+  std::vector<CountedArc> counts;
+  std::vector<PassedArc> passes;
 };
 
 /// The attitude of an antenna that points at a target.
@@ -82,30 +121,86 @@ struct Aim {
   float steer_u = 0, steer_v = 0;
 };
 
+/// Azimuth and elevation of a direction.
+struct AimAngles {
+  float cos_azimuth, sin_azimuth, cos_elevation, sin_elevation;
+};
+
+/// The nearest angles within limits.
+/// @param limits  RadarLook, or LookArc with angles relative to its middle
+template <class Limits>
+EMSCAPE_HD inline AimAngles nearestWithin(const Limits& limits, const AimAngles& target) {
+  const bool is_beside = target.cos_azimuth < limits.cos_azimuth;
+  const bool is_below = target.sin_elevation < limits.sin_lowest;
+  const bool is_above = target.sin_elevation > limits.sin_highest;
+  const float not_above_cos = is_above ? limits.cos_highest : target.cos_elevation;
+  const float not_above_sin = is_above ? limits.sin_highest : target.sin_elevation;
+  AimAngles nearest;
+  nearest.cos_azimuth = is_beside ? limits.cos_azimuth : target.cos_azimuth;
+  nearest.sin_azimuth =
+      is_beside ? std::copysign(limits.sin_azimuth, target.sin_azimuth) : target.sin_azimuth;
+  nearest.cos_elevation = is_below ? limits.cos_lowest : not_above_cos;
+  nearest.sin_elevation = is_below ? limits.sin_lowest : not_above_sin;
+  return nearest;
+}
+
+/// The nearest angles of any arc.
+EMSCAPE_HD inline AimAngles nearestOf(const LookArc* arcs, int arc_count, const AimAngles& target) {
+  AimAngles nearest = target;
+  float nearest2 = 5;  // above any distance^2 of unit vectors
+  for (int n = 0; n < arc_count; ++n) {
+    const LookArc& arc = arcs[n];
+    AimAngles turned = target;
+    turned.cos_azimuth = target.cos_azimuth * arc.cos_middle + target.sin_azimuth * arc.sin_middle;
+    turned.sin_azimuth = target.sin_azimuth * arc.cos_middle - target.cos_azimuth * arc.sin_middle;
+    const AimAngles within = nearestWithin(arc, turned);
+    const float x = within.cos_azimuth * within.cos_elevation - turned.cos_azimuth * turned.cos_elevation;
+    const float y = within.sin_azimuth * within.cos_elevation - turned.sin_azimuth * turned.cos_elevation;
+    const float z = within.sin_elevation - turned.sin_elevation;
+    const float distance2 = x * x + y * y + z * z;
+    if (distance2 >= nearest2) continue;
+    nearest2 = distance2;
+    nearest.cos_azimuth = within.cos_azimuth * arc.cos_middle - within.sin_azimuth * arc.sin_middle;
+    nearest.sin_azimuth = within.sin_azimuth * arc.cos_middle + within.cos_azimuth * arc.sin_middle;
+    nearest.cos_elevation = within.cos_elevation;
+    nearest.sin_elevation = within.sin_elevation;
+  }
+  return nearest;
+}
+
+/// Azimuth and elevation of a direction of any length; 0: forward.
+EMSCAPE_HD inline AimAngles anglesOf(const Vec3f& direction) {
+  const float level = std::sqrt(direction.x * direction.x + direction.y * direction.y);
+  const float inverse_length = 1 / std::sqrt(dot(direction, direction) + 1e-12f);
+  return {level > 0 ? direction.x / level : 1.0f, level > 0 ? direction.y / level : 0.0f,
+          level * inverse_length, direction.z * inverse_length};
+}
+
 /// The aim at a target, or the nearest aim that the look permits. Without branches, for SIMD.
 /// @param target  direction in the look's frame, of any length; 0: the aim is forward
 EMSCAPE_HD inline Aim aimAt(const RadarLook& look, const Vec3f& target) {
   const bool turns = look.kind == LookKind::turned, steers = look.kind == LookKind::steered;
-  const float level = std::sqrt(target.x * target.x + target.y * target.y);
   const float inverse_length = 1 / std::sqrt(dot(target, target) + 1e-12f);
-  const float cos_azimuth = level > 0 ? target.x / level : 1.0f;
-  const float sin_azimuth = level > 0 ? target.y / level : 0.0f;
-  const float sin_elevation = target.z * inverse_length, cos_elevation = level * inverse_length;
-  const bool is_beside = cos_azimuth < look.cos_azimuth;
-  const bool is_below = sin_elevation<look.sin_lowest, is_above = sin_elevation> look.sin_highest;
-  const float nearest_cos_azimuth = is_beside ? look.cos_azimuth : cos_azimuth;
-  const float nearest_sin_azimuth = is_beside ? std::copysign(look.sin_azimuth, sin_azimuth) : sin_azimuth;
-  const float not_above_cos = is_above ? look.cos_highest : cos_elevation;
-  const float not_above_sin = is_above ? look.sin_highest : sin_elevation;
-  const float nearest_cos_elevation = is_below ? look.cos_lowest : not_above_cos;
-  const float nearest_sin_elevation = is_below ? look.sin_lowest : not_above_sin;
+  const AimAngles nearest = nearestWithin(look, anglesOf(target));
   Aim aim;
-  aim.cos_azimuth = turns ? nearest_cos_azimuth : 1.0f;
-  aim.sin_azimuth = turns ? nearest_sin_azimuth : 0.0f;
-  aim.cos_elevation = turns ? nearest_cos_elevation : 1.0f;
-  aim.sin_elevation = turns ? nearest_sin_elevation : 0.0f;
+  aim.cos_azimuth = turns ? nearest.cos_azimuth : 1.0f;
+  aim.sin_azimuth = turns ? nearest.sin_azimuth : 0.0f;
+  aim.cos_elevation = turns ? nearest.cos_elevation : 1.0f;
+  aim.sin_elevation = turns ? nearest.sin_elevation : 0.0f;
   aim.steer_u = steers ? target.y * inverse_length : look.steer_u;
-  aim.steer_v = steers ? sin_elevation : look.steer_v;
+  aim.steer_v = steers ? target.z * inverse_length : look.steer_v;
+  return aim;
+}
+
+/// The same for a look that may have arcs.
+EMSCAPE_HD inline Aim aimAt(const ArcLook& look, const Vec3f& target) {
+  Aim aim = aimAt(look.plain, target);
+  if (look.arc_count == 0 || look.plain.kind != LookKind::turned) return aim;
+  const AimAngles nearest = nearestOf(look.arcs, look.arc_count, anglesOf(target));
+  aim.cos_azimuth = nearest.cos_azimuth;
+  aim.sin_azimuth = nearest.sin_azimuth;
+  aim.cos_elevation = nearest.cos_elevation;
+  aim.sin_elevation = nearest.sin_elevation;
   return aim;
 }
 

@@ -29,6 +29,20 @@ auto membersOf(const propagation::Atmosphere& atmosphere) {
                   refraction, sea_level_refractivity, climate);
 }
 
+auto membersOf(const LookArc& arc) {
+  const auto& [cos_middle, sin_middle, cos_azimuth, sin_azimuth, sin_lowest, cos_lowest, sin_highest,
+               cos_highest] = arc;
+  return std::tie(cos_middle, sin_middle, cos_azimuth, sin_azimuth, sin_lowest, cos_lowest, sin_highest,
+                  cos_highest);
+}
+auto membersOf(const CountedArc& arc) {
+  const auto& [cos_middle, sin_middle, cos_half, sin_lowest, sin_highest, passes] = arc;
+  return std::tie(cos_middle, sin_middle, cos_half, sin_lowest, sin_highest, passes);
+}
+auto membersOf(const PassedArc& arc) {
+  const auto& [middle_rad, half_width_rad, age_s, age_s_rad] = arc;
+  return std::tie(middle_rad, half_width_rad, age_s, age_s_rad);
+}
 auto membersOf(const RadarLook& look) {
   const auto& [kind, cos_azimuth, sin_azimuth, sin_lowest, cos_lowest, sin_highest, cos_highest, steer_u,
                steer_v] = look;
@@ -61,23 +75,9 @@ bool same(const T& a, const T& b) {
   return membersOf(a) == membersOf(b);
 }
 
-bool sameLooks(const LookCount& a, const LookCount& b) {
-  const auto& [everywhere, arc_count, cos_middle, sin_middle, cos_half] = a;
-  const auto sameArcs = [](const float* x, const float* y) {
-    return std::equal(x, x + LookCount::kMaxArcs, y);
-  };
-  return everywhere == b.everywhere && arc_count == b.arc_count && sameArcs(cos_middle, b.cos_middle) &&
-         sameArcs(sin_middle, b.sin_middle) && sameArcs(cos_half, b.cos_half);
-}
-
-bool samePasses(const LastPasses& a, const LastPasses& b) {
-  const auto& [arc_count, middle_rad, half_width_rad, age_s, age_s_rad] = a;
-  const auto sameArcs = [](const float* x, const float* y) {
-    return std::equal(x, x + LastPasses::kMaxArcs, y);
-  };
-  return arc_count == b.arc_count && sameArcs(middle_rad, b.middle_rad) &&
-         sameArcs(half_width_rad, b.half_width_rad) && sameArcs(age_s, b.age_s) &&
-         sameArcs(age_s_rad, b.age_s_rad);
+template <class Arc>
+bool sameArcs(const std::vector<Arc>& a, const std::vector<Arc>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), same<Arc>);
 }
 
 bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
@@ -85,18 +85,18 @@ bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
 }
 
 bool sameTask(const RadarTask& a, const RadarTask& b) {
-  // The jammers are in RadarShare; sameLook() compares the look.
-  const auto& [measure, reduction, look, is_cumulative, looks, last_passes, echo_root, factor, lowest,
-               ceiling, curve, clutter, jammers, jammer_count] = a;
+  // The jammers and the arcs are in RadarShare; sameLook() compares the look.
+  const auto& [measure, reduction, look, look_arcs, look_arc_count, is_cumulative, looks, last_passes,
+               echo_root, factor, lowest, ceiling, curve, clutter, jammers, jammer_count] = a;
   return measure == b.measure && reduction == b.reduction && is_cumulative == b.is_cumulative &&
-         sameLooks(looks, b.looks) && samePasses(last_passes, b.last_passes) && echo_root == b.echo_root &&
-         factor == b.factor && lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) &&
-         same(clutter, b.clutter);
+         looks.everywhere == b.looks.everywhere && echo_root == b.echo_root && factor == b.factor &&
+         lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) && same(clutter, b.clutter);
 }
 
 bool sameShare(const RadarShare& a, const RadarShare& b) {
-  const auto& [channel, task, forward, right, up, jammers] = a;
+  const auto& [channel, task, forward, right, up, jammers, arcs] = a;
   return channel == b.channel && sameTask(task, b.task) && sameLook(a, b) &&
+         sameArcs(arcs.counts, b.arcs.counts) && sameArcs(arcs.passes, b.arcs.passes) &&
          std::equal(jammers.begin(), jammers.end(), b.jammers.begin(), b.jammers.end(), sameJammer);
 }
 
@@ -166,7 +166,8 @@ bool areSame(const std::optional<ElevationCut>& a, const std::optional<Elevation
 }
 
 bool sameLook(const RadarShare& a, const RadarShare& b) {
-  return same(a.task.look, b.task.look) && a.forward == b.forward && a.right == b.right && a.up == b.up;
+  return same(a.task.look, b.task.look) && sameArcs(a.arcs.looks, b.arcs.looks) && a.forward == b.forward &&
+         a.right == b.right && a.up == b.up;
 }
 
 bool sameRays(const JammerAtRadar& a, const JammerAtRadar& b) {

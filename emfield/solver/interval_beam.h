@@ -19,8 +19,10 @@ struct IntervalBeam {
       1;  ///< factor of the emitter's power, for the mean of an emitter that is not always active
   scenario::BeamPose look_frame;     ///< of a radar's looks at targets; replaces EmitterState::mount
   double look_half_width_deg = 180;  ///< azimuths to both sides of its forward that the beam passes
-  LookCount looks;
-  LastPasses last_passes;  ///< of the kind cumulative, of scans with passes (scenario::lastPassesOf)
+  float looks = 1;                   ///< LookCount::everywhere
+  /// looks: if look_half_width_deg does not describe the directions that the beam passes; passes: of the kind
+  /// cumulative, of scans with passes (scenario::lastPassesOf).
+  IntervalArcs arcs;
 
   /// Inputs from which the antenna was made.
   scenario::AntennaPtr of_antenna;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "emscape/base/device.h"
 #include "emscape/emfield/field_solver.h"
@@ -393,6 +394,40 @@ TEST_F(CudaField, RadarsProductsAreTheCpus) {
                                    "burn_through_margin_db"};
     Pair pair(scenario, nullptr);
     expectSameField(pair, random, 4);
+  }
+}
+
+// Scans whose bursts leave azimuths, and bars of rasters, without a look.
+TEST_F(CudaField, LooksInBurstsAreTheCpus) {
+  std::mt19937 random(13);
+  for (const char* quantity : {"detection_probability", "detection_age_s"}) {
+    for (const auto kind : {scenario::IntervalKind::max_hold, scenario::IntervalKind::cumulative}) {
+      const bool is_age = std::string(quantity) == "detection_age_s";
+      if (is_age && kind != scenario::IntervalKind::cumulative) continue;
+      SCOPED_TRACE(::testing::Message() << quantity << ", " << toString(kind));
+      const auto scenario = randomScenario(
+          random, FrameKind::altitude, {PropagationModel::free_space, PropagationModel::horizon}, 900, 12);
+      for (std::size_t e = 0; e < scenario->emitters.size(); ++e) {
+        scenario::Emitter& emitter = scenario->emitters[e];
+        emitter.frequency_hz = 1e9;
+        if (e % 3 == 1) emitter.kind = scenario::EmitterKind::jammer;
+        if (e % 3 != 0) continue;
+        using scenario::ScanKind;
+        const ScanKind scans[] = {ScanKind::rotate, ScanKind::sector,
+                                  is_age ? ScanKind::sector : ScanKind::raster};
+        emitter.scan.kind = scans[e / 3 % 3];
+        emitter.scan.rate_rpm = 10;
+        emitter.scan.width_deg = 100;
+        emitter.scan.rate_deg_s = 50;
+        emitter.scan.bars = emitter.scan.kind == ScanKind::raster ? 3 : 1;
+        emitter.scan.elevation_step_deg = 6;
+        emitter.active_s = {{0.4, 1.3}, {3.1, 4.4}, {6.2, 7.3}};
+      }
+      scenario->output.quantities = {quantity};
+      scenario->output.interval = {kind, 8.0, {}};
+      Pair pair(scenario, nullptr);
+      expectSameField(pair, random, 3);
+    }
   }
 }
 

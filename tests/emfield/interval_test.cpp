@@ -1,9 +1,12 @@
 // Fields over an interval against fine time steps.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "emscape/base/units.h"
@@ -314,6 +317,209 @@ TEST_P(Intervals, KnowTheAgeOfTheLastDetection) {
         EXPECT_LE(at_edges, 6);
       }
     }
+  }
+}
+
+using Bursts = std::vector<scenario::TimeInterval>;
+
+/// A beam in small steps of time: what each voxel of a radar sees of it.
+class SteppedBeam {
+ public:
+  /// @param solver    of the radar's scan, without active times
+  /// @param scenario  its only emitter is in the middle of the region
+  SteppedBeam(FieldSolver& solver, const std::shared_ptr<Scenario>& scenario)
+      : solver_(solver), scenario_(scenario), grid_(gridOf(scenario->region)) {
+    const auto voxels = static_cast<std::size_t>(grid_.dims.count());
+    largest.resize(voxels);
+    looks.resize(voxels);
+    before_deg_.resize(voxels);
+  }
+  /// Follows the beam from a time to another, in which the emitter is active.
+  void follow(double begin_s, double end_s) {
+    const ScanSpec& scan = scenario_->emitters[0].scan;
+    const double rate_deg_s = scan.kind == ScanKind::rotate ? 6 * std::abs(scan.rate_rpm) : scan.rate_deg_s;
+    const int steps = static_cast<int>(std::ceil((end_s - begin_s) * rate_deg_s / 0.2));
+    for (int n = 0; n <= steps; ++n) {
+      const double t_s = n < steps ? begin_s + (end_s - begin_s) * n / steps : end_s - 1e-9;
+      solver_.update(scenario::snapshotAt(scenario_, nullptr, t_s));
+      const auto volume = solver_.volumes().front().host();
+      const scenario::BeamDirection beam = beamAt(scan, t_s);
+      for (std::size_t v = 0; v < looks.size(); ++v) {
+        largest[v] = std::max(largest[v], volume->values[v]);
+        const double off_deg = std::remainder(beam.azimuth_deg - azimuth_deg(v), 360);
+        const double bar_step_deg = scan.kind == ScanKind::raster ? scan.elevation_step_deg : 360;
+        const bool is_its_bar = std::abs(barTowards_deg(v) - beam.elevation_deg) < bar_step_deg / 2;
+        if (n > 0 && is_its_bar && std::abs(off_deg) < 90 && (off_deg > 0) != (before_deg_[v] > 0))
+          ++looks[v];
+        before_deg_[v] = off_deg;
+      }
+    }
+  }
+  double azimuth_deg(std::size_t v) const {
+    const Vec3d at = from(v);
+    return radToDeg(std::atan2(at.x, at.y));
+  }
+  double elevation_deg(std::size_t v) const {
+    const Vec3d at = from(v);
+    return radToDeg(std::atan2(at.z, std::hypot(at.x, at.y)));
+  }
+  double levelDistance_m(std::size_t v) const { return std::hypot(from(v).x, from(v).y); }
+  /// Elevation of the nearest bar.
+  double barTowards_deg(std::size_t v) const {
+    const ScanSpec& scan = scenario_->emitters[0].scan;
+    double nearest_deg = scan.elevation_deg - (scan.bars - 1) / 2.0 * scan.elevation_step_deg;
+    for (int bar = 1; bar < scan.bars; ++bar) {
+      const double bar_deg = scan.elevation_deg + (bar - (scan.bars - 1) / 2.0) * scan.elevation_step_deg;
+      if (std::abs(bar_deg - elevation_deg(v)) < std::abs(nearest_deg - elevation_deg(v)))
+        nearest_deg = bar_deg;
+    }
+    return nearest_deg;
+  }
+
+  std::vector<float> largest;  ///< probability of detection of any instant
+  std::vector<int> looks;      ///< number of passes
+
+ private:
+  /// In the emitter's east-north-up axes.
+  Vec3d from(std::size_t v) const {
+    const int i = static_cast<int>(v) % grid_.dims.x, j = static_cast<int>(v) / grid_.dims.x % grid_.dims.y,
+              k = static_cast<int>(v) / (grid_.dims.x * grid_.dims.y);
+    return grid_.center_m(i, j, k) - grid_.center_m(grid_.dims.x / 2, grid_.dims.y / 2, 0);
+  }
+
+  FieldSolver& solver_;
+  std::shared_ptr<Scenario> scenario_;
+  volume::Grid grid_;
+  std::vector<double> before_deg_;
+};
+
+// The beam is stepped through all active times: its largest probability of detection, and its passes.
+TEST_P(Intervals, LookWhereTheBeamPassesInBursts) {
+  Bursts many;
+  for (int n = 0; n < 13; ++n) many.push_back({kBegin_s + 0.7 * n, kBegin_s + 0.7 * n + 0.31});
+  ScanSpec raster = sweeping(ScanKind::raster, 70, 60, 3);
+  raster.elevation_deg = raster.elevation_step_deg = 8;
+  for (const ScanSpec& scan : {rotating(10), rotating(-8), sweeping(ScanKind::sector, 90, 50), raster}) {
+    const auto scenario = radarAround(scan);
+    scenario->output.radar_look = scenario::RadarLook::scan;
+    const bool is_raster = scan.kind == ScanKind::raster;
+    if (is_raster) scenario->emitters[0].antenna = scenario::makeGaussian(30, 4, 6, -35);
+    FieldSolver solver = solverOf(scenario);
+    for (const auto& [seconds, bursts] : std::vector<std::pair<double, Bursts>>{
+             {2.83, {{0, 100}}},
+             {1.3, {{kBegin_s, kBegin_s + 0.33}, {kBegin_s + 0.33, kBegin_s + 0.47}}},
+             {8, {{kBegin_s + 0.21, kBegin_s + 0.92}, {kBegin_s + 3.34, kBegin_s + 4.45}}},
+             {9.2, many},
+         }) {
+      SCOPED_TRACE(::testing::Message() << toString(scan.kind) << " " << scan.rate_rpm << ", " << seconds
+                                        << " s, " << bursts.size() << " bursts");
+      SteppedBeam beam(solver, scenario);
+      for (std::size_t n = 0; n < bursts.size(); ++n) {
+        const double begin_s = std::max(bursts[n].begin_s, kBegin_s);
+        double end_s = std::min(bursts[n].end_s, kBegin_s + seconds);
+        if (n + 1 < bursts.size() && bursts[n + 1].begin_s == end_s) end_s = bursts[++n].end_s;
+        beam.follow(begin_s, end_s);
+      }
+      auto in_bursts = std::make_shared<Scenario>(*scenario);
+      in_bursts->emitters[0].active_s = bursts;
+      const UnsetVector<float> once = overInterval(in_bursts, IntervalKind::max_hold, seconds);
+      const UnsetVector<float> all = overInterval(in_bursts, IntervalKind::cumulative, seconds);
+      const int most = *std::max_element(beam.looks.begin(), beam.looks.end());
+      int passed = 0, missed = 0;
+      for (std::size_t v = 0; v < once.size(); ++v) {
+        if (beam.levelDistance_m(v) < 2000) continue;
+        if (is_raster && std::abs(beam.elevation_deg(v) - beam.barTowards_deg(v)) > 0.3) continue;
+        const double largest = static_cast<double>(beam.largest[v]);
+        const auto inLooks = [&](int looks) { return 1 - std::pow(1 - largest, looks); };
+        const std::string where = fmt::format("azimuth {:.3f}, elevation {:.3f}, {} looks",
+                                              beam.azimuth_deg(v), beam.elevation_deg(v), beam.looks[v]);
+        const bool is_passed = beam.looks[v] > 0;
+        (is_passed ? passed : missed)++;
+        // Beside a raster's bars, the look in the nearest direction may not be the best one.
+        if (is_passed || !is_raster) {
+          EXPECT_NEAR(static_cast<double>(once[v]), largest, 0.012) << where;
+        } else {
+          EXPECT_LE(static_cast<double>(once[v]), largest + 0.012) << where;
+        }
+        if (is_passed) {
+          EXPECT_NEAR(static_cast<double>(all[v]), inLooks(beam.looks[v]), 0.02) << where;
+        } else {
+          EXPECT_GE(all[v], once[v] - 1e-6f) << where;
+          EXPECT_LE(static_cast<double>(all[v]), inLooks(std::max(most, 1)) + 0.02) << where;
+        }
+      }
+      EXPECT_GT(passed, is_raster ? 1 : 50);
+      EXPECT_GT(missed, is_raster ? 5 : 20);
+    }
+  }
+}
+
+TEST_P(Intervals, CountEveryBurst) {
+  auto scenario = radarAround(rotating(10));
+  FieldSolver solver = solverOf(scenario);
+  const UnsetVector<float> once = valuesOf(solver, scenario, kBegin_s);
+  const volume::Grid grid = gridOf(scenario->region);
+  const auto at_20_deg_east = static_cast<std::size_t>(grid.index(9, 13, 1));
+  for (const int turns : {1, 4, 5, 12, 40}) {
+    Bursts& bursts = scenario->emitters[0].active_s;
+    bursts.clear();
+    // From azimuth 356 to 44 in each turn.
+    for (int n = 0; n < turns; ++n) bursts.push_back({6 * n + 5.6, 6 * n + 6.4});
+    const UnsetVector<float> found = overInterval(scenario, IntervalKind::cumulative, 6 * turns);
+    EXPECT_NEAR(static_cast<double>(found[at_20_deg_east]),
+                1 - std::pow(1 - static_cast<double>(once[at_20_deg_east]), turns), 1e-5);
+  }
+}
+
+TEST_P(Intervals, KnowTheAgeOfDetectionsInManyBursts) {
+  auto scenario = radarAround(rotating(10));
+  scenario->emitters[0].power_w = 2000;
+  FieldSolver solver = solverOf(scenario);
+  const UnsetVector<float> once = valuesOf(solver, scenario, kBegin_s);
+  scenario->output.quantities = {"detection_age_s"};
+  // Nearly two turns; the bursts of the second are at other azimuths.
+  constexpr double kPeriod_s = 0.47, kBurst_s = 0.23, kEnd_s = kBegin_s + 11.9;
+  for (int n = 0; n < 30; ++n)
+    scenario->emitters[0].active_s.push_back({kPeriod_s * n, kPeriod_s * n + kBurst_s});
+  const UnsetVector<float> found = overInterval(scenario, IntervalKind::cumulative, kEnd_s - kBegin_s);
+  const volume::Grid grid = gridOf(scenario->region);
+  int counts[3] = {};
+  for (int j = 0; j < grid.dims.y; ++j) {
+    for (int i = 0; i < grid.dims.x; ++i) {
+      const auto v = static_cast<std::size_t>(grid.index(i, j, 1));
+      const Vec3d at = grid.center_m(i, j, 1) - grid.center_m(grid.dims.x / 2, grid.dims.y / 2, 0);
+      if (once[v] < 0.5f || std::hypot(at.x, at.y) < 2000) continue;
+      const double azimuth_deg = radToDeg(std::atan2(at.x, at.y));
+      const double first_pass_s = std::fmod(azimuth_deg - 20 + 720, 360) / 60;
+      double age_s = -1;
+      int turn = 0;
+      for (int n = 0; n < 3; ++n) {
+        const double pass_s = first_pass_s + 6 * n;
+        const bool is_lit = pass_s >= kBegin_s && pass_s < kEnd_s && std::fmod(pass_s, kPeriod_s) < kBurst_s;
+        if (is_lit) age_s = kEnd_s - pass_s, turn = age_s < 6 ? 1 : 2;
+      }
+      ++counts[turn];
+      EXPECT_NEAR(static_cast<double>(found[v]), age_s, 1e-4) << azimuth_deg;
+    }
+  }
+  for (const int count : counts) EXPECT_GT(count, 20);
+}
+
+TEST_P(Intervals, CountCyclesOfDwellsInActiveTimes) {
+  auto scenario = radarAround(dwelling());
+  const UnsetVector<float> twice = overInterval(scenario, IntervalKind::cumulative, 2.1);
+  EXPECT_NE(twice, overInterval(scenario, IntervalKind::cumulative, 20));
+  scenario->emitters[0].active_s = {{kBegin_s - 1, kBegin_s + 1.3}, {kBegin_s + 15, kBegin_s + 15.8}};
+  EXPECT_EQ(twice, overInterval(scenario, IntervalKind::cumulative, 20));
+}
+
+TEST_P(Intervals, OfActiveTimesThatTouchAreThoseOfOne) {
+  auto scenario = radarAround(rotating(10));
+  for (const IntervalKind kind : {IntervalKind::max_hold, IntervalKind::cumulative}) {
+    scenario->emitters[0].active_s = {{0, 2.5}};
+    const UnsetVector<float> expected = overInterval(scenario, kind, 6);
+    scenario->emitters[0].active_s = {{2, 2.5}, {0, 2}, {1, 1.5}};
+    EXPECT_EQ(overInterval(scenario, kind, 6), expected);
   }
 }
 
