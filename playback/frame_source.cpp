@@ -273,6 +273,10 @@ std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const Co
     throw Error(ErrorCode::usage,
                 selection.input + " is not a scenario: --mesh applies to a field to be computed");
   }
+  if (!selection.scenario.empty() && kind == InputKind::scenario) {
+    throw Error(ErrorCode::usage,
+                selection.input + " is a scenario: --scenario has an effect on volumes only");
+  }
   switch (kind) {
     case InputKind::scenario:
       return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input, selection.edits),

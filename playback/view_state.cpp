@@ -38,7 +38,6 @@ constexpr double kMaxRate = 1e4;
 constexpr double kMaxValue = 1e30;
 constexpr int kMaxItems = 10000;
 constexpr int kMaxText = 1 << 20;
-static_assert(volume::kMaxTime_s == scenario::kMaxTime_s);
 
 // In the order of the enumerations.
 const std::vector<std::string> kModes{"dvr", "mida", "mip", "iso"};
@@ -58,7 +57,7 @@ ValueSpec within(const render::SettingLimits& limits, const char* unit = "") {
 class ViewFormat {
  public:
   explicit ViewFormat(const DocumentNode* transfer) : transfer_(transfer) {
-    const ValueSpec time = spec::number("s").from(-scenario::kMaxTime_s).to(scenario::kMaxTime_s);
+    const ValueSpec time = spec::number("s").from(-volume::kMaxTime_s).to(volume::kMaxTime_s);
     const ValueSpec boolean = spec::simple(ValueType::boolean);
     const ValueSpec value = spec::number().from(-kMaxValue).to(kMaxValue);
     bookmark_ = {"bookmark",

@@ -25,8 +25,8 @@
 #include "emscape/playback/picture_sink.h"
 #include "emscape/playback/real_time_loop.h"
 #include "emscape/playback/view_state.h"
+#include "emscape/playback/volume_input.h"
 #include "emscape/scenario/scenario_file.h"
-#include "emscape/volume/file.h"
 #include "playback/background_writer.h"
 #include "render/reconstruction.h"
 
@@ -186,7 +186,11 @@ void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
     if (!std::filesystem::exists(file)) return;
     const playback::InputKind kind = playback::inputKindOf(file);
     if (kind != playback::InputKind::volume && kind != playback::InputKind::mesh) return;
-    for (const std::filesystem::path& step : volume::seriesOf(file)) inputs.push_back({name, step.string()});
+    std::string quantity = selection.quantity;
+    for (const playback::VolumeFile& step : playback::holdsMeshes(file)
+                                                ? playback::meshFilesOf(file, quantity)
+                                                : playback::volumeFilesOf(file, quantity))
+      inputs.push_back({name, step.file.string()});
   };
   const auto addScenario = [&](const std::string& file, const std::vector<scenario::Edit>& edits) {
     if (!std::filesystem::is_regular_file(file)) return;

@@ -17,8 +17,8 @@ namespace emscape::volume {
 /// no floor.
 constexpr float kNoFloor = std::numeric_limits<float>::lowest();
 
-/// Limit of all times, before and after the epoch (s), as in scenarios.
-constexpr double kMaxTime_s = 1e9;
+/// Limit of the times of volumes, before and after the epoch (s). Other programs may count from another one.
+constexpr double kMaxTime_s = 1e12;
 
 /// Description of the values. Every volume file contains it, as `emscape:*` if the format has metadata.
 struct VolumeInfo {
