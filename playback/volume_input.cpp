@@ -59,6 +59,12 @@ class FilesOfQuantity {
   std::vector<VolumeFile> files_;
 };
 
+/// A volume file, the steps of a list, or the volumes of a folder.
+std::vector<volume::SeriesStep> volumesOf(const fs::path& path) {
+  if (fs::is_directory(path) || path.extension() == ".pvd") return volume::seriesSteps(path);
+  return {{path, std::nullopt}};
+}
+
 /// The .vtu files of a folder by name, or of a list.
 std::vector<volume::SeriesStep> meshesOf(const fs::path& path) {
   if (path.extension() == ".pvd") return volume::seriesSteps(path);
@@ -76,10 +82,8 @@ std::vector<volume::SeriesStep> meshesOf(const fs::path& path) {
 }  // namespace
 
 std::vector<VolumeFile> volumeFilesOf(const fs::path& path, std::string& quantity) {
-  const bool is_series = fs::is_directory(path) || path.extension() == ".pvd";
   FilesOfQuantity files(quantity);
-  for (const volume::SeriesStep& step :
-       is_series ? volume::seriesSteps(path) : std::vector<volume::SeriesStep>{{path, std::nullopt}}) {
+  for (const volume::SeriesStep& step : volumesOf(path)) {
     for (const volume::DenseVolume& volume : volume::listVolume(step.file).volumes)
       files.add(step, volume.info);
   }
@@ -102,6 +106,13 @@ bool holdsMeshes(const fs::path& path) {
     has_meshes = has_meshes || volume::isMeshFile(entry.path());
   }
   return has_meshes;
+}
+
+std::vector<fs::path> stepFilesOf(const fs::path& path) {
+  std::vector<fs::path> files;
+  for (const volume::SeriesStep& step : holdsMeshes(path) ? meshesOf(path) : volumesOf(path))
+    files.push_back(step.file);
+  return files;
 }
 
 std::vector<VolumeFile> meshFilesOf(const fs::path& path, std::string& quantity) {

@@ -186,11 +186,8 @@ void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
     if (!std::filesystem::exists(file)) return;
     const playback::InputKind kind = playback::inputKindOf(file);
     if (kind != playback::InputKind::volume && kind != playback::InputKind::mesh) return;
-    std::string quantity = selection.quantity;
-    for (const playback::VolumeFile& step : playback::holdsMeshes(file)
-                                                ? playback::meshFilesOf(file, quantity)
-                                                : playback::volumeFilesOf(file, quantity))
-      inputs.push_back({name, step.file.string()});
+    for (const std::filesystem::path& step : playback::stepFilesOf(file))
+      inputs.push_back({name, step.string()});
   };
   const auto addScenario = [&](const std::string& file, const std::vector<scenario::Edit>& edits) {
     if (!std::filesystem::is_regular_file(file)) return;

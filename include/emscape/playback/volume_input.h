@@ -23,6 +23,10 @@ bool holdsMeshes(const std::filesystem::path& path);
 /// volumeFilesOf() for an input for which holdsMeshes().
 std::vector<VolumeFile> meshFilesOf(const std::filesystem::path& path, std::string& quantity);
 
+/// The files of an input of volumes or meshes, of all quantities. Only a list (.pvd) is read.
+/// @throws Error (bad_input)
+std::vector<std::filesystem::path> stepFilesOf(const std::filesystem::path& path);
+
 /// The files nearest to the times of a selection. @param files  ascending, at least one
 /// @param times  "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all @param first_only  only the first
 /// @throws Error (usage)
