@@ -278,6 +278,8 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
     return lastPasses(scenario::lastPassesOf(emitter, t_s, duration_s), frame_deg, stays(sweep),
                       t_s + duration_s);
   };
+  const bool has_dwells = scan.kind == ScanKind::dwell_list;
+  if (has_dwells) beam.looks = dwellLooks(scan, scenario::activeTime_s(emitter, t_s, duration_s));
   if (stays(sweep)) {
     if (counts_passes) beam.arcs.passes = passesIn(0);
     beam.pose = state.beam;
@@ -295,9 +297,7 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
   beam.pose = scenario::aimed(sweepFrame(emitter, state), frame_deg, 0);
   beam.look_frame = beam.pose;
   if (counts_passes) beam.arcs.passes = passesIn(frame_deg + (sweeps ? scan.azimuth_deg : 0));
-  if (scan.kind == ScanKind::dwell_list) {
-    beam.looks = dwellLooks(scan, scenario::activeTime_s(emitter, t_s, duration_s));
-  } else {
+  if (!has_dwells) {
     const Bars bars(scan);
     const double whole_deg = sweeps ? scan.width_deg : kTurn_deg;
     beam.looks = static_cast<float>(countLooks(sweep, whole_deg, bars, beam.arcs.counts));

@@ -511,6 +511,14 @@ TEST_P(Intervals, CountCyclesOfDwellsInActiveTimes) {
   EXPECT_NE(twice, overInterval(scenario, IntervalKind::cumulative, 20));
   scenario->emitters[0].active_s = {{kBegin_s - 1, kBegin_s + 1.3}, {kBegin_s + 15, kBegin_s + 15.8}};
   EXPECT_EQ(twice, overInterval(scenario, IntervalKind::cumulative, 20));
+  ScanSpec one = dwelling();
+  one.dwells.resize(1);
+  scenario = radarAround(one);
+  const double cycle_s = one.dwells[0].duration_s;
+  const UnsetVector<float> once = overInterval(scenario, IntervalKind::cumulative, cycle_s),
+                           thrice = overInterval(scenario, IntervalKind::cumulative, 3 * cycle_s);
+  for (std::size_t v = 0; v < once.size(); ++v)
+    EXPECT_NEAR(thrice[v], 1 - std::pow(1 - once[v], 3), 1e-5) << v;
 }
 
 TEST_P(Intervals, OfActiveTimesThatTouchAreThoseOfOne) {
