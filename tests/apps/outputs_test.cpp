@@ -1,5 +1,4 @@
 // Files that subcommands write: never an input or another output, and whole or not at all.
-#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -141,7 +140,7 @@ TEST_F(Outputs, OfASeriesDoNotReplaceAFileOfTheScenario) {
   const std::string site = "position: {latitude_deg: 52.05, longitude_deg: 5.06, height_agl_m: 50}";
   for (const char* name : {"quick.pvd", "quick_0001.nvdb.json"}) {
     std::string moving = scenario;
-    moving.replace(moving.find(site), site.size(), fmt::format("track: {{file: {}}}", name));
+    moving.replace(moving.find(site), site.size(), "track: {file: " + std::string(name) + "}");
     const std::string file = folder_.write("o/moving.yaml", moving);
     const std::string track =
         folder_.write(std::string("o/") + name,
