@@ -11,6 +11,7 @@
 #include "scenario/scan_sampling.h"
 #include "study/maps/least_heights.h"
 #include "study/maps/surface_maps.h"
+#include "study/maps/warnings.h"
 
 namespace emscape::study {
 namespace {
@@ -169,7 +170,7 @@ struct CoverageSolver::Impl {
   struct OfReference {
     SurfaceField field;
     std::vector<SurfaceMaps> maps;
-    std::vector<std::vector<std::string>> warnings;  ///< of each scenario after its last time
+    std::vector<std::vector<std::string>> warnings;  ///< of each scenario
   };
 
   const MapGrid& grid;
@@ -249,7 +250,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
       for (Impl::OfReference& of : impl_->references) {
         step();
         const SurfaceValues values = of.field.at(at_targets[s], terrain, time_s);
-        of.warnings[s] = of.field.warnings();
+        addOnce(of.warnings[s], of.field.warnings());
         for (std::size_t r = 0; r < requests.size(); ++r)
           of.maps[r].addTime(s, at_targets[s], values, time_s, takeOf(r));
       }
@@ -273,11 +274,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     for (Impl::OfReference& of : impl_->references) {
       for (std::size_t r = 0; r < requests.size(); ++r)
         of.maps[r].finish(s, [&](CoverageMap map) { take(s, r, std::move(map)); });
-      for (const std::string& warning : of.warnings[s]) {
-        if (std::find(warnings[s].begin(), warnings[s].end(), warning) == warnings[s].end()) {
-          warnings[s].push_back(warning);
-        }
-      }
+      addOnce(warnings[s], of.warnings[s]);
     }
   }
   if (progress) progress("maps", 1);

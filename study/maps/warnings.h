@@ -6,10 +6,8 @@
 
 namespace emscape::study {
 
-/// A warning of FieldSolver without " (N times)", because the count depends on previous computations.
-std::string withoutCount(const std::string& warning);
-
-/// Adds new warnings, without their counts.
+/// Adds warnings that are not there yet, without FieldSolver's " (N times)": N depends on previous
+/// computations.
 void addOnce(std::vector<std::string>& all, const std::vector<std::string>& more);
 
 }  // namespace emscape::study

@@ -7,7 +7,6 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/scenario_file.h"
-#include "study/maps/warnings.h"
 #include "study/sweep/measure.h"
 #include "study/sweep/polygon_mask.h"
 
@@ -150,7 +149,7 @@ struct StudyRunner::Impl {
       try {
         for (const std::vector<std::string>& of_variant :
              of_quantity.solver->compute(scenarios, terrain, add)) {
-          for (const std::string& warning : of_variant) warnings.insert(withoutCount(warning));
+          warnings.insert(of_variant.begin(), of_variant.end());
         }
       } catch (const Error& error) {
         const std::string to = variants.size() > 1 ? " to " + nameOf(variants.back()) : "";

@@ -13,6 +13,8 @@
 #include "emscape/emfield/path_budget.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/study/geotiff.h"
+#include "tests/emfield/made_terrain.h"
+#include "tests/emfield/radar_duel.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
@@ -89,6 +91,31 @@ TEST(Coverage, WarnsOfTimesWithoutAnActiveRadar) {
   EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, {0, 39}), Not(inactive));
   EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, {60}), Not(inactive))
       << "of other emitters";
+}
+
+TEST(Coverage, KeepsTheWarningsOfEachTimeOfSeveralScenarios) {
+  using namespace emfield::testing;
+  const auto terrain = std::make_shared<const MadeTerrain>(44.5, -71.5, 1.0, 0.05);
+  scenario::Emitter radar = trackingRadar(), jammer = jammerOf(100);
+  radar.active_s = {{0, 40}};
+  jammer.propagation.model = propagation::PropagationModel::horizon;
+  const auto weak = emptyScenario(FrameKind::altitude, 44.5, -71.5, {10e3, 10e3, 4000}, {10, 10, 4});
+  addEmitter(*weak, {44.5, -71.5, 2500}, radar);
+  addEmitter(*weak, {44.97, -71.03, 2500}, jammer);  // behind the hole
+  const auto strong = std::make_shared<scenario::Scenario>(*weak);
+  strong->emitters[1].power_w *= 2;
+  emfield::FieldOptions options;
+  options.allow_missing_terrain = true;
+  const MapGrid grid = makeMapGrid(areaOf(weak->region), 2000, "utm");
+  CoverageSolver solver(
+      grid, {{{kHigh}, {Product::fraction}, scenario::Quantity::jammer_to_signal_db, 0, {0, 60}}}, options);
+  const auto warnings =
+      solver.compute({weak, strong}, terrain, [](std::size_t, std::size_t, CoverageMap) {}, {});
+  ASSERT_EQ(warnings.size(), 2u);
+  for (const auto& of_scenario : warnings) {
+    EXPECT_THAT(of_scenario, Contains(HasSubstr("counted as a free path")))
+        << "at the first time alone: at the second no radar is active";
+  }
 }
 
 TEST(Coverage, WarnsOfPixelsOfAnotherSizeOnTheGround) {
