@@ -101,16 +101,24 @@ class LayerSystem {
       throw Error(ErrorCode::bad_input, "the map cannot be brought to the coordinate system of its polygons");
     if (OSRIsGeographic(system) == 0) return;
     const double turn = 2 * kPi / OSRGetAngularUnits(system, nullptr);
-    const bool is_rounded = std::abs(turn - std::round(turn)) < 1e-9;  // files round a degree's radians
+    const bool is_rounded = std::abs(turn - std::round(turn)) < 1e-4;  // files round a degree's radians
     setGeographic(is_rounded ? std::round(turn) : turn, " of longitudes and latitudes");
   }
 
   /// Range of x after which a place repeats; infinity: none.
   double turn() const { return turn_; }
 
-  /// @throws Error (bad_input): a corner that is not on the earth, or an edge that may lead either way around
-  /// it; an edge along a pole is a point and has no way
+  /// @throws Error (bad_input): fewer than three corners, which GDAL makes of text that it cannot read, a
+  /// corner that is not on the earth, or an edge that may lead either way around it; an edge along a pole is
+  /// a point and has no way
   void check(const std::vector<Corner>& ring) const {
+    const bool is_closed =
+        ring.size() > 1 && ring.front().x == ring.back().x && ring.front().y == ring.back().y;
+    if (const std::size_t corners = ring.size() - (is_closed ? 1 : 0); corners < 3) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("a ring of a polygon has {} corner{}, but needs 3 or more", corners,
+                              corners == 1 ? "" : "s"));
+    }
     for (std::size_t i = 0; i < ring.size(); ++i) {
       const Corner& corner = ring[i];
       const Corner& next = ring[(i + 1) % ring.size()];

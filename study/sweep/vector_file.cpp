@@ -18,6 +18,17 @@ constexpr std::size_t kMaxShown = 80;
   throw Error(ErrorCode::bad_input, {file, 0, 0}, messages.explain("cannot be read completely"));
 }
 
+/// Index of the column from which GDAL's CSV driver makes a layer's geometry; -1: none.
+int geometryColumn(OGRFeatureDefnH layer) {
+  if (OGR_FD_GetGeomFieldCount(layer) == 0) return -1;
+  // The driver names the geometry of a column WKT "", that of a column _WKT... "geom_" and the column's name,
+  // and that of a column with the type WKT in the .csvt file beside it as the column.
+  const std::string geometry = OGR_GFld_GetNameRef(OGR_FD_GetGeomFieldDefn(layer, 0)), prefix = "geom_";
+  const int column = OGR_FD_GetFieldIndex(layer, geometry.empty() ? "WKT" : geometry.c_str());
+  if (column >= 0 || geometry.compare(0, prefix.size(), prefix) != 0) return column;
+  return OGR_FD_GetFieldIndex(layer, geometry.substr(prefix.size()).c_str());
+}
+
 }  // namespace
 
 VectorFile::VectorFile(const std::string& file) : file_(file), dataset_(openVectors(messages_, file)) {
@@ -56,11 +67,14 @@ void VectorFile::requireGeometry(OGRLayerH layer, OGRFeatureH feature) const {
   if (OGR_F_GetGeometryRef(feature) != nullptr) return;
   // GDAL reports no failure for such a cell.
   const std::string driver = GDALGetDriverShortName(GDALGetDatasetDriver(dataset_.get()));
-  const int wkt = driver == "CSV" ? OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer), "WKT") : -1;
-  const std::string text = wkt < 0 ? "" : OGR_F_GetFieldAsString(feature, wkt);
+  const OGRFeatureDefnH definition = OGR_L_GetLayerDefn(layer);
+  const int column = driver == "CSV" ? geometryColumn(definition) : -1;
+  const std::string text = column < 0 ? "" : OGR_F_GetFieldAsString(feature, column);
   if (text.empty()) return;
+  const std::string name = OGR_Fld_GetNameRef(OGR_FD_GetFieldDefn(definition, column));
   throw Error(ErrorCode::bad_input, {file_, 0, 0},
-              fmt::format("the WKT of row {} after the header is not a geometry{}", OGR_F_GetFID(feature),
+              fmt::format("the {} of row {} after the header is not a geometry{}",
+                          name.size() > kMaxShown ? "WKT" : name, OGR_F_GetFID(feature),
                           text.size() > kMaxShown ? "" : ": '" + text + "'"));
 }
 

@@ -9,8 +9,8 @@
 
 namespace emscape::study {
 
-/// A file as of openVectors(). What GDAL cannot read is an error, never left out. For one thread and scope,
-/// as GdalMessages.
+/// A file as of openVectors(). What GDAL reports as unreadable is an error. Use it in the thread and scope
+/// that made it, as GdalMessages.
 class VectorFile {
  public:
   /// @throws Error (bad_input) that names the file and GDAL's reason
@@ -22,9 +22,9 @@ class VectorFile {
 
   std::vector<OGRLayerH> layers() const;
 
-  /// Calls visit(feature) for each feature of a layer. GDAL's failures in these calls are not its own.
-  /// @throws Error (bad_input) that names the file and GDAL's reason; also for a row of a CSV file whose WKT
-  /// is not a geometry
+  /// Calls visit(feature) for each feature of a layer. GDAL's failures inside visit() are not reported here.
+  /// @throws Error (bad_input) that names the file and GDAL's reason; also for a row of a CSV file whose
+  /// first column of WKT is not a geometry
   template <class Visit>
   void eachFeature(OGRLayerH layer, const Visit& visit) const {
     OGR_L_ResetReading(layer);

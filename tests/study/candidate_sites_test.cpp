@@ -116,6 +116,19 @@ TEST(CandidateSites, APointThatCannotBeReadIsNotLeftOut) {
               HasSubstr("Invalid 'x' coordinate"));
 }
 
+TEST(CandidateSites, APointInAnyColumnThatGdalTakesAsWktIsNotLeftOut) {
+  const test::TemporaryFolder folder;
+  const std::string rows = "a,\"POINT (5 52)\"\nb,\"POINT (5.1\"\nc,\"POINT (5.2 52)\"\n";
+  folder.write("typed.csvt", "String,WKT\n");
+  for (const auto& [file, column] :
+       {std::pair{"named.csv", "_WKTpt"}, {"lower.csv", "_wkt"}, {"typed.csv", "geom_shape"}}) {
+    const std::string points = folder.write(file, "name," + std::string(column) + "\n" + rows);
+    EXPECT_THAT(test::errorOf([&] { readCandidates(points); }),
+                HasSubstr(file + std::string(": the ") + column +
+                          " of row 2 after the header is not a geometry: 'POINT (5.1'"));
+  }
+}
+
 TEST(CandidateSites, AreReadFromFormatsThatNameNoOtherFile) {
   const test::TemporaryFolder folder;
   folder.write("other.csv", "name,X,Y\nhill,5,52\n");

@@ -119,6 +119,22 @@ TEST_F(PolygonMask, EdgesAlongAPoleMayBeLong) {
               HasSubstr("from longitude -180 to 180 may lead either way around the earth"));
 }
 
+TEST_F(PolygonMask, AFileMayRoundTheUnitOfItsAngles) {
+  const std::string box =
+      geojson("[[[-180, 90], [-180, -60], [-60, -60], [60, -60], [180, -60], [180, 90], [-180, 90]]]");
+  for (const std::string degree : {"0.0174532925199433", "0.0174532925", "0.017453293"}) {
+    const std::string name = "degree_" + degree;
+    const std::string file = folder_ / (name + ".shp");
+    test::convertVectors(box, "ESRI Shapefile", file);
+    folder_.write(
+        name + ".prj",
+        "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],"
+        "PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\"," +
+            degree + "]]");
+    EXPECT_EQ(count(pixelsWithin(file, grid_)), inArea(grid_)) << degree;
+  }
+}
+
 TEST_F(PolygonMask, APolygonThatCannotBeReadIsNotLeftOut) {
   const std::string good = R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
 "coordinates": [[[4.95, 51.95], [5.05, 51.95], [5, 52.05], [4.95, 51.95]]]}})";
@@ -141,6 +157,22 @@ TEST_F(PolygonMask, APolygonThatCannotBeReadIsNotLeftOut) {
                                              "4.95 51.95))\",a\n\"\",b\n"),
                                grid_)),
             count(pixelsWithin(geojson("[[[4.95, 51.95], [5.05, 51.95], [5, 52.05]]]"), grid_)));
+}
+
+TEST_F(PolygonMask, ARingThatGdalReadsAsOnePointIsNotLeftOut) {
+  const auto polygon = [](const std::string& coordinates) {
+    return R"(<g:featureMember><p><shape><g:Polygon srsName="EPSG:4326"><g:outerBoundaryIs><g:LinearRing>)"
+           "<g:coordinates>" +
+           coordinates + "</g:coordinates></g:LinearRing></g:outerBoundaryIs></g:Polygon></shape></p>" +
+           "</g:featureMember>";
+  };
+  const std::string good = "4.95,51.95 5.05,51.95 5,52.05 4.95,51.95";
+  EXPECT_THAT(problemOf(folder_.write("two.gml", "<c xmlns:g=\"http://www.opengis.net/gml\">" +
+                                                     polygon(good) + polygon("a b c") + "</c>"),
+                        grid_),
+              HasSubstr("two.gml: a ring of a polygon has 1 corner, but needs 3 or more"));
+  EXPECT_THAT(problemOf(geojson("[[[4.95, 51.95], [5.05, 51.95], [4.95, 51.95]]]"), grid_),
+              HasSubstr("a ring of a polygon has 2 corners, but needs 3 or more"));
 }
 
 TEST_F(PolygonMask, AWholeFileIsReadAndACutOneRefusedInEachFormat) {
