@@ -50,12 +50,13 @@ std::vector<std::string> warpOptions(const MapGrid& grid) {
   const double diagonal = std::hypot(grid.width, grid.height);
   const int width = static_cast<int>(std::min<double>(kMaxWidth, std::ceil(kPi * diagonal)));
   const int height = static_cast<int>(std::min<double>(kMaxWidth / 2, std::ceil(diagonal)));
-  double edge_deg = 90;  // the latitude that is farthest from the pole
+  const double side = has_north ? 1 : -1;
+  double edge_deg = 90;  // the latitude that is farthest from the pole, times `side`
   for (const emfield::Surface::Place& place : grid.places) {
-    edge_deg = std::fmin(edge_deg, std::abs(place.latitude_deg));
+    edge_deg = std::fmin(edge_deg, side * place.latitude_deg);
   }
   const double pixel_deg = grid.cell_m / 111e3;
-  edge_deg = std::max(0.0, edge_deg - pixel_deg);  // places are the pixels' centres
+  edge_deg = std::max(-90.0, edge_deg - pixel_deg);  // places are the pixels' centres
   const double south_deg = has_north ? edge_deg : -90, north_deg = has_north ? 90 : -edge_deg;
   options.insert(options.end(),
                  {earth(0), "-te", "-180", fmt::format("{}", south_deg), "180", fmt::format("{}", north_deg),

@@ -425,14 +425,21 @@ TEST_F(MapFiles, TheKmzLaysAMapWhereItIs) {
 }
 
 TEST_F(MapFiles, TheKmzLaysAMapOverAPoleWhereItIs) {
-  for (const double latitude_deg : {90.0, -89.97}) {
-    SCOPED_TRACE(latitude_deg);
+  struct Case {
+    std::string name, area;
+    double cell_m;
+  };
+  for (const auto& [name, area, cell_m] : {Case{"north", "90,10,20000", 400},
+                                           {"south", "-89.97,10,20000", 400},
+                                           {"north_beyond_the_equator", "bbox:-180,-10,180,90", 200000},
+                                           {"south_beyond_the_equator", "bbox:-180,-90,180,10", 200000}}) {
+    SCOPED_TRACE(name);
+    const bool is_north = name[0] == 'n';
     Fixture polar;
-    polar.area = parseArea(fmt::format("{},10,20000", latitude_deg));
-    polar.grid = std::make_shared<const MapGrid>(makeMapGrid(polar.area, 400, "local"));
+    polar.area = parseArea(area);
+    polar.grid = std::make_shared<const MapGrid>(makeMapGrid(polar.area, cell_m, "local"));
     MapStudy study = fixture.study();
     study.grid = polar.grid;
-    const std::string name = latitude_deg > 0 ? "north" : "south";
     MapFolder maps(folder.path() / name, study, {"kmz"});
     Map covered = polar.map(MapKind::classes, 70, 0, 1);
     covered.labels = {"no", "yes"};
@@ -441,7 +448,7 @@ TEST_F(MapFiles, TheKmzLaysAMapOverAPoleWhereItIs) {
     maps.finish({});
     const KmzOverlay overlay(folder / (name + "/maps/coverage.kmz"), "covered_msl1500m_t70s");
     EXPECT_EQ(overlay.east_deg - overlay.west_deg, 360);
-    EXPECT_EQ(latitude_deg > 0 ? overlay.north_deg : overlay.south_deg, latitude_deg > 0 ? 90 : -90);
+    EXPECT_EQ(is_north ? overlay.north_deg : overlay.south_deg, is_north ? 90 : -90);
     expectShows(overlay, *polar.grid, covered);
   }
 }
