@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "emfield/link/target_view.h"
 #include "emscape/base/error.h"
@@ -105,7 +106,7 @@ class Track {
   }
 
   std::vector<int> emitters;  ///< with a separate value
-  std::vector<std::string> warnings;
+  std::set<std::string> warnings;
 
  private:
   bool isOwn(int emitter) const {
@@ -292,7 +293,7 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
     track.addRows(begin, end, exposure.rows, progress);
   }
   if (progress) progress("track", 1);
-  exposure.warnings = std::move(track.warnings);
+  exposure.warnings.assign(track.warnings.begin(), track.warnings.end());
   for (std::size_t n = 0; n < exposure.names.size(); ++n) {
     exposure.each.push_back(
         summaryOf(exposure.names[n], exposure, [n](const ExposureRow& row) { return row.each[n]; }));

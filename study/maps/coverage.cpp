@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/snapshot.h"
@@ -170,7 +171,6 @@ struct CoverageSolver::Impl {
   struct OfReference {
     SurfaceField field;
     std::vector<SurfaceMaps> maps;
-    std::vector<std::vector<std::string>> warnings;  ///< of each scenario
   };
 
   const MapGrid& grid;
@@ -200,7 +200,7 @@ struct CoverageSolver::Impl {
     for (const HeightReference reference : {HeightReference::ground, HeightReference::mean_sea_level}) {
       SurfaceField field(grid, requests, reference, options);
       if (!field.hasHeights()) continue;
-      references.push_back({std::move(field), {}, {}});
+      references.push_back({std::move(field), {}});
       OfReference& of_reference = references.back();
       for (const CoverageRequest& request : requests)
         of_reference.maps.emplace_back(grid, request, reference, of_reference.field);
@@ -239,9 +239,9 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     if (progress) progress("maps", done++ / steps);
   };
   for (Impl::OfReference& of : impl_->references) {
-    of.warnings.assign(scenarios.size(), {});
     for (SurfaceMaps& maps : of.maps) maps.begin(scenarios.size());
   }
+  std::vector<std::set<std::string>> of_fields(scenarios.size());  // warnings
   for (const double time_s : times_s) {
     for (std::size_t s = 0; s < scenarios.size(); ++s) {
       const auto takeOf = [&](std::size_t r) {
@@ -250,7 +250,7 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
       for (Impl::OfReference& of : impl_->references) {
         step();
         const SurfaceValues values = of.field.at(at_targets[s], terrain, time_s);
-        addOnce(of.warnings[s], of.field.warnings());
+        addOnce(of_fields[s], of.field.warnings());
         for (std::size_t r = 0; r < requests.size(); ++r)
           of.maps[r].addTime(s, at_targets[s], values, time_s, takeOf(r));
       }
@@ -274,8 +274,8 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     for (Impl::OfReference& of : impl_->references) {
       for (std::size_t r = 0; r < requests.size(); ++r)
         of.maps[r].finish(s, [&](CoverageMap map) { take(s, r, std::move(map)); });
-      addOnce(warnings[s], of.warnings[s]);
     }
+    warnings[s].insert(warnings[s].end(), of_fields[s].begin(), of_fields[s].end());
   }
   if (progress) progress("maps", 1);
   return warnings;

@@ -1,16 +1,22 @@
 #include "study/maps/warnings.h"
 
-#include <algorithm>
-#include <regex>
-
 namespace emscape::study {
+namespace {
 
-void addOnce(std::vector<std::string>& all, const std::vector<std::string>& more) {
-  static const std::regex kCount(R"( \(\d+ times\)$)");
-  for (const std::string& warning : more) {
-    std::string text = std::regex_replace(warning, kCount, "");
-    if (std::find(all.begin(), all.end(), text) == all.end()) all.push_back(std::move(text));
-  }
+std::string withoutCount(std::string warning) {
+  const std::size_t open = warning.rfind(" (");
+  if (open == std::string::npos) return warning;
+  const std::size_t end = warning.find_first_not_of("0123456789", open + 2);
+  const bool has_count =
+      end != std::string::npos && end > open + 2 && warning.compare(end, std::string::npos, " times)") == 0;
+  if (has_count) warning.erase(open);
+  return warning;
+}
+
+}  // namespace
+
+void addOnce(std::set<std::string>& all, const std::vector<std::string>& more) {
+  for (const std::string& warning : more) all.insert(withoutCount(warning));
 }
 
 }  // namespace emscape::study

@@ -8,11 +8,13 @@
 #include <cmath>
 #include <map>
 #include <random>
+#include <set>
 
 #include "emscape/base/geoid.h"
 #include "emscape/emfield/path_budget.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/study/geotiff.h"
+#include "study/maps/warnings.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/radar_duel.h"
 #include "tests/support/errors.h"
@@ -91,6 +93,12 @@ TEST(Coverage, WarnsOfTimesWithoutAnActiveRadar) {
   EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, {0, 39}), Not(inactive));
   EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, {60}), Not(inactive))
       << "of other emitters";
+}
+
+TEST(Coverage, WarningsOfSeveralTimesAreKeptOnceWithoutTheirCounts) {
+  std::set<std::string> all{"a"};
+  addOnce(all, {"a (3 times)", "b (21 times)", "c (all times)", "d ( times)", "e (2 times) f", "g"});
+  EXPECT_THAT(all, ::testing::ElementsAre("a", "b", "c (all times)", "d ( times)", "e (2 times) f", "g"));
 }
 
 TEST(Coverage, KeepsTheWarningsOfEachTimeOfSeveralScenarios) {

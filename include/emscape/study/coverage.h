@@ -61,7 +61,7 @@ class CoverageSolver {
   /// scenarios.
   /// @param terrain  of the whole map and all platforms; null: a smooth earth. A different object is treated
   /// as a different terrain
-  /// @return the warnings of each scenario
+  /// @return the warnings of each scenario, each once, without counts
   /// @throws Error (bad_input, usage, device) as FieldSolver does, and for a product that the quantity or the
   /// times do not have
   std::vector<std::vector<std::string>> compute(
@@ -83,7 +83,7 @@ void checkRequest(const CoverageRequest& request, const scenario::Scenario& scen
 /// last.
 /// @param terrain  of the whole map and all platforms; null: a smooth earth
 /// @param options  backend, memory and move_tolerance_m; the rest is set here
-/// @return warnings
+/// @return warnings, each once, without counts
 /// @throws Error (bad_input, usage, device) as FieldSolver does, and for a product that the quantity or the
 /// times do not have
 std::vector<std::string> computeCoverage(const std::shared_ptr<const scenario::Scenario>& scenario,
