@@ -124,15 +124,16 @@ TEST_F(Outputs, OfCoverageAndCompareDoNotReplaceAnElevationFile) {
   for (const std::string& name : {map, std::string("data/same.tif")}) {
     withElevations(name);
     for (const Arguments& command : {coverage, compare})
-      expectRefused(command, "--output: " + (folder_ / name) +
-                                 " is a file that the scenario names, and has the name of a map");
+      expectRefused(command,
+                    "--output: " + (folder_ / name) +
+                        " is a file that the scenario names, which a map could replace; use another folder");
   }
   EXPECT_TRUE(readFile(folder_ / map) == readFile(folder_ / "data/jacksboro.tif"));
-  fs::rename(folder_ / map, folder_ / "maps/elevations.tif");
-  withElevations("maps/elevations.tif");
+  fs::rename(folder_ / map, folder_ / "maps/country.tif");  // a product is named "count"
+  withElevations("maps/country.tif");
   const ProgramResult result = run(coverage);
   EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_TRUE(readFile(folder_ / "maps/elevations.tif") == readFile(folder_ / "data/jacksboro.tif"));
+  EXPECT_TRUE(readFile(folder_ / "maps/country.tif") == readFile(folder_ / "data/jacksboro.tif"));
 }
 
 TEST_F(Outputs, OfASeriesDoNotReplaceAFileOfTheScenario) {

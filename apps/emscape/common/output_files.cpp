@@ -24,13 +24,13 @@ bool isSame(const fs::path& a, const fs::path& b) {
          fs::weakly_canonical(fs::absolute(b, failed), failed);
 }
 
-/// True for a name that `coverage` and `compare` give: of a product, or their own.
+/// True for a name that `coverage` and `compare` give: PRODUCT_..., or their own.
 bool isNameOfMap(const std::string& name) {
-  const auto begins = [&](const char* word) { return name.rfind(word, 0) == 0; };
+  const auto begins = [&](const std::string& word) { return name.rfind(word, 0) == 0; };
   const auto& products = study::productTable();
   return begins("coverage.") || begins("compare.") ||
          std::any_of(products.begin(), products.end(),
-                     [&](const auto& product) { return begins(product.name); });
+                     [&](const auto& product) { return begins(product.name + std::string("_")); });
 }
 
 /// True for a file in the folder maps, or a symbolic link to one, that has the name of a map.
@@ -108,7 +108,7 @@ void checkMapFolder(const fs::path& folder,
     for (const std::string& file : scenario::filesOf(*scenario)) {
       if (!file.empty() && mayBeMapIn(maps, file)) {
         throw Error(ErrorCode::usage,
-                    fmt::format("--output: {} is {}, and has the name of a map; use another folder", file,
+                    fmt::format("--output: {} is {}, which a map could replace; use another folder", file,
                                 whatIs(file, *scenario)));
       }
     }

@@ -33,7 +33,7 @@ void checkReports(const std::filesystem::path& folder, const std::vector<std::st
 /// Checks the folder of `coverage` or `compare`.
 /// @param scenarios  inputs, with the files that they name
 /// @throws Error (usage) if a report would replace a file that neither of them nor `study` wrote, or an input
-/// in the folder's maps/ has a name as that of a map, which would replace it
+/// in the folder's maps/ has the name of a map, which would replace it
 void checkMapFolder(const std::filesystem::path& folder,
                     const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios);
 
