@@ -50,7 +50,16 @@ TEST(CommandLine, ZerosBeforeAWholeNumberMeanNothing) {
   }
 }
 
+TEST(CommandLine, WholeNumbersAreDecimal) {
+  for (const std::string frames : {"0x10", "-0X1"}) {
+    const ProgramResult result = run({"bench", "render", shippedScenario("quick.yaml"), "--frames", frames});
+    EXPECT_EQ(result.status, kUsage);
+    EXPECT_THAT(result.err, HasSubstr("--frames: '" + frames + "' is not a decimal number\n"));
+  }
+}
+
 TEST(CommandLine, UnexpectedWordsAreNamedInTheirOrder) {
+  EXPECT_THAT(run({"render", "--", "a", "b"}).err, StartsWith("emscape: error: unexpected argument 'b'\n"));
   EXPECT_THAT(run({"validate", "x.yaml", "a", "b c"}).err,
               StartsWith("emscape: error: unexpected arguments 'a', 'b c'\n"));
   EXPECT_THAT(run({"info", "x.yaml", "--set", "a=1"}).err,

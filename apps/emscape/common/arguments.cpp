@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <optional>
 #include <set>
@@ -112,6 +113,8 @@ void readWholeNumbersAsDecimal(CLI::App& app) {
         [](std::string& text) {
           const std::size_t sign = !text.empty() && (text[0] == '+' || text[0] == '-') ? 1 : 0;
           const std::size_t first = text.find_first_not_of('0', sign);
+          if (first == sign + 1 && std::isalpha(static_cast<unsigned char>(text[first])) != 0)
+            return "'" + text + "' is not a decimal number";
           const bool is_decimal = text.find_first_not_of("0123456789", sign) == std::string::npos;
           if (is_decimal && first != std::string::npos) text.erase(sign, first - sign);
           return std::string();
@@ -125,7 +128,8 @@ std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
   const CLI::App* last = &app;
   while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
   if (const auto missing = missingValue(*last)) return *missing;
-  const std::vector<std::string> words = app.remaining(true);
+  std::vector<std::string> words = app.remaining(true);
+  words.erase(std::remove(words.begin(), words.end(), "--"), words.end());  // CLI11 puts it behind the words
   if (last->get_require_subcommand_min() == 0) {
     if (words.empty() || !isExtras(error)) return plainMessage(*last, error.what());
     return fmt::format("unexpected argument{} '{}'", words.size() == 1 ? "" : "s", fmt::join(words, "', '"));

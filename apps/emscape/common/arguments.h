@@ -6,12 +6,13 @@
 
 namespace emscape::app {
 
-/// Makes zeros before a whole number mean nothing: CLI11 would read an octal number.
-/// To be called when all options are there.
+/// Leading zeros of whole numbers have no effect, and other prefixes such as 0x are refused: CLI11 would read
+/// octal and hexadecimal numbers. Call after all options are added.
 void readWholeNumbersAsDecimal(CLI::App& app);
 
 /// Rejects missing values, empty ones, which CLI11 takes as 0 or as none, 'nan' and 'inf', which it accepts
-/// as numbers, numbers of switches, and values of flags.
+/// as numbers, values of switches but on, off, true, false, yes, no, 1 and 0, and values of flags but true
+/// and false.
 /// @throws CLI::ValidationError naming the first such option of the program or its subcommands
 void checkValues(const CLI::App& app);
 
