@@ -7,6 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/scenario_file.h"
+#include "study/maps/kept_terrain.h"
 #include "study/sweep/measure.h"
 #include "study/sweep/polygon_mask.h"
 
@@ -40,13 +41,11 @@ bool sameHeight(const MapHeight& a, const MapHeight& b) {
 struct StudyRunner::Impl {
   const StudySpec& study;
   const StudyPlan& plan;
-  scenario::TerrainPtr base_terrain;
   MapGrid grid;
   std::vector<QuantityGroup> groups;
   std::vector<std::vector<std::uint8_t>> pixels;  ///< of each measure; empty: all
   std::set<std::string> warnings;
-  ScenarioPtr terrain_of;  ///< for which `terrain` was loaded
-  scenario::TerrainPtr terrain;
+  KeptTerrain terrain;
   VariantFiles* files = nullptr;
   std::size_t together = 1;  ///< variants that are computed at the same time
 
@@ -94,19 +93,6 @@ struct StudyRunner::Impl {
     if (study.times_s.size() > 1) together = std::max<std::size_t>(1, kMaxKeptBytes / kept_bytes);
   }
 
-  /// True if a scenario has the files and the box of the terrain that is loaded.
-  bool hasTerrainOf(const scenario::Scenario& scenario) const {
-    return scenario.terrain == terrain_of->terrain &&
-           (!scenario.terrain || terrainBoxOf(scenario, study.area) == terrainBoxOf(*terrain_of, study.area));
-  }
-
-  /// Loads the terrain of a scenario, which depends only on the scenario.
-  void useTerrainOf(const ScenarioPtr& scenario) {
-    if (hasTerrainOf(*scenario)) return;
-    terrain = loadTerrain(*scenario, study.area);
-    terrain_of = scenario;
-  }
-
   std::string nameOf(std::size_t variant) const {
     const std::string name = study.variants.name(variant);
     return fmt::format("variant {}{}", variant, name.empty() ? "" : " '" + name + "'");
@@ -124,7 +110,7 @@ struct StudyRunner::Impl {
     throw Error(ErrorCode::bad_input, {study.file, 0, 0}, nameOf(variant) + " is not a scenario");
   }
 
-  /// Variants of the terrain that is loaded. Those of one geometry are computed faster.
+  /// Variants of the terrain that is kept. Those of one geometry are computed faster.
   void computeTogether(const std::vector<std::size_t>& variants, const std::vector<ScenarioPtr>& scenarios,
                        const std::function<void(VariantResult)>& take) {
     std::vector<VariantResult> results(variants.size());
@@ -148,7 +134,7 @@ struct StudyRunner::Impl {
       };
       try {
         for (const std::vector<std::string>& of_variant :
-             of_quantity.solver->compute(scenarios, terrain, add)) {
+             of_quantity.solver->compute(scenarios, terrain.of(scenarios.front()), add)) {
           warnings.insert(of_variant.begin(), of_variant.end());
         }
       } catch (const Error& error) {
@@ -179,7 +165,8 @@ struct StudyRunner::Impl {
 
 StudyRunner::StudyRunner(const StudySpec& study, const StudyPlan& plan, scenario::TerrainPtr terrain,
                          emfield::FieldOptions options, VariantFiles* files)
-    : impl_(new Impl{study, plan, terrain, mapGridOf(study), {}, {}, {}, study.base, terrain, files}) {
+    : impl_(new Impl{
+          study, plan, mapGridOf(study), {}, {}, {}, {study.area, study.base, std::move(terrain)}, files}) {
   options.move_tolerance_m = 0;  // results must not depend on previous computations
   impl_->addGroups(options);
 }
@@ -211,9 +198,9 @@ void StudyRunner::run(const std::vector<std::size_t>& variants,
     const bool is_alike =
         !pending.empty() && pending.size() < impl_->together &&
         changeBetween(impl_->study, impl_->plan, pending.back(), variants[i]) != ChangeClass::geometry &&
-        impl_->hasTerrainOf(*scenario);
+        impl_->terrain.fits(*scenario);
     if (!is_alike) compute();
-    if (pending.empty()) impl_->useTerrainOf(scenario);
+    if (pending.empty()) impl_->terrain.of(scenario);  // the next ones are compared with it
     pending.push_back(variants[i]);
     scenarios.push_back(std::move(scenario));
   }

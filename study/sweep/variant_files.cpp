@@ -14,6 +14,7 @@
 #include "emscape/study/geotiff.h"
 #include "emscape/volume/file.h"
 #include "study/files/map_metadata.h"
+#include "study/maps/kept_terrain.h"
 
 namespace emscape::study {
 namespace {
@@ -73,8 +74,7 @@ struct VariantFiles::State {
   emfield::FieldOptions options;
   bool has_levels = false;  ///< several quantities or thresholds
   std::optional<emfield::FieldSolver> solver;
-  std::shared_ptr<const scenario::Scenario> terrain_of;  ///< for which `terrain` was loaded
-  scenario::TerrainPtr terrain;
+  KeptTerrain terrain;
   std::set<std::size_t> begun;  ///< variants whose folder has no temporaries of ended processes
 
   fs::path folderFor(std::size_t variant) {
@@ -82,21 +82,11 @@ struct VariantFiles::State {
     if (begun.insert(variant).second) removeStaleTemporaries(own);
     return own;
   }
-
-  const scenario::TerrainPtr& terrainFor(const std::shared_ptr<const scenario::Scenario>& scenario) {
-    const bool is_same = terrain_of != nullptr && scenario->terrain == terrain_of->terrain &&
-                         (!scenario->terrain || terrainBox(*scenario) == terrainBox(*terrain_of));
-    if (!is_same) {
-      terrain = scenario::loadTerrain(*scenario);
-      terrain_of = scenario;
-    }
-    return terrain;
-  }
 };
 
 VariantFiles::VariantFiles(const StudySpec& study, fs::path folder, KeptFiles kept,
                            const emfield::FieldOptions& options)
-    : state_(new State{study, std::move(folder), kept, options, levelsOf(study).size() > 1, {}, {}, {}, {}}) {
+    : state_(new State{study, std::move(folder), kept, options, levelsOf(study).size() > 1, {}, {}, {}}) {
   std::set<std::string> quantities;
   for (const auto& [quantity, threshold] : levelsOf(study)) quantities.insert(scenario::info(quantity).name);
   state_->options.quantities.assign(quantities.begin(), quantities.end());
@@ -124,7 +114,7 @@ void VariantFiles::addVolumes(std::size_t variant,
   auto own = std::make_shared<scenario::Scenario>(*scenario);
   own->output.radar_look = scenario::RadarLook::target;
   if (own->output.combine != scenario::CombineMode::max) own->output.combine = scenario::CombineMode::sum;
-  const scenario::TerrainPtr& terrain = state.terrainFor(scenario);
+  const scenario::TerrainPtr& terrain = state.terrain.of(scenario);
   const fs::path folder = state.folderFor(variant);
   for (const double time_s : state.study.times_s) {
     if (!state.solver) state.solver.emplace(own, terrain, state.options);
