@@ -1,7 +1,5 @@
 #include "study/report/earlier_outputs.h"
 
-#include <algorithm>
-
 #include "base/json_reading.h"
 #include "base/whole_file.h"
 #include "study/report/map_report.h"
@@ -24,11 +22,11 @@ EarlierOutputs::EarlierOutputs(const fs::path& folder) : folder_(folder) {
   }
 }
 
-void EarlierOutputs::removeExcept(const std::vector<std::string>& written) const {
+void EarlierOutputs::removeExcept(const std::set<std::string>& written) const {
   for (const Json& output : outputs_) {
     const std::string name = output.at("file");
     const bool is_map = fs::path(name).parent_path() == "maps";
-    if (!is_map || std::find(written.begin(), written.end(), name) != written.end()) continue;
+    if (!is_map || written.count(name) > 0) continue;
     try {
       if (digestJson(name, folder_ / name) == output) fs::remove(folder_ / name);
     } catch (const std::exception&) {

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
-#include <vector>
 
 namespace emscape::study {
 
@@ -16,7 +16,7 @@ class EarlierOutputs {
   /// Removes those in the folder's maps/ that were not written again and still have the listed size and
   /// checksum.
   /// @param written  relative to the folder
-  void removeExcept(const std::vector<std::string>& written) const;
+  void removeExcept(const std::set<std::string>& written) const;
 
  private:
   std::filesystem::path folder_;

@@ -240,7 +240,7 @@ void MapFolder::finish(const std::vector<std::string>& warnings, const std::stri
   const std::string inputs = studyJsonOf(state.study, state.folder, files);
   writeWhole({{state.folder / "study.json", [&](std::ostream& out) { out << inputs; }},
               {state.folder / "report.json", [&](std::ostream& out) { out << state.report_json; }}});
-  state.earlier_outputs.removeExcept(files);
+  state.earlier_outputs.removeExcept({files.begin(), files.end()});
 }
 
 const std::vector<MapRecord>& MapFolder::records() const {

@@ -22,6 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kManifest = "manifest.json";
+constexpr const char* kCsv = "results.csv";
+constexpr const char* kNetcdf = "results.nc";
+
 void makeFolder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
@@ -71,8 +75,12 @@ int partsOf(const Json& record) {
 StudyFolder::StudyFolder(fs::path folder, const StudySpec& study, const StudyPlan& plan, std::string version)
     : folder_(std::move(folder)), study_(study), plan_(plan), version_(std::move(version)) {}
 
+std::vector<std::string> StudyFolder::files() {
+  return {kManifest, kCsv, kNetcdf, "report.html"};
+}
+
 std::optional<StudyFolder::Manifest> StudyFolder::readManifest() const {
-  const fs::path file = folder_ / "manifest.json";
+  const fs::path file = folder_ / kManifest;
   if (!fs::exists(file)) return std::nullopt;
   return readRecord(file, [&](const Json& json) {
     if (!json.is_object() || !json.contains("hash") || !json["hash"].is_string()) {
@@ -98,7 +106,7 @@ void StudyFolder::begin(int parts, std::optional<KeptFiles> kept) {
   removeStaleTemporaries(folder_ / "parts");
   parts_ = parts;
   // Of processes that begin at the same time one writes the manifest, and the others use it.
-  const fs::path file = folder_ / "manifest.json";
+  const fs::path file = folder_ / kManifest;
   std::unique_ptr<FolderLock> lock;
   while (lock == nullptr && !fs::exists(file)) {
     lock = FolderLock::tryLock(folder_, ".manifest.lock");
@@ -264,8 +272,8 @@ StudyResults StudyFolder::read() const {
 }
 
 void StudyFolder::writeResults(const StudyResults& results) const {
-  writeResultsCsv(folder_ / "results.csv", study_, results);
-  writeResultsNetcdf(folder_ / "results.nc", study_, results);
+  writeResultsCsv(folder_ / kCsv, study_, results);
+  writeResultsNetcdf(folder_ / kNetcdf, study_, results);
 }
 
 std::string describeVariant(const StudySpec& study, std::size_t variant) {

@@ -148,7 +148,7 @@ int work(const LoadedStudy& loaded, study::StudyFolder& folder, const GlobalOpti
 /// program.
 void checkStudyOutputs(const StudyCommand& command, const study::StudySpec& spec) {
   std::vector<std::string> results;
-  for (const char* name : {"manifest.json", "results.csv", "results.nc", "report.html"}) {
+  for (const std::string& name : study::StudyFolder::files()) {
     results.push_back((std::filesystem::path(command.folder) / name).string());
   }
   std::vector<NamedFile> outputs = outputsOf("--output", results);

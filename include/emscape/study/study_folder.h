@@ -40,6 +40,9 @@ struct StudyResults {
 
 class StudyFolder {
  public:
+  /// Names of the files that a study writes into its folder, besides those in parts/ and variants/.
+  static std::vector<std::string> files();
+
   /// @param version  of the program
   StudyFolder(std::filesystem::path folder, const StudySpec& study, const StudyPlan& plan,
               std::string version);
