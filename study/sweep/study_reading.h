@@ -51,7 +51,8 @@ void readMeasures(StudyReading& reading, const document::Section& root);
 /// Reads `variants`, `sweep`, `samples` and `sites`; after the measures. @throws Error (bad_input)
 void readVariants(StudyReading& reading, const document::Section& root);
 /// Adds to the study's files those that the scenarios of its variants name; after the variants. Only settings
-/// of values that can name a file are looked at.
+/// of values that can name a file are looked at, and none that is valid only together with those of other
+/// factors: its files are not in the study's hash.
 void addFilesOfVariants(StudyReading& reading);
 
 }  // namespace emscape::study

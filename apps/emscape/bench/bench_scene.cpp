@@ -103,8 +103,7 @@ BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& gl
   playback::FrameSelection selection = options.selection;
   if (std::filesystem::exists(selection.input) &&
       playback::inputKindOf(selection.input) == playback::InputKind::mesh)
-    throw Error(ErrorCode::usage,
-                selection.input + " is a field on tetrahedra: emscape bench cells takes it");
+    throw Error(ErrorCode::usage, selection.input + " is a field on tetrahedra; use emscape bench cells");
   selection.first_only = selection.times.empty();
   const std::unique_ptr<playback::FrameSource> source =
       playback::openFrameSource(selection, target, progressSink(global), &stopFlag());

@@ -52,9 +52,10 @@ struct StudySpec {
   VariantSet variants;
   std::optional<SiteSearch> sites;
   /// Files that determine the results, besides those of `base`: polygons and candidates with the files beside
-  /// them that GDAL reads, such as a shapefile's .prj, and files that the variants' scenarios name.
+  /// them that GDAL reads, such as a shapefile's .prj, and files that the variants' scenarios name. Missing
+  /// are files of a setting that is valid only together with those of other factors.
   std::vector<std::string> files;
-  /// FNV-1a (64 bits, hex) of the study, the scenario with its edits and all files of both.
+  /// FNV-1a (64 bits, hex) of the study, the scenario with its edits, its files and those in `files`.
   std::string hash;
 };
 
@@ -62,8 +63,8 @@ struct StudySpec {
 /// checked separately in the scenario; of more than 200 values, only the first, the last and the extremes.
 /// @param edits    of the scenario, before those of the variants
 /// @param version  of the program, for the hash
-/// @param tries_values  false: values are not checked; for processes that compute parts of a study that was
-/// checked before
+/// @param tries_values  false: neither values nor that each is set once are checked; for processes that
+/// compute parts of a study that was checked before
 /// @throws Error (bad_input) that lists all faults with file, line and column
 StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& edits,
                     const std::string& version, bool tries_values = true);
