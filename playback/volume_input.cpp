@@ -128,7 +128,7 @@ std::vector<VolumeFile> chosenFiles(std::vector<VolumeFile> files, const std::st
   if (first_only) files.resize(1);
   if (first_only || times.empty()) return files;
   std::vector<VolumeFile> chosen;
-  for (const double time_s : scenario::parseTimes(times, clockOf(files))) {
+  for (const double time_s : scenario::parseTimes(times, clockOf(files), volume::kMaxTime_s)) {
     chosen.push_back(
         *std::min_element(files.begin(), files.end(), [time_s](const VolumeFile& a, const VolumeFile& b) {
           return std::abs(a.time_s - time_s) < std::abs(b.time_s - time_s);

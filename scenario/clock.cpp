@@ -50,11 +50,11 @@ constexpr const char* kFirstUtc = "0001-01-01T00:00:00.000Z";
 constexpr const char* kLastUtc = "9999-12-31T23:59:59.999Z";
 
 /// Why a time cannot be used; empty: it can.
-std::string timeFault(const Clock& clock, double t_s) {
-  if (!(std::abs(t_s) <= kMaxTime_s)) {
-    constexpr int kDigits = 12;  // limits are shown in full
+std::string timeFault(const Clock& clock, double t_s, double limit_s) {
+  if (!(std::abs(t_s) <= limit_s)) {
+    constexpr int kDigits = 13;  // limits are shown in full
     return fmt::format("{} s is outside the allowed range {}", t_s,
-                       rangeText(-kMaxTime_s, kMaxTime_s, "s", kDigits));
+                       rangeText(-limit_s, limit_s, "s", kDigits));
   }
   if (!clock.epoch_utc.empty() && utcAt(clock, t_s).empty()) {
     return fmt::format("{} s after the epoch, {}, is outside the allowed range {} to {}", t_s,
@@ -63,16 +63,20 @@ std::string timeFault(const Clock& clock, double t_s) {
   return "";
 }
 
-}  // namespace
-
-void requireTime(const Clock& clock, double t_s) {
-  const std::string fault = timeFault(clock, t_s);
+void requireTime(const Clock& clock, double t_s, double limit_s) {
+  const std::string fault = timeFault(clock, t_s, limit_s);
   if (!fault.empty()) throw Error(ErrorCode::usage, "time " + fault);
 }
 
-std::vector<double> timesOf(double begin_s, double end_s, double step_s) {
-  requireTime({}, begin_s);
-  requireTime({}, end_s);
+}  // namespace
+
+void requireTime(const Clock& clock, double t_s) {
+  requireTime(clock, t_s, kMaxTime_s);
+}
+
+std::vector<double> timesOf(double begin_s, double end_s, double step_s, double limit_s) {
+  requireTime({}, begin_s, limit_s);
+  requireTime({}, end_s, limit_s);
   if (!(step_s > 0) || !std::isfinite(step_s) || end_s < begin_s) {
     throw Error(ErrorCode::usage,
                 fmt::format("times from {} s to {} s in steps of {} s: the end must not be before "
@@ -96,7 +100,7 @@ std::vector<double> timesOf(const Clock& clock) {
   return timesOf(0, clock.duration_s, clock.step_s);
 }
 
-std::vector<double> parseTimes(const std::string& text, const Clock& clock) {
+std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s) {
   std::vector<double> values;
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(':', begin), text.size());
@@ -107,11 +111,11 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock) {
     throw Error(ErrorCode::usage, fmt::format("times '{}': write BEGIN:END:STEP, BEGIN:END or T", text));
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(values.size(), 2); ++i) {
-    const std::string fault = timeFault(clock, values[i]);
+    const std::string fault = timeFault(clock, values[i], limit_s);
     if (!fault.empty()) throw Error(ErrorCode::usage, fmt::format("times '{}': {}", text, fault));
   }
   if (values.size() == 1) return {values[0]};
-  return timesOf(values[0], values[1], values.size() == 3 ? values[2] : clock.step_s);
+  return timesOf(values[0], values[1], values.size() == 3 ? values[2] : clock.step_s, limit_s);
 }
 
 std::string utcAt(const Clock& clock, double t_s) {

@@ -136,6 +136,25 @@ TEST(FrameSource, AStepWithoutATimeOfItsOwnHasThatOfTheList) {
   }
 }
 
+TEST(FrameSource, StepsOfVolumesAreChosenByTimesSince1970) {
+  const TemporaryFolder folder;
+  volume::DenseVolume volume = *MadeFrames(seconds(1)).frame(0).volume.host();
+  for (const int step : {1, 2, 3}) {
+    volume.info.time_s = 1780000000.0 + step;
+    volume::writeVolumes(folder / ("plain_" + std::to_string(step) + ".vti"), {&volume});
+  }
+  FrameSelection selection;
+  selection.input = folder.path();
+  selection.times = "1780000002";
+  const auto one = openFrameSource(selection, {});
+  ASSERT_EQ(one->count(), 1);
+  EXPECT_EQ(one->time_s(0), 1780000002);
+  selection.times = "1780000001:1780000003:2";
+  const auto range = openFrameSource(selection, {});
+  ASSERT_EQ(range->count(), 2);
+  EXPECT_EQ(range->time_s(1), 1780000003);
+}
+
 TEST(FrameSource, AQuantityThatAFolderLacksIsRefusedWithThoseThatItHas) {
   const TemporaryFolder folder;
   volume::DenseVolume volume = *MadeFrames(seconds(1)).frame(0).volume.host();

@@ -84,6 +84,11 @@ TEST(Clock, RefusesTimesOutsideTheLimits) {
   EXPECT_EQ(errorAt("-1e11", {}), "times '-1e11': -100000000000 s " + range);
   EXPECT_EQ(errorAt("0:1e10:1e9", clock), "times '0:1e10:1e9': 10000000000 s " + range);
   EXPECT_EQ(test::errorOf([] { timesOf(-2e9, 0, 1e9); }, ErrorCode::usage), "time -2000000000 s " + range);
+  constexpr double kLimit_s = 1e12;
+  EXPECT_EQ(parseTimes("1780000001:1780000003", {"", 0, 1}, kLimit_s),
+            (std::vector<double>{1780000001, 1780000002, 1780000003}));
+  EXPECT_EQ(test::errorOf([&] { parseTimes("2e12", {}, kLimit_s); }, ErrorCode::usage),
+            "times '2e12': 2000000000000 s is outside the allowed range -1000000000000 to 1000000000000 s");
   const Clock last{"9999-12-31T23:59:59Z", 0, 1}, first{"0001-01-01T00:00:00Z", 0, 1};
   EXPECT_EQ(errorAt("0:1", last),
             "times '0:1': 1 s after the epoch, 9999-12-31T23:59:59Z, is outside the allowed range "

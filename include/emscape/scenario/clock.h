@@ -12,7 +12,7 @@ struct Clock {
   double step_s = 1;
 };
 
-/// Limit of all times, before and after the epoch (s): 31 years.
+/// Limit of the times of a scenario, before and after the epoch (s): 31 years.
 constexpr double kMaxTime_s = 1e9;
 
 /// @throws Error (usage) if a time is not within kMaxTime_s of t = 0, or in UTC outside the years 0001 to
@@ -20,14 +20,15 @@ constexpr double kMaxTime_s = 1e9;
 void requireTime(const Clock& clock, double t_s);
 /// The times begin + i * step up to end, inclusive; no error accumulates. If begin and step are decimal
 /// numbers, each time is the double nearest to the decimal number, as a user writes it.
-/// @throws Error (usage) if begin or end is not within kMaxTime_s, end < begin, step <= 0, or there are more
+/// @param limit_s  limit of begin and end, before and after t = 0
+/// @throws Error (usage) if begin or end is not within the limit, end < begin, step <= 0, or there are more
 /// than 10^7 times
-std::vector<double> timesOf(double begin_s, double end_s, double step_s);
+std::vector<double> timesOf(double begin_s, double end_s, double step_s, double limit_s = kMaxTime_s);
 /// All times of the clock: 0, step, ... duration.
 std::vector<double> timesOf(const Clock& clock);
-/// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T". @throws Error (usage), as requireTime()
-/// too
-std::vector<double> parseTimes(const std::string& text, const Clock& clock);
+/// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T". @param limit_s  as for timesOf()
+/// @throws Error (usage), as timesOf() and requireTime() too
+std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s = kMaxTime_s);
 /// ISO 8601 time (UTC, milliseconds) at t_s; empty without an epoch, and at times that requireTime() refuses.
 /// @throws Error (bad_input) if the epoch is not a valid time
 std::string utcAt(const Clock& clock, double t_s);
