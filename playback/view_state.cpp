@@ -257,12 +257,23 @@ bool isRelativeFile(const std::string& compare) {
   return !compare.empty() && compare != kOriginal && fs::path(compare).is_relative();
 }
 
-/// The compared file as it is named in the view file `view`, relative to its folder.
+/// Absolute and without symbolic links, as far as they can be resolved.
+fs::path resolved(const fs::path& path) {
+  const fs::path absolute = fs::absolute(path);
+  std::error_code failure;
+  const fs::path real = fs::weakly_canonical(absolute, failure);
+  return failure ? absolute.lexically_normal() : real;
+}
+
+/// The compared file as it is named in the view file `view`: relative to its folder, wherever symbolic links
+/// to the folders are.
 std::string nameInView(const std::string& compare, const fs::path& view) {
   if (!isRelativeFile(compare)) return compare;
-  const fs::path folder = fs::absolute(view).parent_path().lexically_normal();
-  const std::string name =
-      fs::absolute(compare).lexically_normal().lexically_relative(folder).generic_string();
+  const fs::path file = fs::absolute(compare);
+  const std::string name = (resolved(file.parent_path()) / file.filename())
+                               .lexically_normal()
+                               .lexically_relative(resolved(fs::absolute(view).parent_path()))
+                               .generic_string();
   return name == kOriginal ? "./" + name : name;
 }
 
@@ -270,7 +281,9 @@ std::string nameInView(const std::string& compare, const fs::path& view) {
 /// earlier versions of the program wrote the names.
 std::string comparedFile(const fs::path& view, const std::string& name) {
   if (!isRelativeFile(name)) return name;
-  const fs::path beside = (view.parent_path() / name).lexically_normal();
+  const fs::path written = view.parent_path() / name, normal = written.lexically_normal();
+  // If ".." follows a symbolic link, they are different files.
+  const fs::path beside = resolved(normal) == resolved(written) ? normal : resolved(written);
   std::error_code ignored;
   return !fs::exists(beside, ignored) && fs::exists(name, ignored) ? name : beside.string();
 }

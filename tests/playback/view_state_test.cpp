@@ -265,6 +265,26 @@ TEST(ViewState, AComparedFileIsNamedRelativeToTheViewFile) {
   EXPECT_EQ(readViewState("b.view.json").compare, "original");
 }
 
+TEST(ViewState, AComparedFileIsFoundThroughASymbolicLinkToTheFolderOfTheView) {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  fs::create_directories(folder / "deep/er/views");
+  fs::create_directory_symlink(folder / "deep/er/views", folder / "link");
+  writeFile(folder / "other.yaml", "");
+  const WorkingFolder in(folder.path());
+  ViewState state;
+  state.compare = "other.yaml";
+  writeViewState("link/a.view.json", state);
+  EXPECT_THAT(readFile("link/a.view.json"), HasSubstr("\"compare\": \"../../../other.yaml\""));
+  EXPECT_EQ(readViewState("deep/er/views/a.view.json").compare, "other.yaml");
+  EXPECT_EQ(readViewState("link/a.view.json").compare, fs::canonical("other.yaml"));
+  // The compared file itself may be a link, too.
+  fs::create_symlink(folder / "other.yaml", folder / "deep/linked.yaml");
+  state.compare = "deep/linked.yaml";
+  writeViewState("link/a.view.json", state);
+  EXPECT_EQ(readViewState("deep/er/views/a.view.json").compare, "deep/linked.yaml");
+}
+
 TEST(ViewState, AComparedFileOfAnOldViewFileMayBeInTheWorkingFolder) {
   const TemporaryFolder folder;
   std::filesystem::create_directory(folder / "views");
