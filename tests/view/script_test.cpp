@@ -25,7 +25,8 @@ TEST(Script, FaultsNameTheLine) {
   EXPECT_EQ(faultOf("{\"do\":\"play\"}\n{\"do\":\"step\"}\n"), ":2: step: steps is missing");
   EXPECT_EQ(faultOf("play\n"), ":1: not JSON");
   EXPECT_EQ(faultOf("\n{\"do\":\"key\",\"key\":\"Ctrl+Nokey\"}\n"), ":2: unknown key 'Nokey'");
-  EXPECT_EQ(faultOf("{\"do\":\"play\",\"at_s\":\"soon\"}\n"), ":1: at_s: expected a number");
+  EXPECT_EQ(faultOf("{\"do\":\"play\",\"at_s\":\"soon\"}\n"),
+            ":1: play: at_s is \"soon\": expected a number");
 }
 
 TEST(Script, ArgumentsThatAreNotAllowedNameTheLine) {
@@ -37,9 +38,22 @@ TEST(Script, ArgumentsThatAreNotAllowedNameTheLine) {
             ":1: mouse: button 'x': expected left, middle, right");
   EXPECT_EQ(faultOf("{\"do\":\"wait_s\",\"seconds\":-1}\n"),
             ":1: wait_s: seconds -1: expected a number of at least 0");
-  EXPECT_EQ(faultOf("{\"do\":\"play\",\"at_s\":-5}\n"), ":1: at_s -5: expected a number of at least 0");
+  EXPECT_EQ(faultOf("{\"do\":\"play\",\"at_s\":-5}\n"), ":1: play: at_s -5: expected a number of at least 0");
   EXPECT_EQ(faultOf("{\"do\":\"bookmark\",\"number\":1.5}\n"),
             ":1: bookmark: number 1.5: expected a whole number 1..9");
+}
+
+TEST(Script, TextsThatCannotBeReadNameTheLine) {
+  EXPECT_EQ(faultOf("\n{\"do\":\"mode\",\"mode\":\"nothing\"}\n"),
+            ":2: unknown mode 'nothing': expected dvr, mida, mip, iso");
+  EXPECT_EQ(faultOf("{\"do\":\"picture\",\"file\":\"x.txt\"}\n"), ":1: x.txt: must end in .png");
+}
+
+TEST(Script, APartOfADragNamesTheLine) {
+  const std::string fault = ":1: mouse: expected to_x and to_y together, and a button to drag with";
+  EXPECT_EQ(faultOf("{\"do\":\"mouse\",\"x\":1,\"y\":1,\"button\":\"left\",\"to_x\":9}\n"), fault);
+  EXPECT_EQ(faultOf("{\"do\":\"mouse\",\"x\":1,\"y\":1,\"to_x\":9,\"to_y\":9}\n"), fault);
+  EXPECT_EQ(faultOf("{\"do\":\"mouse\",\"x\":1,\"y\":1,\"button\":\"left\",\"to_x\":9,\"to_y\":9}\n"), "");
 }
 
 TEST(Script, KeysAreGivenOnce) {

@@ -13,8 +13,8 @@ TEST_F(SessionTime, StepsRatesAndTheirFaults) {
   perform(R"({"do":"step","steps":2})");
   EXPECT_EQ(session->timeline().step_s(), 2);
   perform(R"({"do":"step","steps":0.5})");
-  EXPECT_EQ(error(), "step: steps is 0.5: expected a whole number");
-  perform(R"({"do":"step","steps":-1e300})");
+  EXPECT_EQ(error(), "step: steps 0.5: expected a whole number -1000000000..1000000000");
+  perform(R"({"do":"step","steps":-1e9})");
   EXPECT_EQ(session->timeline().step_s(), 0);
   perform(R"({"do":"last"})");
   EXPECT_EQ(session->timeline().step_s(), 4);
@@ -32,7 +32,7 @@ TEST_F(SessionTime, StepsRatesAndTheirFaults) {
   perform(R"({"do":"rate"})");
   EXPECT_EQ(error(), "rate: expected either value or change");
   perform(R"({"do":"rate","change":2})");
-  EXPECT_EQ(error(), "rate: change 2: expected a whole number -1..1 other than 0");
+  EXPECT_EQ(error(), "rate: change 2: expected -1 or 1");
   EXPECT_EQ(session->timeline().rate(), -0.1);
 }
 
@@ -61,7 +61,7 @@ TEST_F(SessionTime, ThePlayingRangeAndWhatIsVisibleAreSetByVerbs) {
   perform(R"({"do":"timeline","pan_s":0.5})");
   EXPECT_EQ(session->report()["visible_to_s"], 3.5);
   perform(R"({"do":"timeline","zoom":0})");
-  EXPECT_THAT(error(), testing::HasSubstr("timeline: zoom 0: expected a number above 0"));
+  EXPECT_THAT(error(), testing::HasSubstr("timeline: zoom 0: expected a number 1e-06..1000000"));
   perform(R"({"do":"timeline","from_s":3,"to_s":1})");
   EXPECT_EQ(error(), "timeline 3..1: expected from_s below to_s");
   perform(R"({"do":"timeline"})");

@@ -45,7 +45,7 @@ TEST_F(SessionTransfer, FaultsOfVerbsSayWhatIsExpected) {
   perform(R"({"do":"transfer","colors":"jet"})");
   EXPECT_THAT(error(), HasSubstr("unknown colour map 'jet'"));
   perform(R"({"do":"opacity_preset","name":"hill"})");
-  EXPECT_THAT(error(), HasSubstr("unknown opacity preset 'hill'"));
+  EXPECT_THAT(error(), HasSubstr("opacity_preset: name 'hill': expected ramp"));
   perform(R"({"do":"opacity","factor":0})");
   EXPECT_THAT(error(), HasSubstr("opacity: factor 0: expected a number 0.001..1000"));
   session->perform({"transfer", {{"file", file("none.json")}}});

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/view/session/action.h"
+#include "apps/view/session/input_queue.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 
@@ -56,9 +58,10 @@ bool isWithin(double value, const NumberLimits& limits) {
          !(limits.is_not_zero && value == 0);
 }
 
-/// "a whole number 1..9", "a finite number".
+/// "a whole number 1..9", "a finite number", "-1 or 1".
 std::string textOf(const NumberLimits& limits) {
   const NumberLimits none;
+  if (limits.is_whole && limits.is_not_zero && limits.min == -1 && limits.max == 1) return "-1 or 1";
   const bool has_min = limits.min != none.min, has_max = limits.max != none.max;
   std::string text = limits.is_whole ? "a whole number" : has_min || has_max ? "a number" : "a finite number";
   if (has_min && has_max) {
@@ -69,7 +72,16 @@ std::string textOf(const NumberLimits& limits) {
   return text + (limits.is_not_zero ? " other than 0" : "");
 }
 
+void requireType(const std::string& verb, const Argument& argument, const Json& value) {
+  if (fits(value, argument.type)) return;
+  throw Error(ErrorCode::bad_input, fmt::format("{}: {} is {}: expected {}", verb, argument.name,
+                                                value.dump(), nameOf(argument.type)));
+}
+
+}  // namespace
+
 void requireAllowed(const std::string& verb, const Argument& argument, const Json& value) {
+  requireType(verb, argument, value);
   if (value.is_number() && !isWithin(value.get<double>(), argument.limits)) {
     throw Error(ErrorCode::bad_input, fmt::format("{}: {} {:g}: expected {}", verb, argument.name,
                                                   value.get<double>(), textOf(argument.limits)));
@@ -80,9 +92,8 @@ void requireAllowed(const std::string& verb, const Argument& argument, const Jso
     throw Error(ErrorCode::bad_input, fmt::format("{}: {} '{}': expected {}", verb, argument.name,
                                                   value.get<std::string>(), fmt::join(choices, ", ")));
   }
+  if (argument.check) argument.check(value.get<std::string>());
 }
-
-}  // namespace
 
 const std::vector<Verb>& verbs() {
   static const std::vector<Verb> all = [] {
@@ -100,11 +111,13 @@ const std::vector<Verb>& verbs() {
         {"mark",
          {{"text", kText}},
          "Writes a line with this text into the log, with the values of a `frame`"},
-        {"key", {{"key", kText}}, "Presses and releases a key"},
+        {"key",
+         {{"key", kText, true, {}, {}, [](const std::string& text) { eventsOf(parseChord(text)); }}},
+         "Presses and releases a key"},
         {"mouse",
          {{"x"},
           {"y"},
-          {"button", kText, false, {}, {"left", "middle", "right"}},
+          {"button", kText, false, {}, namesOf(mouseButtons())},
           {"to_x", kNumber, false},
           {"to_y", kNumber, false},
           {"wheel", kNumber, false}},
@@ -140,10 +153,7 @@ Command parseCommand(const Json& object) {
     if (argument == verb.arguments.end()) {
       throw Error(ErrorCode::bad_input, fmt::format("{}: unknown argument '{}'", verb.name, name));
     }
-    if (!fits(value, argument->type)) {
-      throw Error(ErrorCode::bad_input, fmt::format("{}: {} is {}: expected {}", verb.name, name,
-                                                    value.dump(), nameOf(argument->type)));
-    }
+    requireType(verb.name, *argument, value);
     command.arguments[name] = value;
   }
   for (const Argument& argument : verb.arguments) {

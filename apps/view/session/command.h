@@ -25,7 +25,17 @@ struct Argument {
   bool required = true;
   NumberLimits limits = {};
   std::vector<const char*> choices = {};  ///< allowed texts; empty: any
+  /// Throws Error for texts that cannot be used, whatever the input; null: none.
+  void (*check)(const std::string& text) = nullptr;
 };
+/// The names of rows of a table, as choices.
+template <class Rows>
+std::vector<const char*> namesOf(const Rows& rows) {
+  std::vector<const char*> names;
+  for (const auto& row : rows) names.push_back(row.name);
+  return names;
+}
+
 inline constexpr ArgumentType kNumber = ArgumentType::number;
 inline constexpr ArgumentType kText = ArgumentType::text;
 inline constexpr ArgumentType kBoolean = ArgumentType::boolean;
@@ -63,8 +73,10 @@ struct Command {
 Command parseCommand(const Json& object);
 /// Parses a text.
 Command parseCommand(const std::string& text);
-/// Checks the arguments against the limits and choices of the verb's table.
-/// @throws Error (bad_input) that names verb, argument, value and what is allowed
+/// Checks a value against the type, limits, choices and check of its argument.
+/// @throws Error that names verb, argument, value and what is allowed; that of `check`
+void requireAllowed(const std::string& verb, const Argument& argument, const Json& value);
+/// The same for all arguments of a command.
 void requireAllowed(const Command& command);
 /// Text that parseCommand() reads.
 std::string toString(const Command& command);

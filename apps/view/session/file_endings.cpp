@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <vector>
 
 #include "emscape/base/error.h"
 
 namespace emscape::view {
+namespace {
 
 void requireEnding(const std::string& file, const std::vector<std::string>& endings) {
   if (file.empty()) return;
@@ -18,6 +20,20 @@ void requireEnding(const std::string& file, const std::vector<std::string>& endi
                  [](unsigned char c) { return std::tolower(c); });
   if (std::find(endings.begin(), endings.end(), ending) != endings.end()) return;
   throw Error(ErrorCode::usage, fmt::format("{}: must end in {}", file, fmt::join(endings, " or ")));
+}
+
+}  // namespace
+
+void requirePictureEnding(const std::string& file) {
+  requireEnding(file, {".png"});
+}
+
+void requireScenarioEnding(const std::string& file) {
+  requireEnding(file, {".yaml", ".yml", ".json"});
+}
+
+void requireJsonEnding(const std::string& file) {
+  requireEnding(file, {".json"});
 }
 
 }  // namespace emscape::view

@@ -2,17 +2,15 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 namespace emscape::view {
 
-inline const std::vector<std::string> kPictureEndings{".png"};
-inline const std::vector<std::string> kScenarioEndings{".yaml", ".yml", ".json"};
-/// Of views and transfer functions.
-inline const std::vector<std::string> kJsonEndings{".json"};
+// An empty name is allowed: a default one will be used. They throw Error (usage) that names the file and the
+// endings if it has none of them, in upper or lower case.
 
-/// @param file  empty: a default name will be used
-/// @throws Error (usage) that names the file and the endings if it has none of them, in upper or lower case
-void requireEnding(const std::string& file, const std::vector<std::string>& endings);
+void requirePictureEnding(const std::string& file);
+void requireScenarioEnding(const std::string& file);
+/// Of views and transfer functions.
+void requireJsonEnding(const std::string& file);
 
 }  // namespace emscape::view

@@ -91,4 +91,11 @@ std::array<InputEvent, 2> eventsOf(const KeyChord& chord) {
           InputEvent{InputEvent::Kind::key, code, 0, GLFW_RELEASE, modifiers, 0, 0}};
 }
 
+const std::vector<MouseButton>& mouseButtons() {
+  static const std::vector<MouseButton> all{{"left", GLFW_MOUSE_BUTTON_LEFT},
+                                            {"middle", GLFW_MOUSE_BUTTON_MIDDLE},
+                                            {"right", GLFW_MOUSE_BUTTON_RIGHT}};
+  return all;
+}
+
 }  // namespace emscape::view

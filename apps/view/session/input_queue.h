@@ -30,4 +30,11 @@ KeyChord chordOf(const InputEvent& event);
 /// Press and release of a chord. @throws Error (bad_input) for an unknown key
 std::array<InputEvent, 2> eventsOf(const KeyChord& chord);
 
+/// A mouse button by its name in scripts.
+struct MouseButton {
+  const char* name;
+  int code;  ///< GLFW_MOUSE_BUTTON_*
+};
+const std::vector<MouseButton>& mouseButtons();
+
 }  // namespace emscape::view

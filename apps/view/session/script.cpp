@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <sstream>
 
@@ -23,11 +22,11 @@ bool isWait(const std::string& verb) {
   return verb == "wait_s" || verb == "wait_state" || verb == "wait_frame";
 }
 
-int buttonNamed(const std::string& name) {
-  static const std::map<std::string, int> buttons{{"left", GLFW_MOUSE_BUTTON_LEFT},
-                                                  {"middle", GLFW_MOUSE_BUTTON_MIDDLE},
-                                                  {"right", GLFW_MOUSE_BUTTON_RIGHT}};
-  return buttons.at(name);
+/// @throws Error (bad_input) for a part of a drag without the others
+void requireWholeDrag(const Command& mouse) {
+  const bool has_end = mouse.has("to_x") || mouse.has("to_y");
+  if (has_end && !(mouse.has("to_x") && mouse.has("to_y") && mouse.has("button")))
+    throw Error(ErrorCode::bad_input, "mouse: expected to_x and to_y together, and a button to drag with");
 }
 
 /// Moves, clicks or drags (in ten parts) the mouse, or turns its wheel.
@@ -40,9 +39,12 @@ void moveMouse(const Command& command, WindowControl& window) {
   moveTo(x, y);
   if (command.has("wheel")) window.inject({InputEvent::Kind::wheel, 0, 0, 0, 0, 0, command.number("wheel")});
   if (!command.has("button")) return;
-  const int button = buttonNamed(command.text("button"));
+  const auto named =
+      std::find_if(mouseButtons().begin(), mouseButtons().end(),
+                   [&](const MouseButton& button) { return command.text("button") == button.name; });
+  const int button = named->code;  // one of the choices of the verb
   window.inject({InputEvent::Kind::button, button, 0, GLFW_PRESS, 0, 0, 0});
-  if (command.has("to_x") && command.has("to_y")) {
+  if (command.has("to_x")) {
     for (int part = 1; part <= kParts; ++part) {
       const double done = static_cast<double>(part) / kParts;
       moveTo(x + done * (command.number("to_x") - x), y + done * (command.number("to_y") - y));
@@ -77,16 +79,11 @@ Json parseLine(const std::string& line) {
   return object;
 }
 
-/// Time (s) from the start; empty if the line has none. @throws Error (bad_input)
+/// Time (s) from the start of a command's line; empty if it has none. @throws Error (bad_input)
 std::optional<double> delayOf(const Json& object) {
   if (!object.contains("at_s")) return std::nullopt;
-  const Json& at_s = object["at_s"];
-  if (!at_s.is_number()) throw Error(ErrorCode::bad_input, "at_s: expected a number");
-  if (!(at_s.get<double>() >= 0)) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("at_s {:g}: expected a number of at least 0", at_s.get<double>()));
-  }
-  return at_s.get<double>();
+  requireAllowed(object["do"].get<std::string>(), {"at_s", kNumber, false, {0}}, object["at_s"]);
+  return object["at_s"].get<double>();
 }
 
 }  // namespace
@@ -103,7 +100,7 @@ Script::Script(const std::string& file) {
       const Json object = parseLine(line);
       lines_.push_back({location, parseCommand(object), delayOf(object)});
       requireAllowed(lines_.back().command);
-      if (lines_.back().command.verb == "key") eventsOf(parseChord(lines_.back().command.text("key")));
+      if (lines_.back().command.verb == "mouse") requireWholeDrag(lines_.back().command);
     } catch (const Error& error) {
       throw Error(ErrorCode::bad_input, location, error.message());
     }

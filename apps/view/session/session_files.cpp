@@ -197,12 +197,9 @@ std::vector<Verb> Session::fileVerbs() {
                       session.hasUnsavedEdits()});
        }},
       {"save",
-       {{"file", kText, false}},
+       {{"file", kText, false, {}, {}, requireScenarioEnding}},
        "Writes the changed scenario; default: NAME.edited.yaml next to the input",
-       [](Session& session, const Command& command) {
-         requireEnding(command.text("file"), kScenarioEndings);
-         session.saveScenario(command.text("file"), false);
-       }},
+       [](Session& session, const Command& command) { session.saveScenario(command.text("file"), false); }},
       {"restore",
        {},
        "Shows the view with its edits that was kept when the program did not exit normally",
@@ -221,17 +218,13 @@ std::vector<Verb> Session::fileVerbs() {
          session.dropKeptView();
        }},
       {"quit",
-       {{"edits", kText, false}},
+       {{"edits", kText, false, {}, {"save", "discard", "ask"}}},
        "Ends the program; `edits` that are not saved: save, discard or ask; default: ask, in scripts discard",
        [](Session& session, const Command& command) {
          const bool is_script = !session.options_.script.empty();
          const std::string edits = command.has("edits") ? command.text("edits")
                                    : is_script          ? "discard"
                                                         : "ask";
-         if (edits != "save" && edits != "discard" && edits != "ask") {
-           throw Error(ErrorCode::bad_input,
-                       fmt::format("quit: edits is '{}': expected save, discard or ask", edits));
-         }
          session.panels.unsaved = edits == "ask" && session.hasUnsavedEdits();
          if (session.panels.unsaved) return;
          if (edits == "save" && session.hasUnsavedEdits()) {

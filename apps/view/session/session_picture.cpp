@@ -10,6 +10,19 @@
 #include "emscape/base/error.h"
 
 namespace emscape::view {
+namespace {
+
+constexpr NumberLimits limitsOf(const render::SettingLimits& limits) {
+  return {limits.min, limits.max};
+}
+
+/// @param name  "auto": empty. @throws Error (usage) that lists the names
+std::optional<render::Pattern> patternNamed(const std::string& name) {
+  if (name == "auto") return std::nullopt;
+  return render::parsePattern(name);
+}
+
+}  // namespace
 
 /// @throws Error (bad_input) for a quantity that the scenario does not have
 void Session::showQuantity(const std::string& name) {
@@ -44,7 +57,7 @@ void Session::takeBackRefused() {
 std::vector<Verb> Session::pictureVerbs() {
   return {
       {"mode",
-       {{"mode", kText, false}},
+       {{"mode", kText, false, {}, {}, [](const std::string& text) { render::parseCompositingMode(text); }}},
        "dvr, mida, mip or iso; without a name the next one",
        [](Session& session, const Command& command) {
          constexpr render::CompositingMode kModes[] = {
@@ -74,23 +87,19 @@ std::vector<Verb> Session::pictureVerbs() {
          session.setSettings(settings);
        }},
       {"exaggeration",
-       {{"factor"}},
+       {{"factor", kNumber, true, limitsOf(render::kExaggerationLimits)}},
        "Vertical exaggeration; 0: chosen from the box",
        [](Session& session, const Command& command) {
-         const double factor = command.number("factor");
-         render::kExaggerationLimits.require(factor);
          render::RenderSettings settings = session.settings_;
-         settings.vertical_exaggeration = factor;
+         settings.vertical_exaggeration = command.number("factor");
          session.setSettings(settings);
        }},
       {"step_voxels",
-       {{"value"}},
+       {{"value", kNumber, true, limitsOf(render::kStepLimits)}},
        "Distance between samples, in voxels",
        [](Session& session, const Command& command) {
-         const double value = command.number("value");
-         render::kStepLimits.require(value);
          render::RenderSettings settings = session.settings_;
-         settings.step_voxels = value;
+         settings.step_voxels = command.number("value");
          session.setSettings(settings);
        }},
       {"quantity",
@@ -98,14 +107,12 @@ std::vector<Verb> Session::pictureVerbs() {
        "Shows another quantity",
        [](Session& session, const Command& command) { session.showQuantity(command.text("name")); }},
       {"pattern",
-       {{"pattern", kText, false}},
+       {{"pattern", kText, false, {}, {}, [](const std::string& text) { patternNamed(text); }}},
        "auto or a pattern of rays; without a name the next one",
        [](Session& session, const Command& command) {
          const std::vector<render::Pattern>& all = render::allPatterns();
          if (command.has("pattern")) {
-           session.pattern_.reset();
-           if (command.text("pattern") != "auto")
-             session.pattern_ = render::parsePattern(command.text("pattern"));
+           session.pattern_ = patternNamed(command.text("pattern"));
          } else if (!session.pattern_) {
            session.pattern_ = all.front();
          } else {
@@ -131,7 +138,7 @@ std::vector<Verb> Session::pictureVerbs() {
          session.live_.showEmitters(session.show_emitters_);
        }},
       {"theme",
-       {{"theme", kText, false}},
+       {{"theme", kText, false, {}, {}, [](const std::string& text) { render::parseTheme(text); }}},
        "dark or light; without a name the other one",
        [](Session& session, const Command& command) {
          if (command.has("theme")) {

@@ -13,9 +13,7 @@ namespace {
 using render::CutPlane;
 
 CutPlane::Kind kindOf(const std::string& name) {
-  if (name == "horizontal") return CutPlane::Kind::horizontal;
-  if (name == "vertical") return CutPlane::Kind::vertical;
-  throw Error(ErrorCode::bad_input, fmt::format("plane: kind '{}': expected horizontal or vertical", name));
+  return name == "horizontal" ? CutPlane::Kind::horizontal : CutPlane::Kind::vertical;
 }
 
 /// @throws Error (bad_input) if there are too many
@@ -29,11 +27,9 @@ void requireRoom(const std::vector<CutPlane>& planes) {
 std::size_t indexOf(const Command& command, const std::vector<CutPlane>& planes) {
   if (planes.empty())
     throw Error(ErrorCode::bad_input, "plane: there is no plane; `spec` or `kind` adds one");
-  const double number = command.number("index", static_cast<double>(planes.size()));
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    if (number == static_cast<double>(i + 1)) return i;
-  }
-  throw Error(ErrorCode::bad_input, fmt::format("plane: index {:g}: expected 1..{}", number, planes.size()));
+  const auto number = static_cast<std::size_t>(command.number("index", static_cast<double>(planes.size())));
+  if (number <= planes.size()) return number - 1;
+  throw Error(ErrorCode::bad_input, fmt::format("plane: index {}: expected 1..{}", number, planes.size()));
 }
 
 /// Applies the values of a command to a plane.
@@ -120,9 +116,9 @@ void Session::changePlane(const Command& command) {
 std::vector<Verb> Session::planeVerbs() {
   return {
       {"plane",
-       {{"spec", kText, false},
-        {"kind", kText, false},
-        {"index", kNumber, false},
+       {{"spec", kText, false, {}, {}, [](const std::string& text) { render::parseCutPlane(text); }},
+        {"kind", kText, false, {}, {"horizontal", "vertical"}},
+        {"index", kNumber, false, {1, render::kMaxCutPlanes, true}},
         {"altitude_m", kNumber, false},
         {"bearing_deg", kNumber, false},
         {"offset_m", kNumber, false},

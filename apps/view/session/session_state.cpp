@@ -146,13 +146,10 @@ void Session::writePendingPicture() {
 std::vector<Verb> Session::stateVerbs() {
   return {
       {"save_state",
-       {{"file", kText, false}},
+       {{"file", kText, false, {}, {}, requireJsonEnding}},
        "Writes the view: camera, colours, time, edits and the rest; default: NAME.view.json next to the "
        "input",
-       [](Session& session, const Command& command) {
-         requireEnding(command.text("file"), kJsonEndings);
-         session.saveView(command.text("file"));
-       }},
+       [](Session& session, const Command& command) { session.saveView(command.text("file")); }},
       {"load_state",
        {{"file", kText, false}},
        "Shows the view of a file; without one: asks for it",
@@ -164,12 +161,11 @@ std::vector<Verb> Session::stateVerbs() {
          }
        }},
       {"picture",
-       {{"file", kText, false}},
+       {{"file", kText, false, {}, {}, requirePictureEnding}},
        "Writes the picture without panels, as `emscape render` draws it, as soon as it is exact; default: a "
        "new emscape-NNNN.png",
        [](Session& session, const Command& command) {
          session.requireInput();
-         requireEnding(command.text("file"), kPictureEndings);
          session.picture_file_ = command.text("file").empty() ? newPictureName() : command.text("file");
        }},
       {"copy_command",

@@ -1,7 +1,6 @@
 /// Verbs of time: playing, stepping, seeking.
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "apps/view/session/session.h"
@@ -25,16 +24,10 @@ std::vector<Verb> Session::timeVerbs() {
        }},
       {"pause", {}, "Pauses", [](Session& session, const Command&) { session.timeline_.pause(); }},
       {"step",
-       {{"steps"}},
+       {{"steps", kNumber, true, {-1e9, 1e9, true}}},
        "Moves by so many steps of the series, backwards if negative; pauses",
        [](Session& session, const Command& command) {
-         constexpr double kMaxSteps = 1e9;
-         const double steps = command.number("steps");
-         if (steps != std::trunc(steps)) {
-           throw Error(ErrorCode::bad_input,
-                       fmt::format("step: steps is {:g}: expected a whole number", steps));
-         }
-         session.timeline_.stepBy(static_cast<int>(std::clamp(steps, -kMaxSteps, kMaxSteps)));
+         session.timeline_.stepBy(static_cast<int>(command.number("steps")));
          session.askTime();
        }},
       {"seek",
@@ -111,7 +104,7 @@ std::vector<Verb> Session::timeVerbs() {
       {"timeline",
        {{"from_s", kNumber, false},
         {"to_s", kNumber, false},
-        {"zoom", kNumber, false},
+        {"zoom", kNumber, false, {1e-6, 1e6}},
         {"about_s", kNumber, false},
         {"pan_s", kNumber, false}},
        "What the time line shows: from one time to another; or `zoom` times as much, about a time; or later "
@@ -130,13 +123,8 @@ std::vector<Verb> Session::timeVerbs() {
            }
            timeline.setVisible(from_s, to_s);
          }
-         if (command.has("zoom")) {
-           const double factor = command.number("zoom");
-           if (!(factor > 0))
-             throw Error(ErrorCode::bad_input,
-                         fmt::format("timeline: zoom {:g}: expected a number above 0", factor));
-           timeline.zoom(factor, command.number("about_s", timeline.step_s()));
-         }
+         if (command.has("zoom"))
+           timeline.zoom(command.number("zoom"), command.number("about_s", timeline.step_s()));
          if (command.has("pan_s")) timeline.pan(command.number("pan_s"));
        }},
   };

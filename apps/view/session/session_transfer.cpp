@@ -2,23 +2,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "apps/view/session/file_endings.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
+#include "emscape/playback/opacity_preset.h"
 
 namespace emscape::view {
 namespace {
+
+constexpr NumberLimits kIndex{0, NumberLimits{}.max, true};
 
 /// Selects the point that a command names; without one, keeps the selection.
 void selectPoint(playback::TransferEditor& editor, const Command& command) {
   if (!command.has("index")) return;
   const auto count = static_cast<double>(editor.function().opacities.size());
   const double index = command.number("index");
-  if (!(index >= 0 && index < count && index == std::floor(index))) {
+  if (!(index < count)) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("{}: index {:g}: there are the points 0..{:g}", command.verb, index, count - 1));
   }
@@ -165,7 +167,8 @@ std::vector<Verb> Session::transferVerbs() {
   using playback::TransferEditor;
   return {
       {"transfer",
-       {{"colors", kText, false}, {"file", kText, false}},
+       {{"colors", kText, false, {}, {}, [](const std::string& text) { render::colorMap(text); }},
+        {"file", kText, false}},
        "Colour map by name, or colours and opacities from a file",
        [](Session& session, const Command& command) {
          if (command.has("colors") == command.has("file")) {
@@ -175,12 +178,9 @@ std::vector<Verb> Session::transferVerbs() {
          session.changeTransfer([&](TransferEditor& editor) { editor.setColorMap(command.text("colors")); });
        }},
       {"save_transfer",
-       {{"file", kText, false}},
+       {{"file", kText, false, {}, {}, requireJsonEnding}},
        "Writes colours and opacities, for `--transfer`; default: NAME.transfer.json",
-       [](Session& session, const Command& command) {
-         requireEnding(command.text("file"), kJsonEndings);
-         session.saveTransfer(command.text("file"));
-       }},
+       [](Session& session, const Command& command) { session.saveTransfer(command.text("file")); }},
       {"reset_transfer",
        {},
        "Fits colours and opacities to the histogram of the step on screen",
@@ -189,14 +189,14 @@ std::vector<Verb> Session::transferVerbs() {
          session.fit_ = Fit::anew;
        }},
       {"opacity_point",
-       {{"index", kNumber, false}, {"value", kNumber, false}, {"opacity", kNumber, false, {0, 1}}},
+       {{"index", kNumber, false, kIndex}, {"value", kNumber, false}, {"opacity", kNumber, false, {0, 1}}},
        "Adds a point of the opacity curve; with `index` (0, 1, ...) selects one and moves it between its "
        "neighbours",
        [](Session& session, const Command& command) {
          session.changeTransfer([&](TransferEditor& editor) { setPoint(editor, command); });
        }},
       {"remove_point",
-       {{"index", kNumber, false}},
+       {{"index", kNumber, false, kIndex}},
        "Removes a point of the opacity curve; without `index` the selected one. Two stay",
        [](Session& session, const Command& command) {
          session.changeTransfer([&](TransferEditor& editor) {
@@ -205,7 +205,7 @@ std::vector<Verb> Session::transferVerbs() {
          });
        }},
       {"opacity_preset",
-       {{"name", kText}, {"value", kNumber, false}},
+       {{"name", kText, true, {}, namesOf(playback::opacityPresets())}, {"value", kNumber, false}},
        "Opacity curve by name: ramp, late ramp, threshold, shell, bands, opaque; a threshold or shell is "
        "at "
        "`value`, else in the middle",

@@ -10,9 +10,9 @@ namespace {
 
 constexpr NumberLimits kSize_px{1, 16384};
 
-std::string allPanels() {
-  std::string names;
-  for (const PanelName& panel : panelNames()) names += (names.empty() ? "" : ", ") + std::string(panel.name);
+std::vector<const char*> panelChoices() {
+  std::vector<const char*> names = namesOf(panelNames());
+  names.push_back("all");
   return names;
 }
 
@@ -33,7 +33,7 @@ const std::vector<PanelName>& panelNames() {
 std::vector<Verb> Session::windowVerbs() {
   return {
       {"panel",
-       {{"name", kText}, {"open", kBoolean, false}},
+       {{"name", kText, true, {}, panelChoices()}, {"open", kBoolean, false}},
        "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, record, "
        "restore, unsaved, changed, all",
        [](Session& session, const Command& command) {
@@ -47,9 +47,7 @@ std::vector<Verb> Session::windowVerbs() {
            bool& open = session.panels.*panel.open;
            open = command.boolean("open", session.panels.hidden || !open);
            if (open) session.panels.hidden = false;
-           return;
          }
-         throw Error(ErrorCode::bad_input, fmt::format("panel '{}': expected {} or all", name, allPanels()));
        }},
       {"scale",
        {{"factor", kNumber, false, {kMinScale, kMaxScale}}, {"change", kNumber, false, {-1, 1, true, true}}},
@@ -71,12 +69,9 @@ std::vector<Verb> Session::windowVerbs() {
                                 static_cast<int>(command.number("height")));
        }},
       {"screenshot",
-       {{"file", kText, false}},
+       {{"file", kText, false, {}, {}, requirePictureEnding}},
        "Writes the window as PNG; default: a new emscape-NNNN.png",
-       [](Session& session, const Command& command) {
-         requireEnding(command.text("file"), kPictureEndings);
-         session.window_.screenshot(command.text("file"));
-       }},
+       [](Session& session, const Command& command) { session.window_.screenshot(command.text("file")); }},
       {"back",
        {},
        "Closes what is open",
