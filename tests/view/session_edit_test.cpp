@@ -174,6 +174,29 @@ TEST(SessionFocus, LooksAtTheGroundUnderAPixel) {
   EXPECT_LE(*sample->camera().spec().distance, 0.45);
 }
 
+TEST(SessionFocus, LooksAtEmittersThatAreHidden) {
+  SessionSample sample("quick.yaml");
+  const Vec3d radar_m = sample->picture()->annotations.markers[0].position_m;
+  sample.perform(R"({"do":"emitters","on":false})");
+  sample.settle();
+  ASSERT_TRUE(sample->picture()->annotations.markers.empty());
+  EXPECT_EQ(sample.perform(R"({"do":"focus","emitter":"radar"})"), "");
+  ASSERT_TRUE(sample->camera().spec().target_m);
+  EXPECT_LT(length(*sample->camera().spec().target_m - radar_m), 1e-6);
+  sample.perform(R"({"do":"focus"})");
+  EXPECT_EQ(sample->notice().text, "transmitter");
+  EXPECT_EQ(sample.perform(R"({"do":"focus","emitter":"nobody"})"),
+            "there is no emitter 'nobody'; the scenario has 'radar', 'transmitter'");
+}
+
+TEST(SessionFocus, RefusesWhatDoesNotBelongTogether) {
+  SessionSample sample("quick.yaml");
+  EXPECT_EQ(sample.perform(R"({"do":"focus","x":3})"), "focus: expected x and y, or emitter");
+  EXPECT_EQ(sample.perform(R"({"do":"focus","x":3,"y":3,"emitter":"radar"})"),
+            "focus: expected x and y, or emitter");
+  EXPECT_FALSE(sample->camera().spec().target_m);
+}
+
 TEST(PlatformDrag, SaysThatAPlatformMovesByItself) {
   SessionSample sample("jacksboro.yaml", {{"region.dims", "[40, 40, 20]"}});
   const std::string error = errorOf([&] { PlatformDrag(*sample->picture(), 3, 0, 0); });

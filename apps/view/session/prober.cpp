@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "apps/view/session/named_item.h"
 #include "base/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/emfield/path_report.h"
@@ -180,16 +181,7 @@ std::string profileCommand(const ProbeResult& result, const std::string& emitter
   if (!result.scenario || !result.reading || !result.reading->position) {
     throw Error(ErrorCode::bad_input, "there is no path to explain: the probe has no point of a scenario");
   }
-  std::string known;
-  bool is_known = false;
-  for (const scenario::Emitter& one : result.scenario->emitters) {
-    is_known = is_known || one.name == emitter;
-    known += (known.empty() ? "'" : ", '") + one.name + "'";
-  }
-  if (!is_known) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("there is no emitter '{}'; the scenario has {}", emitter, known));
-  }
+  indexOfNamed(result.scenario->emitters, emitter, "emitter");  // throws if there is none
   const GeodeticPosition& position = *result.reading->position;
   return fmt::format("{} --emitter {} --to={:.7f},{:.7f},{:.2f} --time {:g}",
                      playback::commandText("profile", *result.scenario), playback::shellWord(emitter),

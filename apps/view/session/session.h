@@ -205,6 +205,7 @@ class Session {
   /// Takes effect with one of the next updates.
   void changeScenario(const std::vector<scenario::Edit>& edits);
   void takeEdits();
+  std::vector<render::Marker> emittersOfPicture() const;
   void focusEmitter(const std::optional<std::string>& name);
   void focusGround(double x, double y);
   /// Report of the probe for the log.

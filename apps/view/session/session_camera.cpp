@@ -3,9 +3,12 @@
 
 #include <algorithm>
 
+#include "apps/view/session/named_item.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/pick.h"
+#include "emscape/playback/scene.h"
+#include "emscape/scenario/snapshot.h"
 
 namespace emscape::view {
 namespace {
@@ -22,18 +25,20 @@ int bookmarkNumber(const Command& command) {
 
 }  // namespace
 
+/// The emitters at the time of the picture, in the scenario's order, also while they are hidden; empty
+/// without a scenario, and for a picture that has no position on the earth.
+std::vector<render::Marker> Session::emittersOfPicture() const {
+  const playback::LivePicture& shown = *picture_;
+  if (!shown.scenario || !shown.grid().georeferenced) return {};
+  return playback::markersOf(scenario::snapshotAt(shown.scenario, shown.terrain.get(), shown.info().time_s),
+                             shown.terrain.get(), shown.grid());
+}
+
 void Session::focusEmitter(const std::optional<std::string>& name) {
-  const std::vector<render::Marker>& markers = picture_->annotations.markers;
-  if (markers.empty()) return;
-  std::size_t index = focused_ % markers.size();
-  if (name) {
-    const auto named = std::find_if(markers.begin(), markers.end(),
-                                    [&](const render::Marker& marker) { return marker.label == *name; });
-    if (named == markers.end()) {
-      throw Error(ErrorCode::bad_input, fmt::format("focus: there is no emitter '{}'", *name));
-    }
-    index = static_cast<std::size_t>(named - markers.begin());
-  }
+  const std::vector<render::Marker> markers = emittersOfPicture();
+  if (markers.empty()) throw Error(ErrorCode::bad_input, "focus: the picture has no emitters");
+  const std::size_t index =
+      name ? indexOfNamed(picture_->scenario->emitters, *name, "emitter") : focused_ % markers.size();
   focused_ = index + 1;
   camera_.focus(markers[index].position_m, kFocus_diagonals, *viewport());
   cameraMoved();
@@ -84,7 +89,7 @@ std::vector<Verb> Session::cameraVerbs() {
          session.cameraMoved();
        }},
       {"camera",
-       {{"spec", kText}},
+       {{"spec", kText, true, {}, {}, [](const std::string& text) { render::parseCamera(text); }}},
        "Sets the camera, as `emscape render --camera` does",
        [](Session& session, const Command& command) {
          session.camera_.set(render::parseCamera(command.text("spec")));
@@ -102,8 +107,10 @@ std::vector<Verb> Session::cameraVerbs() {
        "Looks at an emitter, or at the ground under a pixel of the picture; without either at the next "
        "emitter",
        [](Session& session, const Command& command) {
+         if (command.has("x") != command.has("y") || (command.has("x") && command.has("emitter")))
+           throw Error(ErrorCode::bad_input, "focus: expected x and y, or emitter");
          if (!session.picture_) return;
-         if (command.has("x") && command.has("y")) {
+         if (command.has("x")) {
            session.focusGround(command.number("x"), command.number("y"));
          } else {
            session.focusEmitter(command.has("emitter") ? std::optional(command.text("emitter"))

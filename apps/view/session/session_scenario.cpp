@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "apps/view/session/named_item.h"
 #include "apps/view/session/session.h"
 #include "apps/view/session/shown_quantity.h"
 #include "emscape/base/error.h"
@@ -10,16 +11,6 @@
 
 namespace emscape::view {
 namespace {
-
-const scenario::Platform& platformNamed(const scenario::Scenario& scenario, const std::string& name) {
-  std::string known;
-  for (const scenario::Platform& platform : scenario.platforms) {
-    if (platform.name == name) return platform;
-    known += (known.empty() ? "'" : ", '") + platform.name + "'";
-  }
-  throw Error(ErrorCode::bad_input,
-              fmt::format("there is no platform '{}'; the scenario has {}", name, known));
-}
 
 /// {"edits": ["PATH=VALUE", ..]}
 std::vector<scenario::Edit> editsOf(const Json& list) {
@@ -32,7 +23,8 @@ std::vector<scenario::Edit> editsOf(const Json& list) {
 
 std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const std::string& platform,
                                     double latitude_deg, double longitude_deg) {
-  const scenario::Platform& moved = platformNamed(scenario, platform);
+  const scenario::Platform& moved =
+      scenario.platforms[indexOfNamed(scenario.platforms, platform, "platform")];
   if (!moved.track_file.empty()) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("'{}' cannot be put elsewhere: it moves along {}", platform, moved.track_file));
