@@ -18,6 +18,7 @@ import virtual_display  # noqa: E402
 
 BEGIN = [{"do": "seek", "time_s": 90}, {"do": "orbit", "azimuth_deg": 20, "elevation_deg": 4}]
 CLOSED = {"do": "panel", "name": "scenario", "open": False}
+SETTLED = {"do": "wait_state", "state": "exact", "timeout_s": 120}
 
 
 def opened(name):
@@ -31,7 +32,7 @@ PICTURES = {
     "view_what_if": ([], [*BEGIN, {"do": "set", "path": "emitters.search radar.frequency_hz", "value": "9.4e9"},
                           {"do": "set", "path": "emitters.search radar.power_w", "value": "-3"}]),
     "view_colors": ([], [*BEGIN, CLOSED, opened("colors"), {"do": "opacity_preset", "name": "shell"}]),
-    "view_probe": ([], [*BEGIN, CLOSED, opened("probe"), {"do": "probe", "latitude_deg": 36.33, "longitude_deg": -84.27, "height_agl_m": 50}, {"do": "wait_s", "seconds": 1},
+    "view_probe": ([], [*BEGIN, CLOSED, opened("probe"), {"do": "probe", "latitude_deg": 36.33, "longitude_deg": -84.27, "height_agl_m": 50}, SETTLED,
                       {"do": "mouse", "x": 210, "y": 314, "button": "left"}, {"do": "mouse", "x": 400, "y": 850}]),
     "view_planes": ([], [*BEGIN, CLOSED, opened("planes"), {"do": "key", "key": "H"}, {"do": "key", "key": "Shift+H"}]),
     "view_compare": ([], [*BEGIN, {"do": "set", "path": "emitters.jammer.power_w", "value": "15000"}, {"do": "key", "key": "C"}]),
@@ -43,8 +44,7 @@ def picture(programs, display, name, options, commands):
     with tempfile.TemporaryDirectory() as folder:
         full = pathlib.Path(folder) / "full.png"
         script = pathlib.Path(folder) / "script.jsonl"
-        settled = {"do": "wait_state", "state": "exact", "timeout_s": 120}
-        steps = [settled, {"do": "mouse", "x": 400, "y": 850}, *commands, settled, {"do": "wait_s", "seconds": 5}, {"do": "screenshot", "file": str(full)}, {"do": "quit"}]
+        steps = [SETTLED, {"do": "mouse", "x": 400, "y": 850}, *commands, SETTLED, {"do": "wait_s", "seconds": 5}, {"do": "screenshot", "file": str(full)}, {"do": "quit"}]
         script.write_text("".join(json.dumps(step) + "\n" for step in steps))
         subprocess.run([programs / "emscape", "view", ROOT / "scenarios" / "jacksboro.yaml", "--backend", "cpu", "--quiet", "--script", script, "--size", "1280x860", *options],
                        check=True, env={**os.environ, "DISPLAY": display, "LP_NUM_THREADS": "1"})

@@ -8,7 +8,7 @@ using testing::HasSubstr;
 constexpr const char* kProbe =
     R"({"do":"probe","latitude_deg":52.02,"longitude_deg":5.03,"height_msl_m":1500})";
 
-TEST(SessionProbe, HoldsAPositionAndSaysWhatIsThereAndWhy) {
+TEST(SessionProbe, LocksAtAPositionAndSaysWhatIsThereAndWhy) {
   SessionSample sample("quick.yaml");
   sample.perform(kProbe);
   EXPECT_EQ(sample.error(), "");
@@ -48,7 +48,7 @@ TEST(SessionProbe, FollowsTimeAndEdits) {
   EXPECT_NEAR(sample->report()["probe_latitude_deg"].get<double>(), 52.02, 1e-9);
 }
 
-TEST(SessionProbe, FollowsTheCursorUntilItIsHeld) {
+TEST(SessionProbe, FollowsTheCursorUntilItIsLocked) {
   SessionSample sample("jacksboro.yaml", {{"region.dims", "[40, 40, 20]"}});
   sample.perform(R"({"do":"panel","name":"probe"})");
   Prober& prober = sample->prober();

@@ -186,13 +186,13 @@ void drawProbe(PanelContext& context, const Area& picture) {
   if (ImGui::Begin("Probe", &session.panels.probe,
                    ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
     const Prober& prober = session.prober();
-    if (ImGui::SmallButton(prober.isLocked() ? "release (P)" : "hold (P)"))
+    if (ImGui::SmallButton(prober.isLocked() ? "unlock (P)" : "lock (P)"))
       perform(context, R"({"do":"lock_probe"})");
     ImGui::SameLine();
     ImGui::TextDisabled(prober.isLocked() ? "locked; follows time and edits" : "under the cursor");
     const ProbeResult* result = prober.result();
     if (result == nullptr) {
-      ImGui::TextWrapped("Move the cursor over the picture; Ctrl + click holds a point.");
+      ImGui::TextWrapped("Move the cursor over the picture; Ctrl + click locks the probe at a point.");
     } else if (!result->error.empty()) {
       ImGui::PushStyleColor(ImGuiCol_Text, errorColor(session.theme()));
       ImGui::TextWrapped("%s", result->error.c_str());

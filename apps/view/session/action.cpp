@@ -164,7 +164,7 @@ const std::vector<Gesture>& gestures() {
       {"left drag, Alt + left drag", "orbit about the target"},
       {"left drag on an emitter", "move its platform over the ground; Esc takes it back"},
       {"double click", "look at the emitter or the ground there"},
-      {"Ctrl + left click", "hold the probe there"},
+      {"Ctrl + left click", "lock the probe there"},
       {"middle drag, Shift + left drag", "pan"},
       {"wheel", "towards the cursor and back"},
       {"right drag", "look around; with W A S D, Q, E fly, with Shift faster"},

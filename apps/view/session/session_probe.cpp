@@ -46,7 +46,7 @@ std::vector<Verb> Session::probeVerbs() {
         {"longitude_deg", kNumber, false},
         {"height_msl_m", kNumber, false},
         {"height_agl_m", kNumber, false}},
-       "Holds the probe at a pixel of the picture or at a position",
+       "Locks the probe at a pixel of the picture or at a position",
        [](Session& session, const Command& command) {
          if (!session.picture_) throw Error(ErrorCode::bad_input, "probe: there is no picture yet");
          const bool is_pixel = command.has("x") && command.has("y");
@@ -68,7 +68,7 @@ std::vector<Verb> Session::probeVerbs() {
        }},
       {"lock_probe",
        {},
-       "Holds the probe where it is, or lets it follow the cursor again; opens its panel",
+       "Locks the probe where it is, or unlocks it, so that it follows the cursor; opens its panel",
        [](Session& session, const Command&) {
          session.panels.probe = true;
          session.panels.hidden = false;
