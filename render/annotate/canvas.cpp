@@ -240,7 +240,7 @@ std::string shortenedText(const Canvas& canvas, const std::string& text, double 
   const auto fits = [&](const std::string& some) {
     return canvas.textBox(some, size_px, weight).width <= width_px;
   };
-  if (fits(text)) return text;
+  if (text.empty() || fits(text)) return text;
   std::vector<std::string> shorter{"…"};
   for (std::size_t end = 0; end < text.size();) {
     end += std::max<std::size_t>(1, utf8SequenceLength(std::string_view(text).substr(end)));

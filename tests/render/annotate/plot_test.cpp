@@ -28,6 +28,7 @@ TEST(Plot, TextsAreShortenedByWholeCharacters) {
   EXPECT_EQ(shortenedText(canvas, text, 20, widthOf("Ü…") - 1), "…");
   EXPECT_EQ(shortenedText(canvas, text, 20, -5), "…");
   EXPECT_EQ(shortenedText(canvas, "", 20, 0), "");
+  EXPECT_EQ(shortenedText(canvas, "", 20, -5), "");
 }
 
 TEST(Plot, LinesOfATextAreNoWiderThanTheirRoom) {
