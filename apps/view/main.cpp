@@ -5,7 +5,6 @@
 
 #include "apps/emscape/common/interrupt.h"
 #include "apps/view/app.h"
-#include "apps/view/session/opening.h"
 #include "base/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
@@ -34,7 +33,7 @@ void show(const ViewOptions& options) {
   using playback::InputKind;
   const std::optional<InputKind> kind =
       options.input.empty() ? std::nullopt : std::optional(playback::inputKindOf(options.input));
-  if (kind == InputKind::scenario) requireInputFile(options.input);
+  if (kind == InputKind::scenario) playback::requireScenarioFile(options.input);
   if (!options.mesh.empty()) {
     emfield::parseTerrainMesh(options.mesh);
     if (kind != InputKind::scenario) throw Error(ErrorCode::usage, "--mesh: INPUT must be a scenario");

@@ -67,6 +67,7 @@ TEST(SessionOfVolumes, AQuantityThatTheyDoNotHoldIsRefused) {
   }
   SessionSample shown(optionsFor(folder / "one.vdb", {160, 120}));
   ASSERT_TRUE(shown.settle());
+  EXPECT_EQ(shown.perform(R"({"do":"focus"})"), "focus: the picture has no emitters");
   shown.perform(R"({"do":"quantity","name":"snr_db"})");
   ASSERT_TRUE(shown.settle());
   EXPECT_THAT(shown.error(), HasSubstr("one.vdb: there is no volume of 'snr_db'"));
@@ -178,32 +179,16 @@ TEST(Opening, RefusesWhatCannotBeShown) {
   EXPECT_THAT(fault(ownScenario(folder, "power_w: 10000", "power_w: -1")), HasSubstr("power_w"));
 }
 
-TEST(Opening, SaysHowToOpenWhatIsNoInput) {
+TEST(Opening, RefusesWhatBelongsToVolumes) {
   const StateFolder folder;
-  folder.write("a.view.json", "{}");
-  folder.write("view.json", R"({"schema_version": 1, "camera": "orbit"})");
-  folder.write("colours.json", R"({"schema_version": 1, "domain": "relative", "opacity": [], "colors": []})");
-  folder.write("field_0001.raw.json", R"({"dims": [2, 2, 2]})");
-  folder.write("series.json", R"({"format_version": 2, "recipe": {}})");
-  folder.write("scenario.json", R"({"schema_version": 1, "region": {}})");
-  const auto fault = [&](const char* name) {
-    return errorOf([&] { requireInputFile(folder / name); }, ErrorCode::bad_input);
-  };
-  const std::string view = ": a view file, not an input: give it with --state after a scenario or volumes";
-  EXPECT_EQ(fault("a.view.json"), (folder / "a.view.json") + view);
-  EXPECT_EQ(fault("view.json"), (folder / "view.json") + view);
-  EXPECT_THAT(fault("colours.json"),
-              HasSubstr(": a transfer function, not an input: give it with --transfer"));
-  EXPECT_THAT(fault("field_0001.raw.json"),
-              HasSubstr(": the header of a volume: open field_0001.raw beside it"));
-  EXPECT_THAT(fault("series.json"), HasSubstr(": describes a series of volumes: open its folder"));
-  EXPECT_NO_THROW(requireInputFile(folder / "scenario.json"));
-  EXPECT_NO_THROW(requireInputFile(shippedScenario("quick.yaml")));
   const ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
-  EXPECT_THAT(errorOf([&] {
-                prepareOpening({folder / "series.json", "", std::nullopt, false}, present);
-              }),
-              HasSubstr("describes a series of volumes"));
+  folder.write("series.json", R"({"format_version": 2, "recipe": {}})");
+  folder.write("field_0001.raw.json", R"({"dims": [2, 2, 2]})");
+  const auto fault = [&](const char* name) {
+    return errorOf([&] { prepareOpening({folder / name, "", std::nullopt, false}, present); });
+  };
+  EXPECT_THAT(fault("series.json"), HasSubstr("describes a series of volumes"));
+  EXPECT_THAT(fault("field_0001.raw.json"), HasSubstr("the header of a volume"));
 }
 
 TEST(Opening, LeavesOutEditsThatDoNotApplyAnyMore) {
@@ -217,6 +202,17 @@ TEST(Opening, LeavesOutEditsThatDoNotApplyAnyMore) {
   EXPECT_EQ(opening.left_out, "emitters.gone.power_w=5");
   EXPECT_TRUE(opening.options.unsaved_edits);
 }
+
+/// Another program that opens the input after the first one ended irregularly.
+struct NextProgram {
+  explicit NextProgram(SessionSample& ended) {
+    ended.session.reset();
+    ended.files->autosaves.reset();
+    shown->shown("");
+  }
+  SessionSample shown{optionsFor(shippedScenario("quick.yaml"))};
+  SessionOpener opener{shown.files, [this](const ViewOptions& options) { return shown.make(options); }};
+};
 
 class Opener : public testing::Test {
  protected:
@@ -325,17 +321,13 @@ TEST_F(Opener, EditsAreKeptAMomentLaterAndRestored) {
     ASSERT_TRUE(beside.settle());
     EXPECT_FALSE(beside->keptView());
   }
-  // The program ends irregularly; another one opens the input.
-  shown_.session.reset();
-  shown_.files->autosaves.reset();
-  SessionSample again(optionsFor(shippedScenario("quick.yaml")));
-  SessionOpener opener(again.files, [&again](const ViewOptions& options) { return again.make(options); });
-  again->shown("");
+  NextProgram next(shown_);
+  SessionSample& again = next.shown;
   ASSERT_TRUE(again.settle());
   ASSERT_TRUE(again->keptView());
   EXPECT_TRUE(again->panels.restore);
   again.perform(R"({"do":"restore"})");
-  ASSERT_TRUE(waitUntilOpened(again, opener));
+  ASSERT_TRUE(waitUntilOpened(again, next.opener));
   ASSERT_EQ(again->viewState().edits.size(), 1U);
   EXPECT_EQ(again->viewState().edits[0].value, "500");
   EXPECT_TRUE(again->hasUnsavedEdits());
@@ -349,14 +341,11 @@ TEST_F(Opener, EditsThatLeaveNoIsosurfaceAreRestored) {
   shown_.perform(R"({"do":"iso","value":-25})");
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"1e-6"})");
   ASSERT_TRUE(waitForAutosave(shown_, true));
-  shown_.session.reset();
-  shown_.files->autosaves.reset();
-  SessionSample again(optionsFor(shippedScenario("quick.yaml")));
-  SessionOpener opener(again.files, [&again](const ViewOptions& options) { return again.make(options); });
-  again->shown("");
+  NextProgram next(shown_);
+  SessionSample& again = next.shown;
   ASSERT_TRUE(again.settle());
   again.perform(R"({"do":"restore"})");
-  ASSERT_TRUE(waitUntilOpened(again, opener));
+  ASSERT_TRUE(waitUntilOpened(again, next.opener));
   EXPECT_EQ(again.error(), "");
   ASSERT_EQ(again->viewState().edits.size(), 1U);
   EXPECT_EQ(again->settings().mode, render::CompositingMode::iso);
@@ -379,8 +368,7 @@ TEST_F(Opener, QuitAsksForUnsavedEdits) {
   shown_.perform(R"({"do":"quit"})");
   EXPECT_FALSE(shown_.window.has_quit);
   EXPECT_TRUE(shown_->panels.unsaved);
-  EXPECT_THAT(shown_.perform(R"({"do":"quit","edits":"perhaps"})"),
-              HasSubstr("expected save, discard or ask"));
+  EXPECT_THAT(shown_.perform(R"({"do":"quit","edits":"perhaps"})"), HasSubstr("expected save, discard, ask"));
   shown_.perform(fmt::format(R"({{"do":"save","file":"{}"}})", folder_ / "saved.yaml"));
   ASSERT_TRUE(shown_.settle());
   EXPECT_THAT(readFile(folder_ / "saved.yaml"), HasSubstr("power_w: 500"));

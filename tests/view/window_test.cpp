@@ -54,8 +54,8 @@ TEST_F(Window, CutsTheVolumeOpenAndComparesWithTheOriginal) {
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"quantity","op":"==","value":"power_density_difference_db"}
 {"do":"expect","key":"error","op":"==","value":""}
-{"do":"plane","index":4,"on":true}
-{"do":"expect","key":"error","op":"==","value":"plane: index 4: expected 1..1"}
+{"do":"plane","index":3,"on":true}
+{"do":"expect","key":"error","op":"==","value":"plane: index 3: expected 1..1"}
 {"do":"key","key":"C"}
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"quantity","op":"==","value":"power_density_dbwm2"}
@@ -261,7 +261,7 @@ TEST_F(Window, AViewAsInputIsOneMessage) {
   EXPECT_EQ(result.status, 3);
   EXPECT_EQ(result.err,
             "emscape-view: error: " + file +
-                ": a view file, not an input: give it with --state after a scenario or volumes\n");
+                ": a view file, not a scenario: `render` and `view` read it with --state\n");
 }
 
 TEST_F(Window, NamesAreShownToTheirEnd) {

@@ -16,11 +16,6 @@ struct Opening {
   std::string left_out;
 };
 
-/// Refuses JSON files that describe something else than a scenario: views, transfer functions, the headers of
-/// volumes and the descriptions of series. Other files are not examined.
-/// @throws Error (bad_input) that says how to open it
-void requireInputFile(const std::string& file);
-
 /// Examines the file: kind by name and content, errors in a scenario, edits that still apply. Reads files: to
 /// be called on a background thread.
 /// @param present  options of the present session; new inputs are shown with its `view`
