@@ -2,11 +2,8 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
 #include <exception>
 #include <new>
-#include <optional>
 #include <sstream>
 #include <string>
 
