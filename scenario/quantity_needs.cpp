@@ -53,6 +53,16 @@ std::string unmetOfAge(const Scenario& scenario, const OutputSpec& output) {
 
 }  // namespace
 
+std::string unmetInterval(Quantity quantity, IntervalKind interval) {
+  if (hasInterval(info(quantity), interval)) return "";
+  std::string possible;
+  for (const QuantityInfo& row : quantityTable()) {
+    if (hasInterval(row, interval)) possible += (possible.empty() ? "" : ", ") + std::string(row.name);
+  }
+  return fmt::format("{} has no meaning over an interval of kind {}; these have: {}", info(quantity).name,
+                     toString(interval), possible);
+}
+
 std::string unmetNeed(Quantity quantity, const Scenario& scenario, const OutputSpec& output) {
   if (quantity == Quantity::detection_age_s) return unmetOfAge(scenario, output);
   if (quantity == Quantity::occupancy && !hasInterval(info(quantity), output.interval.kind))

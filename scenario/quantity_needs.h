@@ -8,6 +8,9 @@
 
 namespace emscape::scenario {
 
+/// Error message that names the quantities over an interval if this one has no meaning over it; else empty.
+std::string unmetInterval(Quantity quantity, IntervalKind interval);
+
 /// Error message that names what the scenario lacks for a quantity of a receiver (QuantityKind::of_receiver)
 /// or detection_age_s; empty if nothing is missing, and for other quantities.
 /// @param output  of the scenario, possibly not yet set

@@ -19,13 +19,14 @@ std::int64_t nanoseconds(double time_s) {
   return std::llround(time_s * 1e9);
 }
 
-/// Azimuth and bar of a beam that sweeps back and forth, one bar further with each sweep.
+/// Azimuth and bar of a beam that sweeps back and forth, one bar further with each sweep. A time at which a
+/// sweep ends but for rounding belongs to the next.
 BeamDirection sweepAt(const ScanSpec& scan, double t_s, int bars) {
   const double swept_deg = t_s * scan.rate_deg_s;
   const double there_and_back_deg = positiveModulo(swept_deg, 2 * scan.width_deg);
   const double from_left_deg = std::min(there_and_back_deg, 2 * scan.width_deg - there_and_back_deg);
-  const double bar =
-      std::min(std::floor(positiveModulo(swept_deg, bars * scan.width_deg) / scan.width_deg), bars - 1.0);
+  const double sweeps = swept_deg / scan.width_deg;
+  const double bar = positiveModulo(std::floor(sweeps + 1e-9 + 1e-15 * std::abs(sweeps)), bars);
   return {scan.azimuth_deg - scan.width_deg / 2 + from_left_deg,
           scan.elevation_deg + (bar - (bars - 1) / 2.0) * scan.elevation_step_deg, false};
 }

@@ -21,6 +21,13 @@ bool areSame(const std::vector<T>& a, const std::vector<T>& b) {
                     [](const T& x, const T& y) { return membersOf(x) == membersOf(y); });
 }
 
+/// Ends of intervals, sweeps and dwells are sums of decimal numbers: parts of [begin, end) that are not
+/// longer than this (s) come from their rounding.
+double rounding_s(double begin_s, double end_s, double cycle_s = 0) {
+  return std::min(1e-9 * cycle_s + 2e-15 * std::max(std::abs(begin_s), std::abs(end_s)),
+                  (end_s - begin_s) / 4);
+}
+
 /// Adds the motion of a beam in a part of an interval.
 class SweepBuilder {
  public:
@@ -40,11 +47,11 @@ class SweepBuilder {
       const double first_deg = beamAt(scan_, begin_s).azimuth_deg - (scan_.rate_rpm < 0 ? width_deg : 0);
       addArc({first_deg, width_deg, scan_.elevation_deg, duration_s / interval_s_, 1});
     } else {
-      constexpr double kRounding = 1e-9;
-      const double cycles = std::floor(duration_s / cycle_s + kRounding);
+      const double cycles = std::floor(duration_s / cycle_s + 1e-9);
       if (cycles >= 1) addPositions(begin_s, begin_s + cycle_s, cycles);
       const double rest_s = duration_s - cycles * cycle_s;
-      if (rest_s > kRounding * cycle_s) addPositions(begin_s + cycles * cycle_s, begin_s + duration_s, 1);
+      if (rest_s > rounding_s(begin_s, begin_s + duration_s, cycle_s))
+        addPositions(begin_s + cycles * cycle_s, begin_s + duration_s, 1);
     }
   }
 
@@ -55,16 +62,17 @@ class SweepBuilder {
   }
   void addSweeps(double begin_s, double end_s, double times) {
     const double sweep_s = scan_.width_deg / scan_.rate_deg_s;
+    const double shortest_s = rounding_s(begin_s, end_s, sweep_s);
     for (double n = std::floor(begin_s / sweep_s); n * sweep_s < end_s; ++n) {
       const double from_s = std::max(begin_s, n * sweep_s), to_s = std::min(end_s, (n + 1) * sweep_s);
-      if (!(to_s > from_s)) continue;
+      if (!(to_s - from_s > shortest_s)) continue;
       const BeamDirection middle = beamAt(scan_, (from_s + to_s) / 2);
       const double width_deg = (to_s - from_s) * scan_.rate_deg_s;
       addArc({middle.azimuth_deg - width_deg / 2, width_deg, middle.elevation_deg,
               times * (to_s - from_s) / interval_s_, times});
     }
   }
-  /// Sweeps over the same azimuths, in either direction, are one arc.
+  /// Equal arcs, passed in either direction, are one, with the sum of their shares and passes.
   void addArc(const SweptArc& arc) {
     constexpr double kSame_deg = 1e-9;
     for (SweptArc& known : sweep_.arcs) {
@@ -78,12 +86,13 @@ class SweepBuilder {
     sweep_.arcs.push_back(arc);
   }
   void addDwells(double begin_s, double end_s, double times) {
+    const double shortest_s = rounding_s(begin_s, end_s, scanCycle_s(scan_));
     double at_s = begin_s;
     double next_s = std::floor(begin_s / scanCycle_s(scan_)) * scanCycle_s(scan_);
-    for (std::size_t i = 0; at_s < end_s; i = (i + 1) % scan_.dwells.size()) {
+    for (std::size_t i = 0; end_s - at_s > shortest_s; i = (i + 1) % scan_.dwells.size()) {
       const Dwell& dwell = scan_.dwells[i];
       next_s += dwell.duration_s;
-      if (next_s <= at_s) continue;
+      if (!(next_s - at_s > shortest_s)) continue;
       const double to_s = std::min(next_s, end_s), share = times * (to_s - at_s) / interval_s_;
       if (steers_) {
         sweep_.dwells.push_back({dwell.azimuth_deg, dwell.elevation_deg, share});
@@ -113,10 +122,10 @@ void addLastPasses(const ScanSpec& scan, double begin_s, double end_s, std::vect
     passes.push_back({from_s, end_s, from_deg, from_deg + 6 * scan.rate_rpm * (end_s - from_s)});
     return;
   }
-  const double sweep_s = scan.width_deg / scan.rate_deg_s;
+  const double sweep_s = scan.width_deg / scan.rate_deg_s, shortest_s = rounding_s(from_s, end_s, sweep_s);
   for (double n = std::floor(from_s / sweep_s); n * sweep_s < end_s; ++n) {
     const double at_s = std::max(from_s, n * sweep_s), to_s = std::min(end_s, (n + 1) * sweep_s);
-    if (!(to_s > at_s)) continue;
+    if (!(to_s - at_s > shortest_s)) continue;
     const double middle_deg = beamAt(scan, (at_s + to_s) / 2).azimuth_deg;
     const double half_deg = (std::fmod(n, 2) == 0 ? 0.5 : -0.5) * (to_s - at_s) * scan.rate_deg_s;
     passes.push_back({at_s, to_s, middle_deg - half_deg, middle_deg + half_deg});
@@ -125,15 +134,17 @@ void addLastPasses(const ScanSpec& scan, double begin_s, double end_s, std::vect
 
 /// Calls visit(from_s, to_s, span_s) for each time in [begin, begin + duration) at which an emitter is
 /// active, in their order. Times that overlap or touch are one. The span of the whole interval is its
-/// duration, without rounding.
+/// duration, without rounding; ends that differ from the interval's by rounding are the interval's.
 template <class Visit>
 void visitActive(const Emitter& emitter, double begin_s, double duration_s, const Visit& visit) {
   const double end_s = begin_s + duration_s;
   if (emitter.active_s.empty()) return visit(begin_s, end_s, duration_s);
+  const double shortest_s = rounding_s(begin_s, end_s);
   std::vector<TimeInterval> parts;
   for (const TimeInterval& active : emitter.active_s) {
-    const double from_s = std::max(active.begin_s, begin_s), to_s = std::min(active.end_s, end_s);
-    if (to_s > from_s) parts.push_back({from_s, to_s});
+    const double from_s = active.begin_s <= begin_s + shortest_s ? begin_s : active.begin_s;
+    const double to_s = active.end_s >= end_s - shortest_s ? end_s : active.end_s;
+    if (to_s - from_s > shortest_s) parts.push_back({from_s, to_s});
   }
   std::sort(parts.begin(), parts.end(), [](const auto& a, const auto& b) { return a.begin_s < b.begin_s; });
   for (std::size_t i = 0; i < parts.size();) {

@@ -159,15 +159,6 @@ IntervalSpec parseInterval(const Section& section, ParseContext& context) {
   return interval;
 }
 
-/// The quantities that are defined for an interval, separated by commas.
-std::string quantitiesOver(IntervalKind interval) {
-  std::string names;
-  for (const QuantityInfo& row : quantityTable()) {
-    if (hasInterval(row, interval)) names += (names.empty() ? "" : ", ") + std::string(row.name);
-  }
-  return names;
-}
-
 /// Index of the item that a key of the output names; -1: there is none.
 template <class Named>
 int indexOfNamed(const Section& section, const char* key, const char* what, const std::vector<Named>& items,
@@ -216,16 +207,12 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
     const auto row = std::find_if(quantityTable().begin(), quantityTable().end(),
                                   [&](const QuantityInfo& known) { return quantity == known.name; });
     if (row == quantityTable().end()) continue;  // already reported
-    const bool has_interval = hasInterval(*row, output.interval.kind);
-    if (!has_interval) {
-      context.problems.addError(
-          location, fmt::format("{} has no meaning over an interval of kind {}; these have: {}", quantity,
-                                toString(output.interval.kind), quantitiesOver(output.interval.kind)));
-    }
+    const std::string unmet_interval = unmetInterval(row->quantity, output.interval.kind);
+    if (!unmet_interval.empty()) context.problems.addError(location, unmet_interval);
     if (row->kind == QuantityKind::of_receiver) {
       need(!scenario.receivers.empty(), location, quantity, "a receiver without a platform");
     }
-    const bool is_reported = !has_interval || has_unknown_name ||
+    const bool is_reported = !unmet_interval.empty() || has_unknown_name ||
                              (row->kind == QuantityKind::of_receiver && scenario.receivers.empty());
     if (!is_reported) {
       const std::string unmet = unmetNeed(row->quantity, scenario, output);
@@ -311,6 +298,28 @@ void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& co
   }
 }
 
+/// Warns about fluctuating targets of radars whose method of detection supports only steady ones.
+void warnOfTargetsTakenAsSteady(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("targets");
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Target& target = scenario.targets[i];
+    if (target.swerling == 0) continue;
+    std::string radars;
+    for (const Emitter& radar : scenario.emitters) {
+      if (radar.kind != EmitterKind::radar || radar.receiver.detection != DetectionMethod::albersheim ||
+          radar.platform == target.platform)
+        continue;
+      radars += fmt::format("{}'{}'", radars.empty() ? "" : ", ", radar.name);
+    }
+    if (radars.empty()) continue;
+    context.problems.addWarning(
+        sections[i].has("swerling") ? sections[i].locationOf("swerling") : sections[i].location(),
+        fmt::format("the target '{}' of swerling {} is taken as steady (swerling 0) by radars whose "
+                    "'detection' is albersheim: {}",
+                    target.name, target.swerling, radars));
+  }
+}
+
 /// Warns at the first of the beams.
 void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::optional<UnlitAzimuths> unlit = unlitAzimuths(scenario, scenario.clock);
@@ -350,6 +359,7 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
     warnOfEmittersWithoutBand(scenario, root, context);
     warnOfIdleJammers(scenario, root, context);
     warnOfGains(scenario, root, context);
+    warnOfTargetsTakenAsSteady(scenario, root, context);
     if (context.read_for == ReadFor::series) warnOfCoarseSteps(scenario, root, context);
     warnOfRefractivity(scenario, root, context);
   }

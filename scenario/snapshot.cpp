@@ -104,11 +104,11 @@ BeamPose mountPose(BeamPose pose, const Emitter& emitter) {
 
 /// True at t_s, or at some time of the duration that begins then.
 bool isActive(const Emitter& emitter, double t_s, double duration_s) {
-  return emitter.active_s.empty() ||
-         std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [&](const TimeInterval& interval) {
-           const bool has_begun = t_s >= interval.begin_s || t_s + duration_s > interval.begin_s;
-           return has_begun && t_s < interval.end_s;
-         });
+  if (emitter.active_s.empty()) return true;
+  if (duration_s > 0) return activeTime_s(emitter, t_s, duration_s) > 0;
+  return std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [t_s](const TimeInterval& interval) {
+    return t_s >= interval.begin_s && t_s < interval.end_s;
+  });
 }
 
 }  // namespace

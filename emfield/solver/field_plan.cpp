@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "emfield/model_check.h"
+#include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "scenario/quantity_needs.h"
 
 namespace emscape::emfield {
 
@@ -25,8 +27,11 @@ FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario, const Fie
       plan.channels.push_back({channel.quantity, channel.name + " without jamming", channel.emitters});
     }
   }
-  for (const Channel& channel : plan.channels)
+  for (const Channel& channel : plan.channels) {
     plan.channel_plans.push_back(channelPlan(channel, *plan.scenario));
+    const std::string unmet = scenario::unmetInterval(channel.quantity, plan.scenario->output.interval.kind);
+    if (!unmet.empty()) throw Error(ErrorCode::bad_input, {plan.scenario->file}, unmet);
+  }
   const std::vector<Emitter>& emitters = plan.scenario->emitters;
   for (const Emitter& emitter : emitters) {
     const double wavelength = wavelength_m(emitter.frequency_hz);

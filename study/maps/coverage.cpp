@@ -28,11 +28,15 @@ bool hasChannelPerEmitter(const scenario::Scenario& scenario, const std::string&
                      [](const emfield::Channel& channel) { return channel.emitters.size() == 1; });
 }
 
-/// The scenario with the output of a map.
+/// The scenario with the output of a map. Radars look at the target at the map's time, also where the volumes
+/// of the scenario show the directions that beams pass in an interval; a probability over an interval's looks
+/// keeps it.
 std::shared_ptr<const scenario::Scenario> atTargets(const scenario::Scenario& scenario, Quantity quantity) {
   auto at_targets = std::make_shared<scenario::Scenario>(scenario);
   at_targets->output.quantities = {scenario::info(quantity).name};
   at_targets->output.radar_look = scenario::RadarLook::target;
+  const bool has_looks = at_targets->output.interval.kind == scenario::IntervalKind::cumulative;
+  if (scenario::needsRadar(quantity) && !has_looks) at_targets->output.interval = {};
   if (at_targets->output.combine != scenario::CombineMode::max) {
     at_targets->output.combine = scenario::CombineMode::sum;
   }

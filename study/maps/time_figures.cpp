@@ -15,6 +15,7 @@ TimeFigures::TimeFigures(std::size_t places, std::vector<double> times_s) : time
 
 void TimeFigures::add(double time_s, const std::function<bool(std::size_t)>& isCovered) {
   const std::size_t at = next_++;
+  const auto since_first_s = static_cast<float>(time_s - times_s_.front());
   const auto length_s = static_cast<float>(at + 1 < times_s_.size() ? times_s_[at + 1] - times_s_[at] : 0);
   parallelFor(static_cast<int>(places_.size()), 1 << 14, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) {
@@ -22,10 +23,10 @@ void TimeFigures::add(double time_s, const std::function<bool(std::size_t)>& isC
       const bool was_covered = place.is_covered;
       place.is_covered = isCovered(static_cast<std::size_t>(p));
       if (place.is_covered) {
-        if (std::isnan(place.first_s)) place.first_s = static_cast<float>(time_s);
+        if (std::isnan(place.first_s)) place.first_s = since_first_s;
         if (!was_covered) {
           ++place.coverages;
-          place.last_begin_s = static_cast<float>(time_s);
+          place.last_begin_s = since_first_s;
         }
         place.covered_s += length_s;
         place.gap_s = 0;
@@ -45,7 +46,7 @@ float TimeFigures::figure(Product product, std::size_t p) const {
   const auto duration_s = static_cast<float>(times_s_.back() - times_s_.front());
   switch (product) {
     case Product::first_detection:
-      return place.first_s;
+      return static_cast<float>(times_s_.front() + static_cast<double>(place.first_s));
     case Product::fraction:
       return place.covered_s / duration_s;
     case Product::gaps:

@@ -27,7 +27,7 @@ class TimeFigures {
 
  private:
   struct Place {
-    float first_s;        ///< NaN: not yet
+    float first_s;        ///< since the first of the times, as all; NaN: not yet
     float covered_s = 0;  ///< time so far
     float gap_s = 0;      ///< of the present gap
     float longest_gap_s = 0, all_gaps_s = 0;

@@ -212,6 +212,10 @@ TEST(ReceiverQuantity, ThatTheScenarioCannotGiveIsRefused) {
   scenario->output.interval = {scenario::IntervalKind::mean, 1.0, {}};
   EXPECT_THAT(messageOf("sinr_db"), HasSubstr("no meaning over an interval"));
   EXPECT_THAT(messageOf("detection_age_s"), HasSubstr("needs an"));
+  EXPECT_THAT(
+      messageOf("emitter_count"),
+      HasSubstr(
+          "emitter_count has no meaning over an interval of kind mean; these have: power_density_dbwm2"));
 }
 
 }  // namespace

@@ -38,5 +38,40 @@ TEST(ScanSweep, CountsTheBurstsOfEqualArcs) {
   EXPECT_EQ(sweep.arcs[1].times, 1);
 }
 
+TEST(ScanSweep, HasNoPartsThatAreRoundingOfTimes) {
+  ScanSpec dwells, raster, sector;
+  dwells.kind = ScanKind::dwell_list;
+  dwells.dwells = {{-90, 0, 0.1}, {0, 0, 0.1}, {90, 0, 0.1}};
+  raster.kind = ScanKind::raster;
+  raster.width_deg = 40;
+  raster.rate_deg_s = 400;
+  raster.bars = 4;
+  raster.elevation_step_deg = 10;
+  sector = raster;
+  sector.kind = ScanKind::sector;
+  for (const ScanSpec& scan : {dwells, raster, sector}) {
+    Emitter emitter;
+    emitter.scan = scan;
+    for (int step = 0; step < 1000; ++step) {
+      const ScanSweep sweep = sweepOf(emitter, step / 10.0, 0.1);
+      ASSERT_EQ(sweep.arcs.size(), 1u) << toString(scan.kind) << " at " << step / 10.0 << " s";
+      EXPECT_NEAR(sweep.arcs[0].share, 1, 1e-9);
+      const double middle_s = step / 10.0 + 0.05;
+      EXPECT_EQ(sweep.arcs[0].elevation_deg, beamAt(scan, middle_s).elevation_deg);
+      if (scan.kind != ScanKind::dwell_list) EXPECT_EQ(lastPassesOf(emitter, step / 10.0, 0.1).size(), 1u);
+    }
+  }
+}
+
+TEST(ScanSweep, OfAnEmitterThatIsSwitchedAtTheEndsOfIntervals) {
+  for (int step = 0; step < 1000; ++step) {
+    const double t_s = step / 10.0;
+    EXPECT_EQ(activeTime_s(turning({{(step + 1) / 10.0, 200}}), t_s, 0.1), 0) << t_s;
+    EXPECT_EQ(activeTime_s(turning({{-1, t_s}}), t_s, 0.1), 0) << t_s;
+    EXPECT_EQ(activeTime_s(turning({{t_s, (step + 1) / 10.0}}), t_s, 0.1), 0.1) << t_s;
+  }
+  EXPECT_NEAR(activeTime_s(turning({{7, 7.001}}), 0, 1e6), 1e-3, 1e-9) << "a short one in a long interval";
+}
+
 }  // namespace
 }  // namespace emscape::scenario

@@ -63,6 +63,16 @@ TEST(Scan, RasterStacksItsBarsFromTheLowest) {
   }
 }
 
+TEST(Scan, ABarBeginsExactlyWhereThePreviousEnds) {
+  ScanSpec scan = sweep(ScanKind::raster);
+  scan.width_deg = 40;
+  scan.rate_deg_s = 100;
+  scan.bars = 3;
+  scan.elevation_step_deg = 10;
+  scan.elevation_deg = 0;
+  for (int n = 0; n < 1000; ++n) EXPECT_EQ(beamAt(scan, n * 4 / 10.0).elevation_deg, (n % 3 - 1) * 10) << n;
+}
+
 TEST(Scan, DwellsEndExactlyWhereTheNextBegin) {
   ScanSpec scan;
   scan.kind = ScanKind::dwell_list;

@@ -126,6 +126,32 @@ TEST(Coverage, KeepsTheWarningsOfEachTimeOfSeveralScenarios) {
   }
 }
 
+TEST(Coverage, RadarsLookAtTargetsAlsoInAScenarioOfIntervals) {
+  auto scenario =
+      std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("jacksboro.yaml")));
+  const MapGrid grid = makeMapGrid(areaOf(scenario->region), 3000, "utm");
+  const scenario::TerrainPtr terrain = loadTerrain(*scenario, areaOf(scenario->region));
+  const auto valuesOver = [&](scenario::IntervalKind kind, scenario::Quantity quantity) {
+    scenario->output.interval = {kind, {}, {}};
+    std::vector<float> values;
+    computeCoverage(scenario, terrain, grid, {{kLow}, {Product::value}, quantity, 0.5, {10}}, {},
+                    [&](const CoverageMap& map) { values = map.values; });
+    for (float& value : values)
+      if (std::isnan(value)) value = -999;
+    return values;
+  };
+  using scenario::IntervalKind;
+  using scenario::Quantity;
+  const auto probability = valuesOver(IntervalKind::instant, Quantity::detection_probability);
+  EXPECT_EQ(valuesOver(IntervalKind::max_hold, Quantity::detection_probability), probability);
+  EXPECT_EQ(valuesOver(IntervalKind::mean, Quantity::detection_probability), probability);
+  EXPECT_EQ(valuesOver(IntervalKind::max_hold, Quantity::jammer_to_signal_db),
+            valuesOver(IntervalKind::instant, Quantity::jammer_to_signal_db));
+  EXPECT_NE(valuesOver(IntervalKind::max_hold, Quantity::power_density_dbwm2),
+            valuesOver(IntervalKind::instant, Quantity::power_density_dbwm2))
+      << "the field of an interval";
+}
+
 TEST(Coverage, WarnsOfPixelsOfAnotherSizeOnTheGround) {
   const auto scenario = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
   const auto warningsIn = [&](const std::string& crs) {

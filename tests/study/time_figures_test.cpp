@@ -46,5 +46,14 @@ TEST(TimeFigures, AreThoseOfTheRow) {
   EXPECT_EQ(of(Product::first_detection, 4), 8);
 }
 
+TEST(TimeFigures, AreExactFarFromTheEpoch) {
+  const std::vector<double> times_s{5e7, 5e7 + 3, 5e7 + 4, 5e7 + 8, 5e7 + 9};
+  TimeFigures figures(1, times_s);
+  for (std::size_t t = 0; t < times_s.size(); ++t)
+    figures.add(times_s[t], [&](std::size_t) { return t % 2 == 1; });
+  EXPECT_EQ(figures.figure(Product::revisit, 0), 5) << "from 3 to 8";
+  EXPECT_EQ(figures.figure(Product::first_detection, 0), static_cast<float>(5e7 + 3));
+}
+
 }  // namespace
 }  // namespace emscape::study

@@ -14,8 +14,9 @@ namespace {
 
 /// The names of the channels of a quantity. @throws Error if the scenario does not have it
 std::vector<std::string> channelsOf(const scenario::Scenario& scenario, const std::string& quantity) {
-  const std::string unmet =
-      scenario::unmetNeed(scenario::quantityFromName(quantity), scenario, scenario.output);
+  const scenario::Quantity of = scenario::quantityFromName(quantity);
+  std::string unmet = scenario::unmetNeed(of, scenario, scenario.output);
+  if (unmet.empty()) unmet = scenario::unmetInterval(of, scenario.output.interval.kind);
   if (!unmet.empty()) throw Error(ErrorCode::bad_input, unmet);
   std::vector<std::string> names;
   for (const emfield::Channel& channel : emfield::channelsOf(scenario, {quantity})) {
