@@ -284,9 +284,10 @@ double requiredSnrDb(const Detector& detector, scenario::DetectionMethod method,
       return Albersheim(detector).requiredSnrDb(probability);
     case scenario::DetectionMethod::shnidman:
       return shnidmanSnrDb(detector, probability);
-    default:
-      return requiredSnrDb(detector, probability);
+    case scenario::DetectionMethod::exact:
+      break;
   }
+  return requiredSnrDb(detector, probability);
 }
 
 DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMethod method, double loss_db)
@@ -300,9 +301,10 @@ DetectionCurve::DetectionCurve(const Detector& detector, scenario::DetectionMeth
         return albersheim->probability(snr_db);
       case scenario::DetectionMethod::shnidman:
         return shnidmanProbability(detector, snr_db);
-      default:
-        return detectionProbability(detector, threshold, dbToRatio(snr_db));
+      case scenario::DetectionMethod::exact:
+        break;
     }
+    return detectionProbability(detector, threshold, dbToRatio(snr_db));
   };
   // Above the last knot the curve is flat; the error is a fifth of the stated accuracy. The same is the error
   // of the first step, below which there are only false alarms: looks add up, so that their probability

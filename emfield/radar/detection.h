@@ -71,9 +71,9 @@ double albersheimSnrDb(const Detector& detector, double probability);
 double shnidmanSnrDb(const Detector& detector, double probability);
 
 /// Probability of detection of a steady target by the inverse of Albersheim's formula. Within 0.05 of the
-/// exact probability for 0.1 to 0.9. Below 0.1 the formula does not hold (its minimum is 0.01 to 0.03 for
-/// echoes of any weakness): there it is the exact probability, with its signal-to-noise ratio shifted so that
-/// both meet, and decreases to the probability of false alarm. For Pfa above 3e-3 both meet above 0.1.
+/// exact probability for 0.1 to 0.9. Below 0.1 the formula does not hold (its minimum is 0.004 at
+/// Pfa 1e-12, 0.07 at 1e-3): there it is the exact probability, with its signal-to-noise ratio shifted so
+/// that both meet, and decreases to the probability of false alarm. For Pfa above 1e-3 both meet above 0.1.
 double albersheimProbability(const Detector& detector, double snr_db);
 
 /// The same by Shnidman's formula: the largest probability whose required ratio is at most the given one. It
