@@ -292,7 +292,7 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
   }
   const bool sweeps = scan.kind == ScanKind::sector || scan.kind == ScanKind::raster;
   const bool is_max_hold = interval.kind == IntervalKind::max_hold;
-  if (is_max_hold && sweeps) joinArcs(sweep.arcs);
+  if (is_max_hold && !has_dwells) joinArcs(sweep.arcs);
   const double frame_deg = turnIntoFrame(sweep, sweeps ? scan.azimuth_deg : 0);
   beam.pose = scenario::aimed(sweepFrame(emitter, state), frame_deg, 0);
   beam.look_frame = beam.pose;

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "emfield/solver/interval_beam.h"
 #include "emscape/base/units.h"
 #include "scenario/scan_sweep.h"
 #include "tests/emfield/radar_duel.h"
@@ -529,6 +530,23 @@ TEST_P(Intervals, OfActiveTimesThatTouchAreThoseOfOne) {
     scenario->emitters[0].active_s = {{2, 2.5}, {0, 2}, {1, 1.5}};
     EXPECT_EQ(overInterval(scenario, kind, 6), expected);
   }
+}
+
+TEST_P(Intervals, HoldTheLargestOfBurstsThatOverlapInAzimuth) {
+  auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), rotating(10));
+  Bursts& bursts = scenario->emitters[0].active_s;
+  bursts = {{2, 3.2}};
+  const UnsetVector<float> expected = overInterval(scenario, IntervalKind::max_hold, 60);
+  bursts.clear();
+  for (int n = 0; n < 10; ++n) bursts.push_back({2 + 6.1 * n, 2.3 + 6.1 * n});  // 6 degrees on in each turn
+  const UnsetVector<float> found = overInterval(scenario, IntervalKind::max_hold, 60);
+  for (std::size_t v = 0; v < found.size(); ++v) ASSERT_NEAR(found[v], expected[v], 1e-3) << v;
+
+  scenario->output.interval = {IntervalKind::max_hold, 60.0, {}};
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, kBegin_s);
+  const IntervalBeam beam =
+      intervalBeam(*scenario, scenario->emitters[0], snapshot.emitters[0], kBegin_s, false, nullptr);
+  EXPECT_EQ(beam.of_sweep.arcs.size(), 1U) << "the time to compute a pattern grows with their number";
 }
 
 TEST_P(Intervals, ARadarThatStaysDetectsAllTheTime) {
