@@ -179,15 +179,11 @@ void CudaEngine::combine(const CombinePass& pass) {
         tables.knots.upload(share.task.curve.knots, static_cast<std::size_t>(share.task.curve.count),
                             stream_);
       }
-      tables.jammers.upload(share.jammers, stream_);
       radar.task.curve.knots = tables.knots.data();
-      radar.task.jammers = tables.jammers.data();
-      tables.looks.upload(share.arcs.looks, stream_);
-      tables.counts.upload(share.arcs.counts, stream_);
-      tables.passes.upload(share.arcs.passes, stream_);
-      radar.task.look_arcs = tables.looks.data();
-      radar.task.looks.arcs = tables.counts.data();
-      radar.task.last_passes.arcs = tables.passes.data();
+      radar.task.jammers = tables.jammers.send(share.jammers, stream_);
+      radar.task.look_arcs = tables.looks.send(share.arcs.looks, stream_);
+      radar.task.looks.arcs = tables.counts.send(share.arcs.counts, stream_);
+      radar.task.last_passes.arcs = tables.passes.send(share.arcs.passes, stream_);
       cuda::addRadar(radar, geometry_.firstValidK(), stream_);
     }
     for (const OccupancyShare& share : pass.members[m].occupancies) {
@@ -195,14 +191,10 @@ void CudaEngine::combine(const CombinePass& pass) {
       if (accumulator == nullptr) continue;
       OccupancyPass occupancy = occupancyPass(share, beam, task, accumulator);
       DevicePositions& positions = positions_[{share.channel, pass.members[m].emitter.emitter_index}];
-      positions.arcs.upload(share.positions.arcs, stream_);
-      positions.cos_azimuth.upload(share.positions.cos_azimuth, stream_);
-      positions.sin_azimuth.upload(share.positions.sin_azimuth, stream_);
-      positions.reaches.upload(share.positions.reaches, stream_);
-      occupancy.arcs = positions.arcs.data();
-      occupancy.cos_azimuth = positions.cos_azimuth.data();
-      occupancy.sin_azimuth = positions.sin_azimuth.data();
-      occupancy.reaches = positions.reaches.data();
+      occupancy.arcs = positions.arcs.send(share.positions.arcs, stream_);
+      occupancy.cos_azimuth = positions.cos_azimuth.send(share.positions.cos_azimuth, stream_);
+      occupancy.sin_azimuth = positions.sin_azimuth.send(share.positions.sin_azimuth, stream_);
+      occupancy.reaches = positions.reaches.send(share.positions.reaches, stream_);
       cuda::addOccupancy(occupancy, geometry_.firstValidK(), stream_);
     }
   }
