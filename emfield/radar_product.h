@@ -237,6 +237,13 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
 /// @param weights  none for a look with arcs
 void radarCpu(const RadarPass& pass, const LookWeights& weights = {});
 
+/// The arcs to which a radar's ArcLook, LookCount and LastPasses point.
+struct IntervalArcs {
+  std::vector<LookArc> directions;
+  std::vector<CountedArc> counts;
+  std::vector<PassedArc> passes;
+};
+
 /// A radar's contribution to a channel, with the data to which it points.
 struct RadarShare {
   int channel = 0;
@@ -263,8 +270,8 @@ inline RadarPass radarPass(const RadarShare& share, const EmitterBeam& beam,
   pass.beam.up = share.up;
   pass.task.jammers = share.jammers.data();
   pass.task.jammer_count = static_cast<int>(share.jammers.size());
-  pass.task.look_arcs = share.arcs.looks.data();
-  pass.task.look_arc_count = static_cast<int>(share.arcs.looks.size());
+  pass.task.look_arcs = share.arcs.directions.data();
+  pass.task.look_arc_count = static_cast<int>(share.arcs.directions.size());
   pass.task.looks.arcs = share.arcs.counts.data();
   pass.task.looks.arc_count = static_cast<int>(share.arcs.counts.size());
   pass.task.last_passes.arcs = share.arcs.passes.data();

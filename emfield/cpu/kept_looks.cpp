@@ -23,7 +23,7 @@ KeptLooks::KeptLooks(std::size_t slots, std::size_t voxels, std::size_t availabl
 LookWeights KeptLooks::choose(std::size_t slot, const scenario::AntennaPtr& antenna,
                               const RadarShare& share) {
   LookWeights weights;
-  if (slot >= slots_.size() || !share.arcs.looks.empty()) return weights;
+  if (slot >= slots_.size() || !share.arcs.directions.empty()) return weights;
   ++pass_;
   weights.echo = choose(slots_[slot], antenna, share, nullptr);
   for (const JammerAtRadar& jammer : share.jammers) {

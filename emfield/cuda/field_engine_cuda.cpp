@@ -53,7 +53,7 @@ struct ChannelBuffers {
 struct RadarTables {
   Buffer<DetectionCurveView::Knot> knots;
   Buffer<JammerAtRadar> jammers;
-  Buffer<LookArc> looks;
+  Buffer<LookArc> directions;
   Buffer<CountedArc> counts;
   Buffer<PassedArc> passes;
 };
@@ -181,7 +181,7 @@ void CudaEngine::combine(const CombinePass& pass) {
       }
       radar.task.curve.knots = tables.knots.data();
       radar.task.jammers = tables.jammers.send(share.jammers, stream_);
-      radar.task.look_arcs = tables.looks.send(share.arcs.looks, stream_);
+      radar.task.look_arcs = tables.directions.send(share.arcs.directions, stream_);
       radar.task.looks.arcs = tables.counts.send(share.arcs.counts, stream_);
       radar.task.last_passes.arcs = tables.passes.send(share.arcs.passes, stream_);
       cuda::addRadar(radar, geometry_.firstValidK(), stream_);

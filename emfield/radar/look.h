@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cmath>
-#include <vector>
 
 #include "base/fast_math.h"
 #include "emscape/base/host_device.h"
@@ -108,13 +107,6 @@ struct LastPasses {
   }
 };
 
-/// The arcs to which a radar's ArcLook, LookCount and LastPasses point.
-struct IntervalArcs {
-  std::vector<LookArc> looks;
-  std::vector<CountedArc> counts;
-  std::vector<PassedArc> passes;
-};
-
 /// The attitude of an antenna that points at a target.
 struct Aim {
   float cos_azimuth = 1, sin_azimuth = 0, cos_elevation = 1, sin_elevation = 0;
@@ -168,7 +160,8 @@ EMSCAPE_HD inline AimAngles nearestOf(const LookArc* arcs, int arc_count, const 
   return nearest;
 }
 
-/// Azimuth and elevation of a direction of any length; 0: forward.
+/// Azimuth and elevation of a direction.
+/// @param direction  of any length; for 0 the azimuth is forward, and sine and cosine of the elevation are 0
 EMSCAPE_HD inline AimAngles anglesOf(const Vec3f& direction) {
   const float level = std::sqrt(direction.x * direction.x + direction.y * direction.y);
   const float inverse_length = 1 / std::sqrt(dot(direction, direction) + 1e-12f);
@@ -177,7 +170,7 @@ EMSCAPE_HD inline AimAngles anglesOf(const Vec3f& direction) {
 }
 
 /// The aim at a target, or the nearest aim that the look permits. Without branches, for SIMD.
-/// @param target  direction in the look's frame, of any length; 0: the aim is forward
+/// @param target  direction in the look's frame, of any length; 0: as for anglesOf() and the look's limits
 EMSCAPE_HD inline Aim aimAt(const RadarLook& look, const Vec3f& target) {
   const bool turns = look.kind == LookKind::turned, steers = look.kind == LookKind::steered;
   const float inverse_length = 1 / std::sqrt(dot(target, target) + 1e-12f);

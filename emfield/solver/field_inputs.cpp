@@ -166,8 +166,8 @@ bool areSame(const std::optional<ElevationCut>& a, const std::optional<Elevation
 }
 
 bool sameLook(const RadarShare& a, const RadarShare& b) {
-  return same(a.task.look, b.task.look) && sameArcs(a.arcs.looks, b.arcs.looks) && a.forward == b.forward &&
-         a.right == b.right && a.up == b.up;
+  return same(a.task.look, b.task.look) && sameArcs(a.arcs.directions, b.arcs.directions) &&
+         a.forward == b.forward && a.right == b.right && a.up == b.up;
 }
 
 bool sameRays(const JammerAtRadar& a, const JammerAtRadar& b) {

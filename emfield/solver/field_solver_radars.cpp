@@ -49,7 +49,7 @@ std::vector<RadarShare> FieldSolver::Impl::radarShares(int e) const {
     shares.push_back(
         radarShare(*setup.scenario, e, state, task, channel.jammers.empty() ? none : emitters[e].jammers));
     shares.back().channel = static_cast<int>(c);
-    if (emitters[e].interval) shares.back().arcs = emitters[e].interval->arcs;
+    if (emitters[e].interval) shares.back().arcs = emitters[e].interval->looks.arcs;
   }
   return shares;
 }

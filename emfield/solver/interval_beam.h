@@ -1,15 +1,14 @@
 /// An emitter's beam over the interval of a volume: a pattern and a pose that replace those of an instant,
-/// and the number of a radar's looks in each direction.
+/// and a radar's looks.
 #pragma once
 
 #include "emfield/radar_product.h"
+#include "emfield/solver/interval_looks.h"
 #include "emscape/scenario/scenario.h"
 #include "emscape/scenario/snapshot.h"
 #include "scenario/scan_sweep.h"
 
 namespace emscape::emfield {
-
-constexpr double kTurn_deg = 360;
 
 struct IntervalBeam {
   scenario::AntennaPtr
@@ -17,12 +16,8 @@ struct IntervalBeam {
   scenario::BeamPose pose;
   double power_share =
       1;  ///< factor of the emitter's power, for the mean of an emitter that is not always active
-  scenario::BeamPose look_frame;     ///< of a radar's looks at targets; replaces EmitterState::mount
-  double look_half_width_deg = 180;  ///< azimuths to both sides of its forward that the beam passes
-  float looks = 1;                   ///< LookCount::everywhere
-  /// looks: if look_half_width_deg does not describe the directions that the beam passes; passes: of the kind
-  /// cumulative, of scans with passes (scenario::lastPassesOf).
-  IntervalArcs arcs;
+  scenario::BeamPose look_frame;  ///< of a radar's looks at targets; replaces EmitterState::mount
+  IntervalLooks looks;            ///< in look_frame
 
   /// Inputs from which the antenna was made.
   scenario::AntennaPtr of_antenna;
@@ -37,9 +32,6 @@ struct IntervalBeam {
 IntervalBeam intervalBeam(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                           const scenario::EmitterState& state, double t_s, bool needs_pattern,
                           const IntervalBeam* before);
-
-/// True if a beam has the same direction all the time.
-bool stays(const scenario::ScanSweep& sweep);
 
 /// The frame about whose up axis the arcs of a sweep turn, or in which its dwells are steered.
 scenario::BeamPose sweepFrame(const scenario::Emitter& emitter, const scenario::EmitterState& state);
