@@ -5,8 +5,8 @@
 
 namespace emscape::emfield {
 
-/// As radarCpu(), voxel by voxel: the loop over the arcs of a look does not fit into the loops over rows, nor
-/// into their source file, where it would keep the compiler from using SIMD.
+/// Runs a pass whose look has arcs, voxel by voxel (addEcho). In a file of its own: in radar_product_cpu.cpp
+/// the loop over arcs would keep the compiler from using SIMD for the rows.
 void radarOfArcsCpu(const RadarPass& pass);
 
 }  // namespace emscape::emfield
