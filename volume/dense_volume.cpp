@@ -23,17 +23,18 @@ std::string dimsText(const Dims& dims) {
 
 }  // namespace
 
-void checkDims(const Dims& dims, const SourceLocation& location) {
+void checkDims(const Dims& dims, const SourceLocation& location, const std::string& who) {
   // Each factor fits 16 bits, so the product cannot overflow.
   const auto allowed = [](int count) { return count >= 1 && count <= kMaxVoxelsPerAxis; };
   if (!allowed(dims.x) || !allowed(dims.y) || !allowed(dims.z)) {
-    throw Error(
-        ErrorCode::bad_input, location,
-        "dims " + dimsText(dims) + ": each must be 1.." + std::to_string(kMaxVoxelsPerAxis) + " voxels");
+    throw Error(ErrorCode::bad_input, location,
+                who + "dims " + dimsText(dims) + ": each must be 1.." + std::to_string(kMaxVoxelsPerAxis) +
+                    " voxels");
   }
   if (dims.count() > kMaxVoxels) {
-    throw Error(ErrorCode::bad_input, location,
-                "dims " + dimsText(dims) + ": at most " + std::to_string(kMaxVoxels) + " voxels in all");
+    throw Error(
+        ErrorCode::bad_input, location,
+        who + "dims " + dimsText(dims) + ": at most " + std::to_string(kMaxVoxels) + " voxels in all");
   }
 }
 
@@ -41,8 +42,8 @@ void checkVolume(const DenseVolume& volume, const SourceLocation& location) {
   const Dims& dims = volume.grid.dims;
   const std::string who = "volume " + volume.info.quantity + ": ";
   const auto fail = [&](const std::string& what) { throw Error(ErrorCode::bad_input, location, who + what); };
-  checkGrid(volume.grid, location);
-  checkInfo(volume.info, location);
+  checkGrid(volume.grid, who, location);
+  checkInfo(volume.info, who, location);
   if (volume.info.quantity.empty()) fail("a volume needs the name of its quantity");
   if (static_cast<long long>(volume.values.size()) != dims.count()) {
     fail(std::to_string(volume.values.size()) + " values for " + dimsText(dims) + " voxels");

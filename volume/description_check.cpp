@@ -37,32 +37,32 @@ void requireWithin(const std::string& name, double value, const Limits& limits,
 
 }  // namespace
 
-void checkGrid(const Grid& grid, const SourceLocation& location) {
-  checkDims(grid.dims, location);
+void checkGrid(const Grid& grid, const std::string& who, const SourceLocation& location) {
+  checkDims(grid.dims, location, who);
   const auto checkAxis = [&](const char* axis, double spacing_m, double first_center_m) {
-    requireWithin(std::string("spacing_m in ") + axis, spacing_m, kSpacing, location);
+    requireWithin(who + "spacing_m in " + axis, spacing_m, kSpacing, location);
     const double most_m = kMaxFirstVoxel * spacing_m;
-    requireWithin(std::string("first_center_m in ") + axis, first_center_m, {-most_m, most_m, "m"}, location);
+    requireWithin(who + "first_center_m in " + axis, first_center_m, {-most_m, most_m, "m"}, location);
   };
   checkAxis("x", grid.spacing_m.x, grid.first_center_m.x);
   checkAxis("y", grid.spacing_m.y, grid.first_center_m.y);
   checkAxis("z", grid.spacing_m.z, grid.first_center_m.z);
-  if (grid.georeferenced) checkFrame(grid.frame, location);
+  if (grid.georeferenced) checkFrame(grid.frame, who, location);
 }
 
-void checkFrame(const FrameOrigin& frame, const SourceLocation& location) {
-  requireWithin("latitude_deg of the frame's origin", frame.latitude_deg, kLatitude, location);
-  requireWithin("longitude_deg of the frame's origin", frame.longitude_deg, kLongitude, location);
-  requireWithin("height_msl_m of the frame's origin", frame.height_msl_m, kHeight, location);
+void checkFrame(const FrameOrigin& frame, const std::string& who, const SourceLocation& location) {
+  requireWithin(who + "latitude_deg of the frame's origin", frame.latitude_deg, kLatitude, location);
+  requireWithin(who + "longitude_deg of the frame's origin", frame.longitude_deg, kLongitude, location);
+  requireWithin(who + "height_msl_m of the frame's origin", frame.height_msl_m, kHeight, location);
 }
 
-void checkInfo(const VolumeInfo& info, const SourceLocation& location) {
-  checkTime(info.time_s, "time_s", location);
-  requireWithin("range_min", info.range_min, kFloat, location);
-  requireWithin("range_max", info.range_max, kFloat, location);
+void checkInfo(const VolumeInfo& info, const std::string& who, const SourceLocation& location) {
+  checkTime(info.time_s, who + "time_s", location);
+  requireWithin(who + "range_min", info.range_min, kFloat, location);
+  requireWithin(who + "range_max", info.range_max, kFloat, location);
   if (info.range_min <= info.range_max) return;
   throw Error(ErrorCode::bad_input, location,
-              "range_min " + quantityText(info.range_min, "") + " is above range_max " +
+              who + "range_min " + quantityText(info.range_min, "") + " is above range_max " +
                   quantityText(info.range_max, ""));
 }
 
@@ -75,14 +75,16 @@ float requireFloat(double value, const std::string& name) {
   return static_cast<float>(value);
 }
 
-void checkAxes(const std::array<double, 9>& matrix, const Vec3d& spacing_m, const SourceLocation& location) {
+void checkAxes(const std::array<double, 9>& matrix, const Vec3d& spacing_m, const std::string& who,
+               const SourceLocation& location) {
   const double spacings_m[] = {spacing_m.x, spacing_m.y, spacing_m.z};
   const double tolerance_m = 1e-6 * *std::min_element(std::begin(spacings_m), std::end(spacings_m));
   for (std::size_t n = 0; n < matrix.size(); ++n) {
     const double expected_m = n % 4 == 0 ? spacings_m[n / 4] : 0;
     if (!(std::abs(matrix[n] - expected_m) <= tolerance_m)) {
-      throw Error(ErrorCode::bad_input, location,
-                  "the grid is rotated, sheared or mirrored; grids whose axes are x, y and z can be read");
+      throw Error(
+          ErrorCode::bad_input, location,
+          who + "the grid is rotated, sheared or mirrored; grids whose axes are x, y and z can be read");
     }
   }
 }

@@ -16,26 +16,34 @@ constexpr double kMaxSpacing_m = 1e20;
 constexpr double kMaxFirstVoxel = 1e12;
 
 /// Checks dims, spacing, place and, if georeferenced, frame.
+/// @param who  beginning of errors that names the grid: "volume snr_db: "; may be empty
 /// @throws Error (bad_input) at `location` with value and allowed range
-void checkGrid(const Grid& grid, const SourceLocation& location);
+void checkGrid(const Grid& grid, const std::string& who, const SourceLocation& location);
 
-/// Checks latitude, longitude and height. @throws Error (bad_input) as checkGrid()
-void checkFrame(const FrameOrigin& frame, const SourceLocation& location);
+/// Checks latitude, longitude and height.
+/// @throws Error (bad_input) as checkGrid()
+void checkFrame(const FrameOrigin& frame, const std::string& who, const SourceLocation& location);
 
-/// Checks the time and the range. @throws Error (bad_input) as checkGrid()
-void checkInfo(const VolumeInfo& info, const SourceLocation& location);
+/// Checks the time and the range.
+/// @throws Error (bad_input) as checkGrid()
+void checkInfo(const VolumeInfo& info, const std::string& who, const SourceLocation& location);
 
-/// @param name  of the time in errors @throws Error (bad_input) beyond kMaxTime_s, or for NaN
+/// Checks a time (s).
+/// @param name  of the time in errors
+/// @throws Error (bad_input) beyond kMaxTime_s, or for NaN
 void checkTime(double time_s, const std::string& name, const SourceLocation& location);
 
-/// The value as float, which may be infinite or NaN. @throws Error (bad_input), without a location, for
-/// finite values beyond the floats; @param name  of the value in it; may be empty
+/// The value as float, which may be infinite or NaN.
+/// @param name  of the value in errors; may be empty
+/// @throws Error (bad_input), without a location, for finite values beyond the floats
 float requireFloat(double value, const std::string& name = "");
 
 /// Checks that voxels lie along the axes of the frame: that the matrix from indices to positions has the
-/// spacing on its diagonal and, within 1e-6 of the smallest spacing, 0 elsewhere.
+/// spacing on its diagonal and 0 elsewhere, each within 1e-6 of the smallest spacing.
 /// @param matrix  row-major
+/// @param who     as of checkGrid()
 /// @throws Error (bad_input) at `location`: the grid is rotated, sheared or mirrored
-void checkAxes(const std::array<double, 9>& matrix, const Vec3d& spacing_m, const SourceLocation& location);
+void checkAxes(const std::array<double, 9>& matrix, const Vec3d& spacing_m, const std::string& who,
+               const SourceLocation& location);
 
 }  // namespace emscape::volume

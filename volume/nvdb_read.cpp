@@ -289,7 +289,7 @@ class NvdbFile {
       volume.info.has_time = false;
       volume.info.floor = grid.background();
       volume.info.categorical = categorical;
-      placeForeign(volume.grid, data, first, grid.lastActive());
+      placeForeign(volume, data, first, grid.lastActive());
       checkSparseness(volume.grid.dims, grid.storedVoxels(), {path_.string()});
     }
     requireDenseMemory(volume.grid.dims, {path_.string()});
@@ -301,22 +301,24 @@ class NvdbFile {
     return volume;
   }
 
-  void placeForeign(Grid& grid, const nano::GridData& data, const nano::Coord& first,
+  void placeForeign(DenseVolume& volume, const nano::GridData& data, const nano::Coord& first,
                     const nano::Coord& last) const {
+    const std::string who = "grid " + volume.info.quantity + ": ";
+    Grid& grid = volume.grid;
     int counts[3];
     for (int axis = 0; axis < 3; ++axis) {
       const long long count = static_cast<long long>(last[axis]) - first[axis] + 1;
       counts[axis] = static_cast<int>(std::clamp<long long>(count, 0, INT32_MAX));
     }
     grid.dims = {counts[0], counts[1], counts[2]};
-    if (grid.dims.count() == 0) fail("the grid has no active voxels");
+    if (grid.dims.count() == 0) fail(who + "it has no active voxels");
     const nano::Vec3d center = data.applyMap(nano::Vec3d(first[0], first[1], first[2]));
     grid.first_center_m = {center[0], center[1], center[2]};
     grid.spacing_m = {data.mVoxelSize[0], data.mVoxelSize[1], data.mVoxelSize[2]};
-    checkGrid(grid, {path_.string()});
+    checkGrid(grid, who, {path_.string()});
     std::array<double, 9> matrix{};
     std::copy(std::begin(data.mMap.mMatD), std::end(data.mMap.mMatD), matrix.begin());
-    checkAxes(matrix, grid.spacing_m, {path_.string()});
+    checkAxes(matrix, grid.spacing_m, who, {path_.string()});
   }
 
   std::filesystem::path path_;

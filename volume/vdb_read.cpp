@@ -132,13 +132,18 @@ class VdbFile {
   std::vector<VdbGrid> entries_;
 };
 
+/// Beginning of errors about a grid.
+std::string gridPrefix(const VdbGrid& entry) {
+  return "grid " + entry.descriptor.name + ": ";
+}
+
 /// The metadata; a file of another program leaves dims 0 and most other values at their defaults.
 DenseVolume volumeOf(const VdbGrid& entry) {
   const VdbMetadata& metadata = entry.metadata;
   const auto text = [&](const char* key) { return metaText(metadata, std::string("emscape:") + key); };
   const auto number = [&](const char* key) { return metaNumber(metadata, std::string("emscape:") + key); };
   const auto floatOf = [&](const char* key) {
-    return requireFloat(number(key).value_or(0), std::string("emscape:") + key);
+    return requireFloat(number(key).value_or(0), gridPrefix(entry) + "emscape:" + key);
   };
   DenseVolume volume;
   VolumeInfo& info = volume.info;
@@ -161,10 +166,11 @@ DenseVolume volumeOf(const VdbGrid& entry) {
   }
   if (const auto dims = metaInts(metadata, "emscape:dims")) {
     volume.grid.dims = {dims->x, dims->y, dims->z};
-    checkDims(volume.grid.dims, {});
+    checkDims(volume.grid.dims, {}, gridPrefix(entry));
     // Both values must agree, so that a damaged one does not cause an allocation.
     if (number("voxel_count") != static_cast<double>(volume.grid.dims.count())) {
-      throw Error(ErrorCode::bad_input, "emscape:voxel_count is not the product of emscape:dims");
+      throw Error(ErrorCode::bad_input,
+                  gridPrefix(entry) + "emscape:voxel_count is not the product of emscape:dims");
     }
   }
   const auto frame = text("frame");
@@ -182,14 +188,15 @@ DenseVolume volumeOf(const VdbGrid& entry) {
 
 /// Sets the volume's grid from the transform's scale and the centre of the voxel `first`.
 /// @throws Error (bad_input) without a location if its axes are not x, y and z
-void placeGrid(DenseVolume& volume, const openvdb::math::Transform& transform, const openvdb::Coord& first,
-               const VdbFile& file) {
-  if (!transform.isLinear()) file.fail("grid " + volume.info.quantity + ": its transform is not linear");
+void placeGrid(DenseVolume& volume, const VdbGrid& entry, const openvdb::math::Transform& transform,
+               const openvdb::Coord& first, const VdbFile& file) {
+  const std::string who = gridPrefix(entry);
+  if (!transform.isLinear()) file.fail(who + "its transform is not linear");
   const openvdb::Vec3d spacing = transform.voxelSize();
   const openvdb::Vec3d center = transform.indexToWorld(first);
   volume.grid.spacing_m = {spacing.x(), spacing.y(), spacing.z()};
   volume.grid.first_center_m = {center.x(), center.y(), center.z()};
-  checkGrid(volume.grid, {});
+  checkGrid(volume.grid, who, {});
   std::array<double, 9> matrix{};
   for (int axis = 0; axis < 3; ++axis) {
     openvdb::Vec3d step(0);
@@ -197,7 +204,7 @@ void placeGrid(DenseVolume& volume, const openvdb::math::Transform& transform, c
     const openvdb::Vec3d moved = transform.baseMap()->applyJacobian(step);
     for (int row = 0; row < 3; ++row) matrix[static_cast<std::size_t>(3 * row + axis)] = moved[row];
   }
-  checkAxes(matrix, volume.grid.spacing_m, {});
+  checkAxes(matrix, volume.grid.spacing_m, who, {});
 }
 
 bool isOurs(const DenseVolume& description) {
@@ -209,7 +216,7 @@ void readMask(DenseVolume& volume, const VdbGrid& entry, const VdbFile& file) {
   if (found == entry.metadata.end()) return;
   const std::string& bytes = found->second.bytes;
   if (bytes.size() % sizeof(std::uint16_t) != 0)
-    file.fail("emscape:first_valid_k has an odd number of bytes");
+    file.fail(gridPrefix(entry) + "emscape:first_valid_k has an odd number of bytes");
   volume.first_valid_k.resize(bytes.size() / sizeof(std::uint16_t));
   std::memcpy(volume.first_valid_k.data(), bytes.data(), bytes.size());
 }
@@ -254,7 +261,7 @@ bool makeDense(const openvdb::GridBase& base, const VdbGrid& entry, const VdbFil
     const auto& tree = grid->tree();
     checkSparseness(volume.grid.dims, tree.activeLeafVoxelCount() + tree.activeTileCount(), {});
   }
-  placeGrid(volume, grid->transform(), box.min(), file);
+  placeGrid(volume, entry, grid->transform(), box.min(), file);
   copyValues(*grid, box, volume);
   if (ours) readMask(volume, entry, file);
   checkVolume(volume, {});
@@ -301,8 +308,8 @@ std::vector<DenseVolume> describeVdb(const std::filesystem::path& path) {
     for (const VdbGrid& entry : file.entries()) {
       DenseVolume volume = volumeOf(entry);
       if (isOurs(volume)) {
-        placeGrid(volume, *entry.transform, openvdb::Coord(0, 0, 0), file);
-        checkInfo(volume.info, {});
+        placeGrid(volume, entry, *entry.transform, openvdb::Coord(0, 0, 0), file);
+        checkInfo(volume.info, gridPrefix(entry), {});
       } else {
         volume = readGrid(file, entry);
         volume.values.clear();

@@ -116,6 +116,11 @@ void eachMember(const Json& json, const std::string& file, const char* what, con
   }
 }
 
+/// Beginning of errors about a volume or field.
+std::string prefixOf(const VolumeInfo& info) {
+  return info.quantity.empty() ? "" : "volume " + info.quantity + ": ";
+}
+
 Json frameToJson(const FrameOrigin& frame) {
   return {{"kind", toString(frame.kind)},
           {"latitude_deg", frame.latitude_deg},
@@ -164,11 +169,12 @@ DenseVolume fromJson(const Json& json, const std::string& file) {
   volume.info.has_time = false;
   eachMember(json, file, "a volume",
              [&](const std::string& key, const Json& value) { setMember(volume, key, value); });
-  checkGrid(volume.grid, {file});
+  const std::string who = prefixOf(volume.info);
+  checkGrid(volume.grid, who, {file});
   // One of the two is no range.
   if (!json.contains("range_min") || !json.contains("range_max"))
     volume.info.range_min = volume.info.range_max = 0;
-  checkInfo(volume.info, {file});
+  checkInfo(volume.info, who, {file});
   if (json.contains("voxels") && json["voxels"] != volume.grid.dims.count()) {
     throw Error(ErrorCode::bad_input, {file},
                 "key voxels: " + json["voxels"].dump() + " is not the product of the dims");
@@ -195,8 +201,9 @@ MeshField meshFieldFromJson(const Json& json, const std::string& file) {
     mesh->frame = frameFromJson(value);
     mesh->georeferenced = true;
   });
-  if (mesh->georeferenced) checkFrame(mesh->frame, {file});
-  checkInfo(field.info, {file});
+  const std::string who = prefixOf(field.info);
+  if (mesh->georeferenced) checkFrame(mesh->frame, who, {file});
+  checkInfo(field.info, who, {file});
   field.mesh = mesh;
   return field;
 }

@@ -112,9 +112,9 @@ class VtiFile {
     grid.dims = {counts[0], counts[1], counts[2]};
     grid.spacing_m = {spacing[0], spacing[1], spacing[2]};
     grid.first_center_m = {first[0], first[1], first[2]};
-    checkGrid(grid, {path_});
+    checkGrid(grid, "", {path_});
     if (image_.attribute("Direction")) {
-      checkAxes(numbers<double, 9>(file_, image_, "Direction"), {1, 1, 1}, {path_});
+      checkAxes(numbers<double, 9>(file_, image_, "Direction"), {1, 1, 1}, "", {path_});
     }
     return grid;
   }

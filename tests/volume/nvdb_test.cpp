@@ -3,6 +3,8 @@
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>
 
+#include <nlohmann/json.hpp>
+
 #include "tests/support/files.h"
 #include "tests/volume/sample_volumes.h"
 #include "volume/nanovdb_wrapper.h"
@@ -81,7 +83,7 @@ TEST(Nvdb, OnOtherAxesIsRefused) {
   grid->transform().postRotate(0.3, openvdb::math::Z_AXIS);
   writeGrid();
   EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb"); }),
-              HasSubstr("a.nvdb: the grid is rotated, sheared or mirrored"));
+              HasSubstr("a.nvdb: grid density: the grid is rotated, sheared or mirrored"));
   grid->setTransform(openvdb::math::Transform::createLinearTransform());
   grid->transform().postScale(openvdb::Vec3d(1, 1, -1));
   writeGrid();
@@ -119,6 +121,25 @@ TEST(Nvdb, ASidecarWithoutTheNumberOfVoxelsIsRefused) {
   sidecar.replace(at, 8, "\"others\"");
   emscape::test::writeFile(folder / "a.nvdb.json", sidecar);
   EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb"); }), HasSubstr("a.nvdb.json: key voxels"));
+}
+
+TEST(Nvdb, AFaultOfTheSidecarNamesTheVolume) {
+  TemporaryFolder folder;
+  const DenseVolume power = fieldVolume();
+  DenseVolume snr = fieldVolume();
+  snr.info.quantity = "snr_db";
+  const auto refusal = [&](const char* key, const nlohmann::ordered_json& value) {
+    writeNvdb(folder / "b.nvdb", {&power, &snr});
+    auto json = nlohmann::ordered_json::parse(emscape::test::readFile(folder / "b.nvdb.json"));
+    json["volumes"][1][key] = value;
+    emscape::test::writeFile(folder / "b.nvdb.json", json.dump());
+    return errorOf([&] { describeNvdb(folder / "b.nvdb"); });
+  };
+  EXPECT_THAT(refusal("spacing_m", {-1, 1, 1}),
+              HasSubstr("b.nvdb.json: volume snr_db: spacing_m in x -1 m is outside the allowed range"));
+  EXPECT_THAT(refusal("dims", {0, 1, 1}), HasSubstr("b.nvdb.json: volume snr_db: dims 0 x 1 x 1: each"));
+  EXPECT_THAT(refusal("time_s", 1e99), HasSubstr("b.nvdb.json: volume snr_db: time_s 1e+99 s is outside"));
+  EXPECT_THAT(refusal("range_min", 1e9), HasSubstr("b.nvdb.json: volume snr_db: range_min 1000000000 is above"));
 }
 
 TEST(Nvdb, RefusesWhatIsNotOne) {

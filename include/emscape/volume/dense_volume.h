@@ -66,8 +66,9 @@ struct DenseVolume {
 constexpr int kMaxVoxelsPerAxis = 65535;     ///< first_valid_k counts in 16 bits
 constexpr long long kMaxVoxels = 1LL << 32;  ///< 16 GiB of values
 
+/// @param who  beginning of the error that names the volume: "volume snr_db: "
 /// @throws Error (bad_input) at `location` if one of the dims or their product exceeds the limits above
-void checkDims(const Dims& dims, const SourceLocation& location);
+void checkDims(const Dims& dims, const SourceLocation& location, const std::string& who = "");
 
 /// Checks that a volume has a name, one value per voxel and, if it has a mask, one entry per column, and that
 /// spacing, place, frame, time and range are within their limits.
