@@ -268,13 +268,28 @@ std::uint64_t VtkXmlFile::headOffsetOf(const std::string& text) const {
   return offset;
 }
 
+namespace {
+
+/// A number that is too large or too small for a double: infinite or 0, with its sign.
+double beyondDoubles(const std::string& number) {
+  std::istringstream text(number);
+  text.imbue(std::locale::classic());
+  double nearest = 0;
+  text >> nearest;
+  return text ? nearest : std::copysign(HUGE_VAL, nearest);
+}
+
+}  // namespace
+
 std::optional<double> leadingNumber(std::string_view text, std::string_view* rest) {
   const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+  const bool has_plus = text.substr(begin, 1) == "+" && text.substr(begin + 1, 1) != "-";
+  const char* const first = text.data() + begin + (has_plus ? 1 : 0);
   double value = 0;
-  const auto result = std::from_chars(text.data() + begin, text.data() + text.size(), value);
-  if (result.ec != std::errc()) return std::nullopt;
+  const auto result = std::from_chars(first, text.data() + text.size(), value);
+  if (result.ec == std::errc::invalid_argument) return std::nullopt;
   if (rest != nullptr) *rest = text.substr(static_cast<std::size_t>(result.ptr - text.data()));
-  return value;
+  return result.ec == std::errc::result_out_of_range ? beyondDoubles({first, result.ptr}) : value;
 }
 
 std::string spelledText(const std::string& numbers_text) {

@@ -57,8 +57,9 @@ class VtkXmlFile {
 /// Name of a DataArray in errors: its Name; if it has none, its parent, such as `of Points`.
 std::string arrayName(const pugi::xml_node& array);
 
-/// The number at the beginning of a text, after blanks; none if there is none. @param rest  receives the text
-/// after it
+/// The number at the beginning of a text, after blanks; none if there is none. Beyond the doubles it is
+/// infinite or 0.
+/// @param rest  receives the text after the number
 std::optional<double> leadingNumber(std::string_view text, std::string_view* rest = nullptr);
 
 /// The text of an array of character codes, up to its zero.

@@ -156,6 +156,7 @@ TEST(ForeignVti, MayStateItsTime) {
   EXPECT_EQ(readWith("NumberOfTuples=\"1\" format=\"binary\">CAAAAAAAAAAAAARA").time_s, 2.5);
   EXPECT_TRUE(readWith("format=\"ascii\">0").has_time);
   EXPECT_FALSE(readWith("format=\"ascii\">nan").has_time);
+  EXPECT_EQ(readWith("format=\"ascii\">+2.5").time_s, 2.5);
   EXPECT_FALSE(readText(vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "")).info.has_time);
   EXPECT_THAT(errorOf([&] { readWith("format=\"ascii\">1e99"); }),
               HasSubstr("a.vti: TimeValue 1e+99 s is outside the allowed range -1e+12 to 1e+12 s"));
@@ -212,12 +213,14 @@ TEST(Pvd, AStepNeedsATimeThatTheProgramCanUse) {
     return readPvd(folder / "a.pvd").at(0).time_s;
   };
   EXPECT_EQ(read("timestep=\" 1.5e1 \""), 15);
+  EXPECT_EQ(read("timestep=\"+1.5\""), 1.5);
+  EXPECT_EQ(read("timestep=\"-1e-400\""), 0);
   EXPECT_EQ(read(""), 0);
-  for (const char* text : {"", "noon", "1.5 s", "1,5"}) {
+  for (const char* text : {"", "noon", "1.5 s", "1,5", "+", "+-1", "++1", "-+1"}) {
     EXPECT_THAT(errorOf([&] { read("timestep=\"" + std::string(text) + "\""); }),
                 HasSubstr("a.pvd: timestep=\"" + std::string(text) + "\" is not a number of seconds"));
   }
-  for (const char* text : {"nan", "inf", "1e99"}) {
+  for (const char* text : {"nan", "inf", "1e99", "1e400", "-1e400"}) {
     EXPECT_THAT(errorOf([&] { read("timestep=\"" + std::string(text) + "\""); }),
                 HasSubstr(" s is outside the allowed range -1e+12 to 1e+12 s"));
   }
