@@ -8,10 +8,18 @@ namespace emscape::document {
 
 namespace {
 
+/// The bytes at which the lines of a text begin.
+std::vector<std::size_t> lineBegins(const std::string& text) {
+  std::vector<std::size_t> begins{0};
+  for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1))
+    begins.push_back(at + 1);
+  return begins;
+}
+
 /// The byte at a line and column (characters).
-std::size_t offsetOf(const std::string& text, int line, int column) {
-  std::size_t at = 0;
-  for (int i = 1; i < line; ++i) at = std::min(text.find('\n', at), text.size() - 1) + 1;
+std::size_t offsetOf(const std::string& text, const std::vector<std::size_t>& lines, int line, int column) {
+  const auto index = static_cast<std::size_t>(std::max(line, 1) - 1);
+  std::size_t at = index < lines.size() ? lines[index] : text.size();
   for (int i = 1; i < column && at < text.size(); ++i) {
     ++at;
     while (at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80) ++at;
@@ -19,13 +27,11 @@ std::size_t offsetOf(const std::string& text, int line, int column) {
   return at;
 }
 
-SourceLocation locationOf(const std::string& file, const std::string& text, std::size_t offset) {
-  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(offset, text.size()));
-  const int line = static_cast<int>(std::count(text.begin(), end, '\n')) + 1;
-  const std::size_t newline = offset == 0 ? std::string::npos : text.rfind('\n', offset - 1);
-  const std::size_t begin = newline == std::string::npos ? 0 : newline + 1;
-  return {file, line,
-          static_cast<int>(characterCount(std::string_view(text).substr(begin, offset - begin))) + 1};
+SourceLocation locationOf(const std::string& file, const std::string& text,
+                          const std::vector<std::size_t>& lines, std::size_t offset) {
+  const auto line = std::upper_bound(lines.begin(), lines.end(), offset) - 1;
+  const std::string_view before = std::string_view(text).substr(*line, offset - *line);
+  return {file, static_cast<int>(line - lines.begin()) + 1, static_cast<int>(characterCount(before)) + 1};
 }
 
 }  // namespace
@@ -35,6 +41,8 @@ EditedText::EditedText(std::string file, std::string text)
 
 void EditedText::apply(const Splice& splice, const std::string& label) {
   text_.replace(splice.begin, splice.end - splice.begin, splice.text);
+  if (changes_.empty()) original_lines_ = lineBegins(original_);
+  lines_ = lineBegins(text_);
   Change merged{splice.begin, splice.end, splice.begin, splice.end, label};
   std::vector<Change> kept;
   std::ptrdiff_t shift = 0;  // shift of the bytes before the splice, from text() to the file
@@ -78,14 +86,14 @@ void EditedText::apply(const Splice& splice, const std::string& label) {
 
 SourceLocation EditedText::originOf(const SourceLocation& location) const {
   if (changes_.empty() || location.file != file_ || location.line == 0) return location;
-  const std::size_t at = offsetOf(text_, location.line, location.column);
+  const std::size_t at = offsetOf(text_, lines_, location.line, location.column);
   std::size_t origin = at;
   for (const Change& change : changes_) {
     if (at < change.new_begin) break;
     if (at < change.new_end) return {change.label, 0, 0};
     origin = change.end + (at - change.new_end);
   }
-  return locationOf(file_, original_, origin);
+  return locationOf(file_, original_, original_lines_, origin);
 }
 
 }  // namespace emscape::document

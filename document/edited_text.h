@@ -36,6 +36,8 @@ class EditedText {
 
   std::string file_;
   std::string original_, text_;
+  /// Bytes at which the lines of original_ and text_ begin; empty without changes.
+  std::vector<std::size_t> original_lines_, lines_;
   std::vector<Change> changes_;  ///< in order, not adjacent
 };
 
