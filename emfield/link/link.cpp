@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <thread>
+#include <unordered_set>
 
 #include "emfield/link/links_of_time.h"
 #include "emscape/base/error.h"
@@ -25,11 +28,45 @@ bool isReceived(const LinkRow& row) {
   return row.is_received;
 }
 
-void addOnce(std::vector<std::string>& all, const std::vector<std::string>& more) {
-  for (const std::string& warning : more) {
-    if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(warning);
+/// The links by emitter in the order of the selection, then by receiver.
+std::vector<Link> linksOf(std::vector<ReceiverListener>& listeners, const std::vector<int>& emitters) {
+  std::vector<Link> links;
+  std::vector<std::size_t> taken(listeners.size());  // links of each listener, which are in the same order
+  for (const int e : emitters) {
+    for (std::size_t l = 0; l < listeners.size(); ++l) {
+      std::vector<Link>& own = listeners[l].links;
+      for (; taken[l] < own.size() && own[taken[l]].emitter == e; ++taken[l])
+        links.push_back(std::move(own[taken[l]]));
+    }
   }
+  return links;
 }
+
+/// Reports the progress of tasks of several threads, from the calling thread, about a thousand times in all.
+class TaskProgress {
+ public:
+  TaskProgress(const ProgressSink& sink, double tasks) : sink_(sink), tasks_(tasks) {}
+
+  void addTask() {
+    ++done_;
+    if (std::this_thread::get_id() == caller_) report();
+  }
+
+  /// From the calling thread.
+  void report() {
+    const double part = static_cast<double>(done_) / tasks_;
+    if (!sink_ || part < reported_ + 1e-3) return;
+    reported_ = part;
+    sink_("links", part);
+  }
+
+ private:
+  const ProgressSink& sink_;
+  double tasks_;
+  std::thread::id caller_ = std::this_thread::get_id();
+  std::atomic<long long> done_{0};
+  double reported_ = 0;
+};
 
 }  // namespace
 
@@ -65,31 +102,34 @@ LinkReport computeLinks(const std::shared_ptr<const Scenario>& scenario, const s
         watchers.emplace_back(*scenario, e, target, options);
     }
   }
+  TargetScenes scenes;
   const int tasks = static_cast<int>(listeners.size() + watchers.size());
+  TaskProgress done(progress, static_cast<double>(tasks) * static_cast<double>(options.times_s.size()));
   for (std::size_t t = 0; t < options.times_s.size(); ++t) {
     const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain, options.times_s[t]);
     parallelFor(tasks, 1, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const std::size_t task = static_cast<std::size_t>(i);
         if (task < listeners.size()) {
-          listeners[task].add(snapshot, terrain);
+          listeners[task].add(snapshot, terrain, t + 1 == options.times_s.size());
         } else {
-          watchers[task - listeners.size()].add(snapshot, terrain);
+          watchers[task - listeners.size()].add(snapshot, terrain, scenes);
         }
+        done.addTask();
       }
     });
-    if (progress) progress("links", static_cast<double>(t + 1) / static_cast<double>(options.times_s.size()));
+    done.report();
   }
-  for (const int e : options.emitters) {
-    for (ReceiverListener& listener : listeners) {
-      for (Link& link : listener.links) {
-        if (link.emitter == e) report.links.push_back(std::move(link));
-      }
+  report.links = linksOf(listeners, options.emitters);
+  std::unordered_set<std::string> known;
+  const auto addOnce = [&](const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings) {
+      if (known.insert(warning).second) report.warnings.push_back(warning);
     }
-  }
-  for (const ReceiverListener& listener : listeners) addOnce(report.warnings, listener.warnings);
+  };
+  for (const ReceiverListener& listener : listeners) addOnce(listener.warnings);
   for (TargetWatcher& watcher : watchers) {
-    addOnce(report.warnings, watcher.warnings);
+    addOnce(watcher.warnings);
     report.detections.push_back(std::move(watcher.detection));
   }
   return report;

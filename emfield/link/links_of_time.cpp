@@ -35,10 +35,9 @@ Vec3d inAxesOf(const scenario::BeamPose& pose, const Vec3d& direction) {
 }
 
 /// A receiver with its antenna's gain towards a wave.
-scenario::ReceiverProfile profileOf(const PlacedReceiver& receiver, double pattern_db, double tuned_hz) {
+scenario::ReceiverProfile profileOf(const PlacedReceiver& receiver, double pattern_db) {
   scenario::ReceiverProfile profile = receiver;
   profile.gain_dbi = receiver.antenna->gain_dbi + pattern_db;
-  profile.center_frequency_hz = tuned_hz;
   return profile;
 }
 
@@ -58,6 +57,11 @@ double gainOfBothRays_db(const ReflectedRay& ray, const PathPointing& emitter, d
 
 double tunedTo_hz(const PlacedReceiver& receiver, const Emitter& wanted) {
   return receiver.center_frequency_hz > 0 ? receiver.center_frequency_hz : wanted.frequency_hz;
+}
+
+/// False only for an emitter outside the band: a quick test for most of many emitters.
+bool isNearBand(const Emitter& emitter, const PlacedReceiver& receiver, double tuned_hz) {
+  return std::abs(emitter.frequency_hz - tuned_hz) <= emitter.bandwidth_hz + receiver.bandwidth_hz + 1;
 }
 
 bool isInBand(const Emitter& emitter, const PlacedReceiver& receiver, double tuned_hz) {
@@ -104,18 +108,28 @@ void keepWarnings(std::vector<std::string>& all, const std::string& from, const 
 ReceiverListener::ReceiverListener(const Scenario& scenario, int receiver, const LinkOptions& options)
     : receiver_(receiver), waves_(scenario.emitters.size()) {
   const PlacedReceiver& own = scenario.placed_receivers[receiver];
-  for (std::size_t e = 0; e < waves_.size(); ++e) waves_[e].model = scenario.emitters[e].propagation.model;
+  std::vector<int> others;  // on other platforms, not in the band of a link so far
+  for (std::size_t e = 0; e < waves_.size(); ++e) {
+    waves_[e].model = scenario.emitters[e].propagation.model;
+    if (scenario.emitters[e].platform != own.platform) others.push_back(static_cast<int>(e));
+  }
+  double searched_hz = 0;  // the last frequency at which others were searched for
   for (const int e : options.emitters) {
     const Emitter& wanted = scenario.emitters[e];
     if (wanted.platform == own.platform || !isInBand(wanted, own, tunedTo_hz(own, wanted))) continue;
     links.push_back({e, receiver, {}});
     waves_[e].is_needed = true;
     if (options.model) waves_[e].model = *options.model;
-    for (std::size_t i = 0; i < waves_.size(); ++i) {
-      const Emitter& other = scenario.emitters[i];
-      if (other.platform != own.platform && isInBand(other, own, tunedTo_hz(own, wanted)))
-        waves_[i].is_needed = true;
-    }
+    const double tuned_hz = tunedTo_hz(own, wanted);
+    if (tuned_hz == searched_hz) continue;
+    searched_hz = tuned_hz;
+    const auto isHeard = [&](int other) {
+      const Emitter& emitter = scenario.emitters[other];
+      if (!isNearBand(emitter, own, tuned_hz) || !isInBand(emitter, own, tuned_hz)) return false;
+      waves_[other].is_needed = true;
+      return true;
+    };
+    others.erase(std::remove_if(others.begin(), others.end(), isHeard), others.end());
   }
 }
 
@@ -132,8 +146,8 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
     return;
   }
   try {
-    wave.budget = powerBudget(snapshot, emitter, {state.position, state.height_msl_m}, wave.model, terrain,
-                              wave.budget ? &*wave.budget : nullptr);
+    wave.budget = std::make_unique<PathBudget>(powerBudget(
+        snapshot, emitter, {state.position, state.height_msl_m}, wave.model, terrain, wave.budget.get()));
   } catch (const Error& error) {
     refuse(scenario.emitters[emitter].name, own.name, snapshot.time_s, error);
   }
@@ -148,44 +162,56 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
                                                state.beam.steer_v);
   };
   const double direct = amplitudeTowards(ray * (1 / length(ray)));
-  wave.pattern_db = 2 * ratioToDb(std::abs(direct));
+  double pattern_db = 2 * ratioToDb(std::abs(direct));  // of the receiver's antenna
   if (const auto& reflection = wave.budget->excess.reflection) {
     const Vec3f below = reflectedDirection(vecCast<float>(ray), reflection->arrival_sine);
-    wave.pattern_db = gainOfBothRays_db(*reflection, wave.budget->pointing, direct,
-                                        amplitudeTowards(vecCast<double>(below)));
+    pattern_db = gainOfBothRays_db(*reflection, wave.budget->pointing, direct,
+                                   amplitudeTowards(vecCast<double>(below)));
+  }
+  wave.power_density_wm2 = dbToRatio(wave.budget->find("power_density_dbwm2")->value);
+  wave.area_m2 = inBandArea_m2(scenario.emitters[emitter], profileOf(own, pattern_db));
+}
+
+void ReceiverListener::findPowers(const Scenario& scenario, double tuned_hz,
+                                  std::vector<double>& powers_w) const {
+  const PlacedReceiver& own = scenario.placed_receivers[receiver_];
+  for (std::size_t e = 0; e < waves_.size(); ++e) {
+    const Wave& wave = waves_[e];
+    const Emitter& emitter = scenario.emitters[e];
+    const bool may_be_heard = wave.is_present && isNearBand(emitter, own, tuned_hz);
+    powers_w[e] = may_be_heard ? wave.power_density_wm2 *
+                                     (wave.area_m2 * partInBand(emitter, tuned_hz, own.bandwidth_hz))
+                               : 0;
   }
 }
 
-double ReceiverListener::power_w(const Scenario& scenario, int emitter, double tuned_hz) const {
-  const Wave& wave = waves_[emitter];
-  if (!wave.is_present) return 0;
-  const PlacedReceiver& own = scenario.placed_receivers[receiver_];
-  return dbToRatio(wave.budget->find("power_density_dbwm2")->value) *
-         receivingArea_m2(scenario.emitters[emitter], profileOf(own, wave.pattern_db, tuned_hz));
-}
-
-void ReceiverListener::add(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain) {
+void ReceiverListener::add(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
+                           bool is_last) {
   const Scenario& scenario = *snapshot.scenario;
   const PlacedReceiver& own = scenario.placed_receivers[receiver_];
   for (std::size_t e = 0; e < waves_.size(); ++e) {
     if (waves_[e].is_needed) receive(static_cast<int>(e), snapshot, terrain);
   }
   const double noise_w = receiverNoise_w(own);
+  std::vector<double> powers_w(waves_.size());
+  double tuned_hz = 0;  // of powers_w
   for (Link& link : links) {
     const Emitter& wanted = scenario.emitters[link.emitter];
-    const double tuned_hz = tunedTo_hz(own, wanted);
+    if (tunedTo_hz(own, wanted) != tuned_hz) {
+      tuned_hz = tunedTo_hz(own, wanted);
+      findPowers(scenario, tuned_hz, powers_w);
+    }
     double interference_w = 0, jamming_w = 0;
     for (std::size_t e = 0; e < waves_.size(); ++e) {
-      if (static_cast<int>(e) == link.emitter) continue;
-      const double power = power_w(scenario, static_cast<int>(e), tuned_hz);
-      interference_w += power;
-      if (scenario.emitters[e].kind == scenario::EmitterKind::jammer) jamming_w += power;
+      if (static_cast<int>(e) == link.emitter || powers_w[e] == 0) continue;
+      interference_w += powers_w[e];
+      if (scenario.emitters[e].kind == scenario::EmitterKind::jammer) jamming_w += powers_w[e];
     }
     const Wave& wave = waves_[link.emitter];
-    const double signal_w = power_w(scenario, link.emitter, tuned_hz);
+    const double signal_w = powers_w[static_cast<std::size_t>(link.emitter)];
     LinkRow row;
     row.time_s = snapshot.time_s;
-    fillPath(row, wanted, wave.budget ? &*wave.budget : nullptr);
+    fillPath(row, wanted, wave.budget.get());
     row.active = snapshot.emitters[link.emitter].active;
     row.received_power_dbm = dbm(signal_w);
     row.interference_dbm = dbm(interference_w);
@@ -197,17 +223,43 @@ void ReceiverListener::add(const scenario::Snapshot& snapshot, const scenario::T
                       row.sinr_db >= own.required_sinr_db.value_or(-HUGE_VAL);
     link.rows.push_back(std::move(row));
   }
+  if (is_last) waves_.clear();
+}
+
+std::unique_ptr<TargetScene> TargetScenes::take(const scenario::Snapshot& snapshot) {
+  std::unique_ptr<TargetScene> scene;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!free_.empty()) {
+      scene = std::move(free_.back());
+      free_.pop_back();
+    }
+  }
+  if (!scene) {
+    scene = std::make_unique<TargetScene>();
+    scene->scenario = std::make_shared<Scenario>(*snapshot.scenario);
+    scene->scenario->output.radar_look = scenario::RadarLook::target;
+  }
+  if (!scene->snapshot.scenario || scene->snapshot.time_s != snapshot.time_s) {
+    scene->snapshot = snapshot;
+    scene->snapshot.scenario = scene->scenario;
+  }
+  return scene;
+}
+
+void TargetScenes::giveBack(std::unique_ptr<TargetScene> scene) {
+  const std::lock_guard lock(mutex_);
+  free_.push_back(std::move(scene));
 }
 
 TargetWatcher::TargetWatcher(const Scenario& scenario, int radar, int target, const LinkOptions& options)
-    : own_(std::make_shared<Scenario>(scenario)),
-      model_(options.model.value_or(scenario.emitters[radar].propagation.model)),
+    : model_(options.model.value_or(scenario.emitters[radar].propagation.model)),
       period_s_(scenario::scanPeriod_s(scenario.emitters[radar].scan)) {
   detection.radar = radar;
   detection.target = target;
-  own_->output.radar_look = scenario::RadarLook::target;
-  own_->emitters[radar].receiver.swerling = scenario.targets[target].swerling;
-  curve_ = detectionCurveOf(own_->emitters[radar]);
+  Emitter with_target = scenario.emitters[radar];
+  with_target.receiver.swerling = scenario.targets[target].swerling;
+  curve_ = detectionCurveOf(with_target);
 }
 
 long long TargetWatcher::looksUntil(double time_s) const {
@@ -215,33 +267,34 @@ long long TargetWatcher::looksUntil(double time_s) const {
   return emfield::looksUntil(first_s, time_s, *period_s_);
 }
 
-void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain) {
+void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
+                        TargetScenes& scenes) {
+  const Emitter& radar = snapshot.scenario->emitters[detection.radar];
   const EmitterState& radar_state = snapshot.emitters[detection.radar];
-  const scenario::Target& target = own_->targets[detection.target];
+  const scenario::Target& target = snapshot.scenario->targets[detection.target];
   const scenario::PlatformState& carrier = snapshot.platforms[target.platform];
-  Emitter& radar = own_->emitters[detection.radar];
   DetectionRow row;
   row.time_s = snapshot.time_s;
   row.active = radar_state.active;
-
   row.rcs_m2 = rcsTowards_m2(snapshot, target, detection.radar);
-  radar.receiver.target_rcs_m2 = row.rcs_m2;
-
-  if (radar.clutter) {
+  if (radar.clutter)
     row.radial_speed_mps = radialSpeed_mps(snapshot, detection.radar, target.platform, terrain);
-    radar.clutter->target_radial_speed_mps = row.radial_speed_mps;
-  }
 
   std::optional<PathBudget> budget;
   if (!isAbove(radar_state.position, carrier.position)) {
-    scenario::Snapshot with_target = snapshot;
-    with_target.scenario = own_;
+    std::unique_ptr<TargetScene> scene = scenes.take(snapshot);
+    Emitter& with_target = scene->scenario->emitters[detection.radar];
+    with_target.receiver.swerling = target.swerling;
+    with_target.receiver.target_rcs_m2 = row.rcs_m2;
+    if (with_target.clutter) with_target.clutter->target_radial_speed_mps = row.radial_speed_mps;
     try {
-      budget =
-          pathBudget(with_target, detection.radar, {carrier.position, carrier.height_msl_m}, model_, terrain);
+      budget = pathBudget(scene->snapshot, detection.radar, {carrier.position, carrier.height_msl_m}, model_,
+                          terrain);
     } catch (const Error& error) {
       refuse(radar.name, target.name, snapshot.time_s, error);
     }
+    with_target = radar;
+    scenes.giveBack(std::move(scene));
     keepWarnings(warnings, radar.name, target.name, *budget);
   }
   fillPath(row, radar, budget ? &*budget : nullptr);

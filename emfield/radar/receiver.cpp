@@ -76,18 +76,25 @@ double requiredSignalToJammerDb(const Emitter& radar) {
   return stated_db ? *stated_db : requiredSnrDb(radar);
 }
 
-double receivingArea_m2(const Emitter& emitter, const ReceiverProfile& receiver) {
+double inBandArea_m2(const Emitter& emitter, const ReceiverProfile& receiver) {
   const double wavelength = wavelength_m(emitter.frequency_hz);
   const double polarization = receiver.polarization
                                   ? scenario::polarizationFactor(emitter.polarization, *receiver.polarization,
                                                                  receiver.cross_polar_isolation_db)
                                   : 1;
-  const double center_hz =
-      receiver.center_frequency_hz > 0 ? receiver.center_frequency_hz : emitter.frequency_hz;
-  const double width_hz =
-      receiver.bandwidth_hz > 0 ? receiver.bandwidth_hz : std::max(emitter.bandwidth_hz, 1.0);
   return wavelength * wavelength / (4 * kPi) * dbToRatio(receiver.gain_dbi - receiver.losses_db) *
-         polarization * bandOverlap(emitter.frequency_hz, emitter.bandwidth_hz, center_hz, width_hz);
+         polarization;
+}
+
+double partInBand(const Emitter& emitter, double tuned_hz, double width_hz) {
+  return bandOverlap(emitter.frequency_hz, emitter.bandwidth_hz,
+                     tuned_hz > 0 ? tuned_hz : emitter.frequency_hz,
+                     width_hz > 0 ? width_hz : std::max(emitter.bandwidth_hz, 1.0));
+}
+
+double receivingArea_m2(const Emitter& emitter, const ReceiverProfile& receiver) {
+  return inBandArea_m2(emitter, receiver) *
+         partInBand(emitter, receiver.center_frequency_hz, receiver.bandwidth_hz);
 }
 
 std::shared_ptr<const DetectionCurve> detectionCurveOf(const Emitter& radar) {

@@ -37,7 +37,14 @@ double requiredProbability(const scenario::RadarReceiver& receiver);
 /// Signal-to-jammer ratio (dB) at which the radar burns through, after processing.
 double requiredSignalToJammerDb(const scenario::Emitter& radar);
 
-/// Received power (W) of a receiver for a power density of 1 W/m2 of an emitter.
+/// Received power (W) of a receiver for a power density of 1 W/m2 of an emitter whose signal is within its
+/// band.
+double inBandArea_m2(const scenario::Emitter& emitter, const scenario::ReceiverProfile& receiver);
+/// Part (0..1) of an emitter's signal within a receiver's band, which is that of the signal if its width is
+/// 0.
+/// @param tuned_hz  middle of the band; 0: the emitter's frequency
+double partInBand(const scenario::Emitter& emitter, double tuned_hz, double width_hz);
+/// Received power (W) of a receiver for a power density of 1 W/m2 of an emitter: the product of both.
 double receivingArea_m2(const scenario::Emitter& emitter, const scenario::ReceiverProfile& receiver);
 
 /// The curve of a radar's detector. Radars with the same detector share a curve while it is in use.

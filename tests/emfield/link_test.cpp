@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "emfield/link/target_view.h"
 #include "emfield/radar/receiver.h"
@@ -211,6 +213,59 @@ TEST(Link, ARowIsTheBudgetOfItsPathWhetherTheEndsMoveOrNot) {
   expectBudgets();
 }
 
+TEST(Link, OfManyReceiversAndEmittersAreThoseOfEachReceiverAlone) {
+  const auto scenario = oneLink();
+  for (int n = 0; n < 6; ++n) {
+    scenario::Emitter other = plainEmitter("other " + std::to_string(n), 0);
+    other.frequency_hz = 1e9 + 0.3e6 * n;
+    if (n % 2 == 1) other.bandwidth_hz = 0.5e6;
+    if (n == 4) other.kind = scenario::EmitterKind::jammer;
+    addEmitter(*scenario, pointAt(*scenario, 8e3, 1e3 * n), other);
+    addReceiver(*scenario, pointAt(*scenario, 12e3, 500.0 * n));
+    if (n == 3) scenario->placed_receivers.back().center_frequency_hz = 1.0005e9;
+  }
+  const std::vector<double> times_s{0, 5};
+  const LinkReport all = linksOf(scenario, times_s);
+  ASSERT_GT(all.links.size(), 40u);
+  for (const Link& link : all.links) {
+    LinkOptions alone;
+    alone.times_s = times_s;
+    alone.emitters = {link.emitter};
+    alone.receivers = {link.receiver};
+    const LinkReport report = computeLinks(scenario, nullptr, alone);
+    const LinkRow &row = link.rows.at(1), &expected = report.links.at(0).rows.at(1);
+    EXPECT_EQ(row.received_power_dbm, expected.received_power_dbm);
+    EXPECT_EQ(row.interference_dbm, expected.interference_dbm);
+    EXPECT_EQ(row.jammer_to_signal_db, expected.jammer_to_signal_db);
+    EXPECT_EQ(row.sinr_db, expected.sinr_db);
+  }
+  for (std::size_t i = 1; i < all.links.size(); ++i) {
+    const Link &before = all.links[i - 1], &link = all.links[i];
+    EXPECT_LT(std::pair(before.emitter, before.receiver), std::pair(link.emitter, link.receiver));
+  }
+}
+
+TEST(Link, StopsBetweenTheReceiversOfOneTime) {
+  const auto scenario = oneLink();
+  for (int n = 0; n < 200; ++n) addReceiver(*scenario, pointAt(*scenario, 10e3, 10.0 * n));
+  LinkOptions options;
+  options.times_s = {0};
+  options.emitters = {0};
+  for (int r = 0; r < static_cast<int>(scenario->placed_receivers.size()); ++r)
+    options.receivers.push_back(r);
+  std::vector<double> parts;
+  computeLinks(scenario, nullptr, options,
+               [&](const std::string&, double fraction) { parts.push_back(fraction); });
+  ASSERT_GT(parts.size(), 1u);
+  EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
+  EXPECT_EQ(parts.back(), 1);
+  EXPECT_EQ(std::count(parts.begin(), parts.end(), 1.0), 1);
+  const auto stop = [](const std::string&, double fraction) {
+    if (fraction < 1) throw std::runtime_error("stopped");
+  };
+  EXPECT_THROW(computeLinks(scenario, nullptr, options, stop), std::runtime_error);
+}
+
 TEST(Link, HasNoPathBetweenEndsAboveOneAnother) {
   const auto scenario = oneLink();
   scenario->platforms[1].track[0].position = scenario->platforms[0].track[0].position;
@@ -349,6 +404,35 @@ TEST(Detection, IsTheBudgetOfTheSamePathWithTheBeamOnTheTarget) {
   EXPECT_DOUBLE_EQ(row.snr_db, budget.find("snr_db")->value);
   EXPECT_DOUBLE_EQ(row.jammer_to_signal_db, budget.find("jammer_to_signal_db")->value);
   EXPECT_DOUBLE_EQ(row.detection_probability, budget.find("detection_probability")->value);
+}
+
+TEST(Detection, OfManyTargetsIsThatOfEachAlone) {
+  const auto scenario = radarAndTarget();
+  addEmitter(*scenario, pointAt(*scenario, 15e3, 12e3), jammerOf(1e-3));
+  scenario::Emitter radar = scenario->emitters[0];
+  radar.name = "other radar";
+  radar.receiver.target_rcs_m2 = 100;
+  addEmitter(*scenario, pointAt(*scenario, 1e3, 0), radar);
+  for (int n = 0; n < 4; ++n) {
+    scenario->platforms.push_back(fixedPlatform(pointAt(*scenario, 20e3, 1e3 * n)));
+    const int platform = static_cast<int>(scenario->platforms.size()) - 1;
+    scenario->targets.push_back({"target " + std::to_string(n), platform, 1.0 + n, nullptr, n});
+  }
+  const std::vector<double> times_s{0, 5};
+  const LinkReport all = linksOf(scenario, times_s);
+  ASSERT_EQ(all.detections.size(), 10u);
+  for (const Detection& detection : all.detections) {
+    LinkOptions alone;
+    alone.times_s = times_s;
+    alone.emitters = {detection.radar};
+    alone.targets = {detection.target};
+    const LinkReport report = computeLinks(scenario, nullptr, alone);
+    const DetectionRow &row = detection.rows.at(1), &expected = report.detections.at(0).rows.at(1);
+    EXPECT_EQ(row.snr_db, expected.snr_db);
+    EXPECT_EQ(row.jammer_to_signal_db, expected.jammer_to_signal_db);
+    EXPECT_EQ(row.detection_probability, expected.detection_probability);
+    EXPECT_EQ(row.cumulative_probability, expected.cumulative_probability);
+  }
 }
 
 TEST(Detection, TheBudgetNamesThePolarisationLossOfAJammer) {

@@ -88,7 +88,7 @@ struct LinkReport {
 /// All pairs of the selected emitters and receivers, and of the selected radars and targets, except those on
 /// one platform and emitters outside the receiver's band.
 /// @param terrain   null: a smooth earth at mean sea level
-/// @param progress  may be empty; called by the calling thread, after each time
+/// @param progress  may be empty; called by the calling thread, at most a thousand times
 /// @throws Error (bad_input) as snapshotAt and pathBudget do, with the pair and the time
 LinkReport computeLinks(const std::shared_ptr<const scenario::Scenario>& scenario,
                         const scenario::Terrain* terrain, const LinkOptions& options,
