@@ -1,10 +1,12 @@
 #include <array>
 #include <cmath>
+#include <map>
 #include <sstream>
 #include <string_view>
 
 #include "emscape/volume/statistics.h"
 #include "volume/description_check.h"
+#include "volume/foreign.h"
 #include "volume/volume_json.h"
 #include "volume/voxel_type.h"
 #include "volume/vti.h"
@@ -14,7 +16,6 @@ namespace emscape::volume {
 namespace {
 
 constexpr char kMask[] = "valid";
-
 template <class Number, std::size_t count>
 std::array<Number, count> numbers(const VtkXmlFile& file, const pugi::xml_node& node, const char* attribute) {
   std::istringstream text(node.attribute(attribute).value());
@@ -39,6 +40,25 @@ std::optional<VoxelType> voxelTypeOf(const std::string& vtk_type) {
   return found->second;
 }
 
+/// True if the places differ by less than 1e-6 of the spacing: programs write fewer digits.
+bool isSamePlace(const Grid& a, const Grid& b) {
+  const auto agrees = [](double spacing_a_m, double spacing_b_m, double first_a_m, double first_b_m) {
+    const double tolerance_m = 1e-6 * spacing_a_m;
+    return std::abs(spacing_a_m - spacing_b_m) <= tolerance_m &&
+           std::abs(first_a_m - first_b_m) <= tolerance_m;
+  };
+  return agrees(a.spacing_m.x, b.spacing_m.x, a.first_center_m.x, b.first_center_m.x) &&
+         agrees(a.spacing_m.y, b.spacing_m.y, a.first_center_m.y, b.first_center_m.y) &&
+         agrees(a.spacing_m.z, b.spacing_m.z, a.first_center_m.z, b.first_center_m.z);
+}
+
+/// A volume without values and mask.
+struct VtiDescription {
+  DenseVolume volume;
+  bool is_ours = false;                ///< by metadata of this array; else the range is not known yet
+  const char* why_not_ours = nullptr;  ///< for copied metadata: how they differ
+};
+
 class VtiFile {
  public:
   explicit VtiFile(const std::filesystem::path& path) : file_(path, "ImageData"), path_(path.string()) {
@@ -61,38 +81,50 @@ class VtiFile {
     return names;
   }
 
-  /// Without values and mask. The range of an array without our metadata is not known yet.
-  DenseVolume describe(const std::string& name, bool& ours) const {
-    const std::string json = spelledText(file_.fieldText("emscape:" + name).c_str());
-    ours = !json.empty();
-    if (ours) {
-      DenseVolume volume = fromJson(parseJson(json, path_), path_);
-      if (volume.grid.dims != grid_.dims)
-        file_.fail("the dims in the metadata of " + name + " are not the image's");
-      return volume;
+  VtiDescription describe(const std::string& name) const {
+    VtiDescription description;
+    DenseVolume& volume = description.volume;
+    const std::string json = file_.fieldText("emscape:" + name);
+    if (!json.empty()) {
+      volume = fromJson(parseJson(json, path_), path_);
+      if (volume.grid.dims != grid_.dims) {
+        description.why_not_ours = "the image has other dims than in its metadata";
+      } else if (!isSamePlace(grid_, volume.grid)) {
+        description.why_not_ours = "the image has another place or spacing than in its metadata";
+      } else {
+        description.is_ours = true;
+        return description;
+      }
     }
-    DenseVolume volume;
+    volume = DenseVolume();
     volume.grid = grid_;
-    volume.info.quantity = name.empty() ? "scalars" : name;
+    volume.info.quantity = name.empty() ? kUnnamedArray : name;
     volume.info.floor = kNoFloor;
     const std::optional<double> time_s = file_.timeValue();
     volume.info.time_s = time_s.value_or(0);
     volume.info.has_time = time_s.has_value();
     checkTime(volume.info.time_s, "TimeValue", {path_});
-    return volume;
+    return description;
   }
 
-  DenseVolume read(const std::string& name) const {
-    bool ours = false;
-    DenseVolume volume = describe(name, ours);
+  DenseVolume read(const std::string& name, VtiDescription description) const {
+    DenseVolume& volume = description.volume;
     volume.values = valuesOf(arrayNamed(name));
     readMask(volume, name);
     checkVolume(volume, {path_});
-    if (!ours) setRangeFromValues(volume);
-    return volume;
+    if (!description.is_ours) setRangeFromValues(volume);
+    return std::move(volume);
   }
 
-  [[noreturn]] void fail(const std::string& what) const { file_.fail(what); }
+  /// A text for warnings, if there are arrays that the format does not read.
+  std::string omission() const {
+    std::string names;
+    if (!cells_) {
+      for (const pugi::xml_node& array : image_.child("Piece").child("CellData").children("DataArray"))
+        names += (names.empty() ? "cell data " : ", ") + arrayName(array);
+    }
+    return names;
+  }
 
  private:
   Grid gridOf(const pugi::xml_node& piece) const {
@@ -184,39 +216,49 @@ double timestepOf(const pugi::xml_node& node, const std::filesystem::path& path)
 
 DenseVolume readVti(const std::filesystem::path& path, const std::string& array_name) {
   const VtiFile file(path);
-  const std::vector<std::string> names = file.names();
-  if (array_name.empty()) return file.read(names.front());
-  std::string list;
-  for (const std::string& name : names) {
-    if (name == array_name) return file.read(name);
-    list += (list.empty() ? "" : ", ") + name;
-  }
-  file.fail("no array \"" + array_name + "\"; the file holds " + list);
+  std::vector<std::string> names = file.names();
+  if (!array_name.empty())
+    names = {names[indexOfName(names, array_name, kUnnamedArray, "array", path.string())]};
+  std::vector<DenseVolume> volumes = readableOf(path.string(), names, 1, [&](const std::string& name) {
+    VtiDescription description = file.describe(name);
+    if (description.why_not_ours)
+      warnOfCopiedMetadata(path.string(), "array " + name, description.why_not_ours);
+    return file.read(name, std::move(description));
+  });
+  return std::move(volumes.front());
 }
 
 std::vector<DenseVolume> describeVti(const std::filesystem::path& path) {
   const VtiFile file(path);
-  std::vector<DenseVolume> descriptions;
-  for (const std::string& name : file.names()) {
-    bool ours = false;
-    DenseVolume volume = file.describe(name, ours);
-    if (!ours) {
-      volume = file.read(name);
-      volume.values = {};
-      volume.first_valid_k = {};
-    }
-    descriptions.push_back(std::move(volume));
-  }
-  return descriptions;
+  const std::vector<std::string> names = file.names();
+  return readableOf(
+      path.string(), names, names.size(),
+      [&](const std::string& name) {
+        VtiDescription description = file.describe(name);
+        if (description.is_ours) return std::move(description.volume);
+        DenseVolume volume = file.read(name, std::move(description));
+        volume.values = {};
+        volume.first_valid_k = {};
+        return volume;
+      },
+      file.omission());
 }
 
 std::vector<PvdEntry> readPvd(const std::filesystem::path& path) {
   const VtkXmlFile file(path, "Collection");
   std::vector<PvdEntry> entries;
+  std::map<double, std::string> parts;  // by time
   for (const pugi::xml_node& node : file.root().child("Collection").children("DataSet")) {
     const std::filesystem::path name = node.attribute("file").value();
     if (name.empty()) file.fail("a DataSet names no file");
-    entries.push_back({timestepOf(node, path), path.parent_path() / name});
+    const double time_s = timestepOf(node, path);
+    const std::string part = node.attribute("part").as_string("0");
+    const auto [other, is_first] = parts.emplace(time_s, part);
+    if (!is_first && other->second != part) {
+      file.fail("timestep=\"" + std::string(node.attribute("timestep").value()) + "\" has the parts " +
+                other->second + " and " + part + "; series of one part can be read");
+    }
+    entries.push_back({time_s, path.parent_path() / name});
   }
   if (entries.empty()) file.fail("the series has no file");
   return entries;

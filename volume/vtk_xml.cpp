@@ -18,6 +18,8 @@ constexpr std::string_view kEnd = "</VTKFile>";
 constexpr std::string_view kBlanks = " \t\r\n";
 /// Blanks and line ends that may follow the end.
 constexpr std::size_t kTail = 64;
+/// Limit of a text in binary form: more than the description of any volume.
+constexpr std::uint64_t kMaxTextBytes = 1 << 20;
 
 /// Value of a base64 digit, -1 for other characters.
 int digitOf(std::uint8_t character) {
@@ -46,6 +48,21 @@ std::vector<std::uint8_t> fromBase64(const std::uint8_t* begin, const std::uint8
     for (int i = 0; i < digits - 1; ++i) bytes.push_back(static_cast<std::uint8_t>(group >> (16 - 8 * i)));
   }
   return bytes;
+}
+
+/// Copies numbers out of a file's bytes.
+template <class Stored, class To>
+std::vector<To> copied(const std::vector<std::uint8_t>& bytes, bool big_endian) {
+  std::vector<To> numbers(bytes.size() / sizeof(Stored));
+  for (std::size_t n = 0; n < numbers.size(); ++n) {
+    std::uint8_t digits[sizeof(Stored)];
+    std::memcpy(digits, bytes.data() + n * sizeof(Stored), sizeof(Stored));
+    if (big_endian) std::reverse(digits, digits + sizeof(Stored));
+    Stored number;
+    std::memcpy(&number, digits, sizeof(Stored));
+    numbers[n] = static_cast<To>(number);
+  }
+  return numbers;
 }
 
 }  // namespace
@@ -103,27 +120,29 @@ std::uint64_t VtkXmlFile::headerValue(ByteReader& reader) const {
 
 /// Blocks of zlib: their number, the size of each and of the last before compression (0: full as well), the
 /// compressed sizes, then the blocks.
-std::vector<std::uint8_t> VtkXmlFile::inflate(ByteReader& reader, std::uint64_t expected_bytes) const {
+std::vector<std::uint8_t> VtkXmlFile::inflate(ByteReader& reader, std::uint64_t min_bytes,
+                                              std::uint64_t max_bytes) const {
   const std::uint64_t blocks = headerValue(reader);
   const std::uint64_t block_bytes = headerValue(reader);
   const std::uint64_t last_bytes = headerValue(reader);
   if (blocks > reader.left()) reader.fail(std::to_string(blocks) + " compressed blocks");
   std::vector<std::uint64_t> stored;
   for (std::uint64_t i = 0; i < blocks; ++i) stored.push_back(headerValue(reader));
-  std::vector<std::uint8_t> bytes(expected_bytes);
-  std::uint64_t done = 0;
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(min_bytes);
   for (std::uint64_t i = 0; i < blocks; ++i) {
     const std::uint64_t wanted = i + 1 == blocks && last_bytes > 0 ? last_bytes : block_bytes;
-    if (wanted > expected_bytes - done) reader.fail("compressed blocks hold more than the array");
+    const std::uint64_t done = bytes.size();
+    if (wanted > max_bytes - done) reader.fail("compressed blocks hold more than the array");
+    bytes.resize(done + wanted);
     uLongf got = static_cast<uLongf>(wanted);
     const std::uint8_t* block = reader.take(stored[i], "compressed block");
     if (uncompress(bytes.data() + done, &got, block, static_cast<uLong>(stored[i])) != Z_OK ||
         got != wanted) {
       reader.fail("a compressed block cannot be decompressed");
     }
-    done += wanted;
   }
-  if (done != expected_bytes) reader.fail("compressed blocks hold less than the array");
+  if (bytes.size() < min_bytes) reader.fail("compressed blocks hold less than the array");
   return bytes;
 }
 
@@ -134,9 +153,7 @@ std::string arrayName(const pugi::xml_node& array) {
 }
 
 std::vector<std::uint8_t> VtkXmlFile::storedBytes(const pugi::xml_node& array,
-                                                  std::uint64_t expected_bytes) const {
-  // Compression and its tables cannot make an array much longer.
-  const std::uint64_t max_bytes = expected_bytes + expected_bytes / 8 + (1 << 16);
+                                                  std::uint64_t max_bytes) const {
   const std::string_view format = array.attribute("format").value();
   if (format == "binary") {
     const std::string_view text = array.child_value();
@@ -215,48 +232,83 @@ std::vector<std::uint8_t> VtkXmlFile::textBytes(const pugi::xml_node& array,
 std::vector<std::uint8_t> VtkXmlFile::arrayBytes(const pugi::xml_node& array,
                                                  std::uint64_t expected_bytes) const {
   if (std::string_view(array.attribute("format").value()) == "ascii") return textBytes(array, expected_bytes);
+  return binaryBytes(array, expected_bytes, expected_bytes);
+}
+
+/// The bytes of an array that is not in text form.
+std::vector<std::uint8_t> VtkXmlFile::binaryBytes(const pugi::xml_node& array, std::uint64_t min_bytes,
+                                                  std::uint64_t max_bytes) const {
   const std::string compressor = root_.attribute("compressor").value();
   if (!compressor.empty() && compressor != "vtkZLibDataCompressor") {
     fail("compressed with " + compressor + "; vtkZLibDataCompressor can be read");
   }
   // zlib compresses by a factor of about 1000 at most, so that the file cannot contain more.
-  if (expected_bytes / 1100 > bytes_.size()) {
-    fail("truncated: an array of " + std::to_string(expected_bytes) + " bytes in a file of " +
+  if (min_bytes / 1100 > bytes_.size()) {
+    fail("truncated: an array of " + std::to_string(min_bytes) + " bytes in a file of " +
          std::to_string(bytes_.size()));
   }
-  const std::vector<std::uint8_t> stored = storedBytes(array, expected_bytes);
+  // Compression and its tables cannot make an array much longer.
+  const std::vector<std::uint8_t> stored = storedBytes(array, max_bytes + max_bytes / 8 + (1 << 16));
   ByteReader reader(file_, stored.data(), stored.size());
-  if (!compressor.empty()) return inflate(reader, expected_bytes);
+  if (!compressor.empty()) return inflate(reader, min_bytes, max_bytes);
   const std::uint64_t bytes = headerValue(reader);
-  if (bytes != expected_bytes) {
-    fail("array " + arrayName(array) + ": expected " + std::to_string(expected_bytes) + " bytes, found " +
-         std::to_string(bytes));
+  if (bytes < min_bytes || bytes > max_bytes) {
+    fail("array " + arrayName(array) + ": expected " + (min_bytes < max_bytes ? "at most " : "") +
+         std::to_string(max_bytes) + " bytes, found " + std::to_string(bytes));
   }
   const std::uint8_t* begin = reader.take(bytes, "array");
   return {begin, begin + bytes};
 }
 
-std::string VtkXmlFile::fieldText(const std::string& name) const {
-  for (const pugi::xml_node& array : root_.child(type_.c_str()).child("FieldData").children()) {
-    const bool text = std::string_view(array.attribute("format").value()) == "ascii";
-    if (text && name == array.attribute("Name").value()) return array.child_value();
+template <class To>
+std::vector<To> VtkXmlFile::numbers(const pugi::xml_node& array, std::uint64_t count) const {
+  const std::string type = array.attribute("type").value();
+  const bool big = bigEndian();
+  const auto bytes = [&](std::uint64_t size) { return arrayBytes(array, count * size); };
+  if (type == "Int64") return copied<std::int64_t, To>(bytes(8), big);
+  if (type == "UInt64") return copied<std::uint64_t, To>(bytes(8), big);
+  if (type == "Int32") return copied<std::int32_t, To>(bytes(4), big);
+  if (type == "UInt32") return copied<std::uint32_t, To>(bytes(4), big);
+  if (type == "Int16") return copied<std::int16_t, To>(bytes(2), big);
+  if (type == "UInt16") return copied<std::uint16_t, To>(bytes(2), big);
+  if (type == "Int8") return copied<std::int8_t, To>(bytes(1), big);
+  if (type == "UInt8") return copied<std::uint8_t, To>(bytes(1), big);
+  if constexpr (std::is_floating_point_v<To>) {
+    if (type == "Float32") return copied<float, To>(bytes(4), big);
+    if (type == "Float64") return copied<double, To>(bytes(8), big);
   }
-  return "";
+  fail("array " + arrayName(array) + " is of type \"" + type + "\", which cannot be read here");
+}
+template std::vector<double> VtkXmlFile::numbers(const pugi::xml_node&, std::uint64_t) const;
+template std::vector<std::int64_t> VtkXmlFile::numbers(const pugi::xml_node&, std::uint64_t) const;
+
+pugi::xml_node VtkXmlFile::fieldArray(const std::string& name) const {
+  for (const pugi::xml_node& array : root_.child(type_.c_str()).child("FieldData").children()) {
+    if (name == array.attribute("Name").value()) return array;
+  }
+  return {};
+}
+
+std::string VtkXmlFile::storedFieldText(const std::string& name) const {
+  const pugi::xml_node array = fieldArray(name);
+  return std::string_view(array.attribute("format").value()) == "ascii" ? array.child_value() : "";
+}
+
+std::string VtkXmlFile::fieldText(const std::string& name) const {
+  const pugi::xml_node array = fieldArray(name);
+  if (std::string_view(array.attribute("format").value()) == "ascii") return spelledText(array.child_value());
+  if (std::string_view(array.attribute("type").value()) != "String") return "";
+  const std::vector<std::uint8_t> bytes = binaryBytes(array, 0, kMaxTextBytes);
+  return {bytes.begin(), std::find(bytes.begin(), bytes.end(), 0)};
 }
 
 std::optional<double> VtkXmlFile::timeValue() const {
-  const pugi::xml_node array =
-      root_.child(type_.c_str()).child("FieldData").find_child_by_attribute("DataArray", "Name", "TimeValue");
-  const auto isAttribute = [&](const char* name, std::string_view value) {
-    return array.attribute(name).value() == value;
-  };
+  const pugi::xml_node array = fieldArray("TimeValue");
   std::optional<double> time_s;
-  if (isAttribute("format", "ascii")) {
+  if (std::string_view(array.attribute("format").value()) == "ascii") {
     time_s = leadingNumber(array.child_value());
-  } else if (isAttribute("type", "Float64") && isAttribute("NumberOfTuples", "1")) {
-    std::vector<std::uint8_t> bytes = arrayBytes(array, sizeof(double));
-    if (bigEndian()) std::reverse(bytes.begin(), bytes.end());
-    std::memcpy(&time_s.emplace(), bytes.data(), sizeof(double));
+  } else if (std::string_view(array.attribute("NumberOfTuples").value()) == "1") {
+    time_s = numbers<double>(array, 1).front();
   }
   return time_s && std::isfinite(*time_s) ? time_s : std::nullopt;
 }

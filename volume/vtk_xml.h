@@ -29,8 +29,15 @@ class VtkXmlFile {
   /// @param expected_bytes  any other number is an Error, before anything is allocated for it
   std::vector<std::uint8_t> arrayBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
 
-  /// An array of the field data in text form; empty if there is none.
+  /// The numbers of a DataArray of any type, converted. @tparam To  double or std::int64_t
+  /// @throws Error (bad_input) unless there are `count` numbers, of a type that `To` can hold
+  template <class To>
+  std::vector<To> numbers(const pugi::xml_node& array, std::uint64_t count) const;
+
+  /// The first text of an array of texts in the field data, in any form; empty if there is none.
   std::string fieldText(const std::string& name) const;
+  /// The same as the file has it, in character codes; empty unless the array is in text form.
+  std::string storedFieldText(const std::string& name) const;
   /// The number of the field data's array TimeValue; none if there is none, or it is not finite.
   std::optional<double> timeValue() const;
   /// Position of a text of the head in the file. @throws Error (bad_input) unless it is there
@@ -39,12 +46,16 @@ class VtkXmlFile {
   [[noreturn]] void fail(const std::string& what) const;
 
  private:
-  std::vector<std::uint8_t> storedBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
+  pugi::xml_node fieldArray(const std::string& name) const;
+  std::vector<std::uint8_t> binaryBytes(const pugi::xml_node& array, std::uint64_t min_bytes,
+                                        std::uint64_t max_bytes) const;
+  std::vector<std::uint8_t> storedBytes(const pugi::xml_node& array, std::uint64_t max_bytes) const;
   template <class Number>
   std::vector<std::uint8_t> spelledNumbers(const pugi::xml_node& array, std::uint64_t count) const;
   std::vector<std::uint8_t> textBytes(const pugi::xml_node& array, std::uint64_t expected_bytes) const;
   std::uint64_t headerValue(ByteReader& reader) const;
-  std::vector<std::uint8_t> inflate(ByteReader& reader, std::uint64_t expected_bytes) const;
+  std::vector<std::uint8_t> inflate(ByteReader& reader, std::uint64_t min_bytes,
+                                    std::uint64_t max_bytes) const;
 
   std::string file_;
   std::string type_;

@@ -97,7 +97,7 @@ void setVtkRange(const std::filesystem::path& path, const char* type,
   const VtkXmlFile file(path, type);
   std::vector<FilePatch> patches;
   for (const StoredRange& range : ranges) {
-    const std::string before = file.fieldText("emscape:" + xmlCharacters(range.quantity));
+    const std::string before = file.storedFieldText("emscape:" + xmlCharacters(range.quantity));
     if (before.empty()) failNoSuchQuantity(path, range.quantity);
     Json description = parseJson(spelledText(before), path.string());
     if (!description.contains("range_min")) failNoSuchQuantity(path, range.quantity);

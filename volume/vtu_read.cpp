@@ -1,32 +1,16 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstring>
-#include <map>
 
 #include "emscape/volume/mesh_file.h"
 #include "volume/description_check.h"
+#include "volume/foreign.h"
 #include "volume/volume_json.h"
 #include "volume/voxel_type.h"
 #include "volume/vtk_xml.h"
 
 namespace emscape::volume {
 namespace {
-
-/// Copies numbers out of a file's bytes.
-template <class Stored, class To>
-std::vector<To> copied(const std::vector<std::uint8_t>& bytes, bool big_endian) {
-  std::vector<To> numbers(bytes.size() / sizeof(Stored));
-  for (std::size_t n = 0; n < numbers.size(); ++n) {
-    std::uint8_t digits[sizeof(Stored)];
-    std::memcpy(digits, bytes.data() + n * sizeof(Stored), sizeof(Stored));
-    if (big_endian) std::reverse(digits, digits + sizeof(Stored));
-    Stored number;
-    std::memcpy(&number, digits, sizeof(Stored));
-    numbers[n] = static_cast<To>(number);
-  }
-  return numbers;
-}
 
 class VtuFile {
  public:
@@ -81,12 +65,12 @@ class VtuFile {
 
   /// A field without values, on a mesh that has only a frame. @param ours true if the file describes it
   MeshField describe(const std::string& name, bool& ours) const {
-    const std::string json = spelledText(file_.fieldText("emscape:" + name));
+    const std::string json = file_.fieldText("emscape:" + name);
     ours = !json.empty();
     if (ours) return meshFieldFromJson(parseJson(json, path_), path_);
     MeshField field;
     field.mesh = std::make_shared<TetrahedralMesh>();
-    field.info.quantity = name.empty() ? "scalars" : name;
+    field.info.quantity = name.empty() ? kUnnamedArray : name;
     field.info.floor = kNoFloor;
     const std::optional<double> time_s = file_.timeValue();
     field.info.time_s = time_s.value_or(0);
@@ -104,8 +88,6 @@ class VtuFile {
     }
     file_.fail("no array \"" + name + "\"");
   }
-
-  [[noreturn]] void fail(const std::string& what) const { file_.fail(what); }
 
  private:
   std::uint64_t countOf(const char* attribute, long long most) const {
@@ -144,30 +126,11 @@ class VtuFile {
     }
   }
 
-  template <class To>
-  std::vector<To> numbers(const pugi::xml_node& array, std::uint64_t count) const {
-    const std::string type = array.attribute("type").value();
-    const bool big = file_.bigEndian();
-    const auto bytes = [&](std::uint64_t size) { return file_.arrayBytes(array, count * size); };
-    if (type == "Int64") return copied<std::int64_t, To>(bytes(8), big);
-    if (type == "UInt64") return copied<std::uint64_t, To>(bytes(8), big);
-    if (type == "Int32") return copied<std::int32_t, To>(bytes(4), big);
-    if (type == "UInt32") return copied<std::uint32_t, To>(bytes(4), big);
-    if (type == "Int16") return copied<std::int16_t, To>(bytes(2), big);
-    if (type == "UInt16") return copied<std::uint16_t, To>(bytes(2), big);
-    if (type == "Int8") return copied<std::int8_t, To>(bytes(1), big);
-    if (type == "UInt8") return copied<std::uint8_t, To>(bytes(1), big);
-    if constexpr (std::is_floating_point_v<To>) {
-      if (type == "Float32") return copied<float, To>(bytes(4), big);
-      if (type == "Float64") return copied<double, To>(bytes(8), big);
-    }
-    file_.fail("array " + arrayName(array) + " is of type \"" + type + "\", which cannot be read here");
-  }
   std::vector<double> floats(const pugi::xml_node& array, std::uint64_t count) const {
-    return numbers<double>(array, count);
+    return file_.numbers<double>(array, count);
   }
   std::vector<std::int64_t> integers(const pugi::xml_node& array, std::uint64_t count) const {
-    return numbers<std::int64_t>(array, count);
+    return file_.numbers<std::int64_t>(array, count);
   }
 
   VtkXmlFile file_;
@@ -182,14 +145,7 @@ MeshFile readMesh(const std::filesystem::path& path, const std::string& name) {
   const VtuFile file(path);
   const SourceLocation location{path.string()};
   std::vector<std::string> names = file.names();
-  if (!name.empty()) {
-    std::string list;
-    for (const std::string& known : names) list += (list.empty() ? "" : ", ") + known;
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      file.fail("no array \"" + name + "\"; the file holds " + list);
-    }
-    names = {name};
-  }
+  if (!name.empty()) names = {names[indexOfName(names, name, kUnnamedArray, "array", location.file)]};
   MeshFile result;
   auto mesh = std::make_shared<TetrahedralMesh>(file.mesh());
   for (const std::string& each : names) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/whole_file.h"
+#include "emscape/base/log.h"
 #include "emscape/volume/dense_volume.h"
 #include "tests/support/errors.h"
 #include "tests/support/temporary_folder.h"
@@ -22,6 +23,15 @@ namespace emscape::volume::test {
 
 using emscape::test::errorOf;
 using emscape::test::TemporaryFolder;
+
+/// The messages that a call logs.
+inline std::vector<std::string> messagesOf(const std::function<void()>& body) {
+  std::vector<std::string> messages;
+  setLogSink([&](LogLevel, const std::string& message) { messages.push_back(message); });
+  body();
+  setLogSink({});
+  return messages;
+}
 
 /// Uneven dims, spacing without short decimals, a mask with empty and full columns, voxels at the floor above
 /// the ground, a block of one value (a tile in .vdb), and a NaN. @param dims  at least 4 x 5 x 4

@@ -162,6 +162,117 @@ TEST(ForeignVti, MayStateItsTime) {
               HasSubstr("a.vti: TimeValue 1e+99 s is outside the allowed range -1e+12 to 1e+12 s"));
 }
 
+TEST(ForeignVti, MayStateItsTimeInAnyType) {
+  const auto timeOf = [](const std::string& type, const std::string& binary) {
+    std::string text = vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "");
+    text.insert(text.find("<Piece"), "<FieldData><DataArray Name=\"TimeValue\" type=\"" + type +
+                                         "\" NumberOfTuples=\"1\" format=\"binary\">" + binary +
+                                         "</DataArray></FieldData>");
+    const VolumeInfo info = readText(text).info;
+    EXPECT_TRUE(info.has_time) << type;
+    return info.time_s;
+  };
+  EXPECT_EQ(timeOf("Float32", "BAAAAAAAIEA="), 2.5);
+  EXPECT_EQ(timeOf("Int32", "BAAAAAIAAAA="), 2);
+  EXPECT_EQ(timeOf("UInt8", "AQAAAAI="), 2);
+  EXPECT_EQ(timeOf("Int64", "CAAAAP7/////////"), -2);
+}
+
+/// A file with our metadata of the array d, as VTK writes them again.
+std::string described(const std::string& attributes, const std::string& metadata) {
+  std::string text = vti(attributes, "type=\"UInt8\" format=\"ascii\">1 2 3 4", "");
+  return text.insert(text.find("<Piece"),
+                     "<FieldData><Array type=\"String\" Name=\"emscape:d\" "
+                     "NumberOfTuples=\"1\" format=" +
+                         metadata + "</Array></FieldData>");
+}
+
+/// The same with the metadata as text.
+std::string describedByText(const std::string& json) {
+  std::string codes;
+  for (const char character : json) codes += std::to_string(static_cast<int>(character)) + " ";
+  return described("", "\"ascii\">" + codes + "0");
+}
+
+// {"quantity":"d","unit":"dB","dims":[2,2,1],"spacing_m":[1,2,3],"first_center_m":[12,20,30],"floor":-9}
+TEST(ForeignVti, KeepsOurMetadataInBinaryForm) {
+  const std::string plain =
+      "ZwAAAHsicXVhbnRpdHkiOiJkIiwidW5pdCI6ImRCIiwiZGltcyI6WzIsMiwxXSwic3BhY2luZ19tIjpbMSwyLDNdLCJmaXJzdF9j"
+      "ZW50ZXJfbSI6WzEyLDIwLDMwXSwiZmxvb3IiOi05fQA=";
+  const std::string zlib =
+      "AQAAAACAAABnAAAAYAAAAA==eJwlikEKgCAQAHvLnjewPOWxb0REqMVCaul2iOjvbXQbZuaG45wjE19gwAHCGYk/7IUdhQJm"
+      "aLHFZkQo+2wprlMQ14jT4hbKhSfrI/v8B7kVavW1LaUMpu6e6gVpEh7X";
+  const std::string compressed = "compressor=\"vtkZLibDataCompressor\"";
+  std::string appended = described("", "\"appended\" offset=\"0\">");
+  appended.insert(appended.find("</VTKFile>"),
+                  "<AppendedData encoding=\"base64\">_" + plain + "</AppendedData>");
+  for (const std::string& text : {described("", "\"binary\">" + plain),
+                                  described(compressed, "\"binary\">\n" + zlib + "\n"), appended}) {
+    const VolumeInfo info = readText(text).info;
+    EXPECT_EQ(info.unit, "dB");
+    EXPECT_EQ(info.floor, -9);
+  }
+  // A length of 2 MiB.
+  EXPECT_THAT(errorOf([&] { readText(described("", "\"binary\">AAAgAHsi")); }),
+              HasSubstr("array emscape:d: expected at most 1048576 bytes, found 2097152"));
+}
+
+TEST(ForeignVti, OnAnotherGridThanOurMetadataStateIsReadAsForeign) {
+  const auto read = [](const std::string& grid) {
+    DenseVolume volume;
+    const std::vector<std::string> messages = messagesOf(
+        [&] { volume = readText(describedByText("{\"quantity\":\"p\",\"unit\":\"dB\"," + grid + "}")); });
+    EXPECT_EQ(volume.grid.dims, (Dims{2, 2, 1}));
+    EXPECT_EQ(volume.info.unit.empty(), !messages.empty());
+    EXPECT_EQ(volume.grid.first_center_m, (Vec3d{12, 20, 30})) << grid;
+    EXPECT_EQ(volume.info.quantity, messages.empty() ? "p" : "d");
+    return messages.empty() ? "" : messages.front();
+  };
+  EXPECT_EQ(read("\"dims\":[2,2,1],\"spacing_m\":[1,2,3],\"first_center_m\":[12,20,30]"), "");
+  EXPECT_THAT(
+      read("\"dims\":[2,2,1],\"spacing_m\":[1,2,3],\"first_center_m\":[0,20,30]"),
+      HasSubstr("a.vti: array d: the image has another place or spacing than in its metadata, which another "
+                "program must have copied; it is read as that program's"));
+  EXPECT_THAT(read("\"dims\":[2,2,1],\"spacing_m\":[2,2,3],\"first_center_m\":[12,20,30]"),
+              HasSubstr("spacing"));
+  EXPECT_THAT(read("\"dims\":[4,2,1],\"spacing_m\":[1,2,3],\"first_center_m\":[12,20,30]"),
+              HasSubstr("the image has other dims than in its metadata"));
+}
+
+TEST(ForeignVti, ArraysThatCannotBeReadAreLeftOut) {
+  std::string text = vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "");
+  text.insert(text.find("<DataArray"),
+              "<DataArray Name=\"u\" type=\"Float32\" NumberOfComponents=\"3\" "
+              "format=\"ascii\">0 0 0 0 0 0 0 0 0 0 0 0</DataArray>");
+  text.insert(text.find("</Piece>"), "<CellData><DataArray Name=\"c\" type=\"Float32\"/></CellData>");
+  TemporaryFolder folder;
+  writeBytes(folder / "a.vti", {text.begin(), text.end()});
+  std::vector<DenseVolume> descriptions;
+  const auto messages = messagesOf([&] {
+    descriptions = describeVti(folder / "a.vti");
+    describeVti(folder / "a.vti");
+  });
+  EXPECT_THAT(
+      messages,
+      ElementsAre(HasSubstr("a.vti: left out: array u has 3 components; one can be read; cell data c")));
+  ASSERT_EQ(descriptions.size(), 1U);
+  EXPECT_EQ(descriptions[0].info.quantity, "d");
+  EXPECT_EQ(readVti(folder / "a.vti").info.quantity, "d");
+  EXPECT_THAT(errorOf([&] { readVti(folder / "a.vti", "u"); }), HasSubstr("array u has 3 components"));
+}
+
+TEST(ForeignVti, MayHaveAnArrayWithoutName) {
+  std::string text = vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "");
+  text.replace(text.find("Name=\"d\""), 8, "Name=\"\"");
+  TemporaryFolder folder;
+  writeBytes(folder / "a.vti", {text.begin(), text.end()});
+  const std::string name = describeVti(folder / "a.vti").at(0).info.quantity;
+  EXPECT_EQ(name, "scalars");
+  EXPECT_EQ(readVti(folder / "a.vti", name).values[3], 4);
+  EXPECT_THAT(errorOf([&] { readVti(folder / "a.vti", "d"); }),
+              HasSubstr("no array \"d\"; the file holds scalars"));
+}
+
 TEST(ForeignVti, OnOtherAxesIsRefused) {
   const auto textWith = [](const std::string& direction) {
     std::string text = vti("", "type=\"UInt8\" format=\"ascii\">1 2 3 4", "");
@@ -224,6 +335,22 @@ TEST(Pvd, AStepNeedsATimeThatTheProgramCanUse) {
     EXPECT_THAT(errorOf([&] { read("timestep=\"" + std::string(text) + "\""); }),
                 HasSubstr(" s is outside the allowed range -1e+12 to 1e+12 s"));
   }
+}
+
+TEST(Pvd, WithSeveralPartsOfAStepIsRefused) {
+  TemporaryFolder folder;
+  const auto read = [&](const std::string& first, const std::string& second) {
+    const std::string text = "<VTKFile type=\"Collection\"><Collection><DataSet " + first +
+                             " file=\"a.vti\"/><DataSet " + second +
+                             " file=\"b.vti\"/></Collection></VTKFile>";
+    writeBytes(folder / "a.pvd", {text.begin(), text.end()});
+    return readPvd(folder / "a.pvd").size();
+  };
+  EXPECT_THAT(errorOf([&] { read("timestep=\"1.5e0\" part=\"0\"", "timestep=\"1.5\" part=\"1\""); }),
+              HasSubstr("a.pvd: timestep=\"1.5\" has the parts 0 and 1; series of one part can be read"));
+  EXPECT_THAT(errorOf([&] { read("timestep=\"0\"", "timestep=\"0\" part=\"1\""); }),
+              HasSubstr("parts 0 and 1"));
+  EXPECT_EQ(read("timestep=\"0\" part=\"0\"", "timestep=\"1\" part=\"1\""), 2U);
 }
 
 TEST(Pvd, ListsASeriesAndCanBeWrittenAnew) {

@@ -223,6 +223,18 @@ TEST(Vtu, ZeroIsAValueInFilesOfOthers) {
   EXPECT_EQ(statisticsOf(field).at_floor, 0);
 }
 
+TEST(Vtu, MayHaveAnArrayWithoutName) {
+  TemporaryFolder folder;
+  std::string text =
+      foreign("AQAAAAo=", "MAAAAAAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAAAACAPw==");
+  const std::size_t at = text.find("Name=\"", text.find("<PointData")) + 6;
+  text.erase(at, text.find('"', at) - at);
+  folder.write("a.vtu", text);
+  const std::string name = listMesh(folder / "a.vtu").at(0).quantity;
+  EXPECT_EQ(name, "scalars");
+  EXPECT_EQ(readMesh(folder / "a.vtu", name).fields.at(0).values.size(), 4U);
+}
+
 TEST(Vtu, ASeriesIsListedInAPvd) {
   TemporaryFolder folder;
   writePvd(folder / "a.pvd", {{0, folder / "a_0001.vtu"}, {1, folder / "a_0002.vtu"}});

@@ -33,7 +33,7 @@ bool isVolumeFile(const std::filesystem::path& path);
 /// writing fails
 void writeVolumes(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes);
 
-/// @param name  of the grid or array; in files of Emscape the quantity; empty: the first
+/// @param name  of the grid or array; in files of Emscape the quantity; empty: the first that can be read
 /// @throws Error (bad_input)
 DenseVolume readVolume(const std::filesystem::path& path, const std::string& name = "");
 
@@ -59,6 +59,7 @@ struct FileListing {
   std::uintmax_t bytes = 0;
   std::vector<DenseVolume> volumes;  ///< without values and mask
 };
+/// Grids and arrays that cannot be read are left out, with a warning. @throws Error (bad_input) if none can
 FileListing listVolume(const std::filesystem::path& path);
 
 /// FOLDER/NAME_0001.vdb: the file of a step of a series. @param number  counts from 1
