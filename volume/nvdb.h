@@ -17,11 +17,12 @@ void writeNvdb(const std::filesystem::path& path, const std::vector<const DenseV
 
 /// Reads a grid: with its sidecar exactly what was written; without one, or a grid that it does not name,
 /// over the box of the active voxels. Float, double, int32 and int64 grids without compression can be read.
-/// @param grid_name  empty: the first grid
+/// @param grid_name  empty: the first grid that can be read
 /// @throws Error (bad_input), which lists the file's grids if none has that name
 DenseVolume readNvdb(const std::filesystem::path& path, const std::string& grid_name = "");
 
-/// The grids without values and mask.
+/// The grids without values and mask. Those that cannot be read are left out, with a warning.
+/// @throws Error (bad_input) if none can be read
 std::vector<DenseVolume> describeNvdb(const std::filesystem::path& path);
 
 }  // namespace emscape::volume

@@ -5,6 +5,7 @@
 #include "emscape/volume/statistics.h"
 #include "volume/byte_reader.h"
 #include "volume/description_check.h"
+#include "volume/foreign.h"
 #include "volume/nanovdb_wrapper.h"
 #include "volume/nvdb.h"
 #include "volume/sparse.h"
@@ -190,13 +191,9 @@ class NvdbFile {
   const std::vector<GridEntry>& entries() const { return entries_; }
 
   const GridEntry& find(const std::string& name) const {
-    if (name.empty()) return entries_.front();
-    std::string names;
-    for (const GridEntry& entry : entries_) {
-      if (entry.name == name) return entry;
-      names += (names.empty() ? "" : ", ") + entry.name;
-    }
-    fail("no grid \"" + name + "\"; the file holds " + names);
+    std::vector<std::string> names;
+    for (const GridEntry& entry : entries_) names.push_back(entry.name);
+    return entries_[indexOfName(names, name, kUnnamedGrid, "grid", path_.string())];
   }
 
   /// The sidecar's description of a grid; dims 0 if there is none.
@@ -285,7 +282,7 @@ class NvdbFile {
     nano::Coord first(0, 0, 0);
     if (!ours) {
       first = grid.firstActive();
-      volume.info.quantity = entry.name.empty() ? "density" : entry.name;
+      volume.info.quantity = entry.name.empty() ? kUnnamedGrid : entry.name;
       volume.info.has_time = false;
       volume.info.floor = grid.background();
       volume.info.categorical = categorical;
@@ -332,20 +329,21 @@ class NvdbFile {
 
 DenseVolume readNvdb(const std::filesystem::path& path, const std::string& grid_name) {
   const NvdbFile file(path);
-  return file.read(file.find(grid_name));
+  if (!grid_name.empty()) return file.read(file.find(grid_name));
+  std::vector<DenseVolume> volumes =
+      readableOf(path.string(), file.entries(), 1, [&](const GridEntry& entry) { return file.read(entry); });
+  return std::move(volumes.front());
 }
 
 std::vector<DenseVolume> describeNvdb(const std::filesystem::path& path) {
   const NvdbFile file(path);
-  std::vector<DenseVolume> descriptions;
-  for (const GridEntry& entry : file.entries()) {
+  return readableOf(path.string(), file.entries(), file.entries().size(), [&](const GridEntry& entry) {
     DenseVolume volume = file.description(entry);
     if (volume.grid.dims.count() == 0) volume = file.read(entry);
     volume.values = {};
     volume.first_valid_k = {};
-    descriptions.push_back(std::move(volume));
-  }
-  return descriptions;
+    return volume;
+  });
 }
 
 }  // namespace emscape::volume

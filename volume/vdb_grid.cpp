@@ -118,6 +118,8 @@ void setMetadata(openvdb::GridBase& grid, const DenseVolume& volume) {
   set("range_max", openvdb::FloatMetadata(info.range_max));
   set("categorical", openvdb::BoolMetadata(info.categorical));
   const Dims& dims = volume.grid.dims;
+  const Vec3d& spacing_m = volume.grid.spacing_m;
+  set("spacing_m", openvdb::Vec3DMetadata(openvdb::Vec3d(spacing_m.x, spacing_m.y, spacing_m.z)));
   set("dims", openvdb::Vec3IMetadata(openvdb::Vec3i(dims.x, dims.y, dims.z)));
   set("voxel_count", openvdb::Int64Metadata(dims.count()));
   if (volume.grid.georeferenced) {
@@ -154,7 +156,8 @@ openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const SourceLocation
     grid = GridFiller<openvdb::FloatGrid>(volume, volume.values.data(), volume.info.floor).run();
   }
   grid->setName(volume.info.quantity);
-  grid->setGridClass(openvdb::GRID_FOG_VOLUME);
+  // A fog volume has floating-point values.
+  grid->setGridClass(volume.info.categorical ? openvdb::GRID_UNKNOWN : openvdb::GRID_FOG_VOLUME);
   grid->setCreator("emscape " EMSCAPE_VERSION);
   grid->setTransform(transformOf(volume.grid));
   setMetadata(*grid, volume);

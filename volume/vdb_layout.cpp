@@ -189,7 +189,8 @@ VdbDescriptor readVdbDescriptor(ByteReader& reader, const VdbHeader& header) {
   VdbDescriptor descriptor;
   descriptor.unique_name = reader.text("grid name");
   const std::size_t separator = descriptor.unique_name.find(kNameSeparator);
-  descriptor.name = descriptor.unique_name.substr(0, separator);
+  descriptor.own_name = descriptor.unique_name.substr(0, separator);
+  descriptor.name = descriptor.own_name;
   if (separator != std::string::npos) {
     descriptor.name += "[" + descriptor.unique_name.substr(separator + 1) + "]";
   }
@@ -243,6 +244,10 @@ std::optional<double> metaNumber(const VdbMetadata& metadata, const std::string&
 
 std::optional<VdbInts> metaInts(const VdbMetadata& metadata, const std::string& key) {
   return metaValue<VdbInts>(metadata, key, "vec3i");
+}
+
+std::optional<VdbDoubles> metaDoubles(const VdbMetadata& metadata, const std::string& key) {
+  return metaValue<VdbDoubles>(metadata, key, "vec3d");
 }
 
 std::optional<VdbVoxel> vdbVoxelOf(const std::string& grid_type) {

@@ -28,6 +28,7 @@ VdbHeader readVdbHeader(ByteReader& reader);
 
 struct VdbDescriptor {
   std::string unique_name;  ///< with a hidden suffix that distinguishes grids of one name
+  std::string own_name;     ///< without it: "density"
   std::string name;         ///< for display: "density" or "density[1]"
   std::string type;         ///< for example Tree_float_5_4_3
   std::string
@@ -55,6 +56,10 @@ struct VdbInts {
   std::int32_t x, y, z;
 };
 std::optional<VdbInts> metaInts(const VdbMetadata& metadata, const std::string& key);
+struct VdbDoubles {
+  double x, y, z;
+};
+std::optional<VdbDoubles> metaDoubles(const VdbMetadata& metadata, const std::string& key);
 
 /// Types of voxels whose trees can be walked; empty for others.
 struct VdbVoxel {

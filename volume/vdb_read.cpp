@@ -8,9 +8,9 @@
 
 #include "base/failure_text.h"
 #include "base/whole_file.h"
-#include "emscape/base/log.h"
 #include "emscape/volume/statistics.h"
 #include "volume/description_check.h"
+#include "volume/foreign.h"
 #include "volume/sparse.h"
 #include "volume/vdb.h"
 #include "volume/vdb_grid.h"
@@ -56,13 +56,9 @@ class VdbFile {
   const std::vector<VdbGrid>& entries() const { return entries_; }
 
   const VdbGrid& find(const std::string& name) const {
-    if (name.empty()) return entries_.front();
-    std::string names;
-    for (const VdbGrid& entry : entries_) {
-      if (entry.descriptor.name == name) return entry;
-      names += (names.empty() ? "" : ", ") + entry.descriptor.name;
-    }
-    fail("no grid \"" + name + "\"; the file holds " + names);
+    std::vector<std::string> names;
+    for (const VdbGrid& entry : entries_) names.push_back(entry.descriptor.name);
+    return entries_[indexOfName(names, name, kUnnamedGrid, "grid", reader_.file())];
   }
 
   /// The grid with its tree, all of it checked before OpenVDB reads it.
@@ -137,6 +133,27 @@ std::string gridPrefix(const VdbGrid& entry) {
   return "grid " + entry.descriptor.name + ": ";
 }
 
+/// Why our metadata do not describe the grid, for warnOfCopiedMetadata(); null if they do, or there are none.
+const char* whyCopied(const VdbGrid& entry) {
+  const auto quantity = metaText(entry.metadata, "emscape:quantity");
+  if (quantity && *quantity != entry.descriptor.own_name)
+    return "it has another name than the quantity in its metadata";
+  const auto spacing_m = metaDoubles(entry.metadata, "emscape:spacing_m");
+  if (!spacing_m) return nullptr;  // written by version 0.2.0 or earlier
+  const openvdb::Vec3d ratio =
+      entry.transform->voxelSize() / openvdb::Vec3d(spacing_m->x, spacing_m->y, spacing_m->z);
+  const bool agrees = ratio.eq(openvdb::Vec3d(1), 1e-6);
+  return agrees ? nullptr : "its voxels have another spacing than in its metadata";
+}
+
+/// The name and nothing else.
+DenseVolume foreignVolume(const VdbGrid& entry) {
+  DenseVolume volume;
+  volume.info.quantity = entry.descriptor.name.empty() ? kUnnamedGrid : entry.descriptor.name;
+  volume.info.has_time = false;
+  return volume;
+}
+
 /// The metadata; a file of another program leaves dims 0 and most other values at their defaults.
 DenseVolume volumeOf(const VdbGrid& entry) {
   const VdbMetadata& metadata = entry.metadata;
@@ -145,10 +162,8 @@ DenseVolume volumeOf(const VdbGrid& entry) {
   const auto floatOf = [&](const char* key) {
     return requireFloat(number(key).value_or(0), gridPrefix(entry) + "emscape:" + key);
   };
-  DenseVolume volume;
+  DenseVolume volume = foreignVolume(entry);
   VolumeInfo& info = volume.info;
-  info.quantity =
-      text("quantity").value_or(entry.descriptor.name.empty() ? "density" : entry.descriptor.name);
   info.unit = text("unit").value_or("");
   const std::optional<double> time_s = number("time_s");
   info.time_s = time_s.value_or(0);
@@ -225,6 +240,16 @@ openvdb::CoordBBox boxOf(const Dims& dims) {
   return {openvdb::Coord(0, 0, 0), openvdb::Coord(dims.x - 1, dims.y - 1, dims.z - 1)};
 }
 
+/// A volume without values and mask.
+struct VdbDescription {
+  explicit VdbDescription(const VdbGrid& entry)
+      : why_copied(whyCopied(entry)),
+        volume(why_copied == nullptr ? volumeOf(entry) : foreignVolume(entry)) {}
+
+  const char* why_copied;  ///< as whyCopied(), and known better when the voxels have been read
+  DenseVolume volume;
+};
+
 /// The values of `box` into a volume whose grid and info are set.
 template <class GridType>
 void copyValues(const GridType& grid, const openvdb::CoordBBox& box, DenseVolume& volume) {
@@ -236,22 +261,18 @@ void copyValues(const GridType& grid, const openvdb::CoordBBox& box, DenseVolume
 
 template <class GridType>
 bool makeDense(const openvdb::GridBase& base, const VdbGrid& entry, const VdbFile& file,
-               DenseVolume& volume) {
+               VdbDescription& description) {
   const auto* grid = dynamic_cast<const GridType*>(&base);
   if (grid == nullptr) return false;
   const openvdb::CoordBBox active = grid->evalActiveVoxelBoundingBox();
-  const std::string who = "grid " + entry.descriptor.name;
+  DenseVolume& volume = description.volume;
   if (isOurs(volume) && !active.empty() && !boxOf(volume.grid.dims).isInside(active)) {
-    logWarning(
-        who +
-        ": its active voxels are outside the dims in its metadata, which another program must have copied; "
-        "it is read as that program's");
-    volume = DenseVolume();
-    volume.info.quantity = entry.descriptor.name;
-    volume.info.has_time = false;
+    description.why_copied = "its active voxels are outside the dims in its metadata";
+    volume = foreignVolume(entry);
   }
   const bool ours = isOurs(volume);
-  if (!ours && active.empty()) file.fail(who + " has no active voxels and does not say its dims");
+  if (!ours && active.empty())
+    file.fail("grid " + entry.descriptor.name + " has no active voxels and does not say its dims");
   const openvdb::CoordBBox box = ours ? boxOf(volume.grid.dims) : active;
   if (!ours) {
     const openvdb::Coord size = active.dim();
@@ -282,14 +303,13 @@ auto withFileNamed(const std::filesystem::path& path, const Body& body) {
   }
 }
 
-DenseVolume readGrid(VdbFile& file, const VdbGrid& entry) {
-  DenseVolume volume = volumeOf(entry);
+/// The volume with its values.
+void readGrid(VdbFile& file, const VdbGrid& entry, VdbDescription& description) {
   const openvdb::GridBase::Ptr grid = file.load(entry);
-  makeDense<openvdb::FloatGrid>(*grid, entry, file, volume) ||
-      makeDense<openvdb::Int32Grid>(*grid, entry, file, volume) ||
-      makeDense<openvdb::DoubleGrid>(*grid, entry, file, volume) ||
-      makeDense<openvdb::Int64Grid>(*grid, entry, file, volume);
-  return volume;
+  makeDense<openvdb::FloatGrid>(*grid, entry, file, description) ||
+      makeDense<openvdb::Int32Grid>(*grid, entry, file, description) ||
+      makeDense<openvdb::DoubleGrid>(*grid, entry, file, description) ||
+      makeDense<openvdb::Int64Grid>(*grid, entry, file, description);
 }
 
 }  // namespace
@@ -297,27 +317,34 @@ DenseVolume readGrid(VdbFile& file, const VdbGrid& entry) {
 DenseVolume readVdb(const std::filesystem::path& path, const std::string& grid_name) {
   return withFileNamed(path, [&] {
     VdbFile file(path);
-    return readGrid(file, file.find(grid_name));
+    const auto read = [&](const VdbGrid& entry) {
+      VdbDescription description(entry);
+      readGrid(file, entry, description);
+      if (description.why_copied != nullptr)
+        warnOfCopiedMetadata(path.string(), "grid " + entry.descriptor.name, description.why_copied);
+      return std::move(description.volume);
+    };
+    if (!grid_name.empty()) return read(file.find(grid_name));
+    return std::move(readableOf(path.string(), file.entries(), 1, read).front());
   });
 }
 
 std::vector<DenseVolume> describeVdb(const std::filesystem::path& path) {
   return withFileNamed(path, [&] {
     VdbFile file(path);
-    std::vector<DenseVolume> descriptions;
-    for (const VdbGrid& entry : file.entries()) {
-      DenseVolume volume = volumeOf(entry);
+    return readableOf(path.string(), file.entries(), file.entries().size(), [&](const VdbGrid& entry) {
+      VdbDescription description(entry);
+      DenseVolume& volume = description.volume;
       if (isOurs(volume)) {
         placeGrid(volume, entry, *entry.transform, openvdb::Coord(0, 0, 0), file);
         checkInfo(volume.info, gridPrefix(entry), {});
       } else {
-        volume = readGrid(file, entry);
+        readGrid(file, entry, description);
         volume.values.clear();
         volume.values.shrink_to_fit();
       }
-      descriptions.push_back(std::move(volume));
-    }
-    return descriptions;
+      return std::move(volume);
+    });
   });
 }
 

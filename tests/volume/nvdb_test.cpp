@@ -12,6 +12,7 @@
 namespace emscape::volume {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using namespace test;
 
@@ -90,6 +91,39 @@ TEST(Nvdb, OnOtherAxesIsRefused) {
   EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb"); }), HasSubstr("mirrored"));
 }
 
+TEST(Nvdb, IsValidForNanoVdb) {
+  TemporaryFolder folder;
+  for (const DenseVolume& volume : {fieldVolume(), categoricalVolume()}) {
+    writeNvdb(folder / "a.nvdb", {&volume});
+    const nano::Handle handle = ::nanovdb::io::readGrid(folder / "a.nvdb");
+    const auto* data = reinterpret_cast<const nano::GridData*>(handle.data());
+    EXPECT_TRUE(::nanovdb::isValid(data->mGridType, data->mGridClass)) << volume.info.quantity;
+  }
+}
+
+TEST(Nvdb, GridsThatCannotBeReadAreLeftOut) {
+  TemporaryFolder folder;
+  const auto vectors = openvdb::Vec3fGrid::create();
+  vectors->setName("U");
+  vectors->tree().setValueOn({1, 2, 3}, openvdb::Vec3f(1));
+  const auto grid = openvdb::FloatGrid::create();  // without a name
+  grid->tree().setValueOn({1, 2, 3}, 4.F);
+  std::vector<nano::Handle> handles;
+  handles.push_back(nanovdb::openToNanoVDB(*vectors));
+  handles.push_back(nanovdb::openToNanoVDB(*grid));
+  nanovdb::io::writeGrids(folder / "a.nvdb", handles);
+  std::vector<DenseVolume> descriptions;
+  EXPECT_THAT(messagesOf([&] { descriptions = describeNvdb(folder / "a.nvdb"); }),
+              ElementsAre(HasSubstr("a.nvdb: left out: grid U is of NanoVDB's type")));
+  ASSERT_EQ(descriptions.size(), 1U);
+  EXPECT_EQ(descriptions[0].info.quantity, "density");
+  EXPECT_EQ(readNvdb(folder / "a.nvdb", "density").values[0], 4);
+  EXPECT_EQ(readNvdb(folder / "a.nvdb").values[0], 4);
+  EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb", "U"); }), HasSubstr("grid U is of NanoVDB's type"));
+  EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb", "x"); }),
+              HasSubstr("no grid \"x\"; the file holds U, density"));
+}
+
 TEST(Nvdb, LargeTilesOfOneValueAreRefused) {
   TemporaryFolder folder;
   const auto grid = openvdb::FloatGrid::create();
@@ -139,7 +173,8 @@ TEST(Nvdb, AFaultOfTheSidecarNamesTheVolume) {
               HasSubstr("b.nvdb.json: volume snr_db: spacing_m in x -1 m is outside the allowed range"));
   EXPECT_THAT(refusal("dims", {0, 1, 1}), HasSubstr("b.nvdb.json: volume snr_db: dims 0 x 1 x 1: each"));
   EXPECT_THAT(refusal("time_s", 1e99), HasSubstr("b.nvdb.json: volume snr_db: time_s 1e+99 s is outside"));
-  EXPECT_THAT(refusal("range_min", 1e9), HasSubstr("b.nvdb.json: volume snr_db: range_min 1000000000 is above"));
+  EXPECT_THAT(refusal("range_min", 1e9),
+              HasSubstr("b.nvdb.json: volume snr_db: range_min 1000000000 is above"));
 }
 
 TEST(Nvdb, RefusesWhatIsNotOne) {

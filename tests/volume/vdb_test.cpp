@@ -11,6 +11,7 @@ namespace emscape::volume {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using namespace test;
 
@@ -73,6 +74,7 @@ TEST(Vdb, LooksAsStatedToOpenVdb) {
   EXPECT_EQ(grid->metaValue<std::string>("emscape:frame"), "enu");
   EXPECT_EQ(grid->metaValue<double>("emscape:origin_longitude_deg"), -84.25);
   EXPECT_EQ(grid->metaValue<openvdb::Vec3i>("emscape:dims"), openvdb::Vec3i(21, 17, 18));
+  EXPECT_EQ(grid->metaValue<openvdb::Vec3d>("emscape:spacing_m"), openvdb::Vec3d(150.0 / 7, 151.0 / 3, 60.1));
   auto voxel = grid->getConstAccessor();
   for (int k = 0; k < 18; ++k) {
     for (int j = 0; j < 17; ++j) {
@@ -99,6 +101,14 @@ class ForeignVdb : public ::testing::Test {
     openvdb::io::File file(path_.string());
     file.setCompression(compression);
     file.write(openvdb::GridCPtrVec{grid});
+  }
+  /// The sample as OpenVDB reads it from our file.
+  openvdb::FloatGrid::Ptr ours() {
+    const DenseVolume volume = fieldVolume();
+    writeVdb(path_, {&volume});
+    openvdb::io::File file(path_.string());
+    file.open(false);
+    return openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("power_density_dbwm2"));
   }
 
   TemporaryFolder folder_;
@@ -252,17 +262,89 @@ TEST_F(ForeignVdb, LargeTilesOfOneValueAreRefused) {
 
 TEST_F(ForeignVdb, ThatKeptOurMetadataWithOtherVoxelsIsReadAsForeign) {
   const DenseVolume volume = fieldVolume();
-  writeVdb(path_, {&volume});
-  openvdb::io::File file(path_.string());
-  file.open(false);
-  const auto grid = openvdb::gridPtrCast<openvdb::FloatGrid>(file.readGrid("power_density_dbwm2"));
-  file.close();
+  const auto grid = ours();
   grid->tree().setValueOn({-1, 0, 0}, 5.F);
   write(grid);
   const DenseVolume read = readVdb(path_);
   EXPECT_EQ(read.values[static_cast<std::size_t>(read.grid.index(0, 0, 0))], 5.F);
   EXPECT_EQ(read.grid.dims.x, volume.grid.dims.x + 1);
   EXPECT_FALSE(read.grid.georeferenced);
+}
+
+TEST_F(ForeignVdb, ThatKeptOurMetadataUnderAnotherNameIsReadAsForeign) {
+  const auto original = ours();
+  const auto renamed = original->deepCopy();
+  renamed->setName("density");
+  renamed->tree().setValueOn({5, 5, 5}, 70.F);
+  openvdb::io::File(path_.string()).write(openvdb::GridCPtrVec{original, renamed});
+  const std::vector<DenseVolume> descriptions = describeVdb(path_);
+  ASSERT_EQ(descriptions.size(), 2U);
+  EXPECT_EQ(descriptions[0].info.quantity, "power_density_dbwm2");
+  EXPECT_EQ(descriptions[1].info.quantity, "density");
+  EXPECT_EQ(descriptions[1].info.unit, "");
+  DenseVolume read;
+  EXPECT_THAT(messagesOf([&] { read = readVdb(path_, "density"); }),
+              ElementsAre(HasSubstr("foreign.vdb: grid density: it has another name than the quantity in its "
+                                    "metadata, which another program must have copied")));
+  EXPECT_EQ(read.info.range_max, 70);
+  EXPECT_FALSE(read.grid.georeferenced);
+  expectSame(readVdb(path_, "power_density_dbwm2"), fieldVolume());
+}
+
+TEST_F(ForeignVdb, CopiesOfOurGridsUnderOneNameAreReadBothWithTheirMetadata) {
+  const auto original = ours();
+  const auto copy = original->deepCopy();
+  copy->tree().setValueOn({5, 5, 5}, 7.F);
+  openvdb::io::File(path_.string()).write(openvdb::GridCPtrVec{original, copy});
+  const DenseVolume read = readVdb(path_, describeVdb(path_).at(1).info.quantity);
+  EXPECT_EQ(read.info.quantity, "power_density_dbwm2[1]");
+  EXPECT_EQ(read.info.unit, "dBW/m2");
+  EXPECT_EQ(read.values[static_cast<std::size_t>(read.grid.index(5, 5, 5))], 7);
+}
+
+// As vdb_lod writes its levels.
+TEST_F(ForeignVdb, CoarserThanOurMetadataStateIsReadAsForeign) {
+  const auto grid = ours();
+  const auto coarse = openvdb::FloatGrid::create(*static_cast<const openvdb::GridBase*>(grid.get()));
+  coarse->setTree(std::make_shared<openvdb::FloatTree>(-120.F));
+  coarse->tree().fill(openvdb::CoordBBox({1, 0, 0}, {9, 7, 8}), -50.F);
+  coarse->transform().preScale(2);
+  write(coarse);
+  DenseVolume read;
+  EXPECT_THAT(messagesOf([&] { read = readVdb(path_); }),
+              ElementsAre(HasSubstr("its voxels have another spacing than in its metadata")));
+  EXPECT_EQ(read.grid.dims, (Dims{9, 8, 9}));
+  EXPECT_EQ(describeVdb(path_).at(0).grid.dims, (Dims{9, 8, 9}));
+  EXPECT_NEAR(read.grid.spacing_m.z, 120.2, 1e-9);
+  // A file of version 0.2.0 does not state the spacing.
+  const auto old = ours();
+  old->removeMeta("emscape:spacing_m");
+  write(old);
+  expectSame(readVdb(path_), fieldVolume());
+}
+
+TEST_F(ForeignVdb, GridsThatCannotBeReadAreLeftOut) {
+  const auto vectors = openvdb::Vec3SGrid::create();
+  vectors->setName("vel");
+  const auto empty = openvdb::FloatGrid::create();
+  empty->setName("empty");
+  openvdb::io::File(path_.string()).write(openvdb::GridCPtrVec{vectors, cloud(), empty});
+  std::vector<DenseVolume> descriptions;
+  EXPECT_THAT(messagesOf([&] { descriptions = describeVdb(path_); }),
+              ElementsAre(AllOf(HasSubstr("foreign.vdb: left out: grid vel is of type Tree_vec3s_5_4_3"),
+                                HasSubstr("; grid empty has no active voxels"))));
+  ASSERT_EQ(descriptions.size(), 1U);
+  EXPECT_EQ(descriptions[0].info.quantity, "density");
+  EXPECT_EQ(readVdb(path_).info.quantity, "density");
+  EXPECT_THAT(errorOf([&] { readVdb(path_, "vel"); }), HasSubstr("of type Tree_vec3s_5_4_3"));
+  EXPECT_THAT(errorOf([&] { readVdb(path_, "empty"); }), HasSubstr("no active voxels"));
+}
+
+TEST_F(ForeignVdb, MayHaveAGridWithoutName) {
+  const auto grid = cloud();
+  grid->setName("");
+  write(grid);
+  EXPECT_EQ(readVdb(path_, describeVdb(path_).at(0).info.quantity).values.back(), -2.F);
 }
 
 TEST(Vdb, SurvivesDamage) {
