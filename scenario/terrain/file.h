@@ -42,6 +42,9 @@ class TerrainFile {
   /// @throws Error (bad_input) if reading fails
   void read(const PostWindow& window, const RowSink& take) const;
 
+  /// True if posts read so far are -9999 without being declared void: they are known, at that height.
+  bool hasUndeclaredVoids() const;
+
   /// True: the lattice is of WGS84 longitudes and latitudes (deg). False: of the plane of the file's
   /// projection.
   bool isGeographic() const;

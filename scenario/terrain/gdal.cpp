@@ -27,6 +27,8 @@ namespace fs = std::filesystem;
 
 /// Values that mean void in HGT and DTED whatever a file's header says.
 constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
+/// Value that means void in many files. It is no height on earth, but within kMaxHeightOnEarth_m.
+constexpr float kUsualVoid = -9999.0f;
 /// Largest height or depth on earth (m), with a margin; values beyond are undeclared voids.
 constexpr float kMaxHeightOnEarth_m = 20000.0f;
 /// Positions of another datum count as WGS84 if they are closer than this (posts).
@@ -131,6 +133,7 @@ struct TerrainFile::Impl {
   std::string format;
   int columns = 0, rows = 0;
   double scale = 1.0, offset = 0.0, unit_m = 1.0;
+  bool has_undeclared_voids = false;  ///< of the posts read so far
 
   double pixel_to_crs[6] = {0, 1, 0, 0, 0, 1};
   bool turned =
@@ -282,6 +285,8 @@ void TerrainFile::Impl::placeOnEarth(OGRSpatialReferenceH given) {
   crs.reset(OSRClone(given));
   if (const char* datum = OSRGetAttrValue(crs.get(), "VERT_CS", 0)) {
     notes.push_back(std::string("says that its heights are of '") + datum + "'");
+  } else if (OSRGetAxesCount(crs.get()) == 3 && !OSRIsGeocentric(crs.get())) {
+    notes.push_back("says that its heights are above the ellipsoid");
   }
   OSRStripVertical(crs.get());
   OSRSetAxisMappingStrategy(crs.get(), OAMS_TRADITIONAL_GIS_ORDER);
@@ -401,6 +406,9 @@ int TerrainFile::columns() const {
 int TerrainFile::rows() const {
   return impl_->rows;
 }
+bool TerrainFile::hasUndeclaredVoids() const {
+  return impl_->has_undeclared_voids;
+}
 bool TerrainFile::isArea() const {
   return impl_->is_area;
 }
@@ -439,6 +447,7 @@ void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
       const bool declared_void = mask[k] == 0 || strip[k] == kVoidValues[0] || strip[k] == kVoidValues[1];
       const double height_m = (strip[k] * impl_->scale + impl_->offset) * impl_->unit_m;
       const bool known = !declared_void && std::abs(height_m) <= kMaxHeightOnEarth_m;
+      if (known && strip[k] == kUsualVoid) impl_->has_undeclared_voids = true;
       strip[k] = known ? static_cast<float>(height_m) : std::numeric_limits<float>::quiet_NaN();
     }
     for (int row = 0; row < rows; ++row) {

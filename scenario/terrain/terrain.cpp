@@ -60,18 +60,21 @@ void toMeanSeaLevel(TerrainSheet& sheet, VerticalDatum datum, const SourceLocati
   });
 }
 
+/// The note on a file that hasUndeclaredVoids().
+constexpr const char* kUndeclaredVoids =
+    "has posts of -9999, which it does not declare as no data: they are ground at that height (gdal_edit.py "
+    "-a_nodata -9999 declares them void)";
+
 /// Notes on elevation files; a note on many files is logged once.
 class FileNotes {
  public:
-  void add(const TerrainFile& file) {
-    for (const std::string& note : file.notes()) {
-      const auto known =
-          std::find_if(notes_.begin(), notes_.end(), [&](const Note& other) { return other.text == note; });
-      if (known != notes_.end()) {
-        ++known->files;
-      } else {
-        notes_.push_back({note, file.name(), 1});
-      }
+  void add(const TerrainFile& file, const std::string& note) {
+    const auto known =
+        std::find_if(notes_.begin(), notes_.end(), [&](const Note& other) { return other.text == note; });
+    if (known != notes_.end()) {
+      ++known->files;
+    } else {
+      notes_.push_back({note, file.name(), 1});
     }
   }
   void log() const {
@@ -91,12 +94,14 @@ class FileNotes {
 
 /// Sheets of longitudes and latitudes, the finest first, with closed seams.
 std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& box) {
-  FileNotes notes;
+  FileNotes notes, notes_on_heights;
+  std::vector<std::shared_ptr<const TerrainFile>> files;
   std::vector<RasterTile> tiles;
   for (std::size_t k = 0; k < spec.files.size(); ++k) {
     const SourceLocation location = k < spec.locations.size() ? spec.locations[k] : SourceLocation{};
     const auto file = std::make_shared<const TerrainFile>(spec.files[k], location);
-    notes.add(*file);
+    for (const std::string& note : file->notes()) notes.add(*file, note);
+    files.push_back(file);
     for (RasterTile& tile : tilesWithin(file, box)) tiles.push_back(std::move(tile));
   }
   notes.log();
@@ -109,6 +114,10 @@ std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& bo
         sheets.push_back(std::move(brought));
     }
   }
+  for (const auto& file : files) {
+    if (file->hasUndeclaredVoids()) notes_on_heights.add(*file, kUndeclaredVoids);
+  }
+  notes_on_heights.log();
   std::stable_sort(sheets.begin(), sheets.end(),
                    [](const TerrainSheet& a, const TerrainSheet& b) { return a.spacing_m < b.spacing_m; });
   if (spec.vertical_datum != VerticalDatum::egm96) {
@@ -246,6 +255,7 @@ void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
       info.highest_m = std::fmax(info.highest_m, highest_m);
     });
   }
+  if (file.hasUndeclaredVoids()) info.notes.push_back(kUndeclaredVoids);
   if (is_partial) {
     info.notes.push_back("is large: its range and voids are those of " +
                          std::to_string(strips * rows_of_strip) + " of its " + std::to_string(rows) +

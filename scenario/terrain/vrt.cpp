@@ -129,8 +129,9 @@ class Sources {
         fs::absolute(is_relative == "1" ? folder / name : fs::path(name)).lexically_normal();
     const fs::path inside = source.lexically_relative(folder);
     // GDAL takes names with colons, such as http://..., for those of servers and databases.
-    const bool is_file = name.find_first_of("<{:") == std::string::npos && name.compare(0, 4, "/vsi") != 0;
-    if (!is_file || inside.empty() || *inside.begin() == "..")
+    if (name.find_first_of("<{:") != std::string::npos)
+      refuse("names '" + name + "': names of sources with '<', '{' or ':' are not allowed");
+    if (name.compare(0, 4, "/vsi") == 0 || inside.empty() || *inside.begin() == "..")
       refuse("names '" + name + "', which is not a file in its own folder");
     add(source, nesting + 1);
   }

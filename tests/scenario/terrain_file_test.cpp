@@ -320,6 +320,28 @@ TEST_F(TerrainFileTest, DescribeRepeatsTheVerticalDatumOfTheFile) {
   EXPECT_EQ(load({info.file}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100);
 }
 
+TEST_F(TerrainFileTest, HeightsOfAThreeDimensionalCrsAreAboveTheEllipsoid) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.crs = "EPSG:4979";
+  const TerrainFileInfo info = Terrain::describe(write("a.tif", file));
+  EXPECT_THAT(info.notes, Contains("says that its heights are above the ellipsoid"));
+  EXPECT_EQ(load({info.file}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100);
+}
+
+TEST_F(TerrainFileTest, UndeclaredVoidsAreNoted) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.value = [](int column, int) { return column == 3 ? -9999.0 : 100.0; };
+  const std::string undeclared = write("a.tif", file);
+  EXPECT_THAT(Terrain::describe(undeclared).notes, Contains(HasSubstr("has posts of -9999")));
+  std::vector<std::string> messages;
+  setLogSink([&](LogLevel, const std::string& message) { messages.push_back(message); });
+  load({undeclared}, {49, 50, 10, 11});
+  setLogSink({});
+  EXPECT_THAT(messages, ElementsAre(HasSubstr("elevation file " + undeclared + ": has posts of -9999")));
+  file.nodata = -9999;
+  EXPECT_TRUE(Terrain::describe(write("b.tif", file)).notes.empty());
+}
+
 // --- faults
 
 TEST_F(TerrainFileTest, AMissingFileIsNamed) {
@@ -391,11 +413,17 @@ TEST_F(TerrainFileTest, AVrtReadsOnlyItsOwnFolder) {
   for (const char* source : {"<SourceFilename relativeToVRT=\"1\">../a.tif</SourceFilename>",
                              "<sourcefilename relativetovrt=\"1\">../a.tif</sourcefilename>",
                              "<SourceFilename>/etc/hostname</SourceFilename>",
-                             "<SourceFilename>/vsicurl/http://127.0.0.1:1/x.tif</SourceFilename>",
+                             "<SourceFilename>/vsicurl/x.tif</SourceFilename>"}) {
+    EXPECT_THAT(problemWith(bandOf(source)), HasSubstr("is not a file in its own folder")) << source;
+  }
+  for (const char* source : {"<SourceFilename>/vsicurl/http://127.0.0.1:1/x.tif</SourceFilename>",
                              "<SourceFilename relativeToVRT=\"1\">http://127.0.0.1:1/x.tif</SourceFilename>",
                              "<SourceFilename relativeToVRT=\"1\">PG:host=127.0.0.1</SourceFilename>",
+                             "<SourceFilename relativeToVRT=\"1\">12:30.tif</SourceFilename>",
                              "<SourceFilename>&lt;VRTDataset/></SourceFilename>"}) {
-    EXPECT_THAT(problemWith(bandOf(source)), HasSubstr("is not a file in its own folder")) << source;
+    EXPECT_THAT(problemWith(bandOf(source)),
+                HasSubstr("names of sources with '<', '{' or ':' are not allowed"))
+        << source;
   }
   EXPECT_THAT(problemWith(bandOf("<SourceFilename relativeToVRT=\"2\">a.tif</SourceFilename>")),
               HasSubstr("relativeToVRT=\"2\", which must be 0 or 1"));
