@@ -3,12 +3,8 @@
 namespace emscape {
 namespace {
 
-bool isBlankControl(char32_t code_point) {
-  return code_point == '\t' || code_point == '\n' || code_point == '\r';
-}
-
 bool isControl(char32_t code_point) {
-  return (code_point < 0x20 || (code_point >= 0x7F && code_point <= 0x9F)) && !isBlankControl(code_point);
+  return code_point < 0x20 || (code_point >= 0x7F && code_point <= 0x9F);
 }
 
 bool isNoncharacter(char32_t code_point) {
@@ -63,8 +59,9 @@ std::string xmlCharacters(std::string_view text) {
   for (std::size_t i = 0, length = 1; i < text.size(); i += length) {
     length = utf8SequenceLength(text.substr(i));
     const char32_t code_point = length == 0 ? 0 : codePointOf(text.substr(i, length));
-    const bool is_allowed =
-        code_point >= 0x20 ? code_point != 0xFFFE && code_point != 0xFFFF : isBlankControl(code_point);
+    const bool is_allowed = code_point >= 0x20
+                                ? code_point != 0xFFFE && code_point != 0xFFFF
+                                : code_point == '\t' || code_point == '\n' || code_point == '\r';
     if (length == 0) length = 1;
     if (is_allowed) {
       result += text.substr(i, length);

@@ -16,7 +16,7 @@ std::size_t utf8SequenceLength(std::string_view text);
 /// The code point of one sequence, of the length that utf8SequenceLength() tells.
 char32_t codePointOf(std::string_view sequence);
 
-/// The first control character (U+0000..001F but tabs and line ends, U+007F..009F) or noncharacter
+/// The first control character (U+0000..001F, such as tabs and line ends, and U+007F..009F) or noncharacter
 /// (U+FDD0..FDEF, and the last two of each plane) of UTF-8 text.
 std::optional<char32_t> firstUnprintable(std::string_view text);
 

@@ -26,7 +26,7 @@ struct ValueSpec {
   std::shared_ptr<const ValueSpec> item;  ///< list
   int min_items = 0;                      ///< list; text, file: characters
   int max_items = 0;
-  bool is_printable = false;  ///< text: without control characters (but tabs, line ends), noncharacters
+  bool is_printable = false;  ///< text: without control characters (tabs, line ends) and noncharacters
   bool items_differ = false;  ///< list: no two items are equal; objects have different names
 
   ValueSpec from(double lowest) const;  ///< with this minimum

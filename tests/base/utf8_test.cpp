@@ -8,11 +8,13 @@ namespace {
 using namespace std::string_literals;
 
 TEST(Utf8, FindsControlCharactersAndNoncharacters) {
-  for (const std::string& text : {""s, "a\tb\r\n"s, "\xC3\xBC"s, "\xC2\xA0"s, "\xEF\xBF\xBD"s,
+  for (const std::string& text : {""s, "a b"s, "\xC3\xBC"s, "\xC2\xA0"s, "\xEF\xBF\xBD"s,
                                   "\xF0\x9F\x8E\x89"s, "\xFF not UTF-8"s}) {
     EXPECT_FALSE(firstUnprintable(text)) << text;
   }
   EXPECT_EQ(firstUnprintable("a\0"s), char32_t{0});
+  EXPECT_EQ(firstUnprintable("a\tb\n"), char32_t{'\t'});
+  EXPECT_EQ(firstUnprintable("a\r"), char32_t{'\r'});
   EXPECT_EQ(firstUnprintable("\xC3\xBC\x1B["), char32_t{0x1B});
   EXPECT_EQ(firstUnprintable("\x7F"), char32_t{0x7F});
   EXPECT_EQ(firstUnprintable("\xC2\x9F"), char32_t{0x9F});

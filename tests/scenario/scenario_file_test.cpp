@@ -108,6 +108,10 @@ TEST_F(ScenarioYaml, NamesHaveNoControlCharactersAndNoncharacters) {
   EXPECT_THAT(faultOf("name: mast", R"(name: "\u001b[31mred")"),
               HasSubstr("'name' contains U+001B, a control character"));
   EXPECT_THAT(faultOf("{name: intercept", R"({name: "a\uFFFE")"),
+  EXPECT_THAT(faultOf("name: valid", R"(name: "two\nlines")"),
+              HasSubstr(":3:7: 'name' contains U+000A, a control character"));
+  EXPECT_THAT(faultOf("name: mast", R"(name: "a\tb")"),
+              HasSubstr("'name' contains U+0009, a control character"));
               HasSubstr("'name' contains U+FFFE, which is no character"));
 }
 
