@@ -10,22 +10,52 @@ namespace {
 
 constexpr std::string_view kBlanks = " \t";
 
-void split(std::string_view line, std::vector<CsvCell>& cells) {
-  cells.clear();
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    const std::string_view cell = line.substr(begin, end - begin);
-    const std::size_t first = cell.find_first_not_of(kBlanks);
-    const bool is_empty = first == std::string_view::npos;
-    const std::size_t at = begin + (is_empty ? 0 : first);
-    cells.push_back(
-        {is_empty ? std::string_view() : cell.substr(first, cell.find_last_not_of(kBlanks) - first + 1),
-         static_cast<int>(characterCount(line.substr(0, at))) + 1});
-    begin = end + 1;
+std::string_view trimmed(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(kBlanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+}
+
+/// The length of a quoted cell with its quotes. @param text  begins with a quote
+/// @return npos if it is not a quoted cell, which ends before a comma or at the end of the line
+std::size_t quotedLength(std::string_view text) {
+  for (std::size_t end = text.find('"', 1); end != std::string_view::npos; end = text.find('"', end + 1)) {
+    if (text.substr(end + 1, 1) == "\"") {
+      ++end;
+      continue;
+    }
+    const std::size_t next = text.find_first_not_of(kBlanks, end + 1);
+    return next == std::string_view::npos || text[next] == ',' ? end + 1 : std::string_view::npos;
   }
+  return std::string_view::npos;
 }
 
 }  // namespace
+
+void CsvReader::split(std::string_view line, std::vector<CsvCell>& cells) {
+  cells.clear();
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t first = std::min(line.find_first_not_of(kBlanks, begin), line.size());
+    std::size_t end = std::min(line.find(',', begin), line.size());
+    const bool is_empty = first >= end;
+    const std::size_t at = is_empty ? begin : first;
+    std::string_view text = trimmed(line.substr(begin, end - begin));
+    const std::size_t quoted =
+        !is_empty && line[first] == '"' ? quotedLength(line.substr(first)) : std::string_view::npos;
+    if (quoted != std::string_view::npos) {
+      end = std::min(line.find(',', first + quoted), line.size());
+      text = line.substr(first + 1, quoted - 2);
+      if (text.find('"') != std::string_view::npos) {
+        std::string& single = unquoted_.emplace_back();
+        for (std::size_t i = 0; i < text.size(); i += text[i] == '"' ? 2 : 1) single += text[i];
+        text = single;
+      }
+      text = trimmed(text);
+    }
+    cells.push_back({text, static_cast<int>(characterCount(line.substr(0, at))) + 1});
+    begin = end + 1;
+  }
+}
 
 bool CsvReader::next(CsvRow& row) {
   while (begin_ < text_.size()) {
@@ -37,9 +67,26 @@ bool CsvReader::next(CsvRow& row) {
     if (first == std::string_view::npos || line[first] == '#') continue;
     row.line = line_;
     split(line, row.cells);
-    return true;
+    const bool is_empty = std::all_of(row.cells.begin(), row.cells.end(),
+                                      [](const CsvCell& cell) { return cell.text.empty(); });
+    if (!is_empty) return true;
   }
   return false;
+}
+
+std::optional<CsvFault> headerFault(const std::vector<CsvCell>& header) {
+  const std::size_t separator = header.front().text.find_first_of(";\t");
+  if (header.size() == 1 && separator != std::string_view::npos) {
+    return CsvFault{header.front().column,
+                    std::string("columns are separated by commas, not ") +
+                        (header.front().text[separator] == ';' ? "semicolons" : "tabs") +
+                        "; numbers have decimal points"};
+  }
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    if (header[i].text.empty())
+      return CsvFault{header[i].column, "column " + std::to_string(i + 1) + " has no name"};
+  }
+  return std::nullopt;
 }
 
 }  // namespace emscape::document

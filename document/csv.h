@@ -2,12 +2,15 @@
 #pragma once
 
 #include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace emscape::document {
 
-/// A cell without surrounding blanks; a view of the reader's text.
+/// A cell without surrounding blanks and quotes; a view of the reader's text.
 struct CsvCell {
   std::string_view text;
   int column = 1;  ///< of its first character, counted in characters from 1; for an empty cell, the beginning
@@ -19,11 +22,12 @@ struct CsvRow {
   std::vector<CsvCell> cells;  ///< at least one
 };
 
-/// Lines end in LF, CRLF or CR. Lines of blanks and lines that begin with # are left out. Quotes have no
-/// special meaning: a comma always separates cells.
+/// Lines end in LF, CRLF or CR. Lines whose cells are all empty and lines that begin with # are left out. A
+/// cell in double quotes may have commas, and double quotes that are written twice (RFC 4180), but no line
+/// ends: a quote that is not closed on its line has no special meaning.
 class CsvReader {
  public:
-  /// @param text  must outlive the reader and its cells
+  /// @param text  must outlive the reader; both must outlive the cells
   explicit CsvReader(std::string_view text) : text_(text) {}
 
   /// Reads the next row into `row`, whose memory is reused. @return false at the end
@@ -32,9 +36,21 @@ class CsvReader {
   int lines() const { return line_; }
 
  private:
+  void split(std::string_view line, std::vector<CsvCell>& cells);
+
   std::string_view text_;
+  std::deque<std::string> unquoted_;  ///< cells with doubled quotes
   std::size_t begin_ = 0;
   int line_ = 0;
 };
+
+struct CsvFault {
+  int column = 1;  ///< counted in characters from 1
+  std::string message;
+};
+
+/// The fault that a header line has whatever its columns mean: another separator than commas, or a column
+/// without a name.
+std::optional<CsvFault> headerFault(const std::vector<CsvCell>& header);
 
 }  // namespace emscape::document

@@ -94,6 +94,13 @@ bool looksLikeText(const DocumentNode& node) {
   return node.quoted || (!numberOf(node.text) && !booleanOf(node.text));
 }
 
+std::string lowerCase(std::string text) {
+  for (char& c : text) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return text;
+}
+
 int editDistance(const std::string& a, const std::string& b) {
   std::vector<int> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -354,7 +361,7 @@ std::string didYouMean(const std::string& word, const std::vector<std::string>& 
   int best_distance = static_cast<int>(std::min<std::size_t>(word.size(), 12)) / 3 + 1;
   for (const std::string& name : names) {
     if (word.size() > 2 * name.size() + 4) continue;
-    const int distance = editDistance(word, name);
+    const int distance = editDistance(lowerCase(word), lowerCase(name));
     if (distance < best_distance) {
       best = &name;
       best_distance = distance;
@@ -381,14 +388,15 @@ std::string unknownKeyMessage(const std::string& key, const ObjectSpec& spec, co
     }
   }
 
+  const std::string word = lowerCase(key);
   std::vector<std::string> names, with_unit;
   for (const KeySpec& row : spec.keys) {
     if (spec.find(row.name, variant) != &row) continue;
     names.push_back(row.name);
     // The quantity with no unit, with another one, or (a height) without its datum.
-    const std::string stem = stemOf(row), key_stem = key.substr(0, key.rfind('_'));
+    const std::string stem = stemOf(row), key_stem = word.substr(0, word.rfind('_'));
     if (stem == row.name) continue;
-    if (key == stem || startsWith(key, stem + "_") || startsWith(stem, key_stem + "_")) {
+    if (word == stem || startsWith(word, stem + "_") || startsWith(stem, key_stem + "_")) {
       with_unit.push_back(fmt::format("'{}' ({})", row.name, unitOf(row.value)));
       propose(row.name);
     }

@@ -58,21 +58,26 @@ class TrackReader {
   }
 
   void readHeader(const std::vector<CsvCell>& cells, int line) {
+    if (const auto found = document::headerFault(cells)) {
+      fault(line, found->column, found->message);
+      return;
+    }
     const ObjectSpec& spec = trackRowSpec();
     std::vector<std::string> seen;
+    bool has_unknown = false;
     for (const CsvCell& cell : cells) {
       const std::string name(cell.text);
       const KeySpec* key = spec.find(name, nullptr);
       if (key == nullptr) {
-        std::vector<std::string> meant;
-        fault(line, cell.column, document::unknownKeyMessage(name, spec, nullptr, &meant));
-        seen.insert(seen.end(), meant.begin(), meant.end());
+        fault(line, cell.column, document::unknownKeyMessage(name, spec, nullptr));
+        has_unknown = true;
       } else if (has(seen, name)) {
         fault(line, cell.column, fmt::format("column '{}' occurs twice", name));
       }
       seen.push_back(name);
       columns_.push_back(key);
     }
+    if (has_unknown) return;  // they may be the missing ones
     for (const KeySpec& key : spec.keys) {
       if (key.required && !has(seen, key.name)) {
         fault(line, 1, fmt::format("missing column '{}'; write {}", key.name, header()));

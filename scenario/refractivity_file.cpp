@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include "emscape/base/error.h"
 #include "propagation/air/moist_air.h"
 #include "scenario/antenna/text.h"
+#include "scenario/csv_columns.h"
 
 namespace emscape::scenario {
 namespace {
@@ -105,6 +105,8 @@ class CsvProfiles {
       throw Error(ErrorCode::bad_input, {file_, 1, 1},
                   fmt::format("the file is empty; its header has {}", kHeader));
     }
+    if (const auto fault = document::headerFault(row_.cells))
+      throw Error(ErrorCode::bad_input, {file_, row_.line, fault->column}, fault->message);
     columns_ = row_.cells.size();
     for (std::size_t i = 0; i < columns_; ++i) {
       const CsvCell& cell = row_.cells[i];
@@ -205,18 +207,13 @@ RefractivityFile readRefractivity(const std::string& file) {
 }
 
 bool isRefractivityCsv(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  std::string begin(4096, '\0');
-  stream.read(begin.data(), std::streamsize(begin.size()));
-  begin.resize(std::size_t(stream.gcount()));
-  document::CsvReader reader(begin);
-  CsvRow row;
-  if (!reader.next(row)) return false;
-  const auto names = [&](Column column) {
-    return std::any_of(row.cells.begin(), row.cells.end(),
-                       [&](const CsvCell& cell) { return cell.text == kLimits[column].name; });
+  const std::vector<std::string> names = csvColumnsOf(file);
+  const auto has = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
   };
-  return names(m) || names(n) || (names(height) && names(pressure)) || names(humidity);
+  const auto hasColumn = [&](Column column) { return has(kLimits[column].name); };
+  const bool is_track = has("t_s");
+  return hasColumn(m) || hasColumn(n) || hasColumn(humidity) || (hasColumn(height) && !is_track);
 }
 
 }  // namespace emscape::scenario

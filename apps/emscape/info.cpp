@@ -30,6 +30,7 @@
 #include "render/annotate/plot.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/refractivity_file.h"
+#include "scenario/csv_columns.h"
 
 namespace emscape::app {
 namespace {
@@ -275,9 +276,25 @@ Json describeElevation(const std::string& file) {
 }
 
 Json describeAntenna(const std::string& file) {
+/// @throws Error (bad_input) for other CSV files than an antenna's grid
+void requireAntennaColumns(const std::string& file) {
+  const std::vector<std::string> names = scenario::csvColumnsOf(file);
+  if (names.size() < 2) return;  // an empty file, or another separator, which the reader reports
+  for (const char* column : {"elevation_deg", "azimuth_deg", "attenuation_db"}) {
+    if (std::find(names.begin(), names.end(), column) != names.end()) continue;
+    throw Error(
+        ErrorCode::bad_input, {file, 0, 0},
+        fmt::format("no column '{}': info describes grids of antennas (columns elevation_deg, azimuth_deg, "
+                    "attenuation_db) and profiles of refractivity (height_msl_m and m_units, n_units or "
+                    "weather); tracks and other CSV files are checked with their scenario, by validate",
+                    column));
+  }
+}
+
   // A CSV grid contains only a shape: its gain is in the scenario.
   const bool has_gain = file.size() < 4 || file.substr(file.size() - 4) != ".csv";
   const scenario::AntennaPtr antenna =
+  if (!has_gain) requireAntennaColumns(file);
       scenario::readAntenna(file, has_gain ? std::numeric_limits<double>::quiet_NaN() : 0.0);
   return {{"kind", "antenna"},
           {"file", file},

@@ -47,6 +47,8 @@ std::vector<GridRow> readRows(const AntennaText& text, const std::vector<ColumnS
   }
   const std::vector<CsvCell>& header = header_row.cells;
   line = header_row.line;
+  if (const auto fault = document::headerFault(header))
+    throw Error(ErrorCode::bad_input, {text.file(), line, fault->column}, fault->message);
   std::vector<std::size_t> position(columns.size(), header.size());  // of each column in a line
   for (std::size_t i = 0; i < header.size(); ++i) {
     const auto column = std::find_if(columns.begin(), columns.end(),

@@ -130,6 +130,7 @@ TEST(CsvGrid, SaysWhatIsWrongAndWhere) {
   expectBroken("azimuth_deg,elevation,attenuation_db\n", 1, 13, "unknown column 'elevation'");
   expectBroken("azimuth_deg,azimuth_deg,attenuation_db\n", 1, 13, "column 'azimuth_deg' occurs twice");
   expectBroken("azimuth_deg,elevation_deg\n", 1, 1, "missing column");
+  expectBroken("azimuth_deg\televation_deg\tattenuation_db\n", 1, 1, "separated by commas, not tabs");
   expectBroken(header + "0,0\n", 2, 1, "2 values, but the header names 3 columns");
   expectBroken(header + "0,x,0\n", 2, 3, "elevation_deg is 'x', not a number");
   expectBroken(header + "\n0, ,0\n", 3, 3, "elevation_deg is '', not a number");

@@ -117,8 +117,18 @@ TEST_F(RefractivityFiles, WantOneKindOfColumns) {
   }
 }
 
+TEST_F(RefractivityFiles, MayComeFromASpreadsheet) {
+  EXPECT_EQ(
+      read("\"height_msl_m\",\"m_units\"\r\n0,330\r\n\"10\",320\r\n,\r\n").field.profiles[0].levels.size(),
+      2u);
+  EXPECT_THAT(errorOf("height_msl_m;m_units\n0;330\n"),
+              HasSubstr("air.csv:1:1: columns are separated by commas, not semicolons"));
+  EXPECT_THAT(errorOf("height_msl_m,m_units,\n0,330,\n"), HasSubstr("air.csv:1:22: column 3 has no name"));
+}
+
 TEST_F(RefractivityFiles, AreToldFromPatternsOfAntennasAndTracks) {
   EXPECT_TRUE(isRefractivityCsv(folder_.write("a.csv", "# made\nheight_msl_m,m_units\n")));
+  EXPECT_TRUE(isRefractivityCsv(folder_.write("e.csv", "\xEF\xBB\xBFheight_msl_m,M_units\n")));
   EXPECT_FALSE(isRefractivityCsv(folder_.write("b.csv", "azimuth_deg,attenuation_db\n")));
   EXPECT_FALSE(isRefractivityCsv(folder_.write("c.csv", "t_s,latitude_deg,longitude_deg,height_msl_m\n")));
   EXPECT_FALSE(isSoundingFile(folder_.write("d.txt", "# a text\n")));
