@@ -4,6 +4,8 @@
 
 #include <cstdlib>
 
+#include "base/json_writing.h"
+
 namespace emscape::document {
 namespace {
 
@@ -12,17 +14,12 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kLineLength = 100;
 constexpr std::size_t kIndent = 2;
 
-/// Bytes that are not UTF-8 become U+FFFD.
-std::string scalarText(const Json& value) {
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
 std::string keyText(const std::string& key) {
-  return scalarText(key) + ": ";
+  return dumpJson(Json(key)) + ": ";
 }
 
 std::string onOneLine(const Json& value) {
-  if (!value.is_structured()) return scalarText(value);
+  if (!value.is_structured()) return dumpJson(value);
   std::string text;
   for (const auto& [key, member] : value.items()) {
     text += (text.empty() ? "" : ", ") + (value.is_object() ? keyText(key) : "") + onOneLine(member);

@@ -7,6 +7,7 @@
 
 #include "base/failure_text.h"
 #include "base/json_reading.h"
+#include "base/json_writing.h"
 #include "emscape/base/error.h"
 #include "playback/series_state.h"
 
@@ -36,7 +37,7 @@ std::string lineOf(const StepRecord& record) {
                   {"range", rangesToJson(record.own)},
                   {"stored_range", rangesToJson(record.stored)},
                   {"files", files}};
-  return json.dump() + "\n";
+  return dumpJson(json) + "\n";
 }
 
 /// A count that fits into the type.

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "base/json_reading.h"
+#include "base/json_writing.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 
@@ -91,7 +92,7 @@ std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder) 
 }
 
 void writeSeriesState(const std::filesystem::path& folder, const SeriesState& state) {
-  writeWhole(folder / kStateFile, [&state](std::ostream& out) { out << toJson(state).dump(2) << '\n'; });
+  writeWhole(folder / kStateFile, [&state](std::ostream& out) { out << dumpJson(toJson(state), 2) << '\n'; });
 }
 
 int stepsOf(const SeriesState& state) {

@@ -1,3 +1,4 @@
+#include "base/json_writing.h"
 #include "base/whole_file.h"
 #include "volume/nanovdb_grid.h"
 #include "volume/nvdb.h"
@@ -14,7 +15,7 @@ void writeNvdb(const std::filesystem::path& path, const std::vector<const DenseV
     handles.push_back(toNano(*volume, {path.string()}));
     sidecar["volumes"].push_back(toJson(*volume, true));
   }
-  writeWhole({{sidecarOf(path), [&](std::ostream& stream) { stream << dumpJson(sidecar); }},
+  writeWhole({{sidecarOf(path), [&](std::ostream& stream) { stream << dumpJson(sidecar, 2) << '\n'; }},
               {path, [&](std::ostream& stream) { nanovdb::io::writeGrids(stream, handles); }}});
 }
 

@@ -5,6 +5,7 @@
 #include <regex>
 #include <string>
 
+#include "base/json_writing.h"
 #include "base/whole_file.h"
 #include "emscape/volume/statistics.h"
 #include "volume/byte_reader.h"
@@ -153,8 +154,8 @@ void writeRaw(const fs::path& path, const DenseVolume& volume) {
       stream.write(reinterpret_cast<const char*>(volume.values.data()), bytes);
     }
   };
-  writeWhole(
-      {{sidecarOf(path), [&](std::ostream& stream) { stream << dumpJson(header); }}, {path, writeVoxels}});
+  writeWhole({{sidecarOf(path), [&](std::ostream& stream) { stream << dumpJson(header, 2) << '\n'; }},
+              {path, writeVoxels}});
 }
 
 std::optional<RawLayout> rawLayoutFromName(const fs::path& path) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/json_writing.h"
 #include "base/whole_file.h"
 #include "volume/vdb_layout.h"
 #include "volume/volume_json.h"
@@ -28,7 +29,7 @@ void setRangeInSidecar(const fs::path& path, const std::vector<StoredRange>& ran
     (*description)["range_min"] = numberToJson(range.min);
     (*description)["range_max"] = numberToJson(range.max);
   }
-  writeWhole(sidecar, [&](std::ostream& stream) { stream << dumpJson(document); });
+  writeWhole(sidecar, [&](std::ostream& stream) { stream << dumpJson(document, 2) << '\n'; });
 }
 
 bool describes(const Json& json, const std::string& quantity) {

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstring>
 
+#include "base/json_writing.h"
 #include "base/whole_file.h"
 #include "volume/vdb.h"
 #include "volume/vdb_grid.h"
@@ -59,7 +60,7 @@ std::string identifierOf(const std::vector<const DenseVolume*>& volumes) {
     nlohmann::ordered_json about = toJson(*volume, false);
     about.erase("range_min");
     about.erase("range_max");
-    const std::string text = dumpJson(about);
+    const std::string text = dumpJson(about, 2) + "\n";
     hash.add(text.data(), text.size());
     hash.add(volume->values.data(), volume->values.size() * sizeof(float));
     hash.add(volume->first_valid_k.data(), volume->first_valid_k.size() * sizeof(std::uint16_t));

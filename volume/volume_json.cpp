@@ -212,10 +212,6 @@ Json parseJson(const std::string& text, const std::string& file) {
   return readJson<Json>(text, file, [](Json& json) { return std::move(json); });
 }
 
-std::string dumpJson(const Json& json) {
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 std::filesystem::path sidecarOf(const std::filesystem::path& path) {
   std::filesystem::path sidecar = path;
   sidecar += ".json";

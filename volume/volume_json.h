@@ -42,9 +42,6 @@ Value requiredFromJson(const nlohmann::ordered_json& json, const char* key, cons
   }
 }
 
-/// Indented text that ends in a newline; bytes that are not UTF-8 are replaced.
-std::string dumpJson(const nlohmann::ordered_json& json);
-
 /// The sidecar's name: NAME.raw.json for NAME.raw, NAME.nvdb.json for NAME.nvdb.
 std::filesystem::path sidecarOf(const std::filesystem::path& path);
 

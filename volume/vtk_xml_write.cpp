@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "base/json_writing.h"
 #include "base/utf8.h"
 #include "base/whole_file.h"
 #include "volume/stored_range.h"
@@ -25,9 +26,8 @@ std::string characterNumbers(const std::string& text) {
 std::string descriptionText(const Json& description) {
   constexpr std::size_t kMaxRangeCharacters =
       4 * 2 * 24;  // two doubles, up to four characters for each of theirs
-  const auto lengthOf = [](const Json& json) { return characterNumbers(json.dump()).size(); };
-  std::string text = dumpJson(description);
-  text.pop_back();
+  const auto lengthOf = [](const Json& json) { return characterNumbers(dumpJson(json)).size(); };
+  const std::string text = dumpJson(description, 2);
   const std::size_t range_characters =
       lengthOf(description["range_min"]) + lengthOf(description["range_max"]);
   return characterNumbers(text) + std::string(kMaxRangeCharacters - range_characters, ' ');
@@ -36,7 +36,7 @@ std::string descriptionText(const Json& description) {
 }  // namespace
 
 std::string numberText(double value) {
-  return nlohmann::json(value).dump();
+  return dumpJson(nlohmann::json(value));
 }
 
 pugi::xml_node appendVtkRoot(pugi::xml_document& document, const char* type) {

@@ -19,6 +19,7 @@
 #include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/report/compare_report.h"
+#include "base/json_writing.h"
 #include "base/quantity_text.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/scenario_file.h"
@@ -72,7 +73,7 @@ void printHeading(const std::string& a, const std::string& b, const study::MapGr
 int finish(study::MapFolder& folder, const study::Comparison& comparison, const study::ComparedScenario& a,
            const study::ComparedScenario& b, const std::string& quantity, const GlobalOptions& global) {
   logWarnings(comparison.warnings);
-  folder.finish(joinedWarnings(comparison.warnings), comparisonJson(comparison, a, b).dump(),
+  folder.finish(joinedWarnings(comparison.warnings), dumpJson(comparisonJson(comparison, a, b)),
                 [&](study::HtmlReport& report) { addSections(report, comparison, quantity); });
   if (global.json) {
     printResult(folder.reportJson());

@@ -14,6 +14,7 @@
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/report/exposure_report.h"
+#include "base/json_writing.h"
 #include "emscape/render/image.h"
 #include "emscape/scenario/scenario_file.h"
 
@@ -73,7 +74,7 @@ int exposure(const ExposureCommand& command, const GlobalOptions& global) {
   writeStudyOutputs(command.outputs,
                     {[&](const std::string& file) { study::plotExposure(result, size, file); },
                      [&](const std::string& file) { writeExposureCsv(result, file); },
-                     [&] { return exposureJson(result).dump(2); }});
+                     [&] { return dumpJson(exposureJson(result), 2); }});
   if (global.json) {
     printJson(exposureJson(result));
   } else {

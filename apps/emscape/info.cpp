@@ -16,6 +16,7 @@
 #include "apps/emscape/report/refractivity_report.h"
 #include "apps/emscape/report/waveform_report.h"
 #include "apps/emscape/report/work_report.h"
+#include "base/json_writing.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/field_solver.h"
 #include "emscape/emfield/model_choices.h"
@@ -308,7 +309,7 @@ void requireAntennaColumns(const std::string& file) {
 std::string onOneLine(const std::string& text) {
   const bool fits =
       std::none_of(text.begin(), text.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; });
-  return fits ? text : Json(text).dump(-1, ' ', false, Json::error_handler_t::replace);
+  return fits ? text : dumpJson(Json(text));
 }
 
 /// Prints a JSON report as indented lines of text. Members of a list begin with "-".
@@ -319,7 +320,7 @@ void printText(const Json& json, int depth) {
         value.is_object() || (value.is_array() && !value.empty() && value.front().is_object());
     if (!nested) {
       print("{}{}: {}\n", indent, key,
-            value.is_string() ? onOneLine(value.get<std::string>()) : value.dump());
+            value.is_string() ? onOneLine(value.get<std::string>()) : dumpJson(value));
     } else if (value.is_object()) {
       print("{}{}:\n", indent, key);
       printText(value, depth + 1);

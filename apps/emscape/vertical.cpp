@@ -14,6 +14,7 @@
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/report/vertical_report.h"
+#include "base/json_writing.h"
 #include "emscape/render/image.h"
 #include "emscape/scenario/scenario_file.h"
 #include "emscape/scenario/snapshot.h"
@@ -84,7 +85,7 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
   writeStudyOutputs(command.outputs,
                     {[&](const std::string& file) { study::plotVertical(diagram, size, file); },
                      [&](const std::string& file) { writeVerticalCsv(diagram, file); },
-                     [&] { return verticalJson(diagram, true).dump(); }});
+                     [&] { return dumpJson(verticalJson(diagram, true)); }});
   if (global.json) {
     printJson(verticalJson(diagram, false));
   } else {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/json_writing.h"
 #include "base/whole_file.h"
 #include "emscape/base/geoid.h"
 #include "emscape/playback/scene.h"
@@ -76,7 +77,7 @@ class Czml : public MapCollection {
   }
 
   void finish() override {
-    writeWhole(file_, [&](std::ostream& out) { out << packets_.dump() << "\n"; });
+    writeWhole(file_, [&](std::ostream& out) { out << dumpJson(packets_) << "\n"; });
   }
 
  private:

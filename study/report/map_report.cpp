@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/fast_geodesy.h"
+#include "base/json_writing.h"
 #include "base/quantity_text.h"
 #include "base/whole_file.h"
 #include "emscape/scenario/clock.h"
@@ -141,7 +142,7 @@ std::string reportJsonOf(const MapStudy& study, const std::vector<MapRecord>& re
   report["maps"] = Json::array();
   for (const MapRecord& record : records) report["maps"].push_back(toJson(record));
   report["warnings"] = warnings;
-  return report.dump(2) + "\n";
+  return dumpJson(report, 2) + "\n";
 }
 
 Json digestJson(const std::string& name, const std::filesystem::path& file) {
@@ -178,7 +179,7 @@ std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& fold
   }
   json["outputs"] = Json::array();
   for (const std::string& file : files) json["outputs"].push_back(digestJson(file, folder / file));
-  return json.dump(2) + "\n";
+  return dumpJson(json, 2) + "\n";
 }
 
 ReportTable tableOf(const std::vector<MapRecord>& records) {

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "base/json_reading.h"
+#include "base/json_writing.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "study/sweep/part_rows.h"
@@ -125,7 +126,7 @@ void PartJournal::add(VariantResult result, const std::set<std::string>& warning
     record["pixels"] = result.pixels.size();
     record["bits"] = hexOf(packedPixels(result.pixels));
   }
-  const std::string content = record.dump();
+  const std::string content = dumpJson(record);
   // The previous line may be incomplete, so this one begins with a line end.
   const std::string line = '\n' + checksumOf(content) + ' ' + content + '\n';
   for (std::size_t done = 0; done < line.size();) {

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "base/json_reading.h"
+#include "base/json_writing.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 #include "study/sweep/part_rows.h"
@@ -213,7 +214,7 @@ void StudyFolder::writePart(int part, const PartJournal& journal) const {
                     {"machines", journal.machines()},
                     {"pixels", results.empty() ? 0 : results.front().pixels.size()},
                     {"warnings", journal.warnings()}};
-  files.push_back({partFile(part, "json"), [&](std::ostream& out) { out << record.dump(2) << '\n'; }});
+  files.push_back({partFile(part, "json"), [&](std::ostream& out) { out << dumpJson(record, 2) << '\n'; }});
   writeWhole(files);
   std::error_code ignored;
   fs::remove(partFile(part, "rows"), ignored);

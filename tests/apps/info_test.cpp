@@ -48,11 +48,9 @@ TEST(Info, EndsAtTheFirstSignalWhateverItReads) {
 
 TEST(Info, NamesAListOnceAndKeepsEachTextOnALine) {
   const TemporaryFolder folder;
-  std::string text = readFile(quick());
-  const std::string file =
-      folder.write("two.yaml", text.replace(text.find("name: quick"), 11, "name: \"two\\nlines\""));
+  const std::string file = folder.write("two\nlines.yaml", readFile(quick()));
   const std::string out = run({"info", file}).out;
-  EXPECT_THAT(out, HasSubstr("name: \"two\\nlines\"\n"));
+  EXPECT_THAT(out, HasSubstr("two\\nlines.yaml\"\n"));
   EXPECT_THAT(out, HasSubstr("emitters:\n  -\n    name: radar\n"));
   EXPECT_EQ(out.find("emitters:"), out.rfind("emitters:"));
 }
@@ -71,6 +69,39 @@ TEST(InfoOfRefractivity, ListsWhatAProfileTraps) {
   EXPECT_EQ(duct.at("trapped_modes").at(1).at("modes"), 42);  // at 3 GHz
   EXPECT_GT(std::filesystem::file_size(folder / "air.png"), 10000u);
   EXPECT_THAT(run({"info", file}).out, HasSubstr("kind: surface-based"));
+}
+
+TEST(InfoOfRefractivity, IsThatOfEveryFileWithItsHeights) {
+  const TemporaryFolder folder;
+  EXPECT_THAT(run({"info", folder.write("air.csv", "height_msl_m,M_units\n0,330\n")}).err,
+              HasSubstr("air.csv:1:14: unknown column 'M_units'; the header has height_msl_m and m_units"));
+}
+
+TEST(Info, SaysWhichTablesItDescribes) {
+  const TemporaryFolder folder;
+  const ProgramResult track =
+      run({"info", folder.write("track.csv", "t_s,latitude_deg,longitude_deg,height_msl_m\n0,50,6,100\n")});
+  EXPECT_EQ(track.status, 3);
+  EXPECT_THAT(track.err, HasSubstr("no column 'elevation_deg': info describes grids of antennas"));
+  EXPECT_THAT(track.err, HasSubstr("profiles of refractivity"));
+  EXPECT_THAT(track.err, HasSubstr("tracks and other CSV files are checked with their scenario"));
+  EXPECT_THAT(run({"info", folder.write("rcs.csv", "azimuth_deg;elevation_deg;rcs_dbsm\n")}).err,
+              HasSubstr("rcs.csv:1:1: columns are separated by commas, not semicolons"));
+}
+
+TEST(Info, ReportsBytesThatAreNotUtf8AsReplacements) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("s\xE9.yaml", readFile(quick()));
+  EXPECT_THAT(json::parse(run({"info", file, "--json"}).out).at("file").get<std::string>(),
+              HasSubstr("/s\xEF\xBF\xBD.yaml"));
+  const std::string broken = folder.write("b\xE9.yaml", "name: 1\n");
+  const json problems = json::parse(run({"validate", broken, "--json"}).out).at("problems");
+  EXPECT_THAT(problems.at(0).at("file").get<std::string>(), HasSubstr("/b\xEF\xBF\xBD.yaml"));
+  EXPECT_EQ(run({"render", file, "-o", folder / "o\xE9.png", "--size", "64x48", "--json"}).status, 0);
+  const ProgramResult coverage =
+      run({"coverage", file, "-o", folder / "maps", "--format", "czml", "--cell", "4000"});
+  EXPECT_EQ(coverage.status, 0) << coverage.err;
+  EXPECT_THAT(readFile(folder / "maps/study.json"), HasSubstr("/s\xEF\xBF\xBD.yaml"));
 }
 
 TEST(InfoOfRefractivity, ReadsSoundingsByTheirContent) {

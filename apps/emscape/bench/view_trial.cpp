@@ -5,6 +5,7 @@
 #include <random>
 #include <sstream>
 
+#include "base/json_writing.h"
 #include "emscape/base/error.h"
 
 namespace emscape::app {
@@ -20,7 +21,7 @@ constexpr double kManySeeks_s = 2;
 
 class ScriptText {
  public:
-  void add(const Json& command) { text_ += command.dump() + "\n"; }
+  void add(const Json& command) { text_ += dumpJson(command) + "\n"; }
   void mark(const char* text) { add({{"do", "mark"}, {"text", text}}); }
   void wait(double seconds) { add({{"do", "wait_s"}, {"seconds", seconds}}); }
   void waitFor(const char* state) {

@@ -16,6 +16,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
+#include "base/json_writing.h"
 
 namespace emscape::app {
 namespace {
@@ -89,7 +90,7 @@ Json number(const std::optional<double>& value) {
 }
 
 void printJson(const Json& result) {
-  printResult(result.dump(2) + "\n");
+  printResult(dumpJson(result, 2) + "\n");
   finishResult();
 }
 

@@ -10,6 +10,7 @@
 
 #include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
+#include "base/json_writing.h"
 #include "base/quantity_text.h"
 
 namespace emscape::view {
@@ -233,7 +234,7 @@ void ParameterRows::drawText(const Parameter& parameter) {
   const std::optional<std::string> typed = drawField(parameter, parameter.value, "by default");
   if (!typed) return;
   const bool is_text = parameter.type == Parameter::Type::text;
-  set(parameter.path, typed->empty() ? "null" : is_text ? Json(*typed).dump() : *typed);
+  set(parameter.path, typed->empty() ? "null" : is_text ? dumpJson(Json(*typed)) : *typed);
 }
 
 /// A number without a unit is in the unit that was shown.

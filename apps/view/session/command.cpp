@@ -9,6 +9,7 @@
 #include "apps/view/session/action.h"
 #include "apps/view/session/input_queue.h"
 #include "apps/view/session/session.h"
+#include "base/json_writing.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -75,7 +76,7 @@ std::string textOf(const NumberLimits& limits) {
 void requireType(const std::string& verb, const Argument& argument, const Json& value) {
   if (fits(value, argument.type)) return;
   throw Error(ErrorCode::bad_input, fmt::format("{}: {} is {}: expected {}", verb, argument.name,
-                                                value.dump(), nameOf(argument.type)));
+                                                dumpJson(value), nameOf(argument.type)));
 }
 
 }  // namespace
@@ -181,7 +182,7 @@ void requireAllowed(const Command& command) {
 std::string toString(const Command& command) {
   Json object{{"do", command.verb}};
   object.update(command.arguments);
-  return object.dump();
+  return dumpJson(object);
 }
 
 }  // namespace emscape::view

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "base/json_writing.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -46,8 +47,7 @@ void EventLog::write(const char* event, const Json& fields) {
   if (!open()) return;
   Json line{{"t_s", std::round(now_s() * 1e4) / 1e4}, {"event", event}};
   line.update(fields);
-  out_ << line.dump(-1, ' ', false, Json::error_handler_t::replace)
-       << std::endl;  // flushed, so that lines are complete after a crash
+  out_ << dumpJson(line) << std::endl;  // flushed, so that lines are complete after a crash
 }
 
 double processorTime_s() {

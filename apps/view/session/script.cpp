@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "apps/view/session/input_queue.h"
+#include "base/json_writing.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
 
@@ -131,7 +132,7 @@ bool Script::waitIsOver(const Line& line, const Session& session, double now_s) 
     if (!command.boolean("must", true)) return true;
     throw Error(ErrorCode::check_failed, line.location,
                 fmt::format("{} {}: not within {:g} s; the state is {}", command.verb, state, limit_s,
-                            session.report().dump()));
+                            dumpJson(session.report())));
   }
   return over;
 }
@@ -144,8 +145,9 @@ void Script::expect(const Line& line, const Session& session) const {
   }
   const Json& value = line.command.arguments["value"];
   if (!holds(report[key], op, value)) {
-    throw Error(ErrorCode::check_failed, line.location,
-                fmt::format("expected {} {} {}, but it is {}", key, op, value.dump(), report[key].dump()));
+    throw Error(
+        ErrorCode::check_failed, line.location,
+        fmt::format("expected {} {} {}, but it is {}", key, op, dumpJson(value), dumpJson(report[key])));
   }
 }
 
