@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "emscape/base/error.h"
 #include "study/files/map_metadata.h"
@@ -237,14 +238,19 @@ class NetCdf : public MapCollection {
     return variable;
   }
 
-  /// Meaning of the numbers of classes or categories.
+  /// Meaning of the numbers of classes or categories: different words, as CF requires, and the full labels,
+  /// one per line.
   static void addFlags(const gdal::Array& variable, const Map& map) {
     if (map.kind == MapKind::count) return;
     std::vector<std::int16_t> values;
-    std::string words;
+    std::string words, labels;
+    std::set<std::string> different;
     const auto addFlag = [&](long long value, const std::string& label) {
+      std::string word = flagWord(label);
+      while (!different.insert(word).second) word += "_";
+      words += (words.empty() ? "" : " ") + word;
+      labels += (labels.empty() ? "" : "\n") + label;
       values.push_back(static_cast<std::int16_t>(value));
-      words += (words.empty() ? "" : " ") + flagWord(label);
     };
     if (map.kind == MapKind::category) addFlag(-1, "none");
     for (std::size_t n = 0; n < map.labels.size(); ++n) addFlag(static_cast<long long>(n), map.labels[n]);
@@ -255,6 +261,7 @@ class NetCdf : public MapCollection {
       GDALAttributeWriteRaw(attribute.get(), values.data(), values.size() * sizeof(std::int16_t));
     }
     setText(variable, "flag_meanings", words);
+    setText(variable, "flag_labels", labels);
   }
 
   UnfinishedFile file_;

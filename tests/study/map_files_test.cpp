@@ -362,7 +362,25 @@ TEST_F(MapFiles, TheNetCdfHoldsTheValuesOverTimeAndHeight) {
   EXPECT_STREQ(root->OpenMDArray("covered_msl")->GetAttribute("flag_meanings")->ReadAsString(), "no yes");
   EXPECT_STREQ(root->OpenMDArray("best_msl")->GetAttribute("flag_meanings")->ReadAsString(),
                "none search_radar it_s third");
+  EXPECT_STREQ(root->OpenMDArray("best_msl")->GetAttribute("flag_labels")->ReadAsString(),
+               "none\nsearch radar\nit's\nthird");
   EXPECT_EQ(root->OpenMDArray("time")->GetUnit(), "seconds since 2026-06-01T06:00:00.000Z");
+}
+
+TEST_F(MapFiles, TheWordsOfEmittersInTheNetCdfDiffer) {
+  Map best = fixture.map(MapKind::category, 70, -1, 3);
+  best.labels = {"\u0441\u0435\u0432\u0435\u0440", "\u044E\u0436\u043D\u044B\u0439", "a b", "a_b"};
+  MapFolder maps(folder.path() / "a", fixture.study(), {"nc"});
+  maps.add(best);
+  maps.finish({});
+  const Opened file = open(folder / "a/maps/coverage.nc", GDAL_OF_MULTIDIM_RASTER);
+  ASSERT_NE(file, nullptr);
+  const auto variable = file->GetRootGroup()->OpenMDArray("best_msl");
+  ASSERT_NE(variable, nullptr);
+  EXPECT_STREQ(variable->GetAttribute("flag_meanings")->ReadAsString(),
+               "none __________ ___________ a_b a_b_");
+  EXPECT_EQ(variable->GetAttribute("flag_labels")->ReadAsString(),
+            "none\n" + best.labels[0] + "\n" + best.labels[1] + "\na b\na_b");
 }
 
 /// A picture of a KMZ file.
