@@ -33,7 +33,7 @@ def _plain(value: Any) -> Any:
         import numpy as np
 
         if isinstance(value, (np.datetime64, np.ndarray)) and value.dtype.kind == "M":
-            return np.datetime_as_string(value, unit="ms", timezone="UTC").tolist()
+            return np.datetime_as_string(value, unit="us", timezone="UTC").tolist()
         return value.tolist()
     raise TypeError(f"a {type(value).__name__} is no value; give None, a bool, number, text, path or time, or a list or dict of these")
 
@@ -42,10 +42,16 @@ def edit_texts(edits: Mapping[str, Any] | None) -> list[tuple[str, str]]:
     """Edits as (path, value); values are JSON, which is YAML. Raises UsageError, which names the path."""
     texts = []
     for path, value in (edits or {}).items():
+        if not isinstance(path, str):
+            raise UsageError(f"edit of {path!r}: a path is a text")
         try:
-            texts.append((path, json.dumps(value, ensure_ascii=False, default=_plain)))
+            text = json.dumps(value, ensure_ascii=False, default=_plain)
+            (path + text).encode("utf-8")
+        except UnicodeEncodeError as fault:
+            raise UsageError(f"edit of {path!r}: {fault.object[fault.start]!r} is not a character of UTF-8") from None
         except (TypeError, ValueError, OverflowError) as fault:
-            raise UsageError(f"edit of '{path}': {fault}") from None
+            raise UsageError(f"edit of {path!r}: {fault}") from None
+        texts.append((path, text))
     return texts
 
 
@@ -251,7 +257,10 @@ def load(file: PathName, edits: Mapping[str, Any] | None = None) -> Scenario:
     :param edits: as for ``Scenario.with_set``
     Raises ScenarioError, whose ``problems`` lists all errors with file, line and column.
     """
-    return _load_text(os.path.join(os.getcwd(), path_text(file)), edit_texts(edits))
+    text = path_text(file)
+    if not os.path.isabs(text):
+        text = os.path.join(os.getcwd(), text)
+    return _load_text(text, edit_texts(edits))
 
 
 def path_step(name: str) -> str:

@@ -94,6 +94,14 @@ def test_a_scenario_does_not_depend_on_the_folder_in_which_it_was_loaded(tmp_pat
     assert em.profile(scenario, "radar", (52.05, 5.05, 500))["verdict"]
 
 
+def test_an_absolute_name_needs_no_current_folder(quick, tmp_path, monkeypatch):
+    folder = tmp_path / "removed"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    folder.rmdir()
+    assert em.load(quick.file).hash == quick.hash
+
+
 def test_a_saved_scenario_is_the_same(quick, tmp_path):
     edited = quick.with_set({"emitters.radar.power_w": 500})
     edited.save(tmp_path / "saved.yaml")
@@ -132,6 +140,7 @@ CENTRAL_EUROPE = datetime.timezone(datetime.timedelta(hours=2))
         (datetime.datetime(900, 6, 1, 8, 0, 0, 250000, datetime.timezone.utc), "0900-06-01T08:00:00.250000+00:00"),
         (np.datetime64("2026-06-01T06:00:00.5"), "2026-06-01T06:00:00.500000+00:00"),
         (np.datetime64("2026-06-01T06:00:00", "ns"), "2026-06-01T06:00:00+00:00"),
+        (np.datetime64("2026-06-01T06:00:00.123456"), "2026-06-01T06:00:00.123456+00:00"),
     ],
 )
 def test_times_are_values_of_edits(quick, epoch, expected):
@@ -150,6 +159,7 @@ def test_the_own_epoch_and_that_of_pandas_are_values_of_edits(quick):
         (datetime.datetime(2026, 6, 1), "edit of 'epoch': the time 2026-06-01 00:00:00 has no time zone"),
         (range(3), "edit of 'epoch': a range is no value; give None, a bool"),
         ([decimal.Decimal(1)], "edit of 'epoch': a Decimal is no value"),
+        ("a\udcff", r"edit of 'epoch': '\\udcff' is not a character of UTF-8"),
     ],
 )
 def test_a_value_that_no_scenario_can_have_is_refused_with_its_path(quick, value, message):
@@ -157,6 +167,18 @@ def test_a_value_that_no_scenario_can_have_is_refused_with_its_path(quick, value
         quick.with_set({"epoch": value})
     with pytest.raises(em.UsageError, match=message):
         em.load(quick.file, {"epoch": value})
+
+
+@pytest.mark.parametrize(
+    ("path", "message"),
+    [
+        (1, "edit of 1: a path is a text"),
+        ("na\udcffme", r"edit of 'na\\udcffme': '\\udcff' is not a character of UTF-8"),
+    ],
+)
+def test_the_path_of_an_edit_is_a_text_in_utf_8(quick, path, message):
+    with pytest.raises(em.UsageError, match=message):
+        quick.with_set({path: 2})
 
 
 def test_a_path_is_a_value_of_an_edit(jamming):
