@@ -34,8 +34,6 @@ def command(*arguments: PathName, progress: Progress = None) -> Any:
         if not isinstance(argument, (str, bytes, os.PathLike)):
             raise UsageError(f"command: {argument!r} is neither a text nor a path; give each word as an argument of its own")
         words.append(utf8(argument) if isinstance(argument, str) else path_text(argument))
-    if next((word for word in words if not word.startswith("-")), "") == "view":
-        raise UsageError("command: 'view' has no result; start the window as a program: python -m emscape view ...")
     _, text = native.command(words, callback(progress))
     return json.loads(text) if text.strip() else None
 

@@ -151,8 +151,8 @@ def test_words_of_a_command_are_texts_or_paths(quick, tmp_path):
     assert em.command("info", SCENARIOS / "quick.yaml") == em.command("info", quick.file)
     with pytest.raises(em.UsageError, match=r"command: \['info', 'x.vdb'\] is neither a text nor a path"):
         em.command(["info", "x.vdb"])
-    for words in (("view", quick.file), ("--quiet", "view")):
-        with pytest.raises(em.UsageError, match="python -m emscape view"):
+    for words in (("view", quick.file), ("--quiet", "view"), ("--threads", "2", "view", quick.file)):
+        with pytest.raises(em.UsageError, match="'view' has no result; start the window as a program: .* -m emscape view"):
             em.command(*words)
 
 

@@ -1,6 +1,6 @@
 #include "apps/emscape/common/command_line.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <exception>
 #include <new>
@@ -80,7 +80,7 @@ int run(const Action& action) {
   } catch (const Error& error) {
     return fail(error.code(), error.what() + optionText(error.hint()));
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::other, "out of memory; use fewer voxels (region.dims), channels or --cache-mib");
+    return fail(ErrorCode::other, "out of memory; fewer voxels, pixels, emitters or times take less");
   } catch (const std::exception& error) {
     return fail(ErrorCode::other, failureText(error));
   } catch (...) {
@@ -190,6 +190,12 @@ void CommandLineCheck::parse(const std::vector<std::string>& arguments) {
 CommandResult commandResult(const std::vector<std::string>& arguments, const ProgressSink& progress) {
   CommandLine line;
   parse(line.app, arguments);
+  if (line.app.got_subcommand("view")) {  // it would replace the process
+    const std::string program =
+        program_command.empty() ? "emscape" : fmt::format("{}", fmt::join(program_command, " "));
+    throw Error(ErrorCode::usage,
+                fmt::format("'view' has no result; start the window as a program: {} view ...", program));
+  }
   line.global.json = true;
   line.global.quiet = true;
   line.global.progress = progress;

@@ -47,8 +47,8 @@ struct CommandResult {
 /// and removes the limit of threads that a subcommand has set.
 /// @param arguments  the subcommand and its options, without the program's name
 /// @param progress   may be empty; an exception that it throws ends the work and reaches the caller
-/// @throws Error with the code that the program exits with: (usage) for arguments that cannot be parsed,
-/// otherwise as thrown by the subcommand's functions
+/// @throws Error with the code that the program exits with: (usage) for arguments that cannot be parsed and
+/// for view, which replaces the process; otherwise as thrown by the subcommand's functions
 CommandResult commandResult(const std::vector<std::string>& arguments, const ProgressSink& progress);
 
 /// Sets the command that starts this program as another process, for `study --jobs`; the default is the
