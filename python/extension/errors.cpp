@@ -1,4 +1,5 @@
 /// Exceptions, messages, progress and forks.
+#include <fmt/format.h>
 #include <pthread.h>
 
 #include <atomic>
@@ -61,6 +62,12 @@ ProgressSink progressSink(const ProgressCall& call) {
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
     if (function) (*function)(step, fraction);
   };
+}
+
+void requireWithin(const char* name, double value, double min, double max, const char* unit) {
+  if (value >= min && value <= max) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("{} is {}, outside the allowed range {} to {}{}", name, value, min, max, unit));
 }
 
 std::vector<scenario::Edit> editsOf(const Edits& edits) {

@@ -75,13 +75,6 @@ std::vector<std::string> namesOf(const emfield::FieldSolver& solver) {
   return names;
 }
 
-/// @throws Error (usage) with the name, the value and the limits
-void requireWithin(const char* name, double value, double min, double max, const char* unit) {
-  if (value >= min && value <= max) return;
-  throw Error(ErrorCode::usage,
-              fmt::format("{} is {}, outside the allowed range {} to {}{}", name, value, min, max, unit));
-}
-
 /// FieldSolver for several threads, one at a time. The lock is taken with the interpreter unlocked, since its
 /// holder may wait for the interpreter in order to log.
 class Solver {

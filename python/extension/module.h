@@ -50,6 +50,10 @@ void refuseForkedProcess();
 /// step; signals are handled in between, so that Ctrl-C ends the work with KeyboardInterrupt.
 ProgressSink progressSink(const ProgressCall& call);
 
+/// @param unit  for the message, with a space before it, or empty. @throws Error (usage) with the name, the
+/// value and the limits
+void requireWithin(const char* name, double value, double min, double max, const char* unit);
+
 std::vector<scenario::Edit> editsOf(const Edits& edits);
 
 /// dims, spacing_m, first_center_m; frame, latitude_deg, longitude_deg and height_msl_m of its origin if it

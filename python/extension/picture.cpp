@@ -29,10 +29,7 @@ void checkValues(const std::optional<std::pair<float, float>>& range, const std:
     throw Error(ErrorCode::usage, fmt::format("iso_value {} is not a number", *iso_value));
   }
   const render::SettingLimits& limits = render::kExaggerationLimits;
-  if (!(exaggeration >= limits.min && exaggeration <= limits.max)) {
-    throw Error(ErrorCode::usage, fmt::format("exaggeration is {}, outside the allowed range {} to {}",
-                                              exaggeration, limits.min, limits.max));
-  }
+  requireWithin("exaggeration", exaggeration, limits.min, limits.max, "");
 }
 
 /// A frame of a field's volume, with the scenario's emitters and the tracks of its platforms.
