@@ -276,6 +276,22 @@ TEST(Study, ThePlanSaysWhatItWouldDo) {
   EXPECT_EQ(folder.files(), std::vector<std::string>{"study.yaml"});
 }
 
+TEST(Study, SaysThatNoVariantHasAValueOfAMeasure) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.write("study.yaml", "schema_version: 1\nscenario: " + shippedScenario("jamming.yaml") + R"(
+times: "40:42:2"
+cell_m: 4000
+sweep:
+  emitters.stand-off jammer.power_w: {values: [1, 10]}
+measures:
+  - {name: seen again, product: revisit, height: "agl:300"}
+)");
+  const ProgramResult result = run({"study", file, "-o", folder / "out"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.out, HasSubstr("seen again               no value in any variant\n"));
+}
+
 TEST(Study, SlurmScriptsRunTheParts) {
   const TemporaryFolder folder;
   compute({"study", study(folder), "-o", folder / "out dir", "--slurm", folder / "job.sh", "--chunks", "5",

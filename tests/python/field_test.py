@@ -4,12 +4,13 @@ import gc
 import multiprocessing
 import os
 import subprocess
+import sys
 import threading
 import time
 
 import numpy as np
 import pytest
-from conftest import SCENARIOS
+from conftest import ROOT, SCENARIOS
 
 import emscape as em
 from emscape._native import native as _emscape
@@ -264,3 +265,14 @@ def test_points_of_pyvista_are_voxel_centres(jamming):
                 point = image.find_closest_point((field.x_m[i], field.y_m[j], field.z_m[k]))
                 assert np.allclose(image.points[point], (field.x_m[i], field.y_m[j], field.z_m[k]))
                 assert image.point_data["jammer_to_signal_db"][point] == values[k, j, i]
+
+
+def test_the_example_runs_and_states_its_usage(tmp_path):
+    def example(*words):
+        return subprocess.run([sys.executable, ROOT / "examples" / "field.py", *words], capture_output=True, text=True)
+
+    done = example(SCENARIOS / "quick.yaml", "1", tmp_path / "field.vdb")
+    assert done.returncode == 0 and "with 1 kW: mean change" in done.stdout, done.stderr
+    assert em.read(tmp_path / "field.vdb").time_s == 1
+    wrong = example()
+    assert (wrong.returncode, wrong.stderr) == (1, "usage: python examples/field.py SCENARIO TIME_S VOLUME\n")
