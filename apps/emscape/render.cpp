@@ -14,6 +14,7 @@
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/common/value_range.h"
 #include "apps/emscape/report/real_time_report.h"
+#include "base/memory.h"
 #include "base/stopwatch.h"
 #include "base/whole_file.h"
 #include "emscape/base/error.h"
@@ -82,6 +83,14 @@ struct RenderOptions {
   std::string device_volume = "float";
 };
 
+/// @throws Error (other) for pictures that do not fit into memory
+void requireMemoryOf(const render::ImageSize& size) {
+  constexpr std::size_t kBytesPerPixel = sizeof(render::Rgba) + 4;  // cast and of 8 bits
+  requireMemory({fmt::format("a picture of {}x{} pixels", size.width, size.height),
+                 static_cast<std::size_t>(size.count()) * kBytesPerPixel, "a smaller --size takes less"},
+                {});
+}
+
 /// The view to draw: that of --state, or the default one, changed by the given options. They are parsed here,
 /// so that errors are reported before anything is computed.
 ViewState viewOf(const RenderOptions& options) {
@@ -109,6 +118,7 @@ ViewState viewOf(const RenderOptions& options) {
   take("--emitters", options.show_emitters, view.show_emitters);
   const std::vector<scenario::Edit>& edits = options.selection.edits;
   view.edits.insert(view.edits.end(), edits.begin(), edits.end());
+  requireMemoryOf(view.size);
   return view;
 }
 
@@ -491,7 +501,7 @@ Examples:
   command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off")
       ->default_str("on");
   command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,
-                    "Compute although elevation data is missing; the holes are drawn as such");
+                    "Compute although elevation data is missing; voxels over holes are masked");
   addMeshOptions(*command, options->selection.mesh, options->cells);
   addDeviceVolumeOption(*command, options->device_volume);
   addRealTimeOptions(*command, *options);

@@ -74,7 +74,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
       ->check(app::within(render::kStepLimits));
   app.add_flag("--shading", typed.shading, "Shading of dvr and mida; iso is always shaded");
   app.add_flag("--allow-missing-terrain", options.allow_missing_terrain,
-               "Compute although elevation data is missing; the holes are drawn as such");
+               "Compute although elevation data is missing; voxels over holes are masked");
   app.add_option("--script", options.script, "Script: JSON lines (docs/viewer.md)");
   app.add_option("--log", options.log, "Write the window's log, as JSON lines");
   app.add_flag_callback(
