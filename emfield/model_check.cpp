@@ -5,7 +5,6 @@
 #include "emfield/elevation_cut.h"
 #include "emfield/emitter_excess.h"
 #include "emscape/base/error.h"
-#include "propagation/air/rain.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
@@ -44,10 +43,6 @@ std::vector<std::string> checkModel(const Scenario& scenario, const Emitter& emi
       throw Error(ErrorCode::bad_input, locationOf(fault.origin, scenario, emitter), message);
     }
     warnings.push_back(message);
-  }
-  if (scenario.atmosphere.rain_mm_h > 0 && !propagation::kRainFrequency.holds(emitter.frequency_hz)) {
-    warnings.push_back(
-        inModel(emitter, "rain", outsideMessage(propagation::kRainFrequency, emitter.frequency_hz)));
   }
   return warnings;
 }

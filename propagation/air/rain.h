@@ -16,7 +16,7 @@ constexpr ModelLimit kRainFrequency{"frequency",
                                     Beyond::clamped_quietly,
                                     "range of the fits; below 1 GHz rain attenuates by less than 0.01 dB/km"};
 constexpr ModelLimit kRainRate{
-    "rain rate", "mm/h", 1, 0, 300, Beyond::warned, "beyond any rate that the recommendation's maps hold"};
+    "rain rate", "mm/h", 1, 0, 200, Beyond::refused, "the maps of P.837 have no higher rates"};
 constexpr const ModelLimit* kRainLimits[] = {&kRainFrequency, &kRainRate};
 
 /// gamma = k R^alpha (P.838-3 eq. (1)).

@@ -1,5 +1,6 @@
 // Sections of the environment: region, terrain, atmosphere, ground.
 #include "emscape/scenario/scenario.h"
+#include "propagation/air/rain.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"
 
@@ -19,6 +20,7 @@ using propagation::Atmosphere;
 using propagation::GasLosses;
 using propagation::Ground;
 using propagation::GroundKind;
+using propagation::kRainRate;
 using propagation::RadioClimate;
 using propagation::RefractionProfile;
 
@@ -79,7 +81,7 @@ const ObjectSpec& atmosphereSpec() {
           byDefault("temperature_k", number("K").from(180).to(340), Atmosphere{}.temperature_k,
                     "at sea level"),
           byDefault("vapour_g_m3", number("g/m3").from(0).to(100), Atmosphere{}.vapour_g_m3, "water vapour"),
-          byDefault("rain_mm_h", number("mm/h").from(0).to(200), Atmosphere{}.rain_mm_h,
+          byDefault("rain_mm_h", number("mm/h").from(kRainRate.min).to(kRainRate.max), Atmosphere{}.rain_mm_h,
                     "rain rate, everywhere up to rain_height_m; its loss is added to every model's"),
           optional("rain_height_m", number("m").from(0).to(20000),
                    "upper limit of the rain, above mean sea level; by default by latitude (P.839-2), 5000 in "

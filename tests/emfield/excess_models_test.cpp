@@ -539,6 +539,13 @@ TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {
                              "computed, with a warning"));
 }
 
+TEST(ExcessModels, RainBelowItsFrequenciesIsNegligibleAndNotWarnedOf) {
+  static_assert(propagation::kRainFrequency.beyond == propagation::Beyond::clamped_quietly);
+  const auto scenario = smoothEarth(PropagationModel::free_space, 300e6, 20);
+  scenario->atmosphere.rain_mm_h = 50;
+  EXPECT_THAT(checkModels(*scenario), ::testing::IsEmpty());
+}
+
 TEST(ExcessModels, HeightsOutsideAModelAreWarnedOfOnce) {
   auto scenario = smoothEarth(PropagationModel::p528, 1e9, 20);
   scenario->region.size_m.z = 30e3;

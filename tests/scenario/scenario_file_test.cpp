@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "emscape/base/units.h"
+#include "propagation/air/rain.h"
 #include "scenario/schema.h"
 #include "tests/scenario/scenario_files.h"
 #include "tests/support/errors.h"
@@ -107,12 +108,19 @@ TEST_F(ScenarioYaml, NamesHaveNoControlCharactersAndNoncharacters) {
               HasSubstr(":3:7: 'name' contains U+0085, a control character"));
   EXPECT_THAT(faultOf("name: mast", R"(name: "\u001b[31mred")"),
               HasSubstr("'name' contains U+001B, a control character"));
-  EXPECT_THAT(faultOf("{name: intercept", R"({name: "a\uFFFE")"),
   EXPECT_THAT(faultOf("name: valid", R"(name: "two\nlines")"),
               HasSubstr(":3:7: 'name' contains U+000A, a control character"));
   EXPECT_THAT(faultOf("name: mast", R"(name: "a\tb")"),
               HasSubstr("'name' contains U+0009, a control character"));
+  EXPECT_THAT(faultOf("{name: intercept", R"({name: "a\uFFFE")"),
               HasSubstr("'name' contains U+FFFE, which is no character"));
+}
+
+TEST_F(ScenarioYaml, RainRatesAreThoseOfTheModel) {
+  EXPECT_EQ(load(replaced(valid_, "rain_mm_h: 2", "rain_mm_h: 200"))->atmosphere.rain_mm_h, kRainRate.max);
+  EXPECT_EQ(kRainRate.beyond, Beyond::refused);
+  EXPECT_THAT(test::errorOf([&] { load(replaced(valid_, "rain_mm_h: 2", "rain_mm_h: 200.5")); }),
+              HasSubstr("'rain_mm_h' is 200.5, outside the allowed range 0 to 200 mm/h"));
 }
 
 TEST_F(ScenarioYaml, ReadsWhatModelsAreTold) {
