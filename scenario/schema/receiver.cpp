@@ -126,7 +126,8 @@ const ObjectSpec& targetSpec() {
           optional("rcs_file", kFile,
                    "CSV: azimuth_deg (clockwise from the nose), elevation_deg, rcs_dbsm; a full grid, "
                    "relative to the scenario's folder"),
-          byDefault("swerling", kSwerling, double(Target{}.swerling), "case of fluctuation"),
+          byDefault("swerling", kSwerling, double(Target{}.swerling),
+                    "case of fluctuation; radars with detection albersheim take it as 0, with a warning"),
       },
       {{"rcs_m2", "rcs_file"}}};
   return spec;

@@ -20,7 +20,7 @@ class LinkEnds : public ::testing::Test {
     return parseScenario(folder_.write("links.yaml", R"(schema_version: 1
 name: links
 region: {origin: {latitude_deg: 50, longitude_deg: 8}, size_m: [1e4, 1e4, 1e3], dims: [4, 4, 4]}
-platforms: [{name: site, position: {latitude_deg: 50, longitude_deg: 8, height_agl_m: 10}}]
+platforms: [{name: site, position: {latitude_deg: 50, longitude_deg: 8, height_agl_m: 10}}, {name: balloon, position: {latitude_deg: 50, longitude_deg: 8, height_agl_m: 900}}]
 emitters:
   - {name: mast, platform: site, kind: transmitter, frequency_hz: 4e8, power_w: 1, antenna: {pattern: isotropic}}
 )" + sections));
@@ -199,6 +199,32 @@ TEST_F(LinkEnds, ATargetHasOneCrossSectionOrATable) {
   EXPECT_NEAR(aircraft.table->rcs_dbsm(-135, 0), 15, 1e-12);
   EXPECT_NEAR(aircraft.table->rcs_dbsm(90, 45), 10, 1e-12);
   EXPECT_NEAR(aircraft.rcsTowards_m2(90, 0), 100, 1e-9);
+}
+
+TEST_F(LinkEnds, AFluctuatingTargetOfARadarForSteadyTargetsIsWarnedOfOnce) {
+  const auto with = [this](const std::string& detection) {
+    std::string radars;
+    for (const std::string name : {"near", "far"}) {
+      radars += "  - {name: " + name +
+                ", platform: site, kind: radar, frequency_hz: 3e9, power_w: 1e4, "
+                "antenna: {pattern: isotropic}, receiver: {noise_figure_db: 4, bandwidth_hz: 1e6, "
+                "swerling: 0, target_rcs_m2: 1, detection: " +
+                detection + "}}\n";
+    }
+    return parse(radars + R"(targets:
+  - {name: own, platform: site, rcs_m2: 1}
+  - {name: steady, platform: balloon, rcs_m2: 1, swerling: 0}
+  - {name: aircraft, platform: balloon, rcs_m2: 1}
+)");
+  };
+  const ParseResult result = with("albersheim");
+  ASSERT_TRUE(result.scenario);
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].severity, Severity::warning);
+  EXPECT_EQ(result.problems[0].message,
+            "the target 'aircraft' of swerling 1 is taken as steady (swerling 0) by radars whose 'detection' "
+            "is albersheim: 'near', 'far'");
+  EXPECT_TRUE(with("shnidman").problems.empty());
 }
 
 TEST_F(LinkEnds, FaultsOfTargetsAndTheirTablesAreNamed) {
