@@ -74,6 +74,12 @@ SitePosition positionOnLeg(const SitePosition& a, const SitePosition& b, double 
 
 }  // namespace
 
+std::size_t legAt(const std::vector<TrackPoint>& track, double t_s) {
+  const auto next = std::upper_bound(track.begin() + 1, track.end() - 1, t_s,
+                                     [](double t, const TrackPoint& point) { return t < point.t_s; });
+  return static_cast<std::size_t>(next - track.begin()) - 1;
+}
+
 TrackPoint pointAt(const Platform& platform, double t_s) {
   const std::vector<TrackPoint>& track = platform.track;
   TrackPoint point = track.front();
@@ -82,10 +88,7 @@ TrackPoint pointAt(const Platform& platform, double t_s) {
     point.pitch_deg = platform.attitude.pitch_deg;
     point.roll_deg = platform.attitude.roll_deg;
   } else {
-    // The leg that begins at or before t_s: the last one at the end of the track.
-    const auto next = std::upper_bound(track.begin() + 1, track.end() - 1, t_s,
-                                       [](double t, const TrackPoint& p) { return t < p.t_s; });
-    const std::size_t i = static_cast<std::size_t>(next - track.begin()) - 1;
+    const std::size_t i = legAt(track, t_s);
     const TrackPoint& a = track[i];
     const TrackPoint& b = track[i + 1];
     const double part = std::clamp((t_s - a.t_s) / (b.t_s - a.t_s), 0.0, 1.0);

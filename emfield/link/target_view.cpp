@@ -10,17 +10,17 @@
 namespace emscape::emfield {
 namespace {
 
-/// Shortens an interval around t_s to the leg of a track that begins at or before t_s, at the end of the
-/// track to the last one.
+/// Shortens an interval around t_s to the leg of a track at t_s, before or after the track to the time there.
 void clipToLeg(const std::vector<scenario::TrackPoint>& track, double t_s, double& from_s, double& to_s) {
   if (track.size() < 2) return;
-  for (const scenario::TrackPoint& point : track) {
-    const bool ends = point.t_s > t_s || (point.t_s == t_s && &point == &track.back());
-    if (ends) {
-      to_s = std::min(to_s, point.t_s);
-    } else {
-      from_s = std::max(from_s, point.t_s);
-    }
+  if (t_s < track.front().t_s) {
+    to_s = std::min(to_s, track.front().t_s);
+  } else if (t_s > track.back().t_s) {
+    from_s = std::max(from_s, track.back().t_s);
+  } else {
+    const std::size_t leg = scenario::legAt(track, t_s);
+    from_s = std::max(from_s, track[leg].t_s);
+    to_s = std::min(to_s, track[leg + 1].t_s);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "emscape/base/units.h"
 
@@ -33,6 +34,13 @@ TEST(Platform, FixedSiteKeepsPlaceAndAttitude) {
   EXPECT_EQ(at.heading_deg, 270);
   EXPECT_EQ(at.pitch_deg, 2);
   EXPECT_EQ(at.roll_deg, 3);
+}
+
+TEST(Platform, LegsBeginAtTheirFirstPointAndTheLastOneIncludesItsEnd) {
+  const std::vector<TrackPoint> track = {point(0, 50, 0, 0), point(10, 50, 1, 0), point(30, 51, 1, 0)};
+  const std::pair<double, std::size_t> expected[] = {{-5, 0}, {0, 0},  {9.9, 0}, {10, 1},
+                                                     {29, 1}, {30, 1}, {31, 1}};
+  for (const auto& [t_s, leg] : expected) EXPECT_EQ(legAt(track, t_s), leg) << t_s;
 }
 
 TEST(Platform, MovesAlongTheGeodesicInEvenTime) {

@@ -1,6 +1,7 @@
 /// Platforms: a fixed site or a track.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,6 +45,11 @@ struct Platform {
   std::string track_file;   ///< empty for a fixed site
   SourceLocation location;  ///< in the scenario
 };
+
+/// Index of the first point of a track's leg at t_s: the leg that begins at or before t_s; before the track
+/// the first one, at its end and after it the last one.
+/// @param track  at least two points
+std::size_t legAt(const std::vector<TrackPoint>& track, double t_s);
 
 /// Position and attitude of a platform at t_s: position along the geodesic between the points before and
 /// after, height (above the datum of the track) and attitude linear in time, heading and roll along the
