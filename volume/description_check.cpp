@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/position_limits.h"
 #include "base/quantity_text.h"
 
 namespace emscape::volume {
@@ -15,10 +16,9 @@ struct Limits {
 
 constexpr Limits kSpacing{kMinSpacing_m, kMaxSpacing_m, "m"};
 constexpr Limits kTime{-kMaxTime_s, kMaxTime_s, "s"};
-constexpr Limits kLatitude{-90, 90, "deg"};
-constexpr Limits kLongitude{-180, 180, "deg"};
-/// The heights of a scenario.
-constexpr Limits kHeight{-12000, 100000, "m"};
+constexpr Limits kLatitude{-PositionLimits::kLatitude_deg, PositionLimits::kLatitude_deg, "deg"};
+constexpr Limits kLongitude{-PositionLimits::kLongitude_deg, PositionLimits::kLongitude_deg, "deg"};
+constexpr Limits kHeight{PositionLimits::kLowest_m, PositionLimits::kHighest_m, "m"};
 constexpr Limits kFloat{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::max(), ""};
 
 /// False for NaN.

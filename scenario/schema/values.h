@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/position_limits.h"
 #include "document/schema.h"
 #include "scenario/schema.h"
 
@@ -21,9 +22,12 @@ ValueSpec choiceUpTo(Enum last) {
 inline const ValueSpec kInteger = document::spec::simple(document::ValueType::integer);
 inline const ValueSpec kName = document::spec::textOf(document::ValueType::text, 200).printable();
 inline const ValueSpec kFile = document::spec::textOf(document::ValueType::file, 4096);
-inline const ValueSpec kLatitude = document::spec::number("deg").from(-90).to(90);
-inline const ValueSpec kLongitude = document::spec::number("deg").from(-180).to(180);
-inline const ValueSpec kHeight = document::spec::number("m").from(-12000).to(100000);
+inline const ValueSpec kLatitude =
+    document::spec::number("deg").from(-PositionLimits::kLatitude_deg).to(PositionLimits::kLatitude_deg);
+inline const ValueSpec kLongitude =
+    document::spec::number("deg").from(-PositionLimits::kLongitude_deg).to(PositionLimits::kLongitude_deg);
+inline const ValueSpec kHeight =
+    document::spec::number("m").from(PositionLimits::kLowest_m).to(PositionLimits::kHighest_m);
 inline const ValueSpec kHeightAboveGround = document::spec::number("m").from(0).to(100000);
 inline const ValueSpec kAngle = document::spec::number("deg").from(-360).to(360);
 inline const ValueSpec kElevation = document::spec::number("deg").from(-90).to(90);
