@@ -15,6 +15,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 
 #include "emscape/base/error.h"
@@ -25,8 +26,14 @@ namespace {
 
 constexpr char kMarker[] = ".part-";
 
-/// Endings of files that SQLite and GDAL make beside a temporary, and of the temporary itself.
-constexpr const char* kEndings[] = {"", "-journal", "-wal", "-shm", ".aux.xml"};
+/// Endings of files that SQLite and GDAL make beside a temporary.
+constexpr std::string_view kEndings[] = {"-journal", "-wal", "-shm", ".aux.xml"};
+
+constexpr std::size_t longestEnding() {
+  std::size_t longest = 0;
+  for (const std::string_view ending : kEndings) longest = std::max(longest, ending.size());
+  return longest;
+}
 
 std::string causeOf(int error_number) {
   return error_number == 0 ? "the system gives no cause" : std::generic_category().message(error_number);
@@ -65,8 +72,7 @@ std::string hexText(std::uint32_t number) {
 std::string stemOfTemporaries(const fs::path& path) {
   constexpr std::size_t kMaxName = 255;
   constexpr std::size_t kMaxWriter = 9 + 1 + 8;  // process, machine
-  constexpr std::size_t kMaxEnding = 8;          // the longest of kEndings
-  constexpr std::size_t kMaxStem = kMaxName - (sizeof kMarker - 1) - kMaxWriter - kMaxEnding;
+  constexpr std::size_t kMaxStem = kMaxName - (sizeof kMarker - 1) - kMaxWriter - longestEnding();
   std::string name = path.filename().string();
   if (name.size() > kMaxStem) {
     const std::string checksum = '~' + hexText(crc32Of(name));
@@ -86,8 +92,8 @@ struct Writer {
 /// The process that wrote a temporary, or a file beside it.
 Writer writerOf(const fs::path& path) {
   std::string name = path.filename().string();
-  for (const std::string ending : kEndings) {
-    if (!ending.empty() && name.size() > ending.size() &&
+  for (const std::string_view ending : kEndings) {
+    if (name.size() > ending.size() &&
         name.compare(name.size() - ending.size(), ending.size(), ending) == 0) {
       name.resize(name.size() - ending.size());
       break;
@@ -271,7 +277,9 @@ void writeWhole(const fs::path& path, const std::function<void(std::ostream&)>& 
 
 void removeTemporary(const fs::path& temporary) {
   std::error_code ignored;
-  for (const char* ending : kEndings) fs::remove(temporary.string() + ending, ignored);
+  fs::remove(temporary, ignored);
+  for (const std::string_view ending : kEndings)
+    fs::remove(temporary.string() + std::string(ending), ignored);
 }
 
 int removeStaleTemporaries(const fs::path& folder) {
