@@ -30,8 +30,8 @@
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
 #include "scenario/antenna/shapes.h"
-#include "scenario/refractivity_file.h"
 #include "scenario/csv_columns.h"
+#include "scenario/refractivity_file.h"
 
 namespace emscape::app {
 namespace {
@@ -276,7 +276,6 @@ Json describeElevation(const std::string& file) {
           {"notes", info.notes}};
 }
 
-Json describeAntenna(const std::string& file) {
 /// @throws Error (bad_input) for other CSV files than an antenna's grid
 void requireAntennaColumns(const std::string& file) {
   const std::vector<std::string> names = scenario::csvColumnsOf(file);
@@ -292,10 +291,11 @@ void requireAntennaColumns(const std::string& file) {
   }
 }
 
+Json describeAntenna(const std::string& file) {
   // A CSV grid contains only a shape: its gain is in the scenario.
   const bool has_gain = file.size() < 4 || file.substr(file.size() - 4) != ".csv";
-  const scenario::AntennaPtr antenna =
   if (!has_gain) requireAntennaColumns(file);
+  const scenario::AntennaPtr antenna =
       scenario::readAntenna(file, has_gain ? std::numeric_limits<double>::quiet_NaN() : 0.0);
   return {{"kind", "antenna"},
           {"file", file},
