@@ -58,7 +58,9 @@ TEST(ScanSweep, HasNoPartsThatAreRoundingOfTimes) {
       EXPECT_NEAR(sweep.arcs[0].share, 1, 1e-9);
       const double middle_s = step / 10.0 + 0.05;
       EXPECT_EQ(sweep.arcs[0].elevation_deg, beamAt(scan, middle_s).elevation_deg);
-      if (scan.kind != ScanKind::dwell_list) EXPECT_EQ(lastPassesOf(emitter, step / 10.0, 0.1).size(), 1u);
+      if (scan.kind != ScanKind::dwell_list) {
+        EXPECT_EQ(lastPassesOf(emitter, step / 10.0, 0.1).size(), 1u);
+      }
     }
   }
 }
