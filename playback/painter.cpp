@@ -298,8 +298,8 @@ void Painter::setLegend() {
   annotations_.legend = render::legendOf(frame_->info(), transferFunction());
   if (style_.settings.mode == render::CompositingMode::iso)
     annotations_.legend->iso_value = renderer_.isoValue();
-  if (scene_ && frame_->info().categorical) {
-    annotations_.legend->categories = categoriesOf(frame_->info(), *scene_->scenario);
+  if (frame_->info().categorical) {
+    annotations_.legend->categories = categoriesOf(frame_->info(), scene_ ? scene_->scenario.get() : nullptr);
   }
   const double space = render::overlayMargins(style_.size, annotations_).right;
   if (std::exchange(legend_space_, space) != space) fitCamera();

@@ -7,6 +7,7 @@
 #include "emscape/base/geoid.h"
 #include "emscape/base/parallel.h"
 #include "emscape/emfield/categories.h"
+#include "emscape/volume/labels.h"
 
 namespace emscape::playback {
 namespace {
@@ -95,14 +96,24 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
 }
 
 std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info,
-                                           const scenario::Scenario& scenario) {
+                                           const scenario::Scenario* scenario) {
   const std::string name = info.quantity.substr(0, info.quantity.find(':'));
+  const std::vector<std::string> labels = volume::labelsOf(info);
+  const auto hash = info.extra.find("scenario_hash");
+  if (scenario != nullptr && hash != info.extra.end() && hash->second != scenario->hash) scenario = nullptr;
   std::vector<render::Category> categories;
   for (const scenario::QuantityInfo& quantity : scenario::quantityTable()) {
-    if (name != quantity.name) continue;
-    const std::vector<std::string> names = emfield::categoryNames(scenario, quantity.quantity);
-    for (const int index : emfield::categoriesOf(scenario, quantity.quantity))
+    if (scenario == nullptr || name != quantity.name) continue;
+    const std::vector<std::string> names = emfield::categoryNames(*scenario, quantity.quantity);
+    if (!labels.empty() && labels != names) continue;
+    for (const int index : emfield::categoriesOf(*scenario, quantity.quantity))
       categories.push_back({index, names[static_cast<std::size_t>(index)]});
+    return categories;
+  }
+  for (std::size_t index = 0; index < labels.size(); ++index) {
+    const auto value = static_cast<float>(index);
+    if (value >= info.range_min && value <= info.range_max)
+      categories.push_back({static_cast<int>(index), labels[index]});
   }
   return categories;
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "emscape/base/log.h"
+#include "emscape/volume/file.h"
+#include "emscape/volume/labels.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {
@@ -67,6 +69,44 @@ TEST(Painter, AnIsosurfaceThatShowsNothingIsAnErrorOrAWarning) {
   setLogSink({});
   EXPECT_THAT(messages, testing::ElementsAre("iso value 99: made ranges from 0 to 2; no surface is drawn"));
   EXPECT_TRUE(painter.draw({}).complete);
+}
+
+TEST(Painter, TheLegendOfIndicesHasTheNamesOfTheVolume) {
+  const TemporaryFolder folder;
+  volume::DenseVolume volume;
+  volume.grid.dims = {2, 2, 1};
+  volume.grid.spacing_m = {100, 100, 100};
+  volume.grid.frame = {FrameKind::altitude, 52, 5, 0};
+  volume.grid.georeferenced = true;
+  volume.info.quantity = "dominant_emitter";
+  volume.info.categorical = true;
+  volume.info.floor = -1;
+  volume.info.range_min = 1;
+  volume.info.range_max = 2;
+  volume.info.extra[volume::kLabelsKey] = "radar\njammer\nradio\nlink";
+  volume.values = {-1, 1, 2, 2};
+  const auto namesWith = [&](const std::string& scenario) {
+    volume::writeVolumes(folder / "a.vdb", {&volume});
+    FrameSelection selection;
+    selection.input = folder / "a.vdb";
+    selection.scenario = scenario;
+    const auto source = openFrameSource(selection, {});
+    PictureStyle style;
+    style.size = {160, 120};
+    Painter painter(style, *source, {});
+    painter.setFrame(source->frame(0));
+    std::string names;
+    for (const render::Category& category : painter.annotations().legend->categories)
+      names += std::to_string(category.index) + " " + category.name + ", ";
+    return names;
+  };
+  EXPECT_EQ(namesWith(""), "1 jammer, 2 radio, ") << "those in the range";
+  const std::string quick = quickScenario(folder);
+  EXPECT_EQ(namesWith(quick), "1 jammer, 2 radio, ") << "a scenario with other emitters";
+  volume.info.extra[volume::kLabelsKey] = "radar\ntransmitter";
+  EXPECT_EQ(namesWith(quick), "0 radar, 1 transmitter, ") << "all that can occur in its scenario";
+  volume.info.extra["scenario_hash"] = "0123";
+  EXPECT_EQ(namesWith(quick), "1 transmitter, ") << "another scenario with the same names";
 }
 
 }  // namespace

@@ -28,8 +28,10 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
 /// all frames.
 std::vector<render::Track> tracksOf(const LoadedScenario& scene, const volume::Grid& grid, double time_s);
 
-/// The categories of a volume of indices that can occur in its scenario, for legends.
+/// The categories of a volume of indices, for legends: those that can occur in its scenario; if it was
+/// computed from another one, or names its indices otherwise, those of its own names that are in its range.
+/// @param scenario  may be null
 std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info,
-                                           const scenario::Scenario& scenario);
+                                           const scenario::Scenario* scenario);
 
 }  // namespace emscape::playback
