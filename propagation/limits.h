@@ -24,7 +24,8 @@ constexpr double kNoLimit = HUGE_VAL;
 enum class Beyond {
   warned,           ///< computed without change; the result has a warning
   clamped,          ///< computed with the nearest allowed value; the result has a warning
-  clamped_quietly,  ///< the same without a warning: it makes little difference
+  clamped_quietly,  ///< computed with the nearest allowed value, without a warning: the difference is
+                    ///< negligible
   refused,          ///< no result: NaN in loops, an error where input comes in
 };
 

@@ -34,7 +34,9 @@ struct SweptDwell {
 
 /// The sum of the shares is the part of the interval in which the emitter is active.
 struct ScanSweep {
-  std::vector<SweptArc> arcs;      ///< of an antenna that turns; equal arcs of sweeps are one
+  /// Of an antenna that turns. Equal arcs of a rotating or sweeping beam are one, with the sum of their
+  /// shares and passes; dwells are one arc each.
+  std::vector<SweptArc> arcs;
   std::vector<SweptDwell> dwells;  ///< of an array that is steered
 
   bool empty() const { return arcs.empty() && dwells.empty(); }

@@ -6,13 +6,14 @@
 
 namespace emscape::propagation {
 
-constexpr ModelLimit kGasesFrequency{"frequency",
-                                     "GHz",
-                                     1e9,
-                                     1,
-                                     1000,
-                                     Beyond::clamped_quietly,
-                                     "of this function; in the field line by line at every frequency"};
+constexpr ModelLimit kGasesFrequency{
+    "frequency",
+    "GHz",
+    1e9,
+    1,
+    1000,
+    Beyond::clamped_quietly,
+    "of the function of P.676 alone; the field computes line by line at every frequency"};
 constexpr ModelLimit kGasesSlantFrequency{
     "frequency (slant path)", "GHz", 1e9, 1, 350, Beyond::refused, "range of the equivalent heights"};
 constexpr ModelLimit kGasesElevation{

@@ -19,7 +19,7 @@ constexpr double kMaxTime_s = 1e9;
 /// 9999
 void requireTime(const Clock& clock, double t_s);
 /// The times begin + i * step up to end, inclusive; no error accumulates. If begin and step are decimal
-/// numbers, each time is the double nearest to the decimal number, as a user writes it.
+/// numbers of up to 12 digits, each time is the double nearest to the decimal number, as a user writes it.
 /// @param limit_s  limit of begin and end, before and after t = 0
 /// @throws Error (usage) if begin or end is not within the limit, end < begin, step <= 0, or there are more
 /// than 10^7 times
