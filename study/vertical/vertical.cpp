@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "emfield/station.h"
 #include "emscape/base/error.h"
@@ -61,6 +62,40 @@ std::vector<double> evenly(double begin, double end, int count) {
   return values;
 }
 
+/// The channel of one emitter by itself.
+std::optional<std::size_t> channelOf(int emitter, const std::vector<emfield::Channel>& channels) {
+  const auto found = std::find_if(channels.begin(), channels.end(), [&](const emfield::Channel& channel) {
+    return channel.emitters == std::vector<int>{emitter};
+  });
+  if (found == channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - channels.begin());
+}
+
+/// @param scenario  with the request's output
+/// @throws Error (usage)
+void requireValueOfOneEmitter(const scenario::Scenario& scenario, const VerticalRequest& request) {
+  const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
+  if (!quantity.categorical && channelOf(request.emitter, emfield::channelsOf(scenario, {}))) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("quantity '{}' has no value of one emitter by itself", quantity.name));
+}
+
+/// Removes the emitters that do not affect the value of one emitter.
+/// @return its new index
+int keepOnly(scenario::Scenario& scenario, int emitter, bool with_jammers) {
+  std::vector<scenario::Emitter> kept;
+  int index = 0;
+  for (std::size_t i = 0; i < scenario.emitters.size(); ++i) {
+    const bool is_it = static_cast<int>(i) == emitter;
+    const bool jams = scenario.emitters[i].kind == scenario::EmitterKind::jammer;
+    if (is_it) index = static_cast<int>(kept.size());
+    if (is_it || (jams && with_jammers)) kept.push_back(std::move(scenario.emitters[i]));
+  }
+  scenario.emitters = std::move(kept);
+  scenario.output.wanted_emitter = scenario.output.wanted_emitter == emitter ? index : -1;
+  return index;
+}
+
 /// The field of the request over a scenario, by cut.
 struct Solved {
   std::vector<std::vector<float>> values, ground_msl_m;
@@ -69,8 +104,10 @@ struct Solved {
 
 class Solver {
  public:
-  Solver(const VerticalRequest& request, const VerticalDiagram& diagram, emfield::FieldOptions options)
-      : request_(request), options_(std::move(options)) {
+  /// @param emitter  index in the scenarios of solve()
+  Solver(const VerticalRequest& request, int emitter, const VerticalDiagram& diagram,
+         emfield::FieldOptions options)
+      : request_(request), emitter_(emitter), options_(std::move(options)) {
     auto surface = std::make_shared<emfield::Surface>();
     surface->width = request.ranges;
     surface->height = static_cast<int>(request.azimuths_deg.size());
@@ -90,17 +127,9 @@ class Solver {
 
   Solved solve(const scenario::Snapshot& snapshot, const scenario::TerrainPtr& terrain) const {
     emfield::FieldSolver solver(snapshot.scenario, terrain, options_);
-    const std::vector<emfield::Channel>& channels = solver.channels();
-    const auto channel =
-        std::find_if(channels.begin(), channels.end(), [&](const emfield::Channel& candidate) {
-          return candidate.emitters == std::vector<int>{request_.emitter};
-        });
-    if (channel == channels.end() || scenario::info(request_.quantity).categorical) {
-      throw Error(ErrorCode::usage, fmt::format("quantity '{}' has no value of one emitter by itself",
-                                                scenario::info(request_.quantity).name));
-    }
+    const std::size_t channel = *channelOf(emitter_, solver.channels());
     solver.update(snapshot);
-    const auto volume = solver.volumes()[static_cast<std::size_t>(channel - channels.begin())].host();
+    const auto volume = solver.volumes()[channel].host();
     Solved solved;
     solved.warnings = solver.warnings();
     const std::size_t ranges = static_cast<std::size_t>(request_.ranges);
@@ -127,6 +156,7 @@ class Solver {
 
  private:
   const VerticalRequest& request_;
+  int emitter_;
   emfield::FieldOptions options_;
 };
 
@@ -227,21 +257,19 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
                                 const scenario::TerrainPtr& terrain, const VerticalRequest& request,
                                 emfield::FieldOptions options) {
   checkRequest(*scenario, request);
-  const auto e = static_cast<std::size_t>(request.emitter);
   auto own = std::make_shared<scenario::Scenario>(*scenario);
   own->output.quantities = {scenario::info(request.quantity).name};
   own->output.radar_look = scenario::RadarLook::target;
   own->output.combine = scenario::CombineMode::per_emitter;
   own->output.interval = {};
+  requireValueOfOneEmitter(*own, request);
+  const int index = keepOnly(*own, request.emitter, scenario::needsJammer(request.quantity));
+  const auto e = static_cast<std::size_t>(index);
   scenario::Snapshot snapshot = scenario::instantAt(own, terrain.get(), request.time_s);
   const scenario::EmitterState& state = snapshot.emitters[e];
   if (!state.active) {
     throw Error(ErrorCode::usage,
                 fmt::format("'{}' is off at t = {:g} s", own->emitters[e].name, request.time_s));
-  }
-  for (std::size_t i = 0; i < snapshot.emitters.size(); ++i) {
-    const bool jams = own->emitters[i].kind == scenario::EmitterKind::jammer;
-    if (i != e && !(jams && scenario::needsJammer(request.quantity))) snapshot.emitters[i].active = false;
   }
   const scenario::TerrainPtr below = request.smooth_earth ? nullptr : terrain;
   const double surface_msl_m = request.smooth_earth ? putOnSmoothEarth(snapshot, *own, state, terrain) : 0;
@@ -274,7 +302,7 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
   }
   diagram.heights_m = evenly(lowest_m, request.max_height_m, request.heights);
 
-  const Solver solver(request, diagram, std::move(options));
+  const Solver solver(request, index, diagram, std::move(options));
   Solved solved = solver.solve(snapshot, below);
   diagram.warnings = std::move(solved.warnings);
   for (std::size_t cut = 0; cut < request.azimuths_deg.size(); ++cut) {

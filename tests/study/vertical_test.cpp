@@ -304,6 +304,24 @@ TEST(Vertical, PicturesHaveRoomForAllPanels) {
   checkVerticalPlot({10, 10}, 1);
 }
 
+TEST(Vertical, TakesNoMemoryForEmittersThatItDoesNotShow) {
+  auto scenario = std::make_shared<scenario::Scenario>(*jacksboro());
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
+  VerticalRequest request = small(2, HeightReference::ground);
+  request.quantity = scenario::Quantity::power_density_dbwm2;
+  request.ranges = 400;
+  request.heights = 300;
+  scenario->emitters[2].propagation = {};
+  scenario->emitters[2].propagation.model = propagation::PropagationModel::free_space;
+  const VerticalDiagram few = computeVertical(scenario, terrain, request, {});
+  scenario->emitters.insert(scenario->emitters.begin(), 30000, scenario->emitters[2]);
+  request.emitter += 30000;
+  const VerticalDiagram many = computeVertical(scenario, terrain, request, {});
+  EXPECT_EQ(many.emitter, few.emitter);
+  EXPECT_THAT(many.cuts[1].values,
+              ::testing::Pointwise(::testing::NanSensitiveFloatEq(), few.cuts[1].values));
+}
+
 TEST(Vertical, RefusesWhatItCannotDo) {
   const auto scenario = jacksboro();
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
