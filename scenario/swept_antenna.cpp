@@ -108,32 +108,37 @@ class PowerRow {
   std::vector<std::vector<double>> runs_;  ///< runs_[n][i]: the largest of the 2^n entries from i on
 };
 
-/// The rows of one elevation, one for each tilt of the sweep's arcs.
-class Rows {
- public:
-  Rows(const PatternView& pattern, const ScanSweep& sweep, int azimuths, double elevation_rad) {
+/// The different tilts of a sweep's arcs.
+struct Tilts {
+  std::vector<double> tilts_deg;
+  std::vector<std::size_t> of_arc;  ///< index of each arc's tilt
+
+  explicit Tilts(const ScanSweep& sweep) {
     for (const SweptArc& arc : sweep.arcs) {
-      if (indexOf(arc.elevation_deg) < rows_.size()) continue;
-      tilts_deg_.push_back(arc.elevation_deg);
-      rows_.emplace_back(pattern, azimuths, elevation_rad, degToRad(arc.elevation_deg));
+      const auto found = std::find(tilts_deg.begin(), tilts_deg.end(), arc.elevation_deg);
+      of_arc.push_back(static_cast<std::size_t>(found - tilts_deg.begin()));
+      if (found == tilts_deg.end()) tilts_deg.push_back(arc.elevation_deg);
     }
   }
-  PowerRow& of(const SweptArc& arc) { return rows_[indexOf(arc.elevation_deg)]; }
-
- private:
-  std::size_t indexOf(double tilt_deg) const {
-    return static_cast<std::size_t>(std::find(tilts_deg_.begin(), tilts_deg_.end(), tilt_deg) -
-                                    tilts_deg_.begin());
-  }
-  std::vector<double> tilts_deg_;
-  std::vector<PowerRow> rows_;
 };
 
+/// The rows of one elevation, one for each tilt.
+std::vector<PowerRow> rowsOf(const PatternView& pattern, const Tilts& tilts, int azimuths,
+                             double elevation_rad) {
+  std::vector<PowerRow> rows;
+  rows.reserve(tilts.tilts_deg.size());
+  for (const double tilt_deg : tilts.tilts_deg)
+    rows.emplace_back(pattern, azimuths, elevation_rad, degToRad(tilt_deg));
+  return rows;
+}
+
 /// The power of an interval at one azimuth of a row.
-double powerOf(Rows& rows, const ScanSweep& sweep, double azimuth_deg, SweptPattern pattern) {
+double powerOf(std::vector<PowerRow>& rows, const Tilts& tilts, const ScanSweep& sweep, double azimuth_deg,
+               SweptPattern pattern) {
   double power = 0;
-  for (const SweptArc& arc : sweep.arcs) {
-    PowerRow& row = rows.of(arc);
+  for (std::size_t n = 0; n < sweep.arcs.size(); ++n) {
+    const SweptArc& arc = sweep.arcs[n];
+    PowerRow& row = rows[tilts.of_arc[n]];
     // The beam is at first..first + width; these are the angles of the azimuth relative to it.
     const double begin_deg = azimuth_deg - arc.first_deg - arc.width_deg,
                  end_deg = azimuth_deg - arc.first_deg;
@@ -146,15 +151,28 @@ double powerOf(Rows& rows, const ScanSweep& sweep, double azimuth_deg, SweptPatt
   return power;
 }
 
-/// The power of an interval of dwells in a direction of the array's frame.
-double powerOf(const PatternView& view, const ScanSweep& sweep, const Vec3f& direction,
-               SweptPattern pattern) {
-  double power = 0;
+/// A dwell as direction cosines of its steering.
+struct Steering {
+  float u = 0, v = 0;
+  double share = 0;
+};
+
+std::vector<Steering> steeringsOf(const ScanSweep& sweep) {
+  std::vector<Steering> steerings;
   for (const SweptDwell& dwell : sweep.dwells) {
     const double azimuth_rad = degToRad(dwell.azimuth_deg), elevation_rad = degToRad(dwell.elevation_deg);
-    const auto steer_u = static_cast<float>(std::sin(azimuth_rad) * std::cos(elevation_rad));
-    const auto steer_v = static_cast<float>(std::sin(elevation_rad));
-    const float amplitude = patternAmplitude(view, direction, steer_u, steer_v);
+    steerings.push_back({static_cast<float>(std::sin(azimuth_rad) * std::cos(elevation_rad)),
+                         static_cast<float>(std::sin(elevation_rad)), dwell.share});
+  }
+  return steerings;
+}
+
+/// The power of an interval of dwells in a direction of the array's frame.
+double powerOf(const PatternView& view, const std::vector<Steering>& dwells, const Vec3f& direction,
+               SweptPattern pattern) {
+  double power = 0;
+  for (const Steering& dwell : dwells) {
+    const float amplitude = patternAmplitude(view, direction, dwell.u, dwell.v);
     const double of_dwell = static_cast<double>(amplitude) * static_cast<double>(amplitude);
     power = pattern == SweptPattern::mean ? power + dwell.share * of_dwell : std::max(power, of_dwell);
   }
@@ -170,11 +188,13 @@ AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPat
   const Sampled sampled(antenna, pattern);
   const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 8, 3600);
   const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 32, 7200);
+  const Tilts tilts(sweep);
   std::vector<double> amplitudes(static_cast<std::size_t>(elevations) + 1);
   parallelFor(elevations + 1, 16, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
-      Rows rows(sampled.view, sweep, azimuths, degToRad(angleOf(e, elevations, 180)));
-      amplitudes[static_cast<std::size_t>(e)] = std::sqrt(powerOf(rows, sweep, 0, pattern));
+      std::vector<PowerRow> rows =
+          rowsOf(sampled.view, tilts, azimuths, degToRad(angleOf(e, elevations, 180)));
+      amplitudes[static_cast<std::size_t>(e)] = std::sqrt(powerOf(rows, tilts, sweep, 0, pattern));
     }
   });
   const auto shape = [amplitudes, elevations](double angle_rad) {
@@ -195,20 +215,22 @@ AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPatt
   const Sampled sampled(antenna, pattern);
   const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 16, 2880);
   const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 16, 1440);
+  const Tilts tilts(sweep);
+  const std::vector<Steering> dwells = steeringsOf(sweep);
   std::vector<float> amplitudes((static_cast<std::size_t>(azimuths) + 1) *
                                 (static_cast<std::size_t>(elevations) + 1));
   parallelFor(elevations + 1, 8, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
       const double elevation_rad = degToRad(angleOf(e, elevations, 180));
-      Rows rows(sampled.view, sweep, azimuths, elevation_rad);
+      std::vector<PowerRow> rows = rowsOf(sampled.view, tilts, azimuths, elevation_rad);
       float* const row = amplitudes.data() + static_cast<std::size_t>(e) * (azimuths + 1);
       for (int a = 0; a <= azimuths; ++a) {
         const double azimuth_deg = angleOf(a, azimuths, 360), azimuth_rad = degToRad(azimuth_deg);
         const Vec3d direction{std::cos(elevation_rad) * std::cos(azimuth_rad),
                               std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};
-        const double power = sweep.dwells.empty()
-                                 ? powerOf(rows, sweep, azimuth_deg, pattern)
-                                 : powerOf(sampled.view, sweep, vecCast<float>(direction), pattern);
+        const double power = dwells.empty()
+                                 ? powerOf(rows, tilts, sweep, azimuth_deg, pattern)
+                                 : powerOf(sampled.view, dwells, vecCast<float>(direction), pattern);
         row[a] = static_cast<float>(std::sqrt(power));
       }
     }
