@@ -70,8 +70,8 @@ std::vector<CandidateSite> readCandidates(const std::string& file) {
   for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites);
   if (sites.empty() || sites.size() > kMaxCandidates) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
-                fmt::format("{} points, outside the allowed range 1 to {}; a CSV file needs a column WKT",
-                            sites.size(), kMaxCandidates));
+                fmt::format("{} points, outside the allowed range 1 to {}{}", sites.size(), kMaxCandidates,
+                            sites.empty() ? "; a CSV file needs a column WKT" : ""));
   }
   std::set<std::string> names;
   for (const CandidateSite& site : sites) {

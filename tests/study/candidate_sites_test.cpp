@@ -15,6 +15,7 @@ namespace emscape::study {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A local server that never answers and records whether a client has connected.
 class Listener {
@@ -100,6 +101,17 @@ TEST(CandidateSites, WithoutANameAreNumbered) {
   ASSERT_EQ(sites.size(), 3u);
   EXPECT_EQ(sites[0].name, "site 1");
   EXPECT_EQ(sites[2].name, "site 3");
+}
+
+TEST(CandidateSites, OfAnotherNumberThanAllowedAreRefused) {
+  const test::TemporaryFolder folder;
+  std::string points = "WKT,name\n";
+  for (int n = 0; n <= 10000; ++n) points += "POINT (5 52),\n";
+  const std::string many = test::errorOf([&] { readCandidates(folder.write("many.csv", points)); });
+  EXPECT_THAT(many, HasSubstr("10001 points, outside the allowed range 1 to 10000"));
+  EXPECT_THAT(many, Not(HasSubstr("WKT")));
+  EXPECT_THAT(test::errorOf([&] { readCandidates(folder.write("none.csv", "WKT,name\n")); }),
+              HasSubstr("0 points, outside the allowed range 1 to 10000; a CSV file needs a column WKT"));
 }
 
 TEST(CandidateSites, APointThatCannotBeReadIsNotLeftOut) {
