@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
@@ -111,6 +112,7 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
     series_options.mesh_text = options.mesh;
   }
   std::string device;
+  bool is_announced = false;
   const auto series = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     device = target.device();
     emfield::FieldOptions field_options = target.fieldOptions();
@@ -121,11 +123,13 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
     if (!options.compare.empty()) field_options.move_tolerance_m = 0;
     auto opened = std::make_unique<playback::FieldSeries>(input, times_s, field_options, &stopFlag());
     if (!options.compare.empty()) compare(*opened, options);
+    if (!std::exchange(is_announced, true)) {
+      logInfo(fmt::format("computing {} step{} of {} into {}", opened->count(),
+                          opened->count() == 1 ? "" : "s", input.scenario->name, options.folder));
+    }
     opened->rehearse();
     return opened;
   });
-  logInfo(fmt::format("computing {} step{} of {} into {}", series->count(), series->count() == 1 ? "" : "s",
-                      input.scenario->name, options.folder));
   const playback::SeriesResult result = playback::writeSeries(*series, series_options, progressSink(global));
   logWarnings(series->warnings());
 

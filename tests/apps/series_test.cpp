@@ -223,6 +223,36 @@ TEST(Simulate, AWarningOfEachStepNamesItsEmitterOnceWithTheRangeOfItsNumbers) {
                                      "[0-9.]+ km is outside 0.1..1000 km"));
 }
 
+TEST(Simulate, AWarningOfManyEmittersNamesFiveAndCountsTheOthers) {
+  const TemporaryFolder folder;
+  std::string scenario = readFile(quick());
+  const std::string mast = "  - {name: mast, position: {latitude_deg: 52.05, ";
+  scenario.replace(scenario.find(mast), mast.size(), "  - {name: mast, position: {latitude_deg: 20, ");
+  for (int n = 2; n <= 8; ++n) {
+    scenario += "  - {name: t" + std::to_string(n) +
+                ", platform: mast, kind: transmitter, frequency_hz: 1e8, " +
+                "power_w: 1000, antenna: {pattern: isotropic}, propagation: diffraction}\n";
+  }
+  const ProgramResult result = run({"simulate", folder.write("many.yaml", scenario), "-o", folder / "s",
+                                    "--times", "0", "--format", "raw", "--set", "region.dims=[8, 8, 2]"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_THAT(result.err,
+              testing::ContainsRegex(
+                  "warning: emitters ('[a-z0-9]+', ){4}'[a-z0-9]+' and 3 others: 'diffraction': "));
+}
+
+TEST(Simulate, AnnouncesItsStepsBeforeTheFirstOneIsComputed) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run({"simulate", shippedScenario("jacksboro.yaml"), "-o", folder / "s", "--times", "0", "--format",
+           "raw", "--set", "region.dims=[8, 8, 4]", "--set",
+           "platforms.mast.position={latitude_deg: 36.9, longitude_deg: -84.19, height_msl_m: 900}"});
+  EXPECT_EQ(result.status, 3);
+  const std::size_t line = result.err.find("computing 1 step of "),
+                    refusal = result.err.find("missing terrain");
+  EXPECT_LT(line, refusal) << result.err;
+}
+
 TEST(Simulate, AHangUpStopsItLikeCtrlC) {
   const TemporaryFolder folder;
   RunningProgram program({"simulate", longScenario(folder, 80), "-o", folder / "s", "--format", "raw"});

@@ -89,9 +89,9 @@ class Progress {
 /// A progress sink for a library: that of the options, otherwise one that owns a new Progress for each step.
 ProgressSink progressSink(const GlobalOptions& global);
 
-/// Logs warnings. Warnings that differ only in the emitter and in numbers are merged into one that names each
-/// emitter once. Its numbers are those of each emitter, or their range if an emitter has several warnings, as
-/// over time.
+/// Logs warnings. Warnings that differ only in the emitter and in numbers are merged into one that names the
+/// first five emitters and counts the others. Its numbers are those of each emitter, or their range if an
+/// emitter has several warnings, as over time, or is not named.
 void logWarnings(const std::vector<std::string>& warnings);
 /// The lines that logWarnings() writes.
 std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings);
