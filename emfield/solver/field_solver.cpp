@@ -129,18 +129,20 @@ void FieldSolver::Impl::requireFieldMemory() {
   const std::string what =
       fmt::format("the field of {} x {} x {} voxels, {} emitter{} and {} channel{}", dims.x, dims.y, dims.z,
                   emitters.size(), emitters.size() == 1 ? "" : "s", channels, channels == 1 ? "" : "s");
-  const std::string fewer =
-                        options.surface == nullptr ? "fewer voxels (region.dims)" : "fewer places or heights",
-                    bound = " and a bound on what emitters keep take less";
+  const bool is_grid = options.surface == nullptr;
+  const std::string remedy = is_grid ? "fewer voxels (region.dims) or emitters take less"
+                                     : "fewer places, heights or emitters take less";
   const bool has_columns = hasDeviceColumns() || !setup.columns.of_grid.empty();
   const std::size_t host_columns_bytes = has_columns ? 0 : columns_bytes;
   if (on_host) {
-    requireMemory({what, host_columns_bytes + needed, fewer + bound}, {setup.scenario->file});
+    requireMemory({what, host_columns_bytes + needed, remedy}, {setup.scenario->file});
     return;
   }
-  requireMemory({"the columns of " + what, host_columns_bytes, fewer + " take less"}, {setup.scenario->file});
+  requireMemory({"the columns of " + what, host_columns_bytes,
+                 is_grid ? "fewer voxels (region.dims) take less" : "fewer places take less"},
+                {setup.scenario->file});
   const bool has_half = options.device_precision != volume::VoxelPrecision::float16;
-  const MemoryNeed need{what, needed, fewer + (has_half ? ", volumes of 16 bit" : "") + bound};
+  const MemoryNeed need{what, needed, remedy + (has_half ? "; so do volumes of 16 bit" : "")};
   const std::size_t free = findDevice().free_bytes;
   if (needed > free)
     throw Error(ErrorCode::device, {setup.scenario->file}, memoryShortage(need, "GPU's", free));

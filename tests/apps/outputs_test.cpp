@@ -166,6 +166,19 @@ TEST_F(Outputs, BeyondTheLimitOfAFilesSizeAreAnErrorWithoutRemains) {
   EXPECT_EQ(folder_.files(), files);
 }
 
+TEST_F(Outputs, OfMorePixelsThanTheMemoryHoldsAreRefusedAtOnce) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
+#endif
+  const ProgramResult result =
+      run({"render", quick_, "--times", "0", "-o", folder_ / "x.png", "--size", "20000x20000"},
+          "ulimit -v 3000000;");
+  EXPECT_EQ(result.status, kOther);
+  EXPECT_THAT(result.err,
+              HasSubstr("a picture of 20000x20000 pixels needs up to 7629 MiB of the host's memory"));
+  EXPECT_THAT(result.err, HasSubstr("a smaller --size takes less"));
+}
+
 TEST_F(Outputs, AreWholeAtTheLimitOfProcessorTime) {
   const ProgramResult result =
       run({"simulate", longScenario(folder_, 100000), "-o", folder_ / "s"}, "ulimit -S -t 1;");

@@ -78,7 +78,7 @@ TEST_F(Validate, RefusesAFieldThatDoesNotFitIntoTheMemory) {
           "ulimit -v 1500000;");
   EXPECT_EQ(result.status, 3) << result.err;
   EXPECT_THAT(result.out, testing::HasSubstr("the field of 512 x 512 x 256 voxels"));
-  EXPECT_THAT(result.out, testing::HasSubstr("fewer voxels (region.dims)"));
+  EXPECT_THAT(result.out, testing::HasSubstr("fewer voxels (region.dims) or emitters take less"));
   // 4096 x 4096 columns alone are 2 GiB
   const ProgramResult wide =
       run({"validate", shippedScenario("quick.yaml"), "--set", "region.dims=[4096, 4096, 2]"},
