@@ -8,8 +8,8 @@ namespace {
 using namespace std::string_literals;
 
 TEST(Utf8, FindsControlCharactersAndNoncharacters) {
-  for (const std::string& text : {""s, "a b"s, "\xC3\xBC"s, "\xC2\xA0"s, "\xEF\xBF\xBD"s,
-                                  "\xF0\x9F\x8E\x89"s, "\xFF not UTF-8"s}) {
+  for (const std::string& text :
+       {""s, "a b"s, "\xC3\xBC"s, "\xC2\xA0"s, "\xEF\xBF\xBD"s, "\xF0\x9F\x8E\x89"s, "\xFF not UTF-8"s}) {
     EXPECT_FALSE(firstUnprintable(text)) << text;
   }
   EXPECT_EQ(firstUnprintable("a\0"s), char32_t{0});

@@ -259,9 +259,8 @@ TEST_F(Window, AViewAsInputIsOneMessage) {
   writeFile(file, R"({"schema_version": 1})");
   const ProgramResult result = run({"view", file}, environment());
   EXPECT_EQ(result.status, 3);
-  EXPECT_EQ(result.err,
-            "emscape-view: error: " + file +
-                ": a view file, not a scenario: `render` and `view` read it with --state\n");
+  EXPECT_EQ(result.err, "emscape-view: error: " + file +
+                            ": a view file, not a scenario: `render` and `view` read it with --state\n");
 }
 
 TEST_F(Window, NamesAreShownToTheirEnd) {

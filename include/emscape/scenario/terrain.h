@@ -48,8 +48,8 @@ struct TerrainFileInfo {
   int columns = 0, rows = 0;
   bool pixel_is_area = false;
   double post_spacing_lat_deg = 0, post_spacing_lon_deg = 0;  ///< in the middle of the file
-  /// In the file's vertical datum; NaN if no height was read. Of files with more than 2^28 posts a part of the
-  /// rows is read, as a note says.
+  /// In the file's vertical datum; NaN if no height was read. Of files with more than 2^28 posts a part of
+  /// the rows is read, as a note says.
   double lowest_m = 0, highest_m = 0;
   long long void_posts = 0;
   std::vector<std::string> notes;  ///< conversions that were needed, such as of a unit
