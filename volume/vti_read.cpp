@@ -16,6 +16,7 @@ namespace emscape::volume {
 namespace {
 
 constexpr char kMask[] = "valid";
+
 template <class Number, std::size_t count>
 std::array<Number, count> numbers(const VtkXmlFile& file, const pugi::xml_node& node, const char* attribute) {
   std::istringstream text(node.attribute(attribute).value());

@@ -13,6 +13,7 @@
 #include "apps/emscape/common/command.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/quantities.h"
+#include "scenario/named_items.h"
 
 namespace emscape::app {
 
@@ -20,13 +21,9 @@ namespace emscape::app {
 template <class Item>
 int namedIndex(const std::vector<Item>& items, const std::string& name, const char* option, const char* kind,
                const std::string& file) {
-  const auto found =
-      std::find_if(items.begin(), items.end(), [&](const Item& item) { return item.name == name; });
-  if (found != items.end()) return static_cast<int>(found - items.begin());
-  std::string known;
-  for (const Item& item : items) known += (known.empty() ? "'" : ", '") + item.name + "'";
+  if (const auto index = scenario::findNamed(items, name)) return static_cast<int>(*index);
   throw Error(ErrorCode::usage, fmt::format("{}: no {} '{}' in {}; it has {}", option, kind, name, file,
-                                            known.empty() ? "none" : known));
+                                            scenario::namesOf(items)));
 }
 
 /// Indices of the named items, each once; all items if no values are given.

@@ -3,11 +3,11 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
 #include "emscape/base/error.h"
+#include "scenario/named_items.h"
 
 namespace emscape::view {
 
@@ -15,13 +15,9 @@ namespace emscape::view {
 /// @throws Error (bad_input) that lists the names of the scenario's items
 template <class Item>
 std::size_t indexOfNamed(const std::vector<Item>& items, const std::string& name, const char* kind) {
-  const auto found =
-      std::find_if(items.begin(), items.end(), [&](const Item& item) { return item.name == name; });
-  if (found != items.end()) return static_cast<std::size_t>(found - items.begin());
-  std::string known;
-  for (const Item& item : items) known += (known.empty() ? "'" : ", '") + item.name + "'";
+  if (const auto index = scenario::findNamed(items, name)) return *index;
   throw Error(ErrorCode::bad_input,
-              fmt::format("there is no {} '{}'; the scenario has {}", kind, name, known));
+              fmt::format("there is no {} '{}'; the scenario has {}", kind, name, scenario::namesOf(items)));
 }
 
 }  // namespace emscape::view
