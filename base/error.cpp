@@ -1,6 +1,6 @@
 #include "emscape/base/error.h"
 
-#include "base/readable_text.h"
+#include "base/text/readable_text.h"
 
 namespace emscape {
 

@@ -1,4 +1,4 @@
-#include "emscape/base/device.h"
+#include "emscape/base/cuda/device.h"
 
 namespace emscape {
 

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-#include "base/json_writing.h"
+#include "base/files/json_writing.h"
 
 namespace emscape::document {
 namespace {

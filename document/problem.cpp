@@ -4,7 +4,7 @@
 #include <tuple>
 #include <utility>
 
-#include "base/readable_text.h"
+#include "base/text/readable_text.h"
 
 namespace emscape::document {
 

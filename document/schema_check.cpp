@@ -10,9 +10,9 @@
 #include <numeric>
 #include <set>
 
-#include "base/quantity_text.h"
-#include "base/utc.h"
-#include "base/utf8.h"
+#include "base/text/quantity_text.h"
+#include "base/text/utc.h"
+#include "base/text/utf8.h"
 #include "document/text_file.h"
 
 namespace emscape::document {

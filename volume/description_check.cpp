@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/position_limits.h"
-#include "base/quantity_text.h"
+#include "base/geodesy/position_limits.h"
+#include "base/text/quantity_text.h"
 
 namespace emscape::volume {
 namespace {

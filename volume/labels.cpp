@@ -1,4 +1,4 @@
-#include "emscape/volume/labels.h"
+#include "volume/labels.h"
 
 #include <sstream>
 

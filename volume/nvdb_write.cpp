@@ -1,5 +1,5 @@
-#include "base/json_writing.h"
-#include "base/whole_file.h"
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
 #include "volume/nanovdb_grid.h"
 #include "volume/nvdb.h"
 #include "volume/volume_json.h"

@@ -5,8 +5,8 @@
 #include <regex>
 #include <string>
 
-#include "base/json_writing.h"
-#include "base/whole_file.h"
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
 #include "emscape/volume/statistics.h"
 #include "volume/byte_reader.h"
 #include "volume/volume_json.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include "base/json_writing.h"
-#include "base/whole_file.h"
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
 #include "volume/vdb_layout.h"
 #include "volume/volume_json.h"
 

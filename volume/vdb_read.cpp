@@ -6,8 +6,8 @@
 #include <boost/iostreams/stream.hpp>
 #include <cmath>
 
-#include "base/failure_text.h"
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
+#include "base/text/failure_text.h"
 #include "emscape/volume/statistics.h"
 #include "volume/description_check.h"
 #include "volume/foreign.h"

@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstring>
 
-#include "base/json_writing.h"
-#include "base/whole_file.h"
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
 #include "volume/vdb.h"
 #include "volume/vdb_grid.h"
 #include "volume/vdb_layout.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "base/utc.h"
+#include "base/text/utc.h"
 #include "volume/description_check.h"
 
 namespace emscape::volume {

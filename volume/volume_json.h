@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "base/json_reading.h"
+#include "base/files/json_reading.h"
 #include "emscape/volume/dense_volume.h"
 #include "emscape/volume/mesh.h"
 

@@ -1,7 +1,7 @@
 #include <pugixml.hpp>
 
-#include "base/utf8.h"
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
+#include "base/text/utf8.h"
 #include "emscape/base/parallel.h"
 #include "volume/stored_range.h"
 #include "volume/volume_json.h"

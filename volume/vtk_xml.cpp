@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 
 namespace emscape::volume {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <sstream>
 
-#include "base/json_writing.h"
-#include "base/utf8.h"
-#include "base/whole_file.h"
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
+#include "base/text/utf8.h"
 #include "volume/stored_range.h"
 #include "volume/volume_json.h"
 #include "volume/vtk_xml.h"

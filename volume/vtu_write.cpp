@@ -3,7 +3,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/utf8.h"
+#include "base/text/utf8.h"
 #include "emscape/volume/mesh_file.h"
 #include "volume/volume_json.h"
 #include "volume/vtk_xml.h"

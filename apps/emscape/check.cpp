@@ -7,8 +7,8 @@
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
+#include "emfield/check/reference_check.h"
 #include "emscape/base/error.h"
-#include "emscape/emfield/reference_check.h"
 
 namespace emscape::app {
 namespace {

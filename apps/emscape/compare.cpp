@@ -1,5 +1,5 @@
 /// emscape compare: gains and losses of one scenario against another.
-#include "emscape/study/compare.h"
+#include "emscape/study/compare/compare.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -19,15 +19,15 @@
 #include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/report/compare_report.h"
-#include "base/json_writing.h"
-#include "base/quantity_text.h"
+#include "base/files/json_writing.h"
+#include "base/text/quantity_text.h"
 #include "emscape/base/log.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/study/area.h"
-#include "emscape/study/map_folder.h"
-#include "emscape/volume/difference.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/study/maps/area.h"
+#include "emscape/study/report/map_folder.h"
 #include "emscape/volume/file.h"
+#include "volume/difference.h"
 
 namespace emscape::app {
 namespace {

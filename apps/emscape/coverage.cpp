@@ -1,5 +1,5 @@
 /// emscape coverage: coverage maps at heights above ground or sea level.
-#include "emscape/study/coverage.h"
+#include "emscape/study/maps/coverage.h"
 
 #include <fmt/core.h>
 
@@ -13,10 +13,10 @@
 #include "apps/emscape/common/map_options.h"
 #include "apps/emscape/common/output_files.h"
 #include "apps/emscape/common/target.h"
-#include "base/quantity_text.h"
+#include "base/text/quantity_text.h"
 #include "emscape/base/log.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/study/map_folder.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/study/report/map_folder.h"
 
 namespace emscape::app {
 namespace {

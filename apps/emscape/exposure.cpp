@@ -1,5 +1,5 @@
 /// emscape exposure: exposure of a platform to the field along its track.
-#include "emscape/study/exposure.h"
+#include "emscape/study/exposure/exposure.h"
 
 #include <fmt/core.h>
 
@@ -14,9 +14,9 @@
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/report/exposure_report.h"
-#include "base/json_writing.h"
-#include "emscape/render/image.h"
-#include "emscape/scenario/scenario_file.h"
+#include "base/files/json_writing.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/scenario/file/scenario_file.h"
 
 namespace emscape::app {
 namespace {

@@ -1,5 +1,5 @@
 /// emscape link: signals of emitters at receivers, and detection of targets by radars, over time.
-#include "emscape/emfield/link.h"
+#include "emscape/emfield/link/link.h"
 
 #include <fmt/core.h>
 
@@ -14,7 +14,7 @@
 #include "apps/emscape/report/link_plot.h"
 #include "apps/emscape/report/link_report.h"
 #include "emscape/base/log.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
 

@@ -14,9 +14,9 @@
 #include "apps/emscape/common/value_range.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
-#include "emscape/playback/frame_source.h"
-#include "emscape/playback/series_writer.h"
-#include "emscape/scenario/quantities.h"
+#include "emscape/playback/frames/frame_source.h"
+#include "emscape/playback/series/series_writer.h"
+#include "emscape/scenario/model/quantities.h"
 
 namespace emscape::app {
 namespace {

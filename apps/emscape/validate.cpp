@@ -11,11 +11,11 @@
 #include "apps/emscape/common/interrupt.h"
 #include "apps/emscape/report/choices_report.h"
 #include "apps/emscape/report/work_report.h"
-#include "emscape/base/geo_frame.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/emfield/model_choices.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
+#include "emfield/excess/model_choices.h"
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::app {
 namespace {

@@ -1,5 +1,5 @@
 /// emscape vertical: a quantity of an emitter over range and height.
-#include "emscape/study/vertical.h"
+#include "emscape/study/vertical/vertical.h"
 
 #include <fmt/core.h>
 
@@ -14,11 +14,11 @@
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/report/vertical_report.h"
-#include "base/json_writing.h"
-#include "emscape/render/image.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/study/area.h"
+#include "base/files/json_writing.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/study/maps/area.h"
 #include "render/annotate/plot.h"
 
 namespace emscape::app {

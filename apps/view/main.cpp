@@ -5,14 +5,14 @@
 
 #include "apps/emscape/common/interrupt.h"
 #include "apps/view/app.h"
-#include "base/failure_text.h"
+#include "base/text/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
-#include "emscape/emfield/terrain_mesh.h"
-#include "emscape/playback/inputs.h"
-#include "emscape/render/cell_renderer.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/emfield/columns/terrain_mesh.h"
+#include "emscape/playback/frames/inputs.h"
+#include "emscape/render/cells/cell_renderer.h"
+#include "emscape/scenario/file/scenario_file.h"
 
 namespace emscape::view {
 namespace {

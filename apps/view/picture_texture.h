@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "emscape/render/device_picture.h"
-#include "emscape/render/image.h"
+#include "emscape/render/picture/device_picture.h"
+#include "emscape/render/picture/image.h"
 
 namespace emscape::view {
 

@@ -6,7 +6,7 @@
 
 #include "apps/view/session/input_queue.h"
 #include "emscape/render/annotate/overlay.h"
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
 
 struct GLFWwindow;
 

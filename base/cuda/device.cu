@@ -3,7 +3,7 @@
 #include <mutex>
 #include <string>
 
-#include "emscape/base/device.h"
+#include "emscape/base/cuda/device.h"
 
 namespace emscape {
 namespace {

@@ -7,7 +7,7 @@
 #include "emfield/clutter/mti.h"
 #include "emfield/clutter/reflectivity.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/waveform.h"
+#include "emscape/scenario/model/waveform.h"
 
 namespace emscape::emfield {
 namespace {

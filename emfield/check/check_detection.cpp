@@ -7,7 +7,7 @@
 #include "emfield/radar/detection_losses.h"
 #include "emfield/radar/equation.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/waveform.h"
+#include "emscape/scenario/model/waveform.h"
 
 namespace emscape::emfield {
 namespace {

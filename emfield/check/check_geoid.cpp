@@ -1,7 +1,7 @@
 /// Geoid undulation at published points.
 #include "emfield/check/datasets.h"
 #include "emfield/check/reference_table.h"
-#include "emscape/base/geoid.h"
+#include "emscape/base/geodesy/geoid.h"
 
 namespace emscape::emfield {
 

@@ -6,7 +6,7 @@
 #include "emfield/check/datasets.h"
 #include "emfield/check/pe_figures.h"
 #include "emfield/check/reference_table.h"
-#include "emscape/base/device.h"
+#include "emscape/base/cuda/device.h"
 #include "propagation/parabolic_equation/march_step.h"
 
 namespace emscape::emfield {

@@ -6,7 +6,7 @@
 #include "emfield/check/pe_figures.h"
 #include "emfield/check/reference_table.h"
 #include "emfield/check/residue_series.h"
-#include "emscape/base/device.h"
+#include "emscape/base/cuda/device.h"
 
 namespace emscape::emfield {
 

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "emscape/emfield/reference_check.h"
+#include "emfield/check/reference_check.h"
 
 namespace emscape::emfield {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "emfield/check/gpu_radial_march.h"
-#include "emscape/emfield/reference_check.h"
+#include "emfield/check/reference_check.h"
 #include "propagation/parabolic_equation/march.h"
 #include "propagation/parabolic_equation/march_azimuths.h"
 

@@ -1,4 +1,4 @@
-#include "emscape/emfield/reference_check.h"
+#include "emfield/check/reference_check.h"
 
 #include <fmt/core.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "document/csv.h"
 
 namespace emscape::emfield {

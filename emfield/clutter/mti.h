@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "emscape/scenario/clutter.h"
+#include "emscape/scenario/model/clutter.h"
 
 namespace emscape::emfield {
 

@@ -1,6 +1,6 @@
 #include "emfield/cpu/apply_excess.h"
 
-#include "base/simd.h"
+#include "base/math/simd.h"
 
 namespace emscape::emfield {
 namespace {

@@ -1,7 +1,7 @@
 /// The excess of a row on the CPU, in vector instructions.
 #pragma once
 
-#include "emfield/excess_code.h"
+#include "emfield/columns/excess_code.h"
 
 namespace emscape::emfield {
 

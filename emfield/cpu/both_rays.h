@@ -2,8 +2,8 @@
 /// does not vectorise the loops of a larger file.
 #pragma once
 
+#include "emfield/combine/radar_product.h"
 #include "emfield/cpu/row.h"
-#include "emfield/radar_product.h"
 
 namespace emscape::emfield {
 

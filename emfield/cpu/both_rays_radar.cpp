@@ -1,4 +1,4 @@
-#include "base/simd.h"
+#include "base/math/simd.h"
 #include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/echo_rows.h"
 

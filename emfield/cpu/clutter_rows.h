@@ -1,8 +1,8 @@
 /// Clutter over rows of voxels; in a separate source file, as are the loops over reflected rays.
 #pragma once
 
+#include "emfield/combine/radar_product.h"
 #include "emfield/cpu/row.h"
-#include "emfield/radar_product.h"
 
 namespace emscape::emfield {
 

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/simd.h"
-#include "emfield/combine.h"
+#include "base/math/simd.h"
+#include "emfield/combine/combine.h"
 #include "emfield/cpu/apply_excess.h"
 #include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/row.h"

@@ -1,8 +1,8 @@
 /// Rows of a look's weights without reflected rays, for the loops of radars.
 #pragma once
 
+#include "emfield/combine/radar_product.h"
 #include "emfield/cpu/row.h"
-#include "emfield/radar_product.h"
 
 namespace emscape::emfield {
 

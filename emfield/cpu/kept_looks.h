@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "emfield/look_weights.h"
-#include "emfield/radar_product.h"
+#include "emfield/combine/look_weights.h"
+#include "emfield/combine/radar_product.h"
 
 namespace emscape::emfield {
 

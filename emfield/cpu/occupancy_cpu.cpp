@@ -1,6 +1,6 @@
-#include "base/simd.h"
+#include "base/math/simd.h"
+#include "emfield/combine/occupancy.h"
 #include "emfield/cpu/row.h"
-#include "emfield/occupancy.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {

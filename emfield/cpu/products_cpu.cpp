@@ -2,8 +2,8 @@
 #include <limits>
 #include <vector>
 
-#include "base/simd.h"
-#include "emfield/products.h"
+#include "base/math/simd.h"
+#include "emfield/channels/products.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {

@@ -1,7 +1,7 @@
 /// Passes of radars whose look has arcs.
 #pragma once
 
-#include "emfield/radar_product.h"
+#include "emfield/combine/radar_product.h"
 
 namespace emscape::emfield {
 

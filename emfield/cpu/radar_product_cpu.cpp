@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <vector>
 
-#include "base/simd.h"
+#include "base/math/simd.h"
+#include "emfield/combine/radar_product.h"
 #include "emfield/cpu/apply_excess.h"
 #include "emfield/cpu/both_rays.h"
 #include "emfield/cpu/clutter_rows.h"
 #include "emfield/cpu/echo_rows.h"
 #include "emfield/cpu/radar_of_arcs.h"
 #include "emfield/cpu/row.h"
-#include "emfield/radar_product.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {

@@ -5,9 +5,9 @@
 
 #include <vector>
 
-#include "emfield/combine.h"
-#include "emfield/occupancy.h"
-#include "emfield/products.h"
+#include "emfield/channels/products.h"
+#include "emfield/combine/combine.h"
+#include "emfield/combine/occupancy.h"
 #include "volume/cuda/device_storage.h"
 
 namespace emscape::emfield::cuda {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "base/cuda/staged_copy.h"
-#include "emfield/column_geometry.h"
+#include "emfield/columns/column_geometry.h"
 #include "emfield/cuda/device_places.h"
 #include "emscape/base/parallel.h"
 #include "propagation/diffraction/model.h"

@@ -6,8 +6,8 @@
 #include <memory>
 
 #include "base/cuda/cuda_memory.h"
+#include "emfield/columns/grid_columns.h"
 #include "emfield/cuda/device_terrain.h"
-#include "emfield/grid_columns.h"
 
 namespace emscape::emfield::cuda {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/cuda/cuda_memory.h"
-#include "emscape/scenario/terrain.h"
+#include "emscape/scenario/terrain/terrain.h"
 #include "scenario/terrain/view.h"
 
 namespace emscape::emfield::cuda {

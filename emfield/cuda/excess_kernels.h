@@ -4,7 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include "emfield/cuda/geometry_kernels.h"
-#include "emfield/fill_excess.h"
+#include "emfield/excess/fill_excess.h"
 #include "propagation/diffraction/column.h"
 
 namespace emscape::emfield::cuda {

@@ -7,7 +7,7 @@
 #include "emfield/cuda/device_geometry.h"
 #include "emfield/solver/field_engine.h"
 #include "emfield/solver/kept_power.h"
-#include "emscape/base/device.h"
+#include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
 
 namespace emscape::emfield {

@@ -1,7 +1,7 @@
 #include "base/cuda/cuda_memory.h"
-#include "emfield/clutter_map.h"
-#include "emfield/column_geometry.h"
+#include "emfield/columns/column_geometry.h"
 #include "emfield/cuda/geometry_kernels.h"
+#include "emfield/geometry/clutter_map.h"
 #include "emfield/solver/field_engine.h"
 
 namespace emscape::emfield::cuda {

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "emfield/combine.h"
-#include "emfield/shadow_edge.h"
+#include "emfield/combine/combine.h"
+#include "emfield/excess/shadow_edge.h"
 
 namespace emscape::emfield::cuda {
 

@@ -3,7 +3,7 @@
 
 #include <cuda_runtime_api.h>
 
-#include "emfield/place_columns.h"
+#include "emfield/columns/place_columns.h"
 
 namespace emscape::emfield::cuda {
 

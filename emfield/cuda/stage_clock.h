@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/cuda/cuda_memory.h"
-#include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/solver/field_solver.h"
 
 namespace emscape::emfield::cuda {
 

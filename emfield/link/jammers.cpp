@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emfield/combine.h"
-#include "emfield/station.h"
-#include "emfield/two_rays.h"
+#include "emfield/columns/station.h"
+#include "emfield/columns/two_rays.h"
+#include "emfield/combine/combine.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 
 namespace emscape::emfield {
 namespace {

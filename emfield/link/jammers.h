@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "emfield/radar_share.h"
-#include "emscape/scenario/snapshot.h"
+#include "emfield/channels/radar_share.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::emfield {
 

@@ -1,4 +1,4 @@
-#include "emscape/emfield/link.h"
+#include "emscape/emfield/link/link.h"
 
 #include <fmt/format.h>
 

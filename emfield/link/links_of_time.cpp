@@ -5,15 +5,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/columns/station.h"
+#include "emfield/columns/two_rays.h"
+#include "emfield/link/path_report.h"
 #include "emfield/link/path_verdict.h"
 #include "emfield/link/target_view.h"
 #include "emfield/radar/receiver.h"
-#include "emfield/station.h"
-#include "emfield/two_rays.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_report.h"
-#include "emscape/scenario/waveform.h"
+#include "emscape/scenario/model/waveform.h"
 
 namespace emscape::emfield {
 namespace {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "emfield/radar/detection.h"
-#include "emscape/emfield/link.h"
-#include "emscape/emfield/path_budget.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/emfield/link/link.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::emfield {
 

@@ -1,4 +1,4 @@
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 
 #include <fmt/format.h>
 
@@ -6,18 +6,18 @@
 #include <cmath>
 #include <limits>
 
-#include "base/quantity_text.h"
-#include "emfield/elevation_cut.h"
+#include "base/text/quantity_text.h"
+#include "emfield/channels/products.h"
+#include "emfield/columns/station.h"
+#include "emfield/columns/two_rays.h"
+#include "emfield/excess/elevation_cut.h"
 #include "emfield/link/path_radar.h"
 #include "emfield/link/path_verdict.h"
-#include "emfield/products.h"
 #include "emfield/radar/detection_losses.h"
 #include "emfield/radar/receiver.h"
-#include "emfield/station.h"
-#include "emfield/two_rays.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/field_solver.h"
-#include "scenario/quantity_needs.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "scenario/file/quantity_needs.h"
 
 namespace emscape::emfield {
 namespace {

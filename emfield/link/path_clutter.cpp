@@ -4,7 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
-#include "emfield/station.h"
+#include "emfield/columns/station.h"
 
 namespace emscape::emfield {
 

@@ -4,8 +4,8 @@
 #include <map>
 #include <vector>
 
-#include "emfield/clutter_echo.h"
-#include "emscape/scenario/snapshot.h"
+#include "emfield/combine/clutter_echo.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::emfield {
 

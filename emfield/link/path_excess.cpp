@@ -1,10 +1,10 @@
-#include "emscape/emfield/path_excess.h"
+#include "emscape/emfield/link/path_excess.h"
 
 #include <vector>
 
-#include "emfield/emitter_excess.h"
-#include "emfield/model_check.h"
-#include "emfield/station.h"
+#include "emfield/columns/station.h"
+#include "emfield/excess/emitter_excess.h"
+#include "emfield/excess/model_check.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {

@@ -1,12 +1,12 @@
-#include "emscape/emfield/path_profile.h"
+#include "emscape/emfield/link/path_profile.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "emfield/read_posts.h"
-#include "emfield/station.h"
+#include "emfield/columns/station.h"
+#include "emfield/ground/read_posts.h"
 #include "emscape/base/error.h"
 #include "propagation/diffraction/knife_edge.h"
 #include "propagation/horizon/horizon.h"

@@ -4,12 +4,12 @@
 #include <optional>
 #include <vector>
 
+#include "emfield/channels/products.h"
+#include "emfield/channels/radar_clutter.h"
+#include "emfield/columns/two_rays.h"
 #include "emfield/link/jammers.h"
 #include "emfield/link/path_clutter.h"
-#include "emfield/products.h"
 #include "emfield/radar/receiver.h"
-#include "emfield/radar_clutter.h"
-#include "emfield/two_rays.h"
 #include "emscape/base/units.h"
 
 namespace emscape::emfield {

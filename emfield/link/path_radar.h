@@ -4,9 +4,9 @@
 #include <optional>
 
 #include "emscape/base/vec.h"
-#include "emscape/emfield/path_budget.h"
-#include "emscape/scenario/quantities.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/scenario/model/quantities.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::emfield {
 

@@ -1,4 +1,4 @@
-#include "emscape/emfield/path_report.h"
+#include "emfield/link/path_report.h"
 
 #include <fmt/format.h>
 

@@ -1,11 +1,11 @@
-#include "emscape/emfield/path_section.h"
+#include "emfield/link/path_section.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "emfield/emitter_excess.h"
-#include "emfield/emitter_geometry.h"
+#include "emfield/excess/emitter_excess.h"
+#include "emfield/geometry/emitter_geometry.h"
 #include "emscape/base/units.h"
 #include "propagation/parabolic_equation/path_air.h"
 #include "propagation/parabolic_equation/plan.h"

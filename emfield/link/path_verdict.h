@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 
 namespace emscape::emfield {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "emfield/station.h"
+#include "emfield/columns/station.h"
 #include "emscape/base/units.h"
 
 namespace emscape::emfield {

@@ -1,8 +1,8 @@
 /// Cross section and radial speed of a target for a radar.
 #pragma once
 
-#include "emscape/scenario/snapshot.h"
-#include "emscape/scenario/target.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/scenario/model/target.h"
 
 namespace emscape::emfield {
 

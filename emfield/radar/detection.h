@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "emscape/base/host_device.h"
-#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/model/emitter.h"
 
 namespace emscape::emfield {
 

@@ -5,7 +5,7 @@
 
 #include "emfield/radar/receiver.h"
 #include "emscape/base/units.h"
-#include "emscape/scenario/waveform.h"
+#include "emscape/scenario/model/waveform.h"
 
 namespace emscape::emfield {
 namespace {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "emfield/radar/detection.h"
-#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/model/emitter.h"
 
 namespace emscape::emfield {
 

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "base/fast_math.h"
+#include "base/math/fast_math.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
-#include "emscape/scenario/antenna.h"
+#include "emscape/scenario/antenna/antenna.h"
 #include "scenario/antenna/pattern.h"
 
 namespace emscape::emfield {

@@ -7,7 +7,7 @@
 
 #include "emfield/radar/detection_losses.h"
 #include "emscape/base/units.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::emfield {
 

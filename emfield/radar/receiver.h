@@ -6,8 +6,8 @@
 #include "emfield/radar/detection.h"
 #include "emfield/radar/equation.h"
 #include "emfield/radar/look.h"
-#include "emscape/scenario/emitter.h"
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/emitter.h"
+#include "emscape/scenario/model/scenario.h"
 
 namespace emscape::emfield {
 

@@ -6,7 +6,7 @@
 #include "emfield/solver/interval_beam.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
-#include "scenario/scan_sweep.h"
+#include "scenario/scan/scan_sweep.h"
 
 namespace emscape::emfield {
 namespace {

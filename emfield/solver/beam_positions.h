@@ -4,9 +4,9 @@
 #include <map>
 #include <utility>
 
-#include "emfield/occupancy.h"
-#include "emscape/scenario/scenario.h"
-#include "emscape/scenario/snapshot.h"
+#include "emfield/combine/occupancy.h"
+#include "emscape/scenario/model/scenario.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::emfield {
 

@@ -7,12 +7,12 @@
 #include <memory>
 #include <vector>
 
-#include "emfield/combine.h"
-#include "emfield/grid_columns.h"
-#include "emfield/occupancy.h"
-#include "emfield/products.h"
+#include "emfield/channels/products.h"
+#include "emfield/columns/grid_columns.h"
+#include "emfield/combine/combine.h"
+#include "emfield/combine/occupancy.h"
 #include "emfield/solver/field_plan.h"
-#include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/solver/field_solver.h"
 #include "emscape/volume/volume.h"
 #include "scenario/terrain/view.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "emfield/elevation_cut.h"
+#include "emfield/excess/elevation_cut.h"
 #include "emfield/solver/field_engine.h"
 #include "propagation/inputs.h"
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "emfield/model_check.h"
+#include "emfield/excess/model_check.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "scenario/quantity_needs.h"
+#include "scenario/file/quantity_needs.h"
 
 namespace emscape::emfield {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "emfield/emitter_geometry.h"
-#include "emfield/products.h"
-#include "emscape/emfield/field_solver.h"
+#include "emfield/channels/products.h"
+#include "emfield/geometry/emitter_geometry.h"
+#include "emscape/emfield/solver/field_solver.h"
 
 namespace emscape::emfield {
 

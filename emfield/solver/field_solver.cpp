@@ -1,11 +1,11 @@
-#include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/solver/field_solver.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
 #include "base/memory.h"
-#include "emfield/emitter_excess.h"
+#include "emfield/excess/emitter_excess.h"
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"

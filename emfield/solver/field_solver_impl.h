@@ -12,7 +12,7 @@
 #include "emfield/solver/field_engine.h"
 #include "emfield/solver/field_inputs.h"
 #include "emfield/solver/interval_beam.h"
-#include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/solver/field_solver.h"
 
 namespace emscape::emfield {
 

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 
-#include "emfield/emitter_excess.h"
-#include "emfield/model_check.h"
+#include "emfield/channels/categories.h"
+#include "emfield/excess/emitter_excess.h"
+#include "emfield/excess/model_check.h"
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/categories.h"
-#include "emscape/volume/labels.h"
+#include "volume/labels.h"
 
 namespace emscape::emfield {
 

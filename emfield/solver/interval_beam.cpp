@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "emscape/base/units.h"
-#include "scenario/swept_antenna.h"
+#include "scenario/scan/swept_antenna.h"
 
 namespace emscape::emfield {
 namespace {

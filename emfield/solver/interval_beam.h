@@ -2,11 +2,11 @@
 /// and a radar's looks.
 #pragma once
 
-#include "emfield/radar_product.h"
+#include "emfield/combine/radar_product.h"
 #include "emfield/solver/interval_looks.h"
-#include "emscape/scenario/scenario.h"
-#include "emscape/scenario/snapshot.h"
-#include "scenario/scan_sweep.h"
+#include "emscape/scenario/model/scenario.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "scenario/scan/scan_sweep.h"
 
 namespace emscape::emfield {
 

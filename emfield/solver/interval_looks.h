@@ -3,9 +3,9 @@
 
 #include <vector>
 
-#include "emfield/radar_product.h"
-#include "emscape/scenario/scenario.h"
-#include "scenario/scan_sweep.h"
+#include "emfield/combine/radar_product.h"
+#include "emscape/scenario/model/scenario.h"
+#include "scenario/scan/scan_sweep.h"
 
 namespace emscape::emfield {
 

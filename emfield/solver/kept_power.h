@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "emfield/combine.h"
+#include "emfield/combine/combine.h"
 
 namespace emscape::emfield {
 

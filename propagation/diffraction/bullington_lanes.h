@@ -3,12 +3,12 @@
 
 #include <cmath>
 
-#include "base/fast_math.h"
+#include "base/math/fast_math.h"
 #include "propagation/diffraction/knife_edge.h"
 
 namespace emscape::propagation {
 
-/// bullingtonLossDb() without branches and library calls: see base/fast_math.h.
+/// bullingtonLossDb() without branches and library calls: see base/math/fast_math.h.
 /// @accuracy within 5e-5 dB of that in double, up to nu = 100 and 500 km
 inline float bullingtonLossInLoopDb(float nu, float distance_m) {
   constexpr float kOctavesPerNeper = 1.44269504f;

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "base/simd.h"
+#include "base/math/simd.h"
 
 namespace emscape::propagation {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "base/device_math.h"
+#include "base/math/device_math.h"
 #include "propagation/normal_deviate.h"
 
 namespace emscape::propagation {

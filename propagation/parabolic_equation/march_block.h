@@ -12,8 +12,8 @@
 
 #include <cstddef>
 
-#include "base/device_math.h"
-#include "base/device_turn.h"
+#include "base/math/device_math.h"
+#include "base/math/device_turn.h"
 #include "emscape/base/host_device.h"
 #include "propagation/parabolic_equation/march_step.h"
 #include "propagation/parabolic_equation/small_fourier.h"

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "base/simd_targets.h"
+#include "base/math/simd_targets.h"
 #include "propagation/parabolic_equation/march_block.h"
 
 #undef HWY_TARGET_INCLUDE

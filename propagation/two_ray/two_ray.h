@@ -11,7 +11,7 @@
 ///
 /// There is no terrain: heights are above one smooth surface. The loss is for isotropic antennas; TwoRayPath
 /// has the reflected ray's amplitude and direction, with which the field weights the two rays by the
-/// antennas' gains (emfield/two_rays.h).
+/// antennas' gains (emfield/columns/two_rays.h).
 #pragma once
 
 #include <cmath>

@@ -1,11 +1,11 @@
 /// Maps of coverage as arrays.
-#include "emscape/study/coverage.h"
+#include "emscape/study/maps/coverage.h"
 
 #include <cmath>
 
 #include "emscape/base/log.h"
-#include "emscape/playback/compute_target.h"
-#include "emscape/study/area.h"
+#include "emscape/playback/frames/compute_target.h"
+#include "emscape/study/maps/area.h"
 #include "python/extension/module.h"
 
 namespace emscape::python {

@@ -10,8 +10,8 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/file.h"
 #include "emscape/volume/statistics.h"
 #include "python/extension/module.h"

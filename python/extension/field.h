@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/playback/inputs.h"
+#include "emscape/playback/frames/inputs.h"
 #include "emscape/volume/volume.h"
 
 namespace emscape::python {

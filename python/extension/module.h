@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "emscape/base/progress.h"
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/scenario.h"
 #include "emscape/volume/grid.h"
 
 namespace emscape::python {

@@ -5,10 +5,10 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
-#include "emscape/playback/painter.h"
-#include "emscape/playback/scene.h"
-#include "emscape/render/render_settings.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/playback/frames/scene.h"
+#include "emscape/playback/pictures/painter.h"
+#include "emscape/render/scene/render_settings.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "python/extension/field.h"
 #include "python/extension/module.h"
 

@@ -1,9 +1,9 @@
 /// Scenarios: reading, editing, contents.
-#include "emscape/emfield/categories.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/quantities.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
+#include "emfield/channels/categories.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/quantities.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "python/extension/module.h"
 
 namespace emscape::python {

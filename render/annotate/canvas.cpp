@@ -8,11 +8,11 @@
 #include <cstring>
 #include <vector>
 
-#include "base/utf8.h"
+#include "base/text/utf8.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
-#include "render/bytes_over.h"
+#include "render/picture/bytes_over.h"
 
 namespace emscape::render {
 namespace {

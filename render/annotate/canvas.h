@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "emscape/render/image.h"
-#include "emscape/render/transfer_function.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/render/transfer/transfer_function.h"
 
 struct _cairo;
 struct _cairo_surface;

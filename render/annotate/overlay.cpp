@@ -9,9 +9,9 @@
 
 #include "emscape/base/parallel.h"
 #include "render/annotate/overlay_parts.h"
-#include "render/bytes_over.h"
-#include "render/names.h"
-#include "render/rgba.h"
+#include "render/cast/names.h"
+#include "render/cast/rgba.h"
+#include "render/picture/bytes_over.h"
 
 namespace emscape::render {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/units.h"
 #include "emscape/render/annotate/legend.h"
 

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
 #include "render/cells/cell_walk.h"
 #include "render/cells/face_tiles.h"
 #include "render/cells/linear_transfer.h"

@@ -5,9 +5,9 @@
 #include <cstring>
 #include <vector>
 
+#include "render/cast/raycast.h"
 #include "render/cells/cell_mesh.h"
 #include "render/cells/cell_walk.h"
-#include "render/raycast.h"
 
 namespace emscape::render {
 

@@ -7,11 +7,11 @@
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
+#include "render/cast/names.h"
 #include "render/cells/cell_order.h"
 #include "render/cells/cell_renderer_impl.h"
 #include "render/cells/projected_cells.h"
 #include "render/cells/tile_projection.h"
-#include "render/names.h"
 
 namespace emscape::render {
 namespace {

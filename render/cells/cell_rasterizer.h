@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
+#include "render/cast/raycast.h"
 #include "render/cells/linear_transfer.h"
 #include "render/cells/projected_cells.h"
-#include "render/raycast.h"
 
 namespace emscape::render::gl {
 

@@ -1,4 +1,4 @@
-#include "emscape/render/cell_renderer.h"
+#include "emscape/render/cells/cell_renderer.h"
 
 #include <algorithm>
 #include <atomic>

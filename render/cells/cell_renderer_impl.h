@@ -5,14 +5,14 @@
 #include <optional>
 #include <vector>
 
-#include "emscape/render/cell_renderer.h"
+#include "emscape/render/cells/cell_renderer.h"
 #include "render/cells/cell_caster.h"
 #include "render/cells/cell_mesh.h"
 #include "render/cells/cell_packets.h"
 #include "render/cells/cell_rasterizer.h"
 #include "render/cells/face_tiles.h"
 #include "render/cells/linear_transfer.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 
 namespace emscape::render {
 

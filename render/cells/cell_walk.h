@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "emscape/base/host_device.h"
+#include "render/cast/raycast.h"
 #include "render/cells/cell_mesh.h"
 #include "render/cells/ray_integral.h"
-#include "render/raycast.h"
 
 namespace emscape::render {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "emscape/render/camera.h"
+#include "emscape/render/scene/camera.h"
 #include "render/cells/cell_march.h"
 #include "render/cells/pixel_tiles.h"
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "emscape/render/transfer_function.h"
+#include "emscape/render/transfer/transfer_function.h"
 #include "render/cells/ray_integral.h"
 
 namespace emscape::render {

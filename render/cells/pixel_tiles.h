@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "emscape/base/host_device.h"
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
 
 namespace emscape::render {
 

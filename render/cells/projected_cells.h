@@ -12,8 +12,8 @@
 #include <array>
 
 #include "emscape/base/vec.h"
-#include "emscape/render/cell_renderer.h"
-#include "render/raycast.h"
+#include "emscape/render/cells/cell_renderer.h"
+#include "render/cast/raycast.h"
 
 namespace emscape::render {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "emscape/base/host_device.h"
-#include "emscape/render/transfer_function.h"
+#include "emscape/render/transfer/transfer_function.h"
+#include "render/cast/rgba.h"
 #include "render/cells/psi.h"
-#include "render/rgba.h"
 
 namespace emscape::render {
 

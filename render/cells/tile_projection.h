@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
 #include "render/cells/cell_mesh.h"
 #include "render/cells/lane_transfer.h"
 #include "render/cells/tile_cells.h"

@@ -4,11 +4,11 @@
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
-#include "render/adaptive.h"
 #include "render/cpu/raycast_cpu.h"
-#include "render/frame_caster.h"
-#include "render/ground_layer.h"
-#include "render/prepared_volume.h"
+#include "render/patterns/adaptive.h"
+#include "render/scene/frame_caster.h"
+#include "render/scene/ground_layer.h"
+#include "render/scene/prepared_volume.h"
 
 namespace emscape::render {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <hwy/contrib/math/math-inl.h>
 
-#include "render/raycast.h"
+#include "render/cast/raycast.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace emscape::render {

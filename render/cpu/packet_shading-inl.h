@@ -1,5 +1,5 @@
-/// Shading of packets of rays, lane by lane; see render/shading.h. Included once for each instruction set by
-/// packets.cpp.
+/// Shading of packets of rays, lane by lane; see render/cast/shading.h. Included once for each instruction
+/// set by packets.cpp.
 #if defined(EMSCAPE_RENDER_CPU_PACKET_SHADING_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef EMSCAPE_RENDER_CPU_PACKET_SHADING_INL_H_
 #undef EMSCAPE_RENDER_CPU_PACKET_SHADING_INL_H_
@@ -7,8 +7,8 @@
 #define EMSCAPE_RENDER_CPU_PACKET_SHADING_INL_H_
 #endif
 
+#include "render/cast/shading.h"
 #include "render/cpu/packet_sampling-inl.h"
-#include "render/shading.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace emscape::render {

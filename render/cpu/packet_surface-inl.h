@@ -1,4 +1,4 @@
-/// The isosurface in packets of rays, lane by lane; see render/isosurface.h. Included once for each
+/// The isosurface in packets of rays, lane by lane; see render/cast/isosurface.h. Included once for each
 /// instruction set by packets.cpp.
 #if defined(EMSCAPE_RENDER_CPU_PACKET_SURFACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef EMSCAPE_RENDER_CPU_PACKET_SURFACE_INL_H_

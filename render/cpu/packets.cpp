@@ -1,6 +1,6 @@
 #include "render/cpu/packets.h"
 
-#include "base/simd_targets.h"
+#include "base/math/simd_targets.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/cpu/packets.cpp"
 #include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register
@@ -153,8 +153,8 @@ class LanesAhead {
   F highest_, until_;
 };
 
-/// The modes, lane by lane; see render/compositing.h. live() returns the lanes for which a sample from `next`
-/// on can matter, add() those that the sample changed.
+/// The modes, lane by lane; see render/cast/compositing.h. live() returns the lanes for which a sample from
+/// `next` on can matter, add() those that the sample changed.
 struct DvrLanes {
   static constexpr bool kNeedsColor = true;
   Color sum;

@@ -4,9 +4,9 @@
 /// A lane's result does not depend on its neighbours, so a pixel is the same in every packet.
 #pragma once
 
-#include "emscape/render/render_settings.h"
-#include "render/raycast.h"
-#include "render/reconstruction.h"
+#include "emscape/render/scene/render_settings.h"
+#include "render/cast/raycast.h"
+#include "render/patterns/reconstruction.h"
 
 namespace emscape::render {
 

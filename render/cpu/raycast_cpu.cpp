@@ -4,7 +4,7 @@
 #include <array>
 #include <atomic>
 
-#include "base/simd.h"
+#include "base/math/simd.h"
 #include "emscape/base/parallel.h"
 #include "render/cpu/packets.h"
 

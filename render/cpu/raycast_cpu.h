@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "emscape/base/progress.h"
-#include "emscape/render/render_settings.h"
-#include "render/ground_layer.h"
-#include "render/raycast.h"
-#include "render/reconstruction.h"
+#include "emscape/render/scene/render_settings.h"
+#include "render/cast/raycast.h"
+#include "render/patterns/reconstruction.h"
+#include "render/scene/ground_layer.h"
 
 namespace emscape::render {
 

@@ -10,8 +10,8 @@
 #include <cstring>
 #include <type_traits>
 
-#include "render/adaptive_pass.h"
 #include "render/cuda/cast_rays.h"
+#include "render/patterns/adaptive_pass.h"
 
 namespace emscape::render::cuda {
 

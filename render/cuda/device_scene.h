@@ -5,7 +5,7 @@
 
 #include "base/cuda/cuda_memory.h"
 #include "render/cuda/kernels.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 #include "volume/cuda/device_storage.h"
 
 namespace emscape::render::cuda {

@@ -3,14 +3,14 @@
 #include <utility>
 
 #include "base/cuda/cuda_memory.h"
-#include "emscape/base/device.h"
+#include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
-#include "render/adaptive_tolerance.h"
 #include "render/cuda/device_scene.h"
 #include "render/cuda/kernels.h"
 #include "render/cuda/picture_memory.h"
-#include "render/frame_caster.h"
-#include "render/silhouette.h"
+#include "render/patterns/adaptive_tolerance.h"
+#include "render/scene/frame_caster.h"
+#include "render/scene/silhouette.h"
 #include "volume/cuda/device_storage.h"
 
 namespace emscape::render {

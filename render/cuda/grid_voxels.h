@@ -1,7 +1,7 @@
 /// Voxels of a NanoVDB grid, for RaycastTask's samplers.
 #pragma once
 
-#include "render/volume_view.h"
+#include "render/cast/volume_view.h"
 #include "volume/sparse_block.h"
 
 namespace emscape::render::cuda {

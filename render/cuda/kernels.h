@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <iterator>
 
-#include "render/adaptive_pass.h"
-#include "render/compositing.h"
-#include "render/raycast.h"
-#include "render/reconstruction.h"
-#include "render/silhouette.h"
-#include "render/skip_rule.h"
+#include "render/cast/compositing.h"
+#include "render/cast/raycast.h"
+#include "render/cast/skip_rule.h"
+#include "render/patterns/adaptive_pass.h"
+#include "render/patterns/reconstruction.h"
+#include "render/scene/silhouette.h"
 #include "volume/bricks.h"
 
 namespace emscape::render::cuda {

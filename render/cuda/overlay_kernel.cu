@@ -1,6 +1,6 @@
 #include "base/cuda/cuda_memory.h"
-#include "render/bytes_over.h"
 #include "render/cuda/kernels.h"
+#include "render/picture/bytes_over.h"
 
 namespace emscape::render::cuda {
 namespace {

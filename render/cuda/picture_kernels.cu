@@ -3,7 +3,7 @@
 #include "base/cuda/cuda_memory.h"
 #include "render/cuda/kernels.h"
 #include "render/cuda/pixel_tile.h"
-#include "render/interpolation.h"
+#include "render/patterns/interpolation.h"
 
 namespace emscape::render::cuda {
 namespace {

@@ -4,7 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include "base/cuda/cuda_memory.h"
-#include "emscape/render/device_picture.h"
+#include "emscape/render/picture/device_picture.h"
 
 namespace emscape::render::cuda {
 

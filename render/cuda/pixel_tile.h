@@ -1,8 +1,8 @@
 /// Assignment of pixels to threads, and conversions of colours. For .cu files.
 #pragma once
 
-#include "render/reconstruction.h"
-#include "render/rgba.h"
+#include "render/cast/rgba.h"
+#include "render/patterns/reconstruction.h"
 
 namespace emscape::render::cuda {
 

@@ -3,7 +3,7 @@
 
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
-#include "render/volume_view.h"
+#include "render/cast/volume_view.h"
 
 namespace emscape::render::cuda {
 

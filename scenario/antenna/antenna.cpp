@@ -1,4 +1,4 @@
-#include "emscape/scenario/antenna.h"
+#include "emscape/scenario/antenna/antenna.h"
 
 #include <algorithm>
 #include <cmath>

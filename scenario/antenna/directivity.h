@@ -1,7 +1,7 @@
 /// The integral of an antenna's pattern over the sphere.
 #pragma once
 
-#include "emscape/scenario/antenna.h"
+#include "emscape/scenario/antenna/antenna.h"
 
 namespace emscape::scenario {
 

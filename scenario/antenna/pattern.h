@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "base/device_math.h"
-#include "base/fast_math.h"
+#include "base/math/device_math.h"
+#include "base/math/fast_math.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
-#include "emscape/scenario/antenna.h"
+#include "emscape/scenario/antenna/antenna.h"
 
 namespace emscape::scenario {
 namespace antenna_detail {
@@ -106,7 +106,7 @@ EMSCAPE_HD inline float depthInLobe(const PatternView& pattern, const Vec3f& dir
 }
 
 /// patternAmplitude() of a kind known at compile time, for loops: without branches; `#pragma omp simd`
-/// vectorises it (see base/fast_math.h for the flags).
+/// vectorises it (see base/math/fast_math.h for the flags).
 /// @tparam kSigned  true: with the sign of the field, which changes from lobe to lobe of apertures and arrays
 template <PatternKind kind, bool kSigned = false>
 EMSCAPE_HD inline float amplitudeOf(const PatternView& pattern, const Vec3f& direction, float steer_u,

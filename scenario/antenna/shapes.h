@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "emscape/scenario/antenna.h"
+#include "emscape/scenario/antenna/antenna.h"
 #include "scenario/antenna/taper.h"
 
 namespace emscape::scenario {

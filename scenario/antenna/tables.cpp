@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "base/device_math.h"
+#include "base/math/device_math.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/scenario/antenna.h"
+#include "emscape/scenario/antenna/antenna.h"
 
 namespace emscape::scenario {
 

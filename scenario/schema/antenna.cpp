@@ -1,5 +1,5 @@
 // Sections of an antenna: pattern and scan.
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/scenario.h"
 #include "scenario/antenna/taper.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"

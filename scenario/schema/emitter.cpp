@@ -1,7 +1,7 @@
 // Section of an emitter.
 #include <map>
 
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/scenario.h"
 #include "propagation/registry/model_info.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"

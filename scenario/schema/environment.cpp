@@ -1,5 +1,5 @@
 // Sections of the environment: region, terrain, atmosphere, ground.
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/scenario.h"
 #include "propagation/air/rain.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"

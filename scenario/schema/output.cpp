@@ -1,6 +1,6 @@
 // Sections of the output: bands, quantities, interval.
-#include "emscape/scenario/quantities.h"
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/quantities.h"
+#include "emscape/scenario/model/scenario.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"
 

@@ -1,7 +1,7 @@
 // Sections of receivers: of radars, at every voxel, and on platforms; targets.
 #include <string>
 
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/scenario.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"
 

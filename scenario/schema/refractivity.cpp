@@ -2,7 +2,7 @@
 #include "propagation/parabolic_equation/refractivity.h"
 
 #include "propagation/parabolic_equation/bulk_duct.h"
-#include "scenario/schema.h"
+#include "scenario/file/schema.h"
 
 namespace emscape::scenario {
 namespace {

@@ -1,5 +1,5 @@
 // The scenario file as a whole.
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/scenario.h"
 
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"

@@ -1,7 +1,7 @@
-/// Sections of the scenario format; refractivitySpec() and trackRowSpec() are in scenario/schema.h.
+/// Sections of the scenario format; refractivitySpec() and trackRowSpec() are in scenario/file/schema.h.
 #pragma once
 
-#include "scenario/schema.h"
+#include "scenario/file/schema.h"
 
 namespace emscape::scenario {
 

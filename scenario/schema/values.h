@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "base/position_limits.h"
+#include "base/geodesy/position_limits.h"
 #include "document/schema.h"
-#include "scenario/schema.h"
+#include "scenario/file/schema.h"
 
 namespace emscape::scenario {
 

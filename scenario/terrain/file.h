@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
-#include "emscape/scenario/terrain.h"
+#include "emscape/scenario/terrain/terrain.h"
 #include "scenario/terrain/posts.h"
 
 namespace emscape::scenario {

@@ -1,4 +1,4 @@
-#include "base/gdal.h"
+#include "base/geodesy/gdal.h"
 
 #include <cpl_conv.h>
 #include <cpl_vsi.h>

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/gdal.h"
+#include "base/geodesy/gdal.h"
 
 namespace emscape::scenario {
 

@@ -1,4 +1,4 @@
-#include "emscape/scenario/terrain.h"
+#include "emscape/scenario/terrain/terrain.h"
 
 #include <fmt/format.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <optional>
 
-#include "base/geoid_grid.h"
-#include "emscape/base/geoid.h"
+#include "base/geodesy/geoid_grid.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"

@@ -1,7 +1,7 @@
 /// Transformations between coordinate systems that files name. Also used by the readers of maps and vectors.
 #pragma once
 
-#include "base/gdal.h"
+#include "base/geodesy/gdal.h"
 
 namespace emscape::scenario {
 

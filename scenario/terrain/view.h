@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "base/device_math.h"
+#include "base/math/device_math.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
-#include "emscape/base/geoid.h"
-#include "emscape/emfield/path_budget.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::study {
 namespace {

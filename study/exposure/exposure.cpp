@@ -1,4 +1,4 @@
-#include "emscape/study/exposure.h"
+#include "emscape/study/exposure/exposure.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 
 #include "emfield/link/target_view.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/scenario/waveform.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/scenario/model/waveform.h"
 #include "emscape/volume/dense_volume.h"
 #include "study/maps/warnings.h"
 

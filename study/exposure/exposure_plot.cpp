@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "emscape/render/annotate/legend.h"
-#include "emscape/study/exposure.h"
+#include "emscape/study/exposure/exposure.h"
 #include "render/annotate/plot.h"
 
 namespace emscape::study {

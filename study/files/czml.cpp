@@ -4,10 +4,10 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "base/json_writing.h"
-#include "base/whole_file.h"
-#include "emscape/base/geoid.h"
-#include "emscape/playback/scene.h"
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/playback/frames/scene.h"
 #include "render/annotate/overlay_parts.h"
 #include "study/files/map_objects.h"
 #include "study/files/map_shapes.h"

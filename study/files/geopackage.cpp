@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "emscape/playback/scene.h"
-#include "emscape/study/map_picture.h"
+#include "emscape/playback/frames/scene.h"
 #include "render/annotate/overlay_parts.h"
 #include "study/files/map_objects.h"
+#include "study/files/map_picture.h"
 #include "study/files/map_shapes.h"
 #include "study/files/qgis_style.h"
 #include "study/maps/gdal_support.h"

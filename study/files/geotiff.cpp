@@ -1,4 +1,4 @@
-#include "emscape/study/geotiff.h"
+#include "study/files/geotiff.h"
 
 #include <fmt/format.h>
 

@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
-#include "emscape/playback/scene.h"
-#include "emscape/render/image.h"
+#include "emscape/playback/frames/scene.h"
+#include "emscape/render/picture/image.h"
 #include "render/annotate/overlay_parts.h"
 #include "study/files/map_colors.h"
 #include "study/files/map_objects.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "emscape/study/map_folder.h"
+#include "emscape/study/report/map_folder.h"
 
 namespace emscape::study {
 

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "emscape/render/annotate/legend.h"
-#include "emscape/study/map.h"
+#include "emscape/study/maps/map.h"
 
 namespace emscape::study {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "emscape/scenario/clock.h"
+#include "emscape/scenario/model/clock.h"
 
 namespace emscape::study {
 

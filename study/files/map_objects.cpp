@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
-#include "emscape/base/geo_frame.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::study {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/study/map_folder.h"
+#include "emscape/study/report/map_folder.h"
 
 namespace emscape::study {
 

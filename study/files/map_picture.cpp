@@ -1,4 +1,4 @@
-#include "emscape/study/map_picture.h"
+#include "study/files/map_picture.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "emscape/base/parallel.h"
-#include "emscape/playback/scene.h"
+#include "emscape/playback/frames/scene.h"
 #include "render/annotate/canvas.h"
 #include "render/annotate/overlay_parts.h"
 #include "study/files/map_colors.h"

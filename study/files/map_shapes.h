@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "base/gdal.h"
-#include "emscape/render/transfer_function.h"
-#include "emscape/study/map.h"
+#include "base/geodesy/gdal.h"
+#include "emscape/render/transfer/transfer_function.h"
+#include "emscape/study/maps/map.h"
 
 namespace emscape::study {
 

@@ -1,6 +1,6 @@
 #include "study/files/xml_text.h"
 
-#include "base/utf8.h"
+#include "base/text/utf8.h"
 
 namespace emscape::study {
 

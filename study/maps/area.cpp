@@ -1,4 +1,4 @@
-#include "emscape/study/area.h"
+#include "emscape/study/maps/area.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
-#include "emscape/base/geo_frame.h"
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
 
 namespace emscape::study {

@@ -1,4 +1,4 @@
-#include "emscape/study/coverage.h"
+#include "emscape/study/maps/coverage.h"
 
 #include <fmt/format.h>
 
@@ -8,8 +8,8 @@
 #include <set>
 
 #include "emscape/base/error.h"
-#include "emscape/scenario/snapshot.h"
-#include "scenario/scan_sampling.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "scenario/scan/scan_sampling.h"
 #include "study/maps/least_heights.h"
 #include "study/maps/surface_maps.h"
 #include "study/maps/warnings.h"

@@ -4,7 +4,7 @@
 
 #include <mutex>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/transformation.h"
 

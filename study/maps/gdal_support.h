@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "base/gdal.h"
-#include "emscape/study/map_grid.h"
+#include "base/geodesy/gdal.h"
+#include "emscape/study/maps/map_grid.h"
 #include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::study {

@@ -4,8 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "emscape/scenario/terrain.h"
-#include "emscape/study/area.h"
+#include "emscape/scenario/terrain/terrain.h"
+#include "emscape/study/maps/area.h"
 
 namespace emscape::study {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "emscape/base/parallel.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/dense_volume.h"
 
 namespace emscape::study {

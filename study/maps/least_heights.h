@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
-#include "emscape/emfield/field_solver.h"
-#include "emscape/study/map_grid.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/study/maps/map_grid.h"
 
 namespace emscape::study {
 

@@ -1,4 +1,4 @@
-#include "emscape/study/map.h"
+#include "emscape/study/maps/map.h"
 
 #include <fmt/format.h>
 

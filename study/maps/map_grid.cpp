@@ -1,14 +1,14 @@
-#include "emscape/study/map_grid.h"
+#include "emscape/study/maps/map_grid.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "base/fast_geodesy.h"
-#include "base/simd.h"
+#include "base/geodesy/fast_geodesy.h"
+#include "base/math/simd.h"
 #include "emscape/base/error.h"
-#include "emscape/base/geo_frame.h"
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
 #include "study/maps/gdal_support.h"

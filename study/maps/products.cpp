@@ -1,4 +1,4 @@
-#include "emscape/study/products.h"
+#include "emscape/study/maps/products.h"
 
 #include <fmt/format.h>
 

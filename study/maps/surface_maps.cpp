@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/quantity_text.h"
+#include "base/text/quantity_text.h"
+#include "emfield/channels/categories.h"
 #include "emscape/base/parallel.h"
-#include "emscape/emfield/categories.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::study {
 namespace {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "base/fast_geodesy.h"
-#include "emscape/study/coverage.h"
+#include "base/geodesy/fast_geodesy.h"
+#include "emscape/study/maps/coverage.h"
 #include "emscape/volume/dense_volume.h"
 #include "study/maps/time_figures.h"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "emscape/study/coverage.h"
+#include "emscape/study/maps/coverage.h"
 
 namespace emscape::study {
 

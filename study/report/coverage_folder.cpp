@@ -1,4 +1,4 @@
-#include "emscape/study/coverage_folder.h"
+#include "emscape/study/report/coverage_folder.h"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "base/json_reading.h"
-#include "base/whole_file.h"
+#include "base/files/json_reading.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "scenario/terrain/raster_access.h"
 #include "study/maps/gdal_support.h"
 #include "study/maps/surface_maps.h"

@@ -1,4 +1,4 @@
-#include "emscape/study/html_report.h"
+#include "emscape/study/report/html_report.h"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include <regex>
 #include <string_view>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "study/files/xml_text.h"
 
 namespace emscape::study {

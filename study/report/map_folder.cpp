@@ -1,21 +1,21 @@
-#include "emscape/study/map_folder.h"
+#include "emscape/study/report/map_folder.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "base/quantity_text.h"
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
+#include "base/text/quantity_text.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/clock.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/study/geotiff.h"
-#include "emscape/study/map_picture.h"
+#include "emscape/scenario/model/clock.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "study/files/czml.h"
 #include "study/files/geopackage.h"
+#include "study/files/geotiff.h"
 #include "study/files/kmz.h"
 #include "study/files/map_collection.h"
 #include "study/files/map_metadata.h"
+#include "study/files/map_picture.h"
 #include "study/files/netcdf.h"
 #include "study/report/earlier_outputs.h"
 #include "study/report/map_report.h"

@@ -7,12 +7,12 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "base/fast_geodesy.h"
-#include "base/json_writing.h"
-#include "base/quantity_text.h"
-#include "base/whole_file.h"
-#include "emscape/scenario/clock.h"
-#include "emscape/scenario/snapshot.h"
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
+#include "base/geodesy/fast_geodesy.h"
+#include "base/text/quantity_text.h"
+#include "emscape/scenario/model/clock.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::study {

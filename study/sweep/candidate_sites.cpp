@@ -6,7 +6,7 @@
 #include <set>
 
 #include "emscape/base/error.h"
-#include "emscape/base/geo_frame.h"
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
 #include "study/maps/gdal_support.h"
 #include "study/sweep/study_reading.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/study/area.h"
+#include "emscape/study/maps/area.h"
 
 namespace emscape::study {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "emscape/study/map_grid.h"
-#include "emscape/study/study_file.h"
+#include "emscape/study/maps/map_grid.h"
+#include "study/sweep/study_file.h"
 
 namespace emscape::study {
 

@@ -1,4 +1,4 @@
-#include "emscape/study/part_claim.h"
+#include "study/sweep/part_claim.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 #include <sstream>
 #include <system_error>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 
 namespace emscape::study {

@@ -1,4 +1,4 @@
-#include "emscape/study/part_journal.h"
+#include "study/sweep/part_journal.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -12,9 +12,9 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/json_reading.h"
-#include "base/json_writing.h"
-#include "base/whole_file.h"
+#include "base/files/json_reading.h"
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "study/sweep/part_rows.h"
 

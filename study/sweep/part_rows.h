@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "emscape/study/study_runner.h"
+#include "study/sweep/study_runner.h"
 
 namespace emscape::study {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/study/map_grid.h"
+#include "emscape/study/maps/map_grid.h"
 
 namespace emscape::study {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "document/schema_check.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/gdal_messages.h"

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "emscape/study/study_folder.h"
+#include "study/sweep/study_folder.h"
 
 namespace emscape::study {
 

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <utility>
 
-#include "base/random.h"
+#include "base/math/random.h"
 
 namespace emscape::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "emscape/study/study_file.h"
+#include "study/sweep/study_file.h"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <filesystem>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "document/schema_check.h"
 #include "document/text_file.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "study/sweep/study_format.h"
 #include "study/sweep/study_reading.h"
 #include "study/sweep/vector_file.h"

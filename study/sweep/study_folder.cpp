@@ -1,4 +1,4 @@
-#include "emscape/study/study_folder.h"
+#include "study/sweep/study_folder.h"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "base/json_reading.h"
-#include "base/json_writing.h"
-#include "base/whole_file.h"
+#include "base/files/json_reading.h"
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "study/sweep/part_rows.h"
 #include "study/sweep/result_files.h"

@@ -6,7 +6,7 @@
 
 #include "document/text_edit.h"
 #include "emscape/base/error.h"
-#include "emscape/study/products.h"
+#include "emscape/study/maps/products.h"
 #include "study/sweep/sample_points.h"
 
 namespace emscape::study {

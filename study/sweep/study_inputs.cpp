@@ -2,9 +2,9 @@
 #include <set>
 
 #include "document/edit_path.h"
-#include "emscape/scenario/scenario_file.h"
-#include "scenario/schema.h"
-#include "scenario/source.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "scenario/file/schema.h"
+#include "scenario/file/source.h"
 #include "study/sweep/study_reading.h"
 
 namespace emscape::study {

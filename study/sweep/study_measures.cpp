@@ -4,7 +4,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "emscape/study/study_file.h"
+#include "study/sweep/study_file.h"
 #include "study/sweep/study_reading.h"
 
 namespace emscape::study {

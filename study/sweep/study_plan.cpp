@@ -1,4 +1,4 @@
-#include "emscape/study/study_plan.h"
+#include "study/sweep/study_plan.h"
 
 #include <algorithm>
 #include <map>
@@ -6,9 +6,9 @@
 #include <set>
 
 #include "emscape/base/error.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::study {
 namespace {

@@ -7,7 +7,7 @@
 #include "document/document.h"
 #include "document/section.h"
 #include "emscape/base/error.h"
-#include "emscape/study/study_file.h"
+#include "study/sweep/study_file.h"
 
 namespace emscape::study {
 

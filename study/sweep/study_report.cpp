@@ -1,4 +1,4 @@
-#include "emscape/study/study_report.h"
+#include "study/sweep/study_report.h"
 
 #include <fmt/format.h>
 
@@ -7,11 +7,11 @@
 #include <map>
 #include <numeric>
 
-#include "base/quantity_text.h"
+#include "base/text/quantity_text.h"
 #include "document/schema_check.h"
-#include "emscape/study/html_report.h"
-#include "emscape/study/map.h"
-#include "emscape/study/map_grid.h"
+#include "emscape/study/maps/map.h"
+#include "emscape/study/maps/map_grid.h"
+#include "emscape/study/report/html_report.h"
 #include "study/report/map_report.h"
 #include "study/sweep/choose_sites.h"
 #include "study/sweep/measure_plot.h"

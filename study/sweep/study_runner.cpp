@@ -1,4 +1,4 @@
-#include "emscape/study/study_runner.h"
+#include "study/sweep/study_runner.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "study/maps/kept_terrain.h"
 #include "study/sweep/measure.h"
 #include "study/sweep/polygon_mask.h"

@@ -5,13 +5,13 @@
 #include <map>
 #include <set>
 
-#include "base/random.h"
+#include "base/math/random.h"
 #include "document/edit_path.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
-#include "emscape/scenario/scenario_file.h"
-#include "scenario/schema.h"
-#include "scenario/source.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "scenario/file/schema.h"
+#include "scenario/file/source.h"
 #include "study/sweep/candidate_sites.h"
 #include "study/sweep/sample_points.h"
 #include "study/sweep/study_format.h"

@@ -1,4 +1,4 @@
-#include "emscape/study/variant_files.h"
+#include "study/sweep/variant_files.h"
 
 #include <fmt/format.h>
 
@@ -8,11 +8,11 @@
 #include <set>
 #include <vector>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/study/geotiff.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/file.h"
+#include "study/files/geotiff.h"
 #include "study/files/map_metadata.h"
 #include "study/maps/kept_terrain.h"
 

@@ -1,4 +1,4 @@
-#include "emscape/study/variants.h"
+#include "study/sweep/variants.h"
 
 #include <fmt/format.h>
 

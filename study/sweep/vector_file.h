@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "base/gdal.h"
+#include "base/geodesy/gdal.h"
 #include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::study {

@@ -1,4 +1,4 @@
-#include "emscape/study/vertical.h"
+#include "emscape/study/vertical/vertical.h"
 
 #include <fmt/format.h>
 
@@ -6,10 +6,10 @@
 #include <cmath>
 #include <optional>
 
-#include "emfield/station.h"
+#include "emfield/columns/station.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/dense_volume.h"
 #include "study/files/contour_lines.h"
 

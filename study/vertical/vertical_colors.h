@@ -1,8 +1,8 @@
 /// Colours of the values of a vertical diagram.
 #pragma once
 
-#include "emscape/render/transfer_function.h"
-#include "emscape/study/vertical.h"
+#include "emscape/render/transfer/transfer_function.h"
+#include "emscape/study/vertical/vertical.h"
 #include "render/annotate/canvas.h"
 
 namespace emscape::study {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
-#include "emscape/study/vertical.h"
+#include "emscape/study/vertical/vertical.h"
 
 namespace emscape::study {
 

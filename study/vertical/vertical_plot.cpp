@@ -5,7 +5,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
-#include "emscape/study/vertical.h"
+#include "emscape/study/vertical/vertical.h"
 #include "render/annotate/overlay_parts.h"
 #include "render/annotate/plot.h"
 #include "study/vertical/vertical_colors.h"

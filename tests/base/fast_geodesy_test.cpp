@@ -1,4 +1,4 @@
-#include "base/fast_geodesy.h"
+#include "base/geodesy/fast_geodesy.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "base/fast_math.h"
+#include "base/math/fast_math.h"
 
 #include <gtest/gtest.h>
 

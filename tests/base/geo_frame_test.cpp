@@ -1,4 +1,4 @@
-#include "emscape/base/geo_frame.h"
+#include "emscape/base/geodesy/geo_frame.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "emscape/base/geoid.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "tests/support/errors.h"
 

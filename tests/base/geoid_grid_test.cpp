@@ -1,4 +1,4 @@
-#include "base/geoid_grid.h"
+#include "base/geodesy/geoid_grid.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <string>
 
 #include "emscape/base/error.h"
-#include "emscape/base/geoid.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"

@@ -1,4 +1,4 @@
-#include "emscape/base/geoid.h"
+#include "emscape/base/geodesy/geoid.h"
 
 #include <gtest/gtest.h>
 

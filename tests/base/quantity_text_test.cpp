@@ -1,4 +1,4 @@
-#include "base/quantity_text.h"
+#include "base/text/quantity_text.h"
 
 #include <gtest/gtest.h>
 

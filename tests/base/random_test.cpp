@@ -1,4 +1,4 @@
-#include "base/random.h"
+#include "base/math/random.h"
 
 #include <gtest/gtest.h>
 

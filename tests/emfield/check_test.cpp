@@ -9,8 +9,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "emfield/check/reference_check.h"
 #include "emfield/check/reference_table.h"
-#include "emscape/emfield/reference_check.h"
 #include "propagation/air/gases.h"
 #include "propagation/air/rain.h"
 #include "propagation/limits.h"

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <functional>
 
+#include "emfield/channels/radar_clutter.h"
+#include "emfield/check/reference_check.h"
 #include "emfield/clutter/mti.h"
 #include "emfield/clutter/reflectivity.h"
-#include "emfield/clutter_map.h"
-#include "emfield/radar_clutter.h"
-#include "emscape/emfield/link.h"
-#include "emscape/emfield/path_budget.h"
-#include "emscape/emfield/reference_check.h"
+#include "emfield/geometry/clutter_map.h"
+#include "emscape/emfield/link/link.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/radar_duel.h"
 #include "tests/support/on_backends.h"

@@ -1,12 +1,12 @@
 // The row loops of the CPU against the plain single-source function, voxel by voxel.
 
-#include "emfield/combine.h"
+#include "emfield/combine/combine.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/solver/field_solver.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/files.h"
 

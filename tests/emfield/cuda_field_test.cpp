@@ -8,8 +8,8 @@
 #include <random>
 #include <string>
 
-#include "emscape/base/device.h"
-#include "emscape/emfield/field_solver.h"
+#include "emscape/base/cuda/device.h"
+#include "emscape/emfield/solver/field_solver.h"
 #include "propagation/parabolic_equation/refractivity_field.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/random_profile.h"

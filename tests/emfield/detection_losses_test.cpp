@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "tests/emfield/radar_duel.h"
 
 namespace emscape::emfield {

@@ -8,7 +8,7 @@
 
 #include "emfield/radar/equation.h"
 #include "emscape/base/units.h"
-#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/model/emitter.h"
 #include "propagation/air/gases.h"
 #include "propagation/air/rain.h"
 #include "tests/support/errors.h"

@@ -4,11 +4,11 @@
 #include <filesystem>
 
 #include "emscape/base/error.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
-#include "scenario/schema.h"
-#include "scenario/source.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "scenario/file/schema.h"
+#include "scenario/file/source.h"
 #include "tests/scenario/random_edits.h"
 #include "tests/support/files.h"
 

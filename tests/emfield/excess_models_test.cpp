@@ -8,9 +8,9 @@
 #include <map>
 #include <random>
 
-#include "emfield/model_check.h"
+#include "emfield/excess/model_check.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "propagation/air/gases.h"
 #include "propagation/air/rain.h"
 #include "propagation/diffraction/edges.h"

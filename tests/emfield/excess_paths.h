@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "emfield/emitter_excess.h"
-#include "emfield/ground_posts.h"
+#include "emfield/excess/emitter_excess.h"
+#include "emfield/ground/ground_posts.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "emfield/emitter_geometry.h"
-#include "emfield/excess_code.h"
+#include "emfield/columns/excess_code.h"
+#include "emfield/geometry/emitter_geometry.h"
 #include "emscape/base/error.h"
 #include "propagation/diffraction/diffraction.h"
 #include "scenario/terrain/view.h"

@@ -1,19 +1,19 @@
 // What the solver recomputes and keeps, and how it reports this.
 
-#include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/solver/field_solver.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "emfield/channels/categories.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/categories.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/volume/labels.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
+#include "volume/labels.h"
 
 namespace emscape::emfield {
 namespace {

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "emscape/base/units.h"
-#include "emscape/emfield/field_solver.h"
+#include "emscape/emfield/solver/field_solver.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"

@@ -1,5 +1,5 @@
 // The ground below a path is that of the elevation model's posts, whatever the grid.
-#include "emfield/ground_posts.h"
+#include "emfield/ground/ground_posts.h"
 
 #include <gtest/gtest.h>
 
@@ -8,10 +8,10 @@
 #include <random>
 #include <vector>
 
-#include "emfield/read_posts.h"
-#include "emscape/base/geoid.h"
+#include "emfield/ground/read_posts.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/files.h"

@@ -11,7 +11,7 @@
 
 #include "emfield/solver/interval_beam.h"
 #include "emscape/base/units.h"
-#include "scenario/scan_sweep.h"
+#include "scenario/scan/scan_sweep.h"
 #include "tests/emfield/radar_duel.h"
 #include "tests/emfield/scans.h"
 #include "tests/support/on_backends.h"

@@ -1,5 +1,5 @@
 // Links over time against closed forms and against the budget of the same path.
-#include "emscape/emfield/link.h"
+#include "emscape/emfield/link/link.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 #include "emfield/link/target_view.h"
 #include "emfield/radar/receiver.h"
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "tests/emfield/radar_duel.h"
 #include "tests/support/errors.h"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "emscape/base/units.h"
-#include "emscape/scenario/terrain.h"
+#include "emscape/scenario/terrain/terrain.h"
 #include "scenario/terrain/view.h"
 
 namespace emscape::emfield::testing {

@@ -6,9 +6,9 @@
 #include <functional>
 #include <vector>
 
-#include "emfield/ground_posts.h"
+#include "emfield/ground/ground_posts.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_profile.h"
+#include "emscape/emfield/link/path_profile.h"
 #include "propagation/air/gases.h"
 #include "propagation/diffraction/edges.h"
 #include "propagation/itm/itm.h"

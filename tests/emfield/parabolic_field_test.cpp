@@ -9,12 +9,11 @@
 #include <map>
 #include <random>
 
-#include "emfield/emitter_excess.h"
-#include "emfield/foot_inverse.h"
-#include "emfield/radials.h"
-#include "emscape/emfield/path_budget.h"
-#include "emscape/scenario/terrain.h"
-#include "emscape/volume/labels.h"
+#include "emfield/columns/foot_inverse.h"
+#include "emfield/excess/emitter_excess.h"
+#include "emfield/excess/radials.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/scenario/terrain/terrain.h"
 #include "propagation/parabolic_equation/model.h"
 #include "propagation/parabolic_equation/path_air.h"
 #include "propagation/parabolic_equation/plan.h"
@@ -24,6 +23,7 @@
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
+#include "volume/labels.h"
 
 namespace emscape::emfield {
 namespace {

@@ -1,5 +1,5 @@
 // The budget of a path against the field's voxels and against closed forms.
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "emfield/ground_posts.h"
-#include "emfield/station.h"
+#include "emfield/columns/station.h"
+#include "emfield/ground/ground_posts.h"
 #include "emscape/base/units.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "emfield/ground_posts.h"
-#include "emscape/base/geoid.h"
+#include "emfield/ground/ground_posts.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "tests/emfield/test_scenario.h"
 
 namespace emscape::emfield {

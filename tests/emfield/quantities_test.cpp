@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include "emfield/emitter_geometry.h"
-#include "emfield/grid_columns.h"
-#include "emfield/radar_product.h"
+#include "emfield/columns/grid_columns.h"
+#include "emfield/combine/radar_product.h"
+#include "emfield/geometry/emitter_geometry.h"
 #include "tests/emfield/radar_duel.h"
 #include "tests/support/files.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "emscape/base/geo_frame.h"
-#include "emscape/scenario/terrain.h"
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/scenario/terrain/terrain.h"
 #include "propagation/diffraction/diffraction.h"
 #include "tests/support/files.h"
 

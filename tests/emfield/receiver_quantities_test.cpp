@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "emfield/radar/receiver.h"
-#include "emscape/emfield/link.h"
+#include "emscape/emfield/link/link.h"
 #include "tests/emfield/radar_duel.h"
 #include "tests/support/errors.h"
 #include "tests/support/on_backends.h"

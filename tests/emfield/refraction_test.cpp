@@ -3,13 +3,13 @@
 // The figures come from a numerical integration of Snell's law in spherical layers, n r cos(theta) =
 // constant: dr / dphi = r tan(theta), dtheta / dphi = 1 + (r / n) dn/dr, Runge-Kutta of fourth order in steps
 // of 20 m over an earth of 6371 km, n = 1 + 313e-6 exp(-h / 6.9513 km).
-#include "emfield/refraction.h"
+#include "emfield/columns/refraction.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "emfield/station.h"
+#include "emfield/columns/station.h"
 #include "emscape/base/units.h"
 #include "propagation/horizon/horizon.h"
 

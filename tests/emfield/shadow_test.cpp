@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
-#include "emscape/base/geoid.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/terrain.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/terrain/terrain.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/files.h"
 

@@ -1,6 +1,6 @@
 // The field over a surface equals the budgets of the paths to its positions.
 
-#include "emscape/emfield/surface.h"
+#include "emscape/emfield/columns/surface.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 
 #include "emscape/base/error.h"
-#include "emscape/base/geoid.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/files.h"

@@ -1,4 +1,4 @@
-#include "emscape/emfield/terrain_mesh.h"
+#include "emscape/emfield/columns/terrain_mesh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <random>
 
-#include "emscape/base/geo_frame.h"
-#include "emscape/base/geoid.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/errors.h"

@@ -5,9 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/scenario.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/model/scenario.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "scenario/antenna/shapes.h"
 
 namespace emscape::emfield::testing {

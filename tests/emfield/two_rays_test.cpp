@@ -1,5 +1,5 @@
 // The reflected ray of `two_ray`, weighted by the antennas' patterns.
-#include "emfield/two_rays.h"
+#include "emfield/columns/two_rays.h"
 
 #include <gtest/gtest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <random>
 
-#include "emfield/station.h"
-#include "emscape/base/geoid.h"
+#include "emfield/columns/station.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "propagation/inputs.h"
 #include "propagation/two_ray/two_ray.h"
 #include "tests/emfield/radar_duel.h"

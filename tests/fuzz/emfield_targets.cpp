@@ -1,6 +1,6 @@
 // Texts and tables of the field's module.
 #include "emfield/check/reference_table.h"
-#include "emscape/emfield/terrain_mesh.h"
+#include "emscape/emfield/columns/terrain_mesh.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace emscape::test {

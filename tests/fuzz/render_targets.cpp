@@ -1,8 +1,8 @@
 // Texts that describe how a picture is drawn.
-#include "emscape/render/camera.h"
-#include "emscape/render/cut_plane.h"
-#include "emscape/render/image.h"
-#include "emscape/render/transfer_function.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/render/scene/camera.h"
+#include "emscape/render/scene/cut_plane.h"
+#include "emscape/render/transfer/transfer_function.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 

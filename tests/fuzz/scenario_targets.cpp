@@ -3,12 +3,12 @@
 #include <limits>
 
 #include "emscape/base/error.h"
-#include "emscape/scenario/clock.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/scenario/target.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/clock.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/scenario/model/target.h"
 #include "scenario/antenna/shapes.h"
-#include "scenario/refractivity_file.h"
+#include "scenario/file/refractivity_file.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 

@@ -1,7 +1,7 @@
 // Elevation files in each format that is read.
 #include <cmath>
 
-#include "emscape/scenario/terrain.h"
+#include "emscape/scenario/terrain/terrain.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/scenario/dem_file.h"
 #include "tests/support/files.h"

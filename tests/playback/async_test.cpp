@@ -1,7 +1,7 @@
 #include <stdexcept>
 
-#include "emscape/playback/async_task.h"
-#include "playback/background_writer.h"
+#include "emscape/playback/live/async_task.h"
+#include "playback/series/background_writer.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

@@ -1,11 +1,11 @@
-#include "emscape/playback/autosave.h"
+#include "playback/editing/autosave.h"
 
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 
-#include "base/utc.h"
+#include "base/text/utc.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

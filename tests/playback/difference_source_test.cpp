@@ -1,9 +1,9 @@
-#include "playback/difference_source.h"
+#include "playback/frames/difference_source.h"
 
 #include <algorithm>
 
-#include "emscape/volume/difference.h"
 #include "tests/playback/playback_samples.h"
+#include "volume/difference.h"
 
 namespace emscape::playback::test {
 namespace {

@@ -1,10 +1,10 @@
-#include "emscape/playback/edit_history.h"
+#include "playback/editing/edit_history.h"
 
 #include <fmt/format.h>
 
 #include <random>
 
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

@@ -1,10 +1,10 @@
-#include "playback/edit_queue.h"
+#include "playback/live/edit_queue.h"
 
 #include <chrono>
 #include <thread>
 
-#include "emscape/scenario/scenario_file.h"
-#include "playback/latest_worker.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "playback/live/latest_worker.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

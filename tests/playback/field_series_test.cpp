@@ -1,4 +1,4 @@
-#include "emscape/playback/field_series.h"
+#include "emscape/playback/frames/field_series.h"
 
 #include "emscape/playback/stop.h"
 #include "tests/playback/playback_samples.h"

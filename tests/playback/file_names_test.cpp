@@ -1,4 +1,4 @@
-#include "playback/file_names.h"
+#include "playback/series/file_names.h"
 
 #include <gtest/gtest.h>
 

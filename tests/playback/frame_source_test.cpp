@@ -1,4 +1,4 @@
-#include "emscape/playback/frame_source.h"
+#include "emscape/playback/frames/frame_source.h"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
-#include "emscape/playback/inputs.h"
+#include "emscape/playback/frames/inputs.h"
 
-#include "emscape/playback/frame_source.h"
+#include "emscape/playback/frames/frame_source.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

@@ -1,4 +1,4 @@
-#include "playback/live_fields.h"
+#include "playback/live/live_fields.h"
 
 #include <condition_variable>
 #include <numeric>

@@ -1,9 +1,9 @@
-#include "emscape/playback/live_view.h"
+#include "playback/live/live_view.h"
 
 #include <algorithm>
 #include <condition_variable>
 
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/volume/file.h"
 #include "tests/playback/playback_samples.h"
 #include "tests/support/gpu.h"

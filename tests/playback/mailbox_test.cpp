@@ -1,4 +1,4 @@
-#include "playback/mailbox.h"
+#include "playback/live/mailbox.h"
 
 #include <gtest/gtest.h>
 

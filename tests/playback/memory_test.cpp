@@ -6,12 +6,12 @@
 #include <fstream>
 
 #include "emscape/base/units.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/playback/live_view.h"
-#include "emscape/playback/painter.h"
-#include "emscape/playback/real_time_loop.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/playback/pictures/painter.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "playback/live/live_view.h"
+#include "playback/pictures/real_time_loop.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

@@ -1,11 +1,11 @@
-#include "emscape/playback/painter.h"
+#include "emscape/playback/pictures/painter.h"
 
 #include <algorithm>
 
 #include "emscape/base/log.h"
 #include "emscape/volume/file.h"
-#include "emscape/volume/labels.h"
 #include "tests/playback/playback_samples.h"
+#include "volume/labels.h"
 
 namespace emscape::playback::test {
 namespace {

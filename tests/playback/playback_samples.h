@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "emscape/playback/clock.h"
-#include "emscape/playback/frame_source.h"
+#include "emscape/playback/frames/frame_source.h"
+#include "emscape/playback/pictures/clock.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

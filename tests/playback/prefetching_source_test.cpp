@@ -1,4 +1,4 @@
-#include "emscape/playback/prefetching_source.h"
+#include "playback/frames/prefetching_source.h"
 
 #include <stdexcept>
 

@@ -1,12 +1,12 @@
-#include "emscape/playback/probe.h"
+#include "playback/editing/probe.h"
 
 #include <algorithm>
 #include <random>
 
-#include "emscape/emfield/field_solver.h"
-#include "emscape/playback/pick.h"
-#include "emscape/playback/scene.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/playback/frames/scene.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "playback/editing/pick.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

@@ -1,5 +1,5 @@
 // The loop from the field to the settled picture, against a clock that passes only where the loop waits.
-#include "emscape/playback/real_time_loop.h"
+#include "playback/pictures/real_time_loop.h"
 
 #include <algorithm>
 #include <numeric>

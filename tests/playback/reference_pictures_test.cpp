@@ -3,9 +3,9 @@
 #include <cstdlib>
 #include <ostream>
 
-#include "emscape/playback/painter.h"
-#include "emscape/playback/view_state.h"
-#include "emscape/render/image.h"
+#include "emscape/playback/pictures/painter.h"
+#include "emscape/render/picture/image.h"
+#include "playback/editing/view_state.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

@@ -1,4 +1,4 @@
-#include "emscape/playback/series_writer.h"
+#include "emscape/playback/series/series_writer.h"
 
 #include <algorithm>
 #include <map>

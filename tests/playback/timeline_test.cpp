@@ -1,6 +1,6 @@
-#include "emscape/playback/timeline.h"
+#include "playback/editing/timeline.h"
 
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

@@ -1,4 +1,4 @@
-#include "emscape/playback/transfer_editor.h"
+#include "playback/editing/transfer_editor.h"
 
 #include <random>
 

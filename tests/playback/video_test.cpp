@@ -1,4 +1,4 @@
-#include "playback/video.h"
+#include "playback/pictures/video.h"
 
 #include <gtest/gtest.h>
 

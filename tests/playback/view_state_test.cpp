@@ -1,4 +1,4 @@
-#include "emscape/playback/view_state.h"
+#include "playback/editing/view_state.h"
 
 #include <algorithm>
 #include <random>

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "emscape/emfield/reference_check.h"
+#include "emfield/check/reference_check.h"
 #include "propagation/registry/model_info.h"
 #include "tests/support/files.h"
 

@@ -1,4 +1,4 @@
-#include "render/adaptive.h"
+#include "render/patterns/adaptive.h"
 
 #include <gtest/gtest.h>
 
@@ -6,8 +6,8 @@
 #include <random>
 
 #include "emscape/base/parallel.h"
-#include "emscape/render/renderer.h"
-#include "render/adaptive_predict.h"
+#include "emscape/render/scene/renderer.h"
+#include "render/patterns/adaptive_predict.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

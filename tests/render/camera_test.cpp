@@ -1,4 +1,4 @@
-#include "emscape/render/camera.h"
+#include "emscape/render/scene/camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

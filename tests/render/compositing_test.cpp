@@ -1,4 +1,4 @@
-#include "render/compositing.h"
+#include "render/cast/compositing.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
-#include "emscape/render/render_settings.h"
+#include "emscape/render/scene/render_settings.h"
 
 namespace emscape::render {
 namespace {

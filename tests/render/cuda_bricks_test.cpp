@@ -3,7 +3,7 @@
 
 #include "emscape/volume/device_volume.h"
 #include "render/cuda/device_scene.h"
-#include "render/prepared_volume.h"
+#include "render/scene/prepared_volume.h"
 #include "tests/render/cuda_scenes.h"
 
 namespace emscape::render {

@@ -4,7 +4,7 @@
 
 #include <cstdio>
 
-#include "render/reconstruction.h"
+#include "render/patterns/reconstruction.h"
 #include "tests/render/cuda_scenes.h"
 #include "tests/support/errors.h"
 

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "emscape/render/renderer.h"
+#include "emscape/render/scene/renderer.h"
 #include "tests/render/random_scene.h"
 #include "tests/support/gpu.h"
 

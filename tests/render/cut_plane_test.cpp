@@ -1,4 +1,4 @@
-#include "emscape/render/cut_plane.h"
+#include "emscape/render/scene/cut_plane.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <random>
 #include <string>
 
-#include "emscape/render/renderer.h"
+#include "emscape/render/scene/renderer.h"
 #include "tests/render/random_scene.h"
 #include "tests/support/errors.h"
 #include "tests/support/on_backends.h"

@@ -1,4 +1,4 @@
-#include "render/ground.h"
+#include "render/cast/ground.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "emscape/base/error.h"
-#include "emscape/render/renderer.h"
-#include "render/raycast.h"
+#include "emscape/render/scene/renderer.h"
+#include "render/cast/raycast.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

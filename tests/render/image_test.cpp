@@ -1,4 +1,4 @@
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "render/rgba.h"
+#include "render/cast/rgba.h"
 #include "tests/support/errors.h"
 #include "tests/support/temporary_folder.h"
 

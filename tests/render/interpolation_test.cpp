@@ -1,10 +1,10 @@
-#include "render/interpolation.h"
+#include "render/patterns/interpolation.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "render/reconstruction.h"
+#include "render/patterns/reconstruction.h"
 
 namespace emscape::render {
 namespace {

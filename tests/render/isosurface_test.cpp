@@ -1,4 +1,4 @@
-#include "render/isosurface.h"
+#include "render/cast/isosurface.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <limits>
 #include <random>
 
-#include "emscape/render/renderer.h"
-#include "render/prepared_volume.h"
-#include "render/raycast.h"
+#include "emscape/render/scene/renderer.h"
+#include "render/cast/raycast.h"
+#include "render/scene/prepared_volume.h"
 #include "tests/render/scenes.h"
 #include "tests/support/errors.h"
 

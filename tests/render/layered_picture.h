@@ -3,8 +3,8 @@
 
 #include <cstring>
 
-#include "emscape/render/device_picture.h"
-#include "render/bytes_over.h"
+#include "emscape/render/picture/device_picture.h"
+#include "render/picture/bytes_over.h"
 
 namespace emscape::render::testing {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <random>
 
-#include "emscape/render/renderer.h"
+#include "emscape/render/scene/renderer.h"
 #include "tests/render/instruction_sets.h"
 #include "tests/render/random_scene.h"
 

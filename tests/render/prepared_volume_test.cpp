@@ -1,11 +1,11 @@
-#include "render/prepared_volume.h"
+#include "render/scene/prepared_volume.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <limits>
 
-#include "emscape/render/renderer.h"
+#include "emscape/render/scene/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "emscape/render/renderer.h"
+#include "emscape/render/scene/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render::testing {

@@ -1,5 +1,5 @@
 // The work of a picture, counted without casting it.
-#include "render/ray_load.h"
+#include "render/patterns/ray_load.h"
 
 #include <gtest/gtest.h>
 

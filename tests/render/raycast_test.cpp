@@ -1,4 +1,4 @@
-#include "render/raycast.h"
+#include "render/cast/raycast.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <string>
 
-#include "emscape/render/renderer.h"
+#include "emscape/render/scene/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

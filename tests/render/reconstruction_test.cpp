@@ -1,4 +1,4 @@
-#include "render/reconstruction.h"
+#include "render/patterns/reconstruction.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "emscape/render/renderer.h"
+#include "emscape/render/scene/renderer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
-#include "render/reconstruction.h"
+#include "render/patterns/reconstruction.h"
 #include "tests/render/random_scene.h"
 #include "tests/support/on_backends.h"
 

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "emscape/render/height_field.h"
-#include "emscape/render/renderer.h"
-#include "emscape/render/transfer_function.h"
+#include "emscape/render/scene/height_field.h"
+#include "emscape/render/scene/renderer.h"
+#include "emscape/render/transfer/transfer_function.h"
 #include "emscape/volume/dense_volume.h"
 
 namespace emscape::render::testing {

@@ -1,11 +1,11 @@
-#include "render/shading.h"
+#include "render/cast/shading.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
-#include "emscape/render/renderer.h"
+#include "emscape/render/scene/renderer.h"
 #include "tests/render/scenes.h"
 
 namespace emscape::render {

@@ -1,4 +1,4 @@
-#include "render/silhouette.h"
+#include "render/scene/silhouette.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "render/skip_rule.h"
+#include "render/cast/skip_rule.h"
 
 #include <gtest/gtest.h>
 

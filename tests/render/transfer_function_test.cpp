@@ -1,4 +1,4 @@
-#include "emscape/render/transfer_function.h"
+#include "emscape/render/transfer/transfer_function.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <random>
 
-#include "render/transfer_table.h"
+#include "render/cast/transfer_table.h"
 #include "tests/render/scenes.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"

@@ -4,7 +4,7 @@
 #include <random>
 #include <vector>
 
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/scenario/scenario_files.h"
 
 namespace emscape::scenario {

@@ -1,11 +1,11 @@
-#include "emscape/scenario/clock.h"
+#include "emscape/scenario/model/clock.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "base/utc.h"
+#include "base/text/utc.h"
 #include "tests/support/errors.h"
 
 namespace emscape::scenario {

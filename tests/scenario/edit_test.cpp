@@ -1,4 +1,4 @@
-#include "emscape/scenario/edit.h"
+#include "emscape/scenario/model/edit.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@
 
 #include "document/document.h"
 #include "document/text_edit.h"
-#include "emscape/scenario/scenario_file.h"
-#include "scenario/schema.h"
-#include "scenario/source.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "scenario/file/schema.h"
+#include "scenario/file/source.h"
 #include "tests/scenario/random_edits.h"
 #include "tests/scenario/scenario_files.h"
 

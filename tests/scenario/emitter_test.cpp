@@ -1,4 +1,4 @@
-#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/model/emitter.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "emscape/base/units.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "propagation/air/sky_noise.h"
 #include "tests/scenario/scenario_files.h"
 

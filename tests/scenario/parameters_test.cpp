@@ -1,11 +1,11 @@
-#include "emscape/scenario/parameters.h"
+#include "scenario/file/parameters.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <functional>
 
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 

@@ -1,4 +1,4 @@
-#include "emscape/scenario/platform.h"
+#include "emscape/scenario/model/platform.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "emscape/scenario/quantities.h"
+#include "emscape/scenario/model/quantities.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <set>
 
 #include "emscape/base/error.h"
-#include "scenario/schema.h"
+#include "scenario/file/schema.h"
 
 namespace emscape::scenario {
 namespace {

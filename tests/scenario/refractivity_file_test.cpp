@@ -1,5 +1,5 @@
 // Profiles of refractivity in CSV files.
-#include "scenario/refractivity_file.h"
+#include "scenario/file/refractivity_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

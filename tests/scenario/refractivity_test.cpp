@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "emscape/scenario/parameters.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "propagation/parabolic_equation/bulk_duct.h"
 #include "propagation/parabolic_equation/refractivity_field.h"
+#include "scenario/file/parameters.h"
 #include "tests/scenario/scenario_files.h"
 
 namespace emscape::scenario {

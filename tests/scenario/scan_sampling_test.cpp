@@ -1,4 +1,4 @@
-#include "scenario/scan_sampling.h"
+#include "scenario/scan/scan_sampling.h"
 
 #include <gtest/gtest.h>
 

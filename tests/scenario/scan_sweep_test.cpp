@@ -1,5 +1,5 @@
 // The motion of a beam in an interval, at the times at which its emitter is active.
-#include "scenario/scan_sweep.h"
+#include "scenario/scan/scan_sweep.h"
 
 #include <gtest/gtest.h>
 

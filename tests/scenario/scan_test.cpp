@@ -1,4 +1,4 @@
-#include "emscape/scenario/scan.h"
+#include "emscape/scenario/scan/scan.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 
 #include <gmock/gmock.h>
 
@@ -6,7 +6,7 @@
 
 #include "emscape/base/units.h"
 #include "propagation/air/rain.h"
-#include "scenario/schema.h"
+#include "scenario/file/schema.h"
 #include "tests/scenario/scenario_files.h"
 #include "tests/support/errors.h"
 

@@ -1,11 +1,11 @@
-#include "emscape/scenario/snapshot.h"
+#include "emscape/scenario/model/snapshot.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <thread>
 
-#include "emscape/base/geoid.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/terrain/view.h"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/scenario.h"
 
 namespace emscape::scenario {
 namespace {

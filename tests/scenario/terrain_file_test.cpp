@@ -15,7 +15,7 @@
 
 #include "emscape/base/log.h"
 #include "emscape/base/units.h"
-#include "emscape/scenario/terrain.h"
+#include "emscape/scenario/terrain/terrain.h"
 #include "scenario/terrain/view.h"
 #include "scenario/terrain/vrt.h"
 #include "tests/scenario/dem_file.h"

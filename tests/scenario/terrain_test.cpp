@@ -1,5 +1,5 @@
 /// Heights of mosaics: positions of posts, voids, precedence of files.
-#include "emscape/scenario/terrain.h"
+#include "emscape/scenario/terrain/terrain.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,8 +9,8 @@
 #include <fstream>
 #include <random>
 
-#include "base/geoid_grid.h"
-#include "emscape/base/geoid.h"
+#include "base/geodesy/geoid_grid.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "scenario/terrain/view.h"
 #include "tests/scenario/dem_file.h"

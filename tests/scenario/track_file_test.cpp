@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "scenario/parse_sections.h"
+#include "scenario/file/parse_sections.h"
 
 namespace emscape::scenario {
 namespace {

@@ -1,10 +1,10 @@
-#include "emscape/scenario/waveform.h"
+#include "emscape/scenario/model/waveform.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "emscape/base/units.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "propagation/air/sky_noise.h"
 #include "tests/scenario/scenario_files.h"
 

@@ -1,4 +1,4 @@
-#include "emscape/study/compare.h"
+#include "emscape/study/compare/compare.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "study/compare/changed_areas.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"

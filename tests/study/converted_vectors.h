@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "base/gdal.h"
+#include "base/geodesy/gdal.h"
 
 namespace emscape::test {
 

@@ -1,4 +1,4 @@
-#include "emscape/study/coverage.h"
+#include "emscape/study/maps/coverage.h"
 
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
@@ -10,10 +10,10 @@
 #include <random>
 #include <set>
 
-#include "emscape/base/geoid.h"
-#include "emscape/emfield/path_budget.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/study/geotiff.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "study/files/geotiff.h"
 #include "study/maps/warnings.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/radar_duel.h"

@@ -1,14 +1,14 @@
-#include "emscape/study/exposure.h"
+#include "emscape/study/exposure/exposure.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "emscape/emfield/link.h"
-#include "emscape/emfield/path_budget.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/emfield/link/link.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

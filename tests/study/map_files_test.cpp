@@ -12,9 +12,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/study/geotiff.h"
-#include "emscape/study/map_folder.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/study/report/map_folder.h"
+#include "study/files/geotiff.h"
 #include "study/files/map_colors.h"
 #include "study/files/map_objects.h"
 #include "study/files/map_shapes.h"

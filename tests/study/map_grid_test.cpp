@@ -1,4 +1,4 @@
-#include "emscape/study/map_grid.h"
+#include "emscape/study/maps/map_grid.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "emscape/base/geo_frame.h"
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
 #include "tests/support/errors.h"
 

@@ -1,5 +1,5 @@
 // Properties of a map's picture that do not depend on its values.
-#include "emscape/study/map_picture.h"
+#include "study/files/map_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "emscape/study/area.h"
-#include "emscape/study/map_grid.h"
+#include "emscape/study/maps/area.h"
+#include "emscape/study/maps/map_grid.h"
 #include "study/files/map_colors.h"
 
 namespace emscape::study {

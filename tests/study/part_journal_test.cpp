@@ -1,5 +1,5 @@
 // Finished variants of a part that is not complete, and the claims of parts.
-#include "emscape/study/part_journal.h"
+#include "study/sweep/part_journal.h"
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
@@ -14,7 +14,7 @@
 #include <fstream>
 #include <thread>
 
-#include "emscape/study/part_claim.h"
+#include "study/sweep/part_claim.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

@@ -9,10 +9,10 @@
 #include <random>
 #include <vector>
 
-#include "emscape/base/geoid.h"
-#include "emscape/emfield/path_budget.h"
-#include "emscape/study/area.h"
-#include "emscape/study/coverage.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/study/maps/area.h"
+#include "emscape/study/maps/coverage.h"
 #include "propagation/registry/model_info.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/files.h"

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-#include "emscape/study/area.h"
+#include "emscape/study/maps/area.h"
 #include "tests/study/converted_vectors.h"
 #include "tests/support/errors.h"
 #include "tests/support/temporary_folder.h"

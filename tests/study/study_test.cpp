@@ -10,11 +10,11 @@
 #include <memory>
 #include <set>
 
-#include "base/whole_file.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/study/study_folder.h"
-#include "emscape/study/study_report.h"
-#include "emscape/study/study_runner.h"
+#include "base/files/whole_file.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "study/sweep/study_folder.h"
+#include "study/sweep/study_report.h"
+#include "study/sweep/study_runner.h"
 #include "tests/study/converted_vectors.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"

@@ -1,4 +1,4 @@
-#include "emscape/study/vertical.h"
+#include "emscape/study/vertical/vertical.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,13 +8,13 @@
 #include <complex>
 #include <random>
 
-#include "emscape/base/geoid.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_budget.h"
-#include "emscape/render/image.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/study/area.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/study/maps/area.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/study/coverage.h"
-#include "emscape/study/map_picture.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/study/maps/coverage.h"
 #include "scenario/antenna/shapes.h"
+#include "study/files/map_picture.h"
 #include "study/maps/least_heights.h"
 #include "tests/support/files.h"
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "emscape/base/device.h"
+#include "emscape/base/cuda/device.h"
 
 /// To be used at the start of a test's body.
 #define EMSCAPE_NEEDS_GPU()                                             \

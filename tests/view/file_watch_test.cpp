@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "apps/view/session/session_opener.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {

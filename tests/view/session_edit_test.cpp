@@ -1,6 +1,6 @@
 #include "apps/view/session/platform_drag.h"
 #include "apps/view/session/shown_quantity.h"
-#include "emscape/playback/pick.h"
+#include "playback/editing/pick.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {

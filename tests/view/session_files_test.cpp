@@ -9,7 +9,7 @@
 #include "apps/view/session/recent_files.h"
 #include "apps/view/session/session_opener.h"
 #include "emscape/base/error.h"
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
 #include "emscape/volume/file.h"
 #include "tests/view/session_sample.h"
 

@@ -3,9 +3,9 @@
 
 #include <random>
 
-#include "emscape/playback/edit_history.h"
-#include "emscape/playback/picture_series.h"
-#include "emscape/render/image.h"
+#include "emscape/playback/pictures/picture_series.h"
+#include "emscape/render/picture/image.h"
+#include "playback/editing/edit_history.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {

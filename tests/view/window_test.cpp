@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <set>
 
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
 #include "tests/view/window_fixture.h"
 
 namespace emscape::test {

@@ -1,4 +1,4 @@
-#include "emscape/volume/difference.h"
+#include "volume/difference.h"
 
 #include <gtest/gtest.h>
 

@@ -15,8 +15,8 @@
 #include "apps/emscape/common/target.h"
 #include "base/stopwatch.h"
 #include "emscape/base/parallel.h"
-#include "emscape/playback/frame_source.h"
-#include "emscape/render/cell_renderer.h"
+#include "emscape/playback/frames/frame_source.h"
+#include "emscape/render/cells/cell_renderer.h"
 
 namespace emscape::app {
 namespace {

@@ -14,11 +14,11 @@
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/scenario/snapshot.h"
-#include "emscape/study/area.h"
-#include "emscape/study/map_grid.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/study/maps/area.h"
+#include "emscape/study/maps/map_grid.h"
 
 namespace emscape::app {
 namespace {

@@ -16,9 +16,9 @@
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/playback/inputs.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/playback/frames/inputs.h"
+#include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::app {
 namespace {

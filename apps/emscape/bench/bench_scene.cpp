@@ -13,7 +13,7 @@
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
-#include "emscape/playback/inputs.h"
+#include "emscape/playback/frames/inputs.h"
 
 namespace emscape::app {
 namespace {

@@ -7,9 +7,9 @@
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/target.h"
-#include "emscape/playback/frame_source.h"
-#include "emscape/render/renderer.h"
-#include "render/ray_load.h"
+#include "emscape/playback/frames/frame_source.h"
+#include "emscape/render/scene/renderer.h"
+#include "render/patterns/ray_load.h"
 
 namespace emscape::app {
 

@@ -12,11 +12,11 @@
 #include "apps/emscape/bench/bench_statistics.h"
 #include "apps/emscape/bench/view_trial.h"
 #include "apps/emscape/common/window_program.h"
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/inputs.h"
-#include "emscape/scenario/clock.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/playback/frames/inputs.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/clock.h"
 
 namespace emscape::app {
 namespace {

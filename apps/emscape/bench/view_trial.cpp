@@ -5,7 +5,7 @@
 #include <random>
 #include <sstream>
 
-#include "base/json_writing.h"
+#include "base/files/json_writing.h"
 #include "emscape/base/error.h"
 
 namespace emscape::app {

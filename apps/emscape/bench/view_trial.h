@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/scenario/edit.h"
+#include "emscape/scenario/model/edit.h"
 
 namespace emscape::app {
 

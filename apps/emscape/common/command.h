@@ -8,10 +8,10 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/progress.h"
-#include "emscape/playback/painter.h"
-#include "emscape/render/cut_plane.h"
-#include "emscape/render/render_settings.h"
-#include "emscape/scenario/edit.h"
+#include "emscape/playback/pictures/painter.h"
+#include "emscape/render/scene/cut_plane.h"
+#include "emscape/render/scene/render_settings.h"
+#include "emscape/scenario/model/edit.h"
 
 namespace emscape::app {
 

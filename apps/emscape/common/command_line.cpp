@@ -12,7 +12,7 @@
 #include "apps/emscape/common/components.h"
 #include "apps/emscape/common/console.h"
 #include "apps/emscape/common/interrupt.h"
-#include "base/failure_text.h"
+#include "base/text/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 

@@ -2,14 +2,14 @@
 
 #include <fmt/core.h>
 
-#include "base/simd_targets.h"
+#include "base/math/simd_targets.h"
 //
 #include <hwy/highway.h>
 
 #include <cstdint>
 
 #include "apps/emscape/version.h"
-#include "emscape/base/device.h"
+#include "emscape/base/cuda/device.h"
 
 namespace emscape::app {
 namespace {

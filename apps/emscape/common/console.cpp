@@ -16,7 +16,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-#include "base/json_writing.h"
+#include "base/files/json_writing.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 

@@ -6,8 +6,8 @@
 
 #include "apps/emscape/common/study_options.h"
 #include "emscape/base/error.h"
-#include "emscape/study/area.h"
-#include "emscape/study/map_folder.h"
+#include "emscape/study/maps/area.h"
+#include "emscape/study/report/map_folder.h"
 
 namespace emscape::app {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/emscape/common/command.h"
-#include "emscape/study/coverage.h"
+#include "emscape/study/maps/coverage.h"
 
 namespace emscape::app {
 

@@ -6,10 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/scenario_file.h"
-#include "emscape/study/products.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/study/maps/products.h"
 
 namespace emscape::app {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/scenario/scenario.h"
+#include "emscape/scenario/model/scenario.h"
 
 namespace emscape::app {
 

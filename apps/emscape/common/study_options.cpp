@@ -2,9 +2,9 @@
 
 #include <filesystem>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/log.h"
-#include "emscape/study/coverage.h"
+#include "emscape/study/maps/coverage.h"
 #include "render/annotate/plot.h"
 
 namespace emscape::app {

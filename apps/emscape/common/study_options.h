@@ -12,8 +12,8 @@
 
 #include "apps/emscape/common/command.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/quantities.h"
-#include "scenario/named_items.h"
+#include "emscape/scenario/model/quantities.h"
+#include "scenario/file/named_items.h"
 
 namespace emscape::app {
 

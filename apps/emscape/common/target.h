@@ -6,7 +6,7 @@
 #include "apps/emscape/common/command.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/log.h"
-#include "emscape/playback/compute_target.h"
+#include "emscape/playback/frames/compute_target.h"
 
 namespace emscape::app {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "emscape/playback/field_series.h"
+#include "emscape/playback/frames/field_series.h"
 
 namespace emscape::app {
 

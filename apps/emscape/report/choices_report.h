@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/emfield/model_choices.h"
+#include "emfield/excess/model_choices.h"
 
 namespace emscape::app {
 

@@ -4,8 +4,8 @@
 #include <string>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/study/compare.h"
-#include "emscape/study/html_report.h"
+#include "emscape/study/compare/compare.h"
+#include "emscape/study/report/html_report.h"
 
 namespace emscape::app {
 

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "base/quantity_text.h"
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
+#include "base/text/quantity_text.h"
 
 namespace emscape::app {
 namespace {

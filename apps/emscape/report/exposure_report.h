@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/study/exposure.h"
+#include "emscape/study/exposure/exposure.h"
 
 namespace emscape::app {
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/emscape/report/link_report.h"
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
 
 namespace emscape::app {
 

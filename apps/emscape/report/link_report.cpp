@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/units.h"
 
 namespace emscape::app {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/emfield/link.h"
+#include "emscape/emfield/link/link.h"
 
 namespace emscape::app {
 

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 
-#include "base/quantity_text.h"
+#include "base/text/quantity_text.h"
+#include "emfield/link/path_report.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_report.h"
 #include "emscape/render/annotate/legend.h"
 #include "render/annotate/plot.h"
 

@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "emscape/emfield/path_budget.h"
-#include "emscape/render/image.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/render/picture/image.h"
 
 namespace emscape::app {
 

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "apps/emscape/report/waveform_report.h"
-#include "base/quantity_text.h"
+#include "base/text/quantity_text.h"
+#include "emfield/link/path_report.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_report.h"
 
 namespace emscape::app {
 namespace {

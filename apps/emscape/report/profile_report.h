@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 
 namespace emscape::app {
 

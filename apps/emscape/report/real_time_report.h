@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/playback/real_time_report.h"
+#include "playback/pictures/real_time_report.h"
 
 namespace emscape::app {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/render/image.h"
+#include "emscape/render/picture/image.h"
 #include "propagation/parabolic_equation/refractivity_field.h"
 
 namespace emscape::app {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "base/quantity_text.h"
+#include "base/text/quantity_text.h"
 #include "emscape/render/annotate/legend.h"
 #include "render/annotate/overlay_parts.h"
 #include "render/annotate/plot.h"

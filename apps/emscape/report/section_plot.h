@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "emscape/emfield/path_budget.h"
-#include "emscape/emfield/path_section.h"
-#include "emscape/render/image.h"
+#include "emfield/link/path_section.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/render/picture/image.h"
 
 namespace emscape::app {
 

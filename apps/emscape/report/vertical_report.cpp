@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/quantity_text.h"
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
+#include "base/text/quantity_text.h"
 
 namespace emscape::app {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/study/vertical.h"
+#include "emscape/study/vertical/vertical.h"
 
 namespace emscape::app {
 

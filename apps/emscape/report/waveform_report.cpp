@@ -1,7 +1,7 @@
 #include "apps/emscape/report/waveform_report.h"
 
-#include "base/quantity_text.h"
-#include "emfield/radar_clutter.h"
+#include "base/text/quantity_text.h"
+#include "emfield/channels/radar_clutter.h"
 #include "emscape/base/units.h"
 
 namespace emscape::app {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "apps/emscape/common/console.h"
-#include "emscape/scenario/emitter.h"
+#include "emscape/scenario/model/emitter.h"
 
 namespace emscape::app {
 

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "emfield/solver/field_engine.h"
 #include "emscape/base/parallel.h"
-#include "emscape/scenario/clock.h"
+#include "emscape/scenario/model/clock.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::app {

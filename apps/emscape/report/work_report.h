@@ -6,9 +6,9 @@
 #include <string>
 
 #include "apps/emscape/common/console.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/scenario.h"
-#include "emscape/scenario/terrain.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/model/scenario.h"
+#include "emscape/scenario/terrain/terrain.h"
 
 namespace emscape::app {
 

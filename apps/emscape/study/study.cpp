@@ -17,13 +17,13 @@
 #include "apps/emscape/study/study_plan.h"
 #include "apps/emscape/study/study_slurm.h"
 #include "apps/emscape/version.h"
+#include "base/files/whole_file.h"
 #include "base/stopwatch.h"
-#include "base/whole_file.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
-#include "emscape/study/map.h"
-#include "emscape/study/study_folder.h"
-#include "emscape/study/study_report.h"
+#include "emscape/study/maps/map.h"
+#include "study/sweep/study_folder.h"
+#include "study/sweep/study_report.h"
 
 namespace emscape::app {
 namespace {

@@ -7,7 +7,7 @@
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/study/study_plan.h"
 #include "emscape/base/progress.h"
-#include "emscape/study/study_folder.h"
+#include "study/sweep/study_folder.h"
 
 namespace emscape::app {
 

@@ -10,7 +10,7 @@
 #include "apps/emscape/common/target.h"
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
-#include "emscape/study/study_runner.h"
+#include "study/sweep/study_runner.h"
 
 namespace emscape::app {
 namespace {

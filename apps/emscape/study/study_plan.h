@@ -6,7 +6,7 @@
 
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/version.h"
-#include "emscape/study/study_plan.h"
+#include "study/sweep/study_plan.h"
 
 namespace emscape::app {
 

@@ -10,7 +10,7 @@
 #include <regex>
 
 #include "apps/emscape/common/console.h"
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 
 namespace emscape::app {

@@ -9,7 +9,7 @@
 #include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
 #include "emscape/render/annotate/legend.h"
-#include "emscape/volume/difference.h"
+#include "volume/difference.h"
 
 namespace emscape::view {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
-#include "base/json_writing.h"
-#include "base/quantity_text.h"
+#include "base/files/json_writing.h"
+#include "base/text/quantity_text.h"
 
 namespace emscape::view {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "apps/view/panels/panels.h"
-#include "emscape/scenario/parameters.h"
+#include "scenario/file/parameters.h"
 
 namespace emscape::view {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "apps/view/panels/theme.h"
+#include "emfield/link/path_report.h"
 #include "emscape/base/units.h"
-#include "emscape/emfield/path_report.h"
 #include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {

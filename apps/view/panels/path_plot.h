@@ -3,7 +3,7 @@
 
 #include <imgui.h>
 
-#include "emscape/emfield/path_budget.h"
+#include "emscape/emfield/link/path_budget.h"
 #include "emscape/render/annotate/overlay.h"
 
 namespace emscape::view {

@@ -8,7 +8,7 @@
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/path_plot.h"
 #include "apps/view/panels/theme.h"
-#include "emscape/emfield/path_report.h"
+#include "emfield/link/path_report.h"
 #include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {

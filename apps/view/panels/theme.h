@@ -4,9 +4,9 @@
 #include <imgui.h>
 
 #include "emscape/render/annotate/overlay.h"
-#include "emscape/render/camera.h"
-#include "emscape/render/frame_controller.h"
-#include "emscape/scenario/emitter.h"
+#include "emscape/render/patterns/frame_controller.h"
+#include "emscape/render/scene/camera.h"
+#include "emscape/scenario/model/emitter.h"
 
 namespace emscape::view {
 

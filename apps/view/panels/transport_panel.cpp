@@ -5,7 +5,7 @@
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
-#include "emscape/scenario/clock.h"
+#include "emscape/scenario/model/clock.h"
 
 namespace emscape::view {
 namespace {

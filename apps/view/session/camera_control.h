@@ -1,7 +1,7 @@
 /// Interactive camera: orbit, pan, dolly, look around, fly. No window, no OpenGL.
 #pragma once
 
-#include "emscape/render/camera.h"
+#include "emscape/render/scene/camera.h"
 
 namespace emscape::view {
 

@@ -9,7 +9,7 @@
 #include "apps/view/session/action.h"
 #include "apps/view/session/input_queue.h"
 #include "apps/view/session/session.h"
-#include "base/json_writing.h"
+#include "base/files/json_writing.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <ctime>
 
-#include "base/json_writing.h"
+#include "base/files/json_writing.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {

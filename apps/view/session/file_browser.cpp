@@ -4,9 +4,9 @@
 #include <cctype>
 #include <cstdlib>
 
-#include "base/failure_text.h"
+#include "base/text/failure_text.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/inputs.h"
+#include "emscape/playback/frames/inputs.h"
 
 namespace emscape::view {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/playback/async_task.h"
+#include "emscape/playback/live/async_task.h"
 
 namespace emscape::view {
 

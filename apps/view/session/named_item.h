@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
-#include "scenario/named_items.h"
+#include "scenario/file/named_items.h"
 
 namespace emscape::view {
 

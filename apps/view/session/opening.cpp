@@ -1,8 +1,8 @@
 #include "apps/view/session/opening.h"
 
 #include "emscape/base/error.h"
-#include "emscape/playback/inputs.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/playback/frames/inputs.h"
+#include "emscape/scenario/file/scenario_file.h"
 
 namespace emscape::view {
 namespace {

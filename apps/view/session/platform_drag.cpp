@@ -4,7 +4,7 @@
 
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/pick.h"
+#include "playback/editing/pick.h"
 
 namespace emscape::view {
 

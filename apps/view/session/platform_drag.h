@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "emscape/playback/live_view.h"
-#include "emscape/scenario/edit.h"
+#include "emscape/scenario/model/edit.h"
+#include "playback/live/live_view.h"
 
 namespace emscape::view {
 

@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "apps/view/session/named_item.h"
-#include "base/failure_text.h"
+#include "base/text/failure_text.h"
+#include "emfield/link/path_report.h"
 #include "emscape/base/error.h"
-#include "emscape/emfield/path_report.h"
-#include "emscape/playback/edit_history.h"
-#include "emscape/playback/pick.h"
+#include "playback/editing/edit_history.h"
+#include "playback/editing/pick.h"
 
 namespace emscape::view {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "emscape/playback/live_view.h"
-#include "emscape/playback/probe.h"
-#include "playback/latest_worker.h"
+#include "playback/editing/probe.h"
+#include "playback/live/latest_worker.h"
+#include "playback/live/live_view.h"
 
 namespace emscape::view {
 

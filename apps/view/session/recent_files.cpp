@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <sstream>
 
-#include "base/whole_file.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/autosave.h"
+#include "playback/editing/autosave.h"
 
 namespace emscape::view {
 namespace {

@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/failure_text.h"
+#include "base/text/failure_text.h"
 #include "base/thread_arena.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
-#include "emscape/playback/picture_series.h"
-#include "emscape/playback/picture_sink.h"
+#include "emscape/playback/pictures/picture_series.h"
+#include "emscape/playback/pictures/picture_sink.h"
 #include "emscape/playback/stop.h"
 
 namespace emscape::view {

@@ -7,10 +7,10 @@
 #include <optional>
 #include <string>
 
-#include "emscape/playback/async_task.h"
-#include "emscape/playback/compute_target.h"
-#include "emscape/playback/frame_source.h"
-#include "emscape/playback/painter.h"
+#include "emscape/playback/frames/compute_target.h"
+#include "emscape/playback/frames/frame_source.h"
+#include "emscape/playback/live/async_task.h"
+#include "emscape/playback/pictures/painter.h"
 
 namespace emscape::view {
 

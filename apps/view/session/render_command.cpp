@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <functional>
 
-#include "emscape/playback/autosave.h"
-#include "emscape/playback/edit_history.h"
+#include "playback/editing/autosave.h"
+#include "playback/editing/edit_history.h"
 
 namespace emscape::view {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "apps/view/session/view_options.h"
-#include "emscape/playback/shown_field.h"
+#include "emscape/playback/frames/shown_field.h"
 
 namespace emscape::view {
 

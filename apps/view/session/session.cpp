@@ -4,10 +4,10 @@
 #include <cmath>
 #include <utility>
 
-#include "base/failure_text.h"
+#include "base/text/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/overlay.h"
-#include "emscape/render/cell_renderer.h"
+#include "emscape/render/cells/cell_renderer.h"
 
 namespace emscape::view {
 namespace {

@@ -19,12 +19,12 @@
 #include "apps/view/session/value_summary.h"
 #include "apps/view/session/view_options.h"
 #include "apps/view/session/window_control.h"
-#include "emscape/playback/autosave.h"
-#include "emscape/playback/edit_history.h"
-#include "emscape/playback/live_view.h"
-#include "emscape/playback/timeline.h"
-#include "emscape/playback/transfer_editor.h"
-#include "playback/edit_queue.h"
+#include "playback/editing/autosave.h"
+#include "playback/editing/edit_history.h"
+#include "playback/editing/timeline.h"
+#include "playback/editing/transfer_editor.h"
+#include "playback/live/edit_queue.h"
+#include "playback/live/live_view.h"
 
 namespace emscape::view {
 

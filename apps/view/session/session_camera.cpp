@@ -6,9 +6,9 @@
 #include "apps/view/session/named_item.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/pick.h"
-#include "emscape/playback/scene.h"
-#include "emscape/scenario/snapshot.h"
+#include "emscape/playback/frames/scene.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "playback/editing/pick.h"
 
 namespace emscape::view {
 namespace {

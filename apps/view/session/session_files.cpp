@@ -8,7 +8,7 @@
 #include "apps/view/session/recent_files.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/scenario_file.h"
+#include "emscape/scenario/file/scenario_file.h"
 
 namespace emscape::view {
 namespace {

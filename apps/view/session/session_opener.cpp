@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "base/failure_text.h"
+#include "base/text/failure_text.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {

@@ -6,8 +6,8 @@
 
 #include "apps/view/session/opening.h"
 #include "apps/view/session/session.h"
-#include "emscape/playback/async_task.h"
-#include "playback/background_writer.h"
+#include "emscape/playback/live/async_task.h"
+#include "playback/series/background_writer.h"
 
 namespace emscape::view {
 

@@ -5,7 +5,7 @@
 
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
-#include "emscape/base/geoid.h"
+#include "emscape/base/geodesy/geoid.h"
 
 namespace emscape::view {
 namespace {

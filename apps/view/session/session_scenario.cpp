@@ -7,7 +7,7 @@
 #include "apps/view/session/session.h"
 #include "apps/view/session/shown_quantity.h"
 #include "emscape/base/error.h"
-#include "emscape/scenario/parameters.h"
+#include "scenario/file/parameters.h"
 
 namespace emscape::view {
 namespace {

@@ -8,7 +8,7 @@
 #include "apps/view/session/file_endings.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/opacity_preset.h"
+#include "playback/editing/opacity_preset.h"
 
 namespace emscape::view {
 namespace {

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "emscape/base/error.h"
-#include "emscape/emfield/field_solver.h"
-#include "emscape/scenario/quantities.h"
-#include "scenario/quantity_needs.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/model/quantities.h"
+#include "scenario/file/quantity_needs.h"
 
 namespace emscape::view {
 namespace {

@@ -1,8 +1,8 @@
 /// Histogram of a field, for the editor of colours and opacities.
 #pragma once
 
-#include "emscape/playback/shown_field.h"
-#include "emscape/render/transfer_function.h"
+#include "emscape/playback/frames/shown_field.h"
+#include "emscape/render/transfer/transfer_function.h"
 #include "emscape/volume/statistics.h"
 
 namespace emscape::view {

@@ -4,9 +4,9 @@
 #include <optional>
 #include <string>
 
-#include "emscape/playback/painter.h"
-#include "emscape/playback/view_state.h"
-#include "emscape/render/frame_controller.h"
+#include "emscape/playback/pictures/painter.h"
+#include "emscape/render/patterns/frame_controller.h"
+#include "playback/editing/view_state.h"
 
 namespace emscape::view {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "emscape/base/device.h"
+#include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
 
 namespace emscape {

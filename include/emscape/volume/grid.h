@@ -1,7 +1,7 @@
 /// A regular grid of voxels in a local frame.
 #pragma once
 
-#include "emscape/base/geo_frame.h"
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/vec.h"
 
 namespace emscape::volume {

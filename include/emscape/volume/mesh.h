@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
-#include "emscape/base/geo_frame.h"
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/vec.h"
 #include "emscape/volume/dense_volume.h"
 #include "emscape/volume/statistics.h"

@@ -1,6 +1,6 @@
 // True if a picture shows more than its background: picture_check PICTURE.png. A field over terrain has
 // tens of thousands of colours, background and labels alone have five thousand.
-#include <emscape/render/image.h>
+#include <emscape/render/picture/image.h>
 
 #include <cstdio>
 #include <set>

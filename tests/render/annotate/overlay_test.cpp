@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "emscape/base/error.h"
-#include "emscape/render/renderer.h"
+#include "emscape/render/scene/renderer.h"
 #include "tests/render/layered_picture.h"
 #include "tests/render/scenes.h"
 

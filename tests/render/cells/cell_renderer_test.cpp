@@ -1,4 +1,4 @@
-#include "emscape/render/cell_renderer.h"
+#include "emscape/render/cells/cell_renderer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include "emscape/base/error.h"
 #include "render/cells/cell_march.h"
 #include "render/cells/linear_transfer.h"
-#include "render/scene.h"
+#include "render/scene/scene.h"
 #include "tests/support/errors.h"
 #include "tests/support/meshes.h"
 

@@ -10,7 +10,7 @@
 
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
-#include "emscape/render/cell_renderer.h"
+#include "emscape/render/cells/cell_renderer.h"
 #include "render/cells/cell_order.h"
 #include "render/cells/cell_renderer_impl.h"
 #include "render/cells/projected_cells.h"

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "emscape/base/error.h"
-#include "emscape/render/cell_renderer.h"
+#include "emscape/render/cells/cell_renderer.h"
 #include "tests/render/instruction_sets.h"
 #include "tests/support/errors.h"
 #include "tests/support/meshes.h"

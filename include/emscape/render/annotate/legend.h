@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/render/transfer_function.h"
+#include "emscape/render/transfer/transfer_function.h"
 
 namespace emscape::render {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "emscape/render/annotate/legend.h"
-#include "emscape/render/camera.h"
-#include "emscape/render/device_picture.h"
-#include "emscape/render/image.h"
+#include "emscape/render/picture/device_picture.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/render/scene/camera.h"
 
 namespace emscape::render {
 

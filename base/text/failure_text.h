@@ -1,0 +1,21 @@
+/// The text of an exception for the user.
+#pragma once
+
+#include <exception>
+#include <filesystem>
+#include <new>
+#include <string>
+
+#include "base/text/readable_text.h"
+
+namespace emscape {
+
+/// what(), or a readable text for std::bad_alloc and errors of the file system.
+inline std::string failureText(const std::exception& failure) {
+  if (dynamic_cast<const std::bad_alloc*>(&failure) != nullptr) return "out of memory";
+  if (const auto* of_files = dynamic_cast<const std::filesystem::filesystem_error*>(&failure))
+    return readableText(of_files->path1().string() + ": " + of_files->code().message());
+  return failure.what();
+}
+
+}  // namespace emscape

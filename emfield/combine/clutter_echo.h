@@ -1,0 +1,105 @@
+/// Clutter in the resolution cell of a voxel while a radar's beam is aimed at it.
+///
+/// Land and sea: the map at the beam's azimuth and the voxel's slant range, weighted by the two-way pattern
+/// towards the surface. Rain: the beam's cross section times the range cell, in the part of the beam between
+/// mean sea level and the top of the rain.
+#pragma once
+
+#include <cmath>
+
+#include "base/math/fast_math.h"
+#include "emfield/combine/combine.h"
+#include "emfield/geometry/clutter_map.h"
+#include "emfield/radar/look.h"
+#include "emscape/base/host_device.h"
+
+namespace emscape::emfield {
+
+/// A radar's clutter in a channel, after its filter, as plain data; all 0: none.
+struct ClutterTask {
+  float surface = 0;              ///< clutter over noise on boresight, per value of a map's cell (m2 rad)
+  float rain = 0;                 ///< clutter over noise times range^2, with the whole beam in rain (m2)
+  float rain_octaves_per_m = 0;   ///< two-way loss through gases and rain, log2
+  float rain_top_m = 0;           ///< of the rain, above the radar
+  float sea_level_m = 0;          ///< above the radar
+  float elevation_width_rad = 0;  ///< two-way width of the beam
+  float curvature_per_m = 0;      ///< 1 / (2 effective earth radius)
+
+  EMSCAPE_HD bool isNone() const { return surface == 0 && rain == 0; }
+};
+
+/// The beam's axis in the look's frame, a unit vector.
+EMSCAPE_HD inline Vec3f axisOf(const Aim& aim) {
+  const float ahead2 = 1 - aim.steer_u * aim.steer_u - aim.steer_v * aim.steer_v;
+  const float forward = std::sqrt(ahead2 > 0 ? ahead2 : 0.0f);
+  const float level = forward * aim.cos_elevation - aim.steer_v * aim.sin_elevation;
+  return {level * aim.cos_azimuth - aim.steer_u * aim.sin_azimuth,
+          level * aim.sin_azimuth + aim.steer_u * aim.cos_azimuth,
+          forward * aim.sin_elevation + aim.steer_v * aim.cos_elevation};
+}
+
+/// Direction of the beam's axis, east-north-up.
+/// @param beam  with the look's frame as its forward, right and up
+EMSCAPE_HD inline Vec3f axisOf(const EmitterBeam& beam, const Aim& aim) {
+  const Vec3f axis = axisOf(aim);
+  return beam.forward * axis.x + beam.right * axis.y + beam.up * axis.z;
+}
+
+/// Rain's clutter over noise at a slant range. Without branches, for SIMD.
+EMSCAPE_HD inline float rainToNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim,
+                                    float range_m) {
+  const float sine = axisOf(beam, aim).z;
+  const float height_m = range_m * (sine + range_m * (1 - sine * sine) * task.curvature_per_m);
+  const float depth_m = range_m * task.elevation_width_rad + 1e-6f;
+  const auto part = [&](float top_m) {
+    const float below = (top_m - height_m) / depth_m + 0.5f;
+    const float not_negative = below > 0 ? below : 0.0f;
+    return not_negative < 1 ? not_negative : 1.0f;
+  };
+  const float in_rain = part(task.rain_top_m) - part(task.sea_level_m);
+  return task.rain * (in_rain > 0 ? in_rain : 0.0f) * fastExp2(-task.rain_octaves_per_m * range_m) /
+         (range_m * range_m);
+}
+
+/// Clutter of land and sea over noise at a slant range. Without branches, for SIMD.
+/// @param map   ClutterMapView, or a type with the same cellAt()
+template <scenario::PatternKind kind, class Map>
+EMSCAPE_HD inline float surfaceToNoise(const ClutterTask& task, const Map& map, const EmitterBeam& beam,
+                                       const Aim& aim, float range_m) {
+  const Vec3f direction = axisOf(beam, aim);
+  const ClutterCell cell = map.cellAt(fastAtan2(direction.x, direction.y), range_m);
+  constexpr float kMinEcho = 1e-37f;
+  const float sine = cell.echo_times_sine / (cell.echo > kMinEcho ? cell.echo : kMinEcho);
+  const float cosine2 = 1 - sine * sine;
+  const float level2 = direction.x * direction.x + direction.y * direction.y;
+  const float scale = std::sqrt((cosine2 > 0 ? cosine2 : 0.0f) / (level2 + 1e-12f));
+  const Vec3f to_surface = inAntennaFrame(beam, {direction.x * scale, direction.y * scale, sine});
+  const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, to_surface);
+  const float power = amplitude * amplitude;
+  return task.surface * cell.echo * power * power;
+}
+
+/// The sum of both.
+template <scenario::PatternKind kind, class Map>
+EMSCAPE_HD inline float clutterToNoise(const ClutterTask& task, const Map& map, const EmitterBeam& beam,
+                                       const Aim& aim, float range_m) {
+  return (task.surface > 0 ? surfaceToNoise<kind>(task, map, beam, aim, range_m) : 0.0f) +
+         (task.rain > 0 ? rainToNoise(task, beam, aim, range_m) : 0.0f);
+}
+
+/// The aim of a radar at a voxel, and the voxel's slant range.
+struct AimedVoxel {
+  Aim aim;
+  float range_m;
+};
+template <class Look>
+EMSCAPE_HD inline AimedVoxel aimedVoxel(const Look& look, const EmitterBeam& beam, std::size_t column,
+                                        float t_m) {
+  const Vec3f target = inAntennaFrame(beam, directRay(beam.geometry, column, t_m));
+  const float along_m = t_m - beam.geometry.nearest_t_m[column];
+  const float distance2 = beam.geometry.offset2_m2[column] + along_m * along_m;
+  constexpr float kMin2 = kMinDistance_m * kMinDistance_m;
+  return {aimAt(look, target), std::sqrt(distance2 > kMin2 ? distance2 : kMin2)};
+}
+
+}  // namespace emscape::emfield

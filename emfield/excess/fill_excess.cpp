@@ -1,0 +1,109 @@
+#include "emfield/excess/fill_excess.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <type_traits>
+#include <vector>
+
+#include "emfield/excess/surface_diffraction.h"
+#include "emfield/ground/read_posts.h"
+#include "emscape/base/parallel.h"
+
+namespace emscape::emfield {
+namespace {
+
+using propagation::kMissingTerrain;
+
+/// Neighbouring columns, so that results are written in runs.
+constexpr int kBlock = 16;
+
+/// Fills the columns whose paths need not be read whole, where there is a search for that.
+/// @return for each column whether it is left; empty: all are
+template <class Model>
+std::vector<char> fillBySearch(const ExcessTask<Model>& task, const TerrainBounds* bounds,
+                               const ExcessOutput& out) {
+  if constexpr (std::is_same_v<Model, propagation::DiffractionExcess>) {
+    if (bounds != nullptr && bounds->isUsable()) return fillSurfaceDiffraction(task, *bounds, out);
+  }
+  return {};
+}
+
+template <class Model>
+unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const ExcessOutput& out) {
+  const ExcessGrid& grid = task.grid;
+  const std::vector<char> is_left = fillBySearch(task, bounds, out);
+  const auto isLeft = [&](std::size_t column) { return is_left.empty() || is_left[column] != 0; };
+  const int columns = static_cast<int>(grid.column_count);
+  std::atomic<unsigned> all_warnings{0};
+  parallelFor((columns + kBlock - 1) / kBlock, 4, [&](int begin, int end) {
+    std::vector<double> memory(ExcessScratch::bytes(task.posts(), grid.layers) / sizeof(double) + 1);
+    const ExcessScratch scratch = ExcessScratch::in(memory.data(), task.posts(), grid.layers);
+    std::vector<float> excess_db(static_cast<std::size_t>(grid.layers) * kBlock);
+    unsigned warnings = 0;
+    for (int block = begin; block < end; ++block) {
+      const int first = block * kBlock, count = std::min(kBlock, columns - first);
+      for (int i = 0; i < count; ++i) {
+        const auto column = static_cast<std::size_t>(first + i);
+        if (!isLeft(column)) continue;
+        const auto setAll = [&](float db) { std::fill_n(scratch.excess_db, grid.layers, db); };
+        unsigned of_column = 0;
+        if (grid.isLeftOut(column)) {
+          setAll(0);
+        } else if (Model::kNeedsTerrain && grid.isWithoutGround(column)) {
+          setAll(NAN);
+          of_column = kMissingTerrain;
+        } else {
+          of_column = task.fillColumn(column, scratch, readPostsCpu, out.reflected, out.mechanisms);
+        }
+        if (of_column & kMissingTerrain) out.markUnknown(column);
+        warnings |= of_column;
+        for (int k = 0; k < grid.layers; ++k) {
+          excess_db[static_cast<std::size_t>(k) * kBlock + i] = scratch.excess_db[k];
+        }
+      }
+      for (int k = 0; k < grid.layers; ++k) {
+        const std::size_t row = static_cast<std::size_t>(k) * grid.column_count + first;
+        for (int i = 0; i < count; ++i) {
+          if (!isLeft(static_cast<std::size_t>(first + i))) continue;
+          out.excess.set(row + i, excess_db[static_cast<std::size_t>(k) * kBlock + i]);
+        }
+      }
+    }
+    all_warnings |= warnings;
+  });
+  return all_warnings;
+}
+
+}  // namespace
+
+ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terrain) {
+  ExcessGrid grid;
+  grid.columns = columns.view();
+  grid.column_count = columns.count();
+  grid.t_m = columns.t_m.data();
+  grid.layers = static_cast<int>(columns.t_m.size());
+  grid.tilted = columns.tilted;
+  grid.every_height = columns.every_height;
+  if (!columns.first_valid_k.empty()) grid.first_valid_k = columns.first_valid_k.data();
+  if (columns.tilted) {
+    // The ground track of a segment is at most as long as the distance between posts.
+    constexpr double kMaxTrack_m = 100;
+    const double track_m = std::min(postSpacing_m(terrain), kMaxTrack_m);
+    grid.segments = std::clamp(static_cast<int>(std::ceil(2 * tiltOf(columns) / track_m)), 1, grid.layers);
+  } else if (!columns.ground_msl_m.empty()) {
+    grid.ground_msl_m = columns.ground_msl_m.data();
+  }
+  return grid;
+}
+
+unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
+                       const GroundPosts& ground, const TerrainBounds* bounds, const ExcessOutput& out) {
+  return std::visit(
+      [&](const auto& m) {
+        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, ground}, bounds, out);
+      },
+      excess.model);
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,186 @@
+/// Stage 2 of the models with an excess loss: fills the voxels of columns. The other stages do not depend on
+/// the model.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "emfield/columns/excess_code.h"
+#include "emfield/columns/foot_inverse.h"
+#include "emfield/columns/grid_columns.h"
+#include "emfield/columns/station.h"
+#include "emfield/columns/two_rays.h"
+#include "emfield/excess/emitter_excess.h"
+#include "emfield/ground/ground_posts.h"
+#include "emfield/ground/terrain_bounds.h"
+#include "emscape/base/host_device.h"
+
+namespace emscape::emfield {
+
+using propagation::AirLoss;
+using propagation::ExcessColumn;
+
+/// The columns of a grid, as plain data.
+struct ExcessGrid {
+  ColumnsView columns;
+  std::size_t column_count = 0;
+  const float* t_m = nullptr;
+  int layers = 0;
+  bool tilted = false;        ///< columns are not vertical
+  bool every_height = false;  ///< see ExcessColumn
+  /// Ground below each column; null: read at the end of each profile (tilted columns), or none.
+  const float* ground_msl_m = nullptr;
+  /// Paths from the station to each column, if known and the columns are not tilted; null: they are computed.
+  const FastInverse* paths = nullptr;
+  /// Lowest layer of each column that counts; null: all do.
+  const std::uint16_t* first_valid_k = nullptr;
+  /// Number of segments of a tilted column, each above one point of the ground; 1 for vertical columns.
+  int segments = 1;
+
+  EMSCAPE_HD int firstLayer(int segment) const {
+    return static_cast<int>(static_cast<long long>(layers) * segment / segments);
+  }
+  /// The first layer of a column that counts.
+  EMSCAPE_HD int firstValid(std::size_t column) const {
+    if (first_valid_k == nullptr) return 0;
+    return first_valid_k[column] < layers ? first_valid_k[column] : layers;
+  }
+  /// True if no layer of a column counts, for a reason other than missing terrain, which is reported. For a
+  /// tilted column terrain may be missing anywhere.
+  EMSCAPE_HD bool isLeftOut(std::size_t column) const {
+    return !tilted && first_valid_k != nullptr && first_valid_k[column] >= layers &&
+           !(ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column]);
+  }
+  /// True if terrain is missing below a column that is not tilted: every path to it is unknown to the models
+  /// that need terrain.
+  EMSCAPE_HD bool isWithoutGround(std::size_t column) const {
+    return ground_msl_m != nullptr && ground_msl_m[column] != ground_msl_m[column];
+  }
+  /// Distance and azimuth from a station to the point below the middle of a segment.
+  EMSCAPE_HD FastInverse coordinatesOf(const Station& station, std::size_t column, int segment) const {
+    if (paths != nullptr) return paths[column];
+    const auto first_m = static_cast<double>(t_m[firstLayer(segment)]);
+    const auto last_m = static_cast<double>(t_m[firstLayer(segment + 1) - 1]);
+    return footInverse(station, columns[column], (first_m + last_m) / 2);
+  }
+};
+
+/// The columns of a grid, in host memory.
+/// @param terrain  null: none
+ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terrain);
+
+/// One emitter. A model is a plain struct: see excess_model.h.
+template <class Model>
+struct ExcessTask {
+  Model model;
+  AirLoss air;
+  Station station;
+  ExcessGrid grid;
+  GroundPosts ground;  ///< for models that need terrain
+
+  /// Posts of the longest profile.
+  int posts() const { return ground.range_count + 1; }
+
+  /// Builds the ExcessColumn of a segment of a column.
+  /// @param read  PostReader, or a function with the same result
+  template <class Reader>
+  EMSCAPE_HD ExcessColumn readSegment(std::size_t c, int segment, const ExcessScratch& scratch,
+                                      const Reader& read) const {
+    ExcessColumn part;
+    const int first = grid.firstLayer(segment);
+    const FastInverse point = grid.coordinatesOf(station, c, segment);
+    part.place = c;
+    part.range_m = point.distance_m;
+    part.azimuth_rad = std::atan2(point.sin_azimuth, point.cos_azimuth);
+    part.height_msl_m = scratch.height_msl_m + first;
+    part.count = grid.firstLayer(segment + 1) - first;
+    part.every_height = grid.every_height;
+    if constexpr (Model::kNeedsTerrain) {
+      part.ground_msl_m =
+          grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(station, ground, point);
+      part.profile = readProfile(station, ground, point, part.ground_msl_m, scratch, read);
+    }
+    for (int k = 0; k < part.count; ++k) {
+      const auto t_m = static_cast<double>(grid.t_m[first + k]);
+      scratch.height_msl_m[first + k] =
+          modelHeight_m(part.range_m, static_cast<float>(heightMsl_m(grid.columns[c], t_m)));
+    }
+    return part;
+  }
+
+  /// Height of a voxel, as input of the model.
+  EMSCAPE_HD float modelHeight_m(double range_m, float height_msl_m) const {
+    if constexpr (propagation::OnEffectiveEarth<Model>::value) {
+      if (station.refraction.exponential) {
+        return static_cast<float>(station.refraction.effectiveHeight_m(static_cast<double>(height_msl_m),
+                                                                       station.height_msl_m, range_m));
+      }
+    }
+    return height_msl_m;
+  }
+
+  /// Adds the atmospheric attenuation at some heights of a segment.
+  EMSCAPE_HD void addAir(std::size_t c, int segment, const ExcessColumn& part, int begin, int end,
+                         float* excess_db) const {
+    if (air.isClear()) return;
+    const propagation::AirColumn above(air, static_cast<float>(part.range_m));
+    const float* const t_m = grid.t_m + grid.firstLayer(segment);
+    for (int k = begin; k < end; ++k) {
+      excess_db[k] +=
+          above.lossDb(static_cast<float>(heightMsl_m(grid.columns[c], static_cast<double>(t_m[k]))));
+    }
+  }
+
+  /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
+  /// @param reflected   dense order; receives the column's reflected rays if the model has any
+  /// @param mechanisms  dense order; receives its mechanisms if the model has several; null: not needed
+  /// @return warning bits of the model
+  template <class Reader>
+  EMSCAPE_HD unsigned fillColumn(std::size_t c, const ExcessScratch& scratch, const Reader& read,
+                                 ReflectedRayCode* reflected, std::uint8_t* mechanisms) const {
+    unsigned warnings = 0;
+    for (int segment = 0; segment < grid.segments; ++segment) {
+      const ExcessColumn part = readSegment(c, segment, scratch, read);
+      const int first = grid.firstLayer(segment);
+      float* const excess_db = scratch.excess_db + first;
+      if constexpr (propagation::Reflects<Model>::value) {
+        for (int k = 0; k < part.count; ++k) {
+          // Lobes are narrow, so each voxel of a tilted column has its own range.
+          const double range_m =
+              grid.tilted
+                  ? footInverse(station, grid.columns[c], static_cast<double>(grid.t_m[first + k])).distance_m
+                  : part.range_m;
+          reflected[static_cast<std::size_t>(first + k) * grid.column_count + c] =
+              reflectedRayCode(model.reflectedRay(range_m, part.height_msl_m[k], excess_db[k]));
+        }
+      } else if constexpr (propagation::HasMechanisms<Model>::value) {
+        std::uint8_t* const lowest =
+            mechanisms == nullptr ? nullptr
+                                  : mechanisms + static_cast<std::size_t>(first) * grid.column_count + c;
+        warnings |= model(part, scratch, excess_db, {lowest, grid.column_count});
+      } else {
+        warnings |= model(part, scratch, excess_db);
+      }
+      addAir(c, segment, part, 0, part.count, excess_db);
+    }
+    return warnings;
+  }
+};
+
+/// Arrays of the results: dense order, the columns of a layer one after another.
+struct ExcessOutput {
+  ExcessStore excess;
+  ReflectedRayCode* reflected = nullptr;  ///< of models with a reflected ray
+  std::uint8_t* mechanisms = nullptr;     ///< of models with several; null: not needed
+  float* shadow_edge_m = nullptr;         ///< set to NaN where terrain is missing: the column is unknown
+
+  EMSCAPE_HD void markUnknown(std::size_t column) const { shadow_edge_m[column] = NAN; }
+};
+
+/// Runs a task on the CPU.
+/// @param bounds  of the terrain, for surfaces; null: none
+/// @return the models' warnings on all columns
+unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, const ExcessGrid& grid,
+                       const GroundPosts& ground, const TerrainBounds* bounds, const ExcessOutput& out);
+
+}  // namespace emscape::emfield

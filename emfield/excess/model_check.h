@@ -1,0 +1,27 @@
+/// Checks that the emitters' models can compute the scenario. The messages come from the models' rows in the
+/// registry; this module adds the emitter's name and the line in the scenario.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/model/snapshot.h"
+#include "propagation/inputs.h"
+
+namespace emscape::emfield {
+
+/// Checks before anything is computed.
+/// @return warnings, each naming its emitter
+/// @throws Error (bad_input) at the location in the scenario for a value that a model refuses
+std::vector<std::string> checkModels(const scenario::Scenario& scenario);
+/// The same for one emitter.
+std::vector<std::string> checkModel(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
+
+/// Warnings that depend on an emitter's site and the extent of its paths.
+/// @param inputs   of the emitter's paths, including their extent
+/// @param warnings  of the model on the paths
+/// @return warnings, each naming the emitter
+std::vector<std::string> pathWarnings(const scenario::Emitter& emitter, const propagation::PathInputs& inputs,
+                                      unsigned warnings);
+
+}  // namespace emscape::emfield

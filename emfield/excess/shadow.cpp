@@ -1,0 +1,30 @@
+#include "emfield/excess/shadow.h"
+
+#include <vector>
+
+#include "emfield/excess/shadow_edge.h"
+#include "emfield/ground/read_posts.h"
+#include "emscape/base/parallel.h"
+
+namespace emscape::emfield {
+
+void findShadowEdgesCpu(const Station& station, const GroundPosts& ground, const ExcessGrid& grid,
+                        float* edges_m) {
+  ShadowTask task{station, ground};
+  std::vector<RangeTerms<float>> terms(static_cast<std::size_t>(ground.range_count));
+  for (std::size_t i = 0; i < terms.size(); ++i) terms[i] = task.geometry().termsAt(ground.ranges_m[i]);
+  task.terms = terms.data();
+  parallelFor(static_cast<int>(grid.column_count), 64, [&](int begin, int end) {
+    std::vector<float> heights_m(terms.size());
+    const auto slopeTo = [&](const FastInverse& path, int count) {
+      readPostsCpu(station, ground, path, count, heights_m.data());
+      return grazingSlopeCpu(task.geometry(), heights_m.data() + 1, terms.data() + 1, count - 1);
+    };
+    for (int c = begin; c < end; ++c) {
+      if (grid.isLeftOut(static_cast<std::size_t>(c))) continue;
+      edges_m[c] = task.edge_m(grid, static_cast<std::size_t>(c), slopeTo);
+    }
+  });
+}
+
+}  // namespace emscape::emfield

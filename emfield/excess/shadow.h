@@ -1,0 +1,13 @@
+/// Stage 2 of the model `horizon` on the CPU.
+#pragma once
+
+#include "emfield/excess/fill_excess.h"
+
+namespace emscape::emfield {
+
+/// The z of the shadow's edge in each column; see ShadowTask.
+/// @param edges_m  one per column of the grid
+void findShadowEdgesCpu(const Station& station, const GroundPosts& ground, const ExcessGrid& grid,
+                        float* edges_m);
+
+}  // namespace emscape::emfield

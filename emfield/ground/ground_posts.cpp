@@ -1,0 +1,31 @@
+#include "emfield/ground/ground_posts.h"
+
+#include <algorithm>
+
+namespace emscape::emfield {
+
+double postSpacing_m(const scenario::Terrain* terrain) {
+  constexpr double kOfSmoothEarth_m = 500;
+  return terrain != nullptr ? terrain->postSpacing_m() : kOfSmoothEarth_m;
+}
+
+std::vector<double> postRanges(double farthest_m, double post_spacing_m) {
+  constexpr double kMinStep_m = 2, kGrowth = 0.1;
+  std::vector<double> ranges{0};
+  while (ranges.back() < farthest_m) {
+    const double step_m = std::min(post_spacing_m / 2, std::max(kMinStep_m, kGrowth * ranges.back()));
+    ranges.push_back(ranges.back() + step_m);
+  }
+  return ranges;
+}
+
+GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<double>& ranges_m) {
+  GroundPosts ground;
+  ground.is_smooth = terrain == nullptr;
+  if (terrain != nullptr) ground.terrain = terrain->view();
+  ground.ranges_m = ranges_m.data();
+  ground.range_count = static_cast<int>(ranges_m.size());
+  return ground;
+}
+
+}  // namespace emscape::emfield

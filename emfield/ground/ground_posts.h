@@ -1,0 +1,125 @@
+/// Terrain profiles from an emitter to the columns: the posts at which they read the ground.
+///
+/// The spacing is half that of the elevation model, smaller near the emitter, and independent of the grid.
+/// The field, the jammers' paths and the budget of a single path use the same posts.
+#pragma once
+
+#include <vector>
+
+#include "emfield/ground/terrain_walk.h"
+#include "emscape/base/host_device.h"
+#include "emscape/scenario/terrain/terrain.h"
+#include "propagation/column.h"
+
+namespace emscape::emfield {
+
+using propagation::ExcessScratch;
+using propagation::TerrainProfile;
+
+/// Distance (m) between the posts of the terrain; for a smooth earth (null) a length over which it deviates
+/// from a plane by millimetres.
+double postSpacing_m(const scenario::Terrain* terrain);
+
+/// Ranges of posts from 0 to the first one not below farthest_m: first every few metres, because near the
+/// emitter a few metres of ground mask a large angle, then proportional to the range, then equally spaced at
+/// half the post spacing. Shorter lists are prefixes of longer ones.
+std::vector<double> postRanges(double farthest_m, double post_spacing_m);
+
+/// The ground as plain data, for loops on host and device.
+struct GroundPosts {
+  scenario::TerrainView terrain;
+  bool is_smooth = true;  ///< a smooth earth at mean sea level; there is no terrain
+  const double* ranges_m = nullptr;
+  int range_count = 0;
+
+  /// Index of the last post nearer than a range; 0 if there is none.
+  EMSCAPE_HD int lastBefore(double range_m) const {
+    int begin = 0, end = range_count;  // the first that is not nearer
+    while (begin < end) {
+      const int middle = (begin + end) / 2;
+      if (ranges_m[middle] < range_m) {
+        begin = middle + 1;
+      } else {
+        end = middle;
+      }
+    }
+    return begin > 0 ? begin - 1 : 0;
+  }
+};
+
+/// The ground below an emitter's paths, in host memory. Pointers are valid as long as both arguments.
+GroundPosts groundPosts(const scenario::Terrain* terrain, const std::vector<double>& ranges_m);
+
+/// Calls visit(post, height above mean sea level (m)) for the first `count` posts toward a point, in their
+/// order; NaN where the terrain is missing.
+template <class Visit>
+EMSCAPE_HD void visitPosts(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                           int count, Visit visit) {
+  if (ground.is_smooth) {
+    for (int i = 0; i < count; ++i) visit(i, 0.0f);
+    return;
+  }
+  constexpr int kAtOnce = 4;  // independent loads
+  TerrainWalk walk(station, ground.terrain, path);
+  const double* const ranges_m = ground.ranges_m;
+  for (int i = 0; i < count;) {
+    const TerrainChord& chord = walk.chordAt(ranges_m[i]);
+    const RasterChord in_raster = chord.in_raster;
+    const int beyond = ground.lastBefore(walk.endOfChord_m(ranges_m[i])) + 1;
+    const int end = beyond <= i ? i + 1 : beyond < count ? beyond : count;
+    while (i < end) {
+      for (; in_raster.corner_msl_m != nullptr && i + kAtOnce <= end; i += kAtOnce) {
+        float heights_msl_m[kAtOnce];
+        bool is_known = true;
+        EMSCAPE_UNROLL
+        for (int n = 0; n < kAtOnce; ++n) {
+          heights_msl_m[n] = in_raster.heightAt(ranges_m[i + n]);
+          is_known = is_known && heights_msl_m[n] == heights_msl_m[n];
+        }
+        if (!is_known) break;
+        EMSCAPE_UNROLL
+        for (int n = 0; n < kAtOnce; ++n) visit(i + n, heights_msl_m[n]);
+      }
+      // Beside voids, outside the finest raster, and the last ones of a chord.
+      for (const int next = i + kAtOnce < end ? i + kAtOnce : end; i < next; ++i) {
+        visit(i, chord.heightAt(ground.terrain, ranges_m[i]));
+      }
+    }
+  }
+}
+
+/// Reads the heights of the first `count` posts toward a point. Host and device.
+struct PostReader {
+  EMSCAPE_HD void operator()(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                             int count, float* height_msl_m) const {
+    visitPosts(station, ground, path, count, [&](int i, float here) { height_msl_m[i] = here; });
+  }
+};
+
+/// The height (m) of the ground at a point.
+EMSCAPE_HD inline float groundAt(const Station& station, const GroundPosts& ground,
+                                 const FastInverse& point) {
+  if (ground.is_smooth) return 0;
+  return TerrainWalk(station, ground.terrain, point).heightAt(point.distance_m);
+}
+
+/// The profile to a point of the ground: the posts nearer than it, and the point itself.
+/// @param read  PostReader, or a function with the same result
+template <class Reader>
+EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts& ground,
+                                      const FastInverse& point, float ground_msl_m,
+                                      const ExcessScratch& scratch, const Reader& read) {
+  const double range_m = point.distance_m;
+  const bool is_beyond_first = range_m > 0;
+  const int before = ground.lastBefore(range_m);
+  read(station, ground, point, before + 1, scratch.ground_msl_m);
+  for (int i = 0; i <= before; ++i) scratch.range_m[i] = ground.ranges_m[i];
+  const int last = is_beyond_first ? before + 1 : 0;
+  if (is_beyond_first) {
+    scratch.range_m[last] = range_m;
+    scratch.ground_msl_m[last] = ground_msl_m;
+  }
+  return {scratch.range_m, scratch.ground_msl_m, last + 1};
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,29 @@
+/// The budget of a path as text, for `emscape profile` and the window's probe.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emscape/emfield/link/path_budget.h"
+
+namespace emscape::emfield {
+
+/// One line: a name and its text.
+struct ReportLine {
+  std::string name;
+  std::string text;
+};
+
+/// The ends of the path and its geometry.
+std::vector<ReportLine> geometryLines(const PathBudget& budget);
+
+/// A term's value with two decimals; "no field" for -infinity, "infinite" for +infinity; 0.00 without a sign.
+std::string valueText(double value);
+
+/// Remark on an obstacle: "earth's bulge", "decides", both or empty.
+std::string remarkOf(const PathObstacle& obstacle);
+
+/// True if ground or the earth's bulge is above the ray.
+bool isBlocked(const PathBudget& budget);
+
+}  // namespace emscape::emfield

@@ -1,0 +1,94 @@
+/// The link budget of one path: from the transmitter's power to the power density at a point, term by term.
+///
+/// It explains missing coverage. The result equals the field's value at that point for this emitter; both use
+/// the same functions.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/emfield/link/path_excess.h"
+#include "emscape/emfield/link/path_profile.h"
+#include "emscape/scenario/model/snapshot.h"
+
+namespace emscape::emfield {
+
+/// Geometry of the path.
+struct PathGeometry {
+  double slant_range_m = 0;
+  double straight_elevation_rad = 0;  ///< of the straight line, at the emitter
+  double launch_elevation_rad = 0;    ///< of the refracted ray's start
+  double begin_ground_msl_m = 0, end_ground_msl_m = 0;
+  double horizon_range_m =
+      0;  ///< distance beyond which a smooth earth at mean sea level obstructs the line of sight
+  double far_field_m = 0;  ///< 2 D^2 / lambda
+};
+
+/// Direction of a ray in the antenna's pattern.
+struct RayPointing {
+  double off_axis_rad = 0;  ///< between the ray's start and the beam's axis
+  double azimuth_rad = 0;   ///< in the antenna's frame, clockwise from its boresight
+  double elevation_rad = 0;
+  double amplitude = 1;   ///< of the pattern, -1..1, with the sign of the field
+  double pattern_db = 0;  ///< gain relative to the pattern's maximum, <= 0
+};
+
+/// The direct ray in the pattern, and the reflected ray for models that have one.
+struct PathPointing : RayPointing {
+  std::optional<RayPointing> reflected;
+};
+
+/// One line of the budget.
+struct BudgetTerm {
+  enum class Kind { part, sum };
+  std::string key;    ///< stable, for programs
+  std::string label;  ///< for people
+  double value = 0;
+  std::string unit;
+  std::string note;  ///< origin of the value; may be empty
+  Kind kind = Kind::part;
+};
+
+struct PathBudget {
+  std::string emitter;
+  double time_s = 0;
+  bool active = true;
+  double frequency_hz = 0;
+  double k_factor = 0;
+  PathProfile profile;
+  PathGeometry geometry;
+  PathPointing pointing;
+  /// For the terms of detection of a radar whose beam follows the target (RadarLook::target, not a fixed
+  /// scan): gain of that beam towards the end of the path, relative to its maximum (dB), <= 0.
+  std::optional<double> look_pattern_db;
+  std::vector<PathObstacle> obstacles;
+  propagation::PropagationModel model = propagation::PropagationModel::free_space;
+  PathExcess excess;
+  /// Power density at the path's end if the antenna had its maximum gain along every ray.
+  double boresight_dbwm2 = 0;
+  std::vector<BudgetTerm> terms;
+  std::vector<std::string> warnings;
+  std::string verdict;  ///< one sentence
+
+  /// Null if the budget has no such term.
+  const BudgetTerm* find(const std::string& key) const;
+};
+
+/// The budget of a path. If the emitter is a radar, it includes the terms of detection of a target at the
+/// path's end.
+/// @param emitter  index into the snapshot
+/// @param point    the far end of the path
+/// @param terrain  null: a smooth earth at mean sea level
+/// @throws Error (bad_input) as readPathProfile and pathExcess do
+PathBudget pathBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
+                      propagation::PropagationModel model, const scenario::Terrain* terrain);
+
+/// The same without the terms of detection: for receivers.
+/// @param earlier  null, or an earlier result for the same emitter, model and terrain: its profile and losses
+/// are reused if neither end has moved since
+PathBudget powerBudget(const scenario::Snapshot& snapshot, int emitter, const PathEnd& point,
+                       propagation::PropagationModel model, const scenario::Terrain* terrain,
+                       const PathBudget* earlier = nullptr);
+
+}  // namespace emscape::emfield

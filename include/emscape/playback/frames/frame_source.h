@@ -1,0 +1,95 @@
+/// A sequence of instants to draw: a computed scenario, or fields from files.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/base/progress.h"
+#include "emscape/playback/frames/compute_target.h"
+#include "emscape/playback/frames/field_series.h"
+#include "emscape/playback/frames/shown_field.h"
+#include "emscape/render/annotate/overlay.h"
+
+namespace emscape::playback {
+
+/// One instant.
+struct Frame : ShownField {
+  std::vector<render::Marker> markers;
+  std::vector<render::Track> tracks;  ///< of moving platforms
+  bool changed = true;                ///< false: the field's values are those of the previous call
+};
+
+/// The selection of an input to draw.
+struct FrameSelection {
+  std::string input;  ///< scenario, volume, field on tetrahedra, .pvd, folder of them
+  /// For a scenario: the mesh on which its field is computed (emfield::parseTerrainMesh()); empty: the grid.
+  std::string mesh;
+  std::string quantity;             ///< empty: the first
+  std::string times;                ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
+  bool first_only = false;          ///< without times: only the first
+  std::optional<ValueRange> range;  ///< of the colours; none: that of the series
+  std::string scenario;             ///< for volumes: the scenario of the ground and emitters; may be empty
+  bool allow_missing_terrain = false;
+  std::vector<scenario::Edit> edits;  ///< to the scenario
+  /// Frames are differences to this reference: kOriginal (the scenario without the edits), or a scenario or
+  /// volumes on the same grid. Empty: no comparison, but setComparison() can start one with the original.
+  std::string compare;
+  /// Frames of a scenario are independent of each other and of their order: each has the range of its own
+  /// values, and there is no tolerance for the movement of emitters.
+  bool independent = false;
+};
+
+constexpr const char* kOriginal = "original";
+
+/// Frames in order of time; either all are volumes or all are fields on tetrahedra. One thread at a time
+/// calls frame(); the other functions, except warnings(), may be called at the same time.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  /// At least 1.
+  virtual int count() const = 0;
+  /// Of the scenario, ascending.
+  virtual double time_s(int index) const = 0;
+  /// The frame with index 0..count() - 1; fields on one mesh share it. @throws Error, Stopped
+  virtual Frame frame(int index) = 0;
+
+  /// For titles and file names.
+  virtual std::string name() const = 0;
+  /// The scenario that the pictures show; null without one.
+  virtual const LoadedScenario* scene() const = 0;
+  /// The models' warnings on the frames so far.
+  virtual std::vector<std::string> warnings() const = 0;
+
+  /// Changes the scenario to an edit of that of scene(). The number and times of frames may change. Called by
+  /// the thread that calls frame(), while no other one uses the source.
+  /// @throws Error (bad_input) if its ground cannot be read, (usage) without a scenario; nothing is changed
+  /// then
+  virtual void setScenario(std::shared_ptr<const scenario::Scenario> scenario);
+  /// Another quantity or channel; empty: the first. As setScenario().
+  /// @throws Error (bad_input, usage, device); nothing is changed then
+  virtual void setQuantity(const std::string& quantity);
+
+  /// Shows the difference to the reference (FrameSelection::compare) instead of the field; for independent
+  /// frames. As setScenario(); frame() throws if the two cannot be compared. @throws Error (usage) if there
+  /// is no reference
+  virtual void setComparison(bool on);
+
+  /// The index with the nearest time; of two equally near, the earlier. @param time_s any, beyond the ends
+  /// too
+  int nearestIndex(double time_s) const;
+  /// The frame nearest to a time. @throws Error, Stopped
+  Frame frameAt(double time_s) { return frame(nearestIndex(time_s)); }
+};
+
+/// @param target    the processor for a scenario's field
+/// @param progress  called while the range of the colours is searched; may be empty
+/// @param stop      ends the work of this call and of frame() with Stopped; may be null, else must outlive
+/// the source
+/// @throws Error (usage, bad_input, device), Stopped
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const ComputeTarget& target,
+                                             const ProgressSink& progress = {},
+                                             const StopFlag* stop = nullptr);
+
+}  // namespace emscape::playback

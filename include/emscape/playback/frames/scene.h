@@ -1,0 +1,37 @@
+/// The ground and the emitters of a scenario, for drawing.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "emscape/playback/frames/inputs.h"
+#include "emscape/render/annotate/legend.h"
+#include "emscape/render/annotate/overlay.h"
+#include "emscape/render/scene/height_field.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/volume/dense_volume.h"
+#include "emscape/volume/grid.h"
+
+namespace emscape::playback {
+
+/// The ground below a grid, at about the spacing of the elevation posts (at most 1500 posts per side).
+std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
+                                                         const volume::Grid& grid);
+
+render::MarkerKind markerKindOf(scenario::EmitterKind kind);
+
+/// The emitters of an instant, in the grid's frame.
+std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
+                                      const volume::Grid& grid);
+
+/// The tracks of the scenario's moving platforms, in the grid's frame. Frame sources compute them once for
+/// all frames.
+std::vector<render::Track> tracksOf(const LoadedScenario& scene, const volume::Grid& grid, double time_s);
+
+/// The categories of a volume of indices, for legends: those that can occur in its scenario; if it was
+/// computed from another one, or names its indices otherwise, those of its own names that are in its range.
+/// @param scenario  may be null
+std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info,
+                                           const scenario::Scenario* scenario);
+
+}  // namespace emscape::playback

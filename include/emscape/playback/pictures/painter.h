@@ -1,0 +1,188 @@
+/// Frames of a source as finished pictures: one camera, one set of colours.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "emscape/base/progress.h"
+#include "emscape/playback/frames/frame_source.h"
+#include "emscape/render/annotate/overlay.h"
+#include "emscape/render/cells/cell_renderer.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/render/scene/camera.h"
+#include "emscape/render/scene/height_field.h"
+#include "emscape/render/scene/renderer.h"
+
+namespace emscape::playback {
+
+/// How fields on tetrahedra are drawn.
+enum class CellMethod {
+  automatic,  ///< complete pictures are marched; others are projected if the CPU marches and OpenGL has a
+              ///< GPU
+  march,      ///< CellRenderer::render()
+  project     ///< CellRenderer::project(); pictures that are not complete by centroids
+};
+/// "auto", "march" or "project". @throws Error (usage)
+CellMethod parseCellMethod(const std::string& name);
+
+struct CellStyle {
+  CellMethod method = CellMethod::automatic;
+  render::ProjectionOptions projection;
+};
+
+/// Method and cost of the last picture of a field on tetrahedra.
+struct CellPicture {
+  bool projected = false;
+  render::CellSorting sorting = render::CellSorting::visibility;  ///< this and the following: if projected
+  std::string device;
+  long long cells = 0;
+  long long cycles = 0;
+  std::size_t sent_bytes = 0;
+
+  /// "marched", "projected by centroids".
+  std::string text() const;
+};
+
+/// Style of pictures.
+struct PictureStyle {
+  render::ImageSize size;
+  render::CameraSpec camera;
+  render::Theme theme = render::Theme::dark;
+  render::RenderSettings settings;
+  std::string transfer;  ///< file of the transfer function; empty: fitted to the first volume
+  std::optional<render::TransferFunction> function;  ///< if there is no such file; not used for categories
+  bool colors_span_range = false;  ///< fitted to the range of its values, not to their histogram
+  bool show_terrain = true;
+  bool show_emitters = true;
+  CellStyle cells;
+  /// True: an isosurface that shows nothing of the first volume is an error; false: a warning.
+  bool must_show_isosurface = true;
+};
+
+/// Draws frames. Colours are fitted to the first frame; the camera is kept as long as frames have the same
+/// grid. Fields on tetrahedra have two kinds of picture: the complete one (Pattern::full and restore()), and
+/// a quick one for every other pattern (CellMethod). Casting and labelling are separate: a program with its
+/// own labels uses image() or fetch(), annotations() and renderer(). One thread at a time may use it.
+class Painter {
+ public:
+  /// Draws frames of one source. @throws Error (device)
+  Painter(const PictureStyle& style, const FrameSource& source, const ComputeTarget& target);
+  /// The same without title and scene, until setScene(). @throws Error (bad_input) for settings, (device)
+  Painter(const PictureStyle& style, const ComputeTarget& target);
+
+  /// Sets the scene of the next frames. A different terrain object is treated as a different ground.
+  /// @param scene  null: volumes without a scenario
+  void setScene(const std::string& title, const LoadedScenario* scene);
+  /// Sets the frame of the next pictures.
+  /// @throws Error (bad_input) for the transfer file, after which nothing is changed; or if the isosurface
+  /// shows nothing of the first frame (PictureStyle::must_show_isosurface), which is set all the same. Error
+  /// (usage) for settings that tetrahedra do not have (render::checkCellSettings()), after which nothing is
+  /// changed. Error (device)
+  void setFrame(const Frame& frame);
+  bool hasFrame() const { return frame_.has_value(); }
+  /// Turns an orbiting camera to another azimuth. A frame must be set.
+  void setAzimuth(double azimuth_deg);
+  /// Sets another camera, fitted to the box of the volume. A frame must be set.
+  /// @throws Error (usage) if eye and target coincide; the camera is then unchanged
+  void setCamera(const render::CameraSpec& spec);
+
+  /// Sets the size. This and the following functions change the style of the next pictures, before or after
+  /// the first frame.
+  /// @param size  both sides at least 1
+  void setSize(render::ImageSize size);
+  render::ImageSize size() const { return style_.size; }
+  /// Sets the render settings. An isosurface is not checked against the volume. @throws Error (bad_input) for
+  /// a value out of its range, (usage) as setFrame(); the settings are then unchanged
+  void setSettings(const render::RenderSettings& settings);
+  /// Sets the transfer function, which replaces one from a file or a fitted one.
+  void setTransferFunction(const render::TransferFunction& function);
+  /// Fits the function to the histogram of the frame, or of the next one if there is none yet.
+  void fitColors();
+  /// Fits the function to a range of values. A frame must be set.
+  void fitColors(const volume::ValueRange& range);
+  /// True if colours have been fitted, read or set.
+  bool hasColors() const { return has_colors_; }
+  void showTerrain(bool show);
+  void showEmitters(bool show);
+  void setTheme(render::Theme theme) { annotations_.theme = theme; }
+
+  render::FrameReport draw(const render::FramePlan& plan, const StopFlag* stop = nullptr);
+  /// Casts the pixels that the last draw() interpolated.
+  render::FrameReport restore(const StopFlag* stop = nullptr);
+  /// The last picture: premultiplied, without background and labels.
+  const render::Image& image();
+  /// The same in 8 bits per channel; cheaper on a GPU, which quantises it.
+  void fetch(render::Image8& picture);
+  /// A separate full cast of the picture of draw() and restore().
+  render::Image fullCast();
+
+  /// The drawn ground; null if there is none.
+  const std::shared_ptr<const render::HeightField>& heightField() const { return height_field_; }
+  /// The annotations of a picture of the frame.
+  const render::Annotations& annotations() const { return annotations_; }
+  // Of the picture.
+  const render::RenderSettings& settings() const { return style_.settings; }
+  const render::TransferFunction& transferFunction() const;
+  const render::Camera& camera() const;
+  render::SceneBox sceneBox() const;
+  bool isHidden(const Vec3d& frame_m) const;
+  /// cpu or cuda.
+  Backend backend() const { return renderer_.backend(); }
+  /// None unless the last picture was of tetrahedra.
+  const std::optional<CellPicture>& cellPicture() const { return cell_picture_; }
+  /// True if incomplete pictures of the frame are projected tetrahedra.
+  bool projectsCells() const { return cells_ && projects_; }
+  /// The small text at the bottom of a picture: "dvr, full rays, step 1 voxel", of tetrahedra
+  /// "dvr, 1200 tetrahedra, marched".
+  std::string note(render::Pattern pattern) const;
+
+  /// The last picture with background and labels. @param note  small, at the bottom
+  render::Image8 picture(const std::string& note);
+  /// The same for a fetched picture; differs by at most one level.
+  render::Image8 annotated(const render::Image8& fetched, const std::string& note);
+  /// The picture of annotated() in GPU memory; differs by at most two levels. Null on the CPU.
+  std::shared_ptr<const render::DevicePicture> annotatedOnDevice(const std::string& note);
+
+ private:
+  /// The renderer of tetrahedra, if the frame has some. @throws Error as setFrame()
+  void prepareCells(const Frame& frame);
+  /// Calls use() for the renderer of the frames.
+  template <class Use>
+  void onRenderer(const Use& use) {
+    if (cells_) {
+      use(*cells_);
+    } else {
+      use(renderer_);
+    }
+  }
+  /// Draws the tetrahedra into image_.
+  render::FrameReport drawCells(bool is_complete, const StopFlag* stop);
+  /// Sets the ground of the scene below the grid of the frame, if it is shown.
+  void setGround();
+  void setGround(const scenario::TerrainPtr& ground);
+  void setMarkers();
+  /// Fits the camera again if the width of the legend has changed.
+  void setLegend();
+  render::Camera cameraOf(const render::CameraSpec& spec) const;
+  void fitCamera();
+  render::TransferFunction functionFor(const ShownField& field) const;
+
+  PictureStyle style_;
+  std::optional<LoadedScenario> scene_;
+  std::optional<Frame> frame_;
+  scenario::TerrainPtr ground_;  // whose height field the renderer has
+  std::shared_ptr<const render::HeightField> height_field_;
+  render::Renderer renderer_;                    ///< of volumes
+  std::unique_ptr<render::CellRenderer> cells_;  ///< of tetrahedra; null if the frames are volumes
+  bool projects_ = false;                        ///< as projectsCells(), if there are tetrahedra
+  std::optional<CellPicture> cell_picture_;
+  render::Annotations annotations_;
+  render::OverlayLayers layers_;
+  render::Image image_;
+  bool fetched_ = false;  ///< image_ is the last picture
+  bool has_colors_ = false;
+  double legend_space_ = 0;  ///< part of the width
+};
+
+}  // namespace emscape::playback

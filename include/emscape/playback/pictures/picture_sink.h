@@ -1,0 +1,31 @@
+/// Outputs of pictures: one PNG, a folder of them, a video.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "emscape/render/picture/image.h"
+
+namespace emscape::playback {
+
+/// Takes the pictures of a series in order.
+class PictureSink {
+ public:
+  virtual ~PictureSink() = default;
+  /// @param number  counts from 1
+  /// @param frames  of a video: number of frames that show the picture
+  virtual void add(int number, const render::Image8& picture, int frames) = 0;
+  /// After the last picture: gives the output its final name.
+  virtual void finish() = 0;
+};
+
+/// Checks the extension before anything is computed. @throws Error (usage) as makePictureSink()
+void checkPictureOutput(const std::filesystem::path& output);
+
+/// By the extension of `output`: .png (one picture), .mp4, or a folder (no extension) of NAME_0001.png, ....
+/// @throws Error (usage) for another extension, or a .png for several pictures
+std::unique_ptr<PictureSink> makePictureSink(const std::filesystem::path& output, const std::string& name,
+                                             int pictures, render::ImageSize size, double frames_per_s);
+
+}  // namespace emscape::playback

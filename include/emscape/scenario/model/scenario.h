@@ -1,0 +1,107 @@
+/// A scenario: the objects on the battlefield, their positions and times.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/propagation/settings.h"
+#include "emscape/scenario/model/clock.h"
+#include "emscape/scenario/model/edit.h"
+#include "emscape/scenario/model/emitter.h"
+#include "emscape/scenario/model/interval.h"
+#include "emscape/scenario/model/platform.h"
+#include "emscape/scenario/model/receiver.h"
+#include "emscape/scenario/model/target.h"
+#include "emscape/scenario/terrain/terrain.h"
+
+namespace emscape::scenario {
+
+/// The box of the field. altitude: x and y centred on the origin, z upwards from the origin's height above
+/// mean sea level. enu: the same, with z upwards from the tangent point.
+struct Region {
+  FrameOrigin origin;
+  Vec3d size_m;
+  Dims dims;
+};
+
+/// A named frequency interval, for combination by band.
+struct Band {
+  std::string name;
+  double begin_hz = 0;
+  double end_hz = 0;
+};
+
+enum class CombineMode { sum, max, per_emitter, per_band };
+const char* toString(CombineMode mode);
+
+/// Direction of a radar's beam for the probability of detection and the signal-to-noise ratio.
+enum class RadarLook {
+  scan,   ///< the direction of the radar's scan at the time
+  target  ///< towards each voxel, as closely as the scan permits
+};
+const char* toString(RadarLook look);
+
+struct OutputSpec {
+  std::vector<std::string> quantities{"power_density_dbwm2"};  ///< names of the quantity table
+  CombineMode combine = CombineMode::sum;
+  RadarLook radar_look = RadarLook::scan;
+  double floor = -120;                 ///< lowest stored value, in each quantity's unit
+  double count_threshold_dbwm2 = -90;  ///< emitter_count, occupancy: emitters above this power density
+  IntervalSpec interval = {};
+  int receiver = 0;  ///< for the quantities of a receiver: index into Scenario::receivers
+  int wanted_emitter =
+      -1;  ///< emitter whose signal sinr_db is computed for: index into Scenario::emitters; -1: none
+  double detection_threshold =
+      0.5;  ///< detection_age_s: minimum probability of a look that counts as a detection
+};
+
+struct ScenarioSource;  // scenario/file/source.h
+
+/// Plain values; copies are independent. Several threads may read a scenario; set() is a write.
+struct Scenario {
+  std::string name;
+  std::string file;  ///< from which it was read
+  /// FNV-1a (64 bits, hex) of the text of the file with its edits and of the hashes of the track and antenna
+  /// files that it names; elevation files enter only with name and size.
+  std::string hash;
+  Clock clock;
+  Region region;
+  std::optional<TerrainSpec> terrain;
+  propagation::Atmosphere atmosphere;
+  propagation::Ground ground;
+  std::vector<Platform> platforms;
+  std::vector<Emitter> emitters;
+  std::vector<ReceiverProfile> receivers;  ///< without a platform; see OutputSpec::receiver
+  std::vector<PlacedReceiver> placed_receivers;
+  std::vector<Target> targets;
+  std::vector<Band> bands;
+  OutputSpec output;
+
+  /// Changes a value: edits the text of the scenario's file in memory and parses it again, with the checks of
+  /// a file. The files that it names are not read again. Antennas that the edit does not change stay the same
+  /// objects. Direct changes of members are lost.
+  /// @throws Error (bad_input) that lists all faults as loadScenario() does, with the edit as the location of
+  /// its faults; or if the scenario was not read from a file. The scenario is then unchanged.
+  void set(const std::string& path, const std::string& value);
+  /// Applies several edits in order and checks the result: for values that depend on each other.
+  void set(const std::vector<Edit>& edits);
+  /// The edits since the file was read, in an order in which they can be repeated. Of several edits of one
+  /// path only the last is listed.
+  std::vector<Edit> edits() const;
+
+  std::shared_ptr<const ScenarioSource> source;  ///< null if it was not read from a file
+};
+
+/// The area for which terrain is needed: the region, every platform's track and the ground between them, with
+/// a margin of 2 km. A box that contains a pole spans all longitudes.
+GeoBox terrainBox(const Scenario& scenario);
+
+/// The terrain that a scenario names, within terrainBox(); null if it names none.
+/// @throws Error (bad_input) naming the file
+TerrainPtr loadTerrain(const Scenario& scenario);
+
+}  // namespace emscape::scenario

@@ -1,0 +1,104 @@
+/// The ground: elevation models as one mosaic.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emscape/base/error.h"
+#include "emscape/base/geodesy/geo_frame.h"
+
+namespace emscape::scenario {
+
+struct TerrainView;  // scenario/terrain/view.h
+
+/// Datum of the heights in the elevation files. EGM2008 needs its geoid grid on the machine
+/// (base/geodesy/geoid_grid.h).
+enum class VerticalDatum { egm96, ellipsoid, egm2008 };
+
+/// A box of latitude and longitude (deg). east may exceed 180 where the box crosses the antimeridian; west is
+/// in -180..180.
+struct GeoBox {
+  double south_deg = 0, north_deg = 0, west_deg = 0, east_deg = 0;
+};
+
+inline bool operator==(const GeoBox& a, const GeoBox& b) {
+  return a.south_deg == b.south_deg && a.north_deg == b.north_deg && a.west_deg == b.west_deg &&
+         a.east_deg == b.east_deg;
+}
+
+struct TerrainSpec {
+  std::vector<std::string> files;         ///< as resolved: absolute or relative to the working folder
+  std::vector<SourceLocation> locations;  ///< of each file's name in the scenario
+  VerticalDatum vertical_datum = VerticalDatum::egm96;
+};
+
+/// True for the same files and datum; locations are not compared.
+inline bool operator==(const TerrainSpec& a, const TerrainSpec& b) {
+  return a.files == b.files && a.vertical_datum == b.vertical_datum;
+}
+inline bool operator!=(const TerrainSpec& a, const TerrainSpec& b) {
+  return !(a == b);
+}
+
+/// Description of one elevation file, for `emscape info`.
+struct TerrainFileInfo {
+  std::string file, format, crs;
+  GeoBox box;  ///< what the file covers: to its outer posts, or half a post further if pixel_is_area
+  int columns = 0, rows = 0;
+  bool pixel_is_area = false;
+  double post_spacing_lat_deg = 0, post_spacing_lon_deg = 0;  ///< in the middle of the file
+  /// In the file's vertical datum; NaN if no height was read. Of files with more than 2^28 posts a part of
+  /// the rows is read, as a note says.
+  double lowest_m = 0, highest_m = 0;
+  long long void_posts = 0;
+  std::vector<std::string> notes;  ///< conversions that were needed, such as of a unit
+};
+
+/// Heights above mean sea level, bilinear between posts. Immutable; safe to share between threads.
+///
+/// - Posts are at the centres of GDAL's pixels, whether these stand for points or areas.
+/// - Files whose posts are on one lattice (to a hundredth of a post) and touch are one raster: heights go on
+///   between them. Where two have the same post (tiles that share an edge) the file listed first takes
+///   precedence, unless it is void there. A raster of areas reaches half a post beyond its outer posts, with
+///   their heights.
+/// - Where rasters overlap, the finest with a height is used; at its rim it is continued into its neighbours.
+/// - Voids are the file's nodata value or mask, -32767 and -32768, NaN, and heights outside the range found
+/// on earth. A point between posts is void if one of its four posts is void and has a weight.
+/// - Files in a projection or on another datum are brought to longitudes and latitudes of WGS84 when they are
+///   read, bilinear, on posts twice as close as their own: four times the memory, and ridges keep their
+///   height.
+class Terrain {
+ public:
+  /// Reads what the files hold within the box (GeoTIFF in any CRS, HGT, DTED, ASCII grid, USGS DEM, EHdr BIL,
+  /// VRT of files in its own folder), tiles as one mosaic.
+  /// @throws Error (bad_input) naming the file; a file outside the box is not an error
+  static std::shared_ptr<const Terrain> load(const TerrainSpec& spec, const GeoBox& box);
+  /// @param read_heights  false: only the file's head is read
+  /// @throws Error (bad_input) as load() would for this file
+  static TerrainFileInfo describe(const std::string& file, bool read_heights = true);
+
+  virtual ~Terrain() = default;
+  /// Height (m, EGM96 mean sea level); NaN over a void or outside the files: missing terrain never looks like
+  /// sea level.
+  /// @param latitude_deg  -90..90, longitude_deg any (wrapped)
+  virtual double heightMsl_m(double latitude_deg, double longitude_deg) const = 0;
+  /// The same heights for loops, without a virtual call; valid while the terrain lives.
+  virtual TerrainView view() const = 0;
+  /// Finest distance between the files' posts (m), the smaller of north-south and east-west, but at least
+  /// half the larger (meridians converge near the poles); NaN without a file in the box.
+  virtual double postSpacing_m() const = 0;
+  /// Posts of the box that are void in every file, and the fraction of the box (0..1) that no file covers.
+  virtual long long voidPosts() const = 0;
+  virtual double uncoveredFraction() const = 0;
+  /// The box of load(), and the part of it that the files cover, as a box.
+  virtual GeoBox box() const = 0;
+  virtual GeoBox coverage() const = 0;
+  /// Heights of the posts in the box (m); NaN if none is known.
+  virtual double lowest_m() const = 0;
+  virtual double highest_m() const = 0;
+};
+
+using TerrainPtr = std::shared_ptr<const Terrain>;
+
+}  // namespace emscape::scenario

@@ -1,0 +1,88 @@
+/// Exposure of a platform to the field along its track, by time and emitter.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/base/progress.h"
+#include "emscape/emfield/solver/field_solver.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/scenario/model/quantities.h"
+#include "emscape/scenario/model/scenario.h"
+
+namespace emscape::study {
+
+struct ExposureRequest {
+  int platform = 0;             ///< index into Scenario::platforms
+  std::vector<double> times_s;  ///< ascending, one or more
+  scenario::Quantity quantity = scenario::Quantity::detection_probability;
+  double threshold = 0.5;  ///< in the quantity's unit
+  /// target: the beam points at the platform as nearly as the scan permits. scan: the beam points as scanned
+  /// at that time; this needs time steps shorter than the beam's passes.
+  scenario::RadarLook look = scenario::RadarLook::target;
+  /// Index into Scenario::targets: the platform's target that gives cross section by aspect, fluctuation and
+  /// radial speed; none: those that the radars assume.
+  std::optional<int> target;
+};
+
+/// Whether the value of all emitters together is at or above the threshold; unknown if the path from any
+/// emitter to the platform crosses missing terrain.
+enum class ExposureState { reached, below, unknown };
+const char* toString(ExposureState state);
+
+struct ExposureRow {
+  double time_s = 0, latitude_deg = 0, longitude_deg = 0;
+  double height_msl_m = 0;
+  double height_agl_m = 0;   ///< NaN: over missing terrain
+  double value = 0;          ///< of all emitters together; NaN: unknown
+  std::vector<double> each;  ///< one per Exposure::emitters; -infinity: off; NaN: unknown
+  ExposureState state = ExposureState::unknown;
+  int best = -1;  ///< index into `each` of the largest value; -1: none
+  /// Probability of detection by any radar so far: 1 - prod(1 - Pd) over all looks with a known value. NaN
+  /// unless the quantity is detection_probability and the look is target.
+  double cumulative_probability = 0;
+};
+
+/// Statistics over all times of one emitter, or of all together.
+struct ExposureSummary {
+  std::string name;                   ///< of the emitter; "together"
+  double max = 0;                     ///< maximum value; NaN: none
+  double max_time_s = 0;              ///< its time
+  std::optional<double> first_s;      ///< first time at which the threshold is reached
+  double fraction = 0;                ///< 0..1: reached, of the time with known values; each time represents
+                                      ///< the interval to the next one. NaN: all unknown
+  double unknown_fraction = 0;        ///< 0..1: unknown, of the whole time
+  double longest_gap_s = 0;           ///< longest interval below the threshold; unknown values end it
+  double best_fraction = 0;           ///< 0..1: the emitter has the largest value; emitters only
+  double cumulative_probability = 0;  ///< after the last time; NaN as in the rows
+};
+
+struct Exposure {
+  ExposureRequest request;
+  std::string scenario, platform, unit;
+  std::string cross_section;          ///< source of the cross section, in words; empty: the quantity has none
+  std::vector<int> emitters;          ///< indices into Scenario::emitters; without those on the platform
+  std::vector<std::string> names;     ///< of these
+  std::vector<ExposureRow> rows;      ///< one per time
+  std::vector<ExposureSummary> each;  ///< one per emitter
+  ExposureSummary together;
+  std::vector<std::string> warnings;
+};
+
+/// Computes the values along the track with the field's functions: each equals that of `emscape profile` at
+/// the platform's position. The platform's radars and transmitters are left out; its jammers are left out as
+/// emitters, but jam the radars.
+/// @param terrain  over the region and all platforms; null: a smooth earth
+/// @param options  backend and memory; other members are overwritten
+/// @throws Error (usage) for an index quantity, no times, and a target on another platform; as FieldSolver
+Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenario,
+                         const scenario::TerrainPtr& terrain, const ExposureRequest& request,
+                         emfield::FieldOptions options, const ProgressSink& progress = {});
+
+/// Plots the values and the height above ground over time, as .png or .svg.
+/// @throws Error (other) naming the file
+void plotExposure(const Exposure& exposure, render::ImageSize size, const std::string& file);
+
+}  // namespace emscape::study

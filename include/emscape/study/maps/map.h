@@ -1,0 +1,64 @@
+/// A map: values of the pixels of a grid, and their description.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/study/maps/map_grid.h"
+#include "emscape/study/maps/products.h"
+
+namespace emscape::study {
+
+enum class MapKind {
+  level,        ///< value with a unit: dB, m, s
+  difference,   ///< difference of two levels; the sign has a meaning
+  probability,  ///< 0..1
+  part,         ///< 0..1: fractions
+  count,        ///< 0, 1, 2 ...
+  classes,      ///< 0, 1 ... with a label each; 0: nothing to show
+  category      ///< index of a label; -1: none
+};
+/// Kinds whose values are whole numbers that are not interpolated.
+constexpr bool isWhole(MapKind kind) {
+  return kind == MapKind::classes || kind == MapKind::count || kind == MapKind::category;
+}
+
+/// Kinds whose values are 0..1.
+constexpr bool isPart(MapKind kind) {
+  return kind == MapKind::probability || kind == MapKind::part;
+}
+
+struct Map {
+  std::string name;  ///< of the product, for file names: "covered"; letters, digits, '_'
+  MapKind kind = MapKind::level;
+  std::string title;                ///< of its legend, in words: "minimum height above ground"
+  std::string unit;                 ///< "": none
+  std::string description;          ///< "detection probability at 150 m above ground"
+  std::optional<MapHeight> height;  ///< none: for all heights
+  std::optional<double> time_s;     ///< since the scenario's epoch; none: over all times
+  std::vector<std::string> labels;  ///< of classes and categories: names of 0, 1 ...
+  std::vector<int> colors;    ///< of classes: indices of render::categoryColor(); empty: the class itself
+  int area_class = -1;        ///< the class whose area is reported; -1: none
+  std::vector<float> values;  ///< pixels in the grid's order; NaN: no value
+};
+
+/// Name of a map's files, layers and variables: "covered_agl150m_t80s".
+std::string fileNameOf(const Map& map);
+
+/// Text of a figure in reports, with the digits that maps justify: km2 to 0.001, percent and dB to 0.01, m to
+/// 0.1, without a unit (probabilities, fractions) to 0.0001, others to 4 digits. "none" for NaN and
+/// infinities.
+std::string figureText(double value, const std::string& unit);
+
+/// Statistics of a map.
+struct MapSummary {
+  double min = 0, max = 0;             ///< of the values; NaN if there are none
+  double known_area_m2 = 0;            ///< of the pixels with a value, on the ellipsoid
+  double class_area_m2 = 0;            ///< of the pixels in Map::area_class
+  long long largest_pixel = -1;        ///< with the largest value; -1: there is none
+  std::vector<double> label_areas_m2;  ///< of categories: of the pixels of each of Map::labels; else empty
+};
+MapSummary summaryOf(const MapGrid& grid, const Map& map);
+
+}  // namespace emscape::study

@@ -1,0 +1,116 @@
+#include "playback/editing/autosave.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "base/files/whole_file.h"
+#include "base/text/utc.h"
+#include "document/text_file.h"
+#include "emscape/base/error.h"
+#include "playback/series/file_names.h"
+
+namespace emscape::playback {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Limit of files per input: of programs that run at the same time or ended abnormally.
+constexpr int kMaxFiles = 32;
+
+/// Time at which a file was last written, in milliseconds since 1970; empty if there is no such file.
+std::optional<std::int64_t> writtenAt_ms(const fs::path& file) {
+  struct stat status {};
+  if (stat(file.c_str(), &status) != 0) return std::nullopt;
+  return std::int64_t{status.st_mtim.tv_sec} * 1000 + status.st_mtim.tv_nsec / 1000000;
+}
+
+}  // namespace
+
+fs::path stateFolder() {
+  // Relative paths are to be ignored (XDG Base Directory Specification).
+  const char* state = std::getenv("XDG_STATE_HOME");
+  if (state != nullptr && fs::path(state).is_absolute()) return fs::path(state) / "emscape";
+  const char* home = std::getenv("HOME");
+  if (home != nullptr && fs::path(home).is_absolute()) return fs::path(home) / ".local/state/emscape";
+  throw Error(ErrorCode::other, "neither XDG_STATE_HOME nor HOME is set: there is no folder for autosaves");
+}
+
+fs::path autosaveFileOf(const std::string& input, int number) {
+  const fs::path path = fs::weakly_canonical(fs::absolute(input));
+  document::ContentHash hash;
+  hash.add(path.string());
+  const fs::path name = path.has_filename() ? path : path.parent_path();
+  const std::string suffix = number == 1 ? "" : "-" + std::to_string(number);
+  return stateFolder() / "autosave" /
+         (fileNameOf(name.stem().string()) + "-" + hash.hex() + suffix + ".view.json");
+}
+
+Autosaves::Autosaves() = default;
+Autosaves::~Autosaves() = default;
+
+bool Autosaves::claim(const std::string& input, const fs::path& file) {
+  auto lock = FolderLock::tryLock(file.parent_path(), file.filename().string() + ".lock");
+  if (lock == nullptr) return false;
+  claims_[autosaveFileOf(input)] = {file, std::move(lock)};
+  return true;
+}
+
+void Autosaves::keep(const std::string& input, const ViewState& state) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const fs::path first = autosaveFileOf(input);
+  std::error_code failure;
+  fs::create_directories(first.parent_path(), failure);
+  if (failure) {
+    throw Error(ErrorCode::other, {first.parent_path().string(), 0, 0},
+                "the folder cannot be made: " + failure.message());
+  }
+  for (int number = 1; claims_.count(first) == 0; ++number) {
+    if (number > kMaxFiles) {
+      throw Error(ErrorCode::other, {first.string(), 0, 0},
+                  "the view cannot be stored: all autosave files are in use");
+    }
+    const fs::path file = autosaveFileOf(input, number);
+    if (!writtenAt_ms(file)) claim(input, file);
+  }
+  writeViewState(claims_[first].file.string(), state);
+}
+
+std::optional<AutosavedView> Autosaves::find(const std::string& input) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const fs::path first = autosaveFileOf(input);
+  if (claims_.count(first) == 0) {
+    std::vector<std::pair<std::int64_t, fs::path>> files;
+    for (int number = 1; number <= kMaxFiles; ++number) {
+      const fs::path file = autosaveFileOf(input, number);
+      if (const auto written_ms = writtenAt_ms(file)) files.emplace_back(*written_ms, file);
+    }
+    std::sort(files.rbegin(), files.rend());
+    for (const auto& [written_ms, file] : files) {
+      if (claim(input, file)) break;
+    }
+  }
+  const auto found = claims_.find(first);
+  if (found == claims_.end()) return std::nullopt;
+  const fs::path& file = found->second.file;
+  const std::optional<std::int64_t> written_ms = writtenAt_ms(file);
+  if (!written_ms) return std::nullopt;
+  return AutosavedView{file, utcText(*written_ms), writtenAt_ms(input).value_or(0) > *written_ms,
+                       readViewState(file.string())};
+}
+
+void Autosaves::remove(const std::string& input) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto claimed = claims_.find(autosaveFileOf(input));
+  if (claimed == claims_.end()) return;
+  std::error_code ignored;
+  fs::remove(claimed->second.file, ignored);
+  claims_.erase(claimed);
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,66 @@
+/// Autosaves of unsaved views, for recovery after a crash.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "playback/editing/view_state.h"
+
+namespace emscape {
+class FolderLock;
+}
+
+namespace emscape::playback {
+
+/// The folder for persistent state: $XDG_STATE_HOME/emscape if that is an absolute path, else
+/// $HOME/.local/state/emscape. It need not exist. @throws Error (other) if neither variable is set
+std::filesystem::path stateFolder();
+
+/// The file for an input (scenario, volume, folder), identified by its absolute path.
+/// @param number  1 for the first program with a view of the input, 2 for a second one at the same time, ...
+std::filesystem::path autosaveFileOf(const std::string& input, int number = 1);
+
+/// A stored view.
+struct AutosavedView {
+  std::filesystem::path file;
+  std::string written_utc;     ///< ISO 8601
+  bool input_changed = false;  ///< the input was modified later
+  ViewState state;
+};
+
+/// The stored views of one program, one per input. Programs that run at the same time have separate files,
+/// locked while they run. Any thread may call it.
+class Autosaves {
+ public:
+  Autosaves();
+  /// Releases the locks; the files are kept.
+  ~Autosaves();
+  Autosaves(const Autosaves&) = delete;
+  Autosaves& operator=(const Autosaves&) = delete;
+
+  /// Stores a view with its edits; it replaces the one that was stored or found before. Creates the folder if
+  /// necessary. @throws Error (bad_input, other) as writeViewState(), or if no file is free
+  void keep(const std::string& input, const ViewState& state);
+  /// This program's stored view of an input; else the newest view of a program that has ended, which this
+  /// program takes over. Empty if there is neither. @throws Error (bad_input) if it cannot be read
+  std::optional<AutosavedView> find(const std::string& input);
+  /// Removes the view that was stored or found.
+  void remove(const std::string& input);
+
+ private:
+  struct Claim {
+    std::filesystem::path file;
+    std::unique_ptr<FolderLock> lock;
+  };
+  /// Takes over a file. @return true if it could be locked
+  bool claim(const std::string& input, const std::filesystem::path& file);
+
+  std::mutex mutex_;
+  std::map<std::filesystem::path, Claim> claims_;  // by the first file of an input
+};
+
+}  // namespace emscape::playback

@@ -1,0 +1,342 @@
+#include "emscape/playback/frames/frame_source.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "emscape/base/error.h"
+#include "emscape/emfield/columns/terrain_mesh.h"
+#include "emscape/playback/frames/scene.h"
+#include "emscape/playback/frames/volume_input.h"
+#include "emscape/playback/stop.h"
+#include "emscape/volume/file.h"
+#include "emscape/volume/mesh_file.h"
+#include "playback/frames/difference_source.h"
+#include "playback/frames/platform_tracks.h"
+
+namespace emscape::playback {
+namespace {
+
+std::vector<double> timesOf(const FrameSelection& selection, const scenario::Clock& clock) {
+  if (selection.first_only) return {0.0};
+  return selection.times.empty() ? scenario::timesOf(clock) : scenario::parseTimes(selection.times, clock);
+}
+
+/// The one quantity that is needed: "snr_db" of the channel "snr_db:search radar".
+std::vector<std::string> quantitiesOf(const std::string& quantity, const scenario::Scenario& scenario) {
+  return {quantity.empty() ? scenario.output.quantities.front() : quantity.substr(0, quantity.find(':'))};
+}
+
+emfield::FieldOptions fieldOptionsOf(const FrameSelection& selection, const ComputeTarget& target,
+                                     const scenario::Scenario& scenario) {
+  emfield::FieldOptions options = target.fieldOptions();
+  options.quantities = quantitiesOf(selection.quantity, scenario);
+  options.allow_missing_terrain = selection.allow_missing_terrain;
+  if (selection.independent) options.move_tolerance_m = 0;
+  return options;
+}
+
+std::size_t channelOf(const std::vector<emfield::Channel>& channels, const std::string& name) {
+  if (name.find(':') == std::string::npos) return 0;
+  std::string names;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    if (channels[c].name == name) return c;
+    names += (c == 0 ? "" : ", ") + channels[c].name;
+  }
+  throw Error(ErrorCode::usage,
+              fmt::format("quantity '{}': there is no such channel; there are {}", name, names));
+}
+
+/// True if a mesh over one region fits the other.
+bool sameGround(const LoadedScenario& a, const LoadedScenario& b) {
+  return a.terrain == b.terrain && emfield::gridOf(a.scenario->region) == emfield::gridOf(b.scenario->region);
+}
+
+/// The mesh of a computed field.
+struct ComputedMesh {
+  std::shared_ptr<const emfield::TerrainMesh> mesh;  ///< null: a grid
+  std::shared_ptr<const volume::MeshFaces> faces;
+
+  ComputedMesh(const std::string& text, const LoadedScenario& input) {
+    if (text.empty()) return;
+    mesh = std::make_shared<const emfield::TerrainMesh>(*input.scenario, input.terrain.get(),
+                                                        emfield::parseTerrainMesh(text));
+    faces = std::make_shared<const volume::MeshFaces>(volume::facesOf(*mesh->mesh(), {input.scenario->file}));
+  }
+
+  std::shared_ptr<const emfield::Surface> surface() const { return mesh ? mesh->surface() : nullptr; }
+  ShownField shown(const volume::Volume& volume) const {
+    if (!mesh) return {volume, nullptr};
+    return {{}, makeCellField(mesh->field(*volume.host()), faces)};
+  }
+};
+
+/// A scenario's frames, computed on request.
+class ComputedFrames : public FrameSource {
+ public:
+  ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const ComputeTarget& target,
+                 const ProgressSink& progress, const StopFlag* stop)
+      : selection_(selection), mesh_(selection.mesh, input) {
+    emfield::FieldOptions options = fieldOptionsOf(selection, target, *input.scenario);
+    options.surface = mesh_.surface();
+    series_ = std::make_unique<FieldSeries>(input, timesOf(selection, input.scenario->clock), options, stop);
+    range_ = rangeOf(*series_, selection.quantity, progress);
+  }
+
+  int count() const override { return series_->count(); }
+  double time_s(int index) const override { return series_->time_s(index); }
+  Frame frame(int index) override {
+    std::vector<volume::Volume> volumes = series_->compute(index);
+    std::vector<volume::Volume> chosen{volumes[channelOf(series_->channels(), selection_.quantity)]};
+    if (range_) setRanges(chosen, {*range_});
+    Frame frame{mesh_.shown(chosen.front()), {}, {}, series_->changed()};
+    const LoadedScenario& input = series_->input();
+    frame.markers = markersOf(series_->snapshot(index), input.terrain.get(), frame.grid());
+    frame.tracks = tracks_.at(series_->time_s(index), input, frame.grid());
+    return frame;
+  }
+  std::string name() const override { return series_->input().scenario->name; }
+  const LoadedScenario* scene() const override { return &series_->input(); }
+  std::vector<std::string> warnings() const override { return series_->warnings(); }
+
+  void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
+    std::vector<double> times_s = timesOf(selection_, scenario->clock);
+    LoadedScenario edited = withScenario(series_->input(), std::move(scenario));
+    if (mesh_.mesh && !sameGround(series_->input(), edited)) {
+      const ComputedMesh mesh(selection_.mesh, edited);
+      emfield::FieldOptions options = series_->options();
+      options.surface = mesh.surface();
+      series_ =
+          std::make_unique<FieldSeries>(std::move(edited), std::move(times_s), options, series_->stopFlag());
+      mesh_ = mesh;
+      return;
+    }
+    series_->setScenario(std::move(edited), std::move(times_s));
+  }
+  void setQuantity(const std::string& quantity) override {
+    emfield::FieldOptions options = series_->options();
+    options.quantities = quantitiesOf(quantity, *series_->input().scenario);
+    auto series =
+        std::make_unique<FieldSeries>(series_->input(), series_->times_s(), options, series_->stopFlag());
+    range_ = rangeOf(*series, quantity, {});
+    series_ = std::move(series);
+    selection_.quantity = quantity;
+  }
+
+ private:
+  /// The range of all frames; none if each has its own.
+  std::optional<ValueRange> rangeOf(FieldSeries& series, const std::string& quantity,
+                                    const ProgressSink& progress) const {
+    const std::size_t channel = channelOf(series.channels(), quantity);
+    if (selection_.range || selection_.independent) return selection_.range;
+    return series.findRanges(rangeSearchStride(series.count()), progress)[channel];
+  }
+
+  FrameSelection selection_;
+  ComputedMesh mesh_;
+  std::unique_ptr<FieldSeries> series_;
+  std::optional<ValueRange> range_;
+  PlatformTracks tracks_;
+};
+
+bool sameMesh(const volume::TetrahedralMesh& a, const volume::TetrahedralMesh& b) {
+  return a.points_m == b.points_m && a.cells == b.cells;
+}
+
+/// Volumes or fields on tetrahedra from files.
+class StoredFrames : public FrameSource {
+ public:
+  StoredFrames(const FrameSelection& selection, const StopFlag* stop)
+      : stop_(stop),
+        quantity_(selection.quantity),
+        selection_(selection),
+        holds_meshes_(holdsMeshes(selection.input)),
+        files_(filesOf(quantity_)) {
+    if (!selection.scenario.empty()) {
+      scene_ = loadScenarioWithTerrain(selection.scenario, selection.edits);
+    } else if (!selection.edits.empty()) {
+      throw Error(ErrorCode::usage, "edits change a scenario; volumes have none unless --scenario names one");
+    }
+    namespace fs = std::filesystem;
+    const fs::path input = selection.input;
+    name_ = scene_ ? scene_->scenario->name
+                   : (input.has_filename() ? input : input.parent_path()).stem().string();
+  }
+
+  int count() const override { return static_cast<int>(files_.size()); }
+  double time_s(int index) const override { return files_[static_cast<std::size_t>(index)].time_s; }
+  Frame frame(int index) override {
+    throwIfStopped(stop_);
+    const VolumeFile& file = files_[static_cast<std::size_t>(index)];
+    Frame frame{holds_meshes_ ? readCells(file) : readVoxels(file), {}, {}, true};
+    if (scene_ && frame.grid().georeferenced) {
+      const double time_s = frame.info().time_s;
+      const scenario::Snapshot snapshot =
+          scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), time_s);
+      frame.markers = markersOf(snapshot, scene_->terrain.get(), frame.grid());
+      frame.tracks = tracks_.at(time_s, *scene_, frame.grid());
+    }
+    return frame;
+  }
+  std::string name() const override { return name_; }
+  const LoadedScenario* scene() const override { return scene_ ? &*scene_ : nullptr; }
+  std::vector<std::string> warnings() const override { return {}; }
+
+  void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
+    if (!scene_) return FrameSource::setScenario(std::move(scenario));
+    scene_ = withScenario(*scene_, std::move(scenario));
+    name_ = scene_->scenario->name;
+  }
+  void setQuantity(const std::string& quantity) override {
+    std::string chosen = quantity;
+    files_ = filesOf(chosen);
+    quantity_ = chosen;
+  }
+
+ private:
+  /// The files to be shown. @param quantity  as for volumeFilesOf()
+  std::vector<VolumeFile> filesOf(std::string& quantity) const {
+    const auto list = holds_meshes_ ? meshFilesOf : volumeFilesOf;
+    return chosenFiles(list(selection_.input, quantity), selection_.times, selection_.first_only);
+  }
+
+  void setRange(volume::VolumeInfo& info) const {
+    if (!selection_.range) return;
+    info.range_min = selection_.range->min;
+    info.range_max = selection_.range->max;
+  }
+  ShownField readVoxels(const VolumeFile& file) const {
+    volume::DenseVolume read = volume::readVolume(file.file, quantity_);
+    read.info.time_s = file.time_s;
+    auto volume = std::make_shared<const volume::DenseVolume>(std::move(read));
+    volume::VolumeInfo info = volume->info;
+    setRange(info);
+    return {{volume, info}, nullptr};
+  }
+  ShownField readCells(const VolumeFile& file) {
+    volume::MeshFile read = volume::readMesh(file.file, quantity_);
+    volume::MeshField& field = read.fields.front();
+    field.info.time_s = file.time_s;
+    setRange(field.info);
+    if (mesh_ && sameMesh(*mesh_, *read.mesh)) {
+      field.mesh = mesh_;
+    } else {
+      mesh_ = read.mesh;
+      faces_ = read.faces;
+    }
+    return {{}, makeCellField(std::move(field), faces_)};
+  }
+
+  const StopFlag* const stop_;
+  std::string quantity_;
+  const FrameSelection selection_;
+  const bool holds_meshes_;
+  std::vector<VolumeFile> files_;
+  std::optional<LoadedScenario> scene_;
+  std::string name_;
+  PlatformTracks tracks_;
+  std::shared_ptr<const volume::TetrahedralMesh> mesh_;  ///< of the last file
+  std::shared_ptr<const volume::MeshFaces> faces_;
+};
+
+}  // namespace
+
+void FrameSource::setScenario(std::shared_ptr<const scenario::Scenario> /*scenario*/) {
+  throw Error(ErrorCode::usage, name() + ": volumes without a scenario cannot be edited");
+}
+
+void FrameSource::setComparison(bool on) {
+  if (on) throw Error(ErrorCode::usage, name() + ": there is nothing to compare with");
+}
+
+void FrameSource::setQuantity(const std::string& quantity) {
+  throw Error(ErrorCode::usage, fmt::format("quantity '{}': {} has only one quantity", quantity, name()));
+}
+
+int FrameSource::nearestIndex(double time_s) const {
+  int first = 0, last = count() - 1;
+  while (last - first > 1) {  // time_s(first) <= time_s < time_s(last), or time_s is beyond an end
+    const int middle = first + (last - first) / 2;
+    (this->time_s(middle) <= time_s ? first : last) = middle;
+  }
+  return std::abs(this->time_s(last) - time_s) < std::abs(this->time_s(first) - time_s) ? last : first;
+}
+
+namespace {
+
+std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const ComputeTarget& target,
+                                       const ProgressSink& progress, const StopFlag* stop) {
+  const InputKind kind = inputKindOf(selection.input);
+  if (!selection.mesh.empty() && kind != InputKind::scenario) {
+    throw Error(ErrorCode::usage,
+                selection.input + " is not a scenario: --mesh applies to a field to be computed");
+  }
+  if (!selection.scenario.empty() && kind == InputKind::scenario) {
+    throw Error(ErrorCode::usage,
+                selection.input + " is a scenario: --scenario has an effect on volumes only");
+  }
+  switch (kind) {
+    case InputKind::scenario:
+      return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input, selection.edits),
+                                              selection, target, progress, stop);
+    case InputKind::volume:
+    case InputKind::mesh:
+      return std::make_unique<StoredFrames>(selection, stop);
+    default:
+      throw Error(ErrorCode::usage, selection.input + " is neither a scenario nor a volume");
+  }
+}
+
+/// The reference of a selection's comparison.
+FrameSelection referenceOf(const FrameSelection& selection) {
+  FrameSelection reference = selection;
+  reference.scenario.clear();
+  reference.edits.clear();
+  if (selection.compare.empty() || selection.compare == kOriginal) {
+    if (inputKindOf(selection.input) != InputKind::scenario) {
+      throw Error(ErrorCode::usage, selection.input +
+                                        ": volumes have no original to compare with; name the other volumes "
+                                        "in its place");
+    }
+    return reference;
+  }
+  reference.input = selection.compare;
+  return reference;
+}
+
+std::unique_ptr<DifferenceSource> openComparison(const FrameSelection& selection, const ComputeTarget& target,
+                                                 const StopFlag* stop) {
+  FrameSelection field = selection;
+  field.independent = true;
+  const bool compares = !selection.compare.empty();
+  if (compares) {
+    field.range.reset();  // the range is that of the differences
+    referenceOf(field);   // throws its faults here
+  }
+  const auto openReference = [field, target, stop] {
+    return openField(referenceOf(field), target, {}, stop);
+  };
+  const std::string name =
+      !compares || selection.compare == kOriginal ? "the original scenario" : selection.compare;
+  return std::make_unique<DifferenceSource>(openField(field, target, {}, stop), openReference, name,
+                                            compares);
+}
+
+}  // namespace
+
+std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const ComputeTarget& target,
+                                             const ProgressSink& progress, const StopFlag* stop) {
+  if (selection.compare.empty() && !selection.independent)
+    return openField(selection, target, progress, stop);
+  std::unique_ptr<DifferenceSource> source = openComparison(selection, target, stop);
+  if (selection.range && !selection.compare.empty()) {
+    source->setRange(*selection.range);
+  } else if (!selection.independent && source->count() > 1) {
+    source->findRange(progress);
+  }
+  return source;
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,103 @@
+#include "emscape/playback/frames/inputs.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "base/files/whole_file.h"
+#include "emscape/base/error.h"
+#include "emscape/playback/frames/volume_input.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/volume/file.h"
+
+namespace emscape::playback {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxJsonBytes = std::uintmax_t{16} << 20;
+
+bool sameBox(const scenario::GeoBox& a, const scenario::GeoBox& b) {
+  return a.south_deg == b.south_deg && a.north_deg == b.north_deg && a.west_deg == b.west_deg &&
+         a.east_deg == b.east_deg;
+}
+
+std::string lowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+}  // namespace
+
+InputKind inputKindOf(const std::string& file) {
+  if (!fs::exists(file)) throw Error(ErrorCode::bad_input, {file, 0, 0}, "no such file or folder");
+  if (holdsMeshes(file)) return InputKind::mesh;
+  if (fs::is_directory(file)) return InputKind::volume;
+  const std::string ending = lowerCase(fs::path(file).extension().string());
+  static const std::set<std::string> kElevations{".tif", ".tiff", ".hgt", ".dt0", ".dt1",
+                                                 ".dt2", ".vrt",  ".asc", ".dem", ".bil"};
+  static const std::set<std::string> kAntennas{".msi", ".pln", ".csv"};
+  if (ending == ".yaml" || ending == ".yml" || ending == ".json") return InputKind::scenario;
+  if (ending == ".pvd" || volume::isVolumeFile(file)) return InputKind::volume;
+  if (kElevations.count(ending) != 0) return InputKind::elevation;
+  if (kAntennas.count(ending) != 0) return InputKind::antenna;
+  throw Error(
+      ErrorCode::bad_input, {file, 0, 0},
+      "ending '" + ending +
+          "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .vtu .pvd .raw .dat; "
+          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv");
+}
+
+JsonContent jsonContentOf(const std::string& file) {
+  const fs::path name = lowerCase(fs::path(file).filename().string());
+  std::error_code ignored;
+  if (name.extension() != ".json" || !fs::is_regular_file(file, ignored)) return JsonContent::other;
+  if (name.stem().extension() == ".view") return JsonContent::view;
+  if (volume::isVolumeFile(name.stem())) return JsonContent::header;
+  if (fs::file_size(file, ignored) > kMaxJsonBytes) return JsonContent::other;
+  const auto json = nlohmann::json::parse(readWholeText(file, kMaxJsonBytes), nullptr, false);
+  if (!json.is_object() || json.contains("emitters") || json.contains("region")) return JsonContent::other;
+  if (json.contains("domain") && json.contains("opacity")) return JsonContent::transfer;
+  if (json.contains("recipe") && json.contains("format_version")) return JsonContent::series;
+  return json.contains("camera") || json.contains("open_panels") ? JsonContent::view : JsonContent::other;
+}
+
+void requireScenarioFile(const std::string& file) {
+  const auto refuse = [&file](const std::string& text) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0}, text);
+  };
+  switch (jsonContentOf(file)) {
+    case JsonContent::other:
+      return;
+    case JsonContent::view:
+      return refuse("a view file, not a scenario: `render` and `view` read it with --state");
+    case JsonContent::transfer:
+      return refuse("a transfer function, not a scenario: `render` and `view` read it with --transfer");
+    case JsonContent::header:
+      return refuse("the header of a volume: open " + fs::path(file).stem().string() + " beside it");
+    case JsonContent::series:
+      return refuse("describes a series of volumes: open its folder");
+  }
+}
+
+LoadedScenario loadScenarioWithTerrain(const std::string& file, const std::vector<scenario::Edit>& edits) {
+  requireScenarioFile(file);
+  LoadedScenario loaded;
+  loaded.scenario = scenario::loadScenario(file, edits);
+  loaded.terrain = scenario::loadTerrain(*loaded.scenario);
+  return loaded;
+}
+
+LoadedScenario withScenario(const LoadedScenario& loaded, std::shared_ptr<const scenario::Scenario> edited) {
+  const bool same_files = loaded.scenario->terrain == edited->terrain;
+  const bool same_box =
+      loaded.terrain && sameBox(scenario::terrainBox(*loaded.scenario), scenario::terrainBox(*edited));
+  LoadedScenario result{std::move(edited), loaded.terrain};
+  if (!same_files || (loaded.terrain && !same_box)) result.terrain = scenario::loadTerrain(*result.scenario);
+  return result;
+}
+
+}  // namespace emscape::playback

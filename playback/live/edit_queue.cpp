@@ -1,0 +1,98 @@
+#include "playback/live/edit_queue.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "base/text/failure_text.h"
+
+namespace emscape::playback {
+namespace {
+
+bool haveSamePaths(const std::vector<scenario::Edit>& a, const std::vector<scenario::Edit>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const scenario::Edit& x, const scenario::Edit& y) { return x.path == y.path; });
+}
+
+}  // namespace
+
+EditQueue::EditQueue(std::function<void()> wake)
+    : worker_(
+          [](const Request& request) {
+            Result result{request.number, request.base, nullptr, ""};
+            try {
+              result.edited = edited(request.base, request.edits);
+            } catch (const std::exception& error) {
+              result.error = failureText(error);
+            }
+            return result;
+          },
+          std::move(wake)) {}
+
+void EditQueue::drag(std::vector<scenario::Edit> edits) {
+  if (!std::exchange(is_dragging_, true)) push({Kind::begin_drag, {}, {}});
+  const bool is_begun = is_asked_ && waiting_.size() == 1;
+  if (!waiting_.empty() && !is_begun && waiting_.back().kind == Kind::move &&
+      haveSamePaths(waiting_.back().edits, edits)) {
+    waiting_.back().edits = std::move(edits);
+  } else {
+    push({Kind::move, std::move(edits), {}});
+  }
+}
+
+void EditQueue::endDrag() {
+  if (std::exchange(is_dragging_, false)) push({Kind::end_drag, {}, {}});
+}
+
+void EditQueue::cancelDrag() {
+  if (std::exchange(is_dragging_, false)) push({Kind::cancel_drag, {}, {}});
+}
+
+void EditQueue::clear() {
+  waiting_.clear();
+  is_asked_ = is_dragging_ = false;
+  ++number_;
+}
+
+/// @return true if the first operation, which makes edits, is finished
+bool EditQueue::makeEdits(EditHistory& history, std::vector<Outcome>& outcomes) {
+  const std::optional<Result> result = is_asked_ ? worker_.take() : std::nullopt;
+  if (is_asked_ && !result) return false;
+  const bool holds = result && result->number == number_ && result->base == history.scenario();
+  if (!holds) {
+    worker_.ask({++number_, history.scenario(), waiting_.front().edits});
+    is_asked_ = true;
+    return false;
+  }
+  is_asked_ = false;
+  if (result->edited) history.adopt(result->edited);
+  outcomes.push_back({std::move(waiting_.front().edits), result->error});
+  return true;
+}
+
+std::vector<EditQueue::Outcome> EditQueue::update(EditHistory& history) {
+  std::vector<Outcome> outcomes;
+  for (; !waiting_.empty(); waiting_.pop_front()) {
+    switch (waiting_.front().kind) {
+      case Kind::set:
+      case Kind::move:
+        if (!makeEdits(history, outcomes)) return outcomes;
+        break;
+      case Kind::begin_drag:
+        history.beginDrag();
+        break;
+      case Kind::end_drag:
+        history.endDrag();
+        break;
+      case Kind::cancel_drag:
+        history.cancelDrag();
+        break;
+      case Kind::callback:
+        waiting_.front().callback();
+        break;
+    }
+  }
+  return outcomes;
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,148 @@
+/// The thread of a live view that opens the input and computes fields. Internal to the module.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/thread_arena.h"
+#include "emscape/base/error.h"
+#include "emscape/playback/frames/frame_source.h"
+#include "emscape/playback/live/async_task.h"
+#include "playback/frames/frame_cache.h"
+#include "playback/live/mailbox.h"
+
+namespace emscape::playback {
+
+/// A request for the field.
+struct FieldRequest {
+  long long revision = 0;  ///< counts requests
+  double time_s = 0;
+  std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
+  std::string quantity;
+  bool compares = false;  ///< with the reference: FrameSource::setComparison()
+  long long search = 0;   ///< number of the requested search of the series' range; 0: none
+};
+
+/// A field and its data.
+struct FieldDelivery {
+  long long revision = 0;  ///< of its request
+  std::string title;
+  std::optional<LoadedScenario> scene;
+  std::string quantity;
+  Frame frame;
+};
+
+/// The range of the values of a series.
+struct SeriesRange {
+  long long search = 0;  ///< of the request
+  ValueRange range;      ///< empty: not found
+};
+
+struct FieldsStatus {
+  std::vector<double> times_s;                         ///< of the source; empty before it is open
+  std::shared_ptr<const scenario::Scenario> scenario;  ///< as it was opened; may be null
+  std::vector<int> cached_steps;
+  double field_ms = 0;  ///< of the last field
+  long long fields_computed = 0;
+  long long failed_revision = 0;  ///< the last request that failed
+  std::string error;              ///< reason; empty after another request has succeeded
+  ErrorCode error_code = ErrorCode::other;
+  SeriesRange series;  ///< of the last completed search
+  long long wake_ups = 0;
+};
+
+/// Serves the latest request; a new one replaces a pending one. After a moment without requests it computes
+/// the next steps of a playing series, and searches its range.
+class LiveFields {
+ public:
+  struct Options {
+    std::size_t cache_bytes = 0;
+    double min_seek_interval_ms = 0;
+    int steps_ahead = 0;
+    int threads = 0;  ///< 0: one fewer than all while other threads need them
+    int niceness = 0;
+  };
+  /// Called on the thread of this object. `deliver` and `changed` are required.
+  struct Events {
+    std::function<void(FieldDelivery, Mailbox<FieldRequest>::Time asked)> deliver;
+    std::function<void()> changed;    ///< of the status
+    std::function<bool()> is_shared;  ///< true if others need the processor now; empty: never
+  };
+  using Open = std::function<std::unique_ptr<FrameSource>(const StopFlag& stop)>;
+
+  /// @param open   makes the source, on the thread of this object; frames of it must be independent; null: no
+  /// fields, and no request is served
+  /// @param first  the first request
+  LiveFields(Open open, FieldRequest first, const Options& options, Events events);
+  /// Calls close().
+  ~LiveFields();
+  LiveFields(const LiveFields&) = delete;
+  LiveFields& operator=(const LiveFields&) = delete;
+
+  /// Any thread calls these.
+  void request(FieldRequest request) { box_.put(std::move(request)); }
+  /// Stops the work in progress after its step.
+  void stop();
+  /// stop(), and waits for the end.
+  void close();
+  FieldsStatus status() const;
+
+ private:
+  using Time = Mailbox<FieldRequest>::Time;
+
+  void run();
+  void open();
+  void accept(Mailbox<FieldRequest>::Letter letter);
+  void serve();
+  bool applyChanges();
+  Frame compute(int index);
+  void deliver(const Frame& frame);
+  void fail(const std::string& line, ErrorCode code);
+  void beginSearch();
+  void endSearch(const ValueRange& range);
+  /// @return the step to compute without a request; none: nothing to do
+  std::optional<int> idleStep() const;
+  void doIdleWork(int index);
+  void waitUntil(Time time);
+  void wait();
+  FrameCache::Distance distance() const;
+
+  const Open open_;
+  const Options options_;
+  const Events events_;
+  Event event_;
+  Mailbox<FieldRequest> box_{event_};
+  StopFlag stop_{false};
+
+  // Of the thread
+  std::unique_ptr<FrameSource> source_;
+  ThreadArena arena_;         // of Options::threads; 0: all
+  ThreadArena narrow_arena_;  // leaves a core to others
+  FrameCache cache_;
+  FieldRequest wanted_;
+  Time asked_;  // when
+  bool is_due_ = false;
+  std::shared_ptr<const scenario::Scenario> scenario_;  // of the source, if it is not the opened one
+  std::string quantity_;
+  bool compares_ = false;
+  int index_ = 0;                    // of the last requested step, in the source
+  bool is_playing_ = false;          // steps are requested one after another
+  std::optional<Time> field_begin_;  // of the last field
+  Time quiet_from_{};
+  long long search_ = 0;          // of the series' range: number of the last search begun
+  std::vector<int> search_left_;  // steps, the next one last
+  ValueRange search_range_;
+
+  mutable std::mutex mutex_;
+  FieldsStatus status_;
+
+  std::thread thread_;
+};
+
+}  // namespace emscape::playback

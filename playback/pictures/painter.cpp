@@ -1,0 +1,308 @@
+#include "emscape/playback/pictures/painter.h"
+
+#include <fmt/core.h>
+
+#include <utility>
+
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
+#include "emscape/playback/frames/scene.h"
+#include "playback/frames/difference_source.h"
+
+namespace emscape::playback {
+namespace {
+
+/// Subtitle of a difference, with its reference.
+std::string subtitleOf(const volume::VolumeInfo& info) {
+  const auto reference = info.extra.find(kDifferenceToKey);
+  return reference == info.extra.end() ? "" : "difference to " + reference->second;
+}
+
+constexpr std::pair<const char*, CellMethod> kCellMethods[] = {
+    {"auto", CellMethod::automatic}, {"march", CellMethod::march}, {"project", CellMethod::project}};
+
+}  // namespace
+
+CellMethod parseCellMethod(const std::string& name) {
+  for (const auto& [known, method] : kCellMethods) {
+    if (name == known) return method;
+  }
+  throw Error(ErrorCode::usage, "unknown way of drawing cells '" + name + "': expected auto, march, project");
+}
+
+std::string CellPicture::text() const {
+  return projected ? std::string("projected by ") + render::toString(sorting) : "marched";
+}
+
+Painter::Painter(const PictureStyle& style, const FrameSource& source, const ComputeTarget& target)
+    : Painter(style, target) {
+  setScene(source.name(), source.scene());
+}
+
+Painter::Painter(const PictureStyle& style, const ComputeTarget& target)
+    : style_(style), renderer_(target.rendererOptions()) {
+  renderer_.setSettings(style.settings);
+  annotations_.theme = style.theme;
+}
+
+void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
+  annotations_.title = title;
+  scene_ = scene ? std::optional(*scene) : std::nullopt;
+}
+
+void Painter::prepareCells(const Frame& frame) {
+  if (!frame.cells || cells_) return;
+  auto cells = std::make_unique<render::CellRenderer>(renderer_.backend());
+  cells->setSettings(style_.settings);
+  if (has_colors_) cells->setTransferFunction(renderer_.transferFunction());
+  projects_ = style_.cells.method == CellMethod::project;
+  if (style_.cells.method == CellMethod::automatic && renderer_.backend() == Backend::cpu) {
+    try {
+      projects_ = !cells->projectsOnCpu();
+    } catch (const Error& error) {
+      if (error.code() != ErrorCode::device) throw;
+      logInfo(std::string("tetrahedra are marched, not projected: ") + error.what());
+    }
+  }
+  cells_ = std::move(cells);
+}
+
+void Painter::setFrame(const Frame& frame) {
+  prepareCells(frame);
+  const bool is_first_of_colors = !has_colors_;
+  if (is_first_of_colors) onRenderer([&](auto& to) { to.setTransferFunction(functionFor(frame)); });
+  has_colors_ = true;
+  const bool is_other_grid = !frame_ || frame_->grid() != frame.grid();
+  if (frame.cells) {
+    cells_->setField(frame.cells->field, frame.cells->faces);
+  } else {
+    renderer_.setVolume(frame.volume);
+  }
+  frame_ = frame;
+  const volume::VolumeInfo& info = frame.info();
+  annotations_.time = fmt::format("t = {:g} s", info.time_s);
+  annotations_.time_utc = info.time_utc;
+  annotations_.subtitle = subtitleOf(info);
+  annotations_.georeferenced = frame.grid().georeferenced;
+  setMarkers();
+  setLegend();
+  if (is_other_grid) setGround(nullptr);
+  setGround();
+  if (is_other_grid) fitCamera();
+  if (is_first_of_colors && style_.settings.mode == render::CompositingMode::iso) {
+    const std::string missing = render::missingIsosurface(renderer_.isoValue(), *frame.volume.host());
+    if (!missing.empty() && style_.must_show_isosurface) throw Error(ErrorCode::bad_input, missing);
+    if (!missing.empty()) logWarning(missing + "; no surface is drawn");
+  }
+}
+
+void Painter::setAzimuth(double azimuth_deg) {
+  render::CameraSpec spec = style_.camera;
+  spec.azimuth_deg = azimuth_deg;
+  onRenderer([&](auto& to) { to.setCamera(cameraOf(spec)); });
+}
+
+void Painter::setCamera(const render::CameraSpec& spec) {
+  if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(spec)); });
+  style_.camera = spec;
+}
+
+void Painter::setSize(render::ImageSize size) {
+  style_.size = size;
+  fitCamera();
+}
+
+void Painter::setSettings(const render::RenderSettings& settings) {
+  if (cells_) render::checkCellSettings(settings);
+  renderer_.setSettings(settings);
+  if (cells_) cells_->setSettings(settings);
+  style_.settings = settings;
+  setLegend();
+  fitCamera();  // the vertical exaggeration may have changed
+}
+
+void Painter::setTransferFunction(const render::TransferFunction& function) {
+  onRenderer([&](auto& to) { to.setTransferFunction(function); });
+  has_colors_ = true;
+  setLegend();
+}
+
+void Painter::fitColors() {
+  style_.transfer.clear();
+  style_.function.reset();
+  style_.colors_span_range = false;
+  has_colors_ = false;
+  if (frame_) setTransferFunction(functionFor(*frame_));
+}
+
+void Painter::fitColors(const volume::ValueRange& range) {
+  volume::VolumeInfo info = frame_->info();
+  info.range_min = range.min;
+  info.range_max = range.max;
+  setTransferFunction(render::defaultTransferFunction(info));
+}
+
+void Painter::showTerrain(bool show) {
+  style_.show_terrain = show;
+  if (frame_) setGround();
+}
+
+void Painter::showEmitters(bool show) {
+  style_.show_emitters = show;
+  setMarkers();
+}
+
+render::FrameReport Painter::drawCells(bool is_complete, const StopFlag* stop) {
+  render::FrameReport frame;
+  CellPicture picture;
+  fetched_ = true;
+  if (projects_ && (!is_complete || style_.cells.method == CellMethod::project)) {
+    render::ProjectionOptions options = style_.cells.projection;
+    if (!is_complete) options.sorting = render::CellSorting::centroids;
+    render::ProjectionReport report;
+    image_ = cells_->project(style_.size, options, &report);
+    picture = {true, options.sorting, report.device, report.cells, report.cycles, report.sent_bytes};
+    frame.rays = style_.size.count();
+    frame.cast_ms = report.order_ms + report.draw_ms;
+  } else {
+    render::CellReport report;
+    image_ = cells_->render(style_.size, stop, &report);
+    frame.rays = style_.size.count();
+    frame.cast_ms = report.cast_ms;
+    frame.complete = report.complete;
+  }
+  cell_picture_ = picture;
+  return frame;
+}
+
+render::FrameReport Painter::draw(const render::FramePlan& plan, const StopFlag* stop) {
+  if (cells_) {
+    render::FrameReport report = drawCells(plan.pattern == render::Pattern::full, stop);
+    report.pattern = plan.pattern;
+    return report;
+  }
+  // A picture in host memory need not be fetched.
+  fetched_ = renderer_.backend() == Backend::cpu;
+  return fetched_ ? renderer_.draw(plan, style_.size, image_, stop) : renderer_.draw(plan, style_.size, stop);
+}
+
+render::FrameReport Painter::restore(const StopFlag* stop) {
+  if (cells_) return drawCells(true, stop);
+  fetched_ = renderer_.backend() == Backend::cpu;
+  return fetched_ ? renderer_.restore(image_, stop) : renderer_.restore(stop);
+}
+
+const render::Image& Painter::image() {
+  if (!fetched_) renderer_.fetch(image_);
+  fetched_ = true;
+  return image_;
+}
+
+void Painter::fetch(render::Image8& picture) {
+  if (fetched_) {
+    picture = render::quantize(image_);
+  } else {
+    renderer_.fetch(picture);
+  }
+}
+
+render::Image Painter::fullCast() {
+  if (cells_) {
+    render::Image kept = std::move(image_);
+    drawCells(true, nullptr);
+    return std::exchange(image_, std::move(kept));
+  }
+  return renderer_.render(style_.size);
+}
+
+render::Image8 Painter::picture(const std::string& note) {
+  annotations_.note = note;
+  return render::compose(image(), camera(), sceneBox(), annotations_,
+                         [this](const Vec3d& position_m) { return isHidden(position_m); });
+}
+
+render::Image8 Painter::annotated(const render::Image8& fetched, const std::string& note) {
+  annotations_.note = note;
+  return render::compose(fetched, camera(), sceneBox(), annotations_,
+                         [this](const Vec3d& position_m) { return isHidden(position_m); });
+}
+
+std::shared_ptr<const render::DevicePicture> Painter::annotatedOnDevice(const std::string& note) {
+  if (cells_ || renderer_.backend() == Backend::cpu) return nullptr;
+  annotations_.note = note;
+  render::drawLayers(layers_, style_.size, renderer_.camera(), renderer_.sceneBox(), annotations_,
+                     [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
+  return renderer_.compose(layers_);
+}
+
+render::TransferFunction Painter::functionFor(const ShownField& field) const {
+  const volume::VolumeInfo& info = field.info();
+  if (!style_.transfer.empty()) return render::readTransferFunction(style_.transfer, info);
+  if (style_.function && !info.categorical) {
+    render::requireUnitOf(*style_.function, info);
+    return *style_.function;
+  }
+  return style_.colors_span_range ? render::defaultTransferFunction(info) : field.defaultColors();
+}
+
+const render::TransferFunction& Painter::transferFunction() const {
+  return cells_ ? cells_->transferFunction() : renderer_.transferFunction();
+}
+const render::Camera& Painter::camera() const {
+  return cells_ ? cells_->camera() : renderer_.camera();
+}
+render::SceneBox Painter::sceneBox() const {
+  return cells_ ? cells_->sceneBox() : renderer_.sceneBox();
+}
+bool Painter::isHidden(const Vec3d& frame_m) const {
+  return cells_ ? cells_->isHidden(frame_m) : renderer_.isHidden(frame_m);
+}
+
+std::string Painter::note(render::Pattern pattern) const {
+  const char* const mode = render::toString(style_.settings.mode);
+  if (frame_ && frame_->cells) {
+    return fmt::format("{}, {} tetrahedra{}", mode, frame_->cells->field.mesh->cells.size(),
+                       cell_picture_ ? ", " + cell_picture_->text() : "");
+  }
+  return fmt::format("{}, {} rays, step {:g} voxel", mode, render::toString(pattern),
+                     style_.settings.step_voxels);
+}
+
+render::Camera Painter::cameraOf(const render::CameraSpec& spec) const {
+  return render::makeCamera(spec, sceneBox(), style_.size, render::overlayMargins(style_.size, annotations_));
+}
+
+void Painter::fitCamera() {
+  if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(style_.camera)); });
+}
+
+void Painter::setGround() {
+  setGround(style_.show_terrain && scene_ ? scene_->terrain : nullptr);
+}
+
+void Painter::setGround(const scenario::TerrainPtr& ground) {
+  if (ground == ground_) return;
+  height_field_ = ground ? heightFieldOf(*ground, frame_->grid()) : nullptr;
+  onRenderer([&](auto& to) { to.setHeightField(height_field_); });
+  ground_ = ground;
+}
+
+void Painter::setMarkers() {
+  const bool shows = style_.show_emitters && frame_;
+  annotations_.markers = shows ? frame_->markers : std::vector<render::Marker>{};
+  annotations_.tracks = shows ? frame_->tracks : std::vector<render::Track>{};
+}
+
+void Painter::setLegend() {
+  if (!frame_) return;
+  annotations_.legend = render::legendOf(frame_->info(), transferFunction());
+  if (style_.settings.mode == render::CompositingMode::iso)
+    annotations_.legend->iso_value = renderer_.isoValue();
+  if (frame_->info().categorical) {
+    annotations_.legend->categories = categoriesOf(frame_->info(), scene_ ? scene_->scenario.get() : nullptr);
+  }
+  const double space = render::overlayMargins(style_.size, annotations_).right;
+  if (std::exchange(legend_space_, space) != space) fitCamera();
+}
+
+}  // namespace emscape::playback

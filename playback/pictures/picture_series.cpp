@@ -1,0 +1,28 @@
+#include "emscape/playback/pictures/picture_series.h"
+
+#include "emscape/playback/stop.h"
+#include "playback/series/background_writer.h"
+
+namespace emscape::playback {
+
+double drawPictures(FrameSource& source, Painter& painter, const render::FramePlan& plan,
+                    const std::vector<std::unique_ptr<PictureSink>>& sinks,
+                    const std::function<void(int)>& done, const StopFlag* stop) {
+  double cast_ms = 0;
+  BackgroundWriter writer(2);  // PNG and video are encoded while the next picture is cast
+  for (int index = 0; index < source.count(); ++index) {
+    throwIfStopped(stop);
+    if (index > 0) painter.setFrame(source.frame(index));
+    cast_ms += painter.draw(plan, stop).total_ms();
+    throwIfStopped(stop);
+    writer.push([&sinks, index, picture = painter.picture(painter.note(plan.pattern))] {
+      for (const auto& sink : sinks) sink->add(index + 1, picture, 1);
+    });
+    if (done) done(index + 1);
+  }
+  writer.finish();
+  for (const auto& sink : sinks) sink->finish();
+  return cast_ms;
+}
+
+}  // namespace emscape::playback

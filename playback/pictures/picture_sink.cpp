@@ -1,0 +1,94 @@
+#include "emscape/playback/pictures/picture_sink.h"
+
+#include <fmt/core.h>
+
+#include "emscape/base/error.h"
+#include "emscape/volume/file.h"
+#include "playback/pictures/video.h"
+#include "playback/series/file_names.h"
+
+namespace emscape::playback {
+namespace {
+
+namespace fs = std::filesystem;
+
+class OnePng : public PictureSink {
+ public:
+  explicit OnePng(fs::path file) : file_(std::move(file)) {}
+  void add(int /*number*/, const render::Image8& picture, int /*frames*/) override {
+    render::writePng(file_.string(), picture);
+  }
+  void finish() override {}
+
+ private:
+  const fs::path file_;
+};
+
+class PngFolder : public PictureSink {
+ public:
+  PngFolder(fs::path folder, const std::string& name) : folder_(std::move(folder)), name_(fileNameOf(name)) {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error)
+      throw Error(ErrorCode::other, {folder_.string(), 0, 0}, "cannot make the folder: " + error.message());
+  }
+  void add(int number, const render::Image8& picture, int /*frames*/) override {
+    render::writePng(volume::seriesFile(folder_, name_, number, "png").string(), picture);
+  }
+  void finish() override {}
+
+ private:
+  const fs::path folder_;
+  const std::string name_;
+};
+
+class Video : public PictureSink {
+ public:
+  Video(fs::path file, render::ImageSize size, double frames_per_s)
+      : video_(std::move(file), size, frames_per_s) {}
+  void add(int /*number*/, const render::Image8& picture, int frames) override {
+    for (int n = 0; n < frames; ++n) video_.add(picture);
+  }
+  void finish() override { video_.finish(); }
+
+ private:
+  VideoFile video_;
+};
+
+enum class OutputKind { png, video, folder };
+
+OutputKind kindOf(const fs::path& output) {
+  const std::string ending = output.extension().string();
+  if (ending == ".png") return OutputKind::png;
+  if (ending == ".mp4") return OutputKind::video;
+  if (ending.empty() || fs::is_directory(output)) return OutputKind::folder;
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("{}: must end in .png or .mp4, or be a folder (without an ending)", output.string()));
+}
+
+}  // namespace
+
+void checkPictureOutput(const fs::path& output) {
+  kindOf(output);
+}
+
+std::unique_ptr<PictureSink> makePictureSink(const fs::path& output, const std::string& name, int pictures,
+                                             render::ImageSize size, double frames_per_s) {
+  switch (kindOf(output)) {
+    case OutputKind::video:
+      return std::make_unique<Video>(output, size, frames_per_s);
+    case OutputKind::folder:
+      return std::make_unique<PngFolder>(output, name);
+    case OutputKind::png:
+      break;
+  }
+  if (pictures != 1) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{}: one .png for {} pictures; name one time, a folder or an .mp4",
+                            output.string(), pictures));
+  }
+  return std::make_unique<OnePng>(output);
+}
+
+}  // namespace emscape::playback

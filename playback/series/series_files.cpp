@@ -1,0 +1,191 @@
+#include "playback/series/series_files.h"
+
+#include <optional>
+#include <regex>
+
+#include "emscape/base/error.h"
+#include "emscape/playback/series/series_writer.h"
+#include "emscape/volume/file.h"
+#include "emscape/volume/mesh_file.h"
+#include "playback/series/file_names.h"
+#include "playback/series/series_state.h"
+#include "volume/vti.h"
+
+namespace emscape::playback {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kVtkFormat = "vti";
+
+/// Formats with a JSON sidecar.
+bool hasSidecar(const fs::path& file) {
+  return file.extension() == ".raw" || file.extension() == ".nvdb";
+}
+
+std::string sidecarOf(const std::string& name) {
+  return name + ".json";
+}
+
+/// The name in the files of a folder's series; none without a readable description.
+std::optional<std::string> nameOfOld(const fs::path& folder) {
+  try {
+    const std::optional<SeriesState> state = readSeriesState(folder);
+    const Json scenario = state ? state->recipe.value("scenario", Json()) : Json();
+    if (scenario.is_string()) return fileNameOf(scenario.get<std::string>());
+  } catch (const Error&) {
+    // A damaged description is replaced, too.
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::vector<std::string> writableFormats() {
+  std::vector<std::string> names;
+  for (const volume::FileFormat& format : volume::fileFormats()) {
+    if (format.writable) names.push_back(format.name);
+  }
+  return names;
+}
+
+SeriesFiles::SeriesFiles(fs::path folder, const std::string& name, const std::vector<std::string>& formats,
+                         std::vector<std::string> channels, std::vector<double> times_s,
+                         std::shared_ptr<const emfield::TerrainMesh> mesh)
+    : folder_(std::move(folder)),
+      name_(fileNameOf(name)),
+      formats_(formats.begin(), formats.end()),
+      channels_(std::move(channels)),
+      channel_file_names_(distinctFileNames(channels_)),
+      times_s_(std::move(times_s)),
+      mesh_(std::move(mesh)) {}
+
+std::vector<SeriesFiles::VolumeFile> SeriesFiles::volumeFilesOf(int step) const {
+  std::vector<VolumeFile> files;
+  std::vector<volume::FileFormat> formats = volume::fileFormats();
+  formats.push_back({kMeshFormat, true, true, true});
+  for (const volume::FileFormat& format : formats) {
+    if (formats_.count(format.name) == 0) continue;
+    const fs::path file = volume::seriesFile(folder_, name_, step + 1, format.name).filename();
+    if (format.several || channels_.size() == 1) {
+      files.push_back({file.string(), {}});
+      for (std::size_t c = 0; c < channels_.size(); ++c) files.back().channels.push_back(c);
+    } else {
+      for (std::size_t c = 0; c < channels_.size(); ++c) {
+        files.push_back({file.stem().string() + "_" + channel_file_names_[c] + "." + format.name, {c}});
+      }
+    }
+  }
+  return files;
+}
+
+std::vector<std::string> SeriesFiles::namesOf(int step) const {
+  std::vector<std::string> names;
+  for (const VolumeFile& file : volumeFilesOf(step)) {
+    names.push_back(file.name);
+    if (hasSidecar(file.name)) names.push_back(sidecarOf(file.name));
+  }
+  return names;
+}
+
+void SeriesFiles::write(int step, const std::vector<volume::Volume>& channels) const {
+  std::vector<std::shared_ptr<const volume::DenseVolume>> on_host;
+  for (const volume::Volume& channel : channels) on_host.push_back(channel.host());
+  for (const VolumeFile& file : volumeFilesOf(step)) {
+    if (volume::isMeshFile(file.name)) {
+      writeOnMesh(file.name, on_host);
+      continue;
+    }
+    std::vector<const volume::DenseVolume*> volumes;
+    for (const std::size_t c : file.channels) volumes.push_back(on_host[c].get());
+    volume::writeVolumes(folder_ / file.name, volumes);
+  }
+}
+
+void SeriesFiles::writeOnMesh(const std::string& name,
+                              const std::vector<std::shared_ptr<const volume::DenseVolume>>& channels) const {
+  std::vector<volume::MeshField> fields;
+  for (const auto& channel : channels) fields.push_back(mesh_->field(*channel));
+  std::vector<const volume::MeshField*> each;
+  for (const volume::MeshField& field : fields) each.push_back(&field);
+  volume::writeMesh(folder_ / name, each);
+}
+
+std::set<std::string> SeriesFiles::setRanges(int step, const std::vector<ValueRange>& ranges) const {
+  std::set<std::string> changed;
+  for (const VolumeFile& file : volumeFilesOf(step)) {
+    std::vector<volume::StoredRange> stored;
+    for (const std::size_t c : file.channels) {
+      if (!ranges[c].empty()) stored.push_back({channels_[c], ranges[c].min, ranges[c].max});
+    }
+    const auto setRange = volume::isMeshFile(file.name) ? volume::setMeshRange : volume::setStoredRange;
+    setRange(folder_ / file.name, stored);
+    changed.insert(hasSidecar(file.name) ? sidecarOf(file.name) : file.name);
+  }
+  return changed;
+}
+
+bool SeriesFiles::hasIndex() const {
+  return formats_.count(kVtkFormat) != 0 || formats_.count(kMeshFormat) != 0;
+}
+
+void SeriesFiles::writeIndex(const std::vector<bool>& finished) const {
+  const std::string format = mesh_ ? kMeshFormat : kVtkFormat;
+  std::vector<volume::PvdEntry> entries;
+  for (std::size_t step = 0; step < finished.size(); ++step) {
+    if (!finished[step]) continue;
+    entries.push_back(
+        {times_s_[step], volume::seriesFile(folder_, name_, static_cast<int>(step) + 1, format)});
+  }
+  volume::writePvd(folder_ / (name_ + ".pvd"), entries);
+}
+
+bool SeriesFiles::isReadWithSeries(const fs::path& file) const {
+  for (const volume::FileFormat& format : volume::fileFormats()) {
+    if (volume::isVolumeFile(file) && volume::formatOf(file).name == format.name) return true;
+    if (formats_.count(format.name) != 0) return false;
+  }
+  return volume::isMeshFile(file);
+}
+
+std::regex SeriesFiles::names() const {
+  // The names have only letters, digits, '_' and '-', which need no escaping in a regular expression.
+  const std::string name = "(" + name_ + "|" + nameOfOld(folder_).value_or(name_) + ")";
+  return std::regex(name + R"(_\d{4,}(_[\w-]+)?\.(vdb|nvdb|vti|vtu|raw|nvdb\.json|raw\.json)|)" + name +
+                    R"(\.pvd|series\.json|series\.steps)");
+}
+
+void SeriesFiles::requireNone(const std::vector<fs::path>& inputs) const {
+  const std::regex ours = names();
+  for (const fs::path& input : inputs) {
+    std::error_code failed;
+    const fs::path target = fs::weakly_canonical(fs::absolute(input, failed), failed);
+    for (const fs::path& file : {fs::absolute(input, failed), target}) {
+      if (fs::equivalent(file.parent_path(), folder_, failed) &&
+          std::regex_match(file.filename().string(), ours)) {
+        throw Error(
+            ErrorCode::usage, {input.string()},
+            "is a file of the scenario, and has the name of a file of the series; use another folder");
+      }
+    }
+  }
+}
+
+void SeriesFiles::removeOld() const {
+  const std::regex ours = names();
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+    if (!entry.is_regular_file()) continue;
+    if (std::regex_match(entry.path().filename().string(), ours)) {
+      files.push_back(entry);
+    } else if (isReadWithSeries(entry)) {
+      throw Error(
+          ErrorCode::usage, {entry.path().string()},
+          "is not a file of the present series, and would be read with the new one; remove it, or use "
+          "another folder");
+    }
+  }
+  for (const fs::path& file : files) fs::remove(file);
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,46 @@
+/// series.steps: the steps of a series whose files are complete. Internal to the module.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/files/whole_file.h"
+#include "emscape/playback/frames/field_series.h"
+
+namespace emscape::playback {
+
+/// A step whose files are complete.
+struct StepRecord {
+  struct File {
+    std::string name;
+    FileDigest digest;
+  };
+  int step = 0;                    ///< from 0; in the journal from 1
+  std::vector<ValueRange> own;     ///< of the step's values, one per channel
+  std::vector<ValueRange> stored;  ///< stored in the step's files
+  std::vector<File> files;
+};
+
+/// A file of JSON lines that grows by one synced line per record; the last record of a step is valid. For one
+/// thread.
+class SeriesJournal {
+ public:
+  explicit SeriesJournal(const std::filesystem::path& folder);
+
+  /// The records of a journal by step; none if there is no file. An incomplete last line, left by a killed
+  /// process, is ignored.
+  /// @param channels  number of ranges in each record
+  /// @throws Error (bad_input) that names file and line for any other invalid line
+  std::vector<std::optional<StepRecord>> read(int steps, std::size_t channels) const;
+
+  /// Adds a record. @throws Error (other)
+  void append(const StepRecord& record);
+
+ private:
+  const std::filesystem::path file_;
+  bool is_open_ = false;  // an incomplete line has been removed
+};
+
+}  // namespace emscape::playback

@@ -1,0 +1,271 @@
+#include "emscape/playback/series/series_writer.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+
+#include "base/files/whole_file.h"
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
+#include "emscape/playback/stop.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "playback/series/background_writer.h"
+#include "playback/series/series_files.h"
+#include "playback/series/series_journal.h"
+#include "playback/series/series_state.h"
+
+namespace emscape::playback {
+namespace {
+
+namespace fs = std::filesystem;
+using Existing = SeriesOptions::Existing;
+
+std::vector<std::string> namesOf(const std::vector<emfield::Channel>& channels) {
+  std::vector<std::string> names;
+  for (const emfield::Channel& channel : channels) names.push_back(channel.name);
+  return names;
+}
+
+/// The scenarios of a series, with the files that they name.
+std::vector<fs::path> inputsOf(const FieldSeries& series) {
+  std::vector<fs::path> inputs;
+  for (const LoadedScenario* loaded : {&series.input(), series.reference()}) {
+    if (loaded == nullptr) continue;
+    for (const std::string& file : scenario::filesOf(*loaded->scenario)) {
+      if (!file.empty()) inputs.emplace_back(file);
+    }
+  }
+  return inputs;
+}
+
+const fs::path& made(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) {
+    throw Error(ErrorCode::other,
+                fmt::format("'{}': cannot make the folder: {}", folder.string(), error.message()));
+  }
+  return folder;
+}
+
+/// The work of writeSeries().
+class SeriesWriter {
+ public:
+  SeriesWriter(FieldSeries& series, const SeriesOptions& options, const ProgressSink& progress)
+      : series_(series),
+        options_(options),
+        progress_(progress),
+        lock_(made(options.folder), "series.lock"),
+        files_(options.folder, series.input().scenario->name, options.formats, namesOf(series.channels()),
+               series.times_s(), options.mesh),
+        journal_(options.folder),
+        steps_(static_cast<std::size_t>(series.count())) {
+    if (options.range && series.channels().size() != 1) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("a range is for one quantity, these are {}", series.channels().size()));
+    }
+    files_.requireNone(inputsOf(series));
+    removeStaleTemporaries(options.folder);
+    if (options.existing == Existing::replace) files_.removeOld();
+  }
+
+  SeriesResult run() {
+    beginState();
+    for (const std::optional<StepRecord>& step : steps_) {
+      if (step) addToRange(step->own);
+    }
+    SeriesResult result;
+    try {
+      result.steps_computed = computeMissing();
+      setFinalRanges();
+    } catch (...) {
+      // Finished files are listed; the first failure is rethrown.
+      try {
+        writeIndex();
+      } catch (const std::exception&) {
+      }
+      throw;
+    }
+    writeIndex();
+    state_.ranges = ranges_;
+    state_.complete = true;
+    writeSeriesState(options_.folder, state_);
+    result.steps = series_.count();
+    result.channels = state_.channels;
+    result.ranges = ranges_;
+    return result;
+  }
+
+ private:
+  /// Starts a new series, or resumes that of the folder.
+  void beginState() {
+    state_.recipe = recipeOf(series_, options_);
+    state_.channels = namesOf(series_.channels());
+    ranges_.assign(state_.channels.size(), options_.range.value_or(ValueRange{}));
+    const std::optional<SeriesState> found = readSeriesState(options_.folder);
+    if (!found) {
+      fs::remove(options_.folder / "series.steps");
+      writeSeriesState(options_.folder, state_);
+      return;
+    }
+    if (options_.existing == Existing::refuse) {
+      throw Error(ErrorCode::usage, options_.folder.string() + " holds a series");
+    }
+    checkSameRecipe(options_.folder, *found, state_);
+    steps_ = journal_.read(series_.count(), state_.channels.size());
+    checkFiles();
+    const bool is_whole =
+        std::all_of(steps_.begin(), steps_.end(), [](const auto& step) { return step.has_value(); });
+    if (found->complete && !is_whole) writeSeriesState(options_.folder, state_);
+  }
+
+  /// Drops the steps whose files do not match the journal.
+  void checkFiles() {
+    int finished = 0, forgotten = 0;
+    std::string first_forgotten;
+    for (std::optional<StepRecord>& step : steps_) {
+      if (!step) continue;
+      stopIfAsked();
+      const std::string wrong = firstWrongFile(*step);
+      if (wrong.empty()) {
+        ++finished;
+        continue;
+      }
+      if (forgotten++ == 0) first_forgotten = wrong;
+      step.reset();
+    }
+    if (forgotten > 0) {
+      logWarning(
+          fmt::format("{} of the finished steps are computed again, as files of theirs are missing or not as "
+                      "they were written: {}{}",
+                      forgotten, first_forgotten, forgotten > 1 ? ", ..." : ""));
+    }
+    if (finished > 0) logInfo(fmt::format("{} of {} steps are there already", finished, series_.count()));
+  }
+
+  /// Empty if all files match the journal.
+  std::string firstWrongFile(const StepRecord& step) const {
+    std::vector<std::string> expected = files_.namesOf(step.step);
+    for (const std::string& name : expected) {
+      const auto file =
+          std::find_if(step.files.begin(), step.files.end(),
+                       [&](const StepRecord::File& candidate) { return candidate.name == name; });
+      const fs::path path = options_.folder / name;
+      std::error_code error;
+      if (file == step.files.end() || fs::file_size(path, error) != file->digest.bytes || error ||
+          digestOf(path) != file->digest) {
+        return name;
+      }
+    }
+    return "";
+  }
+
+  void addToRange(const std::vector<ValueRange>& own) {
+    if (options_.range) return;
+    for (std::size_t c = 0; c < ranges_.size(); ++c) ranges_[c].add(own[c]);
+  }
+
+  /// @return how many
+  int computeMissing() {
+    finished_count_ =
+        static_cast<int>(std::count_if(steps_.begin(), steps_.end(), [](const auto& s) { return s; }));
+    int computed = 0;
+    const int found = finished_count_;
+    // While one step is written the next is computed, and one more may wait.
+    BackgroundWriter writer(1);
+    std::vector<int> missing;
+    for (int step = 0; step < series_.count(); ++step) {
+      if (!steps_[static_cast<std::size_t>(step)]) missing.push_back(step);
+    }
+    for (const int step : missing) {
+      std::vector<volume::Volume> volumes = series_.compute(step);
+      StepRecord record;
+      record.step = step;
+      record.own = rangesOf(volumes);
+      addToRange(record.own);
+      record.stored = ranges_;
+      setRanges(volumes, ranges_);
+      writer.push(
+          [this, volumes = std::move(volumes), record = std::move(record)] { write(volumes, record); });
+      tell("computing", found + ++computed);
+    }
+    writer.finish();
+    return computed;
+  }
+
+  /// On the writer's thread.
+  void write(const std::vector<volume::Volume>& volumes, StepRecord record) {
+    files_.write(record.step, volumes);
+    for (const std::string& name : files_.namesOf(record.step)) {
+      record.files.push_back({name, digestOf(options_.folder / name)});
+    }
+    journal_.append(record);
+    steps_[static_cast<std::size_t>(record.step)] = std::move(record);
+    if (++finished_count_ >= next_index_at_) {
+      writeIndex();
+      next_index_at_ = finished_count_ + (finished_count_ + 1) / 2;
+    }
+  }
+
+  /// Writes the range over the series into all files that have another one.
+  void setFinalRanges() {
+    int done = 0;
+    for (std::optional<StepRecord>& step : steps_) {
+      if (step->stored != ranges_) {
+        stopIfAsked();
+        const std::set<std::string> changed = files_.setRanges(step->step, ranges_);
+        for (StepRecord::File& file : step->files) {
+          if (changed.count(file.name) != 0) file.digest = digestOf(options_.folder / file.name);
+        }
+        step->stored = ranges_;
+        journal_.append(*step);
+      }
+      tell("final range", ++done);
+    }
+  }
+
+  void writeIndex() const {
+    if (!files_.hasIndex()) return;
+    std::vector<bool> finished;
+    for (const auto& step : steps_) finished.push_back(step.has_value());
+    if (std::count(finished.begin(), finished.end(), true) > 0) files_.writeIndex(finished);
+  }
+
+  void tell(const char* what, int done) const {
+    if (progress_) progress_(what, static_cast<double>(done) / series_.count());
+  }
+  void stopIfAsked() const { throwIfStopped(series_.stopFlag()); }
+
+  FieldSeries& series_;
+  const SeriesOptions& options_;
+  const ProgressSink& progress_;
+  const FolderLock lock_;
+  const SeriesFiles files_;
+  SeriesJournal journal_;
+  SeriesState state_;
+  std::vector<ValueRange> ranges_;  // over the steps so far, or the given range
+  std::vector<std::optional<StepRecord>>
+      steps_;  // steps with complete files; used by the writer's thread while it runs
+  int finished_count_ = 0;
+  int next_index_at_ = 1;
+};
+
+}  // namespace
+
+SeriesResult writeSeries(FieldSeries& series, const SeriesOptions& options, const ProgressSink& progress) {
+  return SeriesWriter(series, options, progress).run();
+}
+
+std::optional<SeriesStatus> findSeries(const fs::path& folder) {
+  const std::optional<SeriesState> state = readSeriesState(folder);
+  if (!state) return std::nullopt;
+  SeriesStatus status;
+  status.steps = stepsOf(*state);
+  status.complete = state->complete;
+  for (const auto& step : SeriesJournal(folder).read(status.steps, state->channels.size())) {
+    status.finished_steps += step ? 1 : 0;
+  }
+  return status;
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,389 @@
+#include "scenario/file/parse_sections.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "base/files/whole_file.h"
+#include "document/schema_check.h"
+#include "document/text_edit.h"
+#include "emscape/base/units.h"
+#include "propagation/air/sky_noise.h"
+#include "propagation/registry/model_info.h"
+#include "scenario/antenna/shapes.h"
+#include "scenario/antenna/tables.h"
+
+namespace emscape::scenario {
+
+namespace {
+
+Taper taperOf(const Section& section) {
+  return Taper(section.choice<TaperKind>("taper"), section.number("taper_side_lobe_db"));
+}
+
+constexpr std::size_t kMaxNamedFileBytes = std::size_t{64} << 20;
+
+/// @param default_dbi  gain of a section without one; NaN: by formula
+AntennaPtr makeAntenna(const Section& section, const ParseContext& context,
+                       double default_dbi = std::numeric_limits<double>::quiet_NaN()) {
+  const double azimuth_deg = section.number("beamwidth_az_deg"),
+               elevation_deg = section.number("beamwidth_el_deg");
+  const double side_lobe_db = section.number("side_lobe_db");
+  const auto gainOr = [&](double formula_dbi) {
+    return section.optionalNumber("gain_dbi").value_or(std::isnan(default_dbi) ? formula_dbi : default_dbi);
+  };
+  const auto gainOfBeam = [&] {
+    const double formula_dbi = gainFromBeamwidths_dbi(azimuth_deg, elevation_deg);
+    if (!section.has("gain_dbi") && formula_dbi > kMaxGain_dbi) {
+      throw Error(
+          ErrorCode::bad_input,
+          fmt::format("beamwidths of {:g} deg by {:g} deg are those of a gain of {:.4g} dBi, above {:g} "
+                      "dBi; give wider ones, or 'gain_dbi'",
+                      azimuth_deg, elevation_deg, formula_dbi, kMaxGain_dbi));
+    }
+    return gainOr(formula_dbi);
+  };
+  switch (section.choice<AntennaForm>("pattern")) {
+    case AntennaForm::isotropic:
+      return makeIsotropic(section.number("gain_dbi"));
+    case AntennaForm::gaussian:
+      return makeGaussian(gainOfBeam(), azimuth_deg, elevation_deg, side_lobe_db);
+    case AntennaForm::sinc:
+      return makeSinc(gainOfBeam(), azimuth_deg, elevation_deg, side_lobe_db, taperOf(section));
+    case AntennaForm::cosecant2:
+      return makeCosecant2(section.number("gain_dbi"), azimuth_deg, elevation_deg,
+                           section.number("max_elevation_deg"), side_lobe_db);
+    case AntennaForm::phased_array: {
+      const int columns = section.integer("columns"), rows = section.integer("rows");
+      const double spacing_wavelengths = section.number("spacing_wavelengths");
+      const Taper taper = taperOf(section);
+      return makePhasedArray(gainOr(gainFromArray_dbi(columns, rows, spacing_wavelengths, taper)), columns,
+                             rows, spacing_wavelengths, section.number("element_exponent"), side_lobe_db,
+                             taper);
+    }
+    case AntennaForm::file:
+      return readAntenna(context.resolve(section.text("file")),
+                         gainOr(std::numeric_limits<double>::quiet_NaN()));
+    case AntennaForm::cuts:
+      return readCsvCuts(context.resolve(section.text("azimuth_file")),
+                         context.resolve(section.text("elevation_file")), section.number("gain_dbi"));
+  }
+  return nullptr;
+}
+
+/// An antenna; a gain by formula is limited to the pattern's directivity.
+AntennaPtr makeConsistentAntenna(const Section& section, const ParseContext& context) {
+  AntennaPtr antenna = makeAntenna(section, context);
+  const bool has_formula =
+      !section.has("gain_dbi") && section.choice<AntennaForm>("pattern") != AntennaForm::file;
+  if (!has_formula || antenna->gain_dbi <= antenna->directivity_dbi()) return antenna;
+  return makeAntenna(section, context, antenna->directivity_dbi());
+}
+
+std::vector<TimeInterval> parseActive(const Section& section, ParseContext& context) {
+  std::vector<TimeInterval> intervals;
+  const auto lists = section.numberLists("active_s");
+  for (std::size_t i = 0; i < lists.size(); ++i) {
+    if (lists[i].size() != 2) continue;
+    intervals.push_back({lists[i][0], lists[i][1]});
+    if (lists[i][0] >= lists[i][1]) {
+      context.problems.addError(
+          section.locationOf("active_s", i),
+          fmt::format("the interval from {} s to {} s ends before it begins", lists[i][0], lists[i][1]));
+    }
+  }
+  return intervals;
+}
+
+RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
+  RadarReceiver receiver;
+  receiver.noise_figure_db = section.number("noise_figure_db");
+  receiver.antenna_temperature_k = section.number("antenna_temperature_k");
+  receiver.bandwidth_hz = section.number("bandwidth_hz");
+  receiver.losses_db = section.number("losses_db");
+  receiver.processing_gain_db = section.number("processing_gain_db");
+  if (section.has("polarization"))
+    receiver.polarization = section.choice<propagation::Polarization>("polarization");
+  receiver.cross_polar_isolation_db = section.number("cross_polar_isolation_db");
+  if (section.has("pulses")) receiver.pulses = section.integer("pulses");
+  receiver.pfa = section.number("pfa");
+  receiver.swerling = section.integer("swerling");
+  receiver.detection = section.choice<DetectionMethod>("detection");
+  if (receiver.detection == DetectionMethod::albersheim && receiver.swerling != 0) {
+    context.problems.addError(section.locationOf("detection"),
+                              fmt::format("'detection' is albersheim, which supports only steady "
+                                          "(non-fluctuating) targets (swerling 0), not swerling {}",
+                                          receiver.swerling));
+  }
+  receiver.beam_shape_loss = section.choice<BeamShapeLoss>("beam_shape_loss");
+  receiver.cfar_cells = section.integer("cfar_cells");
+  receiver.binary_threshold = section.integer("binary_threshold");
+  receiver.required_signal_to_jammer_db = section.optionalNumber("required_signal_to_jammer_db");
+  receiver.target_rcs_m2 = section.number("target_rcs_m2");
+  return receiver;
+}
+
+std::optional<Waveform> parseWaveform(const Section& section, ParseContext& context) {
+  const Waveform waveform{section.number("prf_hz"), section.number("pulse_width_s"),
+                          section.optionalNumber("instrumented_range_m")};
+  if (waveform.dutyCycle() >= 1) {
+    context.problems.addError(
+        section.locationOf("pulse_width_s"),
+        fmt::format("'pulse_width_s' is {} s: pulses that are repeated at {} Hz are shorter than {:.4g} s",
+                    waveform.pulse_width_s, waveform.prf_hz, 1 / waveform.prf_hz));
+  }
+  if (!section.sound()) return std::nullopt;
+  return waveform;
+}
+
+/// Takes the number of integrated pulses from the waveform unless it is given, and compares it with the hits
+/// of one scan.
+void matchPulses(Emitter& radar, const Section& receiver, ParseContext& context) {
+  const std::optional<double> hits =
+      radar.waveform && radar.antenna
+          ? hitsPerScan(radar.scan, radar.antenna->beamwidth_az_deg, radar.waveform->prf_hz)
+          : std::nullopt;
+  int& pulses = radar.receiver.pulses;
+  if (hits && !receiver.has("pulses")) {
+    pulses = static_cast<int>(std::clamp(std::floor(*hits * (1 + 1e-9)), 1.0, 1e6));
+  } else if (hits && pulses > *hits * (1 + 1e-9)) {
+    context.problems.addWarning(
+        receiver.locationOf("pulses"),
+        fmt::format(
+            "'pulses' is {}, but one pass of the beam of '{}' gives {:.4g} hits; {} are integrated all "
+            "the same. Without 'pulses' it is the hits",
+            pulses, radar.name, *hits, pulses));
+  }
+  if (radar.receiver.binary_threshold > pulses) {
+    context.problems.addError(receiver.locationOf("binary_threshold"),
+                              fmt::format("'binary_threshold' is {}, more than the {} pulses integrated",
+                                          radar.receiver.binary_threshold, pulses));
+  }
+}
+
+/// The model and the settings of all models; settings of a model that is not used are an error.
+propagation::ModelSettings parsePropagation(const Section& section, ParseContext& context) {
+  propagation::ModelSettings settings;
+  settings.model = section.choice<propagation::PropagationModel>("propagation");
+  const propagation::ModelInfo& chosen = propagation::modelInfo(settings.model);
+  for (const propagation::ModelInfo& model : propagation::models()) {
+    if (model.settings.empty()) continue;
+    const Section own = section.section(model.name);
+    for (const propagation::Setting& setting : model.settings) {
+      if (setting.has_auto && own.text(setting.key) == "auto") {
+        setting.set(settings, 0);
+      } else {
+        setting.set(settings,
+                    setting.choices.empty() ? own.number(setting.key) : own.choiceIndex(setting.key));
+      }
+    }
+    if (model.model == chosen.model) settings.location = own.location();
+    if (propagation::settingsEnter(model, chosen) || !section.has(model.name)) continue;
+    context.problems.addError(
+        section.locationOf(model.name),
+        fmt::format("'{}' sets up a model that is not used: 'propagation' is {}", model.name, chosen.name));
+  }
+  return settings;
+}
+
+}  // namespace
+
+std::string ParseContext::resolve(const std::string& name) const {
+  return (std::filesystem::path(file).parent_path() / std::filesystem::path(name))
+      .lexically_normal()
+      .string();
+}
+
+bool ParseContext::addNamed(const Section& section, const std::string& key, std::string* bytes) {
+  const std::string name = section.text(key);
+  if (name.empty()) return false;
+  const std::string named = resolve(name);
+  std::string digest;
+  const bool known = before != nullptr && before->digests.count(named) != 0 &&
+                     (bytes == nullptr || before->tracks.count(named) != 0);
+  if (known) {
+    digest = before->digests.at(named);
+  } else {
+    try {
+      std::string content = readWholeText(named, kMaxNamedFileBytes);
+      document::ContentHash of_file;
+      of_file.add(content);
+      digest = of_file.hex();
+      if (bytes != nullptr) *bytes = std::move(content);
+    } catch (const Error& error) {
+      problems.addError(section.locationOf(key), fmt::format("'{}': {}: {}", key, named, error.message()));
+      return false;
+    }
+  }
+  hash.add(digest);
+  files.digests[named] = digest;
+  return true;
+}
+
+namespace {
+
+std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
+  const std::string file = context.resolve(track.text("file"));
+  std::string bytes;
+  if (!context.addNamed(track, "file", &bytes)) return {};
+  std::shared_ptr<const std::vector<TrackPoint>>& points = context.files.tracks[file];
+  if (context.before != nullptr && context.before->tracks.count(file) != 0) {
+    points = context.before->tracks.at(file);
+  } else {
+    points = std::make_shared<const std::vector<TrackPoint>>(
+        parseTrack(file, bytes, track.locationOf("file"), context.problems));
+  }
+  return *points;
+}
+
+}  // namespace
+
+ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context) {
+  ScanSpec scan;
+  scan.kind = section.has("kind") ? section.choice<ScanKind>("kind") : ScanKind::fixed;
+  scan.azimuth_deg = section.number("azimuth_deg");
+  scan.elevation_deg = section.number("elevation_deg");
+  const auto numberOrZero = [&](const char* key) { return section.optionalNumber(key).value_or(0); };
+  scan.rate_rpm = numberOrZero("rate_rpm");
+  scan.width_deg = numberOrZero("width_deg");
+  scan.rate_deg_s = numberOrZero("rate_deg_s");
+  scan.elevation_step_deg = numberOrZero("elevation_step_deg");
+  scan.bars = std::max(section.integer("bars"), 1);
+  const double highest_deg = std::abs(scan.elevation_deg) + (scan.bars - 1) / 2.0 * scan.elevation_step_deg;
+  if (highest_deg > 90) {
+    context.problems.addError(section.locationOf("bars"),
+                              fmt::format("the bars reach {} deg of elevation, outside the "
+                                          "allowed range -90 to 90 deg",
+                                          highest_deg));
+  }
+  for (const Section& item : section.sections("dwells")) {
+    const Dwell dwell{item.number("azimuth_deg"), item.number("elevation_deg"), item.number("duration_s")};
+    scan.dwells.push_back(dwell);
+    if (steers_electronically && std::abs(dwell.azimuth_deg) >= 90) {
+      context.problems.addError(
+          item.locationOf("azimuth_deg"),
+          fmt::format("'azimuth_deg' is {}: a phased array is steered within less than 90 deg of its "
+                      "boresight",
+                      dwell.azimuth_deg));
+    }
+  }
+  return scan;
+}
+
+Platform parsePlatform(const Section& section, ParseContext& context) {
+  Platform platform;
+  platform.name = section.text("name");
+  platform.location = section.location();
+  if (section.has("track")) {
+    const Section track = section.section("track");
+    platform.track = trackOf(track, context);
+    if (!platform.track.empty()) platform.track_file = context.resolve(track.text("file"));
+    return platform;
+  }
+  const Section position = section.section("position"), attitude = section.section("attitude");
+  TrackPoint point;
+  point.position.latitude_deg = position.number("latitude_deg");
+  point.position.longitude_deg = position.number("longitude_deg");
+  point.position.height_msl_m = position.optionalNumber("height_msl_m");
+  point.position.height_agl_m = position.optionalNumber("height_agl_m");
+  point.position.height_ellipsoid_m = position.optionalNumber("height_ellipsoid_m");
+  platform.track = {point};
+  platform.attitude = {attitude.number("heading_deg"), attitude.number("pitch_deg"),
+                       attitude.number("roll_deg")};
+  return platform;
+}
+
+AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
+  bool readable = true;
+  for (const char* key : {"file", "azimuth_file", "elevation_file"}) {
+    readable = (!section.has(key) || context.addNamed(section, key)) && readable;
+  }
+  if (!readable || !section.sound()) return nullptr;
+  if (section.has("taper_side_lobe_db") && section.choice<TaperKind>("taper") != TaperKind::taylor) {
+    context.problems.addError(section.locationOf("taper_side_lobe_db"),
+                              "'taper_side_lobe_db' is the design level of taper: taylor; 'taper' is " +
+                                  std::string(toString(section.choice<TaperKind>("taper"))));
+  }
+  const std::string description = document::flowText(*section.node(), true);
+  AntennaPtr& antenna = context.files.antennas[description];
+  if (!antenna && context.before != nullptr && context.before->antennas.count(description) != 0) {
+    antenna = context.before->antennas.at(description);
+  }
+  try {
+    if (!antenna) antenna = makeConsistentAntenna(section, context);
+  } catch (const Error& error) {
+    const SourceLocation location = error.location().file.empty() ? section.location() : error.location();
+    context.problems.addErrorElsewhere(section.location(), location, error.message());
+  }
+  return antenna;
+}
+
+int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
+  const std::string carrier = section.text("platform");
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < platforms.size(); ++i) {
+    if (platforms[i].name == carrier) return static_cast<int>(i);
+    names.push_back(platforms[i].name);
+  }
+  if (!carrier.empty()) {
+    context.problems.addError(
+        section.locationOf("platform"),
+        fmt::format("there is no platform '{}'{}", carrier, document::didYouMean(carrier, names)));
+  }
+  return -1;
+}
+
+void parseAntennaNoise(const Section& section, double frequency_hz, const ScanSpec& scan,
+                       ParseContext& context, double& antenna_temperature_k) {
+  if (!section.has("antenna_noise")) return;
+  if (section.has("antenna_temperature_k")) {
+    context.problems.addError(section.locationOf("antenna_temperature_k"),
+                              "'antenna_temperature_k' and 'antenna_noise' exclude each other");
+  } else if (frequency_hz <= 0) {
+    context.problems.addError(section.locationOf("antenna_noise"),
+                              "'antenna_noise' needs the receiver's 'center_frequency_hz'");
+  } else {
+    antenna_temperature_k =
+        propagation::antennaTemperature_k(frequency_hz, degToRad(scan.elevation_deg), context.atmosphere);
+  }
+}
+
+Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
+  Emitter emitter;
+  emitter.name = section.text("name");
+  emitter.location = section.location();
+  emitter.platform = parseCarrier(section, platforms, context);
+  emitter.kind = section.choice<EmitterKind>("kind");
+  emitter.frequency_hz = section.number("frequency_hz");
+  emitter.bandwidth_hz = section.number("bandwidth_hz");
+  emitter.power_w = section.number("power_w");
+  emitter.losses_db = section.number("losses_db");
+  emitter.polarization = section.choice<propagation::Polarization>("polarization");
+  emitter.frequency_location = section.locationOf("frequency_hz");
+  emitter.propagation = parsePropagation(section, context);
+  if (section.has("antenna")) emitter.antenna = parseAntenna(section.section("antenna"), context);
+  const bool steers = emitter.antenna && emitter.antenna->is_array;
+  emitter.scan = parseScan(section.section("scan"), steers, context);
+  if (emitter.scan.kind == ScanKind::track && emitter.kind != EmitterKind::radar) {
+    context.problems.addWarning(
+        section.section("scan").locationOf("kind"),
+        fmt::format("'kind' is track, which turns a radar onto its targets; '{}' is a {}: its beam stays",
+                    emitter.name, toString(emitter.kind)));
+  }
+  if (section.has("waveform")) emitter.waveform = parseWaveform(section.section("waveform"), context);
+  if (section.has("clutter")) emitter.clutter = parseClutter(section.section("clutter"), emitter, context);
+  if (section.has("receiver")) {
+    const Section receiver = section.section("receiver");
+    emitter.receiver = parseReceiver(receiver, context);
+    parseAntennaNoise(receiver, emitter.frequency_hz, emitter.scan, context,
+                      emitter.receiver.antenna_temperature_k);
+    matchPulses(emitter, receiver, context);
+  }
+  emitter.active_s = parseActive(section, context);
+  return emitter;
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,83 @@
+/// Parsers of the checked sections of a scenario file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "document/section.h"
+#include "document/text_file.h"
+#include "emscape/document/problem.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/emitter.h"
+#include "emscape/scenario/model/platform.h"
+#include "emscape/scenario/model/receiver.h"
+#include "emscape/scenario/model/scenario.h"
+#include "emscape/scenario/model/target.h"
+#include "scenario/file/schema.h"
+#include "scenario/file/source.h"
+
+namespace emscape::scenario {
+
+using document::ProblemList;
+using document::Section;
+
+/// Context that the parsers of one file share.
+struct ParseContext {
+  std::string file;
+  ReadFor read_for = ReadFor::series;
+  ProblemList problems;
+  document::ContentHash hash;
+  const NamedFiles* before =
+      nullptr;       ///< content of the files from an earlier reading; null: the files are read
+  NamedFiles files;  ///< content of the files from this reading
+  propagation::Atmosphere atmosphere;  ///< of the scenario
+  std::string epoch_utc;               ///< of the scenario; empty: none
+
+  /// Path of a file named in the scenario; relative names are relative to the scenario's folder.
+  std::string resolve(const std::string& name) const;
+  /// Adds the content of a file named in a section to the hash; false, and a problem, if it cannot be read.
+  /// @param bytes  of a track; set to the content if the file was read now
+  bool addNamed(const Section& section, const std::string& key, std::string* bytes = nullptr);
+};
+
+/// checkObject() has already reported schema errors; these functions report only semantic ones. The result of
+/// a faulty section is incomplete.
+Platform parsePlatform(const Section& section, ParseContext& context);
+AntennaPtr parseAntenna(const Section& section, ParseContext& context);  ///< null if faulty
+ScanSpec parseScan(const Section& section, bool steers_electronically, ParseContext& context);
+/// Index of the platform that a section names; -1, and a problem, if there is none.
+int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
+/// Null without the key, or if it is faulty.
+std::shared_ptr<const propagation::Refractivity> parseRefractivity(const Section& atmosphere,
+                                                                   ParseContext& context);
+/// k_factor of an atmosphere with linear refractivity, if it is in 0.5..10; else `otherwise`.
+double kFactorOf(const Section& atmosphere, double otherwise);
+/// Warnings that depend on the emitters and on the ground.
+/// @param root  of a scenario without faults
+void warnOfRefractivity(const Scenario& scenario, const Section& root, ParseContext& context);
+/// @param radar  with its frequency and its waveform
+/// @return none if faulty, or without a waveform
+std::optional<Clutter> parseClutter(const Section& section, const Emitter& radar, ParseContext& context);
+Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
+
+/// Sets the noise temperature of an antenna if its receiver requests that of the sky (antenna_noise).
+/// @param section       of the receiver
+/// @param frequency_hz  0: unknown, which is a problem
+void parseAntennaNoise(const Section& section, double frequency_hz, const ScanSpec& scan,
+                       ParseContext& context, double& antenna_temperature_k);
+
+/// The common values of receivers with and without a platform.
+ReceiverProfile parseReceiverProfile(const Section& section);
+/// @param section  with a platform
+PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Platform>& platforms,
+                                   ParseContext& context);
+Target parseTarget(const Section& section, const std::vector<Platform>& platforms, ParseContext& context);
+
+/// Rows of a track file (CSV: a header line, then rows; empty lines and lines that begin with # are skipped).
+/// Every fault is reported with its line and column, at most 50 per file.
+/// @param named_at  location of the file's name in the scenario
+std::vector<TrackPoint> parseTrack(const std::string& file, const std::string& bytes,
+                                   const SourceLocation& named_at, ProblemList& problems);
+
+}  // namespace emscape::scenario

@@ -1,0 +1,219 @@
+#include "scenario/file/refractivity_file.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "base/files/whole_file.h"
+#include "document/csv.h"
+#include "document/text_file.h"
+#include "emscape/base/error.h"
+#include "propagation/air/moist_air.h"
+#include "scenario/antenna/text.h"
+#include "scenario/file/csv_columns.h"
+
+namespace emscape::scenario {
+namespace {
+
+using namespace propagation;
+using document::CsvCell;
+using document::CsvRow;
+using Place = RefractivityField::Place;
+
+constexpr const char* kHeader =
+    "height_msl_m and m_units, or n_units, or pressure_hpa, temperature_k and relative_humidity_percent; for "
+    "several profiles range_m, or latitude_deg and longitude_deg";
+constexpr double kAny = std::numeric_limits<double>::max();
+constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
+
+enum Column { range, latitude, longitude, height, m, n, pressure, temperature, humidity, kColumns };
+struct ColumnLimits {
+  const char* name;
+  double lowest, highest;
+  const char* below;  ///< probable meaning of a value outside
+  const char* above;
+};
+constexpr std::array<ColumnLimits, kColumns> kLimits{{
+    {"range_m", 0, 1e7, "", ""},
+    {"latitude_deg", -90, 90, "", ""},
+    {"longitude_deg", -180, 180, "", ""},
+    {"height_msl_m", -kAny, kAny, "", ""},
+    {"m_units", -kAny, kAny, "", ""},
+    {"n_units", 0, 500, "", "; is it M?"},
+    {"pressure_hpa", 0.1, 1100, "", "; is it in Pa?"},
+    {"temperature_k", 150, 350, "; is it in degrees Celsius?", ""},
+    {"relative_humidity_percent", 0, 100, "", ""},
+}};
+
+/// True if M falls over the last 500 m of a profile of more than 1 km, as N does.
+bool looksLikeN(const RefractivityProfile& profile) {
+  const double top_m = profile.levels.back().height_msl_m;
+  return top_m - profile.levels.front().height_msl_m > 1000 && profile.at(top_m) < profile.at(top_m - 500);
+}
+
+class CsvProfiles {
+ public:
+  explicit CsvProfiles(const std::string& file)
+      : file_(file), text_(document::checkedUtf8(file, readWholeText(file, kMaxBytes))), reader_(text_) {}
+
+  RefractivityFile read() {
+    readHeader();
+    while (reader_.next(row_)) readRow();
+    if (levels_.empty()) throw Error(ErrorCode::bad_input, {file_, reader_.lines(), 0}, kFewLevels);
+    finishProfile();
+    RefractivityFile result;
+    RefractivityField& field = result.field;
+    field.profiles.clear();
+    for (std::vector<RefractivityLevel>& levels : levels_)
+      field.profiles.push_back(profileOfLevels(std::move(levels)));
+    if (has(range)) field.ranges_m = ranges_m_;
+    if (has(latitude)) field.places = places_;
+    const std::size_t count = field.profiles.size();
+    result.description = count == 1   ? "1 profile"
+                         : has(range) ? fmt::format("{} profiles by range", count)
+                                      : fmt::format("{} profiles by place", count);
+    if (has(m) && std::any_of(field.profiles.begin(), field.profiles.end(), looksLikeN)) {
+      result.warnings.push_back(fmt::format(
+          "{}: m_units falls with height at the top: these look like N-units (column n_units)", file_));
+    }
+    if (std::any_of(field.profiles.begin(), field.profiles.end(), [&](const RefractivityProfile& profile) {
+          return profile.levels.size() != field.profiles.front().levels.size();
+        })) {
+      result.warnings.push_back(
+          fmt::format("{}: profiles differ in their numbers of levels: interpolated at each height, which "
+                      "shows two faint ducts halfway between two",
+                      file_));
+    }
+    return result;
+  }
+
+ private:
+  static constexpr const char* kFewLevels = "no levels; expected 2 .. 256";
+
+  bool has(Column column) const { return position_[column].has_value(); }
+
+  [[noreturn]] void fail(const CsvCell& cell, const std::string& message) const {
+    throw Error(ErrorCode::bad_input, {file_, row_.line, cell.column}, message);
+  }
+
+  void readHeader() {
+    if (!reader_.next(row_)) {
+      throw Error(ErrorCode::bad_input, {file_, 1, 1},
+                  fmt::format("the file is empty; its header has {}", kHeader));
+    }
+    if (const auto fault = document::headerFault(row_.cells))
+      throw Error(ErrorCode::bad_input, {file_, row_.line, fault->column}, fault->message);
+    columns_ = row_.cells.size();
+    for (std::size_t i = 0; i < columns_; ++i) {
+      const CsvCell& cell = row_.cells[i];
+      const auto column = std::find_if(kLimits.begin(), kLimits.end(),
+                                       [&](const ColumnLimits& limits) { return cell.text == limits.name; });
+      if (column == kLimits.end()) {
+        fail(cell, fmt::format("unknown column '{}'; the header has {}", cell.text, kHeader));
+      }
+      std::optional<std::size_t>& position = position_[std::size_t(column - kLimits.begin())];
+      if (position) fail(cell, fmt::format("second column '{}'; the header has {}", cell.text, kHeader));
+      position = i;
+    }
+    const bool is_weather = has(pressure) && has(temperature) && has(humidity);
+    const bool has_weather = has(pressure) || has(temperature) || has(humidity);
+    const bool is_complete = has(height) && int(has(m)) + int(has(n)) + int(has_weather) == 1 &&
+                             is_weather == has_weather && has(latitude) == has(longitude) &&
+                             !(has(range) && has(latitude));
+    if (!is_complete) {
+      throw Error(ErrorCode::bad_input, {file_, row_.line, 1}, fmt::format("the header has {}", kHeader));
+    }
+  }
+
+  const CsvCell& cell(Column column) const { return row_.cells[*position_[column]]; }
+
+  double number(Column column) const {
+    const ColumnLimits& limits = kLimits[column];
+    const std::optional<double> value = numberIn(cell(column).text);
+    if (!value) fail(cell(column), fmt::format("{} is '{}', not a number", limits.name, cell(column).text));
+    if (*value >= limits.lowest && *value <= limits.highest) return *value;
+    fail(cell(column), fmt::format("{} is {}; allowed are {} to {}{}", limits.name, *value, limits.lowest,
+                                   limits.highest, *value < limits.lowest ? limits.below : limits.above));
+  }
+
+  void readRow() {
+    if (row_.cells.size() != columns_) {
+      fail(row_.cells.front(),
+           fmt::format("{} values, but the header names {} columns", row_.cells.size(), columns_));
+    }
+    beginProfile();
+    RefractivityLevel level;
+    level.height_msl_m = number(height);
+    level.m_units =
+        has(m) ? number(m) : kFlatteningGradient_m * level.height_msl_m + (has(n) ? number(n) : nOfWeather());
+    levels_.back().push_back(level);
+    if (const std::string fault = faultOfLevel(levels_.back(), levels_.back().size() - 1); !fault.empty()) {
+      fail(cell(height), fault);
+    }
+  }
+
+  double nOfWeather() const {
+    const double temperature_k = number(temperature);
+    return refractivity_n(number(pressure), temperature_k,
+                          number(humidity) / 100 * saturationPressure_hpa(temperature_k));
+  }
+
+  /// Begins a profile if range or position of the row differ from those of the previous row.
+  void beginProfile() {
+    const double range_m = has(range) ? number(range) : 0;
+    const Place place = has(latitude) ? Place{number(latitude), number(longitude)} : Place{};
+    const auto isHere = [&](const Place& other) {
+      return other.latitude_deg == place.latitude_deg && other.longitude_deg == place.longitude_deg;
+    };
+    if (!levels_.empty() && range_m == ranges_m_.back() && isHere(places_.back())) return;
+    finishProfile();
+    if (!levels_.empty() && range_m < ranges_m_.back()) {
+      fail(cell(range), fmt::format("range_m is {} behind {}; ranges ascend", range_m, ranges_m_.back()));
+    }
+    if (has(latitude) && std::any_of(places_.begin(), places_.end(), isHere)) {
+      fail(cell(latitude), fmt::format("the rows of the place {}, {} do not follow each other",
+                                       place.latitude_deg, place.longitude_deg));
+    }
+    ranges_m_.push_back(range_m);
+    places_.push_back(place);
+    levels_.emplace_back();
+  }
+
+  void finishProfile() const {
+    if (levels_.empty() || (levels_.back().size() >= 2 && levels_.back().size() <= 256)) return;
+    throw Error(ErrorCode::bad_input, {file_, row_.line, 0},
+                fmt::format("the profile that ends here has {} level{}; expected 2 .. 256",
+                            levels_.back().size(), levels_.back().size() == 1 ? "" : "s"));
+  }
+
+  std::string file_, text_;
+  document::CsvReader reader_;
+  CsvRow row_;
+  std::size_t columns_ = 0;
+  std::array<std::optional<std::size_t>, kColumns> position_;
+  std::vector<double> ranges_m_;
+  std::vector<Place> places_;
+  std::vector<std::vector<RefractivityLevel>> levels_;
+};
+
+}  // namespace
+
+RefractivityFile readRefractivity(const std::string& file) {
+  return CsvProfiles(file).read();
+}
+
+bool isRefractivityCsv(const std::string& file) {
+  const std::vector<std::string> names = csvColumnsOf(file);
+  const auto has = [&](const char* name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  const auto hasColumn = [&](Column column) { return has(kLimits[column].name); };
+  const bool is_track = has("t_s");
+  return hasColumn(m) || hasColumn(n) || hasColumn(humidity) || (hasColumn(height) && !is_track);
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,505 @@
+#include "emscape/scenario/file/scenario_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "base/files/whole_file.h"
+#include "base/text/utc.h"
+#include "document/schema_check.h"
+#include "document/text_edit.h"
+#include "document/text_file.h"
+#include "emscape/base/log.h"
+#include "emscape/scenario/model/quantities.h"
+#include "scenario/file/parse_sections.h"
+#include "scenario/file/quantity_needs.h"
+#include "scenario/scan/scan_sampling.h"
+
+namespace emscape::scenario {
+
+namespace {
+
+constexpr double kMaxVoxels = 2147483648.0;
+constexpr double kMaxSteps = 1e7;
+constexpr double kMaxVoxelAspect = 1000;  ///< of x over y
+
+Clock parseClock(const Section& root, ParseContext& context) {
+  const Clock clock{root.text("epoch"), root.number("duration_s"), root.number("step_s")};
+  if (clock.duration_s >= clock.step_s * kMaxSteps) {
+    context.problems.addError(root.locationOf("step_s"),
+                              fmt::format("steps of {} s over {} s are more than the allowed {}",
+                                          clock.step_s, clock.duration_s, kMaxSteps));
+  }
+  // A wrong epoch or duration has been reported already.
+  if (parseUtc_ms(clock.epoch_utc) && std::isfinite(clock.duration_s)) {
+    try {
+      requireTime(clock, clock.duration_s);
+    } catch (const Error& error) {
+      context.problems.addError(root.locationOf("epoch"), "the scenario's end: " + error.message());
+    }
+  }
+  return clock;
+}
+
+Region parseRegion(const Section& section, ParseContext& context) {
+  const Section origin = section.section("origin");
+  Region region;
+  region.origin = {section.choice<FrameKind>("frame"), origin.number("latitude_deg"),
+                   origin.number("longitude_deg"), origin.number("height_msl_m")};
+  std::vector<double> size_m = section.numbers("size_m"), dims = section.numbers("dims");
+  if (dims.size() == 3 && dims[0] * dims[1] * dims[2] > kMaxVoxels) {
+    context.problems.addError(section.locationOf("dims"),
+                              fmt::format("'dims' are {} voxels in all, outside the allowed range 8 to {}",
+                                          dims[0] * dims[1] * dims[2], kMaxVoxels));
+  }
+  if (!section.sound()) return region;
+  region.size_m = {size_m[0], size_m[1], size_m[2]};
+  region.dims = {static_cast<int>(dims[0]), static_cast<int>(dims[1]), static_cast<int>(dims[2])};
+  const double width_m = size_m[0] / dims[0], depth_m = size_m[1] / dims[1];
+  if (std::max(width_m, depth_m) > kMaxVoxelAspect * std::min(width_m, depth_m)) {
+    context.problems.addError(
+        section.locationOf("size_m"),
+        fmt::format(
+            "'size_m' and 'dims' make voxels of {} m by {} m; one side may be at most {} times the other",
+            width_m, depth_m, kMaxVoxelAspect));
+  }
+  return region;
+}
+
+/// The files are opened, not read; files of an earlier reading are not opened again.
+TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
+  TerrainSpec terrain;
+  std::string digest;
+  const NamedFiles* before = context.before;
+  const bool known = before != nullptr && before->terrain_node &&
+                     document::sameValue(*before->terrain_node, *section.node());
+  terrain.vertical_datum = section.choice<VerticalDatum>("vertical_datum");
+  const std::vector<std::string> names = section.texts("files");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (names[i].empty()) continue;
+    const SourceLocation location = section.locationOf("files", i);
+    const std::string file = context.resolve(names[i]);
+    terrain.files.push_back(file);
+    terrain.locations.push_back(location);
+    if (known) continue;
+    std::error_code failure;
+    const std::uintmax_t size = std::filesystem::file_size(file, failure);
+    std::error_code ignored;
+    const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+    const bool is_other = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+                          !std::filesystem::is_directory(status);
+    errno = 0;
+    if (failure || is_other || !std::ifstream(file)) {
+      if (!failure) failure = std::error_code(errno, std::generic_category());
+      context.problems.addError(
+          location,
+          fmt::format("elevation file {}: {}", file, is_other ? "is not a regular file" : failure.message()));
+      continue;
+    }
+    digest += fmt::format("{}:{}", names[i], size);
+  }
+  context.files.terrain_node = std::make_shared<const document::DocumentNode>(*section.node());
+  context.files.terrain_digest = known ? before->terrain_digest : digest;
+  context.hash.add(context.files.terrain_digest);
+  return terrain;
+}
+
+propagation::Atmosphere parseAtmosphere(const Section& section, ParseContext& context) {
+  propagation::Atmosphere atmosphere;
+  atmosphere.k_factor = section.number("k_factor");
+  atmosphere.pressure_hpa = section.number("pressure_hpa");
+  atmosphere.temperature_k = section.number("temperature_k");
+  atmosphere.vapour_g_m3 = section.number("vapour_g_m3");
+  atmosphere.rain_mm_h = section.number("rain_mm_h");
+  atmosphere.rain_height_m = section.optionalNumber("rain_height_m");
+  atmosphere.gases = section.choice<propagation::GasLosses>("gases");
+  atmosphere.refraction = section.choice<propagation::RefractionProfile>("refraction");
+  atmosphere.sea_level_refractivity = section.number("sea_level_refractivity");
+  atmosphere.climate = section.choice<propagation::RadioClimate>("climate");
+  atmosphere.refractivity = parseRefractivity(section, context);
+  if (!section.has("k_factor")) atmosphere.k_factor = kFactorOf(section, atmosphere.k_factor);
+  return atmosphere;
+}
+
+propagation::Ground parseGround(const Section& section) {
+  propagation::Ground ground;
+  ground.kind = section.choice<propagation::GroundKind>("kind");
+  ground.relative_permittivity = section.optionalNumber("relative_permittivity");
+  ground.conductivity_s_m = section.optionalNumber("conductivity_s_m");
+  ground.roughness_m = section.number("roughness_m");
+  ground.surface_msl_m = section.optionalNumber("surface_msl_m");
+  ground.sea_by_height = section.optionalBoolean("sea_by_height").value_or(false);
+  ground.location = section.location();
+  return ground;
+}
+
+Band parseBand(const Section& section, ParseContext& context) {
+  const Band band{section.text("name"), section.number("begin_hz"), section.number("end_hz")};
+  if (band.begin_hz >= band.end_hz) {
+    context.problems.addError(
+        section.locationOf("end_hz"),
+        fmt::format("'end_hz' is {}, not above 'begin_hz', {} Hz", band.end_hz, band.begin_hz));
+  }
+  return band;
+}
+
+IntervalSpec parseInterval(const Section& section, ParseContext& context) {
+  IntervalSpec interval;
+  interval.kind = section.choice<IntervalKind>("kind");
+  interval.seconds = section.optionalNumber("seconds");
+  interval.turns = section.optionalNumber("turns");
+  if (interval.seconds && interval.turns) {
+    context.problems.addError(section.locationOf("turns"),
+                              "'seconds' and 'turns' both give the interval's duration: one of them");
+  }
+  return interval;
+}
+
+/// Index of the item that a key of the output names; -1: there is none.
+template <class Named>
+int indexOfNamed(const Section& section, const char* key, const char* what, const std::vector<Named>& items,
+                 ParseContext& context) {
+  const std::string wanted = section.text(key);
+  std::vector<std::string> names;
+  for (const Named& item : items) {
+    if (item.name == wanted) return static_cast<int>(names.size());
+    names.push_back(item.name);
+  }
+  context.problems.addError(section.locationOf(key), fmt::format("there is no {} '{}'{}", what, wanted,
+                                                                 document::didYouMean(wanted, names)));
+  return -1;
+}
+
+/// Checks that the scenario has everything that the output needs.
+OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseContext& context) {
+  OutputSpec output{section.texts("quantities"),
+                    section.choice<CombineMode>("combine"),
+                    section.choice<RadarLook>("radar_look"),
+                    section.number("floor"),
+                    section.number("count_threshold_dbwm2"),
+                    {}};
+  if (section.has("interval")) output.interval = parseInterval(section.section("interval"), context);
+  if (section.has("receiver")) {
+    output.receiver =
+        indexOfNamed(section, "receiver", "receiver without a platform", scenario.receivers, context);
+  }
+  if (section.has("wanted_emitter"))
+    output.wanted_emitter = indexOfNamed(section, "wanted_emitter", "emitter", scenario.emitters, context);
+  const bool has_unknown_name =
+      output.receiver < 0 || (section.has("wanted_emitter") && output.wanted_emitter < 0);
+  output.detection_threshold = section.number("detection_threshold");
+  const auto hasKind = [&](EmitterKind kind) {
+    return std::any_of(scenario.emitters.begin(), scenario.emitters.end(),
+                       [kind](const Emitter& emitter) { return emitter.kind == kind; });
+  };
+  const auto need = [&](bool met, const SourceLocation& location, const std::string& what,
+                        const std::string& needed) {
+    if (!met)
+      context.problems.addError(location, fmt::format("{} needs {}; the scenario has none", what, needed));
+  };
+  for (std::size_t i = 0; i < output.quantities.size(); ++i) {
+    const std::string& quantity = output.quantities[i];
+    const SourceLocation location = section.locationOf("quantities", i);
+    const auto row = std::find_if(quantityTable().begin(), quantityTable().end(),
+                                  [&](const QuantityInfo& known) { return quantity == known.name; });
+    if (row == quantityTable().end()) continue;  // already reported
+    const std::string unmet_interval = unmetInterval(row->quantity, output.interval.kind);
+    if (!unmet_interval.empty()) context.problems.addError(location, unmet_interval);
+    if (row->kind == QuantityKind::of_receiver) {
+      need(!scenario.receivers.empty(), location, quantity, "a receiver without a platform");
+    }
+    const bool is_reported = !unmet_interval.empty() || has_unknown_name ||
+                             (row->kind == QuantityKind::of_receiver && scenario.receivers.empty());
+    if (!is_reported) {
+      const std::string unmet = unmetNeed(row->quantity, scenario, output);
+      if (!unmet.empty()) context.problems.addError(location, unmet);
+    }
+    if (needsRadar(row->quantity)) {
+      need(hasKind(EmitterKind::radar), location, quantity, "an emitter of kind radar");
+    }
+    if (row->needs_jammer) {
+      need(hasKind(EmitterKind::jammer), location, quantity, "an emitter of kind jammer");
+    }
+  }
+  if (output.combine == CombineMode::per_band) {
+    need(!scenario.bands.empty(), section.locationOf("combine"), "combine per_band", "bands");
+  }
+  return output;
+}
+
+void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  for (std::size_t i = 0; i < sections.size() && !scenario.bands.empty(); ++i) {
+    const double frequency_hz = scenario.emitters[i].frequency_hz;
+    const bool in_band = std::any_of(scenario.bands.begin(), scenario.bands.end(), [&](const Band& band) {
+      return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
+    });
+    if (in_band) continue;
+    context.problems.addWarning(
+        sections[i].locationOf("frequency_hz"),
+        fmt::format("emitter '{}' ({} Hz) is in none of the bands", scenario.emitters[i].name, frequency_hz));
+  }
+}
+
+/// Warns about jammers outside the bands of all radars, if the output depends on jamming.
+void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<std::string>& quantities = scenario.output.quantities;
+  const bool counts = std::any_of(quantities.begin(), quantities.end(), [](const std::string& quantity) {
+    return needsJammer(quantityFromName(quantity));
+  });
+  const std::vector<Section> sections = root.sections("emitters");
+  for (std::size_t i = 0; i < sections.size() && counts; ++i) {
+    const Emitter& jammer = scenario.emitters[i];
+    if (jammer.kind != EmitterKind::jammer) continue;
+    const bool jams =
+        std::any_of(scenario.emitters.begin(), scenario.emitters.end(), [&jammer](const Emitter& radar) {
+          return radar.kind == EmitterKind::radar &&
+                 std::abs(radar.frequency_hz - jammer.frequency_hz) <=
+                     (radar.receiver.bandwidth_hz + jammer.bandwidth_hz) / 2;
+        });
+    if (jams) continue;
+    context.problems.addWarning(
+        sections[i].locationOf("frequency_hz"),
+        fmt::format("jammer '{}' ({} Hz, {} Hz wide) is outside the band of every radar: it jams none",
+                    jammer.name, jammer.frequency_hz, jammer.bandwidth_hz));
+  }
+}
+
+/// Warns about an antenna whose gain exceeds the directivity of its pattern.
+/// @param section  of the emitter or receiver
+void warnOfGain(const Antenna& antenna, const Section& section, const char* consequence,
+                ParseContext& context) {
+  constexpr double kTolerance_db = 0.5;
+  const double directivity_dbi = antenna.directivity_dbi();
+  if (antenna.gain_dbi <= directivity_dbi + kTolerance_db) return;
+  const Section own = section.section("antenna");
+  context.problems.addWarning(
+      own.has("gain_dbi") ? own.locationOf("gain_dbi") : own.location(),
+      fmt::format(
+          "the gain of {:.2f} dBi is {:.2f} dB above the pattern's directivity, {:.2f} dBi: the antenna "
+          "would {}; lower the gain, the beamwidths or the side lobes",
+          antenna.gain_dbi, antenna.gain_dbi - directivity_dbi, directivity_dbi, consequence));
+}
+
+void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> emitters = root.sections("emitters");
+  for (std::size_t i = 0; i < emitters.size(); ++i)
+    warnOfGain(*scenario.emitters[i].antenna, emitters[i], "radiate more power than it is fed", context);
+  std::size_t placed = 0;
+  for (const Section& item : root.sections("receivers")) {
+    if (!item.has("platform")) continue;
+    const PlacedReceiver& receiver = scenario.placed_receivers[placed++];
+    if (item.has("antenna"))
+      warnOfGain(*receiver.antenna, item, "receive more power than reaches it", context);
+  }
+}
+
+/// Warns about fluctuating targets of radars whose method of detection supports only steady ones.
+void warnOfTargetsTakenAsSteady(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("targets");
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Target& target = scenario.targets[i];
+    if (target.swerling == 0) continue;
+    std::string radars;
+    for (const Emitter& radar : scenario.emitters) {
+      if (radar.kind != EmitterKind::radar || radar.receiver.detection != DetectionMethod::albersheim ||
+          radar.platform == target.platform)
+        continue;
+      radars += fmt::format("{}'{}'", radars.empty() ? "" : ", ", radar.name);
+    }
+    if (radars.empty()) continue;
+    context.problems.addWarning(
+        sections[i].has("swerling") ? sections[i].locationOf("swerling") : sections[i].location(),
+        fmt::format("the target '{}' of swerling {} is taken as steady (swerling 0) by radars whose "
+                    "'detection' is albersheim: {}",
+                    target.name, target.swerling, radars));
+  }
+}
+
+/// Warns at the first of the beams.
+void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::optional<UnlitAzimuths> unlit = unlitAzimuths(scenario, scenario.clock);
+  if (!unlit) return;
+  const bool rotates = scenario.emitters[unlit->first_emitter].scan.kind == ScanKind::rotate;
+  const Section scan = root.sections("emitters")[unlit->first_emitter].section("scan");
+  context.problems.addWarning(scan.locationOf(rotates ? "rate_rpm" : "rate_deg_s"), unlit->warning);
+}
+
+Scenario parseRoot(const Section& root, ParseContext& context) {
+  Scenario scenario;
+  scenario.name = root.text("name");
+  scenario.file = context.file;
+  scenario.clock = parseClock(root, context);
+  context.epoch_utc = scenario.clock.epoch_utc;
+  scenario.region = parseRegion(root.section("region"), context);
+  if (root.has("terrain")) scenario.terrain = parseTerrain(root.section("terrain"), context);
+  scenario.atmosphere = context.atmosphere = parseAtmosphere(root.section("atmosphere"), context);
+  scenario.ground = parseGround(root.section("ground"));
+  for (const Section& item : root.sections("platforms"))
+    scenario.platforms.push_back(parsePlatform(item, context));
+  for (const Section& item : root.sections("emitters")) {
+    scenario.emitters.push_back(parseEmitter(item, scenario.platforms, context));
+  }
+  for (const Section& item : root.sections("receivers")) {
+    if (item.has("platform")) {
+      scenario.placed_receivers.push_back(parsePlacedReceiver(item, scenario.platforms, context));
+    } else {
+      scenario.receivers.push_back(parseReceiverProfile(item));
+    }
+  }
+  for (const Section& item : root.sections("targets"))
+    scenario.targets.push_back(parseTarget(item, scenario.platforms, context));
+  for (const Section& item : root.sections("bands")) scenario.bands.push_back(parseBand(item, context));
+  scenario.output = parseOutput(root.section("output"), scenario, context);
+  if (!context.problems.hasErrors()) {
+    warnOfEmittersWithoutBand(scenario, root, context);
+    warnOfIdleJammers(scenario, root, context);
+    warnOfGains(scenario, root, context);
+    warnOfTargetsTakenAsSteady(scenario, root, context);
+    if (context.read_for == ReadFor::series) warnOfCoarseSteps(scenario, root, context);
+    warnOfRefractivity(scenario, root, context);
+  }
+  scenario.hash = context.hash.hex();
+  return scenario;
+}
+
+}  // namespace
+
+namespace {
+
+/// Maps the locations in a scenario from the edited text to its file.
+void mapPlaces(Scenario& scenario, const document::EditedText& text) {
+  const auto map = [&text](SourceLocation& location) { location = text.originOf(location); };
+  map(scenario.ground.location);
+  for (Platform& platform : scenario.platforms) map(platform.location);
+  for (Emitter& emitter : scenario.emitters) {
+    map(emitter.location);
+    map(emitter.frequency_location);
+    map(emitter.propagation.location);
+  }
+  if (!scenario.terrain) return;
+  for (SourceLocation& location : scenario.terrain->locations) map(location);
+}
+
+/// Reads the scenario from its edited text. @param before  null, or the content of an earlier reading
+ParseResult readSource(ScenarioSource source, const NamedFiles* before, ParseContext& context) {
+  context.before = before;
+  std::shared_ptr<Scenario> scenario;
+  if (source.root) {
+    context.hash.add(source.text.text());
+    document::checkObject(context.file, *source.root, scenarioSpec(), context.problems);
+    const Section root(context.file, source.root.get(), scenarioSpec());
+    scenario = std::make_shared<Scenario>(parseRoot(root, context));
+  }
+  ParseResult result;
+  result.problems = context.problems.inOrder();
+  for (Problem& problem : result.problems) problem.location = source.text.originOf(problem.location);
+  if (!scenario || context.problems.hasErrors()) return result;
+  mapPlaces(*scenario, source.text);
+  source.files = std::move(context.files);
+  scenario->source = std::make_shared<const ScenarioSource>(std::move(source));
+  result.scenario = std::move(scenario);
+  return result;
+}
+
+void applyEdits(ScenarioSource& source, const std::vector<Edit>& edits, ParseContext& context) {
+  for (const Edit& edit : edits) {
+    try {
+      applyEdit(source, edit);
+    } catch (const Error& error) {
+      context.problems.addError(error.location(), error.message());
+    }
+  }
+}
+
+/// @throws Error (bad_input) that lists the errors of a result without a scenario
+void requireScenario(const ParseResult& result) {
+  if (result.scenario) return;
+  std::string all;
+  for (const Problem& problem : result.problems) {
+    if (problem.severity == Severity::warning) continue;
+    all += (all.empty() ? "" : "\n") + toString(problem.location) + ": " + problem.message;
+  }
+  throw Error(ErrorCode::bad_input, all);
+}
+
+}  // namespace
+
+ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits, ReadFor read_for) {
+  ParseContext context;
+  context.file = file;
+  context.read_for = read_for;
+  ScenarioSource source;
+  try {
+    source.text = {file, document::checkedUtf8(file, readWholeText(file, kMaxScenarioBytes))};
+    source.root = document::readDocument(file, source.text.text(), context.problems);
+  } catch (const Error& error) {
+    context.problems.addError(error.location(), error.message());
+  }
+  if (source.root) applyEdits(source, edits, context);
+  return readSource(std::move(source), nullptr, context);
+}
+
+ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits) {
+  if (!scenario.source) {
+    throw Error(ErrorCode::bad_input, "the scenario was not read from a file: there is no text to edit");
+  }
+  ParseContext context;
+  context.file = scenario.file;
+  ScenarioSource source{scenario.source->text, scenario.source->root, scenario.source->edits, {}};
+  applyEdits(source, edits, context);
+  return readSource(std::move(source), &scenario.source->files, context);
+}
+
+void Scenario::set(const std::string& path, const std::string& value) {
+  set({Edit{path, value}});
+}
+
+void Scenario::set(const std::vector<Edit>& edits) {
+  const ParseResult result = editScenario(*this, edits);
+  requireScenario(result);
+  Scenario edited = *result.scenario;
+  *this = std::move(edited);
+}
+
+std::vector<Edit> Scenario::edits() const {
+  std::vector<Edit> all;
+  if (!source) return all;
+  for (const MadeEdit& made : source->edits) all.push_back(made.edit);
+  return all;
+}
+
+std::vector<std::string> filesOf(const Scenario& scenario) {
+  std::vector<std::string> files{scenario.file};
+  if (scenario.source) {
+    for (const auto& [file, digest] : scenario.source->files.digests) files.push_back(file);
+  }
+  if (scenario.terrain) {
+    files.insert(files.end(), scenario.terrain->files.begin(), scenario.terrain->files.end());
+  }
+  return files;
+}
+
+std::string scenarioJsonSchema() {
+  return document::jsonSchema(
+      scenarioSpec(), "Emscape scenario",
+      "Made from the parser's table. The parser also reports what a schema cannot express: repeated names, "
+      "platforms that do not exist, files that cannot be read.");
+}
+
+std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits,
+                                             ReadFor read_for) {
+  const ParseResult result = parseScenario(file, edits, read_for);
+  for (const Problem& problem : result.problems) {
+    if (problem.severity == Severity::warning)
+      logWarning(toString(problem.location) + ": " + problem.message);
+  }
+  requireScenario(result);
+  return result.scenario;
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,157 @@
+#include "scenario/file/source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "document/edit_path.h"
+#include "document/number_edit.h"
+#include "document/text_file.h"
+#include "scenario/file/schema.h"
+
+namespace emscape::scenario {
+
+namespace {
+
+using document::DocumentNodePtr;
+using document::ResolvedPath;
+
+std::string trimmed(const std::string& text) {
+  const std::size_t begin = text.find_first_not_of(" \t\r\n");
+  if (begin == std::string::npos) return "";
+  return text.substr(begin, text.find_last_not_of(" \t\r\n") - begin + 1);
+}
+
+bool isNull(const std::string& value) {
+  const std::string word = trimmed(value);
+  return word == "null" || word == "Null" || word == "NULL" || word == "~";
+}
+
+/// The value of an edit; null: removal.
+DocumentNodePtr valueOf(const Edit& edit) {
+  if (trimmed(edit.value).empty()) {
+    throw Error(ErrorCode::bad_input, "the value is empty; null removes a key, \"\" is the empty text");
+  }
+  if (isNull(edit.value)) return nullptr;
+  document::ProblemList problems;
+  const DocumentNodePtr value = document::readDocument("", document::checkedUtf8("", edit.value), problems);
+  const std::vector<document::Problem> faults = problems.inOrder();
+  if (!faults.empty()) throw Error(ErrorCode::bad_input, "the value is " + faults.front().message);
+  return value;
+}
+
+/// True if a path refers to the value of the other path or to a part of it.
+bool leadsInto(const std::string& outer, const std::string& inner) {
+  return inner.compare(0, outer.size(), outer) == 0 &&
+         (inner.size() == outer.size() || inner[outer.size()] == '.');
+}
+
+/// Index of the last edit of a path before `end` that can be repeated independently of the edits after it;
+/// npos if there is none.
+std::size_t lastEditOf(const std::string& path, const std::vector<MadeEdit>& edits, std::size_t end) {
+  for (std::size_t i = end; i-- > 0;) {
+    if (edits[i].moves_paths) break;
+    if (edits[i].edit.path == path) return i;
+    if (leadsInto(edits[i].edit.path, path) || leadsInto(path, edits[i].edit.path)) break;
+  }
+  return std::string::npos;
+}
+
+/// Adds an edit to the list. A repeated edit of a value replaces the earlier one, and a value that was added
+/// and then removed leaves no edit.
+void remember(std::vector<MadeEdit>& edits, MadeEdit made) {
+  const std::size_t last =
+      made.moves_paths ? std::string::npos : lastEditOf(made.edit.path, edits, edits.size());
+  if (last == std::string::npos) {
+    edits.push_back(std::move(made));
+    return;
+  }
+  const bool was_removed = isNull(edits[last].edit.value), is_removed = isNull(made.edit.value);
+  if (!was_removed && !is_removed) {
+    edits[last] = std::move(made);
+  } else if (was_removed != is_removed) {
+    const std::size_t before = is_removed ? lastEditOf(made.edit.path, edits, last) : std::string::npos;
+    if (before != std::string::npos && isNull(edits[before].edit.value)) {
+      edits.erase(edits.begin() + static_cast<std::ptrdiff_t>(last));
+    } else {
+      edits.push_back(std::move(made));
+    }
+  }
+}
+
+/// Reads a text that was changed in one span: nothing else may have changed.
+DocumentNodePtr readEdited(const document::EditedText& text, const DocumentNodePtr& before,
+                           const ResolvedPath& path, const DocumentNodePtr& value) {
+  document::ProblemList problems;
+  DocumentNodePtr root = document::readDocument(text.file(), text.text(), problems);
+  const DocumentNodePtr wanted = document::withValueAt(before, path.steps, value);
+  if (!root || problems.hasErrors() || !document::sameValue(*root, *wanted)) {
+    throw Error(ErrorCode::bad_input,
+                "the file is written in a way that cannot be edited here; edit the file");
+  }
+  return root;
+}
+
+void apply(ScenarioSource& source, const Edit& edit) {
+  const ResolvedPath path = document::resolvePath(edit.path, source.root, scenarioSpec());
+  const DocumentNodePtr value = valueOf(edit);
+  const Edit made{path.text, edit.value};
+  if (!value && path.required) {
+    throw Error(ErrorCode::bad_input, fmt::format("{} must be given; it cannot be removed", path.name));
+  }
+  ScenarioSource edited;
+  edited.text = source.text;
+  if (value || path.exists) {
+    const std::string& text = source.text.text();
+    const document::Splice splice = document::spliceFor(text, source.root, path.steps, value);
+    edited.root = document::withNumberSpliced(text, source.root, path.steps, value, splice);
+    edited.text.apply(splice, toString(made));
+    if (edited.text.text().size() > kMaxScenarioBytes) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("the scenario would have {} bytes, more than the allowed {}",
+                              edited.text.text().size(), kMaxScenarioBytes));
+    }
+    if (!edited.root) edited.root = readEdited(edited.text, source.root, path, value);
+  } else {
+    edited.root = source.root;
+  }
+  const bool is_item = std::holds_alternative<std::size_t>(path.steps.back());
+  const bool is_name = !is_item && std::get<std::string>(path.steps.back()) == "name";
+  remember(source.edits, {made, is_name || (is_item && !value)});
+  source.text = std::move(edited.text);
+  source.root = std::move(edited.root);
+}
+
+}  // namespace
+
+void applyEdit(ScenarioSource& source, const Edit& edit) {
+  try {
+    apply(source, edit);
+  } catch (const Error& error) {
+    throw Error(error.code(), {toString(edit), 0, 0}, error.message());
+  }
+}
+
+Edit parseEdit(const std::string& text) {
+  const std::size_t end = document::endOfPath(text);
+  if (end == std::string::npos || end == 0) {
+    throw Error(ErrorCode::usage,
+                fmt::format("'{}' is not an edit; write PATH=VALUE, such as atmosphere.k_factor=1.5", text));
+  }
+  return {text.substr(0, end), text.substr(end + 1)};
+}
+
+std::string pathStep(const std::string& name) {
+  const bool is_plain = !name.empty() && name.find_first_of(".\"=\\") == std::string::npos;
+  return is_plain ? name : document::quotedName(name);
+}
+
+std::string toString(const Edit& edit) {
+  return edit.path + "=" + edit.value;
+}
+
+bool operator==(const Edit& a, const Edit& b) {
+  return a.path == b.path && a.value == b.value;
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,54 @@
+/// The source of a scenario: its text with the edits, and the content of the files that it names.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "document/document.h"
+#include "document/edited_text.h"
+#include "emscape/scenario/antenna/antenna.h"
+#include "emscape/scenario/model/edit.h"
+#include "emscape/scenario/model/platform.h"
+#include "emscape/scenario/model/target.h"
+#include "scenario/file/refractivity_file.h"
+
+namespace emscape::scenario {
+
+/// Largest scenario file (bytes).
+constexpr std::size_t kMaxScenarioBytes = std::size_t{4} << 20;
+
+/// Content of the files that a scenario names, at the time of reading. An edited scenario reuses it: files
+/// are not read again.
+struct NamedFiles {
+  std::map<std::string, std::string> digests;  ///< ContentHash of a file's bytes, by its resolved name
+  std::map<std::string, std::shared_ptr<const std::vector<TrackPoint>>> tracks;  ///< valid tracks, by name
+  std::map<std::string, AntennaPtr> antennas;     ///< by the antenna's keys and values, written on one line
+  std::map<std::string, RcsTablePtr> rcs_tables;  ///< valid ones, by resolved name
+  std::map<std::string, std::shared_ptr<const RefractivityFile>>
+      refractivity;                        ///< by name and sounding's time
+  document::DocumentNodePtr terrain_node;  ///< null without terrain
+  std::string terrain_digest;              ///< names and sizes of the elevation files
+};
+
+/// An applied edit.
+struct MadeEdit {
+  Edit edit;
+  bool moves_paths = false;  ///< the same path may refer to another value afterwards, because a name changed
+                             ///< or an item was removed
+};
+
+/// Immutable; shared by all copies of a scenario.
+struct ScenarioSource {
+  document::EditedText text;
+  document::DocumentNodePtr root;  ///< null if the text could not be read
+  std::vector<MadeEdit> edits;     ///< since the file was read, without superseded ones
+  NamedFiles files;
+};
+
+/// Changes text, root and edits.
+/// @throws Error (bad_input) whose location is the edit itself; the source is then unchanged
+void applyEdit(ScenarioSource& source, const Edit& edit);
+
+}  // namespace emscape::scenario

@@ -1,0 +1,135 @@
+#include "emscape/scenario/model/clock.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <limits>
+
+#include "base/text/quantity_text.h"
+#include "base/text/utc.h"
+#include "emscape/base/error.h"
+
+namespace emscape::scenario {
+
+namespace {
+
+constexpr double kMaxTimes = 1e7;
+
+double secondsOf(const std::string& text, const std::string& whole) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("times '{}': '{}' is not a number of seconds; write BEGIN:END:STEP, BEGIN:END or T",
+                    whole, text));
+  }
+  return value;
+}
+
+/// The double that is nearest to a decimal number of 12 digits, so that a third step of 0.1 is 0.3 and not
+/// 0.30000000000000004; the value itself if they differ by more than its rounding errors.
+/// @param largest  largest absolute value of the sequence; the 12 digits begin with its first
+double nearestDecimal(double value, double largest) {
+  constexpr int kDigits = 12;
+  // Powers of ten up to this one are exact.
+  constexpr double kMaxScale = 1e22;
+  const double scale = std::pow(10, kDigits - 1 - std::floor(std::log10(largest)));
+  if (!(scale <= kMaxScale)) return value;
+  const double decimal = std::round(value * scale) / scale + 0.0;  // not -0
+  // The errors of step, product and begin, each of half a unit of the last place, and of their sum.
+  const double error = 4 * std::numeric_limits<double>::epsilon() * largest;
+  return std::abs(decimal - value) <= error ? decimal : value;
+}
+
+/// As of the years 0001 to 9999, which parseUtc_ms() reads.
+constexpr const char* kFirstUtc = "0001-01-01T00:00:00.000Z";
+constexpr const char* kLastUtc = "9999-12-31T23:59:59.999Z";
+
+/// Why a time cannot be used; empty: it can.
+std::string timeFault(const Clock& clock, double t_s, double limit_s) {
+  if (!(std::abs(t_s) <= limit_s)) {
+    constexpr int kDigits = 13;  // limits are shown in full
+    return fmt::format("{} s is outside the allowed range {}", t_s,
+                       rangeText(-limit_s, limit_s, "s", kDigits));
+  }
+  if (!clock.epoch_utc.empty() && utcAt(clock, t_s).empty()) {
+    return fmt::format("{} s after the epoch, {}, is outside the allowed range {} to {}", t_s,
+                       clock.epoch_utc, kFirstUtc, kLastUtc);
+  }
+  return "";
+}
+
+void requireTime(const Clock& clock, double t_s, double limit_s) {
+  const std::string fault = timeFault(clock, t_s, limit_s);
+  if (!fault.empty()) throw Error(ErrorCode::usage, "time " + fault);
+}
+
+}  // namespace
+
+void requireTime(const Clock& clock, double t_s) {
+  requireTime(clock, t_s, kMaxTime_s);
+}
+
+std::vector<double> timesOf(double begin_s, double end_s, double step_s, double limit_s) {
+  requireTime({}, begin_s, limit_s);
+  requireTime({}, end_s, limit_s);
+  if (!(step_s > 0) || !std::isfinite(step_s) || end_s < begin_s) {
+    throw Error(ErrorCode::usage,
+                fmt::format("times from {} s to {} s in steps of {} s: the end must not be before "
+                            "the beginning and the step must be above 0 s",
+                            begin_s, end_s, step_s));
+  }
+  // A step that reaches the end within rounding includes it.
+  const double steps = std::floor((end_s - begin_s) / step_s * (1 + 1e-12) + 1e-9);
+  if (steps >= kMaxTimes) {
+    throw Error(ErrorCode::usage,
+                fmt::format("{:.9g} times are more than the allowed {}", steps + 1, kMaxTimes));
+  }
+  const double largest_s = std::max(std::abs(begin_s), std::abs(end_s));
+  std::vector<double> times(static_cast<std::size_t>(steps) + 1);
+  for (std::size_t i = 0; i < times.size(); ++i)
+    times[i] = nearestDecimal(begin_s + static_cast<double>(i) * step_s, largest_s);
+  return times;
+}
+
+std::vector<double> timesOf(const Clock& clock) {
+  return timesOf(0, clock.duration_s, clock.step_s);
+}
+
+std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s) {
+  std::vector<double> values;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(':', begin), text.size());
+    values.push_back(secondsOf(text.substr(begin, end - begin), text));
+    begin = end + 1;
+  }
+  if (values.size() > 3) {
+    throw Error(ErrorCode::usage, fmt::format("times '{}': write BEGIN:END:STEP, BEGIN:END or T", text));
+  }
+  for (std::size_t i = 0; i < std::min<std::size_t>(values.size(), 2); ++i) {
+    const std::string fault = timeFault(clock, values[i], limit_s);
+    if (!fault.empty()) throw Error(ErrorCode::usage, fmt::format("times '{}': {}", text, fault));
+  }
+  if (values.size() == 1) return {values[0]};
+  return timesOf(values[0], values[1], values.size() == 3 ? values[2] : clock.step_s, limit_s);
+}
+
+std::string utcAt(const Clock& clock, double t_s) {
+  if (clock.epoch_utc.empty()) return "";
+  const auto epoch_ms = parseUtc_ms(clock.epoch_utc);
+  if (!epoch_ms) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("epoch '{}' is not a UTC time such as 2026-06-01T06:00:00Z", clock.epoch_utc));
+  }
+  if (!(std::abs(t_s) <= kMaxTime_s)) return "";
+  static const std::int64_t first_ms = parseUtc_ms(kFirstUtc).value(),
+                            last_ms = parseUtc_ms(kLastUtc).value();
+  const std::int64_t time_ms = *epoch_ms + std::llround(t_s * 1000);
+  return time_ms < first_ms || time_ms > last_ms ? "" : utcText(time_ms);
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,180 @@
+#include "emscape/scenario/model/snapshot.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/base/units.h"
+#include "scenario/scan/scan_sweep.h"
+
+namespace emscape::scenario {
+
+namespace {
+
+constexpr double kGroundTolerance_m = 1e-3;
+
+std::string whereAndWhen(const Platform& platform, const SitePosition& at, double t_s) {
+  return fmt::format("platform '{}' at t = {} s ({:.6f}, {:.6f} deg)", platform.name, t_s, at.latitude_deg,
+                     at.longitude_deg);
+}
+
+/// Ground (m above mean sea level) below a platform: 0 without terrain, NaN where the terrain is missing.
+double groundHeight_m(const Scenario& scenario, const Terrain* terrain, const SitePosition& at) {
+  if (!scenario.terrain) return 0;
+  return terrain == nullptr ? std::nan("") : terrain->heightMsl_m(at.latitude_deg, at.longitude_deg);
+}
+
+PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Platform& platform,
+                      double t_s) {
+  const TrackPoint point = pointAt(platform, t_s);
+  const SitePosition& at = point.position;
+  const double undulation_m = geoidUndulation_m(at.latitude_deg, at.longitude_deg);
+  const double ground_m = groundHeight_m(scenario, terrain, at);
+  PlatformState state;
+  if (at.height_agl_m) {
+    if (std::isnan(ground_m)) {
+      throw Error(
+          ErrorCode::bad_input, platform.location,
+          fmt::format("{}: its height is given above ground, but {}", whereAndWhen(platform, at, t_s),
+                      terrain == nullptr ? "the terrain was not loaded"
+                                         : "the terrain is missing there (a void, or outside the files)"));
+    }
+    state.height_msl_m = ground_m + *at.height_agl_m;
+  } else {
+    state.height_msl_m = at.height_msl_m ? *at.height_msl_m : *at.height_ellipsoid_m - undulation_m;
+  }
+  if (ground_m - state.height_msl_m > kGroundTolerance_m) {
+    throw Error(
+        ErrorCode::bad_input, platform.location,
+        fmt::format("{} is {:.1f} m below {}: it is at {:.1f} m, the ground at {:.1f} m above mean sea level",
+                    whereAndWhen(platform, at, t_s), ground_m - state.height_msl_m,
+                    scenario.terrain ? "ground" : "the smooth earth in place of the missing terrain",
+                    state.height_msl_m, ground_m));
+  }
+  state.position = {at.latitude_deg, wrapLongitude_deg(at.longitude_deg), state.height_msl_m + undulation_m};
+  state.attitude = {point.heading_deg.value_or(0), point.pitch_deg.value_or(0), point.roll_deg.value_or(0)};
+  return state;
+}
+
+/// Rotates an orthonormal pair of vectors in their plane: a towards b.
+void turn(Vec3d& a, Vec3d& b, double angle_deg) {
+  const double c = std::cos(degToRad(angle_deg)), s = std::sin(degToRad(angle_deg));
+  const Vec3d turned_a = a * c + b * s;
+  b = b * c - a * s;
+  a = turned_a;
+}
+
+void aim(BeamPose& pose, double azimuth_deg, double elevation_deg) {
+  turn(pose.forward, pose.right, azimuth_deg);
+  turn(pose.forward, pose.up, elevation_deg);
+}
+
+bool isArray(const AntennaPtr& antenna) {
+  return antenna && antenna->is_array;
+}
+
+BeamPose beamPose(BeamPose pose, const AntennaPtr& antenna, const ScanSpec& scan, double t_s) {
+  const BeamDirection beam = beamAt(scan, t_s);
+  if (!beam.electronic) {
+    aim(pose, beam.azimuth_deg, beam.elevation_deg);
+    return pose;
+  }
+  aim(pose, scan.azimuth_deg, scan.elevation_deg);
+  if (isArray(antenna)) {
+    const double azimuth_rad = degToRad(beam.azimuth_deg), elevation_rad = degToRad(beam.elevation_deg);
+    pose.steer_u = std::sin(azimuth_rad) * std::cos(elevation_rad);
+    pose.steer_v = std::sin(elevation_rad);
+  } else {
+    aim(pose, beam.azimuth_deg, beam.elevation_deg);
+  }
+  return pose;
+}
+
+BeamPose mountPose(BeamPose pose, const Emitter& emitter) {
+  const ScanSpec& scan = emitter.scan;
+  if (isSteered(emitter)) {
+    aim(pose, scan.azimuth_deg, scan.elevation_deg);
+  } else if (scan.kind == ScanKind::sector || scan.kind == ScanKind::raster) {
+    aim(pose, scan.azimuth_deg, 0);
+  }
+  return pose;
+}
+
+/// True at t_s, or at some time of the duration that begins then.
+bool isActive(const Emitter& emitter, double t_s, double duration_s) {
+  if (emitter.active_s.empty()) return true;
+  if (duration_s > 0) return activeTime_s(emitter, t_s, duration_s) > 0;
+  return std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [t_s](const TimeInterval& interval) {
+    return t_s >= interval.begin_s && t_s < interval.end_s;
+  });
+}
+
+}  // namespace
+
+BeamPose aimed(BeamPose pose, double azimuth_deg, double elevation_deg) {
+  aim(pose, azimuth_deg, elevation_deg);
+  return pose;
+}
+
+BeamPose platformAxes(const Attitude& attitude) {
+  // North, east, up, turned by yaw, then pitch, then roll.
+  BeamPose pose;
+  pose.forward = {0, 1, 0};
+  pose.right = {1, 0, 0};
+  pose.up = {0, 0, 1};
+  aim(pose, attitude.heading_deg, attitude.pitch_deg);
+  turn(pose.up, pose.right, attitude.roll_deg);
+  return pose;
+}
+
+bool isSteered(const Emitter& emitter) {
+  return isArray(emitter.antenna) &&
+         (emitter.scan.kind == ScanKind::dwell_list || emitter.scan.kind == ScanKind::fixed);
+}
+
+namespace {
+
+/// @param interval  in which emitters are active
+Snapshot snapshotOf(const std::shared_ptr<const Scenario>& scenario, const IntervalSpec& interval,
+                    const Terrain* terrain, double t_s) {
+  requireTime(scenario->clock, t_s);
+  Snapshot snapshot;
+  snapshot.time_s = t_s;
+  snapshot.time_utc = utcAt(scenario->clock, t_s);
+  snapshot.scenario = scenario;
+  for (const Platform& platform : scenario->platforms) {
+    snapshot.platforms.push_back(stateAt(*scenario, terrain, platform, t_s));
+  }
+  for (const Emitter& emitter : scenario->emitters) {
+    const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(emitter.platform)];
+    EmitterState state;
+    state.active = isActive(emitter, t_s, intervalDuration_s(interval, emitter.scan, scenario->clock));
+    state.position = carrier.position;
+    state.height_msl_m = carrier.height_msl_m;
+    const BeamPose axes = platformAxes(carrier.attitude);
+    state.beam = beamPose(axes, emitter.antenna, emitter.scan, t_s);
+    state.mount = mountPose(axes, emitter);
+    snapshot.emitters.push_back(state);
+  }
+  for (const PlacedReceiver& receiver : scenario->placed_receivers) {
+    const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(receiver.platform)];
+    snapshot.receivers.push_back(
+        {carrier.position, carrier.height_msl_m,
+         beamPose(platformAxes(carrier.attitude), receiver.antenna, receiver.scan, t_s)});
+  }
+  return snapshot;
+}
+
+}  // namespace
+
+Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s) {
+  return snapshotOf(scenario, scenario->output.interval, terrain, t_s);
+}
+
+Snapshot instantAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s) {
+  return snapshotOf(scenario, {}, terrain, t_s);
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,36 @@
+/// A map as a picture: colours over the shaded ground, with legend, axes and emitters.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emscape/render/annotate/overlay.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "emscape/study/maps/map.h"
+
+namespace emscape::study {
+
+/// An emitter on the map.
+struct MapMarker {
+  double latitude_deg = 0, longitude_deg = 0;
+  std::string label;
+  render::MarkerKind kind = render::MarkerKind::platform;
+};
+
+struct MapPictureOptions {
+  int width = 1200;  ///< pixels; the height follows from the map
+  std::string title, subtitle;
+  std::vector<MapMarker> markers;
+  std::vector<float> ground_msl_m;  ///< of the map's pixels, for shading; empty: none
+};
+
+/// The active emitters of an instant.
+std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot);
+
+/// Heights of the ground below the pixels (m); NaN where there is none.
+std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrain);
+
+render::Image8 drawMap(const MapGrid& grid, const Map& map, const MapPictureOptions& options);
+
+}  // namespace emscape::study
