@@ -95,7 +95,7 @@ TEST(Bench, CoverageTimesTheFirstHeightAndEachFurtherOne) {
   }
 }
 
-TEST(Bench, FieldHasTheKeysThatOthersRelyOn) {
+TEST(Bench, JsonOfFieldHasContractKeys) {
   const ProgramResult result =
       run({"bench", "field", shippedScenario("quick.yaml"), "--repeats", "1", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -110,7 +110,7 @@ TEST(Bench, FieldHasTheKeysThatOthersRelyOn) {
   EXPECT_GT(bench.at("voxels_per_s"), 0.0);
 }
 
-TEST(Bench, RenderHasTheKeysThatOthersRelyOn) {
+TEST(Bench, JsonOfRenderHasContractKeys) {
   const json result = bench({"render", shippedScenario("quick.yaml"), "--size", "64x48", "--frames", "3"});
   EXPECT_EQ(result.at("device"), deviceName());
   EXPECT_EQ(result.at("size"), json({64, 48}));
@@ -127,7 +127,7 @@ TEST(Bench, RenderHasTheKeysThatOthersRelyOn) {
   EXPECT_EQ(result.at("skip_empty"), true);
 }
 
-TEST(Bench, TheColorsAreThoseOfTheShippedFunctionUnlessOthersAreGiven) {
+TEST(Bench, ColorsDefaultToShippedFunction) {
   Arguments arguments{"render", shippedScenario("quick.yaml"), "--size", "16x12", "--frames", "1"};
   const json by_default = bench(arguments).at("transfer");
   arguments.insert(arguments.end(), {"--transfer", shippedScenario("transfer/paper.json")});
@@ -136,7 +136,7 @@ TEST(Bench, TheColorsAreThoseOfTheShippedFunctionUnlessOthersAreGiven) {
   EXPECT_NE(bench(arguments).at("transfer"), by_default);
 }
 
-TEST(Bench, SamplesAreThoseOfFullRaysWhateverIsSkipped) {
+TEST(Bench, SamplesAreCountedAlongFullRays) {
   const TemporaryFolder folder;
   writeFile(folder / "ball.dat", ballDat(20));
   // Straight down, so that every ray that meets the cube crosses 20 voxels: 29 positions 0.7 voxels apart.
@@ -161,7 +161,7 @@ TEST(Bench, RenderWritesThePictureThatItDrew) {
   EXPECT_EQ(folder.files(), std::vector<std::string>{"quick.png"});
 }
 
-TEST(Bench, ReconstructionHasTheKeysThatOthersRelyOn) {
+TEST(Bench, JsonOfReconstructionHasContractKeys) {
   const json result = bench({"reconstruction", shippedScenario("quick.yaml"), "--size", "65x47", "--frames",
                              "2", "--mode", "mida"});
   EXPECT_EQ(result.at("device"), deviceName());
@@ -226,7 +226,7 @@ TEST(Bench, VolumesOfEveryKindOfScanAreRead) {
   }
 }
 
-TEST(Bench, AScanOfTheSizeOfTheEngineIsReadAsItLies) {
+TEST(Bench, ScanOfEngineSizeIsRead) {
   const TemporaryFolder folder;
   std::string bytes(256 * 256 * 110, '\0');
   for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * i % 251);
@@ -237,7 +237,7 @@ TEST(Bench, AScanOfTheSizeOfTheEngineIsReadAsItLies) {
     EXPECT_EQ(pattern.at("error").at("max")[2], 0);  // no blue
 }
 
-TEST(Bench, TheTableSaysOfEachPatternWhetherItWasRestored) {
+TEST(Bench, TableStatesRestorationOfEachPattern) {
   const ProgramResult result =
       run({"bench", "reconstruction", shippedScenario("quick.yaml"), "--size", "32x24", "--frames", "1"});
   EXPECT_EQ(result.status, 0) << result.err;
@@ -245,7 +245,7 @@ TEST(Bench, TheTableSaysOfEachPatternWhetherItWasRestored) {
   EXPECT_THAT(result.out, HasSubstr("equal"));
 }
 
-TEST(Bench, WhatCannotBeMeasuredIsToldAndNothingIsPrinted) {
+TEST(Bench, ImpossibleMeasurementIsAnErrorWithoutOutput) {
   const TemporaryFolder folder;
   writeFile(folder / "short.dat", ballDat(8).substr(0, 500));
   writeFile(folder / "nameless.raw", "abc");

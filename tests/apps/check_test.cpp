@@ -55,7 +55,7 @@ TEST(Check, FailsWithStatus5AndTheLineOfTheWorstCase) {
   EXPECT_EQ(report["datasets"][0]["pass"], false);
 }
 
-TEST(Check, DoesNotPassWhereNothingCouldBeChecked) {
+TEST(Check, FailsWithoutAnyCheck) {
   const TemporaryFolder folder;
   put(folder, "pe/ntia_lfmf_check.csv", "");
   const ProgramResult result = run({"check", folder.path().string()});
@@ -63,7 +63,7 @@ TEST(Check, DoesNotPassWhereNothingCouldBeChecked) {
   EXPECT_THAT(result.out, HasSubstr("not checked: no model answers to it"));
 }
 
-TEST(Check, TellsFileAndLineOfAMalformedTable) {
+TEST(Check, NamesFileAndLineOfMalformedTable) {
   const TemporaryFolder folder;
   put(folder, "geoid/check_points.csv", "lat_deg,lon_deg_east,N_m\n38,269,-31.6\n39,x,-30\n");
   const ProgramResult result = run({"check", folder.path().string(), "--json"});

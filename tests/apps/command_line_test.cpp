@@ -41,7 +41,7 @@ TEST(CommandLine, NumbersAreFinite) {
   }
 }
 
-TEST(CommandLine, ZerosBeforeAWholeNumberMeanNothing) {
+TEST(CommandLine, LeadingZerosOfWholeNumbersAreIgnored) {
   for (const std::string frames : {"010", "008"}) {
     const ProgramResult result = run({"bench", "render", shippedScenario("quick.yaml"), "--size", "16x16",
                                       "--frames", frames, "--json", "--quiet"});
@@ -66,7 +66,7 @@ TEST(CommandLine, UnexpectedWordsAreNamedInTheirOrder) {
               StartsWith("emscape: error: unexpected arguments '--set', 'a=1'\n"));
 }
 
-TEST(CommandLine, RefusedValuesAreToldWithWhatIsAllowed) {
+TEST(CommandLine, RefusedValuesAreReportedWithAllowedOnes) {
   const auto errorOf = [](const Arguments& more) {
     Arguments arguments{"render", shippedScenario("quick.yaml"), "-o", "out.png"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -121,7 +121,7 @@ TEST(CommandLine, AnOptionWithoutItsValueIsNamed) {
   EXPECT_THAT(errorOf({"--resume", "0"}), HasSubstr("unexpected argument '0'\n"));
 }
 
-TEST(CommandLine, AnEmptyValueIsRefusedAndNotTakenAsNotGiven) {
+TEST(CommandLine, EmptyValueIsRefused) {
   const TemporaryFolder folder;
   const std::string scenario = shippedScenario("quick.yaml"), out = folder / "out";
   const std::vector<std::pair<Arguments, std::string>> refused{
@@ -146,7 +146,7 @@ TEST(CommandLine, AnEmptyValueIsRefusedAndNotTakenAsNotGiven) {
   EXPECT_TRUE(folder.files().empty());
 }
 
-TEST(CommandLine, ValuesThatAreTooManyAreToldWithTheirNumber) {
+TEST(CommandLine, ExcessValuesAreReportedWithTheirNumber) {
   const std::string scenario = shippedScenario("quick.yaml");
   EXPECT_THAT(run({"simulate", scenario, "-o", "a", "-o", "b"}).err,
               StartsWith("emscape: error: --output takes 1 value, not 2\n"));
@@ -193,7 +193,7 @@ TEST(CommandLine, AResultThatCannotBeWrittenIsAnError) {
   EXPECT_THAT(readFile(folder / "err"), HasSubstr("cannot write the result: No space left on device"));
 }
 
-TEST(CommandLine, FaultsThatNeedNoFieldAreToldBeforeOneIsComputed) {
+TEST(CommandLine, ErrorsWithoutAFieldPrecedeComputation) {
   EXPECT_THAT(run({"explode"}).err, StartsWith("emscape: error: there is no subcommand 'explode'"));
   EXPECT_THAT(run({"bench", "explode"}).err, StartsWith("emscape: error: there is no subcommand 'explode'"));
   EXPECT_THAT(run({}).err, StartsWith("emscape: error: A subcommand is required"));
@@ -201,7 +201,7 @@ TEST(CommandLine, FaultsThatNeedNoFieldAreToldBeforeOneIsComputed) {
               StartsWith("emscape: error: x.gif: must end in .png or .mp4"));
 }
 
-TEST(CommandLine, WrongUsageIsToldOnStandardErrorWithStatus2) {
+TEST(CommandLine, UsageErrorIsOnStandardErrorWithStatus2) {
   const std::string quick = shippedScenario("quick.yaml");
   const TemporaryFolder folder;
   const std::vector<Arguments> wrong{
@@ -243,7 +243,7 @@ std::string whyNoGpu() {
   return line == std::string::npos ? "" : version.substr(line);
 }
 
-TEST(CommandLine, ADeviceThatCannotBeHadIsOneLineWithStatus4) {
+TEST(CommandLine, UnavailableDeviceIsOneLineWithStatus4) {
   if (whyNoGpu().empty()) GTEST_SKIP() << "there is a GPU";
   const TemporaryFolder folder;
   const std::string quick = shippedScenario("quick.yaml");
@@ -262,11 +262,11 @@ TEST(CommandLine, ADeviceThatCannotBeHadIsOneLineWithStatus4) {
   EXPECT_TRUE(folder.files().empty());
 }
 
-TEST(CommandLine, VersionSaysWhichGpuAnswersOrWhyNone) {
+TEST(CommandLine, VersionNamesGpuOrReasonWithoutOne) {
   EXPECT_THAT(run({"--version"}).out, HasSubstr("\nGPU: "));
 }
 
-TEST(CommandLine, AutoSaysOnceWhereItRunsAndQuietDoesNot) {
+TEST(CommandLine, AutoPrintsBackendOnceUnlessQuiet) {
   const TemporaryFolder folder;
   const Arguments arguments{"simulate", shippedScenario("quick.yaml"), "-o", folder / "a", "--times", "0"};
   const std::string said = run(arguments).err;
@@ -278,7 +278,7 @@ TEST(CommandLine, AutoSaysOnceWhereItRunsAndQuietDoesNot) {
   EXPECT_EQ(run(quiet).err, "");
 }
 
-TEST(CommandLine, AMissingInputIsToldWithItsName) {
+TEST(CommandLine, MissingInputIsNamed) {
   const TemporaryFolder folder;
   const std::string missing = folder / "missing.yaml";
   for (const Arguments& arguments :
@@ -293,7 +293,7 @@ TEST(CommandLine, AMissingInputIsToldWithItsName) {
   EXPECT_TRUE(folder.files().empty());
 }
 
-TEST(CommandLine, AnIsoValueThatNoVoxelHasIsToldWithTheRange) {
+TEST(CommandLine, UnreachedIsoValueIsReportedWithRange) {
   const TemporaryFolder folder;
   const ProgramResult result = run({"render", shippedScenario("quick.yaml"), "-o", folder / "x.png", "--size",
                                     "64x48", "--mode", "iso", "--iso-value", "999"});
@@ -302,7 +302,7 @@ TEST(CommandLine, AnIsoValueThatNoVoxelHasIsToldWithTheRange) {
   EXPECT_TRUE(folder.files().empty());
 }
 
-TEST(CommandLine, JsonIsAloneOnStandardOutput) {
+TEST(CommandLine, JsonIsTheOnlyStandardOutput) {
   const TemporaryFolder folder;
   const std::string quick = shippedScenario("quick.yaml");
   const std::vector<Arguments> commands{
@@ -321,13 +321,13 @@ TEST(CommandLine, JsonIsAloneOnStandardOutput) {
   }
 }
 
-TEST(CommandLine, GlobalOptionsMayStandBeforeTheSubcommand) {
+TEST(CommandLine, GlobalOptionsMayPrecedeTheSubcommand) {
   const ProgramResult result = run({"--json", "validate", shippedScenario("quick.yaml")});
   EXPECT_EQ(result.status, 0);
   EXPECT_EQ(json::parse(result.out).at("ok"), true);
 }
 
-TEST(CommandLine, AnErrorForWantOfTerrainNamesTheOption) {
+TEST(CommandLine, ErrorOfMissingTerrainNamesTheOption) {
   const TemporaryFolder folder;
   std::string text = readFile(shippedScenario("jacksboro.yaml"));
   for (const char* name : {"data/jacksboro.tif", "data/helicopter.csv", "data/sector_450mhz.msi"}) {

@@ -63,7 +63,7 @@ TEST(Compare, TwoRunsWriteTheSameBytes) {
     EXPECT_EQ(readFile(first / file), readFile(second / file)) << file;
 }
 
-TEST(Compare, RefusesWhatItCannotDo) {
+TEST(Compare, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const Arguments& more, int status) {
     const ProgramResult result = run(compare(folder / "out", more));
@@ -164,7 +164,7 @@ TEST(Compare, FoldersWhoseTimesDifferByARoundingErrorMatch) {
   }
 }
 
-TEST(Compare, RefusesFoldersThatDoNotFit) {
+TEST(Compare, RefusesIncompatibleFolders) {
   const TemporaryFolder folder;
   const auto with = [&](const std::string& name, const Arguments& more) { cover(folder / name, more); };
   with("a", {});

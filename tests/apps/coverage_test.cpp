@@ -95,7 +95,7 @@ TEST(Coverage, RemovesTheOutputsOfAnEarlierRun) {
       << "names of emitters beside values of another quantity";
 }
 
-TEST(Coverage, RefusesWhatItCannotDo) {
+TEST(Coverage, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const Arguments& more, int status) {
     const ProgramResult result = run(coverage(folder, more));
@@ -117,7 +117,7 @@ TEST(Coverage, RefusesWhatItCannotDo) {
   EXPECT_TRUE(folder.files().empty()) << "nothing is left behind";
 }
 
-TEST(Coverage, SaysThatTheDatabaseOfCoordinateSystemsIsMissing) {
+TEST(Coverage, ReportsMissingDatabaseOfCoordinateSystems) {
   const TemporaryFolder folder;
   const ProgramResult result = run(coverage(folder, {}), "PROJ_DATA=/nonexistent PROJ_LIB=/nonexistent");
   EXPECT_EQ(result.status, 1) << result.out;

@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 const char* const kSurfaceBased = "height_msl_m,m_units\n0,330\n200,353.6\n300,313.6\n";
 
-TEST(Info, EndsAtTheFirstSignalWhateverItReads) {
+TEST(Info, EndsAtFirstSignal) {
   const TemporaryFolder folder;
   const std::string pipe = folder / "never_written.tif";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -55,7 +55,7 @@ TEST(Info, NamesAListOnceAndKeepsEachTextOnALine) {
   EXPECT_EQ(out.find("emitters:"), out.rfind("emitters:"));
 }
 
-TEST(InfoOfRefractivity, ListsWhatAProfileTraps) {
+TEST(InfoOfRefractivity, ListsDuctsOfAProfile) {
   const TemporaryFolder folder;
   const std::string file = folder.write("air.csv", kSurfaceBased);
   const ProgramResult result = run({"info", file, "--json", "--plot", folder / "air.png"});
@@ -71,13 +71,13 @@ TEST(InfoOfRefractivity, ListsWhatAProfileTraps) {
   EXPECT_THAT(run({"info", file}).out, HasSubstr("kind: surface-based"));
 }
 
-TEST(InfoOfRefractivity, IsThatOfEveryFileWithItsHeights) {
+TEST(InfoOfRefractivity, ListsEveryFileWithItsHeights) {
   const TemporaryFolder folder;
   EXPECT_THAT(run({"info", folder.write("air.csv", "height_msl_m,M_units\n0,330\n")}).err,
               HasSubstr("air.csv:1:14: unknown column 'M_units'; the header has height_msl_m and m_units"));
 }
 
-TEST(Info, SaysWhichTablesItDescribes) {
+TEST(Info, NamesDescribedTables) {
   const TemporaryFolder folder;
   const ProgramResult track =
       run({"info", folder.write("track.csv", "t_s,latitude_deg,longitude_deg,height_msl_m\n0,50,6,100\n")});

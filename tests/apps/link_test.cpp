@@ -20,7 +20,7 @@ Arguments links(const Arguments& more) {
   return arguments;
 }
 
-TEST(Link, HasTheKeysThatOthersRelyOn) {
+TEST(Link, JsonHasContractKeys) {
   const ProgramResult result = run(links({"--json"}));
   ASSERT_EQ(result.status, 0) << result.err;
   const json report = json::parse(result.out);
@@ -67,7 +67,7 @@ TEST(Link, ANameMayContainACommaAndIsTakenOnce) {
   EXPECT_THAT(unknown.err, HasSubstr("--emitter: no emitter 'b' in"));
 }
 
-TEST(Link, ARowIsWhatProfileSaysOfThePath) {
+TEST(Link, RowEqualsProfileOfThePath) {
   const ProgramResult result = run(links({"--json", "--emitter", "jammer", "--receiver", "handset"}));
   ASSERT_EQ(result.status, 0) << result.err;
   const json report = json::parse(result.out);

@@ -57,7 +57,7 @@ int stepsThatCanBeRead(const std::string& series) {
   return result.status == 0 ? json::parse(result.out).at("frames").get<int>() : 0;
 }
 
-TEST(CudaLostDevice, InSimulateLeavesWholeStepsAndTheCpuGoesOn) {
+TEST(CudaLostDevice, SimulateLeavesWholeStepsAndCpuContinues) {
   EMSCAPE_NEEDS_GPU();
   const TemporaryFolder folder;
   constexpr int kSteps = 301;

@@ -187,7 +187,7 @@ TEST(Licences, AreABillOfMaterialsWithoutATime) {
   EXPECT_EQ(bill, json::parse(shareFile("emscape.cdx.json")));
 }
 
-TEST(Version, SaysWhatTheBuildIs) {
+TEST(Version, DescribesTheBuild) {
   EXPECT_THAT(run({"--version"}).out,
               testing::MatchesRegex(
                   "emscape [0-9]+\\.[0-9]+\\.[0-9]+\nBuild: [^\n]+\nInstruction sets: [^\n]+\nGPU: .*\n"));

@@ -21,7 +21,7 @@ Arguments simulate(const std::string& folder, const Arguments& more = {}) {
   return arguments;
 }
 
-TEST(MeshSeries, IsComputedDescribedAndDrawnTheSameTwice) {
+TEST(MeshSeries, IsReproducible) {
   const TemporaryFolder folder;
   for (const char* name : {"a", "b"}) {
     const ProgramResult result = run(simulate(folder / name, {"--mesh", "terrain:9,4"}));
@@ -80,7 +80,7 @@ TEST(MeshSeries, IsComputedDescribedAndDrawnTheSameTwice) {
   EXPECT_FALSE(std::filesystem::exists(folder / "no.png"));
 }
 
-TEST(MeshSeries, AScenarioIsDrawnAsItsFilesAre) {
+TEST(MeshSeries, ScenarioIsDrawnLikeItsFiles) {
   const TemporaryFolder folder;
   const Arguments mesh{"--mesh", "terrain:9,4"}, picture{"--size", "320x240", "--quiet", "--json"};
   ASSERT_EQ(run(simulate(folder / "a", mesh)).status, 0);

@@ -179,7 +179,7 @@ TEST_F(Outputs, OfMorePixelsThanTheMemoryHoldsAreRefusedAtOnce) {
   EXPECT_THAT(result.err, HasSubstr("a smaller --size takes less"));
 }
 
-TEST_F(Outputs, AreWholeAtTheLimitOfProcessorTime) {
+TEST_F(Outputs, AreCompleteAtProcessorTimeLimit) {
   const ProgramResult result =
       run({"simulate", longScenario(folder_, 100000), "-o", folder_ / "s"}, "ulimit -S -t 1;");
   EXPECT_EQ(result.status, 128 + SIGXCPU);

@@ -27,7 +27,7 @@ Arguments blockedPath(const Arguments& more = {}) {
   return arguments;
 }
 
-TEST(Profile, HasTheKeysThatOthersRelyOn) {
+TEST(Profile, JsonHasContractKeys) {
   const ProgramResult result = run(blockedPath({"--json", "--model", "diffraction,free_space"}));
   ASSERT_EQ(result.status, 0) << result.err;
   const json report = json::parse(result.out);
@@ -76,7 +76,7 @@ TEST(Profile, WithoutAnEpochATimeIsInSecondsAlone) {
   EXPECT_EQ(firstLine(text.erase(text.find(epoch), epoch.size())), "Path from 'radar' at t = 0 s, 3 GHz");
 }
 
-TEST(Profile, OfARadarTellsItsDetection) {
+TEST(Profile, RadarReportsDetection) {
   const ProgramResult result =
       run({"profile", jacksboro(), "--emitter", "search radar", "--to", "36.35,-84.25,900", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -96,7 +96,7 @@ TEST(Profile, DrawsPicturesOfEitherKind) {
   EXPECT_EQ(folder.files().size(), 2u);
 }
 
-TEST(Profile, RefusesWhatIsNoPathWithOneClearError) {
+TEST(Profile, RefusesInvalidPathsWithOneError) {
   struct Case {
     const char* emitter;
     const char* to;
@@ -129,7 +129,7 @@ TEST(Profile, RefusesPlotsOfOtherKindsAndUnknownModels) {
   EXPECT_EQ(run(blockedPath({"--model", "magic"})).status, 2);
 }
 
-TEST(BenchModels, HasTheKeysThatOthersRelyOn) {
+TEST(BenchModels, JsonHasContractKeys) {
   const ProgramResult result = run({"bench", "models", "--repeats", "1", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const json report = json::parse(result.out);

@@ -55,7 +55,7 @@ TEST(Realtime, GoesFromBusyToRestoreToIdleAtEveryStepAndSettlesExactly) {
   }
 }
 
-TEST(Realtime, AScenarioInWhichNothingChangesIsDrawnOnce) {
+TEST(Realtime, ConstantScenarioIsDrawnOnce) {
   const TemporaryFolder folder;
   std::string text = readFile(quick());
   const std::size_t scan = text.find("    scan:");
@@ -75,7 +75,7 @@ TEST(Realtime, PlaysVolumesFromFiles) {
   expectSettledPicturesAreExact(report);
 }
 
-TEST(Realtime, SaysEachFrameAndWhyItsPattern) {
+TEST(Realtime, PrintsEachFrameWithReasonOfItsPattern) {
   const ProgramResult result =
       run({"render", quick(), "--realtime", "--size", "64x48", "--rays", "columns", "--duration", "0.5"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -118,7 +118,7 @@ TEST(Realtime, CtrlCEndsIt) {
   EXPECT_EQ(program.wait().status, 130);
 }
 
-TEST(Realtime, WrongUsageIsTold) {
+TEST(Realtime, UsageErrorsAreReported) {
   const std::vector<std::pair<Arguments, std::string>> wrong{
       {{"render", quick(), "--realtime", "--orbit-rate", "5", "--camera",
         "lookat:eye_x_m=0,eye_y_m=-9000,eye_z_m=5000,target_x_m=0,target_y_m=0,target_z_m=0"},

@@ -25,7 +25,7 @@ json infoOf(const std::string& file) {
   return json::parse(result.out);
 }
 
-TEST(Simulate, WritesEveryFormatOfEveryStepAndNothingElse) {
+TEST(Simulate, WritesExactlyEveryFormatOfEveryStep) {
   const TemporaryFolder folder;
   const ProgramResult result =
       run({"simulate", quick(), "-o", folder / "s", "--format", "vdb,nvdb,vti,raw", "--times", "0:2:1",
@@ -50,7 +50,7 @@ TEST(Simulate, TakesItsScenarioAfterAListToo) {
   EXPECT_THAT(folder.files(), Contains("s/quick_0001.vdb"));
 }
 
-TEST(Simulate, EveryVolumeSaysTheRangeOfTheWholeSeries) {
+TEST(Simulate, EveryVolumeStatesRangeOfWholeSeries) {
   const TemporaryFolder folder;
   ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:4:2"}).status, 0);
   const json first = infoOf(folder / "s/quick_0001.vdb").at("volumes").at(0);
@@ -73,7 +73,7 @@ TEST(Simulate, RefusesAFolderThatHoldsASeries) {
   EXPECT_EQ(run(force).status, 0);
 }
 
-TEST(Simulate, ForceLeavesNothingOfTheSeriesBefore) {
+TEST(Simulate, ForceRemovesPreviousSeries) {
   const TemporaryFolder folder;
   ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:3:1"}).status, 0);
   writeFile(folder / "s/notes.txt", "mine");
@@ -82,7 +82,7 @@ TEST(Simulate, ForceLeavesNothingOfTheSeriesBefore) {
               ElementsAre("s/notes.txt", "s/quick_0001.vdb", "s/series.json", "s/series.steps"));
 }
 
-TEST(Simulate, ResumeRefusesOtherOptionsAndSaysWhich) {
+TEST(Simulate, ResumeRefusesOtherOptionsByName) {
   const TemporaryFolder folder;
   ASSERT_EQ(run({"simulate", quick(), "-o", folder / "s", "--times", "0:1:1"}).status, 0);
   const ProgramResult result = run({"simulate", quick(), "-o", folder / "s", "--times", "0:2:1", "--resume"});
@@ -130,7 +130,7 @@ TEST(Simulate, CtrlCLeavesWholeFilesAndStatus130) {
   EXPECT_EQ(infoOf(folder / "s/quick.pvd").at("steps"), infoOf(folder / "s/quick.pvd").at("times_s").size());
 }
 
-TEST(Simulate, AFullDiskIsOneErrorAndLeavesWhatWasFinished) {
+TEST(Simulate, FullDiskIsOneErrorAndKeepsFinishedFiles) {
   const TemporaryFolder folder;
   // Files may grow to 64 KiB: series.json fits, a volume does not.
   const ProgramResult result =
@@ -182,7 +182,7 @@ TEST(Simulate, ResumeRestoresAFileThatWasDeleted) {
   EXPECT_TRUE(readFile(folder / "s/quick_0003.vdb") == before);
 }
 
-TEST(Simulate, WithoutATerminalItSaysOnceWhatItDoesAndWhereItRuns) {
+TEST(Simulate, WithoutTerminalItPrintsWorkAndBackendOnce) {
   const TemporaryFolder folder;
   const ProgramResult result = run({"simulate", quick(), "-o", folder / "s"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -197,7 +197,7 @@ TEST(Simulate, WithoutATerminalItSaysOnceWhatItDoesAndWhereItRuns) {
   EXPECT_EQ(occurrences("\r"), 0);
 }
 
-TEST(Simulate, WarningsThatSayTheSameOfSeveralEmittersAreOneLine) {
+TEST(Simulate, EqualWarningsOfSeveralEmittersAreOneLine) {
   const TemporaryFolder folder;
   const ProgramResult result = run(
       {"simulate", shippedScenario("jacksboro.yaml"), "-o", folder / "s", "--times", "0", "--format", "raw"});
@@ -342,7 +342,7 @@ TEST(Render, AVideoThatDoesNotFitOnTheDiskIsAnErrorAndNoFile) {
   EXPECT_TRUE(folder.files().empty());
 }
 
-TEST(Render, RemovesWhatAKilledOneLeftOfItsOutput) {
+TEST(Render, RemovesTemporariesOfKilledProcess) {
   const TemporaryFolder folder;
   writeFile(folder / "p.png.part-999999999", "killed");
   writeFile(folder / "q.png.part-999999999", "not its own");

@@ -67,7 +67,7 @@ TEST(Study, ProcessesAndPartsGiveTheBytesOfOneProcess) {
   expectSameResults(folder, "one", "parts");
 }
 
-TEST(Study, AResumedStudyComputesWhatIsMissing) {
+TEST(Study, ResumedStudyComputesMissingVariants) {
   const TemporaryFolder folder;
   const std::string file = study(folder);
   compute({"study", file, "-o", folder / "whole"});
@@ -105,7 +105,7 @@ std::vector<pid_t> childrenOf(pid_t parent) {
   return children;
 }
 
-TEST(Study, AKilledProcessIsReplacedAndNothingIsLost) {
+TEST(Study, KilledProcessIsReplacedWithoutLoss) {
   const TemporaryFolder folder;
   const std::string file = study(folder, 150);
   compute({"study", file, "-o", folder / "whole"});
@@ -261,7 +261,7 @@ TEST(Study, AFullDiskEndsTheStudyAndItCanBeResumed) {
   expectSameResults(folder, "whole", "out");
 }
 
-TEST(Study, ThePlanSaysWhatItWouldDo) {
+TEST(Study, PlanListsWork) {
   const TemporaryFolder folder;
   const ProgramResult result = run({"study", study(folder), "--plan", "--json", "--quiet"});
   ASSERT_EQ(result.status, 0) << result.err;
@@ -276,7 +276,7 @@ TEST(Study, ThePlanSaysWhatItWouldDo) {
   EXPECT_EQ(folder.files(), std::vector<std::string>{"study.yaml"});
 }
 
-TEST(Study, SaysThatNoVariantHasAValueOfAMeasure) {
+TEST(Study, ReportsMeasureWithoutAnyValue) {
   const TemporaryFolder folder;
   const std::string file =
       folder.write("study.yaml", "schema_version: 1\nscenario: " + shippedScenario("jamming.yaml") + R"(
@@ -314,7 +314,7 @@ TEST(Study, SlurmScriptsRunTheParts) {
   EXPECT_FALSE(readFile(folder / "out dir/results.csv").empty());
 }
 
-TEST(Study, RefusesWhatItCannotDo) {
+TEST(Study, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const std::string file = study(folder);
   const auto errorOf = [&](const Arguments& more, int status) {

@@ -77,7 +77,7 @@ TEST(Vertical, ABlakeChartHasTheContourOfFreeSpace) {
   EXPECT_THAT(readFile(folder / "b.svg"), HasSubstr("<svg"));
 }
 
-TEST(Vertical, RefusesWhatItCannotDo) {
+TEST(Vertical, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const Arguments& more, int status) {
     const ProgramResult result = run(vertical(more));
@@ -116,7 +116,7 @@ TEST(Exposure, WritesFilesOfEachKindAndTheSameOnesAgain) {
     EXPECT_TRUE(report["together"].contains(key)) << key;
 }
 
-TEST(Exposure, RefusesWhatItCannotDo) {
+TEST(Exposure, RefusesInvalidOptions) {
   const TemporaryFolder folder;
   const auto errorOf = [&](const Arguments& more, int status) {
     Arguments arguments = more;

@@ -36,7 +36,7 @@ TEST_F(Validate, ShippedScenariosAreWithoutFault) {
   }
 }
 
-TEST_F(Validate, TellsWhatTheFieldTakes) {
+TEST_F(Validate, ReportsMemoryOfTheField) {
   const json work = json::parse(run({"validate", shippedScenario("quick.yaml"), "--json"}).out).at("work");
   EXPECT_EQ(work.at("steps"), 5);
   EXPECT_DOUBLE_EQ(work.at("step_mib"), 40 * 40 * 20 * 4 / 1048576.0);  // one channel
@@ -50,7 +50,7 @@ TEST_F(Validate, TellsWhatTheFieldTakes) {
             work.at("step_mib"));
 }
 
-TEST_F(Validate, TellsTheTimeToAnOrderOfMagnitude) {
+TEST_F(Validate, EstimatesTimeWithinAnOrderOfMagnitude) {
   const std::string scenario = shippedScenario("jacksboro.yaml");
   const auto workOf = [&](const std::vector<std::string>& more) {
     std::vector<std::string> words{"validate", scenario, "--json", "--threads", "1", "--set", "duration_s=0"};
@@ -88,7 +88,7 @@ TEST_F(Validate, RefusesAFieldThatDoesNotFitIntoTheMemory) {
                             "quick.yaml: error: the field of 4096 x 4096 x 2 voxels, .* needs up to "));
 }
 
-TEST_F(Validate, TellsPlaceAndSeverityOfEveryProblem) {
+TEST_F(Validate, ReportsLocationAndSeverityOfEveryProblem) {
   const std::string file = changed("power_w: 1000\n", "power_w: -1000\n    colour: red\n");
   const ProgramResult text = run({"validate", file});
   EXPECT_EQ(text.status, 3);
@@ -184,7 +184,7 @@ emitters:
   EXPECT_EQ(run({"validate", file, "--set", "platforms.ship.position.height_msl_m=10"}).status, 0);
 }
 
-TEST_F(Validate, TellsTheFaultOfEachPlatformOnceWithItsSteps) {
+TEST_F(Validate, ReportsErrorOfEachPlatformOnceWithItsSteps) {
   const std::string dem = shippedScenario("data/jacksboro.tif");
   writeFile(folder_ / "track.csv",
             "t_s,latitude_deg,longitude_deg,height_msl_m\n0,36.3,-84.2,3000\n4,36.3,-84.2,-100\n");

@@ -39,39 +39,39 @@ TEST(Backend, UnknownNameIsAUsageError) {
             "backend 'gpu' must be auto, cpu or cuda");
 }
 
-TEST(Backend, AutoTakesTheGpuThatAnswersAndSaysSo) {
+TEST(Backend, AutoTakesAvailableGpuAndReportsIt) {
   const ResolvedBackend choice = resolveBackend(Backend::automatic, someGpu());
   EXPECT_EQ(choice.backend, Backend::cuda);
   EXPECT_EQ(choice.device, "GPU of the test");
   EXPECT_EQ(choice.note, "running on the GPU: GPU of the test");
 }
 
-TEST(Backend, AutoFallsToTheCpuWithoutAGpuAndSaysWhy) {
+TEST(Backend, AutoWithoutGpuTakesCpuAndReportsWhy) {
   const ResolvedBackend choice = resolveBackend(Backend::automatic, noGpu());
   EXPECT_EQ(choice.backend, Backend::cpu);
   EXPECT_EQ(choice.device, "cpu");
   EXPECT_EQ(choice.note, "running on the CPU: no GPU answers");
 }
 
-TEST(Backend, WhatIsAskedForIsTakenWithoutAWord) {
+TEST(Backend, RequestedBackendIsTakenSilently) {
   EXPECT_EQ(resolveBackend(Backend::cpu, someGpu()).backend, Backend::cpu);
   EXPECT_EQ(resolveBackend(Backend::cpu, someGpu()).note, "");
   EXPECT_EQ(resolveBackend(Backend::cuda, someGpu()).backend, Backend::cuda);
   EXPECT_EQ(resolveBackend(Backend::cuda, someGpu()).note, "");
 }
 
-TEST(Backend, DemandedCudaThatCannotBeHadIsADeviceError) {
+TEST(Backend, RequestedCudaWithoutGpuIsADeviceError) {
   EXPECT_EQ(test::errorOf([] { resolveBackend(Backend::cuda, noGpu()); }, ErrorCode::device),
             "backend cuda: no GPU answers");
 }
 
-TEST(Backend, TheMachinesOwnAnswerIsOneOfTheTwo) {
+TEST(Backend, BackendOfThisMachineIsCpuOrCuda) {
   const ResolvedBackend choice = resolveBackend(Backend::automatic);
   EXPECT_NE(choice.backend, Backend::automatic);
   EXPECT_THAT(choice.note, HasSubstr("running on the "));
 }
 
-TEST(Backend, WhatIsOpenedKnowsWhereItRunsAndTheUserIsToldOnce) {
+TEST(Backend, BackendIsReportedOnce) {
   std::vector<std::string> told;
   const auto tell = [&told](const std::string& line) { told.push_back(line); };
   const auto backendOf = [](const ResolvedBackend& choice) { return choice.backend; };
@@ -82,7 +82,7 @@ TEST(Backend, WhatIsOpenedKnowsWhereItRunsAndTheUserIsToldOnce) {
   EXPECT_EQ(told.size(), 1U);
 }
 
-TEST(Backend, CudaWhereAutoFindsTooLittleMemoryTheCpuIsTakenAndTheFiguresAreTold) {
+TEST(Backend, AutoWithTooLittleGpuMemoryTakesCpuAndReportsBytes) {
   if (!findDevice().usable) GTEST_SKIP() << findDevice().why_not;
   const auto open = [](const ResolvedBackend& choice) {
     if (choice.backend == Backend::cuda) throw Error(ErrorCode::device, "GPU: 2 MiB needed, 1 MiB free");

@@ -23,7 +23,7 @@ std::string messageOf(const std::function<void()>& work) {
   return test::errorOf(work, ErrorCode::device);
 }
 
-TEST(CudaMemory, GivesBackWhatWasCopiedIntoIt) {
+TEST(CudaMemory, RoundTripIsExact) {
   EMSCAPE_NEEDS_GPU();
   std::vector<int> numbers(1000);
   std::iota(numbers.begin(), numbers.end(), -7);
@@ -50,7 +50,7 @@ TEST(CudaMemory, AValueIsReadBackWithoutWaiting) {
   }
 }
 
-TEST(CudaMemory, TooMuchIsToldWithTheSize) {
+TEST(CudaMemory, ExcessiveSizeIsNamed) {
   EMSCAPE_NEEDS_GPU();
   const std::size_t bytes = std::size_t{1} << 50;
   EXPECT_THAT(messageOf([=] { Buffer<char> buffer(bytes); }),

@@ -9,13 +9,13 @@ TEST(SourceLocation, IsWrittenAsFileLineColumn) {
   EXPECT_EQ(toString(SourceLocation{"a.yaml", 3, 7}), "a.yaml:3:7");
 }
 
-TEST(SourceLocation, LeavesOutWhatIsUnknown) {
+TEST(SourceLocation, OmitsUnknownParts) {
   EXPECT_EQ(toString(SourceLocation{"a.yaml", 3, 0}), "a.yaml:3");
   EXPECT_EQ(toString(SourceLocation{"a.tif", 0, 0}), "a.tif");
   EXPECT_EQ(toString(SourceLocation{"a.tif", 0, 7}), "a.tif");
 }
 
-TEST(Error, StartsWithThePlace) {
+TEST(Error, StartsWithTheLocation) {
   const Error error(ErrorCode::bad_input, {"a.yaml", 3, 7}, "gain_dbi is 99");
   EXPECT_STREQ(error.what(), "a.yaml:3:7: gain_dbi is 99");
   EXPECT_EQ(error.message(), "gain_dbi is 99");
@@ -23,14 +23,14 @@ TEST(Error, StartsWithThePlace) {
   EXPECT_EQ(error.code(), ErrorCode::bad_input);
 }
 
-TEST(Error, WithoutAPlaceIsTheMessageAlone) {
+TEST(Error, WithoutLocationIsTheMessageOnly) {
   const Error error(ErrorCode::usage, "no such subcommand");
   EXPECT_STREQ(error.what(), "no such subcommand");
   EXPECT_STREQ(Error(ErrorCode::usage, SourceLocation{}, "no such subcommand").what(), "no such subcommand");
   EXPECT_TRUE(error.location().file.empty());
 }
 
-TEST(Error, QuotesWhatItFoundInClearLines) {
+TEST(Error, QuotesInputInReadableLines) {
   EXPECT_STREQ(Error(ErrorCode::usage, "size '1\x1b[2J\x7f'\nsecond\tline").what(),
                "size '1?[2J?'\nsecond?line");
   const std::string token(70000, 'x');

@@ -104,7 +104,7 @@ TEST(FastGeodesy, AtTheStationItselfDistanceIsZero) {
   }
 }
 
-TEST(FastGeodesy, StaysSaneFarBeyondItsRange) {
+TEST(FastGeodesy, StaysFiniteFarBeyondItsRange) {
   const FastGeodesy geodesy = fastGeodesy(30, 40);
   const FastInverse antipode = fastInverse(geodesy, surfacePoint(-30, -140).ecef_m);
   EXPECT_NEAR(antipode.distance_m, kPi * 6371e3, 0.02 * kPi * 6371e3);
@@ -134,7 +134,7 @@ TEST(FastGeodesy, EllipsoidPointsAreWithinTheirAccuracy) {
   }
 }
 
-TEST(FastGeodesy, RadiiAreThoseOfTheEllipsoid) {
+TEST(FastGeodesy, RadiiEqualEllipsoid) {
   const FastGeodesy equator = fastGeodesy(0, 0), pole = fastGeodesy(90, 0);
   EXPECT_NEAR(equator.radius_m(1, 0), 6378137.0, 1e-6);
   EXPECT_NEAR(equator.radius_m(0, 1), 6335439.327, 1e-3);

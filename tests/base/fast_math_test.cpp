@@ -83,7 +83,7 @@ TEST(FastLog2, IsExactAtPowersOfTwo) {
   for (int i = -126; i <= 127; ++i) EXPECT_EQ(fastLog2(std::ldexp(1.0f, i)), static_cast<float>(i));
 }
 
-TEST(FastLog2, BoundsWhatHasNoLogarithm) {
+TEST(FastLog2, IsBoundedWithoutALogarithm) {
   EXPECT_EQ(fastLog2(0.0f), -126.0f);
   EXPECT_EQ(fastLog2(-1.0f), -126.0f);
   EXPECT_EQ(fastLog2(1e-42f), -126.0f);

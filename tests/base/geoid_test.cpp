@@ -57,7 +57,7 @@ TEST(Geoid, WrapsInLongitude) {
   }
 }
 
-TEST(Geoid, HasOneValueAtEachPoleAndGoesOnAcrossIt) {
+TEST(Geoid, HasOneValueAtEachPoleAndContinuesAcrossIt) {
   for (double pole_deg : {-90.0, 90.0}) {
     const double undulation_m = geoidUndulation_m(pole_deg, 0);
     for (double longitude_deg = -180; longitude_deg <= 180; longitude_deg += 15) {
@@ -73,7 +73,7 @@ TEST(Geoid, AnswersNaNForNaN) {
   EXPECT_TRUE(std::isnan(geoidUndulation_m(0, std::nan(""))));
 }
 
-TEST(Geoid, IsTheSameFromManyThreads) {
+TEST(Geoid, IsEqualFromManyThreads) {
   const double expected_m = geoidUndulation_m(44.3, -71.2);
   std::vector<double> results_m(8);
   std::vector<std::thread> threads;

@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(Memory, RefusesWhatExceedsWhatIsAvailable) {
+TEST(Memory, RefusesMoreThanIsAvailable) {
   constexpr std::size_t kTooMuch = std::numeric_limits<std::size_t>::max() / 2;
   const auto available = availableMemory_bytes();
   if (!available) GTEST_SKIP() << "the system does not report its memory";

@@ -54,7 +54,7 @@ TEST(ParallelFor, DoesNotCutALoopOfOneGrain) {
   EXPECT_EQ(pieces, 1);
 }
 
-TEST(ParallelFor, HandsTheBodysExceptionToTheCaller) {
+TEST(ParallelFor, ExceptionOfTheBodyReachesTheCaller) {
   const auto failing = [] {
     parallelFor(1000, 1, [](int begin, int end) {
       for (int i = begin; i < end; ++i) {

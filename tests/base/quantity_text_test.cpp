@@ -40,7 +40,7 @@ TEST(QuantityText, NoNumberHasNoPrefix) {
   EXPECT_EQ(quantityText(std::nan(""), "Hz"), "nan Hz");
 }
 
-TEST(RangeText, SaysTheUnitWhereItDiffers) {
+TEST(RangeText, NamesTheUnitWhereItDiffers) {
   EXPECT_EQ(rangeText(1e6, 1e12, "Hz"), "1 MHz to 1 THz");
   EXPECT_EQ(rangeText(0, 1e12, "W"), "0 to 1 TW");
   EXPECT_EQ(rangeText(1e6, 5e6, "Hz"), "1 to 5 MHz");

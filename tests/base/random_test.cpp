@@ -7,7 +7,7 @@
 namespace emscape {
 namespace {
 
-TEST(Random, PhiloxIsThatOfThePaper) {
+TEST(Random, PhiloxEqualsPublishedVectors) {
   // The known answers of the authors' Random123 (kat_vectors, philox4x32 10).
   using Words = std::array<std::uint32_t, 4>;
   EXPECT_EQ(philox4x32({0, 0, 0, 0}, {0, 0}), (Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));

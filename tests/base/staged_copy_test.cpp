@@ -45,7 +45,7 @@ TEST(StagedCopy, SeveralThreadsCopyAtATime) {
   EXPECT_EQ(std::count(survived.begin(), survived.end(), 1), 6);
 }
 
-TEST(StagedCopy, UploadsWhatIsWrittenByTheCaller) {
+TEST(StagedCopy, UploadsDataWrittenByTheCaller) {
   EMSCAPE_NEEDS_GPU();
   constexpr std::size_t kCount = 1500000;
   const Stream stream;

@@ -51,7 +51,7 @@ TEST_F(WholeFile, ATargetIsRefusedBeforeItIsWritten) {
   EXPECT_EQ(filesInFolder(), 0);
 }
 
-TEST_F(WholeFile, LeavesWhatWasThereWhenTheWriterThrows) {
+TEST_F(WholeFile, KeepsTheOldFileWhenTheWriterThrows) {
   writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "one"; });
   EXPECT_THROW(writeWhole(folder_ / "a",
                           [](std::ostream& stream) {
@@ -97,7 +97,7 @@ TEST_F(WholeFile, NamesAMissingPermission) {
   fs::permissions(folder_.path(), fs::perms::owner_all);
 }
 
-TEST_F(WholeFile, IsGoneWhenTheDiskIsFull) {
+TEST_F(WholeFile, IsRemovedWhenTheDiskIsFull) {
   const test::FileSizeLimit limit(100000);
   for (const int bytes : {150000, 3000000}) {
     const std::string text(static_cast<std::size_t>(bytes), 'x');
@@ -205,7 +205,7 @@ TEST_F(WholeFile, AppendingMakesTheFileAndAddsToIt) {
   EXPECT_THAT(errorOf([&] { appendToFile(folder_ / "none/a", "x"); }), HasSubstr("cannot write"));
 }
 
-TEST_F(WholeFile, ADigestIsTheSizeAndTheCrc32OfTheContent) {
+TEST_F(WholeFile, DigestIsSizeAndCrc32OfContent) {
   writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "123456789"; });
   const FileDigest digest = digestOf(folder_ / "a");
   EXPECT_EQ(digest.bytes, 9U);
@@ -219,7 +219,7 @@ TEST_F(WholeFile, ADigestIsTheSizeAndTheCrc32OfTheContent) {
               HasSubstr("none: cannot read: No such file or directory"));
 }
 
-TEST_F(WholeFile, ReadingNamesTheCause) {
+TEST_F(WholeFile, ReadErrorNamesTheCause) {
   EXPECT_THAT(test::errorOf([&] { readWhole(folder_ / "none"); }, ErrorCode::bad_input),
               HasSubstr("none: there is no such file"));
   EXPECT_THROW(readWhole(folder_.path()), Error);

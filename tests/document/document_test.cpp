@@ -15,7 +15,7 @@ std::string faultOf(const std::string& text) {
   return all.empty() ? "" : toString(all.front().location) + ": " + all.front().message;
 }
 
-TEST(Document, KeepsWhereKeysAndValuesStand) {
+TEST(Document, KeepsLocationsOfKeysAndValues) {
   ProblemList problems;
   const std::string text = "# \xC3\xA9\nfirst: 1\nsecond: [a, \"b\"]\n";
   const DocumentNodePtr root = readDocument("a.yaml", text, problems);
@@ -30,7 +30,7 @@ TEST(Document, KeepsWhereKeysAndValuesStand) {
   EXPECT_TRUE(item.quoted);
 }
 
-TEST(Document, TellsAnchorsApart) {
+TEST(Document, DistinguishesAnchors) {
   ProblemList problems;
   const DocumentNodePtr root = readDocument("a.yaml", "a: &x 1\nb: *x\nc: 2\n", problems);
   ASSERT_TRUE(root);
@@ -74,7 +74,7 @@ TEST(Document, FaultsOfJsonDoNotNameYaml) {
   EXPECT_THAT(problems.inOrder().at(0).message, HasSubstr("not valid JSON: "));
 }
 
-TEST(Document, RefusalsSayWhere) {
+TEST(Document, ErrorsHaveLocations) {
   EXPECT_EQ(faultOf(""), "a.yaml:1:1: the file is empty");
   EXPECT_EQ(faultOf("a:\n\tb: 1\n"), "a.yaml:2:1: tab as indentation; use spaces");
   EXPECT_EQ(faultOf("a: !!int 3\n"), "a.yaml:1:4: tag 'tag:yaml.org,2002:int' is not allowed");

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-TEST(JsonText, WhatFitsOnALineStandsOnOne) {
+TEST(JsonText, ShortValuesAreOnOneLine) {
   Json root;
   root["number"] = 1.5;
   root["text"] = "a \"b\"\n";
@@ -26,7 +26,7 @@ TEST(JsonText, WhatFitsOnALineStandsOnOne) {
             "  \"short\": [{\"at\": 1, \"x\": true}]\n}\n");
 }
 
-TEST(JsonText, LongListsStandOnLinesOfTheirOwn) {
+TEST(JsonText, LongListsHaveOneLinePerItem) {
   Json root;
   for (int i = 0; i < 20; ++i) root["points"].push_back({{"at", i}, {"opacity", 0.5}});
   const std::string text = jsonText(root);
@@ -38,7 +38,7 @@ TEST(JsonText, BytesThatAreNotUtf8AreReplaced) {
   EXPECT_NO_THROW(Json::parse(jsonText({{"name", "\xC3"}})));
 }
 
-TEST(JsonText, ShortNumbersAreTheSameFloatAgain) {
+TEST(JsonText, ShortNumbersReadBackAsTheSameFloat) {
   std::mt19937 random(1);
   for (int i = 0; i < 20000; ++i) {
     const std::uint32_t bits = random();
@@ -63,7 +63,7 @@ std::pair<std::string, std::optional<bool>> readBoolean(const std::string& value
           Section(file, root.get(), spec).optionalBoolean("on")};
 }
 
-TEST(Schema, BooleansAreTrueAndFalseAlone) {
+TEST(Schema, OnlyTrueAndFalseAreBooleans) {
   EXPECT_EQ(readBoolean("true"), std::make_pair(std::string(), std::optional<bool>(true)));
   EXPECT_EQ(readBoolean("false"), std::make_pair(std::string(), std::optional<bool>(false)));
   EXPECT_EQ(readBoolean("yes").first, "a.yaml:1:5: 'on' must be true or false, not 'yes'");

@@ -86,7 +86,7 @@ TEST_F(CheckFolder, NamesFileAndLineOfAMalformedProfile) {
   EXPECT_THAT(profiles[1].heights_msl_m, testing::ElementsAre(1, 2, 3));
 }
 
-TEST_F(CheckFolder, TellsWhatIsPresentAbsentAndUnknown) {
+TEST_F(CheckFolder, ListsPresentAbsentAndUnknownDatasets) {
   write("geoid/check_points.csv", "");
   write("radar/mystery.csv", "");
   write("p9999/cases.csv", "");
@@ -133,7 +133,7 @@ TEST(FigureCheck, ComparesRelatively) {
 /// Every dataset with a model meets its tolerance.
 class Reference : public testing::TestWithParam<int> {};
 
-TEST_P(Reference, IsMet) {
+TEST_P(Reference, ResultsWithinTolerance) {
   const ReferenceDataset& dataset = referenceDatasets()[static_cast<std::size_t>(GetParam())];
   const auto path = test::referenceFile("reference/" + dataset.name);
   if (!path) GTEST_SKIP() << test::notInRepository("reference/" + dataset.name);
@@ -164,7 +164,7 @@ INSTANTIATE_TEST_SUITE_P(Datasets, Reference, testing::ValuesIn(checkedDatasets(
 
 constexpr ModelLimit kFrequency{"frequency", "MHz", 1e6, 20, 20000, Beyond::refused, "of the model's data"};
 
-TEST(ModelLimits, HoldFromLeastToMostAndNotForNaN) {
+TEST(ModelLimits, IncludeMinAndMaxAndExcludeNaN) {
   EXPECT_TRUE(kFrequency.holds(20e6));
   EXPECT_TRUE(kFrequency.holds(20e9));
   EXPECT_FALSE(kFrequency.holds(19.999e6));
@@ -172,7 +172,7 @@ TEST(ModelLimits, HoldFromLeastToMostAndNotForNaN) {
   EXPECT_FALSE(kFrequency.holds(std::nan("")));
 }
 
-TEST(ModelLimits, GiveTheMessageAndTheTable) {
+TEST(ModelLimits, AppearInMessageAndTable) {
   EXPECT_EQ(outsideMessage(kFrequency, 15e6), "frequency 15 MHz is outside 20..20000 MHz: refused");
   const ModelLimit* const limits[] = {&kFrequency};
   EXPECT_THAT(limitsTable(limits),
@@ -180,7 +180,7 @@ TEST(ModelLimits, GiveTheMessageAndTheTable) {
 }
 
 /// The tables of limits in docs/models.md are up to date.
-TEST(ModelLimits, StandInTheDocumentation) {
+TEST(ModelLimits, AppearInDocumentation) {
   const std::string text = test::readFile(test::sourceFile("docs/models.md"));
   for (const ModelInfo& model : models()) {
     if (model.limits.empty()) continue;

@@ -41,7 +41,7 @@ TEST(ClutterReference, AgreesWithThePublishedFigures) {
   }
 }
 
-TEST(Reflectivity, OfLandIsGammaTimesTheSine) {
+TEST(Reflectivity, LandEqualsGammaTimesSine) {
   SurfaceEcho surface;
   surface.has_land = true;
   surface.gamma = dbToRatio(scenario::landGammaDb(scenario::LandKind::woods, 10e9));
@@ -50,7 +50,7 @@ TEST(Reflectivity, OfLandIsGammaTimesTheSine) {
   EXPECT_NEAR(scenario::landGammaDb(scenario::LandKind::flatland, 1e9), -25, 1e-12);
 }
 
-TEST(Reflectivity, OfRainIsRayleighs) {
+TEST(Reflectivity, RainEqualsRayleighFormula) {
   // eta = 7e-48 f^4 r^1.6 with f in Hz, Skolnik eq. (13.18) to its one digit: 7 f^4 r^1.6 10^-12, f in GHz
   EXPECT_NEAR(rainReflectivity_m2_m3(4, 3e9) / (7e-12 * 81 * std::pow(4, 1.6)), 1, 0.02);
   EXPECT_EQ(rainReflectivity_m2_m3(0, 3e9), 0);
@@ -139,7 +139,7 @@ FilledMap mapOf(const scenario::Scenario& scenario, const scenario::Emitter& rad
   return map;
 }
 
-TEST(ClutterMap, OfTheSmoothSeaIsTheClosedForm) {
+TEST(ClutterMap, SmoothSeaEqualsClosedForm) {
   const auto scenario =
       emptyScenario(FrameKind::altitude, kLatitude_deg, kLongitude_deg, {80e3, 80e3, 1000}, {8, 8, 2});
   scenario::Emitter radar = cluttered(trackingRadar());
@@ -171,7 +171,7 @@ class Ridges : public MadeTerrain {
         }) {}
 };
 
-TEST(ClutterMap, HasNothingBehindARidgeAndMoreOnItsSlope) {
+TEST(ClutterMap, IsZeroBehindRidgeAndLargerOnItsSlope) {
   const auto scenario =
       emptyScenario(FrameKind::altitude, kLatitude_deg, kLongitude_deg, {40e3, 40e3, 1000}, {8, 8, 2});
   const Ridges terrain(
@@ -194,7 +194,7 @@ TEST(ClutterMap, HasNothingBehindARidgeAndMoreOnItsSlope) {
               2e-4);
 }
 
-TEST(ClutterMap, TakesLowGroundForSeaOnlyWhereThereIsSea) {
+TEST(ClutterMap, LowGroundIsSeaOnlyWhereThereIsSea) {
   const auto scenario =
       emptyScenario(FrameKind::altitude, kLatitude_deg, kLongitude_deg, {40e3, 40e3, 1000}, {8, 8, 2});
   const Ridges coast([](double east_m) { return east_m > 5000 ? 0.0 : 20.0; });
@@ -238,7 +238,7 @@ double clutterToNoise(double snr_db, double sclnr_db) {
   return dbToRatio(snr_db - sclnr_db) - 1;
 }
 
-TEST_P(Clutter, OfTheSeaIsTheClosedFormOfItsPatch) {
+TEST_P(Clutter, SeaEqualsClosedFormOfItsPatch) {
   scenario::Emitter radar = cluttered(trackingRadar());
   radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 40, -80);
   radar.clutter->sea_state = 5;
@@ -261,7 +261,7 @@ TEST_P(Clutter, OfTheSeaIsTheClosedFormOfItsPatch) {
   }
 }
 
-TEST_P(Clutter, OfRainIsTheClosedFormOfItsVolume) {
+TEST_P(Clutter, RainEqualsClosedFormOfItsVolume) {
   scenario::Emitter radar = cluttered(trackingRadar());
   radar.antenna = scenario::makeGaussian(kGain_dbi, 2, 2, -80);
   radar.clutter->rain = true;
@@ -334,7 +334,7 @@ TEST_P(Clutter, EntersDetectionAsNoise) {
   EXPECT_LT(valueEast(*field(scenario, "detection_probability"), 5e3), 1e-4) << "a blind speed";
 }
 
-TEST_P(Clutter, OfAVoxelIsThatOfItsPath) {
+TEST_P(Clutter, VoxelEqualsItsPath) {
   const auto terrain = std::make_shared<MadeTerrain>(44.5, -71.5, 1);
   for (const bool looks_at_target : {true, false}) {
     auto scenario = emptyScenario(FrameKind::altitude, 44.5, -71.5, {40e3, 40e3, 5000}, {40, 40, 12});
@@ -384,7 +384,7 @@ TEST_P(Clutter, OfAVoxelIsThatOfItsPath) {
   }
 }
 
-TEST_P(Clutter, AfterAnEditIsThatOfAFreshField) {
+TEST_P(Clutter, AfterEditEqualsNewSolver) {
   scenario::Emitter radar = cluttered(trackingRadar());
   radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 40, -80);
   radar.clutter->sea_state = 2;
@@ -405,7 +405,7 @@ TEST_P(Clutter, AfterAnEditIsThatOfAFreshField) {
 
 EMSCAPE_ON_BACKENDS(Clutter);
 
-TEST(ClutterOfALink, IsThatAtTheTargetsRadialSpeed) {
+TEST(ClutterOfALink, UsesRadialSpeedOfTarget) {
   scenario::Emitter radar = cluttered(trackingRadar());
   radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 40, -80);
   radar.clutter->sea_state = 5;
@@ -447,7 +447,7 @@ TEST(ClutterOfALink, IsThatAtTheTargetsRadialSpeed) {
   EXPECT_GT(rows[1].detection_probability, 0.5);
 }
 
-TEST(CudaClutter, IsThatOfTheCpu) {
+TEST(CudaClutter, EqualsCpu) {
   EMSCAPE_NEEDS_GPU();
   const auto terrain = std::make_shared<MadeTerrain>(44.5, -71.5, 1);
   for (const auto& antenna :

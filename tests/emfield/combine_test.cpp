@@ -48,7 +48,7 @@ std::vector<NamedAntenna> antennas() {
           {"measured", scenario::readMsi(test::shippedScenario("data/sector_450mhz.msi"))}};
 }
 
-TEST(Combine, RowsGiveWhatThePlainFunctionGives) {
+TEST(Combine, RowsEqualPlainFunction) {
   auto scenario = emptyScenario(FrameKind::altitude, 40, 5, {37e3, 23e3, 5000}, {150, 13, 7});
   const volume::Grid grid = gridOf(scenario->region);
   const GridColumns columns = makeGridColumns(grid, nullptr);

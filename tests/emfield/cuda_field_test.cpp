@@ -189,7 +189,7 @@ void expectSameField(Pair& pair, std::mt19937& random, int updates) {
   pair.difference().expectSmall();
 }
 
-TEST_F(CudaField, IsTheCpusOverTheSmoothEarth) {
+TEST_F(CudaField, EqualsCpuOverSmoothEarth) {
   std::mt19937 random(1);
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
     const auto scenario = randomScenario(
@@ -200,7 +200,7 @@ TEST_F(CudaField, IsTheCpusOverTheSmoothEarth) {
   }
 }
 
-TEST_F(CudaField, IsTheCpusOverTerrain) {
+TEST_F(CudaField, EqualsCpuOverTerrain) {
   std::mt19937 random(2);
   for (const PropagationModel model : {PropagationModel::horizon, PropagationModel::diffraction}) {
     SCOPED_TRACE(toString(model));
@@ -212,7 +212,7 @@ TEST_F(CudaField, IsTheCpusOverTerrain) {
   }
 }
 
-TEST_F(CudaField, ColumnsThatLeanOverSeveralPlacesAreTheCpus) {
+TEST_F(CudaField, LeaningColumnsEqualCpu) {
   std::mt19937 random(11);
   const auto scenario = randomScenario(random, FrameKind::enu, {PropagationModel::diffraction}, 1900, 3);
   scenario->region.size_m = {60e3, 60e3, 40e3};
@@ -222,7 +222,7 @@ TEST_F(CudaField, ColumnsThatLeanOverSeveralPlacesAreTheCpus) {
   expectSameField(pair, random, 2);
 }
 
-TEST_F(CudaField, EveryModelIsTheCpus) {
+TEST_F(CudaField, EveryModelEqualsCpu) {
   std::mt19937 random(10);
   const auto terrain = std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0);
   for (const PropagationModel model :
@@ -268,7 +268,7 @@ std::shared_ptr<scenario::Scenario> marchedScenario(propagation::Polarization po
   return scenario;
 }
 
-TEST_F(CudaField, MarchesAreTheCpus) {
+TEST_F(CudaField, MarchesEqualCpu) {
   using propagation::Polarization;
   FieldOptions options;
   options.allow_missing_terrain = true;
@@ -283,7 +283,7 @@ TEST_F(CudaField, MarchesAreTheCpus) {
 }
 
 // Tilted columns have positions between the layers.
-TEST_F(CudaField, MarchesThroughLeaningColumnsAreTheCpus) {
+TEST_F(CudaField, MarchesThroughLeaningColumnsEqualCpu) {
   const auto scenario = marchedScenario(propagation::Polarization::horizontal);
   scenario->region.origin.kind = FrameKind::enu;
   Pair pair(scenario, gentleHills(false));
@@ -294,7 +294,7 @@ TEST_F(CudaField, MarchesThroughLeaningColumnsAreTheCpus) {
 }
 
 // With more heights than a thread block can hold, the CPU marches.
-TEST_F(CudaField, MarchesOfManyHeightsAreTheCpus) {
+TEST_F(CudaField, MarchesOfManyHeightsEqualCpu) {
   const auto scenario = marchedScenario(propagation::Polarization::horizontal);
   scenario->region.size_m = {6e3, 6e3, 1500};
   scenario->region.dims = {12, 12, 20};
@@ -307,7 +307,7 @@ TEST_F(CudaField, MarchesOfManyHeightsAreTheCpus) {
   pair.difference().expectSmall(0.05);
 }
 
-TEST_F(CudaField, MarchesOfAnEnsembleAreTheCpus) {
+TEST_F(CudaField, MarchesOfAnEnsembleEqualCpu) {
   for (const std::optional<double> quantile : {std::optional<double>(), std::optional<double>(0.7)}) {
     const auto scenario = marchedScenario(propagation::Polarization::horizontal);
     auto air = std::make_shared<propagation::Refractivity>();
@@ -325,7 +325,7 @@ TEST_F(CudaField, MarchesOfAnEnsembleAreTheCpus) {
   }
 }
 
-TEST_F(CudaField, ReflectedRaysInEveryPatternAreTheCpus) {
+TEST_F(CudaField, ReflectedRaysInEveryPatternEqualCpu) {
   // The codes of reflected rays may differ by one step, which changes nulls 40 dB deep by 0.02 dB.
   std::mt19937 random(12);
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
@@ -347,7 +347,7 @@ TEST_F(CudaField, ReflectedRaysInEveryPatternAreTheCpus) {
   }
 }
 
-TEST_F(CudaField, IsTheCpusOverRealTerrain) {
+TEST_F(CudaField, EqualsCpuOverRealTerrain) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   std::mt19937 random(3);
   const auto scenario = randomScenario(random, FrameKind::altitude,
@@ -356,7 +356,7 @@ TEST_F(CudaField, IsTheCpusOverRealTerrain) {
   expectSameField(pair, random, 4);
 }
 
-TEST_F(CudaField, EveryReductionIsTheCpus) {
+TEST_F(CudaField, EveryReductionEqualsCpu) {
   std::mt19937 random(4);
   for (const auto combine :
        {scenario::CombineMode::sum, scenario::CombineMode::max, scenario::CombineMode::per_emitter}) {
@@ -380,7 +380,7 @@ TEST_F(CudaField, EveryReductionIsTheCpus) {
             1e-3 * static_cast<double>(pair.difference().voxels));
 }
 
-TEST_F(CudaField, RadarsProductsAreTheCpus) {
+TEST_F(CudaField, RadarProductsEqualCpu) {
   std::mt19937 random(6);
   for (const auto look : {scenario::RadarLook::scan, scenario::RadarLook::target}) {
     const auto scenario = randomScenario(random, FrameKind::altitude,
@@ -398,7 +398,7 @@ TEST_F(CudaField, RadarsProductsAreTheCpus) {
 }
 
 // Scans whose bursts leave azimuths, and bars of rasters, without a look.
-TEST_F(CudaField, LooksInBurstsAreTheCpus) {
+TEST_F(CudaField, LooksInBurstsEqualCpu) {
   std::mt19937 random(13);
   for (const char* quantity : {"detection_probability", "detection_age_s"}) {
     for (const auto kind : {scenario::IntervalKind::max_hold, scenario::IntervalKind::cumulative}) {
@@ -451,7 +451,7 @@ TEST_F(CudaField, MasksTheSameColumnsAcrossMissingTerrain) {
   }
 }
 
-TEST_F(CudaField, EmittersBeyondTheMemoryBoundAreComputedAnew) {
+TEST_F(CudaField, EmittersBeyondMemoryBoundAreComputedAgain) {
   std::mt19937 random(6);
   FieldOptions options;
   options.cache_bytes = 61 * 50 * 40 * 3 + 1;
@@ -460,7 +460,7 @@ TEST_F(CudaField, EmittersBeyondTheMemoryBoundAreComputedAnew) {
   EXPECT_EQ(pair.gpu().memoryUse().uncached_emitters, 5);
 }
 
-TEST_F(CudaField, VolumesThatACallerKeepsAreLeftAlone) {
+TEST_F(CudaField, KeepsVolumesThatACallerHolds) {
   std::mt19937 random(7);
   Pair pair(randomScenario(random, FrameKind::altitude, {PropagationModel::horizon}, 900), nullptr);
   scenario::Snapshot snapshot = pair.start();
@@ -494,7 +494,7 @@ TEST_F(CudaField, InHalfPrecisionLiesWithinItsSteps) {
   }
 }
 
-TEST_F(CudaField, TooLittleMemoryIsSaidBeforeAnythingIsComputed) {
+TEST_F(CudaField, TooLittleMemoryIsReportedBeforeComputation) {
   std::mt19937 random(9);
   const auto scenario = randomScenario(random, FrameKind::altitude, {PropagationModel::free_space}, 900);
   scenario->region.dims = {4000, 4000, 2000};

@@ -15,7 +15,7 @@ namespace {
 using namespace emscape::emfield::testing;
 using scenario::BeamShapeLoss;
 
-TEST(BeamShapeLoss, OfAGaussianBeamIsTheMeanOfItsPulses) {
+TEST(BeamShapeLoss, GaussianBeamEqualsMeanOfItsPulses) {
   // Two-way power over pulses from -5 to 5 beamwidths, counted within one beamwidth.
   constexpr int kPulses = 1000;
   double sum = 0;
@@ -29,7 +29,7 @@ TEST(BeamShapeLoss, OfAGaussianBeamIsTheMeanOfItsPulses) {
   EXPECT_EQ(beamShapeLossDb(BeamShapeLoss::none, 2), 0);
 }
 
-TEST(CfarLoss, OfOnePulseIsTheClosedForm) {
+TEST(CfarLoss, OnePulseEqualsClosedForm) {
   for (const int cells : {4, 10, 32, 500}) {
     const Detector detector{Swerling::slow_exponential, 1, 1e-6};
     const double power = -1.0 / cells;
@@ -48,7 +48,7 @@ TEST(CfarLoss, FallsWithCellsAndWithPulses) {
   EXPECT_LT(cfarLossDb({Swerling::steady, 1000000, 1e-6}, 16), 1);  // no overflow
 }
 
-TEST(BinaryIntegrationLoss, OfTwoOfThreeIsWhereOnePulseIsDetectedHalfOfTheTime) {
+TEST(BinaryIntegrationLoss, TwoOfThreeEqualsExactProbability) {
   const Detector detector{Swerling::steady, 3, 1e-6};
   const double loss_db = binaryIntegrationLossDb(detector, 2);
   // 3 p^2 - 2 p^3 = 1e-6 by iteration; it is 1/2 for p = 1/2.
@@ -58,7 +58,7 @@ TEST(BinaryIntegrationLoss, OfTwoOfThreeIsWhereOnePulseIsDetectedHalfOfTheTime) 
   EXPECT_NEAR(requiredSnrDb(one, 0.5) - requiredSnrDb(detector, 0.5), loss_db, 1e-6);
 }
 
-TEST(BinaryIntegrationLoss, IsNoneForOnePulseAndSmallAtTheBestThreshold) {
+TEST(BinaryIntegrationLoss, IsZeroForOnePulseAndSmallAtBestThreshold) {
   EXPECT_NEAR(binaryIntegrationLossDb({Swerling::steady, 1, 1e-6}, 1), 0, 1e-6);
   const Detector ten{Swerling::steady, 10, 1e-6};
   const double at_best_db = binaryIntegrationLossDb(ten, 5);
@@ -79,7 +79,7 @@ double detectionAt(const scenario::Emitter& radar, const char* term = "detection
       ->value;
 }
 
-TEST(DetectionLosses, CostAsMuchAsTheSamePartOfThePower) {
+TEST(DetectionLosses, EqualReductionOfPower) {
   scenario::Emitter radar = trackingRadar();
   radar.receiver.pulses = 10;
   radar.receiver.target_rcs_m2 = 1;
@@ -103,7 +103,7 @@ TEST(DetectionLosses, CostAsMuchAsTheSamePartOfThePower) {
   EXPECT_NEAR(detectionAt(lossy, "detection_losses_db"), losses.total_db(), 1e-9);
 }
 
-TEST(MeanPowerDensity, IsThePeakTimesTheDutyCycle) {
+TEST(MeanPowerDensity, EqualsPeakTimesDutyCycle) {
   scenario::Emitter radar = trackingRadar();
   radar.waveform = scenario::Waveform{1000, 10e-6, std::nullopt};
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
@@ -114,7 +114,7 @@ TEST(MeanPowerDensity, IsThePeakTimesTheDutyCycle) {
   EXPECT_EQ(east(scenario, "mean_power_density_dbwm2", 20e3), peak_db);
 }
 
-TEST(PathBudget, OfARadarWarnsOfRangesThatItsPulsesDoNotServe) {
+TEST(PathBudget, RadarWarnsOfRangesOutsideItsPulses) {
   scenario::Emitter radar = trackingRadar();
   radar.waveform = scenario::Waveform{1000, 10e-6, 20e3};
   const auto warningsAt = [&](double range_m) {

@@ -23,7 +23,7 @@ class DetectionProduct : public ::testing::Test {
   }
 };
 
-TEST_F(DetectionProduct, IsTheExactProbabilityOfTheRadarEquation) {
+TEST_F(DetectionProduct, EqualsExactProbabilityOfRadarEquation) {
   for (int swerling = 0; swerling <= 4; ++swerling) {
     scenario::Emitter radar = trackingRadar();
     radar.power_w = 300;
@@ -41,7 +41,7 @@ TEST_F(DetectionProduct, IsTheExactProbabilityOfTheRadarEquation) {
   }
 }
 
-TEST_F(DetectionProduct, OfAJammedRadarTakesJammingForNoise) {
+TEST_F(DetectionProduct, JammingCountsAsNoise) {
   scenario::Emitter radar = trackingRadar();
   const scenario::Emitter jammer = jammerOf(1000);
   const auto scenario = duel(radar, jammer, 0, 60e3);
@@ -56,7 +56,7 @@ TEST_F(DetectionProduct, OfAJammedRadarTakesJammingForNoise) {
   }
 }
 
-TEST_F(DetectionProduct, IsWhatACountOfRandomTrialsComesTo) {
+TEST_F(DetectionProduct, EqualsFrequencyOfRandomTrials) {
   // Swerling 1 before noise and noise-like jamming: every amplitude a complex Gaussian number.
   scenario::Emitter radar = trackingRadar();
   radar.receiver.pfa = 1e-2;
@@ -81,7 +81,7 @@ TEST_F(DetectionProduct, IsWhatACountOfRandomTrialsComesTo) {
   EXPECT_NEAR(east(scenario, "detection_probability", range_m), double(detected) / kTrials, 0.006);
 }
 
-TEST_F(DetectionProduct, OfSeveralRadarsIsThatOfIndependentDetections) {
+TEST_F(DetectionProduct, SeveralRadarsAreIndependent) {
   scenario::Emitter radar = trackingRadar();
   radar.power_w = 100;
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
@@ -99,7 +99,7 @@ TEST_F(DetectionProduct, OfSeveralRadarsIsThatOfIndependentDetections) {
   EXPECT_NEAR(east(scenario, "detection_probability", range_m), std::max(a, b), 2e-4);
 }
 
-TEST_F(DetectionProduct, IsNoneWhereThereIsNoEcho) {
+TEST_F(DetectionProduct, IsZeroWithoutEcho) {
   scenario::Emitter radar = trackingRadar();
   radar.propagation.model = propagation::PropagationModel::horizon;
   auto scenario = emptyScenario(FrameKind::altitude, 44, -71, {300e3, 20e3, 2000}, {60, 4, 4});
@@ -112,7 +112,7 @@ TEST_F(DetectionProduct, IsNoneWhereThereIsNoEcho) {
   EXPECT_EQ(volume->info.floor, 0);
 }
 
-TEST_F(DetectionProduct, FormulasStandInForTheExactStatistics) {
+TEST_F(DetectionProduct, FormulasReplaceExactStatistics) {
   scenario::Emitter radar = trackingRadar();
   radar.power_w = 300;
   radar.receiver.swerling = 0;
@@ -133,7 +133,7 @@ TEST_F(DetectionProduct, FormulasStandInForTheExactStatistics) {
   }
 }
 
-TEST(RadarChannels, AreComputedAnewOnlyWhereSomethingChanged) {
+TEST(RadarChannels, OnlyChangedOnesAreComputedAgain) {
   scenario::Emitter radar = trackingRadar();
   radar.scan.kind = scenario::ScanKind::rotate;
   radar.scan.rate_rpm = 10;
@@ -152,7 +152,7 @@ TEST(RadarChannels, AreComputedAnewOnlyWhereSomethingChanged) {
   EXPECT_EQ(valueEast(*solver.volumes()[1].host(), 20e3), -300);
 }
 
-TEST(RadarChannels, UpdatesGiveWhatAFreshSolverComputes) {
+TEST(RadarChannels, UpdatesEqualNewSolver) {
   scenario::Emitter radar = trackingRadar();
   radar.scan.kind = scenario::ScanKind::rotate;
   radar.scan.rate_rpm = 10;

@@ -31,7 +31,7 @@ std::string messageOf(const std::function<void()>& run) {
   return test::errorOf(run, ErrorCode::bad_input);
 }
 
-TEST(Detection, ThresholdOfOnePulseIsTheLogarithmOfPfa) {
+TEST(Detection, ThresholdOfOnePulseEqualsLogarithmOfPfa) {
   for (const double pfa : {0.5, 1e-3, 1e-6, 1e-12}) {
     EXPECT_NEAR(detectionThreshold({Swerling::steady, 1, pfa}), -std::log(pfa), 1e-12 * -std::log(pfa));
   }
@@ -223,7 +223,7 @@ TEST(Detection, RequiredSnrIsWhereTheMethodHasTheProbability) {
   }
 }
 
-TEST(Detection, RefusesWhatLiesOutsideItsRanges) {
+TEST(Detection, RefusesInputsOutsideItsLimits) {
   EXPECT_EQ(messageOf([] {
               detectionThreshold({Swerling::steady, 0, 1e-6});
             }),
@@ -253,7 +253,7 @@ RadarLink searchRadar() {
   return radar;
 }
 
-TEST(Traps, RadarPathLossesCountTwiceAndJammingOnce) {
+TEST(RadarFormulas, PathLossCountsTwiceForEchoAndOnceForJammer) {
   const RadarLink radar = searchRadar();
   JammerLink jammer;
   jammer.eirp_w = 1000;
@@ -266,7 +266,7 @@ TEST(Traps, RadarPathLossesCountTwiceAndJammingOnce) {
               20 * std::log10(2), 1e-9);
 }
 
-TEST(Traps, FieldStrengthUsesEirpAndIsRms) {
+TEST(RadarFormulas, FieldStrengthUsesEirpAndIsRms) {
   // ITU's figures for 1 kW at 1 km: 106.9 dBuV/m of ERP, 104.8 of EIRP
   const double spread_db = ratioToDb(4 * kPi * 1e6);
   EXPECT_NEAR(30 + kDipoleGain_dbi - spread_db + kFieldStrengthOfPowerDensity_db, 106.92, 0.01);
@@ -276,7 +276,7 @@ TEST(Traps, FieldStrengthUsesEirpAndIsRms) {
   EXPECT_NEAR(ratioToDb(field_v_per_m * field_v_per_m / kFreeSpaceImpedance), 30 - spread_db, 1e-4);
 }
 
-TEST(Traps, GasesAndRainCountTwiceForAnEcho) {
+TEST(RadarFormulas, GasesAndRainCountTwiceForEcho) {
   const RadarLink radar = searchRadar();
   const double one_way_db =
       40 * (gasAttenuation(radar.frequency_hz, AirState{}).total_db_per_km() +
@@ -284,12 +284,12 @@ TEST(Traps, GasesAndRainCountTwiceForAnEcho) {
   EXPECT_NEAR(radarSnrDb(radar, 5, 4e4) - radarSnrDb(radar, 5, 4e4, one_way_db), 2 * one_way_db, 1e-9);
 }
 
-TEST(Radar, RangeIsWhereTheSnrHasFallen) {
+TEST(Radar, RangeHasRequiredSnr) {
   const RadarLink radar = searchRadar();
   EXPECT_NEAR(radarSnrDb(radar, 5, radarRange_m(radar, 5, 13)), 13, 1e-9);
 }
 
-TEST(Jamming, BurnThroughIsWhereTheRatioIsBorne) {
+TEST(Jamming, BurnThroughRangeHasAllowedRatio) {
   const RadarLink radar = searchRadar();
   JammerLink jammer;
   jammer.eirp_w = 500;
@@ -303,7 +303,7 @@ TEST(Jamming, BurnThroughIsWhereTheRatioIsBorne) {
   EXPECT_NEAR(jammerToSignalDb(radar, 5, far, jammer, 1e5), -3, 1e-9);
 }
 
-TEST(Jamming, OfAWiderBandLosesWhatTheRadarDoesNotReceive) {
+TEST(Jamming, WiderBandLosesPowerOutsideRadarBand) {
   const RadarLink radar = searchRadar();
   JammerLink narrow, wide;
   narrow.eirp_w = wide.eirp_w = 1;
@@ -336,7 +336,7 @@ double passedBetween(const PolarizationEllipse& a, const PolarizationEllipse& b)
              (2 * (1 + a2) * (1 + b2));
 }
 
-TEST(Polarization, MismatchOfTheNamedOnesIsThatOfTheirEllipses) {
+TEST(Polarization, MismatchOfNamedOnesFollowsFromEllipses) {
   using propagation::Polarization;
   const struct {
     Polarization name;

@@ -451,7 +451,7 @@ TEST(EditedScenario, EqualsANewSolverOverTerrainInAllModels) {
              hills(), 50, editValue, random);
 }
 
-TEST(EditedScenario, EqualsANewSolverInATiltedFrame) {
+TEST(EditedScenario, EqualsNewSolverInTiltedFrame) {
   Random random(3);
   checkEdits(battlefield(random, FrameKind::enu, {PropagationModel::diffraction, PropagationModel::horizon}),
              hills(), 40, editValue, random);
@@ -548,7 +548,7 @@ class EditedOnce : public ::testing::Test {
   std::unique_ptr<FieldSolver> solver_;
 };
 
-TEST_F(EditedOnce, PowerCostsTheCombineStageOfThatEmitterAlone) {
+TEST_F(EditedOnce, PowerRepeatsOnlyCombinationOfThatEmitter) {
   const FieldChanged changed = after([](Scenario& s) { s.emitters[3].power_w *= 2; });
   EXPECT_TRUE(changed.any);
   EXPECT_FALSE(changed.grid);
@@ -558,14 +558,14 @@ TEST_F(EditedOnce, PowerCostsTheCombineStageOfThatEmitterAlone) {
   EXPECT_THAT(changed.volumes, ElementsAre(0));
 }
 
-TEST_F(EditedOnce, AModelCostsTheGeometryOfThatEmitterAlone) {
+TEST_F(EditedOnce, ModelRepeatsOnlyGeometryOfThatEmitter) {
   const FieldChanged changed =
       after([](Scenario& s) { s.emitters[3].propagation.model = PropagationModel::two_ray; });
   EXPECT_THAT(changed.moved, ElementsAre(3));
   EXPECT_THAT(changed.turned, IsEmpty());
 }
 
-TEST_F(EditedOnce, TheFloorCostsTheProductAlone) {
+TEST_F(EditedOnce, FloorRepeatsOnlyTheProduct) {
   const FieldChanged changed = after([](Scenario& s) { s.output.floor = -80; });
   EXPECT_THAT(changed.moved, IsEmpty());
   EXPECT_THAT(changed.turned, IsEmpty());
@@ -581,13 +581,13 @@ TEST_F(EditedOnce, QuantitiesKeepTheGeometry) {
   EXPECT_THAT(changed.volumes, ElementsAre(0, 1));
 }
 
-TEST_F(EditedOnce, TheRegionMakesEverythingAnew) {
+TEST_F(EditedOnce, RegionRepeatsEverything) {
   EXPECT_TRUE(after([](Scenario& s) { s.region.dims = {9, 9, 4}; }).grid);
   EXPECT_EQ(solver_->grid().dims.x, 9);
   EXPECT_EQ(solver_->volumes().front().grid().dims.z, 4);
 }
 
-TEST_F(EditedOnce, WhatNoVolumeDependsOnComputesNothing) {
+TEST_F(EditedOnce, ValueWithoutEffectComputesNoVolume) {
   const auto before = solver_->volumes().front().dense();
   const FieldChanged changed = after([](Scenario& s) {
     s.hash = "another";
@@ -605,7 +605,7 @@ TEST_F(EditedOnce, WhatNoVolumeDependsOnComputesNothing) {
   EXPECT_EQ(solver_->volumes().front().info().extra.at("scenario_hash"), "another");
 }
 
-TEST_F(EditedOnce, WarningsThatWereEditedAwayAreGone) {
+TEST_F(EditedOnce, ResolvedWarningsDisappear) {
   after([](Scenario& s) {
     s.emitters[3].frequency_hz = 9e9;
     s.emitters[3].antenna = scenario::makeSinc(45, 0.3, 0.3, -60);
@@ -616,7 +616,7 @@ TEST_F(EditedOnce, WarningsThatWereEditedAwayAreGone) {
   EXPECT_THAT(solver_->warnings(), ::testing::Not(::testing::Contains(HasSubstr("'radio'"))));
 }
 
-TEST_F(EditedOnce, AnEditThatIsRefusedLeavesTheEarlierField) {
+TEST_F(EditedOnce, RefusedEditKeepsTheField) {
   const auto before = solver_->volumes().front().dense();
   auto refused = std::make_shared<Scenario>(*scenario_);
   refused->emitters[3].propagation.model = PropagationModel::p528;

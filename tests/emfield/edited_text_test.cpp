@@ -40,7 +40,7 @@ void expectTheSameVolumes(const FieldSolver& updated, const FieldSolver& fresh) 
 
 class EditedText : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(EditedText, EqualsANewSolverBitForBit) {
+TEST_P(EditedText, EqualsNewSolverBitForBit) {
   const std::filesystem::path folder = emscape::test::shippedScenario("");
   auto scenario = std::make_shared<const Scenario>([&] {
     Scenario small = *scenario::loadScenario((folder / GetParam()).string());

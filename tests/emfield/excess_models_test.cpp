@@ -160,7 +160,7 @@ TEST(ExcessModels, HeightsBetweenEvaluationsOfP1812AndP452AreWithinATenthOfADeci
   }
 }
 
-TEST(ExcessModels, AColumnInPartsIsTheColumn) {
+TEST(ExcessModels, ColumnInPartsEqualsWholeColumn) {
   std::mt19937 random(12);
   const auto scenario = whiteMountains(4e8, 15);
   scenario::Emitter& emitter = scenario->emitters[0];
@@ -212,7 +212,7 @@ TEST(ExcessModels, EdgesInTheFieldAgreeWithTheModelPathByPath) {
   }
 }
 
-TEST(ExcessModels, ItmStandsNearTheGroundAndGoesOverToDiffractionAboveWithoutJumps) {
+TEST(ExcessModels, ItmNearGroundBlendsIntoDiffractionAbove) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   const auto scenario = whiteMountains(300e6, 15);
   std::mt19937 random(5);
@@ -264,7 +264,7 @@ TEST(ExcessModels, ItmQuantilesAndAreaFormReachTheField) {
   EXPECT_GT(median[corner], hilly[corner] + 1);
 }
 
-TEST(ExcessModels, TwoRayInTheFieldIsTheModelAtEveryVoxel) {
+TEST(ExcessModels, TwoRayInTheFieldEqualsModelAtEveryVoxel) {
   for (const auto polarization : {propagation::Polarization::horizontal, propagation::Polarization::vertical,
                                   propagation::Polarization::slant_45}) {
     for (const double frequency_hz : {100e6, 3e9}) {
@@ -301,7 +301,7 @@ TEST(ExcessModels, TwoRayInTheFieldIsTheModelAtEveryVoxel) {
   }
 }
 
-TEST(ExcessModels, TwoRayLobesStandInTheFieldWhereFlatGroundPutsThem) {
+TEST(ExcessModels, TwoRayLobesLieWhereFlatGroundPutsThem) {
   // lambda d / (4 h1): first lobe at 125 m and first null at 250 m, 10 km from an antenna 20 m over the sea
   const double frequency_hz = kSpeedOfLight;
   auto scenario = smoothEarth(PropagationModel::two_ray, frequency_hz, 20);
@@ -327,7 +327,7 @@ TEST(ExcessModels, TwoRayLobesStandInTheFieldWhereFlatGroundPutsThem) {
   EXPECT_LT(excessIn(*solve(scenario), 0, 0, 1, from), -5.5) << "the lobes' tops";
 }
 
-TEST(ExcessModels, GasesTakeTheirDecibelsPerKilometreAlongALevelPath) {
+TEST(ExcessModels, GasesAttenuateLevelPathPerKilometre) {
   for (const double frequency_hz : {10e9, 22.235e9, 60e9}) {
     auto scenario = smoothEarth(PropagationModel::free_space, frequency_hz, 5, 4000);
     scenario->atmosphere.gases = propagation::GasLosses::always;
@@ -346,7 +346,7 @@ TEST(ExcessModels, GasesTakeTheirDecibelsPerKilometreAlongALevelPath) {
   }
 }
 
-TEST(ExcessModels, GasesBetweenTheTablesNodesAreThoseOfTheRay) {
+TEST(ExcessModels, GasesBetweenTableNodesEqualRay) {
   auto scenario = smoothEarth(PropagationModel::free_space, 60e9, 0);
   scenario->atmosphere.gases = propagation::GasLosses::always;
   std::mt19937 random(3);
@@ -382,7 +382,7 @@ TEST(ExcessModels, GasesBetweenTheTablesNodesAreThoseOfTheRay) {
   EXPECT_LT(spread.largest(), 0.005);
 }
 
-TEST(ExcessModels, RainFallsBelowItsTopAlone) {
+TEST(ExcessModels, RainIsBelowItsTopOnly) {
   auto scenario = smoothEarth(PropagationModel::free_space, 10e9, 0);
   scenario->atmosphere.rain_mm_h = 30;
   scenario->emitters[0].polarization = propagation::Polarization::horizontal;
@@ -432,7 +432,7 @@ double p528TableError_db(const P528Excess& table, const std::shared_ptr<const P5
   return static_cast<double>(excess) - (loss.loss_db - loss.free_space_db);
 }
 
-TEST(ExcessModels, P528BetweenTheTablesNodesIsTheCurve) {
+TEST(ExcessModels, P528BetweenTableNodesEqualsCurve) {
   auto scenario = smoothEarth(PropagationModel::p528, 1.2e9, 20);
   std::mt19937 random(6);
   std::uniform_real_distribution<double> part(0, 1);
@@ -460,7 +460,7 @@ TEST(ExcessModels, P528BetweenTheTablesNodesIsTheCurve) {
   }
 }
 
-TEST(ExcessModels, P528OfSteepRaysBetweenTheTablesNodesIsTheCurve) {
+TEST(ExcessModels, P528OfSteepRaysBetweenTableNodesEqualsCurve) {
   auto scenario = smoothEarth(PropagationModel::p528, 3e9, 20);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> part(0, 1);
@@ -508,7 +508,7 @@ TEST(ExcessModels, TheScenarioOfEachModelIsComputed) {
   EXPECT_EQ(count, 11);
 }
 
-TEST(ExcessModels, LimitsAreTheTablesAndAreToldWithTheirPlace) {
+TEST(ExcessModels, LimitsOfTableAreReportedWithLocation) {
   auto scenario = smoothEarth(PropagationModel::p528, 50e6, 20);
   scenario->emitters[0].frequency_location = {"my.yaml", 12, 7};
   const auto messageOf = [&] {
@@ -546,7 +546,7 @@ TEST(ExcessModels, RainBelowItsFrequenciesIsNegligibleAndNotWarnedOf) {
   EXPECT_THAT(checkModels(*scenario), ::testing::IsEmpty());
 }
 
-TEST(ExcessModels, HeightsOutsideAModelAreWarnedOfOnce) {
+TEST(ExcessModels, HeightsOutsideAModelWarnOnce) {
   auto scenario = smoothEarth(PropagationModel::p528, 1e9, 20);
   scenario->region.size_m.z = 30e3;
   FieldSolver solver(scenario, nullptr, {});

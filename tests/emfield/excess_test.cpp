@@ -124,7 +124,7 @@ TEST(Excess, AnEmitterBeyondTheMemoryBoundHasTheSameField) {
   EXPECT_EQ(solve(scenario)->values, solve(scenario, nullptr, options)->values);
 }
 
-TEST(Excess, ATurningBeamIsCombinedAloneAndAMovingOneComputedAnew) {
+TEST(Excess, TurningBeamIsCombinedAndMovingOneComputedAgain) {
   const auto scenario = smoothEarth(PropagationModel::diffraction, 1e9, 20, 100e3);
   scenario->emitters[0].antenna = scenario::makeGaussian(30, 5, 10, -40);
   scenario->emitters[0].scan.kind = scenario::ScanKind::rotate;
@@ -146,7 +146,7 @@ TEST(Excess, ATurningBeamIsCombinedAloneAndAMovingOneComputedAnew) {
   EXPECT_GT(solver.stageTimes().excess_ms, 0);
 }
 
-TEST(Excess, CountsOnceInPowerDensityAndTwiceInARadarsSignalToNoise) {
+TEST(Excess, CountsOnceInPowerDensityAndTwiceInRadarSnr) {
   const auto scenario = smoothEarth(PropagationModel::free_space, 10e9, 20);
   scenario->emitters[0].kind = scenario::EmitterKind::radar;
   const auto solved = [&](const char* quantity) {

@@ -71,7 +71,7 @@ void expectSameField(const UnsetVector<float>& a, const UnsetVector<float>& b) {
   for (std::size_t v = 0; v < a.size(); ++v) ASSERT_EQ(a[v], b[v]) << "voxel " << v;
 }
 
-TEST(FieldSolver, SaysWhatMovedAndWhatTurned) {
+TEST(FieldSolver, ReportsMovedAndTurnedEmitters) {
   const auto scenario = battlefield();
   FieldSolver solver(scenario, nullptr, {});
   const FieldChanged first = solver.update(scenario::snapshotAt(scenario, nullptr, 0));
@@ -100,7 +100,7 @@ TEST(FieldSolver, KeepsTheGeometryOfAnEmitterThatMovedLessThanTheTolerance) {
   EXPECT_THAT(solver.update(scenario::snapshotAt(scenario, nullptr, 1)).moved, IsEmpty());
 }
 
-TEST(FieldSolver, UpdatesGiveTheFieldThatAFreshSolverComputes) {
+TEST(FieldSolver, UpdatesEqualNewSolver) {
   for (const auto combine : {scenario::CombineMode::sum, scenario::CombineMode::max}) {
     for (const char* quantity : {"power_density_dbwm2", "snr_db", "emitter_count", "dominant_emitter"}) {
       SCOPED_TRACE(quantity);
@@ -116,7 +116,7 @@ TEST(FieldSolver, UpdatesGiveTheFieldThatAFreshSolverComputes) {
   }
 }
 
-TEST(FieldSolver, AMemoryBoundChangesTimesAndNotTheField) {
+TEST(FieldSolver, MemoryBoundKeepsTheField) {
   const auto scenario = battlefield();
   FieldOptions options;
   options.cache_bytes = 20 * 22 * 40 * 2 + 1;
@@ -136,7 +136,7 @@ TEST(FieldSolver, DoesNotDependOnTheNumberOfThreads) {
   EXPECT_EQ(one, freshValues(scenario, 4));
 }
 
-TEST(FieldSolver, LeavesAVolumeAloneThatACallerKeeps) {
+TEST(FieldSolver, KeepsVolumesThatACallerHolds) {
   const auto scenario = battlefield();
   FieldSolver solver(scenario, nullptr, {});
   solver.update(scenario::snapshotAt(scenario, nullptr, 0));
@@ -147,7 +147,7 @@ TEST(FieldSolver, LeavesAVolumeAloneThatACallerKeeps) {
   EXPECT_EQ(kept->info.time_s, 0);
 }
 
-TEST(FieldSolver, MakesOneVolumeAnEmitterOrABand) {
+TEST(FieldSolver, MakesOneVolumePerEmitterOrBand) {
   const auto scenario = battlefield();
   scenario->output.combine = scenario::CombineMode::per_emitter;
   scenario->output.quantities = {"power_density_dbwm2", "emitter_count"};
@@ -174,7 +174,7 @@ TEST(FieldSolver, OnlyTheChannelsOfAChangedEmitterAreNew) {
   EXPECT_EQ(solver.volumes()[3].dense(), before[3].dense()) << "the beacon did not";
 }
 
-TEST(FieldSolver, TheDominantEmitterIsTheNearestOfEqualOnes) {
+TEST(FieldSolver, DominantEmitterIsNearestOfEqualOnes) {
   auto scenario = emptyScenario(FrameKind::altitude, 0, 0, {20e3, 20e3, 2000}, {20, 20, 4});
   addEmitter(*scenario, {0, -0.05, 500}, plainEmitter("west", 0));
   addEmitter(*scenario, {0, 0.05, 500}, plainEmitter("east", 0));
@@ -187,7 +187,7 @@ TEST(FieldSolver, TheDominantEmitterIsTheNearestOfEqualOnes) {
   EXPECT_EQ(volume->info.extra.at("labels"), "west\neast");
 }
 
-TEST(FieldSolver, TheDominantModelIsThatOfTheDominantEmitter) {
+TEST(FieldSolver, DominantModelBelongsToDominantEmitter) {
   auto scenario = emptyScenario(FrameKind::altitude, 0, 0, {20e3, 20e3, 2000}, {20, 20, 4});
   addEmitter(*scenario, {0, -0.05, 500}, plainEmitter("west", 0));
   addEmitter(*scenario, {0, 0.05, 500}, plainEmitter("east", 0));
@@ -207,7 +207,7 @@ TEST(FieldSolver, TheDominantModelIsThatOfTheDominantEmitter) {
   EXPECT_THAT(possible, ::testing::ElementsAre("diffraction", "free_space"));
 }
 
-TEST(FieldSolver, ReceivedPowerKnowsPolarisationAndBandwidth) {
+TEST(FieldSolver, ReceivedPowerDependsOnPolarizationAndBandwidth) {
   auto scenario = emptyScenario(FrameKind::altitude, 0, 0, {20e3, 20e3, 2000}, {20, 20, 4});
   scenario::Emitter emitter = plainEmitter("radio", 0);
   emitter.bandwidth_hz = 4e6;
@@ -231,7 +231,7 @@ TEST(FieldSolver, ReceivedPowerKnowsPolarisationAndBandwidth) {
   EXPECT_EQ(valueAt(*solve(scenario), 3, 3, 1), scenario->output.floor) << "another frequency";
 }
 
-TEST(FieldSolver, LaunchAnglesAreTheRefractedRays) {
+TEST(FieldSolver, LaunchAnglesAreOfRefractedRays) {
   // A beam as narrow as the bending: at 200 km a level target is seen 200 km / 2 a (1 - 1/k) above the
   // straight line.
   auto scenario = emptyScenario(FrameKind::enu, 0, 0, {402e3, 6e3, 2000}, {201, 3, 2});
@@ -282,7 +282,7 @@ TEST(FieldSolver, RefusesAFieldThatDoesNotFitIntoMemoryBeforeItComputes) {
   EXPECT_THAT(error, HasSubstr("MiB of the host's memory, of which"));
 }
 
-TEST(FieldSolver, RefusesWhatItCannotCompute) {
+TEST(FieldSolver, RefusesInvalidRequests) {
   const auto scenario = battlefield();
   const auto messageOf = [&](const FieldOptions& options) {
     return test::errorOf([&] { FieldSolver solver(scenario, nullptr, options); });

@@ -168,7 +168,7 @@ TEST(FreeSpace, StaysFiniteAtTheEmitterItself) {
   for (float value : volume->values) EXPECT_TRUE(std::isfinite(value));
 }
 
-TEST(FreeSpace, TheAltitudeFrameHoldsTheSameFieldAsTheTangentPlane) {
+TEST(FreeSpace, AltitudeFrameEqualsTangentPlane) {
   // The same points, reached through either frame: GeographicLib moves them from one to the other.
   const Vec3d size_m{80e3, 80e3, 8000};
   auto flat = emptyScenario(FrameKind::altitude, 68.2, 179.9, size_m, {16, 16, 8});

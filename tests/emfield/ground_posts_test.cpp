@@ -24,7 +24,7 @@ namespace {
 using namespace emscape::emfield::testing;
 using propagation::PropagationModel;
 
-TEST(GroundPosts, ALongerListOfRangesBeginsAsTheShorter) {
+TEST(GroundPosts, LongerListOfRangesBeginsWithShorterOne) {
   const std::vector<double> shorter = postRanges(5e3, 90), longer = postRanges(200e3, 90);
   ASSERT_LT(shorter.size(), longer.size());
   EXPECT_TRUE(std::equal(shorter.begin(), shorter.end(), longer.begin()));
@@ -58,7 +58,7 @@ TEST(GroundPosts, ChordsFollowTheGeodesic) {
   }
 }
 
-TEST(GroundPosts, VectorLoopsReadTheTerrainsOwnHeights) {
+TEST(GroundPosts, VectorLoopsReadHeightsOfTerrain) {
   // A hole, and paths that leave the raster.
   const MadeTerrain terrain(44.5, -71.5, 1.0, 0.1);
   const std::vector<double> ranges_m = postRanges(70e3, terrain.postSpacing_m());
@@ -212,12 +212,12 @@ class FieldAtPosts : public test::OnBackends {
   }
 };
 
-TEST_P(FieldAtPosts, IsThatOfThePathInGridsOfAllVoxelSizesOverTheRepositorysTerrain) {
+TEST_P(FieldAtPosts, EqualsPathInAllVoxelSizesOverShippedTerrain) {
   expectTheSameInEveryGrid(test::sourceFile("scenarios/data/jacksboro.tif"));
 }
 
 // The same over a tile with two post spacings, if the file exists.
-TEST_P(FieldAtPosts, IsThatOfThePathInGridsOfAllVoxelSizesOverWholeDegrees) {
+TEST_P(FieldAtPosts, EqualsPathInAllVoxelSizesOverWholeDegrees) {
   expectTheSameInEveryGrid(test::sourceFile("tests/data/dem/N44W072.tif"));
   if (const auto file = test::referenceFile("dem/n00_e006_3arc_v2.dt1")) expectTheSameInEveryGrid(*file);
 }

@@ -104,7 +104,7 @@ class Intervals : public test::OnBackends {
 };
 
 // A step turns a beam by a twentieth of its width.
-TEST_P(Intervals, OfATurnAreThoseOfFineSteps) {
+TEST_P(Intervals, OneTurnEqualsFineSteps) {
   const double beamwidth_deg = 4;
   for (const AntennaPtr& antenna : {
            scenario::makeGaussian(30, beamwidth_deg, 6, -35),
@@ -120,13 +120,13 @@ TEST_P(Intervals, OfATurnAreThoseOfFineSteps) {
   }
 }
 
-TEST_P(Intervals, OfPartsOfATurnAreThoseOfFineSteps) {
+TEST_P(Intervals, PartsOfATurnEqualFineSteps) {
   const auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), rotating(-10, 3));
   expectAsByInstants(scenario, 1.9, 0.2 / 60);
   expectAsByInstants(scenario, 8.3, 0.2 / 60);
 }
 
-TEST_P(Intervals, OfSectorsAndRastersAreThoseOfFineSteps) {
+TEST_P(Intervals, SectorsAndRastersEqualFineSteps) {
   const AntennaPtr antenna = scenario::makeGaussian(30, 4, 5, -35);
   for (const double seconds : {0.8, 3.7, 9.1}) {
     SCOPED_TRACE(seconds);
@@ -136,7 +136,7 @@ TEST_P(Intervals, OfSectorsAndRastersAreThoseOfFineSteps) {
   expectAsByInstants(around(antenna, sweeping(ScanKind::raster, 70, 60, 3)), 3.7, 0.02 / 60, 0.2);
 }
 
-TEST_P(Intervals, OfDwellsAreThoseOfFineSteps) {
+TEST_P(Intervals, DwellsEqualFineSteps) {
   for (const double seconds : {0.25, 1.0, 3.6}) {
     SCOPED_TRACE(seconds);
     const auto array = around(scenario::makePhasedArray(25, 16, 12, 0.5, 1, -40), dwelling());
@@ -164,7 +164,7 @@ TEST_P(Intervals, CountTheTimesOfActivity) {
   EXPECT_NEAR(static_cast<double>(whole - part), -ratioToDb((0.8 + 0.5) / 6), 1e-3);
 }
 
-TEST_P(Intervals, OfWholeTurnsDoNotChangeWithTheTime) {
+TEST_P(Intervals, WholeTurnsAreConstantOverTime) {
   auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), rotating(7, 3));
   scenario->output.interval = {IntervalKind::max_hold, {}, 2.0};
   FieldSolver solver = solverOf(scenario);
@@ -178,7 +178,7 @@ TEST_P(Intervals, OfWholeTurnsDoNotChangeWithTheTime) {
   EXPECT_TRUE(longer.update(scenario::snapshotAt(scenario, nullptr, 1.3)).volumes.empty());
 }
 
-TEST_P(Intervals, LongerThanASweepThereAndBackKeepTheirLargestAsTimeGoesOn) {
+TEST_P(Intervals, MaximumIsConstantBeyondOneSweepCycle) {
   auto scenario = around(scenario::makeGaussian(30, 4, 6, -35), sweeping(ScanKind::sector, 90, 50));
   scenario->output.interval = {IntervalKind::max_hold, 4.5, {}};  // of 3.6 s there and back
   FieldSolver solver = solverOf(scenario);
@@ -188,7 +188,7 @@ TEST_P(Intervals, LongerThanASweepThereAndBackKeepTheirLargestAsTimeGoesOn) {
   }
 }
 
-TEST_P(Intervals, OfPartsOfATurnAreTheSameFromSolverToSolver) {
+TEST_P(Intervals, PartsOfATurnAreEqualInNewSolver) {
   auto scenario = around(scenario::makeSinc(30, 4, 6, -35), rotating(7, 3));
   scenario->output.interval = {IntervalKind::mean, 3.0, {}};
   FieldSolver solver = solverOf(scenario);
@@ -264,7 +264,7 @@ TEST_P(Intervals, CumulateTheLooksOfEachAzimuth) {
 }
 
 // The last detection is found by stepping back in time in steps of a twentieth of the beam.
-TEST_P(Intervals, KnowTheAgeOfTheLastDetection) {
+TEST_P(Intervals, AgeOfLastDetection) {
   for (const ScanSpec& scan : {rotating(10), rotating(-8), sweeping(ScanKind::sector, 90, 50)}) {
     for (const double seconds : {2.0, 9.5}) {
       for (const bool pauses : {false, true}) {
@@ -472,7 +472,7 @@ TEST_P(Intervals, CountEveryBurst) {
   }
 }
 
-TEST_P(Intervals, KnowTheAgeOfDetectionsInManyBursts) {
+TEST_P(Intervals, AgeOfDetectionsInManyBursts) {
   auto scenario = radarAround(rotating(10));
   scenario->emitters[0].power_w = 2000;
   FieldSolver solver = solverOf(scenario);
@@ -522,7 +522,7 @@ TEST_P(Intervals, CountCyclesOfDwellsInActiveTimes) {
     EXPECT_NEAR(thrice[v], 1 - std::pow(1 - once[v], 3), 1e-5) << v;
 }
 
-TEST_P(Intervals, OfActiveTimesThatTouchAreThoseOfOne) {
+TEST_P(Intervals, AdjacentActiveTimesEqualOne) {
   auto scenario = radarAround(rotating(10));
   for (const IntervalKind kind : {IntervalKind::max_hold, IntervalKind::cumulative}) {
     scenario->emitters[0].active_s = {{0, 2.5}};
@@ -549,7 +549,7 @@ TEST_P(Intervals, HoldTheLargestOfBurstsThatOverlapInAzimuth) {
   EXPECT_EQ(beam.of_sweep.arcs.size(), 1U) << "the time to compute a pattern grows with their number";
 }
 
-TEST_P(Intervals, ARadarThatStaysDetectsAllTheTime) {
+TEST_P(Intervals, FixedRadarDetectsContinuously) {
   ScanSpec scan;
   scan.kind = ScanKind::track;
   const auto scenario = radarAround(scan);

@@ -11,7 +11,7 @@ namespace {
 
 using namespace emscape::emfield::testing;
 
-TEST(JammerToSignal, OfASelfScreeningJammerIsTheClosedForm) {
+TEST(JammerToSignal, SelfScreeningJammerEqualsClosedForm) {
   const scenario::Emitter radar = trackingRadar(), jammer = jammerOf(2);
   for (const double range_m : {5e3, 10e3, 40e3}) {
     const auto scenario = duel(radar, jammer, range_m, 0);
@@ -31,7 +31,7 @@ TEST(JammerToSignal, OfAStandOffJammerGrowsWithTheFourthPowerOfRange) {
   }
 }
 
-TEST(JammerToSignal, IsAdamysAndTheNavysDecibelForm) {
+TEST(JammerToSignal, EqualsPublishedDecibelForms) {
   // D. L. Adamy, EW 101, 2001, chapter 9, and NAWCWD TP 8347, sections 4-7 and 4-9, with ERP in dBm, ranges
   // in km:
   //   self-protection J/S = 71 + ERPj - ERPs + 20 log R - 10 log RCS
@@ -72,7 +72,7 @@ TEST(JammerToSignal, EntersAPhasedArrayFromBehindThroughItsErrorFloor) {
   }
 }
 
-TEST(JammerToSignal, KnowsTheJammersOwnAntenna) {
+TEST(JammerToSignal, UsesAntennaOfTheJammer) {
   const scenario::Emitter radar = trackingRadar();
   scenario::Emitter jammer = jammerOf(100);
   const double isotropic = east(duel(radar, jammer, 0, 60e3), "jammer_to_signal_db", 20e3);
@@ -84,7 +84,7 @@ TEST(JammerToSignal, KnowsTheJammersOwnAntenna) {
               0.02);
 }
 
-TEST(JammerToSignal, KnowsBandsAndPolarisations) {
+TEST(JammerToSignal, DependsOnBandsAndPolarizations) {
   const scenario::Emitter radar = trackingRadar();
   scenario::Emitter jammer = jammerOf(100);
   const auto ratio = [&] { return east(duel(radar, jammer, 0, 60e3), "jammer_to_signal_db", 20e3); };
@@ -142,7 +142,7 @@ TEST(JammerToSignal, CountsAPathAcrossMissingTerrainAsFreeWhereThatIsAllowed) {
                                                    ::testing::HasSubstr("counted as a free path"))));
 }
 
-TEST(JammerToSignal, IsThatOfTheRadarThatBearsItBest) {
+TEST(JammerToSignal, IsOfTheLeastAffectedRadar) {
   scenario::Emitter strong = trackingRadar(), weak = trackingRadar();
   weak.name = "weak";
   weak.power_w /= 10;
@@ -155,7 +155,7 @@ TEST(JammerToSignal, IsThatOfTheRadarThatBearsItBest) {
   EXPECT_NEAR(east(scenario, "jammer_to_signal_db", 20e3), alone, 1e-3) << "the first radar's own";
 }
 
-TEST(JammerToSignal, OfSeveralJammersIsOfTheSumOfTheirPowers) {
+TEST(JammerToSignal, SeveralJammersAddTheirPowers) {
   const scenario::Emitter radar = trackingRadar(), jammer = jammerOf(100);
   auto scenario = duel(radar, jammer, 0, 60e3);
   const double alone = east(scenario, "jammer_to_signal_db", 20e3);
@@ -164,7 +164,7 @@ TEST(JammerToSignal, OfSeveralJammersIsOfTheSumOfTheirPowers) {
   EXPECT_NEAR(east(scenario, "jammer_to_signal_db", 20e3), alone + ratioToDb(3), 1e-3);
 }
 
-TEST(Jamming, ChannelsWithoutItAreThoseOfSilentJammers) {
+TEST(Jamming, ChannelsWithoutJammingEqualSilentJammers) {
   const auto jammed = duel(trackingRadar(), jammerOf(500), 0, 60e3);
   jammed->output.quantities = {"snr_db", "detection_probability"};
   FieldOptions options;
@@ -182,7 +182,7 @@ TEST(Jamming, ChannelsWithoutItAreThoseOfSilentJammers) {
   EXPECT_NE(solver.volumes()[1].host()->values, without.volumes().back().host()->values);
 }
 
-TEST(BurnThrough, OfASelfScreeningJammerIsAtItsClosedFormRange) {
+TEST(BurnThrough, SelfScreeningJammerEqualsClosedFormRange) {
   scenario::Emitter radar = trackingRadar();
   radar.receiver.required_signal_to_jammer_db = 6;
   scenario::Emitter jammer = jammerOf(1);
@@ -195,7 +195,7 @@ TEST(BurnThrough, OfASelfScreeningJammerIsAtItsClosedFormRange) {
               1e-3);
 }
 
-TEST(BurnThrough, OfAStandOffJammerIsAtItsClosedFormRange) {
+TEST(BurnThrough, StandOffJammerEqualsClosedFormRange) {
   scenario::Emitter radar = trackingRadar();
   radar.receiver.required_signal_to_jammer_db = 6;
   scenario::Emitter jammer = jammerOf(1);
@@ -208,7 +208,7 @@ TEST(BurnThrough, OfAStandOffJammerIsAtItsClosedFormRange) {
   EXPECT_NEAR(east(scenario, "burn_through_margin_db", 20e3), -40 * std::log10(2.0), 1e-3);
 }
 
-TEST(BurnThrough, AsksByDefaultForWhatHalfTheDetectionsTake) {
+TEST(BurnThrough, DefaultThresholdIsHalfProbability) {
   scenario::Emitter radar = trackingRadar();
   radar.receiver.pulses = 8;
   EXPECT_DOUBLE_EQ(requiredSignalToJammerDb(radar), requiredSnrDb(detectorOf(radar.receiver), 0.5));
@@ -236,7 +236,7 @@ std::shared_ptr<scenario::Scenario> beyondTheHorizon() {
   return scenario;
 }
 
-TEST(JammerToSignal, WhereNoEchoComesIsItsCeilingUnderJammingAndNothingWithout) {
+TEST(JammerToSignal, WithoutEchoIsCeilingUnderJammingOnly) {
   const auto scenario = beyondTheHorizon();
   scenario->output.quantities = {"jammer_to_signal_db", "burn_through_margin_db"};
   FieldSolver solver(scenario, nullptr, {});
@@ -258,7 +258,7 @@ TEST(JammerToSignal, WhereNoEchoComesIsItsCeilingUnderJammingAndNothingWithout) 
   EXPECT_NEAR(at(1, 29, 3), 60, 1e-3);
 }
 
-TEST(BurnThrough, OfAnUnjammedRadarIsItsCeiling) {
+TEST(BurnThrough, UnjammedRadarIsAtCeiling) {
   const auto scenario = duel(trackingRadar(), jammerOf(100), 0, 60e3);
   scenario->emitters[1].active_s = {{5, 10}};
   EXPECT_NEAR(east(scenario, "burn_through_margin_db", 20e3), 60, 1e-3);

@@ -66,7 +66,7 @@ double noise_dbm() {
   return ratioToDb(kBoltzmann * 290 * 1e6) + 30 + 5;
 }
 
-TEST(Link, OfOneTransmitterIsFriisOverTheNoise) {
+TEST(Link, OneTransmitterEqualsFriisOverNoise) {
   const LinkReport report = linksOf(oneLink());
   ASSERT_EQ(report.links.size(), 1u);
   const LinkRow& row = report.links[0].rows.at(0);
@@ -79,7 +79,7 @@ TEST(Link, OfOneTransmitterIsFriisOverTheNoise) {
   EXPECT_FALSE(row.is_received) << "there is no threshold";
 }
 
-TEST(Link, OthersInTheBandAreInterferenceAndJammersAreInJammerToSignal) {
+TEST(Link, OthersInBandInterfereAndJammersCountSeparately) {
   const auto scenario = oneLink();
   scenario::Emitter other = plainEmitter("other", 0);
   other.power_w = 10;
@@ -113,13 +113,13 @@ TEST(Link, EmittersOfTheReceiversOwnPlatformDoNotCount) {
   EXPECT_EQ(report.links[0].rows[0].interference_dbm, -HUGE_VAL);
 }
 
-TEST(Link, OfAnEmitterOutsideTheReceiversBandThereIsNone) {
+TEST(Link, EmitterOutsideReceiverBandHasNoLink) {
   const auto scenario = oneLink();
   scenario->placed_receivers[0].center_frequency_hz = 1.002e9;
   EXPECT_THAT(linksOf(scenario).links, IsEmpty());
 }
 
-TEST(Link, AReceiversAntennaHasItsGainTowardsTheEmitter) {
+TEST(Link, ReceiverAntennaHasGainTowardsEmitter) {
   const auto scenario = oneLink();
   scenario::PlacedReceiver& receiver = scenario->placed_receivers[0];
   const double isotropic_dbm = linksOf(scenario).links[0].rows[0].received_power_dbm;
@@ -134,7 +134,7 @@ TEST(Link, AReceiversAntennaHasItsGainTowardsTheEmitter) {
 }
 
 // Reciprocity: a pattern weights the two rays equally at either end.
-TEST(Link, OfTwoRaysIsTheSameFromEitherEnd) {
+TEST(Link, TwoRaysAreReciprocal) {
   const auto received_dbm = [](bool is_at_receiver, const scenario::AntennaPtr& antenna, double height_m) {
     const auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
     scenario->ground.kind = propagation::GroundKind::sea;
@@ -186,7 +186,7 @@ TEST(Link, IsReceivedWhereItMeetsItsThresholds) {
   EXPECT_FALSE(linksOf(scenario, times_s).links.at(0).firstReceived_s());
 }
 
-TEST(Link, ARowIsTheBudgetOfItsPathWhetherTheEndsMoveOrNot) {
+TEST(Link, RowEqualsBudgetOfItsPathForMovingEnds) {
   const auto scenario = oneLink();
   scenario::Emitter& emitter = scenario->emitters[0];
   emitter.propagation.model = propagation::PropagationModel::diffraction;
@@ -213,7 +213,7 @@ TEST(Link, ARowIsTheBudgetOfItsPathWhetherTheEndsMoveOrNot) {
   expectBudgets();
 }
 
-TEST(Link, OfManyReceiversAndEmittersAreThoseOfEachReceiverAlone) {
+TEST(Link, ManyReceiversEqualEachReceiverAlone) {
   const auto scenario = oneLink();
   for (int n = 0; n < 6; ++n) {
     scenario::Emitter other = plainEmitter("other " + std::to_string(n), 0);
@@ -299,7 +299,7 @@ std::shared_ptr<scenario::Scenario> radarAndTarget() {
   return scenario;
 }
 
-TEST(Detection, OfATargetIsThatOfTheRadarEquationAndTheStatistics) {
+TEST(Detection, TargetFollowsRadarEquationAndStatistics) {
   const auto scenario = radarAndTarget();
   const Detection detection = linksOf(scenario).detections.at(0);
   const DetectionRow& row = detection.rows.at(0);
@@ -338,7 +338,7 @@ TEST(Detection, AccumulatesOverTheLooksOfTheScan) {
   EXPECT_EQ(silent.rows.back().snr_db, -HUGE_VAL);
 }
 
-TEST(Detection, ByAFormulaOfATargetOutOfReachIsAFalseAlarm) {
+TEST(Detection, FormulaForTargetOutOfReachGivesPfa) {
   using scenario::DetectionMethod;
   for (const auto method : {DetectionMethod::exact, DetectionMethod::albersheim, DetectionMethod::shnidman}) {
     const auto scenario = radarAndTarget();
@@ -353,7 +353,7 @@ TEST(Detection, ByAFormulaOfATargetOutOfReachIsAFalseAlarm) {
   }
 }
 
-TEST(Detection, RadialSpeedIsThatAtTheTime) {
+TEST(Detection, RadialSpeedIsTakenAtTheTime) {
   const auto scenario = radarAndTarget();
   // 200 m/s to the north, 2 km east of the radar; then to the east
   scenario::Platform& aircraft = scenario->platforms[1];
@@ -389,7 +389,7 @@ TEST(Detection, TakesTheCrossSectionFromTheRadarsAspect) {
   EXPECT_NEAR(table->elevation, -20, 0.5);
 }
 
-TEST(Detection, IsTheBudgetOfTheSamePathWithTheBeamOnTheTarget) {
+TEST(Detection, EqualsBudgetOfPathWithBeamOnTarget) {
   const auto scenario = radarAndTarget();
   addEmitter(*scenario, pointAt(*scenario, 15e3, 12e3), jammerOf(1e-3));
   const Detection detection = linksOf(scenario, {0.5}).detections.at(0);
@@ -406,7 +406,7 @@ TEST(Detection, IsTheBudgetOfTheSamePathWithTheBeamOnTheTarget) {
   EXPECT_DOUBLE_EQ(row.detection_probability, budget.find("detection_probability")->value);
 }
 
-TEST(Detection, OfManyTargetsIsThatOfEachAlone) {
+TEST(Detection, ManyTargetsEqualEachAlone) {
   const auto scenario = radarAndTarget();
   addEmitter(*scenario, pointAt(*scenario, 15e3, 12e3), jammerOf(1e-3));
   scenario::Emitter radar = scenario->emitters[0];

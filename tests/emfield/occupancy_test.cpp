@@ -83,7 +83,7 @@ class Occupancy : public test::OnBackends {
   }
 };
 
-TEST_P(Occupancy, OfTurnsIsThatOfFineSteps) {
+TEST_P(Occupancy, TurnsEqualFineSteps) {
   for (const AntennaPtr& antenna :
        {scenario::makeGaussian(30, 4, 12, -35), scenario::makeCosecant2(30, 4, 5, 40, -35),
         scenario::makeSinc(30, 4, 12, -40), scenario::makePhasedArray(25, 24, 16, 0.5, 1, -45)}) {
@@ -92,13 +92,13 @@ TEST_P(Occupancy, OfTurnsIsThatOfFineSteps) {
   }
 }
 
-TEST_P(Occupancy, OfPartsOfATurnIsThatOfFineSteps) {
+TEST_P(Occupancy, PartsOfATurnEqualFineSteps) {
   const auto scenario = countedAround(scenario::makeGaussian(30, 8, 12, -35), rotating(-10, 3));
   expectAsCounted(scenario, 1.9, 1200);
   expectAsCounted(scenario, 8.3, 2400);
 }
 
-TEST_P(Occupancy, OfSectorsRastersAndDwellsIsThatOfFineSteps) {
+TEST_P(Occupancy, SectorsRastersAndDwellsEqualFineSteps) {
   const AntennaPtr antenna = scenario::makeGaussian(30, 8, 9, -35);
   for (const double seconds : {0.8, 3.7}) {
     SCOPED_TRACE(seconds);
@@ -117,14 +117,14 @@ TEST_P(Occupancy, CountsBothRaysAndTheTimesOfActivity) {
   expectAsCounted(scenario, 6, 2400);
 }
 
-TEST_P(Occupancy, OfAStillBeamIsItsTimeOfActivity) {
+TEST_P(Occupancy, FixedBeamEqualsActiveTime) {
   auto scenario = countedAround(scenario::makeIsotropic(30), ScanSpec{});
   scenario->emitters.front().active_s = {{0, 2.5}, {4, 4.5}};
   const UnsetVector<float> found = over(scenario, 6);
   EXPECT_NEAR(*std::max_element(found.begin(), found.end()), (0.8 + 0.5) / 6, 1e-5);
 }
 
-TEST_P(Occupancy, OfSeveralEmittersIsThatOfAny) {
+TEST_P(Occupancy, SeveralEmittersCountWhileAnyIsReceived) {
   auto first = countedAround(scenario::makeGaussian(30, 8, 12, -35), rotating(10, 3));
   auto second = countedAround(scenario::makeGaussian(30, 30, 12, -35), rotating(7, 3));
   auto both = std::make_shared<Scenario>(*first);
@@ -134,7 +134,7 @@ TEST_P(Occupancy, OfSeveralEmittersIsThatOfAny) {
   for (std::size_t v = 0; v < any.size(); ++v) EXPECT_NEAR(any[v], a[v] + b[v] - a[v] * b[v], 1e-5f);
 }
 
-TEST_P(Occupancy, OfWholeTurnsDoesNotChangeWithTheTime) {
+TEST_P(Occupancy, WholeTurnsAreConstantOverTime) {
   const auto scenario =
       occupancyOf(countedAround(scenario::makeGaussian(30, 4, 6, -35), rotating(10, 3)), 12);
   FieldSolver solver = solverOf(scenario);
@@ -144,7 +144,7 @@ TEST_P(Occupancy, OfWholeTurnsDoesNotChangeWithTheTime) {
 
 EMSCAPE_ON_BACKENDS(Occupancy);
 
-TEST(OccupancyNeeds, AnInterval) {
+TEST(OccupancyQuantity, NeedsAnInterval) {
   const auto scenario = countedAround(scenario::makeIsotropic(30), ScanSpec{});
   FieldOptions options;
   options.quantities = {"occupancy"};

@@ -238,7 +238,7 @@ void recordDifferences(const std::string& what, const std::vector<double>& diffe
                                     std::to_string(quantileOf(differences_db, part)));
 }
 
-TEST(ParabolicField, IsThatOfSingleMarchesAtRandomPointsOverASmoothEarth) {
+TEST(ParabolicField, EqualsSingleMarchesOverSmoothEarth) {
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
     SCOPED_TRACE(toString(frame));
     const std::vector<double> differences = differencesAround(nullptr, 60, 0, 0, frame);
@@ -250,7 +250,7 @@ TEST(ParabolicField, IsThatOfSingleMarchesAtRandomPointsOverASmoothEarth) {
 
 // Between azimuths the terrain differs, and so do the reflections: lobes move. With azimuths one voxel apart
 // at the far side, as they are in small regions by themselves, this is lost at single nulls only.
-TEST(ParabolicField, IsThatOfSingleMarchesAtRandomPointsOverHills) {
+TEST(ParabolicField, EqualsSingleMarchesOverHills) {
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
     SCOPED_TRACE(toString(frame));
     const std::vector<double> differences = differencesAround(gentleHills(), 180, 80, 0, frame);
@@ -294,7 +294,7 @@ RealGround whiteMountains() {
 
 // Real ground changes with azimuth and with the positions of a march's steps: two marches along one azimuth,
 // with shifted steps of 70 m, differ by 0.6 dB or more at one of ten points.
-TEST(ParabolicField, IsNearSingleMarchesAtRandomPointsOverMountains) {
+TEST(ParabolicField, IsNearSingleMarchesOverMountains) {
   const RealGround valley = valleyOfJacksboro(), mountains = whiteMountains();
   const std::vector<double> of_valley = differencesFromSingleMarches(valley.scenario, valley.terrain),
                             of_mountains =
@@ -364,7 +364,7 @@ struct MadeCells {
   }
 };
 
-TEST(ParabolicField, IsCurvedBetweenAzimuthsAndRanges) {
+TEST(ParabolicField, InterpolatesBetweenAzimuthsAndRangesWithCurvature) {
   const MadeCells bowl([](int a, int r) { return 5 + 0.5F * float((a - 4) * (a - 4)) + float(r * r); });
   EXPECT_NEAR(bowl.at(3, 2), 5.5 + 4, 1e-4);
   EXPECT_NEAR(bowl.at(3.5, 2), 5.125 + 4, 1e-4);
@@ -375,7 +375,7 @@ TEST(ParabolicField, IsCurvedBetweenAzimuthsAndRanges) {
   EXPECT_NEAR(bowl.at(7.5, 2), 11.25 + 0.0625 * (9.5 + 13 - 7 - 9.5) + 4, 1e-4);
 }
 
-TEST(ParabolicField, IsStraightBesideWhatIsUnknownAndBentLittleBesideShadows) {
+TEST(ParabolicField, InterpolatesLinearlyBesideUnknownCells) {
   const MadeCells hole(
       [](int a, int r) { return a == 2 ? NAN : 5 + 0.5F * float((a - 4) * (a - 4)) + float(r); });
   EXPECT_NEAR(hole.at(3.5, 2), 5.25 + 2, 1e-4);
@@ -420,7 +420,7 @@ std::vector<double> differencesFromWeighedRays(const std::shared_ptr<scenario::S
   return differences;
 }
 
-TEST(ParabolicField, OfAPatternIsTwoRaysEachWeighedByItsOwnAngle) {
+TEST(ParabolicField, PatternWeightsBothRaysByTheirAngles) {
   const auto scenario = around(1e9, 30, {20e3, 300, 200}, {200, 3, 80});
   scenario->ground.kind = propagation::GroundKind::sea;
   scenario::Emitter& emitter = scenario->emitters[0];
@@ -508,7 +508,7 @@ TEST(ParabolicField, HasNoSeamOverASmoothEarth) {
 }
 
 // The places' exact paths, which are not averaged, against voxels that are smaller than lobes.
-TEST(ParabolicField, IsThatOfTheExplainedPathOverASmoothEarth) {
+TEST(ParabolicField, EqualsExplainedPathOverSmoothEarth) {
   const auto scenario = around(1e9, 50, {120e3, 300, 300}, {400, 3, 60});
   const auto volume = solve(scenario);
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);
@@ -571,7 +571,7 @@ OverDiffraction overDiffraction(const std::shared_ptr<scenario::Scenario>& scena
   return differences;
 }
 
-TEST(ParabolicField, IsThatOfDiffractionWithinSomeDecibelsOverHills) {
+TEST(ParabolicField, IsNearDiffractionOverHills) {
   const auto scenario = around(3e8, 180, {24e3, 24e3, 400}, {40, 40, 20}, 80);
   const OverDiffraction differences = overDiffraction(scenario, gentleHills());
   for (const double part : {0.1, 0.5, 0.9})
@@ -583,7 +583,7 @@ TEST(ParabolicField, IsThatOfDiffractionWithinSomeDecibelsOverHills) {
 
 // Steep mountains of the SRTM: behind ridges the two models agree within some dB, and a march that does not
 // see them is 20 dB and more above.
-TEST(ParabolicField, IsThatOfDiffractionWithinSomeDecibelsOverMountains) {
+TEST(ParabolicField, IsNearDiffractionOverMountains) {
   const auto scenario = around(3e8, 0, {16e3, 16e3, 1600}, {24, 24, 16}, 500);
   const auto terrain = standOn("tests/data/dem/N44W072.tif", 44.26, -71.25, 30, *scenario);
   scenario->emitters[0].propagation.parabolic_equation.max_angle_deg = 10;
@@ -601,7 +601,7 @@ TEST(ParabolicField, IsThatOfDiffractionWithinSomeDecibelsOverMountains) {
 }
 
 // A ridge at 4 degrees of elevation: a band of 3 degrees does not hold the rays over it.
-TEST(ParabolicField, BehindARidgeAboveTheLargestAngleDiffractionSpeaks) {
+TEST(ParabolicField, DiffractionUsedBehindSteepRidge) {
   constexpr double kMetresPerDegree = 70e3;  // eastwards; degrees count from the western side
   const auto terrain =
       std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, [](double east, double) {
@@ -623,7 +623,7 @@ TEST(ParabolicField, BehindARidgeAboveTheLargestAngleDiffractionSpeaks) {
 }
 
 // Marches toward that ridge end behind it, others at the region's border.
-TEST(ParabolicField, IsNotMarchedBehindARidgeAboveTheLargestAngle) {
+TEST(ParabolicField, MarchEndsAtSteepRidge) {
   constexpr double kMetresPerDegree = 70e3;
   const auto terrain =
       std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, [](double east, double) {
@@ -644,7 +644,7 @@ TEST(ParabolicField, IsNotMarchedBehindARidgeAboveTheLargestAngle) {
 
 // In rugged country rays must stay in the band whatever the slopes below them, else the field in sight is
 // lost.
-TEST(ParabolicField, IsThatOfFreeSpaceHighAboveRuggedGround) {
+TEST(ParabolicField, EqualsFreeSpaceHighAboveRuggedGround) {
   const auto terrain =
       std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, [](double east, double north) {
         return 150 + 120 * std::sin(250 * east + 1) * std::cos(200 * north);  // slopes to 24 degrees
@@ -674,7 +674,7 @@ TEST(ParabolicField, PathsAcrossAHoleAreUnknownAndOthersAreNot) {
   EXPECT_LT(known, 24 * 24);
 }
 
-TEST(ParabolicField, SurfacesNearTheGroundAreThatOfThePaths) {
+TEST(ParabolicField, SurfacesNearGroundEqualPaths) {
   const scenario::TerrainPtr terrain = gentleHills();
   const auto scenario = around(3e8, 180, {24e3, 24e3, 400}, {4, 4, 4}, 80);
   const auto made_surface = std::make_shared<Surface>();
@@ -707,7 +707,7 @@ TEST(ParabolicField, SurfacesNearTheGroundAreThatOfThePaths) {
   EXPECT_LT(quantileOf(differences, 0.9), 4);  // nulls between hills
 }
 
-TEST(ParabolicField, ATurnedBeamIsCombinedAloneAndSettingsMarchAnew) {
+TEST(ParabolicField, TurnedBeamIsCombinedAndSettingsRepeatMarch) {
   const auto scenario = around(1e9, 30, {20e3, 20e3, 200}, {20, 20, 10});
   FieldSolver solver(scenario, nullptr, {});
   solver.update(scenario::snapshotAt(scenario, nullptr, 0));
@@ -722,7 +722,7 @@ TEST(ParabolicField, ATurnedBeamIsCombinedAloneAndSettingsMarchAnew) {
   EXPECT_THAT(editedBy([](auto& s) { s.atmosphere.k_factor = 1.5; }).moved, ::testing::ElementsAre(0));
 }
 
-TEST(ParabolicField, OfAPatternIsMarchedAnewWhereTheBeamTiltsAndNotWhereItTurns) {
+TEST(ParabolicField, PatternRepeatsMarchWhenBeamTiltsOnly) {
   const auto scenario = around(1e9, 30, {20e3, 20e3, 200}, {20, 20, 10});
   scenario::Emitter& emitter = scenario->emitters[0];
   emitter.antenna = scenario::makeSinc(20, 2, 2, -30);
@@ -741,7 +741,7 @@ TEST(ParabolicField, OfAPatternIsMarchedAnewWhereTheBeamTiltsAndNotWhereItTurns)
               ::testing::ElementsAre(0));
 }
 
-TEST(ParabolicField, SaysWhichModelSpeaksWhere) {
+TEST(ParabolicField, DominantModelMarksMarchAndDiffraction) {
   const auto scenario = overTheSea(6000, 30);
   const auto power = solve(scenario);
   scenario->output.quantities = {"dominant_model"};
@@ -772,7 +772,7 @@ TEST(ParabolicField, SaysWhichModelSpeaksWhere) {
     EXPECT_GT(seen[name], 10) << name;
 }
 
-TEST(ParabolicField, SaysWhereScatterOrTheFloorSpeaks) {
+TEST(ParabolicField, DominantModelMarksScatterAndFloor) {
   const auto scenario = overTheSea(20, 5);
   scenario->output.quantities = {"dominant_model"};
   EXPECT_EQ(testing::valueAt(*solve(scenario), 0, 1, 2),
@@ -793,7 +793,7 @@ TEST(ParabolicField, SaysWhereScatterOrTheFloorSpeaks) {
             static_cast<float>(propagation::Mechanism::parabolic_equation));
 }
 
-TEST(ParabolicField, SlantedWavesAreHalfOfEach) {
+TEST(ParabolicField, SlantPolarizationIsMeanOfBoth) {
   const auto scenario = around(3e8, 30, {20e3, 300, 200}, {40, 3, 20});
   const auto powerOf = [&](Polarization polarization) {
     scenario->emitters[0].polarization = polarization;
@@ -803,7 +803,7 @@ TEST(ParabolicField, SlantedWavesAreHalfOfEach) {
   EXPECT_NEAR(10 * std::log10(powerOf(Polarization::slant_45) / mean), 0, 0.02);
 }
 
-TEST(ParabolicField, ReportsWhatItChooses) {
+TEST(ParabolicField, ReportsChosenGrid) {
   const auto scenario = around(1e9, 30, {20e3, 20e3, 200}, {20, 20, 10});
   const Made made(*scenario, nullptr);
   std::string all;
@@ -815,7 +815,7 @@ TEST(ParabolicField, ReportsWhatItChooses) {
 }
 
 // Over terrain as many heights as a power of two below the wanted one hold, if they hold most of the angle.
-TEST(ParabolicField, GivesUpAQuarterOfTheAngleForHalfOfTheHeights) {
+TEST(ParabolicField, AngleIsReducedByAQuarterForHalfTheHeights) {
   constexpr double kMetresPerDegree = 70e3;
   const auto terrain =
       std::make_shared<const MadeTerrain>(kLatitude_deg, kLongitude_deg, 1.0, [](double east, double) {
@@ -853,7 +853,7 @@ TEST(ParabolicField, AnEvaporationDuctGuidesBeyondTheHorizon) {
   EXPECT_LT(-excessIn(*plain, made, 20, 1, 2), -40);
 }
 
-TEST(ParabolicField, DuctsChangeNothingHighUpAndAtLargeAngles) {
+TEST(ParabolicField, DuctsHaveNoEffectHighUpAndAtLargeAngles) {
   const auto scenario = overTheSea(6000, 30);
   const auto plain = solve(scenario);
   scenario->atmosphere.refractivity = duct({14});
@@ -895,7 +895,7 @@ struct Refusal {
   const char* message;
 };
 
-TEST(ParabolicField, RefusesWhatIsOutsideItsLimits) {
+TEST(ParabolicField, RefusesInputsOutsideItsLimits) {
   const std::vector<Refusal> refusals{
       {"frequency", [](auto& s) { s.emitters[0].frequency_hz = 20e6; },
        "frequency 20 MHz is outside 30..40000"},
@@ -955,7 +955,7 @@ TEST(ParabolicField, RefusesWhatIsOutsideItsLimits) {
   }
 }
 
-TEST(ParabolicField, WarnsBeyondWhatWasMeasured) {
+TEST(ParabolicField, WarnsOutsideMeasuredSettings) {
   const auto warningsOf = [](auto edit) {
     const auto scenario = around(1e9, 30, {20e3, 300, 200}, {20, 3, 10});
     edit(*scenario);

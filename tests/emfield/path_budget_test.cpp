@@ -95,7 +95,7 @@ Compared compareWithField(const std::shared_ptr<scenario::Scenario>& scenario,
   return compared;
 }
 
-TEST(PathBudget, IsWhatTheFieldHoldsInFreeSpace) {
+TEST(PathBudget, EqualsFieldInFreeSpace) {
   const auto scenario = whiteMountains(PropagationModel::free_space);
   scenario->terrain.reset();
   Compared compared = compareWithField(scenario, nullptr, 500);
@@ -103,7 +103,7 @@ TEST(PathBudget, IsWhatTheFieldHoldsInFreeSpace) {
   EXPECT_LT(compared.quantile(1), 2e-3);
 }
 
-TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverASmoothEarth) {
+TEST(PathBudget, EqualsFieldOfEveryModelOverSmoothEarth) {
   for (const PropagationModel model : kModels) {
     SCOPED_TRACE(toString(model));
     const auto scenario = whiteMountains(model);
@@ -118,7 +118,7 @@ TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverASmoothEarth) {
   }
 }
 
-TEST(PathBudget, IsWhatTheFieldHoldsInAnExponentialAtmosphere) {
+TEST(PathBudget, EqualsFieldInExponentialAtmosphere) {
   for (const PropagationModel model : {PropagationModel::free_space, PropagationModel::horizon,
                                        PropagationModel::diffraction, PropagationModel::two_ray}) {
     SCOPED_TRACE(toString(model));
@@ -146,7 +146,7 @@ TEST(PathBudget, TheWarningOfGreatHeightsEndsWithAnExponentialAtmosphere) {
   EXPECT_THAT(warnings(), ::testing::IsEmpty());
 }
 
-TEST(PathBudget, IsWhatTheFieldHoldsByEveryModelOverRealTerrain) {
+TEST(PathBudget, EqualsFieldOfEveryModelOverRealTerrain) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   for (const PropagationModel model : kModels) {
     SCOPED_TRACE(toString(model));
@@ -199,7 +199,7 @@ PathProfile overAWall(double wall_m) {
   return profile;
 }
 
-TEST(PathObstacles, AWallIsTheOneThatDecides) {
+TEST(PathObstacles, WallIsDominantObstacle) {
   const std::vector<PathObstacle> obstacles = pathObstacles(overAWall(150), 0.3);
   ASSERT_EQ(obstacles.size(), 1u);
   const PathObstacle& wall = obstacles.front();
@@ -212,7 +212,7 @@ TEST(PathObstacles, AWallIsTheOneThatDecides) {
   EXPECT_FALSE(wall.is_earth_bulge);
 }
 
-TEST(PathObstacles, OverFlatGroundTheNearestPlaceIsNamed) {
+TEST(PathObstacles, FlatGroundNamesNearestPoint) {
   const std::vector<PathObstacle> obstacles = pathObstacles(overAWall(0), 0.3);
   ASSERT_EQ(obstacles.size(), 1u);
   EXPECT_GT(obstacles.front().clearance_m, 0);
@@ -230,7 +230,7 @@ TEST(PathObstacles, CrestsWithAValleyBetweenAreSeparate) {
   EXPECT_TRUE(obstacles[1].decides);
 }
 
-TEST(PathBudget, VerdictNamesWhatDecides) {
+TEST(PathBudget, VerdictNamesTheReason) {
   auto scenario = whiteMountains(PropagationModel::diffraction);
   scenario->terrain.reset();
   scenario->emitters[0].antenna = scenario::makeIsotropic();
@@ -251,7 +251,7 @@ TEST(PathBudget, VerdictNamesWhatDecides) {
   EXPECT_THAT(verdict({44.3, -71.47, 3000}, 3000, 0), HasSubstr("but the antenna points "));
 }
 
-TEST(PathBudget, VerdictOfARadarThatLooksAtTheTargetDoesNotTellWhereTheScanPoints) {
+TEST(PathBudget, VerdictOfRadarOnTargetOmitsScanDirection) {
   auto scenario = whiteMountains(PropagationModel::free_space);
   scenario->terrain.reset();
   scenario::Emitter& radar = scenario->emitters[0];
@@ -281,7 +281,7 @@ TEST(PathBudget, VerdictOfARadarThatLooksAtTheTargetDoesNotTellWhereTheScanPoint
   EXPECT_THAT(beside.verdict, HasSubstr("but the scan does not reach there, which costs 40.0 dB"));
 }
 
-TEST(PathBudget, TheVerdictTellsJamming) {
+TEST(PathBudget, VerdictNamesJamming) {
   auto scenario = whiteMountains(PropagationModel::free_space);
   scenario->terrain.reset();
   scenario->emitters[0].kind = scenario::EmitterKind::radar;

@@ -11,7 +11,7 @@
 namespace emscape::emfield {
 namespace {
 
-TEST(Quantities, OfTheJammingScenarioShowWhatTheRidgeHides) {
+TEST(Quantities, JammingScenarioShowsShadowOfRidge) {
   auto scenario =
       std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("jamming.yaml")));
   scenario->region.dims = {40, 40, 16};

@@ -30,7 +30,7 @@ double lookGain_db(scenario::Emitter radar, double east_m, double up_m) {
          2;
 }
 
-TEST(Look, OfARotatingRadarTurnsRoundAndKeepsItsElevation) {
+TEST(Look, RotatingRadarCoversAllAzimuthsAtItsElevation) {
   scenario::Emitter radar = trackingRadar();
   radar.scan.kind = scenario::ScanKind::rotate;
   radar.scan.rate_rpm = 10;
@@ -41,7 +41,7 @@ TEST(Look, OfARotatingRadarTurnsRoundAndKeepsItsElevation) {
   EXPECT_NEAR(lookGain_db(radar, 10e3, 10e3), -35, 1e-3) << "far above the beam";
 }
 
-TEST(Look, OfASectorReachesItsEnds) {
+TEST(Look, SectorReachesItsEnds) {
   scenario::Emitter radar = trackingRadar();
   radar.scan.kind = scenario::ScanKind::sector;
   radar.scan.azimuth_deg = 60;  // east is 30 degrees to the right of its middle
@@ -53,7 +53,7 @@ TEST(Look, OfASectorReachesItsEnds) {
   EXPECT_NEAR(lookGain_db(radar, -10e3, 0), -35, 1e-3);
 }
 
-TEST(Look, OfARasterStaysBetweenItsBars) {
+TEST(Look, RasterStaysBetweenItsBars) {
   scenario::Emitter radar = trackingRadar();
   radar.scan.kind = scenario::ScanKind::raster;
   radar.scan.azimuth_deg = 90;
@@ -68,7 +68,7 @@ TEST(Look, OfARasterStaysBetweenItsBars) {
   EXPECT_NEAR(lookGain_db(radar, 10e3, 0), 4 * 10 * std::log10(0.5), 1e-3) << "4 degrees below";
 }
 
-TEST(Look, OfAFixedAntennaStaysWhereItPoints) {
+TEST(Look, FixedAntennaKeepsItsDirection) {
   scenario::Emitter radar = trackingRadar();
   radar.scan.kind = scenario::ScanKind::fixed;
   radar.scan.azimuth_deg = 88.5;
@@ -77,7 +77,7 @@ TEST(Look, OfAFixedAntennaStaysWhereItPoints) {
   EXPECT_NEAR(lookGain_db(radar, 10e3, 10e3), -35, 1e-3);
 }
 
-TEST(Look, OfAnApertureThatIsNoArrayIsNotSteered) {
+TEST(Look, ApertureThatIsNoArrayIsNotSteered) {
   scenario::Emitter radar = radarOf(scenario::makeSinc(kGain_dbi, 3, 3, -35));
   radar.scan.kind = scenario::ScanKind::track;
   EXPECT_NEAR(lookGain_db(radar, 10e3, 10e3), 0, 1e-3);
@@ -87,14 +87,14 @@ TEST(Look, OfAnApertureThatIsNoArrayIsNotSteered) {
   EXPECT_NEAR(lookGain_db(radar, -10e3, 0), -35, 1e-3);
 }
 
-TEST(Look, OfATrackingRadarIsOnEveryTarget) {
+TEST(Look, TrackingRadarIsOnEveryTarget) {
   const scenario::Emitter radar = trackingRadar();
   EXPECT_NEAR(lookGain_db(radar, 10e3, 10e3), 0, 1e-3);
   EXPECT_NEAR(lookGain_db(radar, -10e3, 2e3), 0, 1e-3);
   EXPECT_NEAR(lookGain_db(radar, 0, 10e3), 0, 1e-3) << "the zenith";
 }
 
-TEST(Look, OfASteeredArrayLosesItsElementsPattern) {
+TEST(Look, SteeredArrayLosesElementPattern) {
   scenario::Emitter radar = radarOf(scenario::makePhasedArray(kGain_dbi, 16, 16, 0.5, 1));
   radar.scan.azimuth_deg = 90;
   EXPECT_NEAR(lookGain_db(radar, 10e3, 0), 0, 1e-3);
@@ -103,7 +103,7 @@ TEST(Look, OfASteeredArrayLosesItsElementsPattern) {
   EXPECT_LT(lookGain_db(radar, -10e3, 0), -30) << "it does not look behind itself";
 }
 
-TEST(Look, OfAScanIsWhereTheBeamIs) {
+TEST(Look, ScanFollowsTheBeam) {
   scenario::Emitter radar = trackingRadar();
   radar.scan.azimuth_deg = 88.5;
   const auto scenario = duel(radar, jammerOf(1), 0, 1e6);
@@ -132,7 +132,7 @@ void addEchoOfAnyPattern(const RadarPass& pass, std::size_t column, int k) {
   }
 }
 
-TEST(RadarRows, GiveWhatTheVoxelFunctionGives) {
+TEST(RadarRows, EqualVoxelFunction) {
   const scenario::AntennaPtr antennas[] = {
       scenario::makeIsotropic(3), scenario::makeGaussian(30, 3, 4, -35),
       scenario::makeCosecant2(34, 2, 5, 40, -40), scenario::makePhasedArray(30, 16, 16, 0.5, 1),

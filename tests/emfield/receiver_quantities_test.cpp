@@ -88,7 +88,7 @@ class ReceiverQuantities : public test::OnBackends {
   }
 };
 
-TEST_P(ReceiverQuantities, AreThoseOfALinkToTheVoxel) {
+TEST_P(ReceiverQuantities, EqualLinkToTheVoxel) {
   for (const PropagationModel model : {PropagationModel::free_space, PropagationModel::two_ray}) {
     SCOPED_TRACE(toString(model));
     const auto scenario = jammedMast(model);
@@ -120,7 +120,7 @@ TEST_P(ReceiverQuantities, AreThoseOfALinkToTheVoxel) {
   }
 }
 
-TEST_P(ReceiverQuantities, OfOneTransmitterTheRatioIsFriisOverTheNoise) {
+TEST_P(ReceiverQuantities, OneTransmitterEqualsFriisOverNoise) {
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
   addEmitter(*scenario, middleOf(*scenario), plainEmitter("wanted", 0));
   scenario::ReceiverProfile receiver;
@@ -144,7 +144,7 @@ TEST_P(ReceiverQuantities, OfOneTransmitterTheRatioIsFriisOverTheNoise) {
   EXPECT_EQ(solver->volumes()[0].info().extra.at(volume::kLegendNoteKey), "signal: wanted");
 }
 
-TEST_P(ReceiverQuantities, AreTheSameForAnyCombinationOfEmitters) {
+TEST_P(ReceiverQuantities, DoNotDependOnCombinationOfEmitters) {
   const auto scenario = jammedMast(PropagationModel::free_space);
   const auto of_sum = solve(scenario);
   for (const auto combine : {scenario::CombineMode::max, scenario::CombineMode::per_emitter}) {
@@ -160,7 +160,7 @@ TEST_P(ReceiverQuantities, AreTheSameForAnyCombinationOfEmitters) {
   }
 }
 
-TEST_P(ReceiverQuantities, FollowTheBeamsAndWhatIsSilent) {
+TEST_P(ReceiverQuantities, FollowBeamsAndSilentEmitters) {
   const auto scenario = jammedMast(PropagationModel::free_space);
   scenario->emitters[0].scan.kind = scenario::ScanKind::rotate;
   scenario->emitters[0].scan.rate_rpm = 5;
@@ -174,7 +174,7 @@ TEST_P(ReceiverQuantities, FollowTheBeamsAndWhatIsSilent) {
   }
 }
 
-TEST_P(ReceiverQuantities, AnInterceptOverAnIntervalIsTheLargest) {
+TEST_P(ReceiverQuantities, InterceptOverIntervalIsMaximum) {
   auto scenario = jammedMast(PropagationModel::free_space);
   scenario->output.quantities = {"intercept_margin_db"};
   scenario->emitters.resize(1);
@@ -195,7 +195,7 @@ TEST_P(ReceiverQuantities, AnInterceptOverAnIntervalIsTheLargest) {
 
 EMSCAPE_ON_BACKENDS(ReceiverQuantities);
 
-TEST(ReceiverQuantity, ThatTheScenarioCannotGiveIsRefused) {
+TEST(ReceiverQuantity, WithoutItsInputsIsRefused) {
   const auto scenario = jammedMast(PropagationModel::free_space);
   const auto messageOf = [&](const char* quantity) {
     FieldOptions options;

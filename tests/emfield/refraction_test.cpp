@@ -24,7 +24,7 @@ Station stationAt(double height_msl_m) {
   return makeStation({35.31, 5, height_msl_m}, height_msl_m, atmosphere);
 }
 
-TEST(Refraction, HorizonsAreThoseOfTracedRays) {
+TEST(Refraction, HorizonsEqualTracedRays) {
   const Station station = stationAt(0);
   EXPECT_NEAR(station.earth_radius_m, 6371e3, 100);
   const double traced_m[][2] = {{10e3, 408.01e3}, {20e3, 565.32e3}, {30e3, 682.98e3}};
@@ -44,7 +44,7 @@ constexpr TracedRay kTraced[] = {
     {0, 0.5, 400e3, 13483.1}, {0, 2, 300e3, 16374.9},      {0, 0.2, 500e3, 17416.8}, {0, 10, 110e3, 20276.4},
     {1000, 0, 300e3, 6508.8}, {10e3, -2.5, 250e3, 3464.1}, {10e3, 0, 300e3, 16661.8}};
 
-TEST(Refraction, RaysStartAsTracedRays) {
+TEST(Refraction, RaysStartLikeTracedRays) {
   for (const TracedRay& ray : kTraced) {
     const Station station = stationAt(ray.station_msl_m);
     const double angle = ray.range_m / station.earth_radius_m;
@@ -56,7 +56,7 @@ TEST(Refraction, RaysStartAsTracedRays) {
   }
 }
 
-TEST(Refraction, RaysFromNearTheGroundHaveTheHeightsOfTracedRays) {
+TEST(Refraction, RaysFromNearGroundEqualTracedRays) {
   for (const TracedRay& ray : kTraced) {
     if (ray.station_msl_m > 0) continue;
     const Station station = stationAt(ray.station_msl_m);
@@ -87,7 +87,7 @@ TEST(Refraction, HeightsGoOnWithoutAJump) {
   }
 }
 
-TEST(Refraction, LinearRefractivityLeavesHeightsAsTheyAre) {
+TEST(Refraction, LinearRefractivityKeepsHeights) {
   const Station station = makeStation({35.31, 5, 30e3}, 30e3, propagation::Atmosphere{});
   EXPECT_EQ(station.effective_height_msl_m, 30e3);
   EXPECT_EQ(station.refraction.effectiveHeight_m(25e3, 30e3, 500e3), 25e3);

@@ -124,7 +124,7 @@ std::shared_ptr<scenario::Scenario> radarOn(const std::shared_ptr<scenario::Scen
   return scenario;
 }
 
-TEST(Shadow, StandsWhereAWalkAlongEachRayPutsIt) {
+TEST(Shadow, EqualsWalkAlongEachRay) {
   // A valley, a slope and a summit of the White Mountains; one site outside the region.
   const double sites[][3] = {
       {44.42, -71.68, 12}, {44.30, -71.33, 20}, {44.2706, -71.3033, 5}, {44.55, -71.80, 30}};
@@ -144,7 +144,7 @@ TEST(Shadow, StandsWhereAWalkAlongEachRayPutsIt) {
   }
 }
 
-TEST(Shadow, OfTheSmoothEarthBeginsAtTheRadioHorizon) {
+TEST(Shadow, SmoothEarthShadowBeginsAtRadioHorizon) {
   auto scenario = emptyScenario(FrameKind::altitude, 10, 20, {240e3, 6e3, 1500}, {120, 3, 30});
   const GeodeticPosition site{10, 20, 50 + geoidUndulation_m(10, 20)};
   radarOn(scenario, site);
@@ -164,7 +164,7 @@ TEST(Shadow, OfTheSmoothEarthBeginsAtTheRadioHorizon) {
   }
 }
 
-TEST(Shadow, InTheTangentPlaneFrameIsTheSameShadow) {
+TEST(Shadow, TangentPlaneFrameHasTheSameShadow) {
   auto scenario = emptyScenario(FrameKind::enu, 44.45, -71.45, {24e3, 20e3, 2500}, {24, 20, 25});
   const auto terrain = whiteMountains(*scenario);
   const double site_msl_m = terrain->heightMsl_m(44.42, -71.5) + 15;

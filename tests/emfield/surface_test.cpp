@@ -107,7 +107,7 @@ class SurfaceField : public test::OnBackends {
   scenario::TerrainPtr terrain_;
 };
 
-TEST_P(SurfaceField, IsThatOfThePathsAtHeightsAboveGroundWithEveryModel) {
+TEST_P(SurfaceField, EqualsPathsAboveGroundWithEveryModel) {
   for (const auto model : {PropagationModel::free_space, PropagationModel::horizon,
                            PropagationModel::diffraction, PropagationModel::itm, PropagationModel::two_ray,
                            PropagationModel::p528, PropagationModel::p1812, PropagationModel::p452}) {
@@ -124,7 +124,7 @@ TEST_P(SurfaceField, IsThatOfThePathsAtHeightsAboveGroundWithEveryModel) {
 }
 
 // With this many positions the searches for obstacles use bounds of the terrain and, on the CPU, of rays.
-TEST_P(SurfaceField, IsThatOfThePathsAtManyPlaces) {
+TEST_P(SurfaceField, EqualsPathsAtManyPositions) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
   const auto surface = places(HeightReference::ground, {5, 40, 150, 600}, 300, 200);
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
@@ -141,7 +141,7 @@ TEST_P(SurfaceField, IsThatOfThePathsAtManyPlaces) {
 }
 
 // Few positions are computed from their whole profiles, many by a search that reads parts of them.
-TEST_P(SurfaceField, ManyPlacesAroundAVoidAreThoseOfFew) {
+TEST_P(SurfaceField, ManyPositionsAroundAVoidEqualFew) {
   terrain_ = std::make_shared<MadeTerrain>(36.303, -84.246, 0.3, 0.04);
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
   const auto many = places(HeightReference::ground, {5, 150}, 300, 200);
@@ -193,7 +193,7 @@ TEST_P(SurfaceField, WithoutTerrainIsMaskedBelowMeanSeaLevel) {
   EXPECT_EQ(solve(scenario, nullptr, options)->first_valid_k, std::vector<std::uint16_t>(40, 2));
 }
 
-TEST_P(SurfaceField, TakesALowestHeightPerPlace) {
+TEST_P(SurfaceField, OffsetsMayDifferPerPosition) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
   const auto surface = places(HeightReference::ground, {0, 10});
   for (std::size_t p = 0; p < surface->places.size(); ++p) {
@@ -202,7 +202,7 @@ TEST_P(SurfaceField, TakesALowestHeightPerPlace) {
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01), 80);
 }
 
-TEST_P(SurfaceField, LeavesOutPlacesWithoutALatitude) {
+TEST_P(SurfaceField, OmitsPositionsWithoutALatitude) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
   const auto surface = places(HeightReference::ground, {100});
   FieldOptions options;
@@ -221,7 +221,7 @@ TEST_P(SurfaceField, LeavesOutPlacesWithoutALatitude) {
   EXPECT_THROW(solve(scenario, terrain_, options), Error);
 }
 
-TEST_P(SurfaceField, KnowsTheGroundBelowItsPlaces) {
+TEST_P(SurfaceField, HasGroundBelowItsPositions) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
   const auto surface = places(HeightReference::ground, {100}, 100, 50);
   surface->places[7].latitude_deg = NAN;
@@ -240,7 +240,7 @@ TEST_P(SurfaceField, KnowsTheGroundBelowItsPlaces) {
 }
 
 /// A GPU keeps the columns to itself until a model needs them on the host.
-TEST_P(SurfaceField, AfterAnEditToAModelOfRadialsIsThatOfANewSolver) {
+TEST_P(SurfaceField, AfterEditToRadialModelEqualsNewSolver) {
   const auto surface = places(HeightReference::ground, {100}, 12, 10);
   FieldOptions options;
   options.backend = GetParam();

@@ -23,7 +23,7 @@ namespace {
 using namespace emscape::emfield::testing;
 using propagation::PropagationModel;
 
-TEST(ReflectedRayCode, HoldsARayWithinItsSteps) {
+TEST(ReflectedRayCode, DecodesWithinOneStep) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> part(0, 1);
   for (int n = 0; n < 10000; ++n) {
@@ -41,7 +41,7 @@ TEST(ReflectedRayCode, HoldsARayWithinItsSteps) {
   EXPECT_EQ(powerOfBothRays(reflectedRay({}), 0.3f, 0.7f), 0.3f * 0.3f) << "the default is no reflected ray";
 }
 
-TEST(PowerOfBothRays, IsTheAmplitudesSumOverThatOfIsotropicAntennas) {
+TEST(PowerOfBothRays, IsSumOfAmplitudesRelativeToIsotropicAntennas) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> part(-1, 1);
   for (int n = 0; n < 1000; ++n) {
@@ -147,7 +147,7 @@ class TwoRays : public test::OnBackends {
   }
 };
 
-TEST_P(TwoRays, ABeamThatDoesNotLightTheSeaHasNoLobes) {
+TEST_P(TwoRays, BeamAboveTheSeaHasNoLobes) {
   // 3 km off the direct ray leaves 9.5 to 10.6 degrees upwards, the reflected one as far downwards, at -40 dB
   // of the pattern. By 40 log((d + r |rho|) / (d - r |rho|)) both ways, with |rho| 0.96 and d 0.89 to 1.
   const auto scenario = overTheSea(3000, 520, {2, 2, 60}, {2, 2, 600});
@@ -282,7 +282,7 @@ TEST_P(TwoRays, AreWeighedByThePatternAlongEachInEveryVoxel) {
   }
 }
 
-TEST_P(TwoRays, AreAtTheirOwnRangeInEveryVoxelOfALeaningColumn) {
+TEST_P(TwoRays, LeaningColumnUsesRangeOfEachVoxel) {
   // Columns 45 km from the origin lean by 0.4 degrees: 60 m over their 9 km.
   auto scenario = overTheSea(0, 0, {90e3, 70e3, 9000}, {19, 16, 40});
   scenario->region.origin.kind = FrameKind::enu;
@@ -296,7 +296,7 @@ TEST_P(TwoRays, AreAtTheirOwnRangeInEveryVoxelOfALeaningColumn) {
   expectReference(scenario, *field(scenario));
 }
 
-TEST_P(TwoRays, OfABeamThatTurnsAreCombinedAnewAndNotComputed) {
+TEST_P(TwoRays, TurningBeamRepeatsOnlyCombination) {
   auto scenario = overTheSea(0, 0, {60e3, 50e3, 3000}, {30, 25, 20});
   scenario::Emitter radar = beamUpwards();
   radar.antenna = scenario::makePhasedArray(30, 16, 16, 0.5, 1);
@@ -318,7 +318,7 @@ TEST_P(TwoRays, OfABeamThatTurnsAreCombinedAnewAndNotComputed) {
   }
 }
 
-TEST_P(TwoRays, OfAJammerAreWeighedAtBothEnds) {
+TEST_P(TwoRays, JammerIsWeightedAtBothEnds) {
   // One end is 20 m over the sea, the other 3 km off at 520 to 580 m. The narrow beam is at the lower end:
   // the radar's or the jammer's.
   for (const bool radar_is_low : {true, false}) {
@@ -354,7 +354,7 @@ TEST_P(TwoRays, OfAJammerAreWeighedAtBothEnds) {
   }
 }
 
-TEST_P(TwoRays, OfRadarsAndJammersAreThoseOfTheProfile) {
+TEST_P(TwoRays, RadarsAndJammersEqualProfile) {
   auto scenario = overTheSea(0, 0, {50e3, 40e3, 3000}, {21, 16, 13});
   scenario::Emitter radar = radarOf(scenario::makeSinc(32, 6, 4, -45)), jammer = jammerOf(50);
   radar.frequency_hz = jammer.frequency_hz = 900e6;

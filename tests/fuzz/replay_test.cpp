@@ -78,7 +78,7 @@ TEST_P(Fuzz, DocumentsWithAChangedValueAreReadOrRefusedWithAnError) {
   }
 }
 
-TEST_P(Fuzz, WhatWasFoundStaysMended) {
+TEST_P(Fuzz, RegressionInputsAreReadOrRefused) {
   const fs::path folder = sourceFile("tests/fuzz/regressions/" + GetParam());
   if (!fs::exists(folder)) return;
   for (const auto& entry : fs::directory_iterator(folder))

@@ -20,7 +20,7 @@ TEST(AsyncTask, ItsEventIsSetAtTheEndAndTheResultTakenOnce) {
   EXPECT_FALSE(task.active());
 }
 
-TEST(AsyncTask, WhatTheWorkThrowsReachesTheOwner) {
+TEST(AsyncTask, ExceptionOfTheWorkReachesTheOwner) {
   Event event;
   AsyncTask<int> task(event);
   task.start([]() -> int { throw std::runtime_error("broken"); });
@@ -29,7 +29,7 @@ TEST(AsyncTask, WhatTheWorkThrowsReachesTheOwner) {
   EXPECT_EQ(task.take(), 1);
 }
 
-TEST(BackgroundWriter, RunsJobsInOrderAndTellsTheFirstFailure) {
+TEST(BackgroundWriter, RunsJobsInOrderAndReportsFirstFailure) {
   std::vector<int> done;
   {
     BackgroundWriter writer(2);

@@ -24,7 +24,7 @@ class Autosave : public testing::Test {
   Autosaves saves_;
 };
 
-TEST_F(Autosave, OutlivesItsProgramAndIsOffered) {
+TEST_F(Autosave, IsOfferedAfterItsProgramEnded) {
   const std::string input = quickScenario(folder_);
   EXPECT_FALSE(saves_.find(input));
   ViewState state;

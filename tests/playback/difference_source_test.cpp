@@ -29,7 +29,7 @@ std::unique_ptr<FrameSource> made(std::vector<double> times_s) {
   return std::make_unique<MadeFrames>(std::move(times_s));
 }
 
-TEST(DifferenceSource, OfEqualScenariosIsZeroEverywhere) {
+TEST(DifferenceSource, EqualScenariosDifferByZero) {
   const TemporaryFolder folder;
   const auto source = openFrameSource(selectionOf(quickScenario(folder, kSmall)), {});
   for (int index = 0; index < source->count(); ++index) {

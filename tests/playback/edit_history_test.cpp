@@ -87,7 +87,7 @@ TEST(EditHistory, ADragIsOneStep) {
   EXPECT_EQ(history.scenario()->emitters[0].power_w, 10050);
 }
 
-TEST(EditHistory, ADragThatComesBackOrIsCancelledIsNoStepAndKeepsRedo) {
+TEST(EditHistory, DragWithoutEffectIsNoStepAndKeepsRedo) {
   const TemporaryFolder folder;
   EditHistory history(scenario::loadScenario(quickScenario(folder)));
   history.set("emitters.radar.losses_db", "5");
@@ -107,7 +107,7 @@ TEST(EditHistory, ADragThatComesBackOrIsCancelledIsNoStepAndKeepsRedo) {
   EXPECT_EQ(history.scenario()->emitters[0].losses_db, 5);
 }
 
-TEST(EditHistory, UndoWithinADragEndsItAndAnEditForgetsWhatWasUndone) {
+TEST(EditHistory, UndoEndsDragAndEditClearsRedo) {
   const TemporaryFolder folder;
   EditHistory history(scenario::loadScenario(quickScenario(folder)));
   history.beginDrag();
@@ -120,7 +120,7 @@ TEST(EditHistory, UndoWithinADragEndsItAndAnEditForgetsWhatWasUndone) {
   EXPECT_FALSE(history.canRedo());
 }
 
-TEST(EditHistory, AFaultyEditChangesNothing) {
+TEST(EditHistory, InvalidEditKeepsTheScenario) {
   const TemporaryFolder folder;
   EditHistory history(scenario::loadScenario(quickScenario(folder)));
   const ScenarioPtr before = history.scenario();

@@ -78,7 +78,7 @@ TEST(EditQueue, ADragThatIsCancelledLeavesNoStep) {
   EXPECT_FALSE(edited.history.canUndo());
 }
 
-TEST(EditQueue, WhatIsRefusedChangesNothingAndSaysWhy) {
+TEST(EditQueue, RefusedEditKeepsTheScenarioAndHasAReason) {
   Edited edited;
   edited.queue.set({{"emitters.radar.power_w", "-5"}});
   edited.queue.set({{"emitters.radar.losses_db", "4"}});
@@ -91,7 +91,7 @@ TEST(EditQueue, WhatIsRefusedChangesNothingAndSaysWhy) {
   EXPECT_EQ(edited.history.scenario()->emitters.front().losses_db, 4);
 }
 
-TEST(EditQueue, EditsAreMadeOfTheScenarioThatTheHistoryHolds) {
+TEST(EditQueue, EditsApplyToScenarioOfTheHistory) {
   Edited edited;
   edited.queue.set({{"emitters.radar.power_w", "5"}});
   edited.queue.update(edited.history);  // begins
@@ -107,7 +107,7 @@ TEST(EditQueue, EditsAreMadeOfTheScenarioThatTheHistoryHolds) {
   EXPECT_EQ(edited.power_w(), 5);
 }
 
-TEST(LatestWorker, TheLatestRequestIsDoneAndItsResultIsThere) {
+TEST(LatestWorker, LatestRequestIsDoneAndHasAResult) {
   std::atomic<int> done{0}, woken{0};
   LatestWorker<int, int> worker(
       [&](const int& request) {

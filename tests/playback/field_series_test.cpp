@@ -26,7 +26,7 @@ TEST(FieldSeries, TheStepThatWasComputedLastIsNotComputedAgain) {
   EXPECT_TRUE(series.changed());
 }
 
-TEST(FieldSeries, VolumesSayTheTimeOfTheirStepAndTheirOwnRange) {
+TEST(FieldSeries, VolumesHaveTimeOfTheirStepAndTheirOwnRange) {
   const TemporaryFolder folder;
   FieldSeries series = quickSeries(folder, 3);
   const std::vector<volume::Volume> volumes = series.compute(2);
@@ -38,7 +38,7 @@ TEST(FieldSeries, VolumesSayTheTimeOfTheirStepAndTheirOwnRange) {
   EXPECT_EQ(own.max, *std::max_element(dense->values.begin(), dense->values.end()));
 }
 
-TEST(FieldSeries, TheRangeOfAllStepsIsThatOfEachTogether) {
+TEST(FieldSeries, RangeOfAllStepsIsUnionOfSteps) {
   const TemporaryFolder folder;
   FieldSeries series = quickSeries(folder, 4);
   ValueRange together;

@@ -20,7 +20,7 @@ TEST(FrameSource, TheNearestIndexToATimeIsFoundBeyondTheEndsToo) {
   EXPECT_EQ(MadeFrames({3}).nearestIndex(-1), 0);
 }
 
-TEST(FrameSource, AFrameByTimeIsThatOfTheNearestStep) {
+TEST(FrameSource, FrameByTimeIsNearestStep) {
   MadeFrames source({0, 1, 2});
   EXPECT_EQ(source.frameAt(1.2).volume.info().time_s, 1);
 }
@@ -42,7 +42,7 @@ TEST(FrameSource, ComputesAScenariosStepsWithOneRange) {
   EXPECT_FALSE(source->frame(3).changed);
 }
 
-TEST(FrameSource, TracksGoThroughTheMarkersOfTheirEmitters) {
+TEST(FrameSource, TracksPassThroughMarkersOfTheirEmitters) {
   const TemporaryFolder folder;
   writeFile(folder / "track.csv",
             "t_s,latitude_deg,longitude_deg,height_msl_m\n"
@@ -88,7 +88,7 @@ TEST(FrameSource, ReadsVolumesNearestToTheTimesThatAreAskedFor) {
   EXPECT_EQ(source->frame(1).volume.info().range_min, -5);
 }
 
-TEST(FrameSource, AStepWithoutATimeOfItsOwnHasThatOfTheList) {
+TEST(FrameSource, StepWithoutTimeHasTimeOfTheList) {
   const TemporaryFolder folder;
   const std::string image =
       "<VTKFile type=\"ImageData\" byte_order=\"LittleEndian\"><ImageData WholeExtent=\"0 1 0 1 0 1\" "
@@ -170,7 +170,7 @@ TEST(FrameSource, AQuantityThatAFolderLacksIsRefusedWithThoseThatItHas) {
                         "snr_db"));
 }
 
-TEST(FrameSource, WhatIsNoInputIsRefusedByName) {
+TEST(FrameSource, InvalidInputIsRefusedByName) {
   FrameSelection selection;
   selection.input = "/nowhere/there.vdb";
   EXPECT_THAT(errorOf([&] { openFrameSource(selection, {}); }), HasSubstr("/nowhere/there.vdb"));

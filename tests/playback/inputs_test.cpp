@@ -36,7 +36,7 @@ TEST_F(JsonFiles, AreRecognisedByNameAndKeys) {
   EXPECT_EQ(content("."), JsonContent::other);
 }
 
-TEST_F(JsonFiles, ThatAreNoScenariosAreRefusedWithTheirUse) {
+TEST_F(JsonFiles, OtherThanScenariosAreRefusedWithTheirUse) {
   const auto fault = [this](const char* name) {
     return errorOf([&] { requireScenarioFile(folder_ / name); }, ErrorCode::bad_input);
   };
@@ -52,7 +52,7 @@ TEST_F(JsonFiles, ThatAreNoScenariosAreRefusedWithTheirUse) {
   EXPECT_EQ(fault("scenario.json"), "");
 }
 
-TEST_F(JsonFiles, ThatAreNoScenariosAreRefusedAsInputs) {
+TEST_F(JsonFiles, OtherThanScenariosAreRefusedAsInputs) {
   FrameSelection selection;
   selection.input = folder_ / "a.view.json";
   EXPECT_THAT(errorOf([&] { openFrameSource(selection, {}); }), HasSubstr(": a view file, not a scenario"));

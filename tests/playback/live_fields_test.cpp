@@ -139,7 +139,7 @@ TEST(LiveFields, AnEditEmptiesTheCacheAndIsComputedAtOnce) {
   EXPECT_THAT(live.fields->status().cached_steps, ElementsAre(4));
 }
 
-TEST(LiveFields, AFailedEditIsToldInOneLineUntilAnotherOneSucceeds) {
+TEST(LiveFields, FailedEditIsReportedUntilAnotherOneSucceeds) {
   Fields live(10);
   live.wait();
   live.ask([](FieldRequest& request) { request.scenario = scenarioNamed("without ground"); });
@@ -152,7 +152,7 @@ TEST(LiveFields, AFailedEditIsToldInOneLineUntilAnotherOneSucceeds) {
   EXPECT_THAT(live.source->asked(), ElementsAre(0, 0));
 }
 
-TEST(LiveFields, AFailureOfTheDeviceSaysWhatToDo) {
+TEST(LiveFields, DeviceFailureNamesTheRemedy) {
   Fields live(10);
   live.wait();
   live.ask([](FieldRequest& request) { request.scenario = scenarioNamed("too large"); });
@@ -174,7 +174,7 @@ TEST(LiveFields, AStepThatFailsLeavesTheOthers) {
   EXPECT_EQ(live.shown_s(), 6);
 }
 
-TEST(LiveFields, TheRangeOfTheSeriesIsFoundBesideWhatIsAskedFor) {
+TEST(LiveFields, RangeOfTheSeriesIsSearchedBesideRequests) {
   Fields live(48);
   live.wait();
   live.ask([](FieldRequest& request) { request.search = 7; });
@@ -198,7 +198,7 @@ TEST(LiveFields, StepsAskedForInOrderAreComputedAhead) {
   EXPECT_THAT(live.fields->status().cached_steps, ElementsAre(0, 1, 2, 3, 7)) << "a jump is no playing";
 }
 
-TEST(LiveFields, NothingWakesTheThreadWhenNothingIsToBeDone) {
+TEST(LiveFields, ThreadSleepsWithoutWork) {
   Fields live(10);
   live.seek(4);
   live.wait();

@@ -170,7 +170,7 @@ std::string busyText() {
   }
 }
 
-TEST(LiveView, TetrahedraAreProjectedWhileBusyWhereThatIsFasterAndMarchedWhenSettled) {
+TEST(LiveView, TetrahedraAreProjectedWhileBusyAndMarchedWhenSettled) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
   expected.mesh = "terrain:4,50";
@@ -212,7 +212,7 @@ TEST(LiveView, ModesThatTetrahedraDoNotHaveAreAnError) {
   EXPECT_THAT(live.error(), HasSubstr("mode mida: a field on tetrahedra is drawn by dvr alone"));
 }
 
-TEST(LiveView, ComparisonShowsWhatEditsChangeAndTheFieldAgain) {
+TEST(LiveView, ComparisonShowsEffectOfEditsAndThenTheField) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
   Live live(expected.input);
@@ -234,7 +234,7 @@ TEST(LiveView, ComparisonShowsWhatEditsChangeAndTheFieldAgain) {
   expectSame(again, expected);
 }
 
-TEST(LiveView, WhatHasNoDifferenceIsToldAndThePictureStays) {
+TEST(LiveView, UndefinedDifferenceIsReportedAndPictureStays) {
   const TemporaryFolder folder;
   LiveOptions options = quarterOptions();
   options.quantity = "dominant_emitter";
@@ -245,7 +245,7 @@ TEST(LiveView, WhatHasNoDifferenceIsToldAndThePictureStays) {
   EXPECT_EQ(live.settled()->volume.info().quantity, "dominant_emitter");
 }
 
-TEST(LiveView, EveryKindOfEventGoesFromBusyOverRestoreToIdleAndThePictureIsThatOfAFullCast) {
+TEST(LiveView, EveryKindOfEventSettlesOnFullCast) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
   Live live(expected.input);
@@ -298,7 +298,7 @@ TEST(LiveView, EveryKindOfEventGoesFromBusyOverRestoreToIdleAndThePictureIsThatO
   EXPECT_EQ(live.view->picture()->volume.info().quantity, "snr_db");
 }
 
-TEST(LiveView, AnEventStopsARestorationAndThePictureThatSettlesShowsIt) {
+TEST(LiveView, EventStopsRestorationAndSettledPictureShowsIt) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
   Live live(expected.input);
@@ -335,7 +335,7 @@ TEST(LiveView, OnTheCpuBusyPicturesAreFinishedInTheHostsMemory) {
   live.pass();
 }
 
-TEST(LiveView, OnAGpuBusyPicturesStayThereWhereThatIsAskedFor) {
+TEST(LiveView, BusyPicturesStayOnGpuOnRequest) {
   EMSCAPE_NEEDS_GPU();
   const TemporaryFolder folder;
   LiveOptions options = quarterOptions();
@@ -362,7 +362,7 @@ TEST(LiveView, OnAGpuBusyPicturesStayThereWhereThatIsAskedFor) {
   }
 }
 
-TEST(LiveView, SeekingBackComputesNothingAndAnEditDropsWhatWasComputed) {
+TEST(LiveView, SeekingBackUsesCacheAndEditClearsIt) {
   const TemporaryFolder folder;
   Live live(quickScenario(folder));
   for (const double time_s : {0.0, 3.0}) {
@@ -380,7 +380,7 @@ TEST(LiveView, SeekingBackComputesNothingAndAnEditDropsWhatWasComputed) {
   EXPECT_THAT(live.view->status().cached_steps, ElementsAre(0));
 }
 
-TEST(LiveView, WhatIsAskedForAndWhatIsShownAreToldApartAndThePictureStays) {
+TEST(LiveView, RequestedAndShownStepDifferAndPictureStays) {
   const TemporaryFolder folder;
   Live live(quickScenario(folder));
   const auto before = live.settled();
@@ -401,7 +401,7 @@ TEST(LiveView, WhatIsAskedForAndWhatIsShownAreToldApartAndThePictureStays) {
   EXPECT_GT(after->status.frame, before->status.frame);
 }
 
-TEST(LiveView, SettingsOutOfTheirRangeAreToldAndThePictureStays) {
+TEST(LiveView, SettingsOutOfRangeAreReportedAndPictureStays) {
   const TemporaryFolder folder;
   Live live(quickScenario(folder));
   const auto before = live.settled();
@@ -435,7 +435,7 @@ TEST(LiveView, AnEditThatCannotBeComputedLeavesThePictureUntilItIsUndone) {
   EXPECT_EQ(live.view->status().error, "");
 }
 
-TEST(LiveView, AFileThatCannotBeReadIsToldAndEndsNothing) {
+TEST(LiveView, UnreadableFileIsReportedAndViewContinues) {
   Live live("no/such/file.yaml");
   EXPECT_EQ(live.error(), "no/such/file.yaml: no such file or folder");
   live.view->seek(3);
@@ -444,7 +444,7 @@ TEST(LiveView, AFileThatCannotBeReadIsToldAndEndsNothing) {
   EXPECT_EQ(live.view->scenario(), nullptr);
 }
 
-TEST(LiveView, NoThreadWakesWhileNothingHappens) {
+TEST(LiveView, NoThreadWakesWhileIdle) {
   const TemporaryFolder folder;
   Live live(quickScenario(folder));
   live.settled();
@@ -467,7 +467,7 @@ TEST(LiveView, LabelsChangeWithoutACast) {
   EXPECT_THAT(live.states(), testing::Not(testing::Contains(ControllerState::busy)));
 }
 
-TEST(LiveView, NothingIsDrawnWithoutPixels) {
+TEST(LiveView, EmptySizeIsNotDrawn) {
   const TemporaryFolder folder;
   PictureStyle style = smallStyle();
   style.size = {0, 0};
@@ -485,7 +485,7 @@ TEST(LiveView, NothingIsDrawnWithoutPixels) {
   EXPECT_EQ(live.settled()->status.shown_s, 2);
 }
 
-TEST(LiveView, ColoursAreFittedToARangeOrAStepWhenTheUserSaysSo) {
+TEST(LiveView, ColorsAreFittedToRangeOrStepOnRequest) {
   const TemporaryFolder folder;
   const std::string input = quickScenario(folder);
   Live live(input);
@@ -527,7 +527,7 @@ TEST(LiveView, VolumesFromFilesAreShownWithTheirTimes) {
   EXPECT_THAT(live.error(), HasSubstr("volumes without a scenario cannot be edited"));
 }
 
-TEST(LiveView, EndsWhileEverythingRuns) {
+TEST(LiveView, EndsWhileWorkIsRunning) {
   const TemporaryFolder folder;
   const std::string input = quickScenario(folder);
   for (int round = 0; round < 10; ++round) {

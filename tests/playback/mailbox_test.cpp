@@ -18,7 +18,7 @@ TEST(Mailbox, TheLatestValueWinsAndIsTakenOnce) {
   EXPECT_FALSE(box.take());
 }
 
-TEST(Mailbox, ALetterKnowsSinceWhenTheOldestThatItReplacedHasWaited) {
+TEST(Mailbox, ValueHasWaitingTimeOfOldestReplacedOne) {
   Event event;
   Mailbox<int> box(event);
   const Mailbox<int>::Time first{std::chrono::seconds(5)};

@@ -10,7 +10,7 @@
 namespace emscape::playback::test {
 namespace {
 
-TEST(Painter, LabelsAreDrawnOverWhatWasCastAndCanBeDrawnByOthers) {
+TEST(Painter, LabelsAreDrawnOverTheCastPictureOrByTheCaller) {
   MadeFrames source(seconds(2));
   PictureStyle style;
   style.size = {160, 120};
@@ -31,7 +31,7 @@ TEST(Painter, LabelsAreDrawnOverWhatWasCastAndCanBeDrawnByOthers) {
   EXPECT_TRUE(bare.rgba == render::quantize(cast).rgba);
 }
 
-TEST(Painter, ACameraThatCameBackGivesTheSamePicture) {
+TEST(Painter, ReturningCameraGivesSamePicture) {
   MadeFrames source(seconds(2));
   PictureStyle style;
   style.size = {160, 120};
@@ -52,7 +52,7 @@ TEST(Painter, ACameraThatCameBackGivesTheSamePicture) {
   EXPECT_EQ(render::compare(render::quantize(painter.image()), render::quantize(before)).erroneous, 0);
 }
 
-TEST(Painter, AnIsosurfaceThatShowsNothingIsAnErrorOrAWarning) {
+TEST(Painter, EmptyIsosurfaceIsAnErrorOrAWarning) {
   MadeFrames source(seconds(2));
   PictureStyle style;
   style.size = {160, 120};

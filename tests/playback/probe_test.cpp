@@ -41,7 +41,7 @@ TEST(SampleVolume, InterpolatesBetweenVoxelCentres) {
   EXPECT_EQ(sampleVolume(volume, {1000, 1000, 1000}).value, 999);
 }
 
-TEST(SampleVolume, SaysWhatIsNoValue) {
+TEST(SampleVolume, ReportsWhyThereIsNoValue) {
   volume::DenseVolume volume = madeVolume();
   EXPECT_EQ(sampleVolume(volume, {-1, 500, 500}).kind, Kind::outside);
   EXPECT_EQ(sampleVolume(volume, {500, 500, 1001}).kind, Kind::outside);
@@ -58,7 +58,7 @@ TEST(SampleVolume, SaysWhatIsNoValue) {
   EXPECT_EQ(sampleVolume(volume, volume.grid.center_m(3, 4, 5) + Vec3d{40, 0, 0}).value, 543);
 }
 
-TEST(Probe, SaysInWordsWhatTheVolumeHolds) {
+TEST(Probe, DescribesValuesInWords) {
   volume::DenseVolume volume = madeVolume();
   volume.first_valid_k.assign(100, 1);
   volume.values.back() = -1;
@@ -80,7 +80,7 @@ render::Camera cameraAt(const char* text, const render::SceneBox& box, render::I
 
 constexpr render::ImageSize kSize{320, 240};
 
-TEST(Pick, FindsTheGroundUnderAPixelWhateverTheExaggeration) {
+TEST(Pick, FindsGroundUnderAPixelAtAnyExaggeration) {
   const volume::DenseVolume volume = madeVolume();
   render::HeightField ground;  // a slope that rises to the east, 100 to 300 m
   ground.columns = ground.rows = 21;
@@ -133,7 +133,7 @@ TEST(Pick, GroundAloneAndLevelsAreFoundToo) {
   EXPECT_FALSE(pickLevel(camera, box, kSize, 160, 120, 100000));  // behind the eye
 }
 
-TEST(Pick, FindsTheSectionsOfPlanesAndNothingThatTheyRemove) {
+TEST(Pick, FindsSectionsOfPlanesAndIgnoresRemovedParts) {
   const volume::DenseVolume volume = madeVolume();
   render::HeightField ground;
   ground.columns = ground.rows = 2;
@@ -233,7 +233,7 @@ TEST(Probe, AgreesWithTheVoxelAndWithTheBudgetOfThePath) {
   EXPECT_NEAR(reading.emitters[0].budget->find("power_density_dbwm2")->value, reading.sample.value, 0.2);
 }
 
-TEST(Probe, KnowsHeightsOverRealGroundAndSaysWhatIsBelowIt) {
+TEST(Probe, HasHeightsOverRealGroundAndReportsPositionsBelowIt) {
   const std::string file = emscape::test::shippedScenario("jacksboro.yaml");
   const Solved solved = solve(file, {{"region.dims", "[40, 40, 20]"}});
   const volume::Grid& grid = solved.volume->grid;
@@ -277,7 +277,7 @@ TEST(Probe, KnowsHeightsOverRealGroundAndSaysWhatIsBelowIt) {
   }
 }
 
-TEST(Probe, APositionAtTheEmitterIsARefusalOfThatEmitterAlone) {
+TEST(Probe, PositionAtAnEmitterIsRefusedForThatEmitterOnly) {
   const TemporaryFolder folder;
   const Solved solved = solve(quickScenario(folder), {});
   const scenario::Snapshot snapshot = scenario::snapshotAt(solved.input.scenario, nullptr, 0);

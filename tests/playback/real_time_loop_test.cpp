@@ -148,7 +148,7 @@ TEST(RealTimeLoop, StepsThatComeFasterThanSlotsAreSkippedAndCounted) {
   }
 }
 
-TEST(RealTimeLoop, AFieldInWhichNothingChangesIsDrawnOnce) {
+TEST(RealTimeLoop, ConstantFieldIsDrawnOnce) {
   MadeFrames source(seconds(4));
   source.changes = false;
   const Played played = play(optionsOf(Pattern::quarter), source);
@@ -157,7 +157,7 @@ TEST(RealTimeLoop, AFieldInWhichNothingChangesIsDrawnOnce) {
   EXPECT_EQ(played.report.due, 1);
 }
 
-TEST(RealTimeLoop, AnEventDuringARestorationAbortsItAndTheNextFrameBeginsAtOnce) {
+TEST(RealTimeLoop, EventDuringRestorationStartsNextFrameAtOnce) {
   MadeFrames source(seconds(1));
   RealTimeOptions options = optionsOf(Pattern::quarter);
   options.controller.epsilon_ms = 0;  // a restoration begins as soon as a frame is drawn
@@ -188,7 +188,7 @@ TEST(RealTimeLoop, ThePicturesOnDisplayFillTheTimeOfThePlaying) {
   EXPECT_EQ(std::accumulate(played.slots.begin(), played.slots.end(), 0), 30);
 }
 
-TEST(RealTimeLoop, SaysWhyAPatternIsTakenWhenItChanges) {
+TEST(RealTimeLoop, ReportsReasonForEachChangeOfPattern) {
   MadeFrames source(seconds(2));
   const Played played = play(optionsOf(Pattern::columns), source);
   EXPECT_EQ(played.report.events.front().reason, "columns was requested");
@@ -202,7 +202,7 @@ TEST(RealTimeLoop, AnInterruptEndsIt) {
   EXPECT_THROW(play(optionsOf(Pattern::full), source, clock, false, &interrupt), Stopped);
 }
 
-TEST(RealTimeLoop, WhatTheSourceThrowsEndsIt) {
+TEST(RealTimeLoop, ExceptionOfTheSourceEndsIt) {
   MadeFrames source(seconds(10), [](int index) {
     if (index == 2) throw Error(ErrorCode::bad_input, "step 2 is damaged");
   });

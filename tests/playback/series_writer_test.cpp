@@ -113,7 +113,7 @@ TEST_F(SeriesWriter, ComputesEachStepOnceInEveryFormat) {
   EXPECT_EQ(field.updates(), 5) << "a rehearsed step is not computed again";
 }
 
-TEST_F(SeriesWriter, EveryFileStatesTheRangeOfTheSeriesAsIfItHadBeenKnownFromTheBeginning) {
+TEST_F(SeriesWriter, EveryFileStatesTheRangeOfTheWholeSeries) {
   const SeriesResult found = write(5, into("found"));
   ASSERT_EQ(found.ranges.size(), 1U);
   SeriesOptions known = into("known");
@@ -172,7 +172,7 @@ TEST_F(SeriesWriter, AnInterruptedPassOverTheRangesIsCompleted) {
   EXPECT_TRUE(stateOf("s").at("complete").get<bool>());
 }
 
-TEST_F(SeriesWriter, ADeathBetweenAFilesNewRangeAndItsRecordIsMended) {
+TEST_F(SeriesWriter, KillBetweenNewRangeOfFileAndItsRecordIsRepaired) {
   write(4, into("whole"));
   write(4, into("s"));
   // As if the process had died after changing the range in a file.
@@ -182,7 +182,7 @@ TEST_F(SeriesWriter, ADeathBetweenAFilesNewRangeAndItsRecordIsMended) {
   EXPECT_TRUE(volumes("s") == volumes("whole"));
 }
 
-TEST_F(SeriesWriter, FilesThatAreGoneEmptyOrReplacedAreComputedAgain) {
+TEST_F(SeriesWriter, MissingEmptyOrReplacedFilesAreComputedAgain) {
   write(5, into("whole"));
   write(5, into("s"));
   fs::remove(*this / "s/quick_0001.vdb");
@@ -198,7 +198,7 @@ TEST_F(SeriesWriter, FilesThatAreGoneEmptyOrReplacedAreComputedAgain) {
                                         HasSubstr("quick_0001.vdb"))));
 }
 
-TEST_F(SeriesWriter, AFinishedSeriesThatLostFilesIsNotCompleteUntilTheyAreThereAgain) {
+TEST_F(SeriesWriter, FinishedSeriesWithMissingFilesIsIncomplete) {
   write(4, into("s", {"raw"}));
   fs::remove(*this / "s/quick_0002.raw");
   fs::remove(*this / "s/quick_0004.raw");
@@ -208,7 +208,7 @@ TEST_F(SeriesWriter, AFinishedSeriesThatLostFilesIsNotCompleteUntilTheyAreThereA
   EXPECT_TRUE(findSeries(*this / "s")->complete);
 }
 
-TEST_F(SeriesWriter, AFinishedSeriesIsLeftAsItIs) {
+TEST_F(SeriesWriter, FinishedSeriesIsUnchanged) {
   write(3, into("s"));
   const auto before = contents("s");
   FieldSeries field = series(3);
@@ -228,7 +228,7 @@ TEST_F(SeriesWriter, TheJournalGrowsByALineAStepAndTheListOfFilesIsWrittenAtGrow
   for (std::size_t i = 0; i < records.size(); ++i) EXPECT_EQ(records[i].at("step"), i + 1);
 }
 
-TEST_F(SeriesWriter, ARecordThatWasCutShortIsForgotten) {
+TEST_F(SeriesWriter, TruncatedRecordIsIgnored) {
   write(4, into("s", {"raw"}));
   const std::string journal = readFile(*this / "s/series.steps");
   writeFile(*this / "s/series.steps", journal + "{\"step\": 2, \"ran");
@@ -362,7 +362,7 @@ TEST_F(SeriesWriter, SeveralQuantitiesHaveARangeEachAndNoneIsGivenForAll) {
               HasSubstr("a range is for one quantity, these are 2"));
 }
 
-TEST_F(SeriesWriter, AFailureToWriteIsTheErrorAndWhatIsFinishedStays) {
+TEST_F(SeriesWriter, WriteFailureIsReportedAndFinishedFilesStay) {
   FieldSeries field = series(4);
   fs::create_directories(folder_ / "s/quick_0003.raw");  // a folder is in the way
   EXPECT_THAT(errorOf([&] { writeSeries(field, into("s", {"vti", "raw"})); }), HasSubstr("quick_0003.raw"));

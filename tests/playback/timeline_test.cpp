@@ -184,7 +184,7 @@ TEST(Timeline, RatesSnapAndGoUpAndDownInEitherDirection) {
   EXPECT_EQ(timeline.rate(), -500);
 }
 
-TEST(Timeline, WithoutStepsNothingMoves) {
+TEST(Timeline, WithoutStepsTimeIsConstant) {
   Timeline timeline;
   timeline.play();
   EXPECT_FALSE(timeline.playing());
@@ -246,7 +246,7 @@ TEST(Timeline, SaysWhenTheNextStepIsDue) {
   EXPECT_DOUBLE_EQ(*timeline.untilNextStep_s(), 0.25);
 }
 
-TEST(Timeline, ZoomsAboutATimeAndFollowsTheHand) {
+TEST(Timeline, ZoomsAboutATimeAndPansWithTheCursor) {
   Timeline timeline(seconds(101));
   timeline.zoom(0.5, 20);
   EXPECT_EQ(timeline.visible().begin_s, 10);
@@ -272,7 +272,7 @@ TEST(Timeline, ZoomsAboutATimeAndFollowsTheHand) {
   EXPECT_EQ(timeline.visible().begin_s, 0);
 }
 
-TEST(Timeline, OtherStepsKeepWhatLiesWithin) {
+TEST(Timeline, OtherStepsKeepTimeAndRangeWithinThem) {
   Timeline timeline(seconds(11));
   timeline.seek(9);
   timeline.setPlayRange(2, 9);

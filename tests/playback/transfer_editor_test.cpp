@@ -98,7 +98,7 @@ TEST(TransferEditor, PresetsAreColourMapsOverTheInterval) {
   EXPECT_THAT(errorOf([&] { editor.setColorMap("jet"); }), testing::HasSubstr("unknown colour map 'jet'"));
 }
 
-TEST(TransferEditor, UndoGivesEveryFunctionBackAndADragIsOneStep) {
+TEST(TransferEditor, UndoRestoresEveryFunctionAndDragIsOneStep) {
   TransferEditor editor(ramp());
   std::vector<std::string> texts{transferFunctionText(editor.function())};
   std::mt19937 random(4);
@@ -142,7 +142,7 @@ TEST(TransferEditor, UndoGivesEveryFunctionBackAndADragIsOneStep) {
   EXPECT_FALSE(editor.canRedo());
 }
 
-TEST(TransferEditor, WhatChangesNothingIsNoStep) {
+TEST(TransferEditor, UnchangedFunctionIsNoUndoStep) {
   TransferEditor editor(ramp());
   editor.setFunction(ramp());
   editor.fit({-100, 0});
@@ -163,7 +163,7 @@ TEST(TransferEditor, PointsStayWithinTheInterval) {
   EXPECT_EQ(editor.function().lowest(), -100) << "the ends have handles of their own";
 }
 
-TEST(TransferEditor, ADragOfAnEndLosesNothingOnTheWay) {
+TEST(TransferEditor, DragOfAnEndKeepsAllPoints) {
   TransferEditor editor(ramp());
   editor.setColorMap("viridis");
   const std::string before = transferFunctionText(editor.function());

@@ -176,7 +176,7 @@ std::string refusalOf(const std::string& text) {
   return errorOf([&] { parseViewState(text, "a.json"); });
 }
 
-TEST(ViewState, RefusalsSayWhereAndWhat) {
+TEST(ViewState, ErrorsHaveLocationAndReason) {
   const std::string head = "{\"schema_version\": 1,\n ";
   EXPECT_EQ(refusalOf(head + "\"camera\": \"orbit:azimuth_deg=400\"}"),
             "a.json:2:12: camera 'orbit:azimuth_deg=400': azimuth_deg '400': expected a number -360..360");
@@ -202,7 +202,7 @@ TEST(ViewState, RefusalsSayWhereAndWhat) {
   EXPECT_THAT(refusalOf(""), HasSubstr("the file is empty"));
 }
 
-TEST(ViewState, AllFaultsAreToldAtOnce) {
+TEST(ViewState, AllErrorsAreReportedAtOnce) {
   const std::string message =
       refusalOf("{\"schema_version\": 1,\n \"theme\": \"pink\",\n \"loop\": \"no\",\n \"time_s\": \"x\"}");
   EXPECT_THAT(message, HasSubstr("a.json:2:11: "));
@@ -215,7 +215,7 @@ TEST(ViewState, ANewerVersionIsRefusedWithOneError) {
             "a.json:1:20: this view is of schema_version 2; this program reads 1");
 }
 
-TEST(ViewState, ATransferFunctionIsAsInItsOwnFile) {
+TEST(ViewState, TransferFunctionHasFormOfItsOwnFile) {
   const std::string head = "{\"schema_version\": 1, \"transfer\": {\"schema_version\": 1, \"domain\": ";
   const std::string tail = ", \"opacity\": [{\"at\": 0, \"opacity\": 0}, {\"at\": 1, \"opacity\": 0.5}]}}";
   const ViewState state =
@@ -229,7 +229,7 @@ TEST(ViewState, ATransferFunctionIsAsInItsOwnFile) {
               HasSubstr("'colors' must be one of viridis, cividis"));
 }
 
-TEST(ViewState, WhatCouldNotBeReadAgainIsNotWritten) {
+TEST(ViewState, UnreadableValuesAreNotWritten) {
   const TemporaryFolder folder;
   const std::string file = folder / "a.view.json";
   ViewState state;

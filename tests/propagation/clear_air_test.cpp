@@ -64,7 +64,7 @@ P1812Path<double> pathOf(const P1812Model<double>& model, const Terrain& terrain
   return p1812Path(model, profile.column(), static_cast<double>(terrain.height_msl_m.back()) + rx_agl_m);
 }
 
-TEST(PathZones, StandForTheGroundUpToHalfWayBetweenPosts) {
+TEST(PathZones, ExtendHalfWayToTheNextPost) {
   const Terrain terrain = flat(10e3, 11, 0);
   const PathZone s = PathZone::sea, c = PathZone::coastal_land, i = PathZone::inland;
   const PathZone zones[] = {i, i, i, c, c, s, s, i, i, c, c};
@@ -96,7 +96,7 @@ TEST(PathZones, ComeFromHeightsAndTheDistanceToTheSea) {
   EXPECT_TRUE(back.ends_at_sea);
 }
 
-TEST(PathZones, AreTheSettingsAllAlong) {
+TEST(PathZones, EqualSettingsAlongTheWholePath) {
   const Terrain terrain = flat(80e3, 30, -1);
   EXPECT_EQ(zonesOf(ClearAirZone::by_height, terrain.profile()).sea_fraction, 1);
   EXPECT_EQ(zonesOf(ClearAirZone::sea, terrain.profile()).coast_distance_m[1], 0);
@@ -151,7 +151,7 @@ TEST(P1812, LocationsVaryUpToTenMetresAboveTheClutter) {
   EXPECT_EQ(pathOf(model, terrain, 50, 2, {ClearAirZone::sea, 0, 0}).location_db, 0);
 }
 
-TEST(P1812, ClutterOnLandStandsInTheWay) {
+TEST(P1812, ClutterOnLandObstructsThePath) {
   const P1812Model<double> model = p1812<double>(1e9, 50);
   const Terrain terrain = flat(10e3, 100, 20);
   const auto loss_db = [&](ClearAirZone zone, float clutter_m) {

@@ -100,7 +100,7 @@ double largestDifferenceDb(const ProfileData& data, const DiffractionParameters&
   return largest;
 }
 
-TEST(DiffractionColumn, InSinglePrecisionIsThatOfEachPathInDouble) {
+TEST(DiffractionColumn, FloatColumnEqualsEachPathInDouble) {
   std::mt19937 random(11);
   double largest = 0;
   for (const double frequency_hz : {3e7, 3e8, 3e9, 2e10}) {
@@ -118,7 +118,7 @@ TEST(DiffractionColumn, InSinglePrecisionIsThatOfEachPathInDouble) {
   EXPECT_LT(largest, 0.002);
 }
 
-TEST(DiffractionColumn, OverRealTerrainIsThatOfEachPathInDouble) {
+TEST(DiffractionColumn, FloatColumnOverRealTerrainEqualsEachPathInDouble) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   std::mt19937 random(12);
   double largest = 0;
@@ -132,7 +132,7 @@ TEST(DiffractionColumn, OverRealTerrainIsThatOfEachPathInDouble) {
   EXPECT_LT(largest, 0.002);
 }
 
-TEST(ObstacleMaxima, AreThoseOfEachPathInDouble) {
+TEST(ObstacleMaxima, EqualEachPathInDouble) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   std::mt19937 random(14);
   std::uniform_real_distribution<double> part(0, 1);
@@ -166,7 +166,7 @@ TEST(ObstacleMaxima, AreThoseOfEachPathInDouble) {
   EXPECT_GT(clear, 500);
 }
 
-TEST(ObstacleMaxima, WithoutAnObstacleThereIsNoLoss) {
+TEST(ObstacleMaxima, PathWithoutObstacleHasNoLoss) {
   const auto model = diffractionModel<float>(parametersAt(1e9));
   EXPECT_EQ((ObstacleMaxima<float, 1>(model, 100, 20, {30}).lossDb(model, 0)), 0);
 }

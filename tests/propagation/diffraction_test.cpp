@@ -40,7 +40,7 @@ TEST(KnifeEdge, AtGrazingIsSixDecibels) {
   EXPECT_NEAR(knifeEdgeDb(0.0), 6.03, 0.01);
 }
 
-TEST(Bullington, FormForVectorLoopsIsThePlainOne) {
+TEST(Bullington, VectorLoopFormEqualsPlainForm) {
   for (const double distance_m : {100.0, 5e3, 50e3, 500e3}) {
     for (double nu = -2; nu < 100; nu += 0.0137) {
       const double rounded = static_cast<float>(nu);
@@ -75,7 +75,7 @@ TEST(KnifeEdge, ApproximationIsWithinItsAccuracy) {
   EXPECT_TRUE(std::isnan(knifeEdgeDb(std::nan(""))));
 }
 
-TEST(Diffraction, OfOneWallIsAKnifeEdgeWithItsCorrection) {
+TEST(Diffraction, OneWallEqualsKnifeEdgeWithCorrection) {
   ProfileData profile = flatProfile(20000, 401, -500);
   profile.height_msl_m[200] = 60;
   profile.height_msl_m.front() = profile.height_msl_m.back() = 0;
@@ -109,7 +109,7 @@ TEST(Diffraction, DeygoutTakesTheEdgesOnBothSidesOfTheMainOne) {
               main_db + (1 - std::exp(-main_db / 6)) * (tx_db + rx_db + 11.6), 1e-9);
 }
 
-TEST(Diffraction, OverASmoothEarthIsThatOfTheSphericalEarth) {
+TEST(Diffraction, SmoothEarthGivesSphericalEarthLoss) {
   const auto model = diffractionModel<double>(parametersAt(6e8));
   for (const double length_m : {20e3, 60e3, 120e3}) {
     const ProfileData profile = flatProfile(length_m, 2001);
@@ -155,7 +155,7 @@ TEST(Diffraction, FrequencyMovesTheLossWithoutJumps) {
   }
 }
 
-TEST(Diffraction, EffectiveEarthIsTheCallersAndNeverAppliedTwice) {
+TEST(Diffraction, EffectiveEarthRadiusIsAppliedOnce) {
   // The horizon over a smooth earth of a radius that is given: 6 dB of bulge where the path grazes.
   for (const double radius_m : {6371000.0, kEarth_m, 8.5e6}) {
     DiffractionParameters parameters = parametersAt(1e10);
@@ -176,7 +176,7 @@ TEST(Diffraction, MissingTerrainIsNotSeaLevel) {
   EXPECT_TRUE(std::isnan(deltaBullington(model, profile.view().upTo(0), 310.f, 310.f).loss_db));
 }
 
-TEST(Diffraction, AntennasInTheGroundStandAMetreAboveIt) {
+TEST(Diffraction, AntennaBelowGroundIsRaisedToOneMetre) {
   const ProfileData profile = flatProfile(30e3, 101, 300);
   const auto model = diffractionModel<double>(parametersAt(1e9));
   EXPECT_EQ(deltaBullington(model, profile.view(), 310.0, 120.0).loss_db,

@@ -49,7 +49,7 @@ ItmResult<double> overPlain(const ItmLink<double>& link, const ItmQuantiles<doub
   return itmAreaMode(area, link, quantiles);
 }
 
-TEST(Itm, RefusesWhatIsOutsideItsLimitsWithoutAResult) {
+TEST(Itm, RefusesInputsOutsideItsLimits) {
   struct Case {
     void (*spoil)(ItmLink<double>&);
     ItmStatus status;
@@ -155,7 +155,7 @@ TEST(Itm, ReturnCodeOneIsAWarningNotAnError) {
   EXPECT_TRUE(std::isfinite(result.loss_db));
 }
 
-TEST(Itm, TakesRefractivityAtSeaLevelAndDerivesItsOwnCurvatureOfTheEarth) {
+TEST(Itm, EarthCurvatureFollowsFromRefractivityAtSeaLevel) {
   const std::vector<double> sea_m(101, 0.0);
   const std::vector<double> plateau_m(101, 1000.0);
   const auto low = itmPointToPoint(profileOf(sea_m), someLink(), ItmQuantiles<double>());
@@ -255,7 +255,7 @@ TEST(ItmNormalDeviate, IsWithinThePublishedErrorOfTheApproximation) {
   EXPECT_NEAR(normalDeviate(0.001), 3.090232, 4.5e-4);
 }
 
-TEST(ItmInterdecileRange, IsThatOfTheSortedValues) {
+TEST(ItmInterdecileRange, EqualsRangeOfSortedValues) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   for (int repeat = 0; repeat < 300; ++repeat) {

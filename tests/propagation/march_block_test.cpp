@@ -201,7 +201,7 @@ std::vector<Case> cases() {
   return all;
 }
 
-TEST(MarchBlock, MeetsTheMarchInLanes) {
+TEST(MarchBlock, EqualsMarchInLanes) {
   for (const Case& one : cases()) {
     MarchNotes blocks, lanes;
     const std::vector<float> found_db = marchBlocks(one.march, &blocks);
@@ -211,7 +211,7 @@ TEST(MarchBlock, MeetsTheMarchInLanes) {
   }
 }
 
-TEST(MarchBlock, RefusesWhatAGpuCannotMarch) {
+TEST(MarchBlock, RefusesMarchesBeyondGpuLimits) {
   const auto refused = [](const AzimuthMarch& march) {
     return test::errorOf([&] { blockInput(march); }, ErrorCode::bad_input);
   };
@@ -223,7 +223,7 @@ TEST(MarchBlock, RefusesWhatAGpuCannotMarch) {
   EXPECT_THAT(refused(march), HasSubstr("no terrain 200 m from the antenna"));
 }
 
-TEST(CudaMarch, MeetsTheMarchInLanes) {
+TEST(CudaMarch, EqualsMarchInLanes) {
   EMSCAPE_NEEDS_GPU();
   for (const Case& one : cases()) {
     std::vector<float> found_db(one.march.cellCount());

@@ -102,7 +102,7 @@ std::vector<double> plainFactorsDb(const RefractivityProfile& air, Fault fault) 
   return factors_db;
 }
 
-TEST(RadialMarch, IsThatOfAPlainMarchWithoutFaults) {
+TEST(RadialMarch, EqualsPlainMarch) {
   const RefractivityProfile air = evaporationDuct(14);
   RadialPath path;
   path.source.height_agl_m = kSource_m;

@@ -25,7 +25,7 @@ std::string messageOf(double frequency_hz, double first_m, double second_m) {
       ErrorCode::bad_input);
 }
 
-TEST(P528, RefusesWhatIsOutsideItsLimits) {
+TEST(P528, RefusesInputsOutsideItsLimits) {
   EXPECT_EQ(messageOf(99e6, 10, 1000), "p528: frequency 99 MHz is outside 100..30000 MHz: refused");
   EXPECT_EQ(messageOf(1e9, 1.4, 1000),
             "p528: antenna height above the smooth earth 1.4 m is outside 1.5..20000 m: refused");
@@ -127,7 +127,7 @@ TEST(P528Atmosphere, RaysGoStraightUp) {
   EXPECT_NEAR(ray.upper_elevation_rad, kPi / 2, 1e-12);
 }
 
-TEST(P528Atmosphere, AbsorbsStraightUpWhatTheSlantApproximationSays) {
+TEST(P528Atmosphere, ZenithAbsorptionEqualsSlantApproximation) {
   for (const double frequency_hz : {2e9, 10e9, 22.2e9, 30e9}) {
     const double traced_db = P528Atmosphere(frequency_hz).trace(0, 20, kPi / 2).absorption_db;
     const double approximate_db = slantGasAttenuationDb(frequency_hz, kPi / 2, standardAtmosphere(0));
@@ -151,7 +151,7 @@ TEST(P528Atmosphere, RaysDownwardsPassTheirLowestPoint) {
   EXPECT_LT(ray.length_km, 300);
 }
 
-TEST(P528Variability, FadingIsTheTables) {
+TEST(P528Variability, FadingEqualsTable) {
   EXPECT_DOUBLE_EQ(p528Fading_db(20, 99), 18.3864);
   EXPECT_DOUBLE_EQ(p528Fading_db(-40, 1), -0.1417);
   EXPECT_DOUBLE_EQ(p528Fading_db(-100, 1), -0.1417);
@@ -160,7 +160,7 @@ TEST(P528Variability, FadingIsTheTables) {
   EXPECT_NEAR(p528Fading_db(1, 97), (10.5553 + 11.0003) / 2 / 3 + (14.5401 + 15.0270) / 2 * 2 / 3, 1e-9);
 }
 
-TEST(P528Variability, KIsFoundFromItsFading) {
+TEST(P528Variability, KIsFoundFromFading) {
   for (const double k_db : {-40.0, -21.0, -3.5, 5.9, 20.0}) {
     EXPECT_NEAR(p528KOfLossAt99Percent_db(p528Fading_db(k_db, 99)), k_db, 1e-9);
   }

@@ -44,7 +44,7 @@ void marchTo(RadialMarch<Real, kLanes>& march, double range_m) {
   while (march.range_m() < range_m - 1e-3) march.advance();
 }
 
-TEST(SineTransform, IsTheSumOfSinesAndItsOwnInverse) {
+TEST(SineTransform, EqualsSumOfSinesAndIsSelfInverse) {
   for (const int n : {2, 4, 8, 16, 32, 128}) {
     SineTransform<double, 1> transform(n);
     std::vector<LaneComplex<double, 1>> in(n), out(n), back(n);
@@ -124,7 +124,7 @@ TEST(Refractivity, MovesADuctBetweenTwoProfiles) {
   EXPECT_NEAR(unequal.at(500).at(40), kSurface_m_units + (0.118 * 40 - 10) / 2, 1e-9);
 }
 
-TEST(Refractivity, RefusesWhatIsNotAProfile) {
+TEST(Refractivity, RefusesInvalidProfiles) {
   const auto refused = [](const std::function<void()>& call) {
     return test::errorOf(call, ErrorCode::bad_input);
   };
@@ -144,7 +144,7 @@ TEST(Refractivity, RefusesWhatIsNotAProfile) {
               HasSubstr("range 1 m is not above 1 m"));
 }
 
-TEST(AutomaticGrid, HoldsTheWantedHeightsAndAngleAndSaysWhy) {
+TEST(AutomaticGrid, ContainsRequestedHeightsAndAngleWithReason) {
   MarchNeeds needs;
   needs.frequency_hz = 10e9;
   needs.max_height_m = 300;
@@ -162,7 +162,7 @@ TEST(AutomaticGrid, HoldsTheWantedHeightsAndAngleAndSaysWhy) {
   EXPECT_DOUBLE_EQ(automaticGrid(needs).grid.range_step_m, 50);
 }
 
-TEST(AutomaticGrid, RefusesWhatItCannotHold) {
+TEST(AutomaticGrid, RefusesExcessiveHeightsAndAngles) {
   const auto refused = [](const MarchNeeds& needs) {
     return test::errorOf([&] { automaticGrid(needs); }, ErrorCode::bad_input);
   };
@@ -279,7 +279,7 @@ TEST(RadialMarch, OverAHillConvergesAndIsReciprocal) {
   EXPECT_NEAR(behind_db, overHillDb(50, 20e3, 20, 30e3, 30), 0.05);  // the path from its other end
 }
 
-TEST(RadialMarch, OverAPlateauIsThatOfItsHeight) {
+TEST(RadialMarch, PlateauEqualsSmoothEarthAtItsHeight) {
   RadialPath high = pathOf(20, linearRefractivity(0.118, 330)), low = high;
   high.ground_msl_m.assign(2, 250);
   const MarchGrid grid = gridOf(3e9, 0.5, 1024, 200);
@@ -305,7 +305,7 @@ TEST(RadialMarch, TakesACliffAsAStepAndCountsIt) {
   EXPECT_GT(march.factorDb(0, 150), -6);
 }
 
-TEST(RadialMarch, OfSeveralLanesIsThatOfEach) {
+TEST(RadialMarch, SeveralLanesEqualSingleLanes) {
   const MarchGrid grid = gridOf(3e9, 0.5, 1024, 100);
   std::array<RadialPath, 4> paths = {pathOf(20), pathOf(35, evaporationDuct(20)), pathOf(20), pathOf(10)};
   for (int i = 0; i <= 100; ++i) paths[2].ground_msl_m.push_back(20 + 20 * std::sin(0.1 * i));
@@ -323,7 +323,7 @@ TEST(RadialMarch, OfSeveralLanesIsThatOfEach) {
   }
 }
 
-TEST(RadialMarch, InFloatIsThatInDouble) {
+TEST(RadialMarch, FloatIsCloseToDouble) {
   const MarchGrid grid = gridOf(10e9, 0.25, 2048, 100);
   for (const RefractivityProfile& air : {standardRefractivity(), evaporationDuct(14)}) {
     RadialMarch<double, 1> exact(grid, {pathOf(20, air)});
@@ -340,7 +340,7 @@ TEST(RadialMarch, InFloatIsThatInDouble) {
   }
 }
 
-TEST(RadialMarch, HalvesTheHeightsWithoutAChangeOfTheField) {
+TEST(RadialMarch, HalvedHeightsKeepTheField) {
   MarchGrid grid = gridOf(10e9, 0.2, 2048, 200);
   const auto fields = [&](bool sea_v) {
     std::vector<double> found_db;
@@ -364,7 +364,7 @@ TEST(RadialMarch, HalvesTheHeightsWithoutAChangeOfTheField) {
   }
 }
 
-TEST(RadialMarch, OfEqualProfilesAlongTheRangeIsThatOfOne) {
+TEST(RadialMarch, EqualProfilesAlongRangeEqualOneProfile) {
   const MarchGrid grid = gridOf(3e9, 0.5, 512, 100);
   const RefractivityProfile duct = surfaceDuct(40, 10);
   RadialMarch<double, 1> one(grid, {pathOf(20, duct)});
@@ -377,7 +377,7 @@ TEST(RadialMarch, OfEqualProfilesAlongTheRangeIsThatOfOne) {
 }
 
 // Rays that a break of slope turns out of the band would come back mirrored, and fill the shadow.
-TEST(RadialMarch, BehindARoughMountainIsNotLitByWhatLeavesTheBand) {
+TEST(RadialMarch, EnergyOutsideTheBandDoesNotReachBehindRoughMountain) {
   const auto shadowDb = [](double max_angle_deg) {
     MarchNeeds needs;
     needs.frequency_hz = 3e8;
@@ -405,7 +405,7 @@ TEST(RadialMarch, BehindARoughMountainIsNotLitByWhatLeavesTheBand) {
   EXPECT_NEAR(shadow_db, shadowDb(14), 9);
 }
 
-TEST(DuctOverLand, IsLeftOutBetweenTheShores) {
+TEST(DuctOverLand, IsAbsentBetweenShores) {
   const RefractivityAlongPath air(evaporationDuct(14, 339));
   const std::vector<float> ground_msl_m{0, 0, 3, 5, 0, 0, 100, 100};
   const RefractivityAlongPath over = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), 100);
@@ -421,7 +421,7 @@ TEST(DuctOverLand, IsLeftOutBetweenTheShores) {
   EXPECT_EQ(withoutDuctOverLand(RefractivityAlongPath(surfaceDuct(40, 10))), surfaceDuct(40, 10));
 }
 
-TEST(RadialMarch, OfAPatternLeavesOutWhatItDoesNotRadiate) {
+TEST(RadialMarch, DirectionsThatThePatternDoesNotRadiateAreAbsent) {
   RadialPath path = pathOf(20, linearRefractivity(0));
   path.source.pattern = [](double elevation_rad) { return elevation_rad > 0 ? 1.0 : 0.0; };
   RadialMarch<double, 1> march(gridOf(3e9, 0.25, 2048, 200), {path});
@@ -431,7 +431,7 @@ TEST(RadialMarch, OfAPatternLeavesOutWhatItDoesNotRadiate) {
 }
 
 // The direct ray and the image's, each with the pattern at its own angle.
-TEST(RadialMarch, OfAPatternIsTwoRaysWeighedByTheirAngles) {
+TEST(RadialMarch, PatternWeightsBothRaysByTheirAngles) {
   constexpr double kRange_m = 10e3, kSource_m = 40;
   struct Beam {
     double width_deg, tilt_deg;
@@ -539,7 +539,7 @@ TEST(MarchCells, HoldMeansOverHeightsAndRangeSteps) {
               HasSubstr("cells of 50 m in range; expected at least the range step of 100 m"));
 }
 
-TEST(MarchAzimuths, AreTheSingleMarches) {
+TEST(MarchAzimuths, EqualSingleMarches) {
   AzimuthMarch all;
   all.grid = gridOf(3e9, 0.5, 512, 50);
   all.source = pathOf(20).source;

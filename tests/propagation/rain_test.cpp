@@ -34,11 +34,11 @@ TEST(Rain, SeesNoPolarizationFromAbove) {
   EXPECT_NEAR(a.alpha, b.alpha, 1e-14);
 }
 
-TEST(Rain, WithoutRainIsNothing) {
+TEST(Rain, NoRainHasNoAttenuation) {
   EXPECT_EQ(rainCoefficients(1e10, 0, 0).specificAttenuation_db_per_km(0), 0);
 }
 
-TEST(Rain, OutsideItsFrequenciesIsTheNearest) {
+TEST(Rain, FrequencyOutsideLimitsTakesNearestLimit) {
   EXPECT_EQ(rainCoefficients(1e8, 0, 0).k, rainCoefficients(1e9, 0, 0).k);
   EXPECT_EQ(rainCoefficients(2e12, 0, 0).k, rainCoefficients(1e12, 0, 0).k);
 }

@@ -253,7 +253,7 @@ TEST(PathAir, HasTheEvaporationDuctInItsProfiles) {
   EXPECT_EQ(air.profiles().at(0).at(10), withEvaporationDuct(refractivity.air.profiles[0], 14).at(10));
 }
 
-TEST(PathAir, ByPlaceIsTheProfileThereAndInBetweenAMean) {
+TEST(PathAir, ByPositionEqualsProfileThereAndMeanBetween) {
   Refractivity refractivity;
   refractivity.air.profiles = {surfaceDuct(20, 10), surfaceDuct(40, 10)};
   refractivity.air.places = {{50, 0}, {50.9, 0}};  // at the site; 100.1 km north of it

@@ -22,7 +22,7 @@ TEST(Registry, HoldsEveryModelOnceInTheOrderOfTheEnumeration) {
   }
 }
 
-TEST(Registry, AccuracyIsThatOfTheTableInReadme) {
+TEST(Registry, AccuracyEqualsTableInReadme) {
   std::string readme = test::readFile(test::sourceFile("README.md"));
   readme.erase(std::remove(readme.begin(), readme.end(), '`'), readme.end());
   for (const ModelInfo& row : models()) {
@@ -30,7 +30,7 @@ TEST(Registry, AccuracyIsThatOfTheTableInReadme) {
   }
 }
 
-TEST(Registry, SettingsReadWhatTheyWrite) {
+TEST(Registry, SettingsRoundTripIsExact) {
   for (const ModelInfo& row : models()) {
     EXPECT_EQ(row.settings.empty(), row.settings_description.empty()) << row.name;
     for (const Setting& setting : row.settings) {
@@ -86,7 +86,7 @@ TEST(Registry, AddsGasesByTheRoleOfTheModelAndTheAtmosphere) {
   EXPECT_FALSE(has(PropagationModel::p528, GasLosses::always));
 }
 
-TEST(Registry, ReportsWhatAModelRefusesAndWhereItComesFrom) {
+TEST(Registry, ReportsRefusalsOfAModelWithTheirOrigin) {
   EmitterInputs inputs;
   inputs.settings.model = PropagationModel::itm;
   inputs.frequency_hz = 40e9;

@@ -28,7 +28,7 @@ TEST(SkyNoise, TheGalaxyFallsByThePowerOfP372) {
   EXPECT_NEAR(skyTemperature_k(100e9, kPi / 2, none), 2.7, 0.01);
 }
 
-TEST(SkyNoise, AtTheZenithItIsThatOfTheZenithAttenuation) {
+TEST(SkyNoise, ZenithTemperatureFollowsFromZenithAttenuation) {
   // A thin layer of mean temperature T radiates T (1 - 1 / L); the mean radiating temperature of the clear
   // atmosphere is between those of the ground and of 5 km of height.
   for (const double ghz : {10.0, 20.0, 35.0}) {
@@ -39,7 +39,7 @@ TEST(SkyNoise, AtTheZenithItIsThatOfTheZenithAttenuation) {
   }
 }
 
-TEST(SkyNoise, RisesTowardTheHorizonAndIsTheGroundBelow) {
+TEST(SkyNoise, RisesTowardHorizonAndEqualsGroundBelow) {
   for (const double hz : {1.3e9, 3e9, 10e9}) {
     double above_k = 0;
     for (double elevation_deg = 90; elevation_deg >= 0; elevation_deg -= 2) {
@@ -57,7 +57,7 @@ TEST(SkyNoise, RisesTowardTheHorizonAndIsTheGroundBelow) {
   EXPECT_NEAR(antennaTemperature_k(3e9, kPi / 2, {}), 0.876 * skyTemperature_k(3e9, kPi / 2, {}) + 36, 0.1);
 }
 
-TEST(SkyNoise, IsAsDocumented) {
+TEST(SkyNoise, EqualsDocumentedTable) {
   // Rows of the table in docs/models.md.
   const double expected_k[][4] = {{0, 100e6, 1029, 1}, {0, 3e9, 124, 1},   {1, 9.4e9, 113, 1},
                                   {5, 16e9, 87, 1},    {30, 430e6, 59, 1}, {90, 35e9, 53, 1}};

@@ -89,7 +89,7 @@ TEST(TwoRay, ReflectsWhereThePathIsShortest) {
   }
 }
 
-TEST(TwoRay, LobesStandAtOddQuarterWavesOfHeight) {
+TEST(TwoRay, LobesLieAtOddQuarterWavesOfHeight) {
   // Flat earth, reflection -1: maxima of 6 dB where h1 h2 / d is an odd multiple of lambda / 4
   TwoRayParameters parameters = seaAt(1e9);
   parameters.effective_earth_radius_m = 1e15;
@@ -170,7 +170,7 @@ TEST(TwoRay, FloatIsCloseToDoubleOutsideTheNulls) {
   EXPECT_LT(worst, 0.05);
 }
 
-TEST(Traps, TwoRaysStraightAboveTheAntennaAreFinite) {
+TEST(TwoRay, StraightAboveAntennaIsFinite) {
   const auto model = twoRayModel<float>(seaAt(1e9));
   for (const float d : {0.f, 1e-3f, 1.f, 10.f}) {
     for (const float h : {0.f, 1.f, 20.f, 5000.f}) {
@@ -179,7 +179,7 @@ TEST(Traps, TwoRaysStraightAboveTheAntennaAreFinite) {
   }
 }
 
-TEST(Traps, FieldsAddAsPowersAndRaysAsAmplitudes) {
+TEST(TwoRay, FieldsAddAsPowersAndRaysAsAmplitudes) {
   // A lobe of two equal rays is 6 dB above one, two incoherent powers 3 dB.
   ReflectedPath<double> path{wavelength_m(1e9) / 2, 1, 0.01, 1};
   TwoRayParameters parameters = seaAt(1e9);

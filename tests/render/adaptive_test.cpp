@@ -70,7 +70,7 @@ double ripple(double x, double y) {
   return 0.5 + 0.3 * std::sin(0.11 * x + 0.02 * y) * std::cos(0.07 * y);
 }
 
-TEST(Adaptive, CastAndMissingPixelsAreThoseInsideEachOnceForEverySize) {
+TEST(Adaptive, CastAndMissingPixelsPartitionEverySize) {
   std::mt19937 random(1);
   const auto noise = [](int x, int y) { return gray(std::fmod(0.137 * x * y + 0.31 * x, 1.0)); };
   for (int height = 1; height <= 21; ++height) {
@@ -145,7 +145,7 @@ TEST(Adaptive, FindsEdgesWhereverTheyRun) {
   }
 }
 
-TEST(Adaptive, MissesNoOutlineOfWhatFillsTheSilhouetteEvenly) {
+TEST(Adaptive, FindsOutlinesOfEvenlyFilledSilhouette) {
   const ImageSize size{96, 96};
   Silhouette disk;
   for (int y = 0; y < size.height; ++y) {
@@ -159,7 +159,7 @@ TEST(Adaptive, MissesNoOutlineOfWhatFillsTheSilhouetteEvenly) {
   EXPECT_LT(drawing.largestError_levels(), 1);
 }
 
-TEST(Adaptive, PredictsAsTheFunctionForHostAndDevice) {
+TEST(Adaptive, PredictionEqualsHostDeviceFunction) {
   const auto color = [](int x, int y) {
     return Rgba{static_cast<float>(ripple(x, y)), static_cast<float>(ripple(y, x)),
                 static_cast<float>(ripple(2 * x, y)), 0.9F};
@@ -189,7 +189,7 @@ TEST(Adaptive, PredictsAsTheFunctionForHostAndDevice) {
   }
 }
 
-TEST(Adaptive, KeepsToItsShareOfRaysAfterSomeFrames) {
+TEST(Adaptive, StaysWithinRayBudgetAfterSomeFrames) {
   const ImageSize size{200, 200};
   Drawing drawing(size,
                   [](int x, int y) { return gray(0.5 + 0.2 * std::sin(0.35 * x) * std::sin(0.3 * y)); });
@@ -222,7 +222,7 @@ TEST(Adaptive, MissingPixelsComeWorstFirst) {
   EXPECT_GT(meanError(quarter, 2 * quarter), 3 * meanError(3 * quarter, missing.size()));
 }
 
-TEST(Adaptive, IsTheSameForAnyNumberOfThreads) {
+TEST(Adaptive, DoesNotDependOnNumberOfThreads) {
   std::vector<Pixel> first;
   for (const int threads : {1, 4}) {
     setThreadLimit(threads);
@@ -245,7 +245,7 @@ TEST(Adaptive, IsTheSameForAnyNumberOfThreads) {
   setThreadLimit(0);
 }
 
-TEST(Adaptive, TellsWhenItWasStopped) {
+TEST(Adaptive, ReportsThatItWasStopped) {
   for (int passes = 0; passes < 3; ++passes) {
     Image image({50, 40});
     for (Rgba& pixel : image.pixels) pixel = gray(1);
@@ -281,7 +281,7 @@ TEST(Adaptive, IsFarBetterThanQuarterOnAnEmeVolumeWithFewerRays) {
   EXPECT_GT(adaptive.psnr_db, quarter.psnr_db + 8);
 }
 
-TEST(Adaptive, PassesOverWhatIsTransparentAndRestoresIt) {
+TEST(Adaptive, SkipsTransparentPixelsAndRestoresThem) {
   // A small ball in a large empty box, seen from outside and inside.
   const auto volume = testing::makeVolume({64, 48, 40}, {1, 1, 1}, [](int i, int j, int k) {
     return std::hypot(i - 40, j - 20, k - 12) < 6 ? 0.8F : 0.1F;

@@ -43,7 +43,7 @@ TEST(Camera, DefaultShowsTheWholeBoxWithinTheMargins) {
   }
 }
 
-TEST(Camera, AzimuthIsTheCompassBearingOfTheCameraFromTheTarget) {
+TEST(Camera, AzimuthIsCompassBearingFromTargetToCamera) {
   const Camera east = makeCamera(parseCamera("orbit:azimuth_deg=90,elevation_deg=0,distance=2"), kBox, kSize);
   EXPECT_NEAR(east.eye_m.x, 2 * kBox.drawnDiagonal_m(), 1e-6);
   EXPECT_NEAR(east.eye_m.y, 0, 1e-6);
@@ -51,7 +51,7 @@ TEST(Camera, AzimuthIsTheCompassBearingOfTheCameraFromTheTarget) {
   EXPECT_NEAR(east.right.y, 1, 1e-12);    // looking west, north is to the right
 }
 
-TEST(Camera, TargetProjectsToTheCentreOfTheFreeArea) {
+TEST(Camera, TargetIsAtCentreOfFreeArea) {
   const Camera camera = makeCamera(parseCamera("lookat:eye_x_m=0,eye_y_m=-40000,eye_z_m=9000,target_x_m=100,"
                                                "target_y_m=200,target_z_m=300"),
                                    kBox, kSize, {0.0, 0.2, 0.1, 0.0});
@@ -60,7 +60,7 @@ TEST(Camera, TargetProjectsToTheCentreOfTheFreeArea) {
   EXPECT_NEAR(p.y + 0.5, 0.55 * 900, 1e-6);
 }
 
-TEST(Camera, FovIsTheVerticalOpening) {
+TEST(Camera, FovIsVertical) {
   const Camera camera =
       makeCamera(parseCamera("orbit:azimuth_deg=180,elevation_deg=0,distance=1,fov_deg=60"), kBox, kSize);
   const double distance_m = kBox.drawnDiagonal_m();
@@ -118,7 +118,7 @@ TEST(SceneBox, ExaggerationStretchesHeightsAboutTheBottom) {
   EXPECT_DOUBLE_EQ(box.toFrame(box.toDrawn({1, 2, 250})).z, 250);
 }
 
-TEST(SceneBox, ExaggerationIsChosenFromTheBoxAndStaysOneForScans) {
+TEST(SceneBox, DefaultExaggerationFollowsTheBoxAndIsOneForScans) {
   volume::Grid grid;
   grid.dims = {200, 200, 100};
   grid.spacing_m = {150, 150, 60};

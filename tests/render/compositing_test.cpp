@@ -102,7 +102,7 @@ TEST(Compositing, MidaDoesNotEndBeforeItIsOpaqueNorIfExact) {
   EXPECT_FALSE(exact.done(nothing, 1));
 }
 
-TEST(Compositing, IgnoredSamplesChangeNothing) {
+TEST(Compositing, IgnoredSamplesKeepTheResult) {
   const Rgba clear;
   const Rgba faint{0, 0, 0, 0.01F};
   EXPECT_TRUE(DvrCompositor(kNeverOpaqueEnough, 0, 1).ignores(0.9F, clear));
@@ -159,7 +159,7 @@ Compositor joined(const std::vector<Rgba>& samples, int threads) {
   return ray.whole();
 }
 
-TEST(JoinedParts, ARayIsTheSameToTheBitForAnyNumberOfThreads) {
+TEST(JoinedParts, RayIsBitIdenticalForAnyNumberOfThreads) {
   std::mt19937 random(3);
   std::uniform_real_distribution<float> unit(0, 1);
   for (int ray = 0; ray < 200; ++ray) {

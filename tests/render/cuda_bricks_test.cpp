@@ -74,7 +74,7 @@ struct Launcher {
   }
 };
 
-TEST(CudaBricks, AreLookedForWhereThatPaysByTheFrameBefore) {
+TEST(CudaBricks, AreSearchedWherePreviousFrameShowsABenefit) {
   EMSCAPE_NEEDS_GPU();
   for (const CompositingMode mode : {CompositingMode::dvr, CompositingMode::mida}) {
     Launcher launcher;
@@ -116,7 +116,7 @@ TEST(CudaBricks, HaveTheLevelsOfTheHost) {
   }
 }
 
-TEST(CudaBricks, DoNotChangeThePictureWhetherLookedForOrNot) {
+TEST(CudaBricks, DoNotChangeThePicture) {
   EMSCAPE_NEEDS_GPU();
   for (const float least : {kMostIsLeft, -30.0F, kLittleIsLeft}) {
     const auto volume = cutVolume(least);

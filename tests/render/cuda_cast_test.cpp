@@ -33,7 +33,7 @@ void setEmeScene(Renderer& renderer, CompositingMode mode, bool shading, ImageSi
   renderer.setCamera(makeCamera({}, renderer.sceneBox(), size));
 }
 
-TEST(CudaCast, ShowsWhatTheCpuShowsOfAnEmeVolume) {
+TEST(CudaCast, EmeVolumeEqualsCpu) {
   EMSCAPE_NEEDS_GPU();
   const ImageSize size{400, 300};
   Renderer cpu, gpu(onGpu());
@@ -51,7 +51,7 @@ TEST(CudaCast, ShowsWhatTheCpuShowsOfAnEmeVolume) {
   }
 }
 
-TEST(CudaCast, ShowsWhatTheCpuShowsOfRandomScenes) {
+TEST(CudaCast, RandomScenesEqualCpu) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(21);
   Renderer cpu, gpu(onGpu());  // kept: nothing of an earlier scene may remain
@@ -73,7 +73,7 @@ TEST(CudaCast, ShowsWhatTheCpuShowsOfRandomScenes) {
   EXPECT_LE(all.shareApart(), kShareApart);
 }
 
-TEST(CudaCast, PlainFormShowsWhatTheCpusPlainFormShows) {
+TEST(CudaCast, PlainFormEqualsPlainFormOfCpu) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(22);
   Renderer cpu, gpu(onGpu());
@@ -90,7 +90,7 @@ TEST(CudaCast, PlainFormShowsWhatTheCpusPlainFormShows) {
   EXPECT_LE(all.shareApart(), kShareApart);
 }
 
-TEST(CudaCast, CutVolumesShowWhatTheCpuShows) {
+TEST(CudaCast, CutVolumesEqualCpu) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(23);
   Renderer cpu, gpu(onGpu());
@@ -107,7 +107,7 @@ TEST(CudaCast, CutVolumesShowWhatTheCpuShows) {
   EXPECT_LE(all.shareApart(), kShareApart);
 }
 
-TEST(CudaCast, IndicesAreThoseOfTheCpu) {
+TEST(CudaCast, IndicesEqualCpu) {
   EMSCAPE_NEEDS_GPU();
   const ImageSize size{80, 60};
   auto volume = testing::makeVolume({12, 9, 7}, {100, 100, 100}, [](int i, int j, int k) {
@@ -127,7 +127,7 @@ TEST(CudaCast, IndicesAreThoseOfTheCpu) {
   EXPECT_LE(agreement.shareApart(), kShareApart);
 }
 
-TEST(CudaCast, SkippingChangesNothing) {
+TEST(CudaCast, SkippingKeepsThePicture) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(23);
   Renderer gpu(onGpu());
@@ -160,7 +160,7 @@ TEST(CudaCast, HalfPrecisionIsNearFloat) {
 const ImageSize kEvenAndOddSizes[] = {{64, 48}, {61, 47}, {64, 47}, {61, 48}, {1, 1},
                                       {1, 8},   {9, 1},   {2, 2},   {3, 2},   {130, 5}};
 
-TEST(CudaCast, InterpolatesAsTheHostDoes) {
+TEST(CudaCast, InterpolationEqualsHost) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(24);
   Renderer gpu(onGpu());
@@ -188,7 +188,7 @@ TEST(CudaCast, InterpolatesAsTheHostDoes) {
   }
 }
 
-TEST(CudaCast, InterpolatedPicturesAreThoseOfTheCpu) {
+TEST(CudaCast, InterpolatedPicturesEqualCpu) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(26);
   Renderer cpu, gpu(onGpu());
@@ -207,7 +207,7 @@ TEST(CudaCast, InterpolatedPicturesAreThoseOfTheCpu) {
   EXPECT_LE(all.shareApart(), kShareApart);
 }
 
-TEST(CudaCast, QuantisedPictureIsThatOfThePicture) {
+TEST(CudaCast, QuantizedPictureEqualsQuantizationOnHost) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(25);
   Renderer gpu(onGpu());
@@ -230,7 +230,7 @@ TEST(CudaCast, QuantisedPictureIsThatOfThePicture) {
   }
 }
 
-TEST(CudaCast, PicturesDoNotDependOnThoseBefore) {
+TEST(CudaCast, PicturesDoNotDependOnPreviousOnes) {
   EMSCAPE_NEEDS_GPU();
   // Another view, mode or size before must leave nothing behind.
   std::mt19937 random(27);

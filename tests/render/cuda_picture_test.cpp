@@ -20,7 +20,7 @@ OverlayLayers randomLayers(std::mt19937& random, ImageSize size) {
   return layers;
 }
 
-TEST(CudaPicture, IsPutTogetherAsByTheCpu) {
+TEST(CudaPicture, CompositionEqualsCpu) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(11);
   Renderer renderer(testing::onGpu());
@@ -38,7 +38,7 @@ TEST(CudaPicture, IsPutTogetherAsByTheCpu) {
   }
 }
 
-TEST(CudaPicture, StaysAsItIsWhileItIsHeld) {
+TEST(CudaPicture, IsUnchangedWhileHeld) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(12);
   const ImageSize size{40, 30};

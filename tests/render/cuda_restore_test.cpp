@@ -26,7 +26,7 @@ void setLongScene(Renderer& renderer, ImageSize size) {
   renderer.setCamera(makeCamera({}, renderer.sceneBox(), size));
 }
 
-TEST(CudaRestore, CanBeStoppedInBetweenAndBegunAnew) {
+TEST(CudaRestore, CanBeStoppedAndRestarted) {
   EMSCAPE_NEEDS_GPU();
   const ImageSize size{2400, 1800};
   Renderer renderer(onGpu());
@@ -83,7 +83,7 @@ TEST(CudaAdaptive, KeepsItsErrorSmallWithFewRays) {
   EXPECT_LE(compare(drawn, quantize(full)).mean_all, difference.mean_all);
 }
 
-TEST(CudaAdaptive, KeepsToItsShareOfTheRays) {
+TEST(CudaAdaptive, StaysWithinRayBudget) {
   EMSCAPE_NEEDS_GPU();
   const ImageSize size{300, 225};
   Renderer renderer(onGpu());
@@ -94,7 +94,7 @@ TEST(CudaAdaptive, KeepsToItsShareOfTheRays) {
   EXPECT_LE(static_cast<double>(report.rays), 0.27 * static_cast<double>(size.count()));
 }
 
-TEST(CudaVolume, OfTheDeviceShowsWhatThatOfTheHostShows) {
+TEST(CudaVolume, DeviceVolumeEqualsHostVolume) {
   EMSCAPE_NEEDS_GPU();
   const ImageSize size{90, 70};
   const auto volume = makeEmeVolume({20, 20, 20}, 2);

@@ -42,7 +42,7 @@ void setScene(Renderer& renderer, const std::shared_ptr<volume::DenseVolume>& vo
   renderer.setCamera(makeCamera({}, renderer.sceneBox(), size));
 }
 
-TEST(CudaSparse, ShowsWhatTheDenseVolumeShowsInLessMemory) {
+TEST(CudaSparse, EqualsDenseVolumeWithLessMemory) {
   EMSCAPE_NEEDS_GPU();
   const ImageSize size{400, 300};
   Renderer cpu, dense(onGpu()), sparse(sparseOnGpu());
@@ -62,7 +62,7 @@ TEST(CudaSparse, ShowsWhatTheDenseVolumeShowsInLessMemory) {
   EXPECT_LT(sparse.volumeBytes(), dense.volumeBytes());
 }
 
-TEST(CudaSparse, ShowsWhatTheCpuShowsOfRandomScenes) {
+TEST(CudaSparse, RandomScenesEqualCpu) {
   EMSCAPE_NEEDS_GPU();
   std::mt19937 random(41);
   Renderer cpu, gpu(sparseOnGpu());

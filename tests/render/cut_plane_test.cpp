@@ -69,7 +69,7 @@ TEST(CutPlane, TwoPointsGiveALineAndItsBearing) {
   EXPECT_NEAR(plane.bearing_deg, 90, 1e-12);
 }
 
-TEST(CutPlane, ErrorsNameKeyValueAndWhatIsAllowed) {
+TEST(CutPlane, ErrorsNameKeyValueAndAllowedOnes) {
   EXPECT_EQ(errorOf("slanted:altitude_m=1"),
             "plane 'slanted:altitude_m=1': expected horizontal:altitude_m=.. or vertical:KEY=VALUE,...");
   EXPECT_EQ(errorOf("horizontal"), "plane 'horizontal': altitude_m is needed");
@@ -113,7 +113,7 @@ TEST(Cut, HalfOfAHomogeneousBoxHasTheOpacityOfHalfItsLength) {
       1 - std::pow(0.97, 2), 1e-5);
 }
 
-TEST(Cut, WhatIsSwitchedOffOrRemovesNothingChangesNoBit) {
+TEST(Cut, InactivePlanesKeepThePictureBitIdentical) {
   const auto volume = testing::makeEmeVolume({24, 20, 12});
   Renderer renderer;
   show(renderer, volume, defaultTransferFunction(*volume));
@@ -172,7 +172,7 @@ TEST(Cut, IsosurfaceIsDrawnBeforeTheSectionAndClipped) {
               function.color(0.2), "clipped");
 }
 
-TEST(Cut, SectionIsTransparentWhereTheVolumeIsMaskedOrHoldsNoField) {
+TEST(Cut, SectionIsTransparentWithoutField) {
   const auto volume =
       makeVolume({6, 6, 6}, {10, 10, 10}, [](int i, int, int) { return i < 3 ? 0.0F : 1.0F; });
   volume->first_valid_k.assign(36, 6);

@@ -29,7 +29,7 @@ void eventAndFrame(FrameController& controller, double now_ms, double draw_ms = 
   controller.frameDone({draw_ms, 0});
 }
 
-TEST(FrameController, DrawsNothingBeforeTheFirstEvent) {
+TEST(FrameController, IsIdleBeforeFirstEvent) {
   FrameController controller;
   EXPECT_EQ(controller.state(), State::idle);
   const ControllerAction action = controller.next(0);
@@ -112,13 +112,13 @@ TEST(FrameController, EventsSlowerThanEpsilonSettleEachTime) {
   }
 }
 
-TEST(FrameController, AnEventExactlyAtEpsilonComesBeforeTheRestorationIfItIsToldFirst) {
+TEST(FrameController, EventAtEpsilonReportedFirstPrecedesRestoration) {
   FrameController controller(with(Pattern::columns));
   for (int n = 0; n < 10; ++n) eventAndFrame(controller, 100.0 * n);
   EXPECT_EQ(controller.state(), State::busy);
 }
 
-TEST(FrameController, AnEventExactlyAtEpsilonStopsTheRestorationIfItIsToldAfter) {
+TEST(FrameController, EventAtEpsilonReportedLaterStopsRestoration) {
   FrameController controller(with(Pattern::columns));
   eventAndFrame(controller, 0);
   ASSERT_EQ(controller.next(100).kind, Kind::restore);
@@ -172,7 +172,7 @@ TEST(FrameController, AResizeDuringARestorationStopsItAndWarmsUpAgain) {
   EXPECT_EQ(controller.epsilon_ms(), 300);
 }
 
-TEST(FrameController, ARestorationThatStoppedByItselfBeginsAnew) {
+TEST(FrameController, RestorationThatStoppedByItselfRestarts) {
   FrameController controller(with(Pattern::quarter));
   eventAndFrame(controller, 0);
   ASSERT_EQ(controller.next(100).kind, Kind::restore);
@@ -189,7 +189,7 @@ TEST(FrameController, AFrameLongerThanEpsilonIsRestoredRightAway) {
   EXPECT_EQ(controller.next(180).kind, Kind::restore);
 }
 
-TEST(FrameController, EpsilonIsTheUsualFrameTimeByThePapersRule) {
+TEST(FrameController, EpsilonFollowsTheRuleOfThePaper) {
   ControllerOptions options;
   options.epsilon_floor_ms = 5;
   for (const auto& [pattern, epsilon_ms] : {std::pair{Pattern::full, 30.0},
@@ -214,7 +214,7 @@ TEST(FrameController, EpsilonHasAFloor) {
   EXPECT_EQ(controller.epsilon_ms(), 50);
 }
 
-TEST(FrameController, EpsilonThatWasOrderedHolds) {
+TEST(FrameController, GivenEpsilonIsKept) {
   FrameController controller(with(Pattern::quarter, 7));
   for (int n = 0; n < 5; ++n) eventAndFrame(controller, 0, 200);
   EXPECT_EQ(controller.epsilon_ms(), 7);
@@ -237,7 +237,7 @@ TEST(FrameController, TheToleranceOfAdaptiveFollowsTheBudget) {
   EXPECT_GT(controller.plan().tolerance_levels, before);
 }
 
-TEST(FrameController, WhatWasDrawnDecidesWhetherThereIsSomethingToRestore) {
+TEST(FrameController, RestoresOnlyIfTheDrawnFrameWasInterpolated) {
   FrameController controller;
   eventAndFrame(controller, 0, 100);
   eventAndFrame(controller, 100, 100);  // in full; the next one would be a quarter
@@ -257,7 +257,7 @@ TEST(FrameController, OtherOptionsAreAnEvent) {
   EXPECT_EQ(controller.reason(), "checkerboard was requested");
 }
 
-TEST(FrameController, RefusesTheEndOfWhatWasNotBegun) {
+TEST(FrameController, RefusesEndWithoutBegin) {
   FrameController controller;
   EXPECT_THROW(controller.frameDone({}), Error);
   EXPECT_THROW(controller.restoreDone(true), Error);

@@ -108,7 +108,7 @@ TEST(Ground, WithoutFieldIsOpaqueAndBelowIsASolidBlock) {
   EXPECT_FALSE(hitOf(surface, {-50, 9, 9}, {-51, 9, -9}).found);   // beside
 }
 
-TEST(Ground, AHoleIsAHatchedPitAndNoPlain) {
+TEST(Ground, HoleIsDrawnAsHatchedPit) {
   const volume::Grid g = grid();
   const auto field = makeGround(g, 41, [](double x, double y) {
     return std::abs(x - 1000) < 420 && std::abs(y - 1000) < 420 ? kNaN : 200.0;
@@ -132,7 +132,7 @@ TEST(Ground, AHoleIsAHatchedPitAndNoPlain) {
   EXPECT_NEAR(hitOf(surface, {9.5, 9.5, 2}, {30, 9.5, 2}).distance, 4.5, 1e-3);  // the pit's wall
 }
 
-TEST(Ground, AllHolesIsStillDrawn) {
+TEST(Ground, GroundOfHolesOnlyIsDrawn) {
   const volume::Grid g = grid();
   const GroundSurface surface(*makeGround(g, 5, [](double, double) { return kNaN; }), g, sceneBoxOf(g, 1));
   EXPECT_TRUE(hitOf(surface, {9.5, 9.5, 30}, {9.5, 9.5, 0}).found);

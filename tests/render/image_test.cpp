@@ -40,7 +40,7 @@ TEST(Image, SizesAreParsedStrictly) {
   }
 }
 
-TEST(Png, ReadsBackWhatWasWritten) {
+TEST(Png, RoundTripIsExact) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "opaque.png";
   const Image8 opaque = image8(2, 2, {1, 2, 3, 255, 255, 0, 7, 255, 0, 0, 0, 255, 90, 80, 70, 255});
@@ -53,7 +53,7 @@ TEST(Png, ReadsBackWhatWasWritten) {
   for (std::size_t i = 0; i < clear.rgba.size(); ++i) EXPECT_NEAR(read.rgba[i], clear.rgba[i], 1);
 }
 
-TEST(Png, FailuresNameTheFileAndLeaveNothing) {
+TEST(Png, FailuresNameTheFileAndLeaveNoFile) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "missing_folder/picture.png";
   EXPECT_THAT(test::errorOf([&] { writePng(file, image8(1, 1, {1, 2, 3, 255})); }), HasSubstr("picture.png"));

@@ -62,7 +62,7 @@ void expectSameAsRows(Pattern pattern, Interpolation interpolation, ImageSize si
       << toString(pattern) << " " << toString(interpolation) << " " << size.width << "x" << size.height;
 }
 
-TEST(Interpolation, CellByCellIsWhatTheRowsAre) {
+TEST(Interpolation, CellByCellEqualsRows) {
   for (const Pattern pattern : {Pattern::full, Pattern::columns, Pattern::checkerboard, Pattern::quarter}) {
     for (int height = 1; height <= 9; ++height) {
       for (int width = 1; width <= 9; ++width) {
@@ -73,7 +73,7 @@ TEST(Interpolation, CellByCellIsWhatTheRowsAre) {
   }
 }
 
-TEST(Interpolation, LevelsAreThoseOfTheFloats) {
+TEST(Interpolation, LevelsEqualRoundedFloats) {
   for (int level = 0; level < 256; ++level) {
     const auto value = static_cast<float>(level) / 255.0F;
     const Rgba8 p = quantized(Rgba{value, 0, 1, value});

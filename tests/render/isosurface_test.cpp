@@ -61,7 +61,7 @@ struct Scene {
   }
 };
 
-TEST(Isosurface, OfAPlaneLiesOnThePlane) {
+TEST(Isosurface, SurfaceOfPlaneLiesOnThePlane) {
   const auto volume = makeVolume({30, 20, 10}, {1, 1, 1},
                                  [](int i, int j, int k) { return static_cast<float>(i + 2 * j - 3 * k); });
   const Scene scene(volume);
@@ -83,7 +83,7 @@ TEST(Isosurface, OfAPlaneLiesOnThePlane) {
   }
 }
 
-TEST(Isosurface, OfASphereLiesOnTheSphere) {
+TEST(Isosurface, SurfaceOfSphereLiesOnTheSphere) {
   // A cap of a sphere so large that trilinear interpolation keeps its shape to 1e-3 voxels.
   const SphereField field{{40, 40, 40}, {1, 1, 1}, {20, 20, -480}, 500};
   const Scene scene(field.volume());
@@ -106,7 +106,7 @@ TEST(Isosurface, OfASphereLiesOnTheSphere) {
   EXPECT_GT(hits, 100);
 }
 
-TEST(Isosurface, NormalsAreThoseOfTheDrawnSphere) {
+TEST(Isosurface, NormalsEqualDrawnSphere) {
   // Anisotropic voxels, stretched heights.
   const SphereField field{{60, 40, 50}, {1, 1.5, 0.5 * 2.5}, {30, 20, 25}, 24};
   const Scene scene(field.volume());
@@ -227,7 +227,7 @@ TEST_F(IsoPicture, HasTheTransferFunctionsColourAndTheOpacityAskedFor) {
   EXPECT_EQ(look(volume, from_west), opaque);
 }
 
-TEST_F(IsoPicture, ACapIsLitAsTheFlatFaceThatItIs) {
+TEST_F(IsoPicture, CapIsShadedAsFlatFace) {
   const auto volume = makeVolume({8, 8, 8}, {1, 1, 1}, [](int i, int j, int k) {
     return 8 - 0.3F * static_cast<float>(i) - 0.2F * static_cast<float>(j) - 0.1F * static_cast<float>(k);
   });

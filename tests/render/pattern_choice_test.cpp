@@ -54,7 +54,7 @@ TEST(PatternChoice, LevelsHaveFewerAndFewerRays) {
   }
 }
 
-TEST(PatternChoice, CastsEveryPixelAsLongAsThatIsInTime) {
+TEST(PatternChoice, CastsEveryPixelWhileWithinBudget) {
   PatternChoice choice(40);
   const Changes changes = play(choice, 200, always(39));
   EXPECT_EQ(changes.down + changes.up, 0);
@@ -120,7 +120,7 @@ TEST(PatternChoice, CountsTheFieldsUpdateWithinTheBudget) {
   EXPECT_EQ(play(choice, 400, always(30), 20).up, 0);
 }
 
-TEST(PatternChoice, OneFieldUpdateNowAndThenDoesNotHoldItDown) {
+TEST(PatternChoice, OccasionalFieldUpdateDoesNotLowerTheLevel) {
   PatternChoice choice(40);
   play(choice, 4, always(100));
   ASSERT_NE(choice.pattern(), Pattern::full);
@@ -128,7 +128,7 @@ TEST(PatternChoice, OneFieldUpdateNowAndThenDoesNotHoldItDown) {
   EXPECT_EQ(choice.pattern(), Pattern::full);
 }
 
-TEST(PatternChoice, SaysThatNothingHasFewerRays) {
+TEST(PatternChoice, ReportsThatNoPatternHasFewerRays) {
   PatternChoice choice(40);
   play(choice, 30, always(4000));
   EXPECT_EQ(choice.pattern(), qualityLevels().back().pattern);
@@ -207,7 +207,7 @@ TEST(PatternChoice, OtherWorkThatTakesTheWholeBudgetLeavesAdaptiveATenth) {
   EXPECT_NEAR(draw_ms, 4, 0.5);
 }
 
-TEST(PatternChoice, NeverFlapsMoreThanStated) {
+TEST(PatternChoice, ChangesNoMoreOftenThanStated) {
   std::mt19937 random(7);
   // A quarter or columns promise that the next pattern is in time, and then it is not: the ratio of the times
   // is not that of the rays. The worst of scenes, with noise of several strengths.
@@ -236,7 +236,7 @@ TEST(PatternChoice, NeverFlapsMoreThanStated) {
   }
 }
 
-TEST(PatternChoice, RareHiccupsCostLittleOfTheTime) {
+TEST(PatternChoice, RareSlowFramesCostLittleTime) {
   PatternChoice choice(40);
   int full = 0;
   constexpr int kFrames = 5000;

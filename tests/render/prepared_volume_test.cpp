@@ -54,7 +54,7 @@ TEST(PreparedVolume, AConstantIsCodedExactly) {
   EXPECT_EQ(codedValue(ready.view(), 5), 0.3F);
 }
 
-TEST(PreparedVolume, ValuesThatAreNotFiniteHaveNoCodes) {
+TEST(PreparedVolume, NonFiniteValuesHaveNoCodes) {
   for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     PreparedVolume ready;
     ready.set(testing::makeVolume({4, 4, 4}, {1, 1, 1},

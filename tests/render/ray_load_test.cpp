@@ -20,7 +20,7 @@ RayLoad loadOf(const volume::Grid& grid, double exaggeration, const std::string&
   return rayLoadOf(pixels, size, makeCamera(parseCamera(camera), box, size), grid, box, step_voxels);
 }
 
-TEST(RayLoad, ARayAlongAnAxisTakesAsManySamplesAsItCrossesVoxelsWhateverTheirShape) {
+TEST(RayLoad, RayAlongAxisTakesOneSamplePerVoxelOfAnyShape) {
   const ImageSize size{50, 50};
   const std::vector<Lattice> all = sourceLattices(Pattern::full, size);
   const volume::Grid grid = gridOf({8, 6, 10}, {3, 4, 0.5});
@@ -32,7 +32,7 @@ TEST(RayLoad, ARayAlongAnAxisTakesAsManySamplesAsItCrossesVoxelsWhateverTheirSha
   }
 }
 
-TEST(RayLoad, PixelsBesideTheBoxAreNoWork) {
+TEST(RayLoad, PixelsOutsideTheBoxCostNothing) {
   const ImageSize size{40, 30};
   const RayLoad load =
       loadOf(gridOf({4, 4, 4}, {1, 1, 1}), 1, "orbit:distance=500", size, 1, {Lattice{0, 0, 1, 1, 10, 30}});
@@ -40,7 +40,7 @@ TEST(RayLoad, PixelsBesideTheBoxAreNoWork) {
   EXPECT_EQ(load.samples, 0);
 }
 
-TEST(RayLoad, SourceAndMissingPixelsTogetherAreTheWholePicture) {
+TEST(RayLoad, SourceAndMissingPixelsAddUpToWholePicture) {
   const ImageSize size{61, 47};
   const volume::Grid grid = gridOf({20, 30, 10}, {2, 1, 1});
   const RayLoad full = loadOf(grid, 2, "orbit", size, 0.7, sourceLattices(Pattern::full, size));

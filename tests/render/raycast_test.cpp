@@ -134,7 +134,7 @@ TEST(Mask, MaskedVoxelsAreNeverDrawn) {
   EXPECT_NEAR(lookAlong(volume, fog(0.03), kAlongZ).a, 1 - std::pow(0.97, 5), 0.01);
 }
 
-TEST(Mask, WhatIsMaskedDoesNotBleed) {
+TEST(Mask, MaskedVoxelsDoNotBleedIntoNeighbors) {
   // A cliff: half of the columns masked up to a height, with a value there that would be seen at once.
   auto volume =
       makeVolume({8, 8, 8}, {1, 1, 1}, [](int i, int, int k) { return i < 4 && k < 5 ? 1.0F : 0.0F; });
@@ -154,7 +154,7 @@ TEST(Mask, WhatIsMaskedDoesNotBleed) {
   }
 }
 
-TEST(Nan, DrawsNothingAndHidesNothing) {
+TEST(Nan, IsTransparent) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const auto all = makeVolume({8, 8, 8}, {1, 1, 1}, [&](int, int, int) { return nan; });
   EXPECT_EQ(lookAlong(all, fog(0.5), kAlongX), Rgba{});
@@ -162,7 +162,7 @@ TEST(Nan, DrawsNothingAndHidesNothing) {
   EXPECT_NEAR(lookAlong(some, fog(0.03), kAlongX).a, 1 - std::pow(0.97, 9), 0.02);
 }
 
-TEST(Infinity, ShowsTheEndOfTheColoursAndSpoilsNoPixel) {
+TEST(Infinity, IsDrawnInTheLastColor) {
   auto volume = makeVolume({12, 12, 12}, {1, 1, 1}, [](int i, int j, int k) {
     if ((i + j + k) % 7 == 0) return std::numeric_limits<float>::infinity();
     return (i + 2 * j + k) % 11 == 0 ? -std::numeric_limits<float>::infinity() : 0.5F;

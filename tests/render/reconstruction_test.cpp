@@ -45,7 +45,7 @@ Image sourcesOf(Pattern pattern, ImageSize size, const Value& value) {
   return image;
 }
 
-TEST(Patterns, SourceAndMissingPixelsAreTheImageEachOnce) {
+TEST(Patterns, SourceAndMissingPixelsPartitionTheImage) {
   for (Pattern pattern : kLatticePatterns) {
     for (int height = 1; height <= 9; ++height) {
       for (int width = 1; width <= 9; ++width) {
@@ -59,7 +59,7 @@ TEST(Patterns, SourceAndMissingPixelsAreTheImageEachOnce) {
   }
 }
 
-TEST(Patterns, CountsAt1200x900AreTheSpecifications) {
+TEST(Patterns, CountsAt1200x900EqualSpecification) {
   const ImageSize size{1200, 900};
   EXPECT_EQ(pixelCount(sourceLattices(Pattern::full, size)), 1080000);
   EXPECT_EQ(pixelCount(sourceLattices(Pattern::columns, size)), 540000);
@@ -68,7 +68,7 @@ TEST(Patterns, CountsAt1200x900AreTheSpecifications) {
   EXPECT_EQ(pixelCount(missingLattices(Pattern::quarter, size)), 810000);
 }
 
-TEST(Patterns, SourcePixelsAreThoseOfTheTable) {
+TEST(Patterns, SourcePixelsEqualTable) {
   for (int y = 0; y < 5; ++y) {
     for (int x = 0; x < 5; ++x) {
       const auto isSource = [&](Pattern pattern) {

@@ -45,7 +45,7 @@ TEST_P(Restore, IsBitIdenticalToAFullCast) {
   }
 }
 
-TEST(Cast, SourcePixelsAreThoseOfTheFullCast) {
+TEST(Cast, SourcePixelsEqualFullCast) {
   std::mt19937 random(11);
   Renderer renderer;
   const ImageSize size{33, 21};
@@ -62,7 +62,7 @@ TEST(Cast, SourcePixelsAreThoseOfTheFullCast) {
 class Draw : public test::OnBackends {};
 EMSCAPE_ON_BACKENDS(Draw);
 
-TEST_P(Draw, TellsWhenItWasStopped) {
+TEST_P(Draw, ReportsThatItWasStopped) {
   std::mt19937 random(3);
   Renderer renderer(on(GetParam()));
   const ImageSize size{64, 64};
@@ -106,7 +106,7 @@ TEST(Renderer, TakesTheBackendThatAutomaticResolvesTo) {
 class Refusals : public test::OnBackends {};
 EMSCAPE_ON_BACKENDS(Refusals);
 
-TEST_P(Refusals, OfWhatCannotBeDrawn) {
+TEST_P(Refusals, InvalidScenesAreRefused) {
   Renderer renderer(on(GetParam()));
   EXPECT_THROW(renderer.sceneBox(), Error);
   EXPECT_THROW(renderer.draw({}, {8, 8}), Error);

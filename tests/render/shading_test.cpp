@@ -33,7 +33,7 @@ void expectNear(const Vec3f& a, const Vec3f& b, float tolerance) {
   EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
-TEST(Gradient, OfALinearFieldIsItsSlopeUpToTheBorder) {
+TEST(Gradient, LinearFieldHasItsSlopeUpToTheBorder) {
   const auto volume = makeVolume({7, 5, 6}, {1, 1, 1}, [](int i, int j, int k) {
     return 3.0F * static_cast<float>(i) - 2.0F * j + 0.5F * k;
   });
@@ -55,7 +55,7 @@ TEST(Gradient, IsOneSidedBesideUnknownVoxels) {
   expectNear(gradientOf(*volume, {3, 1, 1}), {2, 0, 0}, 1e-5F);
 }
 
-TEST(Shading, NormalsStandOnSurfacesAsTheyAreDrawn) {
+TEST(Shading, NormalsArePerpendicularToDrawnSurfaces) {
   // The plane 2 x + y - 3 z = const of drawn space, for voxels of 1 x 4 x 0.5.
   ShadingView shading;
   shading.voxel = {1, 4, 0.5F};
@@ -83,7 +83,7 @@ TEST(Shading, BothSidesOfASurfaceLookTheSame) {
   EXPECT_EQ(shading.lit(color, normal, {0, 0, 1}), shading.lit(color, -normal, {0, 0, 1}));
 }
 
-TEST(Shading, DarkensWhatTurnsAway) {
+TEST(Shading, DarkensSurfacesThatFaceAway) {
   const ShadingView shading;
   const Rgba color{0.3F, 0.2F, 0.1F, 1};
   const Rgba facing = shading.lit(color, {0, 0, 1}, {0, 0, 1});
@@ -92,7 +92,7 @@ TEST(Shading, DarkensWhatTurnsAway) {
   EXPECT_NEAR(grazing.r, ShadingView::kAmbient * color.r, 1e-6);
 }
 
-TEST(Shading, LeavesFogWithoutGradientAsItIs) {
+TEST(Shading, FogWithoutGradientIsUnchanged) {
   const ShadingView shading;
   const Rgba color{0.3F, 0.2F, 0.1F, 0.5F};
   EXPECT_EQ(shading.litFog(color, {0, 0, 0}, {0, 0, 1}), color);

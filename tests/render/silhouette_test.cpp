@@ -47,7 +47,7 @@ CameraView viewFrom(const Vec3d& eye, const Vec3d& target, const Vec3d& scale, I
   return view;
 }
 
-TEST(Silhouette, IsThatOfEveryRayForAnyCamera) {
+TEST(Silhouette, EqualsRaysOfAllPixelsForAnyCamera) {
   std::mt19937 random(5);
   const auto between = [&](double least, double most) {
     return std::uniform_real_distribution<double>(least, most)(random);

@@ -5,14 +5,14 @@
 namespace emscape::render {
 namespace {
 
-TEST(SkippingPays, WhereMuchOfTheVolumeShowsNothing) {
+TEST(SkippingPays, WhereMuchOfTheVolumeIsTransparent) {
   EXPECT_TRUE(
       skippingPays(CompositingMode::dvr, 0.77));  // one radar over 200 km: a frame takes 0.6 of the time
   EXPECT_TRUE(skippingPays(CompositingMode::dvr, 1));
   EXPECT_TRUE(skippingPays(CompositingMode::mida, 1));
 }
 
-TEST(SkippingPays, NotWhereLittleDoes) {
+TEST(SkippingPays, NotWhereLittleOfTheVolumeIsTransparent) {
   EXPECT_FALSE(
       skippingPays(CompositingMode::dvr, 0.215));  // eme_200: nothing is gained, with few rays 0.1 lost
   EXPECT_FALSE(skippingPays(CompositingMode::mida, 0.215));  // half the time of a frame lost

@@ -90,7 +90,7 @@ TEST(TransferFunction, DefaultOfAVolumeFollowsItsValuesAndEndsAtRoundNumbers) {
   EXPECT_LT(f.highest(), 60);
 }
 
-TEST(TransferFunction, DefaultOfAVolumeWithoutAnyFieldIsStillOne) {
+TEST(TransferFunction, VolumeWithoutFieldHasADefault) {
   const auto empty = testing::makeVolume({4, 4, 4}, {1, 1, 1}, [](int, int, int) { return 0.0F; });
   const TransferFunction f = defaultTransferFunction(*empty);
   EXPECT_GT(f.highest(), f.lowest());
@@ -146,7 +146,7 @@ TEST(TransferFile, ReadsValuesAndRelativePositions) {
   EXPECT_NEAR(relative.color(0).r, 0xfd / 255.0, 1e-6);
 }
 
-TEST(TransferFile, RefusalsSayWhereAndWhat) {
+TEST(TransferFile, ErrorsHaveLocationAndReason) {
   const std::string head = "{\"schema_version\": 1,\n \"domain\": \"value\",\n \"colors\": \"viridis\",\n";
   EXPECT_THAT(
       refusalOf(head + " \"opacity\": [{\"at\": -90, \"opacity\": 0}, {\"at\": -20, \"opacity\": 1.5}]}"),
@@ -186,7 +186,7 @@ TEST(TransferFile, RefusesUnknownMapsBadColoursAndOtherUnits) {
       HasSubstr("unit 'dBm' is not that of the volume: power_density_dbwm2 is in 'dBW/m2'"));
 }
 
-TEST(TransferFile, WhatIsWrittenIsReadBackToTheBit) {
+TEST(TransferFile, RoundTripIsBitIdentical) {
   std::mt19937 random(7);
   const auto uniform = [&random](double from, double to) {
     return std::uniform_real_distribution<double>(from, to)(random);
@@ -297,7 +297,7 @@ TEST(TransferFunction, OfADifferenceIsCentredOnZeroAndLeavesOutTheFewLargest) {
   EXPECT_GE(whole.highest(), 110);
 }
 
-TEST(ColorMap, EndsAreThePublishedColours) {
+TEST(ColorMap, EndsHavePublishedColors) {
   EXPECT_NEAR(colorMap("viridis").at(0).r, 0x44 / 255.0, 1e-6);
   EXPECT_NEAR(colorMap("viridis").at(1).g, 0xe7 / 255.0, 1e-6);
   EXPECT_NEAR(colorMap("cividis").at(0.5).b, 0x78 / 255.0, 1e-6);

@@ -118,7 +118,7 @@ TEST(CsvGrid, NamesTheMissingPair) {
               "no row for azimuth 60 deg, elevation -30 deg");
 }
 
-TEST(CsvGrid, SaysWhatIsWrongAndWhere) {
+TEST(CsvGrid, ErrorsHaveReasonAndLocation) {
   const TemporaryFile file("grid.csv", "");
   const auto expectBroken = [&](const std::string& content, int line, int column, const std::string& part) {
     file.rewrite(content);

@@ -70,7 +70,7 @@ TEST(MsiAntenna, TakesAGainGivenBesideTheFile) {
   expectFault([&] { readMsi(file.path()); }, file.path(), 0, 0, "no GAIN");
 }
 
-TEST(MsiAntenna, GivesBackBothCuts) {
+TEST(MsiAntenna, ReproducesBothCuts) {
   const AntennaPtr antenna = readText(sector("NAME sector\nGAIN 15 dBi\n"));
   for (const int angle : {0, 10, 45, 100, 170, 180, 200, 300, 359}) {
     EXPECT_NEAR(lossAt_db(antenna, angle, 0), horizontalLoss_db(angle), 1e-4) << angle;
@@ -83,7 +83,7 @@ TEST(MsiAntenna, GivesBackBothCuts) {
   EXPECT_NEAR(antenna->beamwidth_el_deg, 20, 0.2);
 }
 
-TEST(MsiAntenna, LooksTheSameToTheLoops) {
+TEST(MsiAntenna, GainInLoopsEqualsGainOfAntenna) {
   const AntennaPtr antenna = readText(sector("GAIN 15 dBi\n", 6));
   const PatternView view = antenna->view();
   for (double azimuth_deg = -180; azimuth_deg <= 180; azimuth_deg += 3.7) {
@@ -163,7 +163,7 @@ TEST(MsiAntenna, ReadsOtherCountsAndIrregularAngles) {
   EXPECT_NEAR(lossAt_db(antenna, 180, 0), 20, 1e-5);
 }
 
-TEST(MsiAntenna, SaysWhatIsWrongAndWhere) {
+TEST(MsiAntenna, ErrorsHaveReasonAndLocation) {
   const TemporaryFile file("antenna.msi", kSmall);
   EXPECT_NO_THROW(readMsi(file.path()));
   const auto expectBroken = [&](const std::string& from, const std::string& to, int line, int column,
@@ -208,7 +208,7 @@ TEST(MsiAntenna, SaysWhatIsWrongAndWhere) {
   expectFault([] { readMsi("/nowhere/antenna.msi"); }, "/nowhere/antenna.msi", 0, 0, "no such file");
 }
 
-TEST(MsiAntenna, TellsItsNameInPlainCharacters) {
+TEST(MsiAntenna, NameHasOnlyPrintableCharacters) {
   EXPECT_EQ(readText("NAME B\xf6se \x01\n" + kSmall.substr(kSmall.find("GAIN")))->description.substr(0, 7),
             "B?se ?,");
 }

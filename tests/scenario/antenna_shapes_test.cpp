@@ -98,13 +98,13 @@ TEST(GaussianBeam, DoesNotFallBelowItsSideLobes) {
   EXPECT_NEAR(lossAt_db(antenna, 0, 90), 35, 1e-9);
 }
 
-TEST(GaussianBeam, OfFullWidthIsTheSameInEveryAzimuth) {
+TEST(GaussianBeam, FullWidthIsEqualInEveryAzimuth) {
   const AntennaPtr antenna = makeGaussian(8, 360, 20, -30);
   EXPECT_DOUBLE_EQ(lossAt_db(antenna, 180, 0), 0);
   EXPECT_NEAR(lossAt_db(antenna, 135, 10), kHalfPower_db, 1e-9);
 }
 
-TEST(GaussianBeam, OfTheLoopsIsWithin1e4DbOfTheClosedForm) {
+TEST(GaussianBeam, GainInLoopsIsWithin1e4DbOfClosedForm) {
   for (const double width_deg : {1.0, 1.6, 5.0, 40.0, 120.0}) {
     EXPECT_LT(worstOfView_db(makeGaussian(30, width_deg, width_deg, -80), 2 * width_deg,
                              std::min(2 * width_deg, 90.0)),
@@ -160,7 +160,7 @@ TEST(SincPattern, KeepsItsBeamwidthsWithATaperAndTakesALargerAperture) {
   }
 }
 
-TEST(SincPattern, OfTheLoopsIsWithin1e3DbOfTheClosedForm) {
+TEST(SincPattern, GainInLoopsIsWithin1e3DbOfClosedForm) {
   for (const double width_deg : {1.0, 2.0, 10.0, 80.0}) {
     EXPECT_LT(
         worstOfView_db(makeSinc(30, width_deg, width_deg, -60), 4 * width_deg, std::min(4 * width_deg, 90.0)),
@@ -202,7 +202,7 @@ TEST(Cosecant2Pattern, IsContinuousAndEndsAtTheSideLobeLevel) {
   EXPECT_NEAR(lossAt_db(antenna, 180, 10), 50, 1e-9);
 }
 
-TEST(Cosecant2Pattern, OfTheLoopsIsWithinItsStatedError) {
+TEST(Cosecant2Pattern, GainInLoopsIsWithinStatedError) {
   EXPECT_LT(worstOfView_db(makeCosecant2(34, 1, 1, 40, -60), 2, 45), 3e-3);
   EXPECT_LT(worstOfView_db(makeCosecant2(34, 2.4, 4, 40, -60), 5, 45), 3e-3);
   EXPECT_LT(worstOfView_db(makeCosecant2(20, 360, 20, 90, -60), 180, 90), 3e-3);
@@ -281,7 +281,7 @@ TEST(PhasedArray, TaperedHasLowerSideLobesAWiderBeamAndLessGain) {
   }
 }
 
-TEST(PhasedArray, OfTheLoopsIsWithin1e3DbOfTheClosedForm) {
+TEST(PhasedArray, GainInLoopsIsWithin1e3DbOfClosedForm) {
   EXPECT_LT(worstOfView_db(makePhasedArray(27, 16, 12, 0.5, 0.5), 60, 60), 1e-3);
   EXPECT_LT(worstOfView_db(makePhasedArray(40, 100, 50, 0.5, 1), 4, 8), 1e-3);
   EXPECT_LT(worstOfView_db(makePhasedArray(27, 16, 12, 0.9, 0.5), 80, 80, std::sin(0.5), std::sin(-0.2)),
@@ -299,7 +299,7 @@ TEST(AntennaAxes, AzimuthIsClockwiseAndElevationUp) {
   EXPECT_NEAR(antenna->gainTowards_dbi({std::cos(0.5), 0, std::sin(0.5)}, 0, 0.5), 27, 1e-9);
 }
 
-TEST(AntennaLoops, SurviveEveryDirection) {
+TEST(AntennaLoops, GainIsFiniteInEveryDirection) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   for (const AntennaPtr& antenna : {makeGaussian(30, 2, 2, -40), makeCosecant2(30, 2, 2, 30, -40),
                                     makeSinc(30, 2, 2, -40), makePhasedArray(27, 16, 12, 0.5, 0.5)}) {
@@ -317,7 +317,7 @@ TEST(AntennaLoops, SurviveEveryDirection) {
   }
 }
 
-TEST(GainOfBeamwidths, IsThePracticalGainOfStutzmanAndThiele) {
+TEST(GainOfBeamwidths, EqualsPracticalGainOfStutzmanAndThiele) {
   EXPECT_NEAR(gainFromBeamwidths_dbi(1, 1), 44.15, 0.005);
   EXPECT_NEAR(gainFromBeamwidths_dbi(1.6, 4), 36.09, 0.005);
   EXPECT_EQ(gainFromBeamwidths_dbi(360, 180), 0.0);
@@ -335,14 +335,14 @@ TEST(GainOfBeamwidths, LiesALittleBelowTheDirectivityOfTheShapes) {
   EXPECT_NEAR(helperBelow_db(makePhasedArray(0, 30, 20, 0.5, 0)), 0.95, 0.2);
 }
 
-TEST(GainOfArray, IsTheDirectivityOfItsArea) {
+TEST(GainOfArray, EqualsDirectivityOfItsArea) {
   EXPECT_NEAR(gainFromArray_dbi(16, 12, 0.5), 10 * std::log10(kPi * 16 * 12), 1e-9);
   // With elements of cos^(1/2), whose power falls with the projected area.
   EXPECT_NEAR(directivity_dbi(makePhasedArray(0, 16, 12, 0.5, 0.5), 0.5), gainFromArray_dbi(16, 12, 0.5),
               0.3);
 }
 
-TEST(AntennaShapes, RefuseWhatTheyCannotMake) {
+TEST(AntennaShapes, RefuseImpossibleShapes) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   expectError([] { makeIsotropic(kNan); }, "gain_dbi is nan dBi; allowed are -100 to 100 dBi");
   expectError([] { makeGaussian(30, 0, 2, -40); }, "beamwidth_az_deg is 0 deg; allowed are 0.001 to 360 deg");

@@ -49,7 +49,7 @@ std::string told(const std::vector<Problem>& problems) {
 
 class BrokenScenario : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(BrokenScenario, IsToldWithItsPlaces) {
+TEST_P(BrokenScenario, ReportsEveryProblemWithLocation) {
   const std::filesystem::path file = brokenFolder() / (GetParam() + ".yaml");
   const ParseResult result = parseScenario(file.string());
   EXPECT_EQ(result.scenario, nullptr);
@@ -158,7 +158,7 @@ TEST_F(DamagedScenario, WithChangedBytesIsReadOrRefused) {
   }
 }
 
-TEST_F(DamagedScenario, OfNothingButOneCharacterIsRefusedQuickly) {
+TEST_F(DamagedScenario, RepeatedCharacterIsRefusedQuickly) {
   for (const char c : {'[', '{', '-', '?', '*', '&', '!', '"', '\'', '|', ':', ' ', '\n', '#', 'a', '\\'}) {
     parse(std::string(50000, c));
   }
@@ -168,7 +168,7 @@ TEST_F(DamagedScenario, OfNothingButOneCharacterIsRefusedQuickly) {
   parse(nested);
 }
 
-TEST_F(DamagedScenario, ThatUnfoldsWithoutBoundIsRefused) {
+TEST_F(DamagedScenario, UnboundedAliasExpansionIsRefused) {
   std::string text = "a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]\n";
   for (int i = 1; i < 20; ++i) {
     const std::string before = "*a" + std::to_string(i - 1);
@@ -182,26 +182,26 @@ TEST_F(DamagedScenario, ThatUnfoldsWithoutBoundIsRefused) {
       << told(result.problems);
 }
 
-TEST_F(DamagedScenario, EmptyFileIsToldAtItsBeginning) {
+TEST_F(DamagedScenario, EmptyFileIsAnErrorAtItsBeginning) {
   for (const char* text : {"", "\n\n", "# nothing\n", "---\n", "null\n", "\xEF\xBB\xBF"}) {
     const std::string file = folder_.write("empty.yaml", text);
     EXPECT_EQ(told(parseScenario(file).problems), file + ":1:1: the file is empty\n") << text;
   }
 }
 
-TEST_F(DamagedScenario, LargerThanAllowedIsRefused) {
+TEST_F(DamagedScenario, OversizedFileIsRefused) {
   const std::string file = folder_.write("large.yaml", std::string(std::size_t{5} << 20, '#'));
   EXPECT_EQ(told(parseScenario(file).problems),
             file + ": is 5242880 bytes large, more than the allowed 4194304\n");
 }
 
-TEST_F(DamagedScenario, ThatIsNotThereIsTold) {
+TEST_F(DamagedScenario, MissingFileIsAnError) {
   EXPECT_EQ(told(parseScenario("nowhere/none.yaml").problems), "nowhere/none.yaml: there is no such file\n");
   EXPECT_EQ(told(parseScenario(folder_.path().string()).problems),
             folder_.path().string() + ": cannot read: it is a folder\n");
 }
 
-TEST_F(DamagedScenario, TrackOfNothingButFaultsIsToldFiftyTimesAtMost) {
+TEST_F(DamagedScenario, ReportsAtMostFiftyErrorsOfATrack) {
   std::string track = "t_s,latitude_deg,longitude_deg,height_msl_m\n";
   for (int i = 0; i < 1000; ++i) track += "x,y,z\n";
   folder_.write("track.csv", track);

@@ -18,13 +18,13 @@ TEST(Clock, TimesHoldBothEndsIfTheStepMeetsThem) {
   EXPECT_EQ(timesOf(0, 0.3, 0.1).size(), 4u) << "0.3 / 0.1 is just below 3";
 }
 
-TEST(Clock, NoErrorAddsUp) {
+TEST(Clock, RoundingErrorsDoNotAccumulate) {
   const auto times = timesOf(0, 86400, 0.1);
   ASSERT_EQ(times.size(), 864001u);
   EXPECT_EQ(times.back(), 864000 * 0.1);
 }
 
-TEST(Clock, TimesAreThoseThatAUserWrites) {
+TEST(Clock, TimesEqualDecimalTextOfUser) {
   EXPECT_EQ(timesOf(0, 0.5, 0.1), (std::vector<double>{0, 0.1, 0.2, 0.3, 0.4, 0.5}));
   EXPECT_EQ(timesOf(-0.3, 0.3, 0.1), (std::vector<double>{-0.3, -0.2, -0.1, 0, 0.1, 0.2, 0.3}));
   EXPECT_FALSE(std::signbit(timesOf(-0.3, 0, 0.1).back()));
@@ -52,7 +52,7 @@ TEST(Clock, ParsesTimesInItsThreeForms) {
   EXPECT_EQ(parseTimes("1:2:0.5", clock), (std::vector<double>{1, 1.5, 2}));
 }
 
-TEST(Clock, RefusesTimesThatAreNone) {
+TEST(Clock, RefusesTextThatIsNoTime) {
   const Clock clock{"", 10, 2};
   for (const char* text :
        {"", ":", "a", "1:", "1:2:3:4", "2:1", "0:1:0", "0:1:-1", "nan", "0:inf", "0:1e9:1e-3", "1 s"}) {
@@ -117,7 +117,7 @@ TEST(Clock, SaysWhichNumberOfAUtcTimeIsOutOfRange) {
   EXPECT_EQ(utcFault("2026-06-01"), "");
 }
 
-TEST(Clock, RefusesWhatIsNoUtcTime) {
+TEST(Clock, RefusesInvalidUtcTime) {
   for (const char* text : {"", "2026-06-01", "2026-06-01T06:00:00", "2026-06-01 06:00:00Z",
                            "2026-13-01T06:00:00Z", "2026-02-29T06:00:00Z", "2026-06-01T24:00:00Z",
                            "2026-06-01T06:00:60Z", "2026-06-01T06:00:00.Z", "2026-06-01T06:00:00.5xZ",

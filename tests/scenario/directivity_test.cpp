@@ -12,11 +12,11 @@
 namespace emscape::scenario {
 namespace {
 
-TEST(Directivity, OfTheIsotropicAntennaIsOne) {
+TEST(Directivity, IsotropicAntennaHasOne) {
   EXPECT_DOUBLE_EQ(makeIsotropic(0)->directivity_dbi(), 0);
 }
 
-TEST(Directivity, OfANarrowGaussianBeamIsItsClosedForm) {
+TEST(Directivity, NarrowGaussianBeamEqualsClosedForm) {
   // The power is exp(-4 ln 2 (angle / beamwidth)^2): its integral is pi / (4 ln 2) times the beamwidths.
   for (const double width_deg : {0.3, 1.0, 3.0}) {
     const double width_rad = degToRad(width_deg);
@@ -36,14 +36,14 @@ TEST(Directivity, CountsTheSideLobesThatABeamDoesNotFallBelow) {
   EXPECT_NEAR(makeGaussian(0, 2, 2, -20)->directivity_dbi(), expected, 0.01);
 }
 
-TEST(Directivity, OfAnElementIsThatOfItsCosine) {
+TEST(Directivity, ElementEqualsItsCosinePattern) {
   // cos^(2q) over the half space in front: 2 (2 q + 1).
   for (const double q : {0.0, 0.5, 1.0, 2.0}) {
     EXPECT_NEAR(makePhasedArray(0, 1, 1, 0.5, q)->directivity_dbi(), ratioToDb(2 * (2 * q + 1)), 0.01) << q;
   }
 }
 
-TEST(Directivity, OfHalfWavelengthsLineArrayIsItsNumberOfElements) {
+TEST(Directivity, HalfWavelengthLineArrayEqualsNumberOfElements) {
   // N elements at half a wavelength: N into the whole space, twice that into the half space in front.
   for (const int count : {2, 5, 16, 64, 256}) {
     EXPECT_NEAR(makePhasedArray(0, count, 1, 0.5, 0)->directivity_dbi(), ratioToDb(2.0 * count), 0.02)
@@ -53,7 +53,7 @@ TEST(Directivity, OfHalfWavelengthsLineArrayIsItsNumberOfElements) {
   }
 }
 
-TEST(Directivity, OfALargeApertureIsThatOfItsArea) {
+TEST(Directivity, LargeApertureEqualsDirectivityOfItsArea) {
   // 4 pi A / lambda^2 with A from the sides at which the half-power points are at half the beamwidths.
   for (const Taper& taper :
        {Taper(TaperKind::uniform), Taper(TaperKind::cosine), Taper(TaperKind::taylor, -30)}) {
@@ -67,14 +67,14 @@ TEST(Directivity, OfALargeApertureIsThatOfItsArea) {
   }
 }
 
-TEST(Directivity, OfAnArraysFloorIsTheFloors) {
+TEST(Directivity, ErrorFloorOfArrayCounts) {
   // With a floor above its side lobes the array holds the floor nearly everywhere.
   const double peak = dbToRatio(gainFromArray_dbi(64, 64, 0.5));
   const double expected = ratioToDb(1 / (1 / peak + dbToRatio(-30)));
   EXPECT_NEAR(makePhasedArray(0, 64, 64, 0.5, 0.5, -30)->directivity_dbi(), expected, 0.15);
 }
 
-TEST(Directivity, OfTablesIsThatOfAPlainSum) {
+TEST(Directivity, TablesEqualPlainSum) {
   for (const AntennaPtr& antenna :
        {makeCosecant2(0, 3, 4, 40, -45), readMsi(test::shippedScenario("data/sector_450mhz.msi"))}) {
     double integral = 0;

@@ -84,7 +84,7 @@ std::string faultOf(Scenario& scenario, const std::string& path, const std::stri
   return fault;
 }
 
-TEST_F(EditScenario, ChangesTheValueAndNothingElseOfTheText) {
+TEST_F(EditScenario, ChangesOnlyTheValueInTheText) {
   Scenario scenario = load(kSmall);
   const std::string hash = scenario.hash;
   scenario.set("emitters.search radar.power_w", "500");
@@ -183,7 +183,7 @@ TEST_F(EditScenario, ValuesThatDependOnEachOtherAreSetTogether) {
   EXPECT_EQ(scenario.emitters[0].antenna->gain_dbi, 0);
 }
 
-TEST_F(EditScenario, FaultsNameTheEditAndLeaveTheScenario) {
+TEST_F(EditScenario, InvalidEditIsNamedAndChangesNothing) {
   Scenario scenario = load(kSmall);
   EXPECT_EQ(faultOf(scenario, "emitters.search radar.power_w", "abc"),
             "emitters.search radar.power_w=abc: 'power_w' must be a number (W), not 'abc'");
@@ -207,7 +207,7 @@ TEST_F(EditScenario, FaultsNameTheEditAndLeaveTheScenario) {
   EXPECT_THAT(faultOf(scenario, "receivers.r.gain_dbi", "1"), HasSubstr("there is no receiver 'r'"));
 }
 
-TEST_F(EditScenario, FaultsSayWhatIsAllowed) {
+TEST_F(EditScenario, ErrorsNameAllowedValues) {
   Scenario scenario = load(kSmall);
   EXPECT_EQ(faultOf(scenario, "epoch", "2016-12-31T23:59:60Z"),
             "epoch=2016-12-31T23:59:60Z: 'epoch' must be a UTC time such as 2026-06-01T06:00:00Z, not "
@@ -229,7 +229,7 @@ TEST_F(EditScenario, FaultsSayWhatIsAllowed) {
               HasSubstr("'time_percent' is 0.5, outside the allowed range 1 to 99 percent"));
 }
 
-TEST_F(EditScenario, FaultsElsewhereAreAtTheirPlaceInTheFile) {
+TEST_F(EditScenario, ErrorsElsewhereHaveLocationsInTheFile) {
   Scenario scenario = load(kSmall);
   scenario.set("platforms.site.attitude", "{roll_deg: 1}");  // a line more
   EXPECT_THAT(faultOf(scenario, "platforms.site.name", "other"),
@@ -237,7 +237,7 @@ TEST_F(EditScenario, FaultsElsewhereAreAtTheirPlaceInTheFile) {
   EXPECT_EQ(scenario.emitters[0].location.line, 20);
 }
 
-TEST_F(EditScenario, AllFaultsOfSeveralEditsAreTold) {
+TEST_F(EditScenario, ReportsAllErrorsOfSeveralEdits) {
   const std::string file = folder_.write("s.yaml", kSmall);
   const ParseResult result = parseScenario(
       file, {{"nothing", "1"}, {"atmosphere.k_factor", "0"}, {"emitters.search radar.power_w", "5"}});
@@ -272,7 +272,7 @@ TEST_F(EditScenario, FilesThatAreNotTouchedAreNotReadAgain) {
   EXPECT_THAT(faultOf(scenario, "platforms.a.track.file", "other.csv"), HasSubstr("there is no such file"));
 }
 
-TEST_F(EditScenario, SavesToAnotherFolderWithNamesOfFilesThatStillLead) {
+TEST_F(EditScenario, SavingToAnotherFolderKeepsFileReferencesValid) {
   folder_.write("track.csv", "t_s,latitude_deg,longitude_deg,height_msl_m\n0,36,-84,100\n5,36.001,-84,100\n");
   const Scenario scenario = load(
       test::replaced(kSmall, "    position: {latitude_deg: 36.002, longitude_deg: -84, height_msl_m: 100}",
@@ -362,7 +362,7 @@ TEST_F(EditScenario, TextsOfEveryKindSurvive) {
   }
 }
 
-TEST_F(EditScenario, BlockAndMultiLineTextsAreReplacedWhole) {
+TEST_F(EditScenario, BlockAndMultiLineTextsAreReplaced) {
   for (const std::string written : {"|-\n  a line\n", ">-\n  folded\n  text\n", "plain\n  over lines\n",
                                     "\"quoted\n  over \\\"lines\"\n", "'it''s\n  one'   # remark\n"}) {
     Scenario scenario = load(test::replaced(kSmall, "name: small\n", "name: " + written));
@@ -375,7 +375,7 @@ TEST_F(EditScenario, BlockAndMultiLineTextsAreReplacedWhole) {
   }
 }
 
-TEST_F(EditScenario, AnchorsAreNotEditedButWhatLiesBesideThemIs) {
+TEST_F(EditScenario, AnchorsAreRefusedButTheirSiblingsAreEdited) {
   const std::string text =
       test::replaced(test::replaced(kSmall, "antenna: {pattern: isotropic}", "antenna: *beam"),
                      "antenna: {pattern: gaussian", "antenna: &beam {pattern: gaussian");
@@ -474,7 +474,7 @@ TEST(EditEveryKey, EqualsAFileWithThatValue) {
   EXPECT_GT(sound, all / 3) << "of " << all;
 }
 
-TEST(EditAtRandom, NeverCrashesAndKeepsTheTextInStep) {
+TEST(EditAtRandom, RandomEditsKeepTextAndScenarioConsistent) {
   TemporaryFolder folder;
   for (const char* data : {"track.csv", "sector.msi", "valid.yaml"})
     folder.write(data, test::readFile(test::testData() / data));

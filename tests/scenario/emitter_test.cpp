@@ -17,7 +17,7 @@ constexpr Polarization kAll[] = {Polarization::horizontal,     Polarization::ver
                                  Polarization::slant_45,       Polarization::slant_135,
                                  Polarization::circular_right, Polarization::circular_left};
 
-TEST(PolarizationFactor, IsOneForEqualAndNothingForOrthogonalOnes) {
+TEST(PolarizationFactor, IsOneForEqualAndZeroForOrthogonal) {
   for (const Polarization p : kAll) EXPECT_DOUBLE_EQ(polarizationFactor(p, p, kIdeal), 1);
   EXPECT_DOUBLE_EQ(polarizationFactor(Polarization::horizontal, Polarization::vertical, kIdeal), 0);
   EXPECT_DOUBLE_EQ(polarizationFactor(Polarization::slant_45, Polarization::slant_135, kIdeal), 0);
@@ -43,7 +43,7 @@ TEST(PolarizationFactor, IsSymmetricAndWhole) {
   }
 }
 
-TEST(PolarizationFactor, IsThatOfTheTableInTheDocuments) {
+TEST(PolarizationFactor, EqualsTableInDocumentation) {
   // docs/models.md, in dB: rows transmit, columns receive, in the order of the enumeration.
   constexpr double kTable_db[6][6] = {{0, 25, 3.01, 3.01, 3.01, 3.01}, {25, 0, 3.01, 3.01, 3.01, 3.01},
                                       {3.01, 3.01, 0, 25, 3.01, 3.01}, {3.01, 3.01, 25, 0, 3.01, 3.01},
@@ -55,7 +55,7 @@ TEST(PolarizationFactor, IsThatOfTheTableInTheDocuments) {
   }
 }
 
-TEST(PolarizationFactor, IsNoLessThanTheIsolationAllows) {
+TEST(PolarizationFactor, IsAtLeastTheIsolation) {
   EXPECT_NEAR(polarizationFactor(Polarization::horizontal, Polarization::vertical, 30), 1e-3, 1e-12);
   EXPECT_NEAR(polarizationFactor(Polarization::horizontal, Polarization::slant_45, 30), 0.5, 1e-12);
   EXPECT_DOUBLE_EQ(polarizationFactor(Polarization::horizontal, Polarization::vertical, 0), 1);

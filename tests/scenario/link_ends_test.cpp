@@ -45,7 +45,7 @@ emitters:
   test::TemporaryFolder folder_;
 };
 
-TEST_F(LinkEnds, AReceiverWithAPlatformStandsThereAndOneWithoutIsAtEveryVoxel) {
+TEST_F(LinkEnds, ReceiverWithoutPlatformIsAtEveryVoxel) {
   const auto scenario = valid(R"(receivers:
   - {name: everywhere, gain_dbi: 3}
   - name: post
@@ -72,7 +72,7 @@ TEST_F(LinkEnds, AReceiverWithAPlatformStandsThereAndOneWithoutIsAtEveryVoxel) {
   EXPECT_EQ(whip.required_sinr_db, 10);
 }
 
-TEST_F(LinkEnds, TheSkysNoiseGoesByFrequencyAndElevation) {
+TEST_F(LinkEnds, SkyNoiseDependsOnFrequencyAndElevation) {
   const auto scenario = valid(R"(atmosphere: {refraction: exponential, vapour_g_m3: 3}
 receivers:
   - name: post
@@ -152,7 +152,7 @@ TEST_F(LinkEnds, QuantitiesOfAReceiverNameItAndTheWantedEmitter) {
   EXPECT_EQ(edited.output.receiver, 2);
 }
 
-TEST_F(LinkEnds, WhatTheQuantitiesOfAReceiverLackIsNamedOnce) {
+TEST_F(LinkEnds, MissingInputOfReceiverQuantitiesIsNamedOnce) {
   const std::string radio =
       "receivers: [{name: plain}, {name: radio, noise_figure_db: 6, bandwidth_hz: 25.0e3}]\n";
   const auto faultOf = [&](const std::string& output) {

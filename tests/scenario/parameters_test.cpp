@@ -34,7 +34,7 @@ void forEach(const ParameterGroup& group, const std::function<void(const Paramet
   for (const ParameterGroup& inner : group.groups) forEach(inner, visit);
 }
 
-TEST(Parameters, SayWhatAValueIsAndWhatItMayBe) {
+TEST(Parameters, StateValueAndAllowedValues) {
   const auto scenario = shipped("jacksboro.yaml");
   const ParameterGroup radar = parametersOf(*scenario, "emitters.search radar");
   EXPECT_EQ(radar.name, "search radar");
@@ -56,7 +56,7 @@ TEST(Parameters, SayWhatAValueIsAndWhatItMayBe) {
   EXPECT_THAT(platform->choices, Contains("helicopter"));
 }
 
-TEST(Parameters, LeaveOutWhatTheChoicesDoNotKnow) {
+TEST(Parameters, OmitParametersWithoutChoices) {
   const auto scenario = shipped("jacksboro.yaml");
   const ParameterGroup radar = parametersOf(*scenario, "emitters.search radar");
   EXPECT_TRUE(find(radar, "emitters.search radar.antenna.max_elevation_deg"));
@@ -77,7 +77,7 @@ TEST(Parameters, LeaveOutWhatTheChoicesDoNotKnow) {
   EXPECT_TRUE(find(parametersOf(*scenario, "ground"), "ground.kind"));  // not in the file
 }
 
-TEST(Parameters, EveryValueSetToItselfLeavesAScenarioThatHolds) {
+TEST(Parameters, EveryValueSetToItselfKeepsTheScenarioValid) {
   for (const char* name : {"jacksboro.yaml", "jamming.yaml", "quick.yaml"}) {
     const auto scenario = shipped(name);
     std::vector<std::string> paths{"atmosphere", "ground", "output", "region"};
@@ -131,7 +131,7 @@ TEST(EditsForChoice, ChangeToEveryPatternScanModelAndKindAndBack) {
   }
 }
 
-TEST(EditsForChoice, SayWhatHasNoCommonValue) {
+TEST(EditsForChoice, NameParametersWithoutCommonValue) {
   const auto scenario = shipped("jacksboro.yaml");
   EXPECT_THAT(test::errorOf([&] { editsForChoice(*scenario, "emitters.jammer.antenna.pattern", "cuts"); },
                             ErrorCode::bad_input),

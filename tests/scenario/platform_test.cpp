@@ -25,7 +25,7 @@ Platform moving(std::vector<TrackPoint> track) {
   return platform;
 }
 
-TEST(Platform, FixedSiteKeepsPlaceAndAttitude) {
+TEST(Platform, FixedSiteKeepsPositionAndAttitude) {
   Platform site = moving({point(0, 10, 20, 30)});
   site.attitude = {-90, 2, 3};
   const TrackPoint at = pointAt(site, 1e6);
@@ -121,7 +121,7 @@ TEST(Platform, RollTurnsOverTheShorterArc) {
   EXPECT_NEAR(std::abs(*pointAt(aircraft, 5).roll_deg), 180, 1e-9);
 }
 
-TEST(Platform, StandingStillKeepsTheLastCourse) {
+TEST(Platform, KeepsLastCourseWhileStationary) {
   const Platform hover =
       moving({point(0, 0, 0, 0), point(1, 0, 0, 5), point(2, 1, 0, 5), point(3, 1, 0, 0), point(4, 1, 1, 0)});
   EXPECT_NEAR(std::remainder(*pointAt(hover, 0.5).heading_deg, 360), 0, 1e-9) << "the first course to come";

@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(Quantities, AreThoseThatAScenarioMayAskFor) {
+TEST(Quantities, EqualQuantitiesOfScenarioSchema) {
   std::set<std::string> computed, asked;
   for (const QuantityInfo& entry : quantityTable()) computed.insert(entry.name);
   const ObjectSpec& output = *scenarioSpec().find("output", nullptr)->value.object;
@@ -21,7 +21,7 @@ TEST(Quantities, AreThoseThatAScenarioMayAskFor) {
   EXPECT_EQ(computed, asked);
 }
 
-TEST(Quantities, StandInTheOrderOfTheEnumeration) {
+TEST(Quantities, FollowOrderOfEnumeration) {
   for (std::size_t i = 0; i < quantityTable().size(); ++i) {
     EXPECT_EQ(static_cast<std::size_t>(quantityTable()[i].quantity), i);
     EXPECT_EQ(quantityFromName(quantityTable()[i].name), quantityTable()[i].quantity);

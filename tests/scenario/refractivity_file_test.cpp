@@ -55,7 +55,7 @@ TEST_F(RefractivityFiles, WarnOfUnitsAndOfUnequalProfiles) {
               testing::ElementsAre(HasSubstr("differ in their numbers of levels")));
 }
 
-TEST_F(RefractivityFiles, TellWhereTheyAreWrong) {
+TEST_F(RefractivityFiles, ErrorsHaveLocations) {
   EXPECT_THAT(errorOf(""), HasSubstr("air.csv:1:1: the file is empty"));
   EXPECT_THAT(errorOf("height_m,m_units\n"), HasSubstr("air.csv:1:1: unknown column 'height_m'"));
   EXPECT_THAT(errorOf("height_msl_m,height_msl_m\n"),
@@ -87,7 +87,7 @@ TEST_F(RefractivityFiles, HoldPressureTemperatureAndHumidity) {
   EXPECT_NEAR(file.field.profiles.at(0).at(0), 318.78, 0.01);
 }
 
-TEST_F(RefractivityFiles, HoldProfilesByPlace) {
+TEST_F(RefractivityFiles, ContainProfilesByPosition) {
   const RefractivityFile file = read(
       "latitude_deg,longitude_deg,height_msl_m,m_units\n50,1,0,330\n50,1,10,320\n51,2,0,330\n51,2,30,320\n");
   ASSERT_EQ(file.field.places.size(), 2u);
@@ -126,7 +126,7 @@ TEST_F(RefractivityFiles, MayComeFromASpreadsheet) {
   EXPECT_THAT(errorOf("height_msl_m,m_units,\n0,330,\n"), HasSubstr("air.csv:1:22: column 3 has no name"));
 }
 
-TEST_F(RefractivityFiles, AreToldFromPatternsOfAntennasAndTracks) {
+TEST_F(RefractivityFiles, DifferFromAntennaPatternsAndTracks) {
   EXPECT_TRUE(isRefractivityCsv(folder_.write("a.csv", "# made\nheight_msl_m,m_units\n")));
   EXPECT_TRUE(isRefractivityCsv(folder_.write("e.csv", "\xEF\xBB\xBFheight_msl_m,M_units\n")));
   EXPECT_FALSE(isRefractivityCsv(folder_.write("b.csv", "azimuth_deg,attenuation_db\n")));
@@ -200,7 +200,7 @@ TEST_F(Soundings, LeaveOutLevelsWithoutTemperatureOrHumidityAndAreDryAboveTheHig
   EXPECT_NEAR(top.height_msl_m, 2950, 60);
 }
 
-TEST_F(Soundings, TellWhereTheyAreWrong) {
+TEST_F(Soundings, ErrorsHaveLocations) {
   EXPECT_THAT(soundingError(""), HasSubstr("station.txt:1:1: no soundings"));
   EXPECT_THAT(soundingError("21     0  98107B  290\n"),
               HasSubstr("station.txt:1:1: a sounding's header begins"));

@@ -172,7 +172,7 @@ TEST_F(RefractivityKeys, DrawMembersAgainThatAreOutsideTheLimits) {
   }
 }
 
-TEST_F(RefractivityKeys, OfOneMemberAreTheMeanValues) {
+TEST_F(RefractivityKeys, OneMemberHasMeanValues) {
   const auto one =
       refractivityOf("{kind: evaporation_duct, duct_height_m: {mean: 14, deviation: 3}, members: 1}");
   EXPECT_THAT(one->members, IsEmpty());
@@ -205,7 +205,7 @@ TEST_F(RefractivityKeys, SayWhichModelsDoNotReadThem) {
   EXPECT_EQ(parse("{kind: linear, gradient_m_per_km: -50}").scenario->atmosphere.k_factor, 4.0 / 3);
 }
 
-TEST_F(RefractivityKeys, AreCheckedWithTheirPlace) {
+TEST_F(RefractivityKeys, ErrorsHaveLocations) {
   const auto first = [&](const std::string& text) { return problemsOf(text).at(0); };
   EXPECT_THAT(first("{kind: evaporation_duct, duct_height_m: 61}"),
               HasSubstr("scenario.yaml:5:68: 'duct_height_m' is 61, outside the allowed range 0 to 60 m"));

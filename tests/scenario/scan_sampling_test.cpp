@@ -16,7 +16,7 @@ Clock clockOf(double duration_s, double step_s) {
   return {"", duration_s, step_s};
 }
 
-TEST(ScanSampling, OfStepsThatDivideATurnIsTheSameSpokesForEver) {
+TEST(ScanSampling, StepsThatDivideATurnRepeatTheSameAzimuths) {
   // 15 degrees a step, 24 steps a turn: 24 spokes of 3 degrees.
   const ScanSampling sampling = *scanSampling(rotating(5), 3, clockOf(120, 0.5));
   EXPECT_DOUBLE_EQ(sampling.step_deg, 15);
@@ -50,7 +50,7 @@ TEST(ScanSampling, OfASectorCountsWithinItsWidth) {
   EXPECT_NEAR(sampling.lit_share, 28 * 2 / 70.0, 1e-9);
 }
 
-TEST(ScanSampling, IsOfSweepingBeamsAndSeriesAlone) {
+TEST(ScanSampling, AppliesOnlyToSweepingBeamsInSeries) {
   EXPECT_FALSE(scanSampling(ScanSpec{}, 3, clockOf(120, 0.5)));
   EXPECT_FALSE(scanSampling(rotating(5), 3, clockOf(0, 0.5)));
   EXPECT_DOUBLE_EQ(scanSampling(rotating(5), 360, clockOf(120, 0.5))->lit_share, 1);

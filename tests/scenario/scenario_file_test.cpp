@@ -116,14 +116,14 @@ TEST_F(ScenarioYaml, NamesHaveNoControlCharactersAndNoncharacters) {
               HasSubstr("'name' contains U+FFFE, which is no character"));
 }
 
-TEST_F(ScenarioYaml, RainRatesAreThoseOfTheModel) {
+TEST_F(ScenarioYaml, RainRateLimitsEqualModelLimits) {
   EXPECT_EQ(load(replaced(valid_, "rain_mm_h: 2", "rain_mm_h: 200"))->atmosphere.rain_mm_h, kRainRate.max);
   EXPECT_EQ(kRainRate.beyond, Beyond::refused);
   EXPECT_THAT(test::errorOf([&] { load(replaced(valid_, "rain_mm_h: 2", "rain_mm_h: 200.5")); }),
               HasSubstr("'rain_mm_h' is 200.5, outside the allowed range 0 to 200 mm/h"));
 }
 
-TEST_F(ScenarioYaml, ReadsWhatModelsAreTold) {
+TEST_F(ScenarioYaml, ReadsSettingsOfModels) {
   const std::string model = "    propagation: free_space\n";
   ASSERT_NE(valid_.find(model), std::string::npos);
   auto scenario = load(valid_);
@@ -203,7 +203,7 @@ emitters: [{name: e, platform: p, kind: radar, frequency_hz: 1e9, power_w: 1, an
             receiver: {noise_figure_db: 0, bandwidth_hz: 1e6}}]
 )";
 
-TEST_F(ScenarioYaml, DefaultsOfTheTableAreThoseOfTheTypes) {
+TEST_F(ScenarioYaml, DefaultsOfTableEqualDefaultsOfTypes) {
   const auto scenario = load(kMinimal);
   EXPECT_EQ(scenario->clock.epoch_utc, "");
   EXPECT_EQ(scenario->clock.duration_s, Clock{}.duration_s);
@@ -253,7 +253,7 @@ TEST_F(ScenarioYaml, ReadsJsonIndentedWithTabs) {
   EXPECT_EQ(scenario->emitters[0].frequency_hz, 1e9);
 }
 
-TEST_F(ScenarioYaml, AliasesStandForTheirAnchors) {
+TEST_F(ScenarioYaml, AliasesEqualTheirAnchors) {
   std::string text = replaced(valid_, "antenna: {pattern: gaussian", "antenna: &horn {pattern: gaussian");
   text = replaced(text, "receivers:", R"(  - name: second
     platform: helicopter
@@ -265,7 +265,7 @@ receivers:)");
   EXPECT_EQ(load(text)->emitters.back().antenna->beamwidth_az_deg, 60);
 }
 
-TEST_F(ScenarioYaml, WindowsLineEndsAndByteOrderMarkChangeNothing) {
+TEST_F(ScenarioYaml, IgnoresWindowsLineEndsAndByteOrderMark) {
   std::string text = "\xEF\xBB\xBF";
   for (const char c : valid_) text += c == '\n' ? std::string("\r\n") : std::string(1, c);
   EXPECT_EQ(load(text)->emitters[0].location.column, 5);
@@ -416,7 +416,7 @@ TEST_F(ScenarioYaml, TrackMayHaveBlankLinesRemarksAndAttitude) {
   EXPECT_FALSE(point.position.height_msl_m);
 }
 
-TEST(ScenarioSchema, ShippedFileIsWhatTheTableSays) {
+TEST(ScenarioSchema, ShippedFileEqualsTable) {
   const std::string shipped = test::shippedScenario("schema/emscape-scenario.schema.json");
   EXPECT_TRUE(test::readFile(shipped) == scenarioJsonSchema())
       << "write what scenarioJsonSchema() gives to " << shipped;

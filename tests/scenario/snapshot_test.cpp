@@ -84,12 +84,12 @@ TEST(Snapshot, RefusesTimesOutsideTheLimits) {
   }
 }
 
-TEST(Snapshot, SaysWhenItIs) {
+TEST(Snapshot, HasItsTime) {
   EXPECT_EQ(snap(oneEmitter(atMsl(100)), 1.5).time_utc, "2026-06-01T06:00:01.500Z");
   EXPECT_EQ(snap(oneEmitter(atMsl(100)), 1.5).time_s, 1.5);
 }
 
-TEST(Snapshot, HeightsOfEveryDatumMeet) {
+TEST(Snapshot, HeightsOfAllDatumsAgree) {
   const double undulation_m = geoidUndulation_m(36, -84);
   const Snapshot msl = snap(oneEmitter(atMsl(100)));
   EXPECT_EQ(msl.emitters[0].height_msl_m, 100);

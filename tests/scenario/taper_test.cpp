@@ -48,7 +48,7 @@ TEST(Taper, UniformAndCosineHaveTheFiguresOfBalanisTable12_1) {
   EXPECT_DOUBLE_EQ(uniform.arrayEfficiency(17), 1);
 }
 
-TEST(Taper, CosineIsTheFourierTransformOfItsDistribution) {
+TEST(Taper, CosineEqualsFourierTransformOfItsDistribution) {
   const Taper cosine(TaperKind::cosine);
   for (const double u : {0.0, 0.3, 0.5, 1.0, 1.5, 3.7}) {
     EXPECT_NEAR(cosine.pattern(u), fourierOf([](double x) { return std::cos(kPi * x); }, u), 1e-6) << u;
@@ -78,7 +78,7 @@ TEST(Taper, TaylorsNullsAreWhereTheDesignPutsThem) {
   for (int n = 4; n < 9; ++n) EXPECT_NEAR(taylor.pattern(n), 0, 1e-12) << n;
 }
 
-TEST(Taper, OfAnArrayIsTheSumOverItsElements) {
+TEST(Taper, ArrayEqualsSumOverElements) {
   for (const Taper& taper : {Taper(TaperKind::cosine), Taper(TaperKind::taylor, -35)}) {
     const double a = std::acosh(std::pow(10.0, 35 / 20.0)) / kPi;
     for (const int count : {1, 2, 7, 32}) {

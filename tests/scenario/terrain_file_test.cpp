@@ -278,7 +278,7 @@ TEST_F(TerrainFileTest, AVirtualMosaicWithoutItsTilesIsAnError) {
 
 // --- descriptions of files
 
-TEST_F(TerrainFileTest, DescribeTellsWhatTheFileHolds) {
+TEST_F(TerrainFileTest, DescribeStatesContentsOfTheFile) {
   DemFile file = geographicDem(10, 50, 0.1, 20, 10, flat);
   file.nodata = -1;
   file.value = [](int column, int row) { return column == 3 ? -1 : 10 * row + column; };
@@ -350,7 +350,7 @@ TEST_F(TerrainFileTest, AMissingFileIsNamed) {
   EXPECT_EQ(problemOf(file, {"s.yaml", 7, 12}), "s.yaml:7:12: elevation file " + file + ": no such file");
 }
 
-TEST_F(TerrainFileTest, WhatIsNoRasterIsRefused) {
+TEST_F(TerrainFileTest, FileThatIsNoRasterIsRefused) {
   std::ofstream(folder_ / "notes.tif") << "not a raster";
   EXPECT_THAT(problemOf(folder_ / "notes.tif"), AllOf(HasSubstr("notes.tif"), HasSubstr("not a raster")));
   EXPECT_THAT(problemOf(folder_.path().string()), HasSubstr("not a raster"));
@@ -527,7 +527,7 @@ TEST_F(TerrainFileTest, TheEpsgCodeOfAnotherKindOfSystemIsRefused) {
                                      HasSubstr("EPSG:4342, which is of another kind of system")));
 }
 
-TEST_F(TerrainFileTest, OfAVeryLargeFileAPartIsDescribed) {
+TEST_F(TerrainFileTest, VeryLargeFileIsDescribedByAPart) {
   const TerrainFileInfo info = Terrain::describe(writeBlocks(folder_ / "large.tif", 512, 1, 30000));
   EXPECT_EQ(info.rows, 30000);
   EXPECT_EQ(info.highest_m, 0);
@@ -558,7 +558,7 @@ TEST_F(TerrainFileTest, ATruncatedFileIsAnErrorAndNotSeaLevel) {
   EXPECT_THROW(Terrain::describe(path), Error);
 }
 
-TEST_F(TerrainFileTest, WithoutAPlaceOnTheEarthAFileIsRefused) {
+TEST_F(TerrainFileTest, FileWithoutGeoreferenceIsRefused) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
   file.crs = "";
   EXPECT_THAT(problemOf(write("a.tif", file)), HasSubstr("has no coordinate reference system"));
@@ -577,7 +577,7 @@ TEST_F(TerrainFileTest, ComplexNumbersAreNoHeights) {
   EXPECT_THAT(problemOf(path), HasSubstr("complex numbers"));
 }
 
-TEST_F(TerrainFileTest, ABoxThatIsNoneIsRefused) {
+TEST_F(TerrainFileTest, InvalidBoxIsRefused) {
   for (const GeoBox& box : {GeoBox{1, 0, 0, 1}, GeoBox{0, 91, 0, 1}, GeoBox{0, 1, 10, 9},
                             GeoBox{0, 1, 0, 361}, GeoBox{std::nan(""), 1, 0, 1}}) {
     EXPECT_THROW(load({}, box), Error);

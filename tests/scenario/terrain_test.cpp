@@ -100,7 +100,7 @@ TEST_F(ReferenceDem, ThreeEncodingsOfATileHaveIdenticalHeights) {
   }
 }
 
-TEST_F(ReferenceDem, PostsAreTheFilesOwnBytes) {
+TEST_F(ReferenceDem, PostsEqualBytesOfTheFile) {
   const std::string file = hgt();
   std::ifstream bytes(file, std::ios::binary);
   const TerrainPtr terrain = load({file}, {44, 45, -72, -71});
@@ -385,7 +385,7 @@ TEST_F(TerrainTest, AFileThatDoesNotMeetTheBoxIsNoError) {
   EXPECT_EQ(load({}, {0, 1, 100, 101})->uncoveredFraction(), 1);
 }
 
-TEST_F(TerrainTest, CoverageIsWhatTheFilesCoverOfTheBox) {
+TEST_F(TerrainTest, CoverageIsThePartOfTheBoxWithPosts) {
   const auto file = write("a.tif", geographicDem(10, 50, 0.1, 10, 10, slope));
   const GeoBox coverage = load({file}, {49.5, 52, 8, 10.5})->coverage();
   EXPECT_NEAR(coverage.south_deg, 49.5, 1e-9);

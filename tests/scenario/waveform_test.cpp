@@ -13,7 +13,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-TEST(Waveform, FiguresAreTheTextbooks) {
+TEST(Waveform, EqualsTextbookFigures) {
   const Waveform waveform{1000, 1e-6, std::nullopt};
   EXPECT_DOUBLE_EQ(waveform.dutyCycle(), 1e-3);
   EXPECT_NEAR(waveform.unambiguousRange_m(), 149896.2, 0.1);

@@ -76,7 +76,7 @@ xmlns:a="http://a/" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:sc
   }
 }
 
-TEST(CandidateSites, AreOnePlaceEach) {
+TEST(CandidateSites, HaveOnePositionEach) {
   const test::TemporaryFolder folder;
   const auto sitesOf = [&](const std::string& wkt) {
     return readCandidates(folder.write("a.csv", "WKT,name\n\"POINT (5 52)\",a\n\"" + wkt + "\",b\n"));
@@ -103,7 +103,7 @@ TEST(CandidateSites, WithoutANameAreNumbered) {
   EXPECT_EQ(sites[2].name, "site 3");
 }
 
-TEST(CandidateSites, OfAnotherNumberThanAllowedAreRefused) {
+TEST(CandidateSites, NumberOutsideLimitsIsRefused) {
   const test::TemporaryFolder folder;
   std::string points = "WKT,name\n";
   for (int n = 0; n <= 10000; ++n) points += "POINT (5 52),\n";
@@ -114,7 +114,7 @@ TEST(CandidateSites, OfAnotherNumberThanAllowedAreRefused) {
               HasSubstr("0 points, outside the allowed range 1 to 10000; a CSV file needs a column WKT"));
 }
 
-TEST(CandidateSites, APointThatCannotBeReadIsNotLeftOut) {
+TEST(CandidateSites, UnreadablePointIsAnError) {
   const test::TemporaryFolder folder;
   EXPECT_THAT(test::errorOf([&] {
                 readCandidates(folder.write("a.csv", "WKT,name\n\"POINT (5 52)\",a\n\"POINT(\",b\n"));
@@ -128,7 +128,7 @@ TEST(CandidateSites, APointThatCannotBeReadIsNotLeftOut) {
               HasSubstr("Invalid 'x' coordinate"));
 }
 
-TEST(CandidateSites, APointInAnyColumnThatGdalTakesAsWktIsNotLeftOut) {
+TEST(CandidateSites, UnreadablePointInAnyWktColumnIsAnError) {
   const test::TemporaryFolder folder;
   const std::string rows = "a,\"POINT (5 52)\"\nb,\"POINT (5.1\"\nc,\"POINT (5.2 52)\"\n";
   folder.write("typed.csvt", "String,WKT\n");

@@ -40,7 +40,7 @@ struct Compared {
   std::map<std::string, Map> maps;
 };
 
-TEST(Compare, AScenarioWithItselfChangesNothing) {
+TEST(Compare, EqualScenariosHaveNoChange) {
   const ComparedScenario a = jacksboro();
   const Compared same(a, jacksboro(), {Product::covered, Product::value, Product::count});
   ASSERT_EQ(same.comparison.rows.size(), 3u);
@@ -77,7 +77,7 @@ TEST(Compare, WithoutJammersGainsTheAreaOfJamLoss) {
   EXPECT_EQ(on.comparison.rows[0].gained_m2, 0);
 }
 
-TEST(Compare, SaysWhyTheLargestAreasChanged) {
+TEST(Compare, ExplainsLargestChanges) {
   const ComparedScenario high = jacksboro({{"platforms.ridge site.position.height_agl_m", "60"}});
   const Compared compared(jacksboro(), high, {Product::value, Product::covered});
   ASSERT_FALSE(compared.comparison.changed_areas.empty());

@@ -61,7 +61,7 @@ class CoverageOf {
 const MapHeight kLow{emfield::HeightReference::ground, 100},
     kHigh{emfield::HeightReference::mean_sea_level, 1500};
 
-TEST(Coverage, WarnsOfBeamsBetweenItsTimesWhereAProductIsOverThem) {
+TEST(Coverage, WarnsOfBeamsBetweenTimesOfAProduct) {
   const auto warningsOf = [](scenario::Quantity quantity, Product product) {
     return CoverageOf("jacksboro.yaml", 3000, {{kLow}, {product}, quantity, 0.5, {0, 6, 12}}).warnings;
   };
@@ -180,7 +180,7 @@ TEST(Coverage, AnAreaWithoutAPixelIsRefused) {
   EXPECT_THAT(test::errorOf(compute), HasSubstr("no pixel of 5000 m has its centre in the area"));
 }
 
-TEST(Coverage, ValuesThatAreIndicesOrCountsAreMappedAsSuch) {
+TEST(Coverage, IndicesAndCountsAreMappedAsWholeNumbers) {
   const auto mapOf = [](scenario::Quantity quantity) {
     return CoverageOf("jacksboro.yaml", 3000, {{kLow}, {Product::value}, quantity, 1, {80}}).maps.front();
   };
@@ -192,7 +192,7 @@ TEST(Coverage, ValuesThatAreIndicesOrCountsAreMappedAsSuch) {
   EXPECT_EQ(mapOf(scenario::Quantity::emitter_count).kind, MapKind::count);
 }
 
-TEST(Coverage, TitlesAreInWordsAndNamesAreTheKeys) {
+TEST(Coverage, TitlesAreInWordsAndNamesAreKeys) {
   const CoverageMap map =
       CoverageOf("jacksboro.yaml", 3000, {{kLow}, {Product::max_range}, scenario::Quantity::snr_db, 10, {80}})
           .maps.front();
@@ -203,7 +203,7 @@ TEST(Coverage, TitlesAreInWordsAndNamesAreTheKeys) {
   EXPECT_EQ(titleOf(Product::min_height, scenario::Quantity::snr_db), "minimum height above ground");
 }
 
-TEST(Coverage, APixelIsThePathOfProfileThere) {
+TEST(Coverage, PixelEqualsProfileAtItsPosition) {
   CoverageRequest request{
       {kLow, kHigh}, {Product::value}, scenario::Quantity::power_density_dbwm2, -60, {80}};
   const CoverageOf coverage("jamming.yaml", 400, request);
@@ -241,7 +241,7 @@ TEST(Coverage, APixelIsThePathOfProfileThere) {
 }
 
 // Large pixels on slopes below the beam: an offset of two metres changes the value by 0.05 dB.
-TEST(Coverage, ALargePixelIsThePathToItsCentreInTheProjection) {
+TEST(Coverage, LargePixelEqualsPathToItsProjectedCentre) {
   const CoverageOf coverage("jamming.yaml", 2000,
                             {{kLow}, {Product::value}, scenario::Quantity::snr_db, 10, {40}});
   auto at_targets = std::make_shared<scenario::Scenario>(*coverage.scenario);
@@ -333,7 +333,7 @@ TEST(Coverage, ProductsFollowFromTheValues) {
   }
 }
 
-TEST(Coverage, TheLeastHeightIsTheLowestThatIsCovered) {
+TEST(Coverage, MinHeightIsLowestCoveredHeight) {
   // Near ridges there are a few positions where a lower height is visible and a higher one is not.
   const CoverageOf coverage(
       "jacksboro.yaml", 1000,
@@ -382,7 +382,7 @@ TEST(Coverage, RefusesProductsThatTheQuantityOrTheTimesDoNotHave) {
   EXPECT_THAT(test::errorOf([] { productNamed("gap"); }), HasSubstr("longest_gap"));
 }
 
-TEST(Coverage, RefusesThresholdsAndTimesThatMeanNothing) {
+TEST(Coverage, RefusesMeaninglessThresholdsAndTimes) {
   const auto messageOf = [](double threshold, const std::vector<double>& times_s) {
     return test::errorOf([&] {
       CoverageOf("quick.yaml", 5000,
@@ -409,7 +409,7 @@ TEST(Coverage, HeightsAreListsAndRanges) {
   }
 }
 
-TEST(Coverage, AGeoTiffHoldsTheMapAndSaysWhatItIs) {
+TEST(Coverage, GeoTiffContainsMapAndDescription) {
   const test::TemporaryFolder folder;
   const CoverageOf coverage(
       "quick.yaml", 2000,

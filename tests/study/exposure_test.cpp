@@ -28,7 +28,7 @@ struct Given {
   scenario::TerrainPtr terrain;
 };
 
-TEST(Exposure, AValueIsThatOfProfileAtThePlatform) {
+TEST(Exposure, ValueEqualsProfileAtThePlatform) {
   const Given given("links.yaml");
   constexpr int kDrone = 4;
   ExposureRequest request;
@@ -61,7 +61,7 @@ TEST(Exposure, AValueIsThatOfProfileAtThePlatform) {
   }
 }
 
-TEST(Exposure, DetectionIsThatOfTheLinkToTheTarget) {
+TEST(Exposure, DetectionEqualsLinkToTheTarget) {
   const Given given("links.yaml");
   emfield::LinkOptions options;
   for (int t = 0; t <= 60; t += 3) options.times_s.push_back(t);
@@ -161,7 +161,7 @@ TEST(Exposure, TimesOverMissingTerrainAreUnknown) {
   EXPECT_GT(unknown_s, 90);
 }
 
-TEST(Exposure, RefusesWhatItCannotDo) {
+TEST(Exposure, RefusesInvalidOptions) {
   const Given given("links.yaml");
   const auto refusalOf = [&](const ExposureRequest& request) {
     return test::errorOf([&] { computeExposure(given.scenario, given.terrain, request, {}); });
@@ -177,7 +177,7 @@ TEST(Exposure, RefusesWhatItCannotDo) {
   EXPECT_THAT(refusalOf(request), HasSubstr("is an index"));
 }
 
-TEST(Exposure, StepsLongerThanTheScanAreTold) {
+TEST(Exposure, StepsLongerThanScanAreReported) {
   const Given given("links.yaml");
   ExposureRequest request;
   request.platform = 4;

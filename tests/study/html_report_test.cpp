@@ -26,7 +26,7 @@ TEST(HtmlReport, HoldsItsPartsEscapedAndInOrder) {
   EXPECT_LT(html.find("<h2 id=\"section1\">Areas"), html.find("<h2 id=\"section2\">Inputs"));
 }
 
-TEST(HtmlReport, InlinesPicturesAndFetchesNothing) {
+TEST(HtmlReport, InlinesPicturesAndHasNoExternalReferences) {
   HtmlReport report("maps", "");
   render::Image8 image;
   image.size = {2, 1};

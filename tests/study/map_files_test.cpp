@@ -193,7 +193,7 @@ class MapFiles : public testing::Test {
   const test::TemporaryFolder folder;
 };
 
-TEST_F(MapFiles, WhatAKilledProcessLeftIsRemoved) {
+TEST_F(MapFiles, TemporariesOfKilledProcessAreRemoved) {
   for (const char* left :
        {"a/maps/coverage.gpkg.part-999999999", "a/maps/coverage.gpkg.part-999999999-journal",
         "a/maps/x.tif.part-999999999.aux.xml", "a/report.html.part-999999999"})
@@ -367,7 +367,7 @@ TEST_F(MapFiles, TheNetCdfHoldsTheValuesOverTimeAndHeight) {
   EXPECT_EQ(root->OpenMDArray("time")->GetUnit(), "seconds since 2026-06-01T06:00:00.000Z");
 }
 
-TEST_F(MapFiles, TheWordsOfEmittersInTheNetCdfDiffer) {
+TEST_F(MapFiles, NetCdfFlagMeaningsOfEmittersDiffer) {
   Map best = fixture.map(MapKind::category, 70, -1, 3);
   best.labels = {"\u0441\u0435\u0432\u0435\u0440", "\u044E\u0436\u043D\u044B\u0439", "a b", "a_b"};
   MapFolder maps(folder.path() / "a", fixture.study(), {"nc"});
@@ -433,7 +433,7 @@ void expectShows(const KmzOverlay& overlay, const MapGrid& grid, const Map& cove
   EXPECT_LT(wrong, compared / 20) << "only at the edges of what is covered";
 }
 
-TEST_F(MapFiles, TheKmzLaysAMapWhereItIs) {
+TEST_F(MapFiles, KmzPlacesAMap) {
   write("a");
   const KmzOverlay overlay(folder / "a/maps/coverage.kmz", "covered_msl1500m_t70s");
   EXPECT_THAT(overlay.kml, HasSubstr("Coverage of &lt;jacksboro&gt;"));
@@ -442,7 +442,7 @@ TEST_F(MapFiles, TheKmzLaysAMapWhereItIs) {
   expectShows(overlay, *fixture.grid, mapsOf(70)[1]);
 }
 
-TEST_F(MapFiles, TheKmzLaysAMapOverAPoleWhereItIs) {
+TEST_F(MapFiles, KmzPlacesAMapOverAPole) {
   struct Case {
     std::string name, area;
     double cell_m;
@@ -489,7 +489,7 @@ TEST_F(MapFiles, TheCzmlHasPolygonsForTheirTimes) {
                                  "2026-06-01T06:01:20.000Z/2026-06-01T06:01:30.000Z"));
 }
 
-TEST_F(MapFiles, AFullGeoPackageIsToldWithoutSqlAndGdalPrintsNothing) {
+TEST_F(MapFiles, FullDiskOfGeoPackageIsOneErrorWithoutGdalOutput) {
   for (const rlim_t bytes : {0, 50000, 100000, 150000}) {
     const test::TemporaryFolder full;
     testing::internal::CaptureStderr();
@@ -505,7 +505,7 @@ TEST_F(MapFiles, AFullGeoPackageIsToldWithoutSqlAndGdalPrintsNothing) {
   }
 }
 
-TEST_F(MapFiles, AFullNetCdfIsToldAndGdalPrintsNothing) {
+TEST_F(MapFiles, FullDiskOfNetCdfIsOneErrorWithoutGdalOutput) {
   for (const rlim_t bytes : {0, 600, 3000, 20000}) {
     const test::TemporaryFolder full;
     testing::internal::CaptureStderr();

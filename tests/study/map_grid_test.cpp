@@ -126,7 +126,7 @@ TEST(MapGrid, RefusesProjectionsThatAreCutWithinTheArea) {
   EXPECT_EQ(makeMapGrid(earth, 100e3, "EPSG:3857").width, 402);
 }
 
-TEST(MapGrid, RefusesWhatIsNoMap) {
+TEST(MapGrid, RefusesInvalidAreas) {
   const MapArea area = circularArea({44, -71, 10e3});
   EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100, "EPSG:4326"); }),
               HasSubstr("not a projection in metres"));

@@ -102,7 +102,7 @@ Map counts(const MapGrid& grid, float factor) {
   return map;
 }
 
-TEST(MapPicture, ACountOf0HasAColour) {
+TEST(MapPicture, CountOfZeroHasAColor) {
   const MapGrid grid = smallGrid();
   const Map map = counts(grid, 1);
   const render::Legend legend = legendOf(map);

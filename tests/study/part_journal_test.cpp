@@ -29,7 +29,7 @@ VariantResult resultOf(std::size_t variant) {
   return {variant, {0.1 + static_cast<double>(variant), NAN, -1e-300}, {1, 0, 0, 1, 1, 0, 1, 0, 1}};
 }
 
-TEST(PartJournal, KeepsWhatIsFinished) {
+TEST(PartJournal, KeepsFinishedVariants) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "part.rows";
   {
@@ -55,7 +55,7 @@ TEST(PartJournal, KeepsWhatIsFinished) {
   EXPECT_EQ(results[1].variant, 3u) << "in the order of the part";
 }
 
-TEST(PartJournal, ATornLineIsNotThere) {
+TEST(PartJournal, TruncatedLineIsIgnored) {
   const test::TemporaryFolder folder;
   const std::string file = folder / "part.rows";
   {

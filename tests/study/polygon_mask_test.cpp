@@ -135,7 +135,7 @@ TEST_F(PolygonMask, AFileMayRoundTheUnitOfItsAngles) {
   }
 }
 
-TEST_F(PolygonMask, APolygonThatCannotBeReadIsNotLeftOut) {
+TEST_F(PolygonMask, UnreadablePolygonIsAnError) {
   const std::string good = R"({"type": "Feature", "properties": {}, "geometry": {"type": "Polygon",
 "coordinates": [[[4.95, 51.95], [5.05, 51.95], [5, 52.05], [4.95, 51.95]]]}})";
   std::string bad = good;
@@ -159,7 +159,7 @@ TEST_F(PolygonMask, APolygonThatCannotBeReadIsNotLeftOut) {
             count(pixelsWithin(geojson("[[[4.95, 51.95], [5.05, 51.95], [5, 52.05]]]"), grid_)));
 }
 
-TEST_F(PolygonMask, ARingThatGdalReadsAsOnePointIsNotLeftOut) {
+TEST_F(PolygonMask, RingOfOnePointIsAnError) {
   const auto polygon = [](const std::string& coordinates) {
     return R"(<g:featureMember><p><shape><g:Polygon srsName="EPSG:4326"><g:outerBoundaryIs><g:LinearRing>)"
            "<g:coordinates>" +
@@ -175,7 +175,7 @@ TEST_F(PolygonMask, ARingThatGdalReadsAsOnePointIsNotLeftOut) {
               HasSubstr("a ring of a polygon has 2 corners, but needs 3 or more"));
 }
 
-TEST_F(PolygonMask, AWholeFileIsReadAndACutOneRefusedInEachFormat) {
+TEST_F(PolygonMask, TruncatedFileIsRefusedInEachFormat) {
   const std::string source = geojson("[[[4.95, 51.95], [5.05, 51.95], [5, 52.05], [4.95, 51.95]]]");
   const auto expected = pixelsWithin(source, grid_);
   for (const auto& [driver, ending] : {std::pair{"ESRI Shapefile", "shp"},
@@ -203,7 +203,7 @@ TEST_F(PolygonMask, LongitudesMayPass180) {
               HasSubstr("from longitude 179.9 to -179.9 may lead either way around the earth"));
 }
 
-TEST_F(PolygonMask, WhatHasNoPixelIsAnError) {
+TEST_F(PolygonMask, EmptyMaskIsAnError) {
   EXPECT_THAT(problemOf(geojson("[[[6, 52], [6.1, 52], [6, 52.1]]]"), grid_),
               HasSubstr("has no pixel of the map"));
   EXPECT_THAT(problemOf(csv("LINESTRING (4.95 51.95, 5.05 51.95)"), grid_), HasSubstr("has no polygon"));

@@ -77,7 +77,7 @@ std::string errorOf(const std::string& text) {
   return test::errorOf([&] { Study study(text); });
 }
 
-TEST(Study, VariantsAreTheProductOfListSweepAndSamples) {
+TEST(Study, VariantsCombineListSweepAndSamples) {
   const Study study(R"(
 variants: [{name: as it is}, {name: no jammer, set: {emitters.jammer.power_w: 1.0e-6}}]
 sweep:
@@ -101,7 +101,7 @@ samples:
   EXPECT_EQ(variants.edits(0).size(), 3u);
 }
 
-TEST(Study, TheSolverSaysWhatAParameterInvalidates) {
+TEST(Study, SolverNamesStagesThatAParameterInvalidates) {
   const Study study(R"(
 sweep:
   emitters.search radar.power_w: {values: [100, 200]}
@@ -116,7 +116,7 @@ sweep:
   EXPECT_THAT(study.plan().changes, ElementsAre(4u, 4u, 8u, 16u));
 }
 
-TEST(Study, ResultsDoNotDependOnWhatWasComputedBefore) {
+TEST(Study, ResultsDoNotDependOnEarlierRuns) {
   const Study study(R"(
 times: "60:90:15"
 sweep:
@@ -232,7 +232,7 @@ variants:
   EXPECT_EQ(values, alone);
 }
 
-TEST(Study, WarningsAreThoseOfTheLastRun) {
+TEST(Study, WarningsAreOfTheLastRun) {
   const Study study(R"(
 variants:
   - {name: a}
@@ -336,7 +336,7 @@ sweep:
   }
 }
 
-TEST(Study, NoMeasureIsTakenForACoordinate) {
+TEST(Study, MeasuresAreNoCoordinates) {
   const Study study(
       "variants: [{name: a}, {name: b}]",
       "\nmeasures: [{name: variant, height: \"agl:300\"}, {name: name, height: \"agl:600\"}]\n");
@@ -452,7 +452,7 @@ TEST(Study, TheShippedStudiesHaveNoFault) {
   EXPECT_EQ(count, 2);
 }
 
-TEST(Study, RefusesFaultsWithTheirPlace) {
+TEST(Study, RefusesErrorsWithTheirLocation) {
   EXPECT_THAT(errorOf(""), HasSubstr("none of 'variants', 'sweep', 'samples' and 'sites'"));
   EXPECT_THAT(errorOf("sweeps: {}"), HasSubstr("study.yaml:4:1: unknown key 'sweeps' of the study; did you"));
   EXPECT_THAT(

@@ -8,7 +8,7 @@
 namespace emscape::study {
 namespace {
 
-TEST(TimeFigures, AreThoseOfTheRow) {
+TEST(TimeFigures, EqualFiguresOfTheRow) {
   // Covered at each of the times; a time represents the interval up to the next.
   const std::vector<double> times_s{0, 1, 2, 4, 5, 8};
   const std::vector<std::string> rows{"......", "xxxxxx", "..x.x.", "x....x", ".....x"};

@@ -57,7 +57,7 @@ emfield::PathEnd endAt(const GeodeticPosition& place, double height_msl_m) {
 }
 
 // The diagram reads the cells of the marches on both sides of each azimuth; `profile` marches to each point.
-TEST(Vertical, OfTheParabolicEquationIsNearThatOfProfile) {
+TEST(Vertical, ParabolicEquationIsNearProfile) {
   auto scenario = std::make_shared<scenario::Scenario>(*jacksboro());
   constexpr int kMast = 2;
   propagation::ModelSettings& settings = scenario->emitters[kMast].propagation;
@@ -88,7 +88,7 @@ TEST(Vertical, OfTheParabolicEquationIsNearThatOfProfile) {
   EXPECT_LT(differences_db[differences_db.size() * 9 / 10], 4.0);  // nulls
 }
 
-TEST(Vertical, AValueIsThatOfProfile) {
+TEST(Vertical, ValueEqualsProfile) {
   const auto scenario = jacksboro();
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain.get(), 80);
@@ -304,7 +304,7 @@ TEST(Vertical, PicturesHaveRoomForAllPanels) {
   checkVerticalPlot({10, 10}, 1);
 }
 
-TEST(Vertical, TakesNoMemoryForEmittersThatItDoesNotShow) {
+TEST(Vertical, HiddenEmittersTakeNoMemory) {
   auto scenario = std::make_shared<scenario::Scenario>(*jacksboro());
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   VerticalRequest request = small(2, HeightReference::ground);
@@ -322,7 +322,7 @@ TEST(Vertical, TakesNoMemoryForEmittersThatItDoesNotShow) {
               ::testing::Pointwise(::testing::NanSensitiveFloatEq(), few.cuts[1].values));
 }
 
-TEST(Vertical, RefusesWhatItCannotDo) {
+TEST(Vertical, RefusesInvalidOptions) {
   const auto scenario = jacksboro();
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const auto refusalOf = [&](const VerticalRequest& request) {

@@ -60,7 +60,7 @@ TEST(Action, ChordsAreReadAndWritten) {
   EXPECT_THROW(parseChord(""), Error);
 }
 
-TEST(Action, TheManualHoldsTheTables) {
+TEST(Action, ManualContainsTables) {
   const std::string manual = test::readFile(test::sourceFile("docs/viewer.md"));
   EXPECT_NE(manual.find(manualTables()), std::string::npos)
       << "docs/viewer.md: put the output of `emscape-view --manual-tables` there";

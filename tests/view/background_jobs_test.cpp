@@ -33,7 +33,7 @@ TEST(BackgroundJobs, RunInOrderAndFinishOnTheThreadOfTheOwner) {
   EXPECT_FALSE(jobs.busy());
 }
 
-TEST(BackgroundJobs, AllAreDoneBeforeTheyGo) {
+TEST(BackgroundJobs, DestructorWaitsForAllJobs) {
   int done = 0;
   {
     BackgroundJobs jobs([] {});
@@ -47,7 +47,7 @@ TEST(BackgroundJobs, AllAreDoneBeforeTheyGo) {
   EXPECT_EQ(done, 5);
 }
 
-TEST(BackgroundJobs, WhatAJobThrowsReachesTheOwner) {
+TEST(BackgroundJobs, ExceptionOfAJobReachesTheOwner) {
   std::promise<void> woken;
   BackgroundJobs jobs([&] { woken.set_value(); });
   jobs.run([]() -> BackgroundJobs::Finish { throw std::runtime_error("no"); });

@@ -48,7 +48,7 @@ TEST(CameraControl, PanMovesTheTargetWithTheCursor) {
   EXPECT_NEAR(after.y - before.y, -21, 1);
 }
 
-TEST(CameraControl, DollyKeepsWhatIsUnderTheCursorInTheTargetsPlane) {
+TEST(CameraControl, DollyKeepsThePointUnderTheCursor) {
   CameraControl control(render::parseCamera("orbit:distance=1.5"));
   control.orbit(0, 0, kViewport);
   const render::Camera camera = cameraOf(control);

@@ -14,7 +14,7 @@ std::string faultOf(const std::string& text) {
   return test::errorOf([&] { parseCommand(text); });
 }
 
-TEST(Command, IsReadAndWritten) {
+TEST(Command, RoundTripIsExact) {
   const Command command = parseCommand(std::string(R"({"do":"seek","time_s":49.5,"at_s":2})"));
   EXPECT_EQ(command.verb, "seek");
   EXPECT_DOUBLE_EQ(command.number("time_s"), 49.5);

@@ -70,7 +70,7 @@ void expectBusyRestoreIdle(const std::vector<std::string>& states) {
   EXPECT_EQ(states.back(), "IDLE");
 }
 
-TEST_P(Events, AreBusyThenRestoredThenExact) {
+TEST_P(Events, SettleThroughBusyAndRestore) {
   const ProgramResult result = runScript(scriptOf(GetParam().command));
   ASSERT_EQ(result.status, 0) << result.err;
   expectBusyRestoreIdle(statesAfterTheEvent());
@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(Window, Events, testing::ValuesIn(kEvents),
                          [](const auto& event) { return std::string(event.param.name); });
 
 /// A step with a different field.
-TEST_F(WindowEvents, AStepIsBusyThenRestoredThenExact) {
+TEST_F(WindowEvents, StepSettlesThroughBusyAndRestore) {
   const ProgramResult result =
       run(viewOf(shippedScenario("jacksboro.yaml"), scriptOf(R"({"do":"seek","time_s":20})")), environment());
   ASSERT_EQ(result.status, 0) << result.err;

@@ -41,7 +41,7 @@ class WatchedFolder : public testing::Test {
   FileWatch watch_{[this] { ++wakes_; }, kQuick_s};
 };
 
-TEST_F(WatchedFolder, AChangeIsToldOnce) {
+TEST_F(WatchedFolder, ChangeIsReportedOnce) {
   watch_.watch({file_});
   EXPECT_THAT(changesSoon(), IsEmpty());
   writeFile(file_, "longer");
@@ -60,7 +60,7 @@ TEST_F(WatchedFolder, AFileThatIsReplacedHasChanged) {
   EXPECT_THAT(changes(), ElementsAre(file_));
 }
 
-TEST_F(WatchedFolder, AFileThatIsGoneIsToldWhenItIsBack) {
+TEST_F(WatchedFolder, RemovedFileIsReportedWhenItReturns) {
   watch_.watch({file_});
   fs::remove(file_);
   EXPECT_THAT(changesSoon(), IsEmpty());
@@ -68,7 +68,7 @@ TEST_F(WatchedFolder, AFileThatIsGoneIsToldWhenItIsBack) {
   EXPECT_THAT(changes(), ElementsAre(file_));
 }
 
-TEST_F(WatchedFolder, OnlyTheFilesThatAreAskedForCount) {
+TEST_F(WatchedFolder, OtherFilesAreIgnored) {
   writeFile(folder_ / "b.yaml", "b");
   watch_.watch({file_});
   writeFile(folder_ / "b.yaml", "longer");

@@ -73,7 +73,7 @@ class Monkey {
   std::mt19937 random_;
 };
 
-TEST_F(Window, AMonkeyBreaksNothingAndMemoryStaysFlat) {
+TEST_F(Window, RandomInputKeepsItRunningWithConstantMemory) {
   const double seconds = duration_s();
   Monkey monkey(7);
   // The largest picture first, so that its memory is part of the initial amount.

@@ -189,7 +189,7 @@ TEST(SessionFocus, LooksAtEmittersThatAreHidden) {
             "there is no emitter 'nobody'; the scenario has 'radar', 'transmitter'");
 }
 
-TEST(SessionFocus, RefusesWhatDoesNotBelongTogether) {
+TEST(SessionFocus, RefusesIncompatibleArguments) {
   SessionSample sample("quick.yaml");
   EXPECT_EQ(sample.perform(R"({"do":"focus","x":3})"), "focus: expected x and y, or emitter");
   EXPECT_EQ(sample.perform(R"({"do":"focus","x":3,"y":3,"emitter":"radar"})"),
@@ -197,7 +197,7 @@ TEST(SessionFocus, RefusesWhatDoesNotBelongTogether) {
   EXPECT_FALSE(sample->camera().spec().target_m);
 }
 
-TEST(PlatformDrag, SaysThatAPlatformMovesByItself) {
+TEST(PlatformDrag, IsRefusedForMovingPlatforms) {
   SessionSample sample("jacksboro.yaml", {{"region.dims", "[40, 40, 20]"}});
   const std::string error = errorOf([&] { PlatformDrag(*sample->picture(), 3, 0, 0); });
   EXPECT_THAT(error, HasSubstr("'helicopter' cannot be put elsewhere: it moves along"));

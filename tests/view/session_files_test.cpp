@@ -37,7 +37,7 @@ bool waitUntilOpened(SessionSample& shown, SessionOpener& opener) {
 
 // --- fields on tetrahedra ---
 
-TEST(SessionOfTetrahedra, ShowsEditsAndRefusesWhatTheyDoNotHave) {
+TEST(SessionOfTetrahedra, ShowsEditsAndRefusesUnsupportedVerbs) {
   const StateFolder folder;
   ViewOptions options = optionsFor(shippedScenario("quick.yaml"), {160, 120});
   options.mesh = "terrain:4,50";
@@ -105,7 +105,7 @@ std::vector<std::string> namesOf(const FileBrowser& browser) {
   return names;
 }
 
-TEST(FileBrowser, ShowsFoldersThenWhatCanBeOpened) {
+TEST(FileBrowser, ShowsFoldersThenOpenableFiles) {
   const StateFolder folder;
   fs::create_directory(folder / "Zebra");
   fs::create_directory(folder / "apple");
@@ -142,7 +142,7 @@ TEST(FileBrowser, EntersFoldersAndComesBackToWhereItWas) {
   EXPECT_EQ(browser.selected(), 0);
 }
 
-TEST(FileBrowser, SaysWhyAFolderCannotBeRead) {
+TEST(FileBrowser, ReportsUnreadableFolder) {
   FileBrowser browser;
   browser.open(FileBrowser::Purpose::input, "/no/such/folder");
   ASSERT_TRUE(waitUntilRead(browser));
@@ -151,7 +151,7 @@ TEST(FileBrowser, SaysWhyAFolderCannotBeRead) {
 
 // --- opening ---
 
-TEST(Opening, TellsWhatAFileIsByItsContent) {
+TEST(Opening, RecognizesFilesByContent) {
   const StateFolder folder;
   const ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
   folder.write("a.view.json", R"({"schema_version": 1, "time_s": 2})");
@@ -165,7 +165,7 @@ TEST(Opening, TellsWhatAFileIsByItsContent) {
   EXPECT_EQ(opening.options.input, folder / "own.yaml");
 }
 
-TEST(Opening, RefusesWhatCannotBeShown) {
+TEST(Opening, RefusesFilesWithoutAPicture) {
   const StateFolder folder;
   const ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
   const auto fault = [&](const std::string& file) {
@@ -179,7 +179,7 @@ TEST(Opening, RefusesWhatCannotBeShown) {
   EXPECT_THAT(fault(ownScenario(folder, "power_w: 10000", "power_w: -1")), HasSubstr("power_w"));
 }
 
-TEST(Opening, RefusesWhatBelongsToVolumes) {
+TEST(Opening, RefusesFilesThatDescribeVolumes) {
   const StateFolder folder;
   const ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
   folder.write("series.json", R"({"format_version": 2, "recipe": {}})");
@@ -191,7 +191,7 @@ TEST(Opening, RefusesWhatBelongsToVolumes) {
   EXPECT_THAT(fault("field_0001.raw.json"), HasSubstr("the header of a volume"));
 }
 
-TEST(Opening, LeavesOutEditsThatDoNotApplyAnyMore) {
+TEST(Opening, DropsEditsThatNoLongerApply) {
   const StateFolder folder;
   ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
   playback::ViewState view;
@@ -221,7 +221,7 @@ class Opener : public testing::Test {
   SessionOpener opener_{shown_.files, [this](const ViewOptions& options) { return shown_.make(options); }};
 };
 
-TEST_F(Opener, PutsAnotherInputInThePlaceOfTheOneOnScreen) {
+TEST_F(Opener, ReplacesInputOnScreen) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"theme","theme":"light"})");
   shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", ownScenario(folder_)));
@@ -232,7 +232,7 @@ TEST_F(Opener, PutsAnotherInputInThePlaceOfTheOneOnScreen) {
   EXPECT_THAT(readRecentFiles(), ElementsAre(folder_ / "own.yaml"));
 }
 
-TEST_F(Opener, KeepsWhatIsOnScreenWhenTheOtherCannotBeOpened) {
+TEST_F(Opener, KeepsInputOnScreenWhenOpeningFails) {
   ASSERT_TRUE(shown_.settle());
   const Session* before = shown_.session.get();
   shown_.perform(R"({"do":"open","file":"/no/such/file.yaml"})");
@@ -310,7 +310,7 @@ bool waitForAutosave(SessionSample& shown, bool wanted) {
   });
 }
 
-TEST_F(Opener, EditsAreKeptAMomentLaterAndRestored) {
+TEST_F(Opener, EditsAreAutosavedAndRestored) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   ASSERT_TRUE(waitForAutosave(shown_, true));
@@ -376,7 +376,7 @@ TEST_F(Opener, QuitAsksForUnsavedEdits) {
   EXPECT_TRUE(shown_.window.has_quit);
 }
 
-TEST_F(Opener, QuitWithoutEditsAsksNothing) {
+TEST_F(Opener, QuitWithoutEditsAsksNoQuestion) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"quit"})");
   EXPECT_TRUE(shown_.window.has_quit);
@@ -414,7 +414,7 @@ TEST_F(Opener, AVideoInNoFolderIsRefused) {
   EXPECT_EQ(shown_.error(), video + ": cannot write: the folder " + (folder_ / "none") + " does not exist");
 }
 
-TEST_F(Opener, ACancelledVideoLeavesNothing) {
+TEST_F(Opener, CancelledVideoLeavesNoFile) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(fmt::format(R"({{"do":"record","file":"{}","step_s":0.01}})", folder_ / "film.mp4"));
   ASSERT_TRUE(shown_.waitUntil([this] {
@@ -429,7 +429,7 @@ TEST_F(Opener, ACancelledVideoLeavesNothing) {
   }
 }
 
-TEST_F(Opener, RecordingFaultsAreTold) {
+TEST_F(Opener, ErrorsOfRecordingAreReported) {
   ASSERT_TRUE(shown_.settle());
   EXPECT_THAT(shown_.perform(R"({"do":"record","file":"x.mp4","begin_s":3,"end_s":1})"),
               HasSubstr("begin_s <= end_s"));

@@ -28,7 +28,7 @@ TEST_F(Planes, AreAddedMovedFlippedSwitchedAndRemoved) {
   EXPECT_EQ(session->viewState().settings.planes, session->settings().planes);
 }
 
-TEST_F(Planes, FaultsAreTold) {
+TEST_F(Planes, ErrorsAreReported) {
   perform(R"({"do":"plane","flip":true})");
   EXPECT_EQ(error(), "plane: there is no plane; `spec` or `kind` adds one");
   perform(R"({"do":"plane","kind":"slanted"})");
@@ -72,7 +72,7 @@ TEST_F(Comparison, ShowsTheDifferenceWithColoursOfItsOwnAndTheFieldAgain) {
   EXPECT_EQ(error(), "");
 }
 
-TEST_F(Comparison, WhatHasNoDifferenceIsTold) {
+TEST_F(Comparison, UndefinedDifferenceIsReported) {
   perform(R"({"do":"quantity","name":"dominant_emitter"})");
   settle();
   perform(R"({"do":"compare"})");

@@ -8,7 +8,7 @@ using testing::HasSubstr;
 constexpr const char* kProbe =
     R"({"do":"probe","latitude_deg":52.02,"longitude_deg":5.03,"height_msl_m":1500})";
 
-TEST(SessionProbe, LocksAtAPositionAndSaysWhatIsThereAndWhy) {
+TEST(SessionProbe, LocksAtAPositionAndExplainsItsValue) {
   SessionSample sample("quick.yaml");
   sample.perform(kProbe);
   EXPECT_EQ(sample.error(), "");
@@ -99,7 +99,7 @@ TEST(SessionProbe, CopiesNoCommandForAnUnknownEmitter) {
   EXPECT_EQ(sample.window.clipboard, "");
 }
 
-TEST(SessionProbe, SaysWhatIsNoPosition) {
+TEST(SessionProbe, ReportsInvalidPositions) {
   SessionSample sample("quick.yaml");
   sample.perform(R"({"do":"probe","x":3})");
   EXPECT_EQ(sample.error(),

@@ -119,7 +119,7 @@ void expectThePictureOfRender(const std::string& input, RandomView& random) {
   EXPECT_EQ(difference.erroneous, 0);
 }
 
-TEST(SessionState, IsThePictureOfRenderForRandomViews) {
+TEST(SessionState, RandomViewsEqualPicturesOfRender) {
   const StateFolder folder;
   for (unsigned seed = 1; seed <= 14; ++seed) {
     SCOPED_TRACE(fmt::format("seed {}", seed));
@@ -128,7 +128,7 @@ TEST(SessionState, IsThePictureOfRenderForRandomViews) {
   }
 }
 
-TEST(SessionState, IsThePictureOfRenderForRandomViewsOfRealGround) {
+TEST(SessionState, RandomViewsOfRealGroundEqualPicturesOfRender) {
   const StateFolder folder;
   for (unsigned seed = 15; seed <= 20; ++seed) {
     SCOPED_TRACE(fmt::format("seed {}", seed));
@@ -170,7 +170,7 @@ TEST(SessionState, IsSavedAndShownAgain) {
   EXPECT_EQ(again->timeline().visible().end_s, 3);
 }
 
-TEST(SessionState, AnIsosurfaceOutsideOfTheValuesIsDrawnAsNone) {
+TEST(SessionState, IsosurfaceOutsideOfTheValuesIsNotDrawn) {
   const StateFolder folder;
   ViewOptions options = optionsFor(shippedScenario("quick.yaml"));
   options.view.settings.mode = render::CompositingMode::iso;
@@ -216,7 +216,7 @@ TEST(SessionState, WritesFilesOnlyUnderNamesOfTheirKind) {
     EXPECT_FALSE(std::filesystem::exists(name));
 }
 
-TEST(SessionState, AViewThatCannotBeWrittenIsTold) {
+TEST(SessionState, WriteFailureOfViewIsReported) {
   const StateFolder folder;
   SessionSample shown(optionsFor(shippedScenario("quick.yaml")));
   ASSERT_TRUE(shown.settle());

@@ -47,7 +47,7 @@ TEST_F(SessionTime, TimesAreTypedInSecondsOrInUtc) {
   EXPECT_THAT(error(), testing::HasSubstr("seek: expected either time_s or time"));
 }
 
-TEST_F(SessionTime, ThePlayingRangeAndWhatIsVisibleAreSetByVerbs) {
+TEST_F(SessionTime, PlayingAndVisibleRangeAreSetByVerbs) {
   perform(R"({"do":"play_from","time_s":1.2})");
   perform(R"({"do":"seek","time_s":3})");
   perform(R"({"do":"play_to"})");

@@ -31,7 +31,7 @@ TEST_F(SessionTransfer, PointsAreAddedMovedAndRemovedInThePicture) {
   EXPECT_EQ(session->picture()->transfer.opacities.size(), before);
 }
 
-TEST_F(SessionTransfer, FaultsOfVerbsSayWhatIsExpected) {
+TEST_F(SessionTransfer, ErrorsOfVerbsNameTheExpectedArguments) {
   perform(R"({"do":"opacity_point","value":-60})");
   EXPECT_THAT(error(), HasSubstr("expected value and opacity of a new point, or the index of one"));
   perform(R"({"do":"opacity_point","value":-60,"opacity":1.5})");
@@ -116,7 +116,7 @@ TEST_F(SessionTransfer, FittingStretchesColoursAndOpacitiesTogether) {
   EXPECT_DOUBLE_EQ(session->transfer()->function().lowest(), lowest);
 }
 
-TEST_F(SessionTransfer, FilesHoldWhatIsShown) {
+TEST_F(SessionTransfer, FilesContainShownFunction) {
   perform(R"({"do":"opacity_preset","name":"bands"})");
   perform(R"({"do":"transfer","colors":"cividis"})");
   const std::string saved = text();
@@ -133,7 +133,7 @@ TEST_F(SessionTransfer, FilesHoldWhatIsShown) {
   waitUntil([this] { return error().find("none/a.json") != std::string::npos; });
 }
 
-TEST_F(SessionTransfer, TheHistogramIsThatOfTheVolumeOnScreen) {
+TEST_F(SessionTransfer, HistogramIsOfVolumeOnScreen) {
   EXPECT_EQ(session->values(), nullptr) << "nobody looks";
   session->panels.colors = true;
   settle();

@@ -5,7 +5,7 @@
 namespace emscape::view {
 namespace {
 
-TEST(UndoOrder, GoesBackThroughTheStepsInTheOrderInWhichTheyWereMade) {
+TEST(UndoOrder, UndoesLatestStepFirst) {
   UndoOrder order;
   EXPECT_FALSE(order.undo());
   order.note(History::scenario, 1);
@@ -21,7 +21,7 @@ TEST(UndoOrder, GoesBackThroughTheStepsInTheOrderInWhichTheyWereMade) {
   EXPECT_EQ(order.undo(), History::transfer);
 }
 
-TEST(UndoOrder, ForgetsAHistoryThatBeginsAnew) {
+TEST(UndoOrder, ForgetsAHistoryThatRestarts) {
   UndoOrder order;
   order.note(History::transfer, 3);
   order.note(History::scenario, 1);

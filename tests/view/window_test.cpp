@@ -477,7 +477,7 @@ TEST_F(Window, RealEventsOfTheServerArrive) {
   EXPECT_EQ(result.status, 0) << result.err;
 }
 
-TEST(WindowWithoutADisplay, SaysSoWithStatusFour) {
+TEST(WindowWithoutADisplay, IsReportedWithStatusFour) {
   const ProgramResult result = run({"view", quick()}, "unset DISPLAY WAYLAND_DISPLAY;");
   EXPECT_EQ(result.status, 4);
   EXPECT_THAT(result.err, HasSubstr("DISPLAY"));

@@ -33,7 +33,7 @@ DenseVolume makeVolume(const Dims& dims, bool masked) {
   return volume;
 }
 
-TEST(DeviceVolume, HoldsWhatWasUploaded) {
+TEST(DeviceVolume, EqualsUploadedVolume) {
   EMSCAPE_NEEDS_GPU();
   for (const Dims& dims : {Dims{1, 1, 1}, Dims{17, 5, 9}, Dims{64, 33, 21}}) {
     for (const bool masked : {false, true}) {
@@ -64,7 +64,7 @@ TEST(DeviceVolume, RoundsTo11BitsInHalfPrecision) {
   }
 }
 
-TEST(DeviceVolume, SaysWhatDoesNotFit) {
+TEST(DeviceVolume, NamesSizeThatDoesNotFit) {
   EMSCAPE_NEEDS_GPU();
   Grid grid;
   grid.dims = {4096, 16384, 64};  // 16 GiB
@@ -91,7 +91,7 @@ TEST(DeviceVolume, RefusesAnotherVolumesDimsAndMasks) {
   EXPECT_THROW(device.setMask({1, 2, 3}), Error);
 }
 
-TEST(DeviceVolumeRing, GivesAVolumeThatNobodyHolds) {
+TEST(DeviceVolumeRing, ReturnsUnusedVolume) {
   EMSCAPE_NEEDS_GPU();
   Grid grid;
   grid.dims = {4, 4, 4};

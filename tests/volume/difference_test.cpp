@@ -25,7 +25,7 @@ std::string errorOf(const DenseVolume& a, const DenseVolume& b) {
   return test::errorOf([&] { difference(a, b); });
 }
 
-TEST(Difference, IsThatOfTheValuesAndToTheFloorWhereOneHasNoField) {
+TEST(Difference, IsTakenToTheFloorWhereOneHasNoField) {
   const DenseVolume made = difference(volumeOf({-40, -120, -50, -120}), volumeOf({-50, -60, -120, -120}));
   EXPECT_EQ(made.values, (UnsetVector<float>{10, -60, 70, 0}));
   EXPECT_EQ(made.info.floor, 0);
@@ -33,7 +33,7 @@ TEST(Difference, IsThatOfTheValuesAndToTheFloorWhereOneHasNoField) {
   EXPECT_EQ(made.info.range_max, 70);
 }
 
-TEST(Difference, OfEqualVolumesIsZeroEverywhere) {
+TEST(Difference, EqualVolumesDifferByZero) {
   const DenseVolume volume = volumeOf({-40, -120, -50, -120});
   const DenseVolume made = difference(volume, volume);
   EXPECT_EQ(made.values, UnsetVector<float>(4, 0.0F));
@@ -41,7 +41,7 @@ TEST(Difference, OfEqualVolumesIsZeroEverywhere) {
   EXPECT_EQ(made.info.range_max, 0);
 }
 
-TEST(Difference, WhatIsMaskedInEitherStaysMasked) {
+TEST(Difference, VoxelsMaskedInEitherStayMasked) {
   const DenseVolume made =
       difference(volumeOf({-120, -40, -40, -40}, {1, 0}), volumeOf({-60, -120, -60, -60}, {0, 1}));
   EXPECT_EQ(made.first_valid_k, (std::vector<std::uint16_t>{1, 1}));
@@ -62,7 +62,7 @@ TEST(Difference, HasTheUnitOfDifferences) {
   EXPECT_FALSE(isDifference(info));
 }
 
-TEST(Difference, RefusesWhatCannotBeCompared) {
+TEST(Difference, RefusesIncomparableVolumes) {
   const DenseVolume volume = volumeOf({1, 2, 3, 4});
   DenseVolume other = volume;
   other.grid.spacing_m.x = 11;

@@ -13,7 +13,7 @@ using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using namespace test;
 
-TEST(File, EveryWritableFormatGivesBackWhatWasWritten) {
+TEST(File, RoundTripIsExactInEveryFormat) {
   TemporaryFolder folder;
   const DenseVolume volume = fieldVolume();
   for (const FileFormat& format : fileFormats()) {
@@ -33,7 +33,7 @@ TEST(File, EveryWritableFormatGivesBackWhatWasWritten) {
   }
 }
 
-TEST(File, NothingLiesUnderTheFinalNameWhenWritingFails) {
+TEST(File, FailedWriteLeavesNoFile) {
   TemporaryFolder folder;
   DenseVolume volume = fieldVolume();
   volume.values.pop_back();
@@ -44,7 +44,7 @@ TEST(File, NothingLiesUnderTheFinalNameWhenWritingFails) {
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST(File, NothingLiesUnderTheFinalNameWhenTheDiskIsFull) {
+TEST(File, FullDiskLeavesNoFile) {
   TemporaryFolder folder;
   const DenseVolume volume = fieldVolume();
   const emscape::test::FileSizeLimit limit(5000);

@@ -66,7 +66,7 @@ TEST(Mesh, InvertedCellsAreReordered) {
   EXPECT_EQ(orientCells(mesh, kFile), 0);
 }
 
-TEST(Mesh, RefusesWhatIsNoMesh) {
+TEST(Mesh, RefusesInvalidMeshes) {
   const auto errorAfter = [](const std::function<void(TetrahedralMesh&)>& damage) {
     TetrahedralMesh mesh = oneCell();
     damage(mesh);
@@ -160,7 +160,7 @@ TEST(MeshContacts, RefusesCellsThatOverlapWithoutACommonFace) {
   EXPECT_EQ(errorWith({1.001, 0, 0}, {2, 1, 1}, {3, 3, 3}), "");
 }
 
-TEST(Mesh, StatisticsLeaveOutWhatIsNotKnown) {
+TEST(Mesh, StatisticsOmitUnknownValues) {
   MeshField field = test::fieldOn(oneCell(), [](const Vec3d& p) { return p.x + 2 * p.y; });
   field.values[3] = std::numeric_limits<float>::quiet_NaN();
   const Statistics statistics = statisticsOf(field);

@@ -44,7 +44,7 @@ bool sameValue(float a, float b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-TEST(NanovdbGrid, SamplesInTheAirFindTheSameVoxelsAsInTheDenseVolume) {
+TEST(NanovdbGrid, SamplesEqualDenseVolume) {
   for (const DenseVolume& volume : {test::fieldVolume(), test::categoricalVolume(), test::plainVolume()}) {
     const nano::Handle grid = toNano(readyForSampling(volume), {});
     const Dims& dims = volume.grid.dims;
@@ -64,7 +64,7 @@ TEST(NanovdbGrid, SamplesInTheAirFindTheSameVoxelsAsInTheDenseVolume) {
   }
 }
 
-TEST(NanovdbGrid, WhatIsAtTheFloorTakesNoMemory) {
+TEST(NanovdbGrid, VoxelsAtTheFloorTakeNoMemory) {
   DenseVolume volume = test::plainVolume({128, 128, 128});
   std::fill(volume.values.begin(), volume.values.end(), volume.info.floor);
   const std::size_t empty = toNano(readyForSampling(volume), {}).size();
@@ -74,7 +74,7 @@ TEST(NanovdbGrid, WhatIsAtTheFloorTakesNoMemory) {
   EXPECT_LT(one_voxel, volume.values.size() * sizeof(float) / 10);
 }
 
-TEST(CudaNanovdbGrid, HoldsWhatWasUploaded) {
+TEST(CudaNanovdbGrid, EqualsUploadedGrid) {
   EMSCAPE_NEEDS_GPU();
   for (const DenseVolume& volume : {test::fieldVolume(), test::categoricalVolume(), test::plainVolume()}) {
     DeviceVolume device(volume.grid, VoxelPrecision::sparse32);

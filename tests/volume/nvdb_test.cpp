@@ -16,7 +16,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using namespace test;
 
-TEST(Nvdb, GivesBackVolumesExactly) {
+TEST(Nvdb, RoundTripIsExact) {
   TemporaryFolder folder;
   for (const DenseVolume& volume : {fieldVolume(), categoricalVolume(), plainVolume()}) {
     writeNvdb(folder / "a.nvdb", {&volume});
@@ -37,7 +37,7 @@ TEST(Nvdb, HoldsSeveralQuantitiesAndReadsTheNamedOne) {
               HasSubstr("no grid \"x\"; the file holds power_density_dbwm2, dominant_emitter"));
 }
 
-TEST(Nvdb, LooksAsStatedToNanoVdb) {
+TEST(Nvdb, NanoVdbReadsDocumentedLayout) {
   TemporaryFolder folder;
   const DenseVolume volume = fieldVolume();
   writeNvdb(folder / "a.nvdb", {&volume});
@@ -177,7 +177,7 @@ TEST(Nvdb, AFaultOfTheSidecarNamesTheVolume) {
               HasSubstr("b.nvdb.json: volume snr_db: range_min 1000000000 is above"));
 }
 
-TEST(Nvdb, RefusesWhatIsNotOne) {
+TEST(Nvdb, RefusesOtherFiles) {
   TemporaryFolder folder;
   writeBytes(folder / "a.nvdb", std::vector<std::uint8_t>(100, 'x'));
   EXPECT_THAT(errorOf([&] { readNvdb(folder / "a.nvdb"); }), HasSubstr("a.nvdb: no NanoVDB file"));

@@ -11,7 +11,7 @@ namespace {
 using ::testing::HasSubstr;
 using namespace test;
 
-TEST(Raw, GivesBackVolumesExactly) {
+TEST(Raw, RoundTripIsExact) {
   TemporaryFolder folder;
   for (const DenseVolume& volume : {fieldVolume(), categoricalVolume(), plainVolume()}) {
     writeRaw(folder / "a.raw", volume);
@@ -20,7 +20,7 @@ TEST(Raw, GivesBackVolumesExactly) {
   }
 }
 
-TEST(Raw, GivesBackInfinitiesInItsHeader) {
+TEST(Raw, RoundTripKeepsInfinitiesOfHeader) {
   TemporaryFolder folder;
   DenseVolume volume = plainVolume();
   volume.info.floor = -std::numeric_limits<float>::infinity();
@@ -63,7 +63,7 @@ TEST(Raw, NamesExpectedAndFoundBytes) {
   EXPECT_THAT(errorOf([&] { readRaw(folder / "scan.raw"); }), HasSubstr("_256x256x110_uint8.raw"));
 }
 
-TEST(Raw, NamesWhatIsWrongInAHeader) {
+TEST(Raw, NamesErrorsOfAHeader) {
   TemporaryFolder folder;
   const auto with = [&](const std::string& header) {
     writeBytes(folder / "a.raw", std::vector<std::uint8_t>(8));

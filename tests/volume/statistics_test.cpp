@@ -31,7 +31,7 @@ TEST(Statistics, LeaveOutMaskedAndNan) {
   EXPECT_DOUBLE_EQ(statistics.mean, 1);
 }
 
-TEST(Statistics, OfNothingAreZero) {
+TEST(Statistics, EmptyVolumeHasZeros) {
   DenseVolume volume = small();
   volume.first_valid_k = {4, 4};
   const Statistics statistics = statisticsOf(volume);

@@ -30,7 +30,7 @@ class StoredRangeOf : public testing::TestWithParam<const char*> {
   TemporaryFolder folder_;
 };
 
-TEST_P(StoredRangeOf, AFinishedFileBecomesTheOneWrittenWithThatRange) {
+TEST_P(StoredRangeOf, FileWithNewRangeEqualsFileWrittenWithIt) {
   for (const auto& [min, max] : std::vector<std::pair<float, float>>{
            {-119.75F, 17.5F}, {-1.17549e-38F, 3.4e38F}, {0.F, 0.F}, {-120.1F, 1}}) {
     const DenseVolume before = withRange(fieldVolume(), -3.25F, 2.F),
@@ -43,7 +43,7 @@ TEST_P(StoredRangeOf, AFinishedFileBecomesTheOneWrittenWithThatRange) {
   }
 }
 
-TEST_P(StoredRangeOf, SayingTheSameRangeAgainChangesNothing) {
+TEST_P(StoredRangeOf, SettingTheSameRangeKeepsTheFile) {
   const DenseVolume volume = fieldVolume();
   writeVolumes(file("v"), {&volume});
   const std::vector<std::uint8_t> before = bytesOf(file("v"));
@@ -73,7 +73,7 @@ TEST_P(StoredRangeOf, ACategoricalVolumeKeepsItsIndices) {
   expectSame(readVolume(file("v")), withRange(volume, 1, 3));
 }
 
-TEST_P(StoredRangeOf, AQuantityThatTheFileDoesNotHoldIsNamedAndNothingChanges) {
+TEST_P(StoredRangeOf, MissingQuantityIsNamedAndFileIsUnchanged) {
   const DenseVolume volume = fieldVolume();
   writeVolumes(file("v"), {&volume});
   const std::vector<std::uint8_t> before = bytesOf(file("v"));
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(EveryFormat, StoredRangeOf, testing::Values("vdb", "nvd
 INSTANTIATE_TEST_SUITE_P(EveryFormatOfSeveralVolumes, StoredRangesOf, testing::Values("vdb", "nvdb", "vti"),
                          [](const auto& format) { return std::string(format.param); });
 
-TEST(StoredRange, TheSameVolumeIsTheSameVdbFileAndAnotherHasAnotherIdentifier) {
+TEST(StoredRange, EqualVolumesGiveEqualVdbFilesAndOthersDiffer) {
   const TemporaryFolder folder;
   const DenseVolume volume = fieldVolume();
   DenseVolume other = volume;

@@ -7,7 +7,7 @@
 namespace emscape::volume {
 namespace {
 
-TEST(ValueRange, HoldsExactlyWhatWasAdded) {
+TEST(ValueRange, SpansExactlyTheAddedValues) {
   for (const ValueRange first :
        {ValueRange{-80, -26}, ValueRange{3, 7}, ValueRange{-5, 5}, ValueRange{-1, -1}}) {
     ValueRange range;

@@ -15,28 +15,28 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using namespace test;
 
-TEST(Vdb, GivesBackAFieldExactly) {
+TEST(Vdb, RoundTripOfFieldIsExact) {
   TemporaryFolder folder;
   const DenseVolume volume = fieldVolume();
   writeVdb(folder / "a.vdb", {&volume});
   expectSame(readVdb(folder / "a.vdb"), volume);
 }
 
-TEST(Vdb, GivesBackACategoricalVolumeExactly) {
+TEST(Vdb, RoundTripOfCategoricalVolumeIsExact) {
   TemporaryFolder folder;
   const DenseVolume volume = categoricalVolume();
   writeVdb(folder / "a.vdb", {&volume});
   expectSame(readVdb(folder / "a.vdb"), volume);
 }
 
-TEST(Vdb, GivesBackAVolumeWithoutMaskAndPlace) {
+TEST(Vdb, RoundTripWithoutMaskAndPositionIsExact) {
   TemporaryFolder folder;
   const DenseVolume volume = plainVolume();
   writeVdb(folder / "a.vdb", {&volume});
   expectSame(readVdb(folder / "a.vdb"), volume);
 }
 
-TEST(Vdb, GivesBackAVolumeWithoutAnyField) {
+TEST(Vdb, RoundTripWithoutFieldIsExact) {
   TemporaryFolder folder;
   DenseVolume volume = fieldVolume();
   std::fill(volume.values.begin(), volume.values.end(), volume.info.floor);
@@ -58,7 +58,7 @@ TEST(Vdb, HoldsSeveralQuantitiesAndReadsTheNamedOne) {
               HasSubstr("a.vdb: no grid \"snr_db\"; the file holds power_density_dbwm2, dominant_emitter"));
 }
 
-TEST(Vdb, LooksAsStatedToOpenVdb) {
+TEST(Vdb, OpenVdbReadsDocumentedLayout) {
   TemporaryFolder folder;
   const DenseVolume volume = fieldVolume();
   writeVdb(folder / "a.vdb", {&volume});
@@ -260,7 +260,7 @@ TEST_F(ForeignVdb, LargeTilesOfOneValueAreRefused) {
   EXPECT_THAT(errorOf([&] { describeVdb(path_); }), HasSubstr("too sparse"));
 }
 
-TEST_F(ForeignVdb, ThatKeptOurMetadataWithOtherVoxelsIsReadAsForeign) {
+TEST_F(ForeignVdb, WithOurMetadataAndOtherVoxelsIsReadAsForeign) {
   const DenseVolume volume = fieldVolume();
   const auto grid = ours();
   grid->tree().setValueOn({-1, 0, 0}, 5.F);
@@ -271,7 +271,7 @@ TEST_F(ForeignVdb, ThatKeptOurMetadataWithOtherVoxelsIsReadAsForeign) {
   EXPECT_FALSE(read.grid.georeferenced);
 }
 
-TEST_F(ForeignVdb, ThatKeptOurMetadataUnderAnotherNameIsReadAsForeign) {
+TEST_F(ForeignVdb, WithOurMetadataUnderAnotherNameIsReadAsForeign) {
   const auto original = ours();
   const auto renamed = original->deepCopy();
   renamed->setName("density");
@@ -354,14 +354,14 @@ TEST(Vdb, SurvivesDamage) {
   survivesDamage(folder / "a.vdb", [&] { readVdb(folder / "a.vdb", "dominant_emitter"); });
 }
 
-TEST_F(ForeignVdb, SurvivesDamageWhateverTheCompression) {
+TEST_F(ForeignVdb, SurvivesDamageInEveryCompression) {
   for (const std::uint32_t compression : {0U, 3U, 6U}) {
     write(openvdb::tools::createLevelSetSphere<openvdb::FloatGrid>(6.F, openvdb::Vec3f(0), 1.F), compression);
     survivesDamage(path_, [&] { readVdb(path_); });
   }
 }
 
-TEST(Vdb, RefusesWhatIsNotOne) {
+TEST(Vdb, RefusesOtherFiles) {
   TemporaryFolder folder;
   writeBytes(folder / "a.vdb", std::vector<std::uint8_t>(100, 'x'));
   EXPECT_THAT(errorOf([&] { readVdb(folder / "a.vdb"); }), HasSubstr("a.vdb: no OpenVDB file"));

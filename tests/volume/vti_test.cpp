@@ -20,7 +20,7 @@ DenseVolume emitterVolume() {
   return volume;
 }
 
-TEST(Vti, GivesBackVolumesExactly) {
+TEST(Vti, RoundTripIsExact) {
   TemporaryFolder folder;
   for (const DenseVolume& volume : {fieldVolume(), categoricalVolume(), plainVolume()}) {
     writeVti(folder / "a.vti", {&volume});
@@ -315,7 +315,7 @@ TEST(ForeignVti, IsRefusedWhereItCannotBeRead) {
   EXPECT_THAT(refusal("nothing"), HasSubstr("no VTK XML file"));
 }
 
-TEST(Pvd, AStepNeedsATimeThatTheProgramCanUse) {
+TEST(Pvd, StepNeedsAValidTime) {
   TemporaryFolder folder;
   const auto read = [&](const std::string& timestep) {
     const std::string text = "<VTKFile type=\"Collection\"><Collection><DataSet " + timestep +
@@ -353,7 +353,7 @@ TEST(Pvd, WithSeveralPartsOfAStepIsRefused) {
   EXPECT_EQ(read("timestep=\"0\" part=\"0\"", "timestep=\"1\" part=\"1\""), 2U);
 }
 
-TEST(Pvd, ListsASeriesAndCanBeWrittenAnew) {
+TEST(Pvd, ListsASeriesAndCanBeRewritten) {
   TemporaryFolder folder;
   std::vector<PvdEntry> entries = {{0, folder / "a_0001.vti"}, {0.1, "/elsewhere/a_0002.vti"}};
   writePvd(folder / "a.pvd", entries);

@@ -53,7 +53,7 @@ std::string readText(const std::string& file) {
   return {bytes.begin(), bytes.end()};
 }
 
-TEST(Vtu, GivesBackFieldsExactly) {
+TEST(Vtu, RoundTripIsExact) {
   TemporaryFolder folder;
   const MeshField power = sample();
   MeshField emitter = power;
@@ -92,7 +92,7 @@ TEST(Vtu, TheStoredRangeIsChangedInPlace) {
   EXPECT_EQ(readText(folder / "a.vtu"), readText(folder / "b.vtu"));
 }
 
-TEST(Vtu, RefusesToWriteWhatCannotBeRead) {
+TEST(Vtu, RefusesToWriteUnreadableMeshes) {
   TemporaryFolder folder;
   const MeshField field = sample(), other = sample();
   EXPECT_THAT(errorOf([&] { writeMesh(folder / "a.vtu", {}); }), HasSubstr("no field to write"));

@@ -9,7 +9,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-TEST(Ticks, StandAtRoundValuesWithinTheInterval) {
+TEST(Ticks, AreAtRoundValuesWithinInterval) {
   EXPECT_THAT(roundTicks(-87, -18, 7), ElementsAre(-80, -70, -60, -50, -40, -30, -20));
   EXPECT_THAT(roundTicks(0, 1, 4), ElementsAre(0, 0.25, 0.5, 0.75, 1));
   EXPECT_THAT(roundTicks(-0.3, 0.3, 3), ElementsAre(-0.2, 0, 0.2));
@@ -38,7 +38,7 @@ TEST(Legend, NamesQuantitiesAndUnitsAsPeopleWriteThem) {
   EXPECT_EQ(unitText("dBuV/m"), "dBµV/m");
 }
 
-TEST(Legend, HasTheNoteThatAVolumeBrings) {
+TEST(Legend, HasNoteOfTheVolume) {
   volume::VolumeInfo info;
   info.quantity = "jammer_to_signal_db";
   info.unit = "dB";

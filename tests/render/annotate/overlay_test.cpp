@@ -112,7 +112,7 @@ int largestDifference(const Image8& a, const Image8& b) {
   return largest;
 }
 
-TEST(Overlay, LayersMakeThePictureThatIsComposedAtOnce) {
+TEST(Overlay, LayersEqualPictureComposedAtOnce) {
   const ImageSize size{320, 240};
   const Image8 cast = quantize(gradients(size));
   Annotations annotations = everything(testing::fog(0.5));
@@ -140,7 +140,7 @@ TEST(Overlay, AQuantizedPictureIsAtMostOneLevelApart) {
   EXPECT_LE(largestDifference(exact, quantized), 1);
 }
 
-TEST(Overlay, HiddenMarkersLookDifferent) {
+TEST(Overlay, HiddenMarkersAreDrawnDifferently) {
   const ImageSize size{640, 360};
   const Annotations all = everything(testing::fog(0.5));
   const Camera camera = makeCamera({}, kBox, size);

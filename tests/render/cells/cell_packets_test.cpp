@@ -65,7 +65,7 @@ std::vector<MarchTask> raysThrough(const CellMesh& cells, double least_through) 
   return tasks;
 }
 
-TEST_P(CellPacketsTest, GatherWhatRaysGatherOneAfterAnother) {
+TEST_P(CellPacketsTest, EqualSingleRays) {
   const CellMesh cells = wavy();
   const PsiLookup psi = PsiTable::shared().lookup();
   const auto opaque = [](double scale) {

@@ -99,7 +99,7 @@ constexpr const char* kCameras[] = {
     // In the box: the eye is in a cell.
     "lookat:eye_x_m=1,eye_y_m=2,eye_z_m=1.5,target_x_m=9,target_y_m=7,target_z_m=2,fov_deg=80"};
 
-TEST(CellRenderer, AHomogeneousBoxIsAsOpaqueAsItsChordIsLong) {
+TEST(CellRenderer, OpacityOfHomogeneousBoxFollowsChordLength) {
   const MeshField field =
       fieldOn(boxMesh({6, 5, 7}, {0, 0, 0}, {9, 8, 4}, 0.2), [](const Vec3d&) { return 1.0; });
   constexpr double kOpacity = 0.02;
@@ -122,7 +122,7 @@ TEST(CellRenderer, AHomogeneousBoxIsAsOpaqueAsItsChordIsLong) {
   }
 }
 
-TEST(CellRenderer, AFieldThatIsLinearInSpaceIsTheSamePictureOnAnyMesh) {
+TEST(CellRenderer, LinearFieldIsDrawnEquallyOnAnyMesh) {
   const auto linear = [](const Vec3d& p) { return 0.03 + 0.05 * p.x + 0.03 * p.y + 0.06 * p.z; };
   const Vec3d lower{0, 0, 0}, upper{9, 8, 4};
   const MeshField coarse = fieldOn(boxMesh({3, 2, 2}, lower, upper), linear);
@@ -191,7 +191,7 @@ TEST(CellRenderer, CellsWithoutAKnownFieldAreClear) {
   EXPECT_NEAR(static_cast<double>(image.at(kSize.width / 2, kSize.height / 2).a), expected, 1e-6);
 }
 
-TEST(CellRenderer, TheGroundHidesWhatIsBehindIt) {
+TEST(CellRenderer, GroundHidesCellsBehindIt) {
   const MeshField field = fieldOn(boxMesh({4, 4, 4}, {0, 0, 0}, {1, 1, 1}), [](const Vec3d&) { return 1.0; });
   CellRenderer renderer;
   prepare(renderer, field, constant(0.01), "orbit:elevation_deg=90,projection=orthographic");
@@ -213,7 +213,7 @@ TEST(CellRenderer, TheGroundHidesWhatIsBehindIt) {
   EXPECT_NEAR(static_cast<double>(covered.r), 1 - through + through * static_cast<double>(bare.r), 1e-5);
 }
 
-TEST(CellRenderer, RefusesWhatItDoesNotDraw) {
+TEST(CellRenderer, RefusesUnsupportedSettings) {
   CellRenderer renderer;
   RenderSettings settings;
   settings.mode = CompositingMode::mida;

@@ -74,7 +74,7 @@ struct Difference {
   }
 };
 
-TEST(CudaCells, AreTheCpusPicture) {
+TEST(CudaCells, EqualPictureOfCpu) {
   EMSCAPE_NEEDS_GPU();
   auto ground = std::make_shared<HeightField>();
   ground->columns = ground->rows = 3;
@@ -120,7 +120,7 @@ class Projection : public ::testing::Test {
   }
 };
 
-TEST_F(Projection, IsTheMarchedPicture) {
+TEST_F(Projection, EqualsMarchedPicture) {
   for (const char* camera :
        {"orbit", "orbit:projection=orthographic", "orbit:azimuth_deg=20,elevation_deg=70",
         "orbit:distance=0.1", "orbit:distance=0.4,elevation_deg=-20"}) {
@@ -174,7 +174,7 @@ class ProjectedEdges {
 // What is left of 1e-5: rasterisers round vertices to 1/256 pixel, and a ray beside an edge may be given to
 // the cell on its wrong side; else the interpolation in single precision, which grows with the cells' optical
 // depth (here up to 5).
-TEST_F(Projection, IsTheMarchedPictureWhereNoEdgeIsNear) {
+TEST_F(Projection, EqualsMarchedPictureAwayFromEdges) {
   constexpr double kNear = 1.0 / 32;  // pixels
   const MeshField field = wavy(8);
   for (const char* camera :
@@ -267,7 +267,7 @@ TEST_F(Projection, LeavesOutCellsWithoutAField) {
   EXPECT_LT(difference.mean, 2e-6);
 }
 
-TEST(ProjectedCells, AnyOrderOfVerticesIsTheSameCell) {
+TEST(ProjectedCells, OrderOfVerticesDoesNotMatter) {
   SeenCell cell{{Vec3d{3, 0.2, 0.1}, Vec3d{4, 0.3, -0.2}, Vec3d{3.3, 1.4, 0}, Vec3d{3.5, 0.5, 1.1}},
                 {1, 2, 4, 8}};
   const std::array<int, 4> even[] = {{0, 1, 2, 3}, {1, 2, 0, 3}, {0, 2, 3, 1}, {1, 0, 3, 2}};
@@ -421,7 +421,7 @@ TEST(CellOrder, VisibilityDrawsEveryCellAfterThoseBehindItsFaces) {
   }
 }
 
-TEST(CellOrder, CentroidsAreTheFarthestFirst) {
+TEST(CellOrder, CentroidsAreOrderedFarthestFirst) {
   TetrahedralMesh mesh = boxMesh({40, 30, 20}, {0, 0, 0}, {4, 3, 2}, 0.2);
   volume::orientCells(mesh, {});
   const CellMesh cells = cellMeshOf(mesh);

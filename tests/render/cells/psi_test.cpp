@@ -20,7 +20,7 @@ double integrated(double back, double front) {
   return sum / (3 * kParts);
 }
 
-TEST(Psi, ScaledErfcAndDawsonAreThoseOfTheTables) {
+TEST(Psi, ScaledErfcAndDawsonEqualTables) {
   // Abramowitz and Stegun, Handbook of Mathematical Functions, tables 7.1 and 7.5, and NIST DLMF 7.
   EXPECT_NEAR(scaledErfc(0), 1, 1e-15);
   EXPECT_NEAR(scaledErfc(1), 0.42758357615580700, 1e-15);
@@ -38,7 +38,7 @@ TEST(Psi, ScaledErfcAndDawsonAreThoseOfTheTables) {
   EXPECT_NEAR(dawson(7 - 1e-9) / dawson(7 + 1e-9), 1, 1e-9);
 }
 
-TEST(Psi, IsTheIntegralForEqualNearlyEqualAndUnequalEnds) {
+TEST(Psi, EqualsIntegralForEqualNearlyEqualAndUnequalEnds) {
   for (const double back : {0.0, 1e-6, 0.01, 0.3, 0.99, 1.01, 3.0, 20.0, 300.0}) {
     for (const double front : {0.0, 1e-6, 0.01, 0.3, 0.99, 1.01, 3.0, 20.0, 300.0}) {
       EXPECT_NEAR(psi(back, front), integrated(back, front), 1e-11) << back << ", " << front;

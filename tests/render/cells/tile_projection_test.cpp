@@ -102,7 +102,7 @@ class TileProjections : public test::OnBackends {
 };
 EMSCAPE_ON_BACKENDS(TileProjections);
 
-TEST_P(TileProjections, AreTheMarchedPictureInAllPixels) {
+TEST_P(TileProjections, EqualMarchedPictureInAllPixels) {
   const MeshField field = wavy(8);
   for (const char* camera : kCameras) {
     EXPECT_LT(difference(field, camera), 1e-5) << camera;
@@ -174,7 +174,7 @@ TEST_P(TileProjections, AreOrderedByCentroidsAlikeOnAllBackends) {
   }
 }
 
-TEST_P(TileProjections, HaveTheExactFormAlone) {
+TEST_P(TileProjections, HaveOnlyTheExactForm) {
   CellRenderer renderer(GetParam());
   prepare(renderer, wavy(4), "orbit");
   ProjectionOptions published = byTiles();
@@ -186,7 +186,7 @@ TEST_P(TileProjections, HaveTheExactFormAlone) {
   EXPECT_EQ(greatestDifference(renderer.project(kSize, published), renderer.project(kSize, byTiles())), 0);
 }
 
-TEST(TileProjection, TakesThePlaceOfOpenGlOnTheCpu) {
+TEST(TileProjection, ReplacesOpenGlOnCpu) {
   CellRenderer renderer;
   prepare(renderer, wavy(4), "orbit");
   bool on_gpu = false;
@@ -219,7 +219,7 @@ TEST_P(TileProjections, SortRaysWhereTheOrderOfCellsIsWrong) {
 class TileLanes : public test::OnInstructionSet {};
 EMSCAPE_ON_INSTRUCTION_SETS(TileLanes);
 
-TEST_P(TileLanes, CompositeWhatThePlainFormComposites) {
+TEST_P(TileLanes, EqualPlainForm) {
   const MeshField field = wavy(8);
   for (const char* camera : kCameras) {
     CellRenderer renderer;

@@ -1,4 +1,4 @@
-// Losses, and common errors in products, each tested through the pipeline.
+// What counts once and what twice in the budgets of emitters, radars and jammers, through the whole field.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@ namespace {
 
 using namespace emscape::emfield::testing;
 
-TEST(Losses, OfTheChainCountOnceEach) {
+TEST(Losses, EachLossOfTheChainCountsOnce) {
   scenario::Emitter radar = trackingRadar();
   const auto snr = [&] { return east(duel(radar, jammerOf(1), 0, 60e3), "snr_db", 20e3); };
   radar.scan.azimuth_deg = 90;
@@ -31,7 +31,7 @@ TEST(Losses, OfTheChainCountOnceEach) {
   EXPECT_NEAR(ratio(), before + 4, 1e-3);
 }
 
-TEST(Losses, OfTheLineAddNoiseAsBlakeHasIt) {
+TEST(Losses, LineLossAddsNoiseByBlake) {
   // An antenna at 290 K: the line's losses add to the noise figure. A cold one gains less than the ratio of
   // the temperatures, as line and receiver stay warm.
   scenario::Emitter radar = trackingRadar();
@@ -44,7 +44,7 @@ TEST(Losses, OfTheLineAddNoiseAsBlakeHasIt) {
   EXPECT_NEAR(radarLinkOf(radar).noise_temperature_k, at_antenna_k / dbToRatio(2), 1e-9);
 }
 
-TEST(Traps, FieldOfOneKilowattErpIsThatOfItsEirp) {
+TEST(RadiatedField, OneKilowattErpEqualsItsEirp) {
   // ITU's curves are for 1 kW ERP, which is 2.15 dB more EIRP: 106.9 dBuV/m at 1 km.
   auto scenario = lineOfVoxels(2e3, 1e3);
   scenario::Emitter emitter = plainEmitter("dipole", 0);
@@ -55,7 +55,7 @@ TEST(Traps, FieldOfOneKilowattErpIsThatOfItsEirp) {
   EXPECT_NEAR(east(scenario, "field_strength_dbuvm", 1e3), 104.77, 0.01);
 }
 
-TEST(Traps, FieldStrengthIsRmsNotPeak) {
+TEST(RadiatedField, StrengthIsRms) {
   // E = sqrt(30 EIRP) / d is RMS: 173.2 mV/m for 1 kW at 1 km; the peak would be 3.01 dB more.
   auto scenario = lineOfVoxels(2e3, 1e3);
   addEmitter(*scenario, middleOf(*scenario), plainEmitter("isotropic", 0));
@@ -63,7 +63,7 @@ TEST(Traps, FieldStrengthIsRmsNotPeak) {
   EXPECT_NEAR(east(scenario, "field_strength_dbuvm", 1e3), 20 * std::log10(rms_v_per_m * 1e6), 1e-3);
 }
 
-TEST(Traps, PowersAreAddedNotDecibels) {
+TEST(RadiatedField, PowersAreAdded) {
   auto scenario = lineOfVoxels(2e3, 1e3);
   addEmitter(*scenario, middleOf(*scenario), plainEmitter("one", 0));
   for (const char* quantity : {"power_density_dbwm2", "field_strength_dbuvm"}) {
@@ -74,7 +74,7 @@ TEST(Traps, PowersAreAddedNotDecibels) {
   }
 }
 
-TEST(Traps, RadarCountsThePathTwiceAndJammingOnce) {
+TEST(RadarBudget, PathCountsTwiceForEchoAndOnceForJammer) {
   // Each doubling of range: 12.04 dB of an echo's, 6.02 dB of jamming's power; the pattern likewise.
   scenario::Emitter radar = trackingRadar();
   radar.scan.azimuth_deg = 90;
@@ -88,7 +88,7 @@ TEST(Traps, RadarCountsThePathTwiceAndJammingOnce) {
               2 * 10 * std::log10(0.5), 1e-3);
 }
 
-TEST(Traps, GasesAndRainCountTwiceForAnEchoAndOnceForAJammer) {
+TEST(RadarBudget, GasesAndRainCountTwiceForEchoAndOnceForJammer) {
   scenario::Emitter radar = trackingRadar(), jammer = jammerOf(100);
   radar.frequency_hz = jammer.frequency_hz = 10e9;
   jammer.polarization = radar.polarization;  // rain does not attenuate all alike
@@ -111,7 +111,7 @@ TEST(Traps, GasesAndRainCountTwiceForAnEchoAndOnceForAJammer) {
   EXPECT_NEAR(ratio() - dry_ratio, 2 * one_way_db - 1.5 * one_way_db, 0.05);
 }
 
-TEST(Traps, InterceptIsOneWay) {
+TEST(RadarBudget, InterceptIsOneWay) {
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
   addEmitter(*scenario, middleOf(*scenario), plainEmitter("radio", 0));
   scenario->receivers = {scenario::ReceiverProfile{}};

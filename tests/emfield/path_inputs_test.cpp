@@ -1,4 +1,4 @@
-// Common errors about paths and heights, one test each.
+// Inputs of a path: datum of heights, refraction, antenna angle, near field, antimeridian and pole.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ PathBudget budgetTo(const std::shared_ptr<scenario::Scenario>& scenario, const P
   return pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0, point, model, nullptr);
 }
 
-TEST(Traps, ItmBendsRaysByRefractivityAndDiffractionByTheKFactor) {
+TEST(PathInputs, ItmUsesRefractivityAndDiffractionUsesKFactor) {
   const auto scenario = mastAt(50, 8);
   const PathEnd point = pointAt(50.4, 8, 100);
   const auto excess = [&](PropagationModel model, double k_factor) {
@@ -47,7 +47,7 @@ TEST(Traps, ItmBendsRaysByRefractivityAndDiffractionByTheKFactor) {
   EXPECT_GT(excess(PropagationModel::diffraction, 1), excess(PropagationModel::diffraction, 2) + 3);
 }
 
-TEST(Traps, TheAntennasAngleIsTheRefractedRays) {
+TEST(PathInputs, AntennaAngleIsOfRefractedRay) {
   const auto scenario = mastAt(50, 8);
   const PathEnd point = pointAt(51.8, 8, 6000);
   const PathBudget straight = budgetTo(scenario, point);
@@ -58,7 +58,7 @@ TEST(Traps, TheAntennasAngleIsTheRefractedRays) {
   EXPECT_NEAR(budgetTo(scenario, point).pointing.pattern_db, 0, 1e-3);
 }
 
-TEST(Traps, NoHeightIsTakenForOneOfAnotherDatum) {
+TEST(PathInputs, HeightsKeepTheirDatum) {
   // 47 m lie between the ellipsoid and mean sea level there
   const auto scenario = mastAt(50, 8);
   const double undulation_m = geoidUndulation_m(50, 8);
@@ -72,7 +72,7 @@ TEST(Traps, NoHeightIsTakenForOneOfAnotherDatum) {
               20 + undulation_m, 1e-6);
 }
 
-TEST(Traps, PathsCrossTheAntimeridianAndThePole) {
+TEST(PathInputs, PathsCrossAntimeridianAndPole) {
   const PathBudget across = budgetTo(mastAt(10, 179.95), pointAt(10, -179.95, 500));
   EXPECT_NEAR(across.profile.range_m, 10.96e3, 20);
   EXPECT_NEAR(radToDeg(across.profile.azimuth_rad), 90, 0.1);
@@ -81,7 +81,7 @@ TEST(Traps, PathsCrossTheAntimeridianAndThePole) {
   for (const double height_msl_m : over_pole.profile.ray_msl_m) EXPECT_TRUE(std::isfinite(height_msl_m));
 }
 
-TEST(Traps, TheNearFieldIsMarkedAndStaysFinite) {
+TEST(PathInputs, NearFieldIsMarkedAndFinite) {
   const auto scenario = mastAt(50, 8);
   scenario->emitters[0].antenna = scenario::makeGaussian(45, 0.8, 0.8, -60);
   const PathBudget near = budgetTo(scenario, pointAt(50.0001, 8, 20));

@@ -26,7 +26,7 @@ DiffractionModel<Real> modelAt(double frequency_hz) {
   return diffractionModel<Real>(parameters);
 }
 
-TEST(FloatDistance, OfTheSphericalEarth) {
+TEST(FloatAccuracy, SphericalEarthLossErrorIsSmall) {
   double largest_db = 0;
   for (const double frequency_hz : {30e6, 1e9, 20e9}) {
     const auto exact = modelAt<double>(frequency_hz).earth;
@@ -46,7 +46,7 @@ TEST(FloatDistance, OfTheSphericalEarth) {
   EXPECT_LT(largest_db, kGoal_db);
 }
 
-TEST(FloatDistance, OfTheEdgesOverMadeUpTerrain) {
+TEST(FloatAccuracy, EdgeLossErrorOverGeneratedTerrainIsSmall) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> part(0, 1);
   int compared = 0, beyond = 0;
@@ -75,7 +75,7 @@ TEST(FloatDistance, OfTheEdgesOverMadeUpTerrain) {
 }
 
 /// Position of a shadow's edge in metres, as `horizon` gives either no loss or no field.
-TEST(FloatDistance, OfTheShadowsEdge) {
+TEST(FloatAccuracy, ShadowHeightErrorIsSmall) {
   std::mt19937 random(9);
   double largest_m = 0;
   for (int i = 0; i < 200; ++i) {

@@ -121,12 +121,12 @@ DiffractionModel<double> diffractionAt(double frequency_hz, const PathProfile& p
   return diffractionModel<double>(parameters);
 }
 
-class ModelWalk : public ::testing::Test {
+class ModelContinuity : public ::testing::Test {
  protected:
   const scenario::TerrainPtr terrain_ = whiteMountainsTile();
 };
 
-TEST_F(ModelWalk, DiffractionHasNoJumps) {
+TEST_F(ModelContinuity, DiffractionHasNoJumps) {
   const Walk walk(terrain_);
   for (const double frequency_hz : kFrequencies_hz) {
     SCOPED_TRACE(frequency_hz);
@@ -144,7 +144,7 @@ double raisedEnd_m(const PathProfile& profile) {
                                             static_cast<double>(profile.ground_msl_m.back()));
 }
 
-TEST_F(ModelWalk, TheSingleEdgeHasNoJumps) {
+TEST_F(ModelContinuity, SingleEdgeHasNoJumps) {
   const Walk walk(terrain_);
   for (const double frequency_hz : kFrequencies_hz) {
     SCOPED_TRACE(frequency_hz);
@@ -156,7 +156,7 @@ TEST_F(ModelWalk, TheSingleEdgeHasNoJumps) {
 }
 
 /// Where another post becomes the main edge, the edges on both sides change, too.
-TEST_F(ModelWalk, DeygoutJumpsOnlyWhereAnotherPostIsTheMainEdge) {
+TEST_F(ModelContinuity, DeygoutJumpsOnlyWhereMainEdgeChanges) {
   const Walk walk(terrain_);
   for (const double frequency_hz : kFrequencies_hz) {
     SCOPED_TRACE(frequency_hz);
@@ -212,7 +212,7 @@ bool takesAnotherCourse(const ItmResult<double>& a, const ItmResult<double>& b) 
   return other;
 }
 
-TEST_F(ModelWalk, ItmJumpsOnlyWhereItTakesAnotherCourse) {
+TEST_F(ModelContinuity, ItmJumpsOnlyWhereItsBranchChanges) {
   const Walk walk(terrain_);
   for (const double frequency_hz : kFrequencies_hz) {
     SCOPED_TRACE(frequency_hz);
@@ -223,7 +223,7 @@ TEST_F(ModelWalk, ItmJumpsOnlyWhereItTakesAnotherCourse) {
   }
 }
 
-TEST(ModelWalkOverTheSea, TwoRaysHaveNoJumps) {
+TEST(ModelContinuityOverTheSea, TwoRaysHaveNoJumps) {
   for (const double frequency_hz : kFrequencies_hz) {
     TwoRayParameters parameters;
     parameters.frequency_hz = frequency_hz;
@@ -240,7 +240,7 @@ TEST(ModelWalkOverTheSea, TwoRaysHaveNoJumps) {
 
 /// P.528 has steps at its own transitions: less than a decibel between an antenna near the ground and an
 /// aircraft.
-TEST(ModelWalkOverTheSea, P528StepsByLessThanADecibel) {
+TEST(ModelContinuityOverTheSea, P528StepsByLessThanADecibel) {
   for (const double frequency_hz : {2e8, 1e9, 1e10}) {
     const auto atmosphere = std::make_shared<const P528Atmosphere>(frequency_hz);
     const P528Curve curve(atmosphere, frequency_hz, 15, 10000);
@@ -252,7 +252,7 @@ TEST(ModelWalkOverTheSea, P528StepsByLessThanADecibel) {
   }
 }
 
-TEST(ModelWalkOverTheSea, GasesHaveNoJumpsOverHeight) {
+TEST(ModelContinuityOverTheSea, GasesHaveNoJumpsOverHeight) {
   for (const double frequency_hz : {1e10, 2.2e10, 6e10}) {
     const auto loss = [&](double height_m) {
       return gasAttenuation(frequency_hz, standardAtmosphere(height_m)).total_db_per_km();
