@@ -22,11 +22,11 @@ TEST(Registry, HoldsEveryModelOnceInTheOrderOfTheEnumeration) {
   }
 }
 
-TEST(Registry, AccuracyEqualsTableInReadme) {
-  std::string readme = test::readFile(test::sourceFile("README.md"));
-  readme.erase(std::remove(readme.begin(), readme.end(), '`'), readme.end());
+TEST(Registry, AccuracyEqualsTableInDocumentation) {
+  std::string page = test::readFile(test::sourceFile("docs/models.md"));
+  page.erase(std::remove(page.begin(), page.end(), '`'), page.end());
   for (const ModelInfo& row : models()) {
-    EXPECT_THAT(readme, testing::HasSubstr(" | " + row.accuracy + " | ")) << row.name;
+    EXPECT_THAT(page, testing::HasSubstr(" | " + row.accuracy + " | ")) << row.name;
   }
 }
 
