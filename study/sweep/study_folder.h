@@ -4,7 +4,6 @@
 ///     parts/part_00003.csv   variant, measures; written when the part is complete
 ///     parts/part_00003.json  the hash, the machines, warnings; written last
 ///     parts/part_00003.rows  the finished variants of an incomplete part
-///     parts/part_00003.claim the process that works on a part, if several processes claim parts
 ///     variants/              the kept files of each variant (VariantFiles)
 ///     results.csv results.nc report.html
 #pragma once
@@ -17,7 +16,6 @@
 #include <string>
 #include <vector>
 
-#include "study/sweep/part_claim.h"
 #include "study/sweep/part_journal.h"
 #include "study/sweep/study_plan.h"
 #include "study/sweep/study_runner.h"
@@ -72,10 +70,6 @@ class StudyFolder {
   /// Writes a complete part, and removes its journal.
   /// @throws Error (other)
   void writePart(int part, const PartJournal& journal) const;
-
-  /// Claims a part for this process. @return null if another one holds it
-  std::unique_ptr<PartClaim> tryClaim(int part) const { return PartClaim::tryClaim(partFile(part, "claim")); }
-  bool isClaimed(int part) const { return PartClaim::isHeld(partFile(part, "claim")); }
 
   /// @throws Error (bad_input) for a part of another study, or one that cannot be read
   StudyResults read() const;

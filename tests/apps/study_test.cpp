@@ -195,37 +195,6 @@ TEST(Study, AStudyWhoseProcessesAreKilledComputesNoFinishedVariantAgain) {
   expectSameResults(folder, "whole", "out");
 }
 
-TEST(Study, ProcessesChooseTheirPartsAndTakeOverThoseOfADeadOne) {
-  const TemporaryFolder folder;
-  const std::string file = study(folder, 150);
-  compute({"study", file, "-o", folder / "whole"});
-  const Arguments any{"study", file, "-o", folder / "out", "--part", "any", "--quiet"};
-  RunningProgram first(any), second(any);
-  bool is_killed = false;
-  std::error_code ignored;
-  for (int wait = 0; wait < 6000 && !is_killed; ++wait) {
-    usleep(5000);
-    for (const auto& entry : std::filesystem::directory_iterator(folder / "out/parts", ignored)) {
-      if (entry.path().extension() != ".claim") continue;
-      const std::string claim = readFile(entry.path());
-      const std::size_t at = claim.find("process ");
-      if (at == std::string::npos || variantsInJournals(folder / "out/parts").empty()) continue;
-      kill(std::atoi(claim.c_str() + at + 8), SIGKILL);
-      is_killed = true;
-      break;
-    }
-  }
-  EXPECT_TRUE(is_killed);
-  const int statuses[] = {first.wait().status, second.wait().status};
-  EXPECT_EQ(std::min(statuses[0], statuses[1]), 0) << "the other one computes all";
-  EXPECT_EQ(std::max(statuses[0], statuses[1]), 128 + SIGKILL);
-  for (const std::string& left : folder.files()) {
-    EXPECT_THAT(left, testing::Not(testing::AnyOf(HasSubstr(".claim"), HasSubstr(".rows"))));
-  }
-  compute({"study", file, "-o", folder / "out", "--merge"});
-  expectSameResults(folder, "whole", "out");
-}
-
 TEST(Study, KeepsVolumesOfEachVariant) {
   const TemporaryFolder folder;
   const std::string file = study(folder, 1000);
@@ -331,7 +300,7 @@ TEST(Study, RefusesInvalidOptions) {
   EXPECT_THAT(errorOf({"-o", out, "--part", "1/41"}, 2), HasSubstr("41 parts of 40 variants"));
   EXPECT_THAT(errorOf({"-o", out, "--merge"}, 3), HasSubstr("no part was computed"));
   EXPECT_THAT(errorOf({"-o", out, "--partial"}, 2), HasSubstr("--merge"));
-  EXPECT_THAT(errorOf({"-o", out, "--part", "some"}, 2), HasSubstr("or any"));
+  EXPECT_THAT(errorOf({"-o", out, "--part", "some"}, 2), HasSubstr("I/N, with I from 1 to N"));
   EXPECT_THAT(errorOf({"-o", out, "--part", "any", "--jobs", "2"}, 2), HasSubstr("--jobs"));
   EXPECT_THAT(errorOf({"-o", out, "--keep", "pictures"}, 2), HasSubstr("volumes"));
   EXPECT_THAT(errorOf({"-o", out, "--set", "emitters.nobody.power_w=1"}, 3), HasSubstr("nobody"));

@@ -56,9 +56,8 @@ PartNumber parsePart(const std::string& text) {
   const auto parts = has_slash ? std::from_chars(part.ptr + 1, end, number.parts) : part;
   if (!has_slash || parts.ec != std::errc() || parts.ptr != end || number.part < 1 ||
       number.part > number.parts || number.parts > study::kMaxParts) {
-    throw Error(ErrorCode::usage,
-                fmt::format("--part '{}' must be one of I/N, with I from 1 to N and N up to {}, or any", text,
-                            study::kMaxParts));
+    throw Error(ErrorCode::usage, fmt::format("--part '{}' must be I/N, with I from 1 to N and N up to {}",
+                                              text, study::kMaxParts));
   }
   return number;
 }
@@ -198,7 +197,7 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   study::StudyFolder folder(command.folder, loaded.spec, loaded.plan, kVersion);
   const std::optional<int> planned = folder.partsOfManifest();
   const std::size_t variants = loaded.spec.variants.count();
-  if (!command.part.empty() && command.part != "any") {
+  if (!command.part.empty()) {
     const PartNumber number = parsePart(command.part);
     checkParts(number.parts, variants);
     folder.begin(number.parts, keptFiles(command));
@@ -219,12 +218,6 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   }
   folder.begin(parts, keptFiles(command));
   if (command.worker) return work(loaded, folder, global);
-  if (command.part == "any") {
-    PartComputer computer(loaded, folder, global);
-    computeAnyParts(computer, folder, progressSink(global));
-    if (global.json) printJson({{"parts", parts}});
-    return 0;
-  }
   const FolderLock lock(folder.path(), ".study.lock");
   if (command.merge) return mergeParts(loaded, folder, command.partial, global);
 
@@ -263,17 +256,13 @@ DIR/results.csv and DIR/results.nc hold the measures of every variant, DIR/repor
 parts (DIR/parts), each written when it is complete. Finished variants of a part are kept as they come: --resume computes what
 is missing, after an interruption, a kill or a full disk. With --keep, DIR/variants has the maps or volumes of each variant.
 
-Machines that share DIR compute a study together, and --merge joins the parts:
-  --part any   each process takes parts that no other works on, until all exist; it takes over those whose process has
-               ended, or has not been heard of for 5 minutes
-  --part I/N   a scheduler says which; parts may come in any order
-The results are identical, byte by byte.
+Machines that share DIR compute a study together: each computes the parts that a scheduler assigns to it by --part I/N, in any
+order, and --merge joins them. The results are identical, byte by byte.
 
 Examples:
   emscape study scenarios/study/jammer_power.yaml --plan
   emscape study scenarios/study/jammer_power.yaml -o out --jobs 2
   emscape study scenarios/study/jammer_power.yaml -o out --keep maps
-  emscape study scenarios/study/jammer_power.yaml -o out --part any
   emscape study scenarios/study/jammer_power.yaml -o out --part 3/7
   emscape study scenarios/study/jammer_power.yaml -o out --merge
   emscape study scenarios/study/jammer_power.yaml -o out --slurm job.sh --chunks 40 --time 00:20:00)");
@@ -291,9 +280,8 @@ Examples:
       ->default_str("");
   CLI::Option* jobs = command->add_option("--jobs", options->jobs, "Processes that compute at the same time")
                           ->check(CLI::Range(1, 1024));
-  CLI::Option* part = command->add_option(
-      "--part", options->part,
-      "I/N: compute what is missing of part I of N; any: compute parts that no other process works on");
+  CLI::Option* part =
+      command->add_option("--part", options->part, "I/N: compute what is missing of part I of N");
   CLI::Option* resume = command->add_flag("--resume", options->resume, "Compute the parts that are missing");
   CLI::Option* merge = command->add_flag("--merge", options->merge, "Join the parts; all must exist");
   command->add_flag("--partial", options->partial, "With --merge: join the parts that exist")->needs(merge);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "apps/emscape/common/command.h"
 #include "apps/emscape/study/study_plan.h"
@@ -30,9 +31,5 @@ class PartComputer {
 
 /// Computes parts one after another. @param progress  over all of them
 void computeParts(PartComputer& computer, const std::vector<int>& parts, const ProgressSink& progress);
-
-/// Computes parts on which no other process works until all are complete, and waits for those that others
-/// compute. A part whose process has ended is taken over.
-void computeAnyParts(PartComputer& computer, const study::StudyFolder& folder, const ProgressSink& progress);
 
 }  // namespace emscape::app
