@@ -1,18 +1,6 @@
 #include "emscape/base/backend.h"
 
 namespace emscape {
-const char* toString(Backend backend) {
-  switch (backend) {
-    case Backend::automatic:
-      return "auto";
-    case Backend::cpu:
-      return "cpu";
-    case Backend::cuda:
-      return "cuda";
-  }
-  return "";
-}
-
 Backend parseBackend(const std::string& name) {
   for (const Backend backend : {Backend::automatic, Backend::cpu, Backend::cuda}) {
     if (name == toString(backend)) return backend;

@@ -62,12 +62,12 @@ Setting automaticSetting(std::string key, std::string unit, double min, double m
   return setting;
 }
 
-/// @param last  of the enumeration's values, which count from 0
-template <auto group, auto member, class Enum>
-Setting choiceSetting(std::string key, Enum last, std::string description) {
+/// One of the names of the member's enumeration.
+template <auto group, auto member>
+Setting choiceSetting(std::string key, std::string description) {
   Setting setting = settingRow<group, member>(std::move(key), std::move(description));
-  for (int i = 0; i <= static_cast<int>(last); ++i)
-    setting.choices.emplace_back(toString(static_cast<Enum>(i)));
+  const auto names = namesOf(std::decay_t<decltype(ModelSettings().*group.*member)>());
+  setting.choices.assign(names.begin(), names.end());
   return setting;
 }
 

@@ -112,10 +112,6 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std
   }
 }
 
-const char* toString(Severity severity) {
-  return severity == Severity::error ? "error" : "warning";
-}
-
 int validate(const std::string& file, const std::vector<scenario::Edit>& edits, const GlobalOptions& global) {
   endAtInterrupts();
   scenario::ParseResult result = scenario::parseScenario(file, edits);

@@ -27,10 +27,6 @@ const FrameOrigin& checked(const FrameOrigin& origin) {
 
 }  // namespace
 
-const char* toString(FrameKind kind) {
-  return kind == FrameKind::altitude ? "altitude" : "enu";
-}
-
 struct GeoFrame::Impl {
   explicit Impl(const FrameOrigin& frame_origin)
       : origin(checked(frame_origin)),

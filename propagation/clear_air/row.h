@@ -24,7 +24,7 @@ std::vector<Setting> clearAirSettings(const ModelLimit& time) {
           "refractivity_lapse_rate", "", kClearAirLapseRate.min, kClearAirLapseRate.max,
           "N-units/km (Delta N), through the lowest km; rays are bent by it, not by k_factor"),
       choiceSetting<group, &ClearAirSettings::zone>(
-          "zone", ClearAirZone::sea,
+          "zone",
           "radio-climatic zone of the paths; by_height: sea where the terrain is at or below mean sea level, "
           "coastal land up to 100 m high within 50 km of it"),
       numberSetting<group, &ClearAirSettings::clutter_height_m>(

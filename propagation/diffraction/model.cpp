@@ -6,7 +6,7 @@ namespace emscape::propagation {
 
 std::vector<Setting> diffractionSettings() {
   return {choiceSetting<&ModelSettings::diffraction, &DiffractionSettings::method>(
-      "method", DiffractionMethod::deygout,
+      "method",
       "delta_bullington: terrain as one edge, and the smooth earth; single_edge, deygout (three edges): "
       "terrain only")};
 }

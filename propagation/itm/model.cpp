@@ -57,7 +57,7 @@ std::vector<Setting> itmSettings() {
   };
   return {
       choiceSetting<kItm, &ItmSettings::form>(
-          "form", ItmForm::area,
+          "form",
           "point_to_point: over the terrain's profiles; area: over terrain of irregularity_m"),
       percent(numberSetting<kItm, &ItmSettings::time_percent>, "time_percent",
               "percentage of time for which the loss is not exceeded"),
@@ -65,13 +65,13 @@ std::vector<Setting> itmSettings() {
               "of locations; area form only"),
       percent(numberSetting<kItm, &ItmSettings::situation_percent>, "situation_percent",
               "of situations (confidence)"),
-      choiceSetting<kItm, &ItmSettings::service>("service", ItmService::broadcast, "kind of statistics"),
+      choiceSetting<kItm, &ItmSettings::service>("service", "kind of statistics"),
       numberSetting<kItm, &ItmSettings::irregularity_m>(
           "irregularity_m", "m", 0, 1000,
           "of the terrain, area form: 0 sea, 30 plains, 90 hills, 200 mountains"),
-      choiceSetting<kItm, &ItmSettings::transmitter_siting>("transmitter_siting", ItmSiting::very_careful,
+      choiceSetting<kItm, &ItmSettings::transmitter_siting>("transmitter_siting",
                                                             "area form"),
-      choiceSetting<kItm, &ItmSettings::receiver_siting>("receiver_siting", ItmSiting::very_careful,
+      choiceSetting<kItm, &ItmSettings::receiver_siting>("receiver_siting",
                                                          "area form"),
   };
 }

@@ -56,11 +56,6 @@ Duct ductBelow(const RefractivityProfile& profile, std::size_t layer_base, std::
 
 }  // namespace
 
-const char* toString(DuctKind kind) {
-  static constexpr const char* kNames[] = {"evaporation", "surface", "surface-based", "elevated"};
-  return kNames[static_cast<int>(kind)];
-}
-
 double Duct::modes(double frequency_hz) const {
   return 2 * phase_integral_m / wavelength_m(frequency_hz) + (kind == DuctKind::elevated ? 0.5 : 0.25);
 }

@@ -1,12 +1,16 @@
 /// Ducts of a refractivity profile: layers, strength and trapped waves.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
+#include "emscape/base/enum_names.h"
 #include "propagation/parabolic_equation/refractivity.h"
 
 namespace emscape::propagation {
+
+using emscape::toString;
 
 enum class DuctKind {
   evaporation,    ///< M decreases from the surface, mostly in the lowest tenth of the duct
@@ -14,7 +18,9 @@ enum class DuctKind {
   surface_based,  ///< M decreases in a layer aloft, to less than at the surface
   elevated        ///< M decreases in a layer aloft, and the duct does not reach the surface
 };
-const char* toString(DuctKind kind);
+constexpr auto namesOf(DuctKind) {
+  return std::array{"evaporation", "surface", "surface-based", "elevated"};
+}
 
 /// A duct extends from the top of a layer in which M decreases down to the height with the same M, or to the
 /// surface.

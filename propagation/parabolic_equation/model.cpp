@@ -231,15 +231,15 @@ std::vector<Setting> peSettings() {
       "azimuths", "", 2, 7200, "directions that are marched; the field is interpolated between them"));
   settings.back().is_whole = true;
   settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::source>(
-      "source", PeRadiator::pattern,
+      "source",
       "what is marched: isotropic serves every beam; pattern, the antenna's elevation cut with its tilt, for "
       "narrow or tilted beams that stay in elevation"));
   settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::roughness>(
-      "roughness", RoughnessModel::miller_brown, "reduction of the reflection by roughness"));
+      "roughness", "reduction of the reflection by roughness"));
   settings.push_back(numberSetting<kPe, &ParabolicEquationSettings::floor_db>(
       "floor_db", "dB", -120, -20, "lowest field of the equation over that in free space"));
   settings.push_back(choiceSetting<kPe, &ParabolicEquationSettings::cells>(
-      "cells", PeCells::point, "mean power over a voxel's height and range, or the field at its middle"));
+      "cells", "mean power over a voxel's height and range, or the field at its middle"));
   return settings;
 }
 

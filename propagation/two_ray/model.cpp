@@ -6,10 +6,10 @@ namespace emscape::propagation {
 
 std::vector<Setting> twoRaySettings() {
   return {choiceSetting<&ModelSettings::two_ray, &TwoRaySettings::sum>(
-              "sum", TwoRaySum::envelope,
+              "sum",
               "coherent: lobes and nulls; envelope: the maxima of the lobes, for voxels larger than lobes"),
           choiceSetting<&ModelSettings::two_ray, &TwoRaySettings::roughness_model>(
-              "roughness_model", RoughnessModel::miller_brown, "reduction of the reflection by roughness")};
+              "roughness_model", "reduction of the reflection by roughness")};
 }
 
 InputFaults checkTwoRay(const EmitterInputs& inputs) {

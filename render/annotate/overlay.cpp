@@ -9,14 +9,12 @@
 
 #include "emscape/base/parallel.h"
 #include "render/annotate/overlay_parts.h"
-#include "render/cast/names.h"
 #include "render/cast/rgba.h"
 #include "render/picture/bytes_over.h"
 
 namespace emscape::render {
 namespace {
 
-constexpr Named<Theme> kThemes[] = {{Theme::dark, "dark"}, {Theme::light, "light"}};
 
 // Lengths at 1200 x 900.
 constexpr double kMargin = 26;
@@ -134,7 +132,7 @@ void drawLayer(std::vector<std::uint32_t>& pixels, ImageSize size, const Draw& d
 }  // namespace
 
 Theme parseTheme(const std::string& name) {
-  return parseName(kThemes, "theme", name);
+  return parseName<Theme>("theme", name);
 }
 
 Style::Style(ImageSize size, Theme theme) {

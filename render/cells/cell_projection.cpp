@@ -7,7 +7,6 @@
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
-#include "render/cast/names.h"
 #include "render/cells/cell_order.h"
 #include "render/cells/cell_renderer_impl.h"
 #include "render/cells/projected_cells.h"
@@ -16,12 +15,6 @@
 namespace emscape::render {
 namespace {
 
-constexpr Named<CellProjection> kProjections[] = {{CellProjection::published, "published"},
-                                                  {CellProjection::exact, "exact"}};
-constexpr Named<CellSorting> kSortings[] = {{CellSorting::centroids, "centroids"},
-                                            {CellSorting::visibility, "visibility"}};
-constexpr Named<Rasterizer> kRasterizers[] = {
-    {Rasterizer::automatic, "auto"}, {Rasterizer::opengl, "opengl"}, {Rasterizer::tiles, "tiles"}};
 
 CellOrder orderOf(const CellMesh& mesh, const CameraView& camera, CellSorting sorting) {
   return sorting == CellSorting::visibility ? visibilityOrder(mesh, camera) : centroidOrder(mesh, camera);
@@ -93,25 +86,14 @@ std::vector<Real> depthsOf(const std::vector<GroundHit>& hits, const CameraView&
 
 }  // namespace
 
-const char* toString(CellProjection projection) {
-  return nameOf(kProjections, projection);
-}
-const char* toString(CellSorting sorting) {
-  return nameOf(kSortings, sorting);
-}
-
-const char* toString(Rasterizer rasterizer) {
-  return nameOf(kRasterizers, rasterizer);
-}
-
 CellProjection parseCellProjection(const std::string& name) {
-  return parseName(kProjections, "projection of cells", name);
+  return parseName<CellProjection>("projection of cells", name);
 }
 CellSorting parseCellSorting(const std::string& name) {
-  return parseName(kSortings, "order of cells", name);
+  return parseName<CellSorting>("order of cells", name);
 }
 Rasterizer parseRasterizer(const std::string& name) {
-  return parseName(kRasterizers, "rasteriser", name);
+  return parseName<Rasterizer>("rasteriser", name);
 }
 
 bool CellRenderer::projectsOnCpu() {

@@ -24,18 +24,6 @@ double epsilonFactor(Pattern pattern) {
 
 }  // namespace
 
-const char* toString(ControllerState state) {
-  switch (state) {
-    case ControllerState::busy:
-      return "BUSY";
-    case ControllerState::restore:
-      return "RESTORE";
-    case ControllerState::idle:
-      break;
-  }
-  return "IDLE";
-}
-
 FrameController::FrameController(const ControllerOptions& options)
     : options_(options), choice_(options.budget_ms, options.pattern) {}
 

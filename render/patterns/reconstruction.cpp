@@ -2,19 +2,11 @@
 
 #include "base/math/simd.h"
 #include "emscape/base/parallel.h"
-#include "render/cast/names.h"
 #include "render/patterns/interpolation.h"
 
 namespace emscape::render {
 namespace {
 
-constexpr Named<Pattern> kPatterns[] = {{Pattern::full, "full"},
-                                        {Pattern::columns, "columns"},
-                                        {Pattern::checkerboard, "checkerboard"},
-                                        {Pattern::quarter, "quarter"},
-                                        {Pattern::adaptive, "adaptive"}};
-constexpr Named<Interpolation> kInterpolations[] = {{Interpolation::float32, "float"},
-                                                    {Interpolation::bits8, "8bit"}};
 
 constexpr int kFillGrain = 16;
 
@@ -88,11 +80,8 @@ EMSCAPE_SIMD_CLONES void fillRows8(Pattern pattern, Image& image, int begin, int
 
 }  // namespace
 
-const char* toString(Pattern pattern) {
-  return nameOf(kPatterns, pattern);
-}
 Pattern parsePattern(const std::string& name) {
-  return parseName(kPatterns, "ray pattern", name);
+  return parseName<Pattern>("ray pattern", name);
 }
 
 const std::vector<Pattern>& allPatterns() {
@@ -101,11 +90,8 @@ const std::vector<Pattern>& allPatterns() {
   return patterns;
 }
 
-const char* toString(Interpolation interpolation) {
-  return nameOf(kInterpolations, interpolation);
-}
 Interpolation parseInterpolation(const std::string& name) {
-  return parseName(kInterpolations, "interpolation", name);
+  return parseName<Interpolation>("interpolation", name);
 }
 
 std::vector<Lattice> sourceLattices(Pattern pattern, ImageSize size) {

@@ -41,11 +41,6 @@ std::vector<double> taylorHarmonics(double side_lobe_db) {
 
 }  // namespace
 
-const char* toString(TaperKind kind) {
-  static constexpr const char* kNames[] = {"uniform", "taylor", "cosine"};
-  return kNames[static_cast<int>(kind)];
-}
-
 Taper::Taper(TaperKind kind, double side_lobe_db) : kind_(kind) {
   if (kind == TaperKind::taylor) {
     requireWithin("taper_side_lobe_db", side_lobe_db, -60, -15, "dB");

@@ -1,16 +1,23 @@
 /// Amplitude taper of an aperture or of a line of array elements: its pattern, width and efficiency.
 #pragma once
 
+#include "emscape/base/enum_names.h"
+
+#include <array>
 #include <vector>
 
 namespace emscape::scenario {
+
+using emscape::toString;
 
 enum class TaperKind {
   uniform,  ///< constant amplitude: first side lobe -13.26 dB
   taylor,   ///< n-bar side lobes at a chosen level, lower ones beyond
   cosine    ///< half a cosine, 0 at the edges: first side lobe -23.0 dB
 };
-const char* toString(TaperKind kind);
+constexpr auto namesOf(TaperKind) {
+  return std::array{"uniform", "taylor", "cosine"};
+}
 
 /// An amplitude distribution 1 + 2 sum(F_m cos(2 pi m x)), or cos(pi x), over an aperture x = -1/2..1/2. The
 /// pattern variable is u = (side / wavelength) * direction cosine. Immutable.

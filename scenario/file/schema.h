@@ -1,9 +1,14 @@
 /// The table of the scenario format.
 #pragma once
 
+#include <array>
+
+#include "emscape/base/enum_names.h"
 #include "document/schema.h"
 
 namespace emscape::scenario {
+
+using emscape::toString;
 
 using document::KeySpec;
 using document::ObjectSpec;
@@ -11,7 +16,9 @@ using document::ValueSpec;
 
 /// Kinds of antenna in a scenario, in the order of the table's choices.
 enum class AntennaForm { isotropic, gaussian, sinc, cosecant2, phased_array, file, cuts };
-const char* toString(AntennaForm form);
+constexpr auto namesOf(AntennaForm) {
+  return std::array{"isotropic", "gaussian", "sinc", "cosecant2", "phased_array", "file", "cuts"};
+}
 
 /// The whole file.
 const ObjectSpec& scenarioSpec();
@@ -26,7 +33,9 @@ enum class RefractivityKind {
   soundings,
   bulk
 };
-const char* toString(RefractivityKind kind);
+constexpr auto namesOf(RefractivityKind) {
+  return std::array{"standard", "linear", "evaporation_duct", "surface_duct", "trilinear", "profile", "soundings", "bulk"};
+}
 
 /// The section atmosphere.refractivity.
 const ObjectSpec& refractivitySpec();

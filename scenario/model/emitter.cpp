@@ -9,21 +9,6 @@ namespace emscape::scenario {
 
 using propagation::Polarization;
 
-const char* toString(EmitterKind kind) {
-  static constexpr const char* kNames[] = {"radar", "transmitter", "jammer"};
-  return kNames[static_cast<int>(kind)];
-}
-
-const char* toString(DetectionMethod method) {
-  static constexpr const char* kNames[] = {"exact", "albersheim", "shnidman"};
-  return kNames[static_cast<int>(method)];
-}
-
-const char* toString(BeamShapeLoss rule) {
-  static constexpr const char* kNames[] = {"none", "blake", "barton"};
-  return kNames[static_cast<int>(rule)];
-}
-
 double polarizationFactor(Polarization transmit, Polarization receive, double isolation_db) {
   // Jones vectors (horizontal, vertical) without the factor sqrt(1/2) of the mixed ones, which norm()
   // restores.

@@ -4,11 +4,6 @@
 
 namespace emscape::scenario {
 
-const char* toString(IntervalKind kind) {
-  static constexpr const char* kNames[] = {"instant", "max_hold", "mean", "cumulative"};
-  return kNames[static_cast<int>(kind)];
-}
-
 std::string describe(const IntervalSpec& interval, const Clock& clock) {
   const std::string duration =
       interval.turns ? fmt::format("{:g} turn{}", *interval.turns, *interval.turns == 1 ? "" : "s")

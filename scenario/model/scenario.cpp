@@ -104,16 +104,6 @@ void addTrack(BoxBuilder& builder, const std::vector<TrackPoint>& track) {
 
 }  // namespace
 
-const char* toString(CombineMode mode) {
-  static constexpr const char* kNames[] = {"sum", "max", "per_emitter", "per_band"};
-  return kNames[static_cast<int>(mode)];
-}
-
-const char* toString(RadarLook look) {
-  static constexpr const char* kNames[] = {"scan", "target"};
-  return kNames[static_cast<int>(look)];
-}
-
 GeoBox terrainBox(const Scenario& scenario) {
   BoxBuilder builder(scenario.region.origin.longitude_deg);
   addRegion(builder, scenario.region);

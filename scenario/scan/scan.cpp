@@ -45,11 +45,6 @@ BeamDirection dwellAt(const ScanSpec& scan, double t_s) {
 
 }  // namespace
 
-const char* toString(ScanKind kind) {
-  static constexpr const char* kNames[] = {"fixed", "rotate", "sector", "raster", "dwell_list", "track"};
-  return kNames[static_cast<int>(kind)];
-}
-
 BeamDirection beamAt(const ScanSpec& scan, double t_s) {
   switch (scan.kind) {
     case ScanKind::rotate:

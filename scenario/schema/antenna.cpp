@@ -29,19 +29,13 @@ const ObjectSpec& dwellSpec() {
 
 }  // namespace
 
-const char* toString(AntennaForm form) {
-  static constexpr const char* kNames[] = {"isotropic",    "gaussian", "sinc", "cosecant2",
-                                           "phased_array", "file",     "cuts"};
-  return kNames[static_cast<int>(form)];
-}
-
 const ObjectSpec& antennaSpec() {
   const Variants beams{"gaussian", "sinc", "cosecant2"}, apertures{"sinc", "phased_array"};
   static const ObjectSpec spec{
       "antenna",
       "pattern",
       {
-          required("pattern", choiceUpTo(AntennaForm::cuts),
+          required("pattern", choiceOf<AntennaForm>(),
                    "shape of the beam; file: MSI/PLN or a CSV grid; cuts: two CSV cuts"),
           byDefault("gain_dbi", kGain, 0.0, "at the maximum", {"isotropic"}),
           optional(
@@ -64,7 +58,7 @@ const ObjectSpec& antennaSpec() {
               "side_lobe_db", number("dB").from(-100).to(0), -40.0,
               "lower limit of the pattern, relative to the maximum; in nulls and behind the antenna too",
               {"gaussian", "sinc", "cosecant2", "phased_array"}),
-          byDefault("taper", choiceUpTo(TaperKind::cosine), toString(TaperKind::uniform),
+          byDefault("taper", choiceOf<TaperKind>(), toString(TaperKind::uniform),
                     "amplitude over the aperture, in both planes: first side lobes at -13.3 dB (uniform), "
                     "-23 dB (cosine) or taper_side_lobe_db (taylor)",
                     apertures),
@@ -92,7 +86,7 @@ const ObjectSpec& scanSpec() {
       "scan",
       "kind",
       {
-          required("kind", choiceUpTo(ScanKind::track),
+          required("kind", choiceOf<ScanKind>(),
                    "motion of the beam; track: a radar's antenna that turns onto its target"),
           byDefault(
               "azimuth_deg", kAngle, 0.0,

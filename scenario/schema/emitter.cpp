@@ -91,7 +91,7 @@ const ObjectSpec& mtiSpec() {
       "",
       {
           required(
-              "kind", choiceUpTo(MtiKind::pulse_doppler),
+              "kind", choiceOf<MtiKind>(),
               "canceller: binomial weights of alternating sign; pulse_doppler: a bank of coherent filters"),
           byDefault("pulses", kInteger.from(2).to(1024), double(Mti{}.pulses),
                     "that the filter weighs; canceller: at most 10"),
@@ -109,7 +109,7 @@ const ObjectSpec& clutterSpec() {
       "clutter",
       "",
       {
-          optional("land", choiceUpTo(LandKind::urban),
+          optional("land", choiceOf<LandKind>(),
                    "kind of land, for its constant gamma; posts above 0 m, and all others without sea_state"),
           optional("land_gamma_db", number("dB").from(-80).to(30),
                    "gamma at the radar's frequency, in place of land"),
@@ -137,13 +137,13 @@ const ObjectSpec& emitterSpec() {
           {
               required("name", kName, "on pictures and in volumes"),
               required("platform", kName, "name of its platform"),
-              required("kind", choiceUpTo(EmitterKind::jammer), "kind"),
+              required("kind", choiceOf<EmitterKind>(), "kind"),
               required("frequency_hz", kFrequency, "carrier"),
               byDefault("bandwidth_hz", number("Hz").from(0).to(1e11), Emitter{}.bandwidth_hz,
                         "of the signal; 0: narrower than any receiver"),
               required("power_w", number("W").above(0).to(1e12), "peak, at the transmitter's output"),
               byDefault("losses_db", kLoss, Emitter{}.losses_db, "transmit path, one way"),
-              byDefault("polarization", choiceUpTo(Polarization::circular_left),
+              byDefault("polarization", choiceOf<Polarization>(),
                         toString(Emitter{}.polarization), "of the transmitted wave"),
               required("antenna", object(antennaSpec()), "pattern and gain"),
               optional("scan", object(scanSpec()), "motion of the beam; by default fixed along the heading"),

@@ -86,10 +86,10 @@ const ObjectSpec& atmosphereSpec() {
           optional("rain_height_m", number("m").from(0).to(20000),
                    "upper limit of the rain, above mean sea level; by default by latitude (P.839-2), 5000 in "
                    "the tropics; P.839-4's maps differ from it by up to 1.7 km at middle latitudes"),
-          byDefault("gases", choiceUpTo(GasLosses::never), toString(Atmosphere{}.gases),
+          byDefault("gases", choiceOf<GasLosses>(), toString(Atmosphere{}.gases),
                     "attenuation by oxygen and water vapour; auto: with every model except free_space and "
                     "horizon; p528 and p452 include their own"),
-          byDefault("refraction", choiceUpTo(RefractionProfile::exponential),
+          byDefault("refraction", choiceOf<RefractionProfile>(),
                     toString(Atmosphere{}.refraction),
                     "refractivity over height, for horizon, diffraction, two_ray and the directions of all "
                     "rays: linear, by k_factor, right up to about 10 km; exponential, from "
@@ -98,7 +98,7 @@ const ObjectSpec& atmosphereSpec() {
                     "N-units; for refraction: exponential, for itm, whose rays are bent by it, not by "
                     "k_factor, and "
                     "for the troposcatter of p1812 and p452"),
-          byDefault("climate", choiceUpTo(RadioClimate::maritime_temperate_over_sea),
+          byDefault("climate", choiceOf<RadioClimate>(),
                     toString(Atmosphere{}.climate), "for itm's statistics"),
           optional("refractivity", object(refractivitySpec()),
                    "profiles of the air, for parabolic_equation; not together with k_factor, which the other "
@@ -112,7 +112,7 @@ const ObjectSpec& groundSpec() {
       "ground",
       "",
       {
-          byDefault("kind", choiceUpTo(GroundKind::concrete), toString(Ground{}.kind),
+          byDefault("kind", choiceOf<GroundKind>(), toString(Ground{}.kind),
                     "electrical constants of the ground; for sea and fresh water by frequency"),
           optional("relative_permittivity", number().from(1).to(200), "by default that of the kind"),
           optional("conductivity_s_m", number("S/m").from(0).to(100), "by default that of the kind"),

@@ -26,7 +26,7 @@ const ObjectSpec& intervalSpec() {
       "interval",
       "kind",
       {
-          required("kind", choiceUpTo(IntervalKind::cumulative),
+          required("kind", choiceOf<IntervalKind>(),
                    "what a volume shows of the time from its own on: the field at its time, the largest of "
                    "each emitter, the mean power, or the probability of at least one detection"),
           optional("seconds", number("s").above(0).to(1e7),
@@ -57,9 +57,9 @@ const ObjectSpec& outputSpec() {
       {
           byDefault("quantities", listOf(choice(quantityChoices()), 1, kMaxItems).distinct(),
                     OutputSpec{}.quantities, "one volume per quantity"),
-          byDefault("combine", choiceUpTo(CombineMode::per_band), toString(OutputSpec{}.combine),
+          byDefault("combine", choiceOf<CombineMode>(), toString(OutputSpec{}.combine),
                     "combination of the emitters"),
-          byDefault("radar_look", choiceUpTo(RadarLook::target), toString(OutputSpec{}.radar_look),
+          byDefault("radar_look", choiceOf<RadarLook>(), toString(OutputSpec{}.radar_look),
                     "for snr_db and detection_probability: beams in the direction of their scans at the "
                     "time, or towards each voxel (coverage)"),
           byDefault("floor", number().from(-1000).to(1000), OutputSpec{}.floor,

@@ -48,7 +48,7 @@ const ObjectSpec& radarReceiverSpec() {
           byDefault(
               "processing_gain_db", number("dB").from(-100).to(100), RadarReceiver{}.processing_gain_db,
               "of an echo over noise and jamming: pulse compression and coherent integration, net of losses"),
-          optional("polarization", choiceUpTo(Polarization::circular_left),
+          optional("polarization", choiceOf<Polarization>(),
                    "for jamming; by default the emitter's. target_rcs_m2 is that between the two"),
           crossPolarKey(),
           optional(
@@ -57,11 +57,11 @@ const ObjectSpec& radarReceiverSpec() {
               "and the scan's rate; 1 without a waveform or without a scan"),
           byDefault("pfa", number().above(0).to(0.5), RadarReceiver{}.pfa, "probability of false alarm"),
           byDefault("swerling", kSwerling, double(RadarReceiver{}.swerling), "case of target fluctuation"),
-          byDefault("detection", choiceUpTo(DetectionMethod::shnidman), toString(RadarReceiver{}.detection),
+          byDefault("detection", choiceOf<DetectionMethod>(), toString(RadarReceiver{}.detection),
                     "method of detection_probability: exact statistics or a formula; albersheim only with "
                     "swerling 0"),
           byDefault(
-              "beam_shape_loss", choiceUpTo(BeamShapeLoss::barton), toString(RadarReceiver{}.beam_shape_loss),
+              "beam_shape_loss", choiceOf<BeamShapeLoss>(), toString(RadarReceiver{}.beam_shape_loss),
               "of pulses received off the beam's peak, per scanned plane: blake 1.6 dB, barton 1.23 dB"),
           optional("cfar_cells", kInteger.from(1).to(10000),
                    "reference cells of a cell-averaging CFAR, for its loss; by default the noise level is "
@@ -94,7 +94,7 @@ const ObjectSpec& receiverSpec() {
                    "referred to 290 K; required with a platform and for sinr_db"),
           optional("antenna_temperature_k", kNoiseTemperature, "noise from sky and ground; by default 290"),
           antennaNoiseKey("; needs platform"),
-          optional("polarization", choiceUpTo(Polarization::circular_left),
+          optional("polarization", choiceOf<Polarization>(),
                    "by default that of each emitter"),
           crossPolarKey(),
           optional("center_frequency_hz", kFrequency,

@@ -36,12 +36,6 @@ ValueSpec spread(const ValueSpec& value) {
 
 }  // namespace
 
-const char* toString(RefractivityKind kind) {
-  static constexpr const char* kNames[] = {"standard",  "linear",  "evaporation_duct", "surface_duct",
-                                           "trilinear", "profile", "soundings",        "bulk"};
-  return kNames[static_cast<int>(kind)];
-}
-
 const ObjectSpec& refractivitySpec() {
   const Variants bulk{"bulk"};
   const ValueSpec duct_height = spread(number("m").from(0).to(60));

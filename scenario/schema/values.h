@@ -11,12 +11,11 @@
 
 namespace emscape::scenario {
 
-/// The names of an enumeration with values from 0 to `last`.
+/// One of the names of an enumeration.
 template <class Enum>
-ValueSpec choiceUpTo(Enum last) {
-  std::vector<std::string> names;
-  for (int i = 0; i <= static_cast<int>(last); ++i) names.emplace_back(toString(static_cast<Enum>(i)));
-  return document::spec::choice(std::move(names));
+ValueSpec choiceOf() {
+  const auto names = namesOf(Enum());
+  return document::spec::choice({names.begin(), names.end()});
 }
 
 inline const ValueSpec kInteger = document::spec::simple(document::ValueType::integer);

@@ -259,18 +259,6 @@ std::optional<std::string> scanWarning(const scenario::Scenario& scenario, const
 
 }  // namespace
 
-const char* toString(ExposureState state) {
-  switch (state) {
-    case ExposureState::reached:
-      return "reached";
-    case ExposureState::below:
-      return "below";
-    case ExposureState::unknown:
-      break;
-  }
-  return "unknown";
-}
-
 Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenario,
                          const scenario::TerrainPtr& terrain, const ExposureRequest& request,
                          emfield::FieldOptions options, const ProgressSink& progress) {

@@ -95,11 +95,6 @@ class ChangeProbe {
 
 }  // namespace
 
-const char* toString(ChangeClass change) {
-  static constexpr std::array<const char*, kChangeClasses> kNames{"geometry", "beam", "power", "product"};
-  return kNames[static_cast<std::size_t>(change)];
-}
-
 StudyPlan planStudy(const StudySpec& study, const scenario::TerrainPtr& terrain) {
   const VariantSet& variants = study.variants;
   const ChangeProbe probe(study, terrain);

@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/enum_names.h"
 #include "study/sweep/study_file.h"
 
 namespace emscape::study {
+
+using emscape::toString;
 
 /// The recomputation that a change of a parameter causes, the most expensive first.
 enum class ChangeClass {
@@ -17,9 +20,10 @@ enum class ChangeClass {
   power,     ///< the same with unchanged antennas: powers, losses, receivers, radar cross sections
   product    ///< only what is derived from the combination
 };
+constexpr auto namesOf(ChangeClass) {
+  return std::array{"geometry", "beam", "power", "product"};
+}
 constexpr std::size_t kChangeClasses = 4;
-/// "geometry", "beam", "power", "product".
-const char* toString(ChangeClass change);
 
 struct StudyPlan {
   std::vector<ChangeClass> classes;  ///< class of each path of the variants

@@ -54,10 +54,6 @@ std::set<std::pair<scenario::Quantity, double>> levelsOf(const StudySpec& study)
 
 }  // namespace
 
-const char* toString(KeptFiles kept) {
-  return kept == KeptFiles::maps ? "maps" : kept == KeptFiles::volumes ? "volumes" : "nothing";
-}
-
 fs::path folderOfVariant(const StudySpec& study, std::size_t variant) {
   const std::size_t count = study.variants.count();
   const std::size_t digits = std::to_string(count - 1).size();

@@ -1,20 +1,25 @@
 /// Maps or volumes of each variant of a study.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/study/maps/coverage.h"
 #include "study/sweep/study_file.h"
 
 namespace emscape::study {
 
+using emscape::toString;
+
 /// The files that a study keeps of each variant, besides its measures.
 enum class KeptFiles { nothing, maps, volumes };
-/// "nothing", "maps", "volumes".
-const char* toString(KeptFiles kept);
+constexpr auto namesOf(KeptFiles) {
+  return std::array{"nothing", "maps", "volumes"};
+}
 
 /// The folder of a variant, relative to that of the study: "variants/03_no_jammer", its number, padded to the
 /// digits of the last number, and its name with '_' in place of all but letters, digits, '.' and '-'. With

@@ -1,8 +1,10 @@
 /// The requested backend, and the backend that is used for the request on this machine.
 #pragma once
 
+#include <array>
 #include <string>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
 
@@ -13,9 +15,10 @@ enum class Backend {
   cpu,
   cuda
 };
+constexpr auto namesOf(Backend) {
+  return std::array{"auto", "cpu", "cuda"};
+}
 
-/// "auto", "cpu" or "cuda".
-const char* toString(Backend backend);
 /// @throws Error (usage) for any other name
 Backend parseBackend(const std::string& name);
 

@@ -1,14 +1,21 @@
 /// Problems of a document and of the files that it names.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/base/error.h"
 
 namespace emscape::document {
 
+using emscape::toString;
+
 enum class Severity { warning, error };
+constexpr auto namesOf(Severity) {
+  return std::array{"warning", "error"};
+}
 
 struct Problem {
   SourceLocation location;

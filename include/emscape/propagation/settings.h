@@ -2,16 +2,22 @@
 /// air that all models share. propagation/registry lists the values that each model accepts.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/base/error.h"
 
 namespace emscape::propagation {
 
+using emscape::toString;
+
 /// Direction of a wave's electric field, seen in the direction of propagation.
 enum class Polarization { horizontal, vertical, slant_45, slant_135, circular_right, circular_left };
-const char* toString(Polarization polarization);
+constexpr auto namesOf(Polarization) {
+  return std::array{"horizontal", "vertical", "slant_45", "slant_135", "circular_right", "circular_left"};
+}
 
 enum class PropagationModel {
   free_space,
@@ -24,7 +30,9 @@ enum class PropagationModel {
   p452,
   parabolic_equation
 };
-const char* toString(PropagationModel model);
+constexpr auto namesOf(PropagationModel) {
+  return std::array{"free_space", "horizon", "diffraction", "two_ray", "itm", "p528", "p1812", "p452", "parabolic_equation"};
+}
 
 /// Method of diffraction over terrain.
 enum class DiffractionMethod {
@@ -32,7 +40,9 @@ enum class DiffractionMethod {
   single_edge,       ///< only the dominant edge
   deygout            ///< three edges
 };
-const char* toString(DiffractionMethod method);
+constexpr auto namesOf(DiffractionMethod) {
+  return std::array{"delta_bullington", "single_edge", "deygout"};
+}
 
 struct DiffractionSettings {
   DiffractionMethod method = DiffractionMethod::delta_bullington;
@@ -43,14 +53,18 @@ enum class TwoRaySum {
   coherent,  ///< lobes and nulls
   envelope,  ///< maxima of the lobes: 1 + |reflected|
 };
-const char* toString(TwoRaySum sum);
+constexpr auto namesOf(TwoRaySum) {
+  return std::array{"coherent", "envelope"};
+}
 
 /// Factor of the coherent reflection for a rough surface, with z = 8 pi^2 (sigma sin psi / lambda)^2.
 enum class RoughnessModel {
   ament,         ///< exp(-z): Gaussian heights (Ament 1953)
   miller_brown,  ///< exp(-z) I0(z): sinusoidal waves of random phase (Miller, Brown, Vegh 1984); fits the sea
 };
-const char* toString(RoughnessModel model);
+constexpr auto namesOf(RoughnessModel) {
+  return std::array{"ament", "miller_brown"};
+}
 
 struct TwoRaySettings {
   TwoRaySum sum = TwoRaySum::coherent;
@@ -59,13 +73,19 @@ struct TwoRaySettings {
 
 /// ITM's terrain input.
 enum class ItmForm { point_to_point, area };
-const char* toString(ItmForm form);
+constexpr auto namesOf(ItmForm) {
+  return std::array{"point_to_point", "area"};
+}
 /// ITM's mode of variability.
 enum class ItmService { single_message, individual, mobile, broadcast };
-const char* toString(ItmService service);
+constexpr auto namesOf(ItmService) {
+  return std::array{"single_message", "individual", "mobile", "broadcast"};
+}
 /// Siting criteria of the antennas in ITM's area mode.
 enum class ItmSiting { random = 0, careful = 1, very_careful = 2 };
-const char* toString(ItmSiting siting);
+constexpr auto namesOf(ItmSiting) {
+  return std::array{"random", "careful", "very_careful"};
+}
 
 struct ItmSettings {
   ItmForm form = ItmForm::point_to_point;
@@ -88,7 +108,9 @@ enum class ClearAirZone {
   coastal_land,  ///< all of it: up to 100 m high, within 50 km of the sea
   sea            ///< all of it
 };
-const char* toString(ClearAirZone zone);
+constexpr auto namesOf(ClearAirZone) {
+  return std::array{"by_height", "inland", "coastal_land", "sea"};
+}
 
 /// Settings that p1812 and p452 have in common.
 struct ClearAirSettings {
@@ -113,14 +135,18 @@ enum class PeCells {
   mean,  ///< the mean power
   point  ///< the field at one point: lobes smaller than cells alias
 };
-const char* toString(PeCells cells);
+constexpr auto namesOf(PeCells) {
+  return std::array{"mean", "point"};
+}
 
 /// Source of the field at the start of parabolic_equation's march.
 enum class PeRadiator {
   isotropic,  ///< one march for all patterns, which are applied along the direct ray
   pattern     ///< the antenna's elevation cut, so that each ray is weighted by its own angle
 };
-const char* toString(PeRadiator radiator);
+constexpr auto namesOf(PeRadiator) {
+  return std::array{"isotropic", "pattern"};
+}
 
 /// A number of 0 is chosen by the model.
 struct ParabolicEquationSettings {
@@ -149,7 +175,9 @@ struct ModelSettings {
 };
 
 enum class GroundKind { sea, fresh_water, wet_ground, average_ground, dry_ground, concrete };
-const char* toString(GroundKind kind);
+constexpr auto namesOf(GroundKind) {
+  return std::array{"sea", "fresh_water", "wet_ground", "average_ground", "dry_ground", "concrete"};
+}
 
 /// The electrical properties of the ground.
 struct Ground {
@@ -170,7 +198,9 @@ enum class GasLosses {
   always,
   never
 };
-const char* toString(GasLosses gases);
+constexpr auto namesOf(GasLosses) {
+  return std::array{"auto", "always", "never"};
+}
 
 /// Climates of the models that have statistics.
 enum class RadioClimate {
@@ -182,14 +212,18 @@ enum class RadioClimate {
   maritime_temperate_over_land,
   maritime_temperate_over_sea
 };
-const char* toString(RadioClimate climate);
+constexpr auto namesOf(RadioClimate) {
+  return std::array{"equatorial", "continental_subtropical", "maritime_subtropical", "desert", "continental_temperate", "maritime_temperate_over_land", "maritime_temperate_over_sea"};
+}
 
 /// Refractivity over height.
 enum class RefractionProfile {
   linear,      ///< rays are straight over an earth of k_factor times its radius
   exponential  ///< the CRPL exponential reference atmosphere of sea_level_refractivity
 };
-const char* toString(RefractionProfile profile);
+constexpr auto namesOf(RefractionProfile) {
+  return std::array{"linear", "exponential"};
+}
 
 struct Refractivity;  // propagation/parabolic_equation/refractivity_field.h
 

@@ -2,9 +2,11 @@
 /// fast_geodesy.h has the approximation that is used per voxel.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <string>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/base/vec.h"
 
 namespace emscape {
@@ -20,8 +22,10 @@ struct GeodeticPosition {
 /// sea level. enu: Cartesian, tangent to the ellipsoid's normal at the origin: x east, y north, z up from the
 /// origin's height.
 enum class FrameKind { altitude, enu };
+constexpr auto namesOf(FrameKind) {
+  return std::array{"altitude", "enu"};
+}
 
-const char* toString(FrameKind kind);
 
 /// Definition of a frame, as in the metadata of files.
 struct FrameOrigin {

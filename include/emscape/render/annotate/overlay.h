@@ -1,11 +1,13 @@
 /// The finished picture: the cast image on a background, with box, axes, markers, legend, time and compass.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/render/picture/device_picture.h"
 #include "emscape/render/picture/image.h"
@@ -35,6 +37,9 @@ struct Track {
 };
 
 enum class Theme { dark, light };
+constexpr auto namesOf(Theme) {
+  return std::array{"dark", "light"};
+}
 /// "dark" or "light". @throws Error (usage)
 Theme parseTheme(const std::string& name);
 

@@ -1,10 +1,12 @@
 /// Renderer of fields on tetrahedral meshes.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <memory>
 #include <string>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/progress.h"
 #include "emscape/render/picture/image.h"
@@ -15,6 +17,8 @@
 #include "emscape/volume/mesh.h"
 
 namespace emscape::render {
+
+using emscape::toString;
 
 /// Number of reference steps across a mesh's bounding box along each axis.
 constexpr int kReferenceSteps = 100;
@@ -40,6 +44,9 @@ enum class CellProjection {
   published,  ///< from interpolated distances (Moreland 2004): sometimes a wrong face near the eye
   exact
 };
+constexpr auto namesOf(CellProjection) {
+  return std::array{"published", "exact"};
+}
 /// Order in which cells are projected, the farthest first.
 enum class CellSorting {
   centroids,  ///< by the distances of centroids: wrong for some neighbours
@@ -47,6 +54,9 @@ enum class CellSorting {
   /// centroids across gaps of non-convex meshes
   visibility
 };
+constexpr auto namesOf(CellSorting) {
+  return std::array{"centroids", "visibility"};
+}
 /// Rasteriser of projected cells.
 enum class Rasterizer {
   automatic,  ///< tiles with CUDA or if OpenGL has no GPU, else opengl; the published form in perspective
@@ -54,9 +64,9 @@ enum class Rasterizer {
   opengl,     ///< without a window
   tiles       ///< tiles of pixels, computed by the renderer's backend; in perspective only the exact form
 };
-const char* toString(CellProjection projection);
-const char* toString(CellSorting sorting);
-const char* toString(Rasterizer rasterizer);
+constexpr auto namesOf(Rasterizer) {
+  return std::array{"auto", "opengl", "tiles"};
+}
 /// "published" or "exact". @throws Error (usage)
 CellProjection parseCellProjection(const std::string& name);
 /// "centroids" or "visibility". @throws Error (usage)

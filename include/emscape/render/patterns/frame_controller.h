@@ -1,14 +1,18 @@
 /// The states busy, restore and idle: when pixels are interpolated, and when the picture is made exact.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/render/patterns/pattern_choice.h"
 #include "emscape/render/patterns/running_median.h"
 #include "emscape/render/scene/renderer.h"
 
 namespace emscape::render {
+
+using emscape::toString;
 
 /// Causes of a change of the picture.
 enum class SceneEvent { transfer_function, view, field, resized, mode };
@@ -18,8 +22,9 @@ enum class ControllerState {
   restore,  ///< the scene has stopped changing; the missing pixels are being cast
   idle      ///< the picture is exact; nothing is drawn
 };
-/// "BUSY", "RESTORE", "IDLE".
-const char* toString(ControllerState state);
+constexpr auto namesOf(ControllerState) {
+  return std::array{"BUSY", "RESTORE", "IDLE"};
+}
 
 struct ControllerOptions {
   std::optional<Pattern> pattern;  ///< of busy frames; none: chosen to meet the budget (PatternChoice)

@@ -1,14 +1,21 @@
 /// The patterns of pixel interpolation: which pixels of a frame are cast.
 #pragma once
 
+#include "emscape/base/enum_names.h"
+
+#include <array>
 #include <string>
 #include <vector>
 
 namespace emscape::render {
 
+using emscape::toString;
+
 /// Cast pixels: all; x even; (x + y) even; x and y even; those that cannot be predicted (Pattern::adaptive).
 enum class Pattern { full, columns, checkerboard, quarter, adaptive };
-const char* toString(Pattern pattern);
+constexpr auto namesOf(Pattern) {
+  return std::array{"full", "columns", "checkerboard", "quarter", "adaptive"};
+}
 /// @throws Error (usage) that lists the names
 Pattern parsePattern(const std::string& name);
 /// All patterns, by falling number of rays; adaptive, whose rays depend on the picture, is the last.
@@ -17,7 +24,9 @@ const std::vector<Pattern>& allPatterns();
 /// Precision of interpolated pixels: premultiplied float, or 8-bit levels as in Feng et al. 2016 (for its
 /// tables).
 enum class Interpolation { float32, bits8 };
-const char* toString(Interpolation interpolation);
+constexpr auto namesOf(Interpolation) {
+  return std::array{"float", "8bit"};
+}
 /// "float" or "8bit". @throws Error (usage)
 Interpolation parseInterpolation(const std::string& name);
 

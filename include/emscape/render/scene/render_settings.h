@@ -1,17 +1,23 @@
 /// Settings of volume rendering.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <string>
 #include <vector>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/render/scene/cut_plane.h"
 
 namespace emscape::render {
 
+using emscape::toString;
+
 /// Method that combines the samples of a ray into a pixel.
 enum class CompositingMode { dvr, mida, mip, iso };
-const char* toString(CompositingMode mode);
+constexpr auto namesOf(CompositingMode) {
+  return std::array{"dvr", "mida", "mip", "iso"};
+}
 /// @throws Error (usage) that lists the names
 CompositingMode parseCompositingMode(const std::string& name);
 

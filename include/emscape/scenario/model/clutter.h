@@ -1,9 +1,14 @@
 /// Clutter of a radar: the echoes of land, sea and rain, and the Doppler filter that suppresses them.
 #pragma once
 
+#include "emscape/base/enum_names.h"
+
+#include <array>
 #include <optional>
 
 namespace emscape::scenario {
+
+using emscape::toString;
 
 /// Kind of land, by its gamma at 10 GHz.
 /// @see M. W. Long, Radar Reflectivity of Land and Sea, 3rd ed. 2001; F. E. Nathanson, Radar Design
@@ -16,7 +21,9 @@ enum class LandKind {
   mountains,     ///< 0 dB
   urban          ///< 0 dB
 };
-const char* toString(LandKind kind);
+constexpr auto namesOf(LandKind) {
+  return std::array{"flatland", "farmland", "woods", "wooded_hills", "mountains", "urban"};
+}
 
 /// Gamma (dB) of a kind of land: its value at 10 GHz + 5 log10(f / 10 GHz).
 double landGammaDb(LandKind kind, double frequency_hz);
@@ -26,7 +33,9 @@ enum class MtiKind {
   canceller,     ///< delay-line canceller: binomial weights of alternating sign
   pulse_doppler  ///< weighted coherent sum of pulses, in the Doppler filter of the target
 };
-const char* toString(MtiKind kind);
+constexpr auto namesOf(MtiKind) {
+  return std::array{"canceller", "pulse_doppler"};
+}
 
 struct Mti {
   MtiKind kind = MtiKind::canceller;

@@ -1,11 +1,13 @@
 /// Emitters.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/base/error.h"
 #include "emscape/propagation/settings.h"
 #include "emscape/scenario/antenna/antenna.h"
@@ -15,9 +17,13 @@
 
 namespace emscape::scenario {
 
-enum class EmitterKind { radar, transmitter, jammer };
+using emscape::toString;
 
-const char* toString(EmitterKind kind);
+enum class EmitterKind { radar, transmitter, jammer };
+constexpr auto namesOf(EmitterKind) {
+  return std::array{"radar", "transmitter", "jammer"};
+}
+
 
 /// Default cross-polarisation isolation (dB) of antennas: a typical value off the axis.
 /// @see D. L. Adamy, EW 101, 2001, chapter 3: about 25 dB between orthogonal linear, and between circular
@@ -35,11 +41,15 @@ enum class DetectionMethod {
   albersheim,  ///< Albersheim's formula: steady targets only
   shnidman     ///< Shnidman's formula
 };
-const char* toString(DetectionMethod method);
+constexpr auto namesOf(DetectionMethod) {
+  return std::array{"exact", "albersheim", "shnidman"};
+}
 
 /// Method for the beam-shape loss of a scanning antenna: pulses received off the beam's peak.
 enum class BeamShapeLoss { none, blake, barton };
-const char* toString(BeamShapeLoss rule);
+constexpr auto namesOf(BeamShapeLoss) {
+  return std::array{"none", "blake", "barton"};
+}
 
 /// A radar's own receiver, for signal-to-noise ratio and detection.
 struct RadarReceiver {

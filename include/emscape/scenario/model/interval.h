@@ -1,12 +1,16 @@
 /// Interval of time that a volume represents, from its own time on.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/scenario/model/clock.h"
 
 namespace emscape::scenario {
+
+using emscape::toString;
 
 enum class IntervalKind {
   instant,    ///< the field at the volume's time
@@ -14,7 +18,9 @@ enum class IntervalKind {
   mean,       ///< the mean power in the interval
   cumulative  ///< the probability of at least one detection in the interval
 };
-const char* toString(IntervalKind kind);
+constexpr auto namesOf(IntervalKind) {
+  return std::array{"instant", "max_hold", "mean", "cumulative"};
+}
 
 /// An interval that begins at the volume's time. At most one of seconds and turns is given; none: the step of
 /// the clock.

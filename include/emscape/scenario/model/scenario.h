@@ -1,12 +1,14 @@
 /// A scenario: the objects on the battlefield, their positions and times.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/propagation/settings.h"
 #include "emscape/scenario/model/clock.h"
@@ -19,6 +21,8 @@
 #include "emscape/scenario/terrain/terrain.h"
 
 namespace emscape::scenario {
+
+using emscape::toString;
 
 /// The box of the field. altitude: x and y centred on the origin, z upwards from the origin's height above
 /// mean sea level. enu: the same, with z upwards from the tangent point.
@@ -36,14 +40,18 @@ struct Band {
 };
 
 enum class CombineMode { sum, max, per_emitter, per_band };
-const char* toString(CombineMode mode);
+constexpr auto namesOf(CombineMode) {
+  return std::array{"sum", "max", "per_emitter", "per_band"};
+}
 
 /// Direction of a radar's beam for the probability of detection and the signal-to-noise ratio.
 enum class RadarLook {
   scan,   ///< the direction of the radar's scan at the time
   target  ///< towards each voxel, as closely as the scan permits
 };
-const char* toString(RadarLook look);
+constexpr auto namesOf(RadarLook) {
+  return std::array{"scan", "target"};
+}
 
 struct OutputSpec {
   std::vector<std::string> quantities{"power_density_dbwm2"};  ///< names of the quantity table

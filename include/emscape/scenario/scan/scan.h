@@ -1,14 +1,21 @@
 /// Motion of an antenna's beam.
 #pragma once
 
+#include "emscape/base/enum_names.h"
+
+#include <array>
 #include <vector>
 
 namespace emscape::scenario {
 
+using emscape::toString;
+
 /// fixed: the beam does not move. track: a radar whose antenna turns to its target in any direction; for
 /// quantities without a target (power density, radar_look: scan) it points as if fixed.
 enum class ScanKind { fixed, rotate, sector, raster, dwell_list, track };
-const char* toString(ScanKind kind);
+constexpr auto namesOf(ScanKind) {
+  return std::array{"fixed", "rotate", "sector", "raster", "dwell_list", "track"};
+}
 
 /// One position of an electronically steered beam, held for duration_s.
 struct Dwell {

@@ -1,11 +1,13 @@
 /// Exposure of a platform to the field along its track, by time and emitter.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "emscape/base/enum_names.h"
 #include "emscape/base/progress.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/render/picture/image.h"
@@ -13,6 +15,8 @@
 #include "emscape/scenario/model/scenario.h"
 
 namespace emscape::study {
+
+using emscape::toString;
 
 struct ExposureRequest {
   int platform = 0;             ///< index into Scenario::platforms
@@ -30,7 +34,9 @@ struct ExposureRequest {
 /// Whether the value of all emitters together is at or above the threshold; unknown if the path from any
 /// emitter to the platform crosses missing terrain.
 enum class ExposureState { reached, below, unknown };
-const char* toString(ExposureState state);
+constexpr auto namesOf(ExposureState) {
+  return std::array{"reached", "below", "unknown"};
+}
 
 struct ExposureRow {
   double time_s = 0, latitude_deg = 0, longitude_deg = 0;
