@@ -19,7 +19,7 @@ struct ExcessColumn {
   int count = 0;
   /// True: models evaluate every height. False: they may interpolate between some.
   bool every_height = false;
-  std::size_t place = 0;  ///< index of the column in its grid
+  std::size_t position = 0;  ///< index of the column in its grid
 
   /// The tolerance of an interpolation between heights; negative if every height is evaluated.
   EMSCAPE_HD float tolerance_db(float of_model_db) const { return every_height ? -1.0f : of_model_db; }

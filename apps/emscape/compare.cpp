@@ -49,7 +49,7 @@ void writeVolume(const CompareCommand& command, const study::ComparedScenario& a
   options.allow_missing_terrain = true;
   const auto solved = [&](const study::ComparedScenario& of) {
     auto own = std::make_shared<scenario::Scenario>(*of.scenario);
-    own->output.radar_look = scenario::RadarLook::target;
+    own->output.radar_look = scenario::RadarAim::target;
     if (own->output.combine != scenario::CombineMode::max) own->output.combine = scenario::CombineMode::sum;
     own->region = a.scenario->region;
     emfield::FieldSolver solver(own, of.terrain, options);

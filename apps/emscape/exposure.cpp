@@ -42,7 +42,7 @@ study::ExposureRequest requestOf(const ExposureCommand& command, const scenario:
   request.threshold = thresholdOf(command.threshold, request.quantity);
   request.times_s = command.times.empty() ? scenario::timesOf(scenario.clock)
                                           : scenario::parseTimes(command.times, scenario.clock);
-  if (command.look == "scan") request.look = scenario::RadarLook::scan;
+  if (command.look == "scan") request.look = scenario::RadarAim::scan;
   if (command.target.empty()) {
     // The platform's first target, if it carries one.
     const auto found =

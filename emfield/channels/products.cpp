@@ -37,7 +37,7 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Sce
   }
   const bool looks_at_scan = quantity == Quantity::snr_db || isAgainstClutter(quantity);
   const bool is_instant = output.interval.kind == scenario::IntervalKind::instant;
-  task.look = lookOf(radar, looks_at_scan && is_instant ? output.radar_look : scenario::RadarLook::target);
+  task.look = lookOf(radar, looks_at_scan && is_instant ? output.radar_look : scenario::RadarAim::target);
   task.is_cumulative = output.interval.kind == scenario::IntervalKind::cumulative;
   const double processing = dbToRatio(radar.receiver.processing_gain_db);
   switch (quantity) {
@@ -217,7 +217,7 @@ ChannelPlan channelPlan(const Channel& channel, const scenario::Scenario& scenar
   // The combine stage computes the power density for the beam's direction, but not for other looks, and no
   // jamming.
   const bool is_plain = channel.quantity == Quantity::snr_db &&
-                        scenario.output.radar_look == scenario::RadarLook::scan &&
+                        scenario.output.radar_look == scenario::RadarAim::scan &&
                         scenario.output.interval.kind == scenario::IntervalKind::instant;
   if (!needsRadar(channel.quantity) || is_plain) return plan;
   for (int e : channel.emitters) {

@@ -5,7 +5,7 @@
 
 #include "base/geodesy/geoid_grid.h"
 #include "emfield/columns/foot_inverse.h"
-#include "emfield/columns/place_columns.h"
+#include "emfield/columns/position_columns.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
@@ -92,32 +92,34 @@ void setOutlineOfGrid(GridColumns& columns) {
 }
 
 /// Positions that a thread processes together. Their sums are added in order, whichever thread computes them.
-constexpr int kPlacesPart = 4096;
+constexpr int kPositionsPart = 4096;
 
 /// Calls visit(n, first, end) for all parts.
 template <class Visit>
-void visitParts(int places, const Visit& visit) {
-  parallelFor((places + kPlacesPart - 1) / kPlacesPart, 1, [&](int begin, int end) {
-    for (int n = begin; n < end; ++n) visit(n, n * kPlacesPart, std::min((n + 1) * kPlacesPart, places));
+void visitParts(int positions, const Visit& visit) {
+  parallelFor((positions + kPositionsPart - 1) / kPositionsPart, 1, [&](int begin, int end) {
+    for (int n = begin; n < end; ++n)
+      visit(n, n * kPositionsPart, std::min((n + 1) * kPositionsPart, positions));
   });
 }
 
 /// Sets a circle around all positions with ground.
-void setOutlineOfPlaces(const Surface& surface, const std::vector<PlacesPart>& parts, GridColumns& columns) {
-  const PlaceColumn middle = setMiddle(parts, !columns.ground_msl_m.empty(), columns);
-  const auto places = static_cast<int>(columns.of_surface.size());
+void setOutlineOfPositions(const Surface& surface, const std::vector<PositionsPart>& parts,
+                           GridColumns& columns) {
+  const PositionColumn middle = setMiddle(parts, !columns.ground_msl_m.empty(), columns);
+  const auto positions = static_cast<int>(columns.of_surface.size());
   const auto distance2_m2 = [&](int c) {
     const bool is_hole = !columns.ground_msl_m.empty() && std::isnan(columns.ground_msl_m[c]);
-    if (is_hole || isLeftOut(surface.places[c])) return 0.0;
+    if (is_hole || isLeftOut(surface.positions[c])) return 0.0;
     const Vec3d chord = columns.of_surface[c].foot_ecef_m - middle.foot_ecef_m;
     return dot(chord, chord);
   };
   std::vector<double> farthest2_of_parts_m2(parts.size());
-  visitParts(places, [&](int n, int first, int end) {
+  visitParts(positions, [&](int n, int first, int end) {
     double farthest2_m2 = 0;
     for (int c = first; c < end; ++c) {
       farthest2_m2 = std::max(farthest2_m2, distance2_m2(c));
-      if (isLeftOut(surface.places[c])) columns.of_surface[c] = middle;
+      if (isLeftOut(surface.positions[c])) columns.of_surface[c] = middle;
     }
     farthest2_of_parts_m2[n] = farthest2_m2;
   });
@@ -127,7 +129,7 @@ void setOutlineOfPlaces(const Surface& surface, const std::vector<PlacesPart>& p
       kNearlyFarthest2 * *std::max_element(farthest2_of_parts_m2.begin(), farthest2_of_parts_m2.end());
   const FastGeodesy geodesy = geodesyOf(middle);
   std::vector<double> beyond_of_parts_m(parts.size());
-  visitParts(places, [&](int n, int first, int end) {
+  visitParts(positions, [&](int n, int first, int end) {
     if (farthest2_of_parts_m2[n] < near2_m2) return;
     for (int c = first; c < end; ++c) {
       if (distance2_m2(c) < near2_m2) continue;
@@ -208,9 +210,9 @@ GridColumns makeGridColumns(const volume::Grid& grid, const scenario::Terrain* t
   return result;
 }
 
-PlaceTask placeTask(const Surface& surface, const scenario::Terrain* terrain) {
-  PlaceTask task;
-  task.places = surface.places.data();
+PositionTask positionTask(const Surface& surface, const scenario::Terrain* terrain) {
+  PositionTask task;
+  task.positions = surface.positions.data();
   task.offsets_m = surface.offsets_m.empty() ? nullptr : surface.offsets_m.data();
   task.heights_m = surface.heights_m.data();
   task.layers = static_cast<int>(surface.heights_m.size());
@@ -228,46 +230,46 @@ GridColumns emptyColumns(const Surface& surface) {
   return columns;
 }
 
-PlaceColumn setMiddle(const std::vector<PlacesPart>& parts, bool has_terrain, GridColumns& columns) {
-  PlacesPart all;
-  for (const PlacesPart& part : parts) all.add(part);
+PositionColumn setMiddle(const std::vector<PositionsPart>& parts, bool has_terrain, GridColumns& columns) {
+  PositionsPart all;
+  for (const PositionsPart& part : parts) all.add(part);
   if (length(all.feet) == 0) {
     throw Error(ErrorCode::bad_input,
                 has_terrain ? "the terrain is missing below all places to compute the field over"
-                            : "there is no place to compute the field over");
+                            : "no positions at which to compute the field");
   }
   columns.lowest_msl_m = all.lowest_msl_m;
   columns.highest_msl_m = all.highest_msl_m;
   columns.hole_columns = all.holes;
   columns.first_hole = all.first_hole;
   const GeodeticPosition middle = fromEcef(all.feet * (kWgs84SemiMajor_m / length(all.feet)));
-  const PlaceColumn column{ellipsoidPoint_m(degToRad(middle.latitude_deg), degToRad(middle.longitude_deg)),
-                           GeoidCells{egm96Grid().view()}(middle.latitude_deg, middle.longitude_deg), 0};
+  const PositionColumn column{ellipsoidPoint_m(degToRad(middle.latitude_deg), degToRad(middle.longitude_deg)),
+                              GeoidCells{egm96Grid().view()}(middle.latitude_deg, middle.longitude_deg), 0};
   columns.outline.push_back(gridColumn(column));
   return column;
 }
 
-FastGeodesy geodesyOf(const PlaceColumn& middle) {
+FastGeodesy geodesyOf(const PositionColumn& middle) {
   const GeodeticPosition position = fromEcef(middle.foot_ecef_m);
   return fastGeodesy(position.latitude_deg, position.longitude_deg);
 }
 
 GridColumns makeGridColumns(const Surface& surface, const scenario::Terrain* terrain) {
   GridColumns result = emptyColumns(surface);
-  const auto places = static_cast<int>(surface.places.size());
-  result.of_surface.resize(surface.places.size());
-  if (terrain != nullptr) result.ground_msl_m.resize(surface.places.size());
-  result.first_valid_k.resize(surface.places.size());
-  PlaceTask task = placeTask(surface, terrain);
+  const auto positions = static_cast<int>(surface.positions.size());
+  result.of_surface.resize(surface.positions.size());
+  if (terrain != nullptr) result.ground_msl_m.resize(surface.positions.size());
+  result.first_valid_k.resize(surface.positions.size());
+  PositionTask task = positionTask(surface, terrain);
   task.columns = result.of_surface.data();
   task.ground_msl_m = result.ground_msl_m.data();
   task.first_valid_k = result.first_valid_k.data();
-  std::vector<PlacesPart> parts((surface.places.size() + kPlacesPart - 1) / kPlacesPart);
-  visitParts(places, [&](int n, int first, int end) {
+  std::vector<PositionsPart> parts((surface.positions.size() + kPositionsPart - 1) / kPositionsPart);
+  visitParts(positions, [&](int n, int first, int end) {
     NearGeoid undulation_m;
     for (int c = first; c < end; ++c) task(c, undulation_m, parts[n]);
   });
-  setOutlineOfPlaces(surface, parts, result);
+  setOutlineOfPositions(surface, parts, result);
   return result;
 }
 

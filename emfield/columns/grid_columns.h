@@ -33,15 +33,15 @@ EMSCAPE_HD inline double heightMsl_m(const GridColumn& column, double t_m) {
 }
 
 /// A vertical column above a position of a surface, in a third of the memory.
-struct PlaceColumn {
+struct PositionColumn {
   Vec3d foot_ecef_m;                    ///< point of the ellipsoid below
   double base_ellipsoid_m, base_msl_m;  ///< heights of t = 0
 };
 
-EMSCAPE_HD inline double heightMsl_m(const PlaceColumn& column, double t_m) {
+EMSCAPE_HD inline double heightMsl_m(const PositionColumn& column, double t_m) {
   return column.base_msl_m + t_m;
 }
-EMSCAPE_HD inline GridColumn gridColumn(const PlaceColumn& column) {
+EMSCAPE_HD inline GridColumn gridColumn(const PositionColumn& column) {
   const Vec3d& foot = column.foot_ecef_m;
   const Vec3d up = normalized(Vec3d{foot.x, foot.y, foot.z / (1 - kWgs84EccentricitySquared)});
   return {foot + up * column.base_ellipsoid_m, up, foot, {0, 0, 0}, {column.base_msl_m, 1, 0}};
@@ -50,7 +50,7 @@ EMSCAPE_HD inline GridColumn gridColumn(const PlaceColumn& column) {
 /// Columns as plain data: one of the two kinds.
 struct ColumnsView {
   const GridColumn* of_grid = nullptr;
-  const PlaceColumn* of_surface = nullptr;
+  const PositionColumn* of_surface = nullptr;
 
   EMSCAPE_HD GridColumn operator[](std::size_t c) const {
     return of_grid != nullptr ? of_grid[c] : gridColumn(of_surface[c]);
@@ -58,7 +58,7 @@ struct ColumnsView {
 };
 
 namespace cuda {
-struct DevicePlaces;  // emfield/cuda/device_places.h
+struct DevicePositions;  // emfield/cuda/device_positions.h
 }
 
 /// All columns of a grid, x fastest. Immutable once made.
@@ -72,10 +72,10 @@ struct GridColumns {
   double beyond_outline_m = 0;
   double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;  ///< of the columns' points
   std::vector<GridColumn> of_grid;                            ///< or, of a surface:
-  UnsetVector<PlaceColumn> of_surface;  ///< positions that are left out have the column of the outline
+  UnsetVector<PositionColumn> of_surface;  ///< positions that are left out have the column of the outline
   /// Or, of a surface, its columns and ground in the memory of the GPU; of_surface and ground_msl_m are
   /// empty.
-  std::shared_ptr<const cuda::DevicePlaces> on_device;
+  std::shared_ptr<const cuda::DevicePositions> on_device;
   std::vector<float> t_m;           ///< z of each layer
   std::vector<float> ground_msl_m;  ///< ground below each column (m); NaN over holes; empty without terrain
   std::vector<std::uint16_t>
@@ -90,7 +90,9 @@ struct GridColumns {
   }
   std::size_t count() const { return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y); }
   /// Of the columns, in host or device memory.
-  std::size_t bytes() const { return count() * (of_grid.empty() ? sizeof(PlaceColumn) : sizeof(GridColumn)); }
+  std::size_t bytes() const {
+    return count() * (of_grid.empty() ? sizeof(PositionColumn) : sizeof(GridColumn));
+  }
   /// z of the middle between the lowest and the highest layer.
   double middle_m() const { return 0.5 * (t_m.front() + t_m.back()); }
 };

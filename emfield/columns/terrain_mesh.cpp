@@ -51,7 +51,7 @@ constexpr std::size_t kPointBytes = sizeof(Vec3d) + sizeof(std::size_t) + sizeof
 
 /// A column of the region: its position, and its foot in the frame.
 struct Foot {
-  Surface::Place place;
+  Surface::Position position;
   double ground_msl_m = 0;  ///< NaN over a hole
   Vec3d position_m;
 };
@@ -59,7 +59,7 @@ struct Foot {
 Vec3d localOf(const GeoFrame& frame, const Foot& foot, double height_m) {
   const double msl_m = foot.ground_msl_m + height_m;
   if (frame.origin().kind == FrameKind::altitude) return {foot.position_m.x, foot.position_m.y, msl_m};
-  const auto& [latitude_deg, longitude_deg] = foot.place;
+  const auto& [latitude_deg, longitude_deg] = foot.position;
   return frame.toLocal({latitude_deg, longitude_deg, msl_m + geoidUndulation_m(latitude_deg, longitude_deg)});
 }
 
@@ -70,7 +70,7 @@ Foot footOf(const GeoFrame& frame, const scenario::Terrain* terrain, double x_m,
   const int rounds = frame.origin().kind == FrameKind::enu ? 2 : 1;
   for (int round = 0; round < rounds; ++round) {
     const GeodeticPosition at = frame.toGeodetic({x_m, y_m, foot.position_m.z});
-    foot.place = {at.latitude_deg, at.longitude_deg};
+    foot.position = {at.latitude_deg, at.longitude_deg};
     foot.ground_msl_m = terrain != nullptr ? terrain->heightMsl_m(at.latitude_deg, at.longitude_deg) : 0.0;
     if (std::isnan(foot.ground_msl_m)) return foot;
     foot.position_m.z = localOf(frame, foot, 0).z;
@@ -183,7 +183,7 @@ TerrainMesh::TerrainMesh(const scenario::Scenario& scenario, const scenario::Ter
   surface->width = lattice.x;
   surface->height = lattice.y;
   surface->heights_m = layerHeights_m(spec, grid.upper_m().z - lowest_m);
-  for (const Foot& foot : feet) surface->places.push_back(foot.place);
+  for (const Foot& foot : feet) surface->positions.push_back(foot.position);
 
   auto mesh = std::make_shared<volume::TetrahedralMesh>();
   mesh->frame = grid.frame;
@@ -215,9 +215,9 @@ TerrainMesh::TerrainMesh(const scenario::Scenario& scenario, const scenario::Ter
   mesh->points_m.resize(lattice_.size());
   parallelFor(static_cast<int>(lattice_.size()), 4096, [&](int begin, int end) {
     for (int n = begin; n < end; ++n) {
-      const std::size_t place = lattice_[static_cast<std::size_t>(n)];
+      const std::size_t position = lattice_[static_cast<std::size_t>(n)];
       mesh->points_m[static_cast<std::size_t>(n)] =
-          localOf(frame, feet[place % feet.size()], surface->heights_m[place / feet.size()]);
+          localOf(frame, feet[position % feet.size()], surface->heights_m[position / feet.size()]);
     }
   });
   surface_ = std::move(surface);
@@ -226,7 +226,7 @@ TerrainMesh::TerrainMesh(const scenario::Scenario& scenario, const scenario::Ter
 
 volume::MeshField TerrainMesh::field(const volume::DenseVolume& volume) const {
   volume::MeshField field{mesh_, volume.info, std::vector<float>(lattice_.size())};
-  const std::size_t columns = surface_->places.size();
+  const std::size_t columns = surface_->positions.size();
   for (std::size_t n = 0; n < lattice_.size(); ++n) {
     const std::size_t voxel = lattice_[n];
     const bool masked =

@@ -6,9 +6,9 @@
 
 #include "base/memory.h"
 #include "base/stopwatch.h"
-#include "emfield/cpu/kept_looks.h"
+#include "emfield/cpu/look_weight_cache.h"
 #include "emfield/solver/field_engine.h"
-#include "emfield/solver/kept_power.h"
+#include "emfield/solver/power_cache.h"
 #include "emscape/base/parallel.h"
 
 namespace emscape::emfield {
@@ -61,8 +61,8 @@ class CpuEngine : public FieldEngine {
   std::vector<int> first_row_k_;
   std::optional<TerrainBounds> bounds_;  // of surfaces over terrain
   std::vector<EmitterGeometry> slots_;
-  KeptPower<std::vector<float>> kept_power_;  // except the last slot, which emitters share
-  KeptLooks kept_looks_;                      // the same
+  PowerCache<std::vector<float>> kept_power_;  // except the last slot, which emitters share
+  LookWeightCache kept_looks_;                 // the same
   std::vector<ChannelBuffers> buffers_;
   StageTimes times_;
 };

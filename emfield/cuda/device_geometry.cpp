@@ -6,7 +6,7 @@
 
 #include "base/cuda/staged_copy.h"
 #include "emfield/columns/column_geometry.h"
-#include "emfield/cuda/device_places.h"
+#include "emfield/cuda/device_positions.h"
 #include "emscape/base/parallel.h"
 #include "propagation/diffraction/model.h"
 #include "propagation/parabolic_equation/field_march.h"
@@ -45,11 +45,11 @@ DeviceGeometry::DeviceGeometry(const FieldSetup& setup, int slots) : setup_(setu
   excess_grid_ = excessGrid(columns, setup.terrain.get());
   excess_grid_.t_m = t_m_.data();
   if (columns.on_device != nullptr) {
-    const DevicePlaces& places = *columns.on_device;
-    terrain_ = places.terrain;
-    columns_.columns.of_surface = places.columns.data();
-    excess_grid_.first_valid_k = places.first_valid_k.data();
-    excess_grid_.ground_msl_m = places.ground_msl_m.data();
+    const DevicePositions& positions = *columns.on_device;
+    terrain_ = positions.terrain;
+    columns_.columns.of_surface = positions.columns.data();
+    excess_grid_.first_valid_k = positions.first_valid_k.data();
+    excess_grid_.ground_msl_m = positions.ground_msl_m.data();
   } else {
     copyColumns();
   }
@@ -63,9 +63,9 @@ void DeviceGeometry::copyColumns() {
   if (setup_.terrain != nullptr)
     terrain_ = std::make_shared<const DeviceTerrain>(setup_.terrain->view(), stream);
   uploadStaged(grid_columns_, columns.of_grid.data(), columns.of_grid.size(), stream);
-  uploadStaged(place_columns_, columns.of_surface.data(), columns.of_surface.size(), stream);
+  uploadStaged(position_columns_, columns.of_surface.data(), columns.of_surface.size(), stream);
   uploadStaged(first_valid_k_, columns.first_valid_k.data(), columns.first_valid_k.size(), stream);
-  columns_.columns = {grid_columns_.data(), place_columns_.data()};
+  columns_.columns = {grid_columns_.data(), position_columns_.data()};
   excess_grid_.first_valid_k = first_valid_k_.data();
   if (excess_grid_.ground_msl_m != nullptr) {
     uploadStaged(ground_msl_m_, columns.ground_msl_m.data(), columns.ground_msl_m.size(), stream);
@@ -377,7 +377,7 @@ ScratchMemory DeviceGeometry::scratch() {
 
 std::size_t DeviceGeometry::bytes() const {
   const auto bytesOf = [](const auto& buffer) { return buffer.size() * sizeof(*buffer.data()); };
-  std::size_t bytes = bytesOf(grid_columns_) + bytesOf(place_columns_) + bytesOf(t_m_) +
+  std::size_t bytes = bytesOf(grid_columns_) + bytesOf(position_columns_) + bytesOf(t_m_) +
                       bytesOf(first_valid_k_) + bytesOf(tasks_) + bytesOf(ranges_m_) + bytesOf(shadows_) +
                       bytesOf(terms_) + bytesOf(diffraction_) + bytesOf(scratch_) + bytesOf(ground_msl_m_) +
                       bytesOf(model_tables_) + bytesOf(unknown_) + bytesOf(left_);

@@ -79,7 +79,7 @@ class DeviceGeometry {
   std::shared_ptr<const DeviceTerrain> terrain_;  ///< null: none
   // Copies of columns that are on the host:
   emscape::cuda::Buffer<GridColumn> grid_columns_;  ///< or, of a surface:
-  emscape::cuda::Buffer<PlaceColumn> place_columns_;
+  emscape::cuda::Buffer<PositionColumn> position_columns_;
   emscape::cuda::Buffer<std::uint16_t> first_valid_k_;
   emscape::cuda::Buffer<float> ground_msl_m_;  ///< empty: none, or tilted columns
 

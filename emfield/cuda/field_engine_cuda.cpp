@@ -6,7 +6,7 @@
 #include "emfield/cuda/combine_kernels.h"
 #include "emfield/cuda/device_geometry.h"
 #include "emfield/solver/field_engine.h"
-#include "emfield/solver/kept_power.h"
+#include "emfield/solver/power_cache.h"
 #include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
 
@@ -95,7 +95,7 @@ class CudaEngine : public FieldEngine {
   emscape::cuda::Stream stream_{emscape::cuda::Stream::Priority::high};
   cuda::StageClock clock_;
   cuda::DeviceGeometry geometry_;
-  KeptPower<Buffer<float>> kept_power_;                       // without the last slot, which emitters share
+  PowerCache<Buffer<float>> kept_power_;                      // without the last slot, which emitters share
   std::map<scenario::AntennaPtr, DevicePattern> patterns_;    ///< of antennas and of their intervals
   std::map<std::pair<int, int>, RadarTables> radar_tables_;   ///< by channel and emitter
   std::map<std::pair<int, int>, DevicePositions> positions_;  ///< by channel and emitter

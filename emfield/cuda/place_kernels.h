@@ -3,24 +3,24 @@
 
 #include <cuda_runtime_api.h>
 
-#include "emfield/columns/place_columns.h"
+#include "emfield/columns/position_columns.h"
 
 namespace emscape::emfield::cuda {
 
 /// Number of parts into which the kernels divide the positions.
-constexpr int kPlacesParts = 1024;
+constexpr int kPositionsParts = 1024;
 
 /// Computes the columns of a surface. Pointers are to device memory.
 /// @param parts  kPlacesParts sums
-void computePlaces(const PlaceTask& task, int places, const GeoidView& geoid, PlacesPart* parts,
-                   cudaStream_t stream);
+void computePositions(const PositionTask& task, int positions, const GeoidView& geoid, PositionsPart* parts,
+                      cudaStream_t stream);
 
 /// Largest distance (m) from the middle of a surface to a position with ground, of each part. Sets the
 /// columns of positions that are left out to that in the middle.
 /// @param task      of computePlaces()
 /// @param geodesy   of the middle
 /// @param beyond_m  kPlacesParts distances
-void spanPlaces(const PlaceTask& task, int places, const PlaceColumn& middle, const FastGeodesy& geodesy,
-                double* beyond_m, cudaStream_t stream);
+void spanPositions(const PositionTask& task, int positions, const PositionColumn& middle,
+                   const FastGeodesy& geodesy, double* beyond_m, cudaStream_t stream);
 
 }  // namespace emscape::emfield::cuda

@@ -57,7 +57,7 @@ propagation::PathPoints pathPoints(const Station& station, const GridColumns& co
   const auto layers = static_cast<std::uint16_t>(columns.t_m.size());
   parallelFor(static_cast<int>(columns.count()), 4096, [&](int begin, int end) {
     for (int c = begin; c < end; ++c) {
-      const PlaceColumn& column = columns.of_surface[c];
+      const PositionColumn& column = columns.of_surface[c];
       const bool is_left_out = columns.first_valid_k[c] >= layers;
       points.range_m[c] = is_left_out ? NAN : fastInverse(station.geodesy, column.foot_ecef_m).distance_m;
       points.base_msl_m[c] = column.base_msl_m;

@@ -89,7 +89,7 @@ struct ExcessTask {
     ExcessColumn part;
     const int first = grid.firstLayer(segment);
     const FastInverse point = grid.coordinatesOf(station, c, segment);
-    part.place = c;
+    part.position = c;
     part.range_m = point.distance_m;
     part.azimuth_rad = std::atan2(point.sin_azimuth, point.cos_azimuth);
     part.height_msl_m = scratch.height_msl_m + first;

@@ -18,7 +18,7 @@ namespace {
 
 bool isSameColumn(const ColumnsView& columns, int a, int b) {
   if (columns.of_surface == nullptr) return false;
-  const PlaceColumn &first = columns.of_surface[a], &second = columns.of_surface[b];
+  const PositionColumn &first = columns.of_surface[a], &second = columns.of_surface[b];
   return first.foot_ecef_m == second.foot_ecef_m && first.base_ellipsoid_m == second.base_ellipsoid_m;
 }
 

@@ -238,7 +238,7 @@ std::unique_ptr<TargetScene> TargetScenes::take(const scenario::Snapshot& snapsh
   if (!scene) {
     scene = std::make_unique<TargetScene>();
     scene->scenario = std::make_shared<Scenario>(*snapshot.scenario);
-    scene->scenario->output.radar_look = scenario::RadarLook::target;
+    scene->scenario->output.radar_look = scenario::RadarAim::target;
   }
   if (!scene->snapshot.scenario || scene->snapshot.time_s != snapshot.time_s) {
     scene->snapshot = snapshot;

@@ -191,7 +191,7 @@ void addRadarTerms(const scenario::Scenario& scenario, int emitter_index, const 
                    std::vector<BudgetTerm>& terms) {
   const Emitter& emitter = scenario.emitters[emitter_index];
   const scenario::RadarReceiver& receiver = emitter.receiver;
-  const char* const look = scenario.output.radar_look == scenario::RadarLook::scan
+  const char* const look = scenario.output.radar_look == scenario::RadarAim::scan
                                ? "beam where the scan has it"
                                : "beam on the target";
   terms.push_back({"snr_db", "echo's signal-to-noise, one pulse", radar.snr_db, "dB",

@@ -54,9 +54,10 @@ PathSection pathSection(const scenario::Snapshot& snapshot, int emitter, propaga
   surface.height = 1;
   for (int i = 0; i < ranges; ++i) {
     section.ranges_m.push_back(profile.range_m * (i + 1) / ranges);
-    const GeodeticPosition place = geodesicDirect(state.position.latitude_deg, state.position.longitude_deg,
-                                                  profile.azimuth_rad, section.ranges_m.back());
-    surface.places.push_back({place.latitude_deg, place.longitude_deg});
+    const GeodeticPosition position =
+        geodesicDirect(state.position.latitude_deg, state.position.longitude_deg, profile.azimuth_rad,
+                       section.ranges_m.back());
+    surface.positions.push_back({position.latitude_deg, position.longitude_deg});
   }
   for (int k = 0; k < heights; ++k) {
     section.heights_msl_m.push_back(lowest_m + (top_msl_m - lowest_m) * (k + 0.5) / heights);

@@ -130,10 +130,10 @@ double interceptThreshold_w(const ReceiverProfile& receiver) {
   return threshold_w;
 }
 
-RadarLook lookOf(const Emitter& radar, scenario::RadarLook look) {
+RadarLook lookOf(const Emitter& radar, scenario::RadarAim look) {
   const scenario::ScanSpec& scan = radar.scan;
   RadarLook result;
-  if (look == scenario::RadarLook::scan) return result;
+  if (look == scenario::RadarAim::scan) return result;
   if (scenario::isSteered(radar)) {
     result.kind = LookKind::steered;
     return result;

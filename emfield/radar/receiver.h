@@ -62,6 +62,6 @@ double interceptThreshold_w(const scenario::ReceiverProfile& receiver);
 
 /// The radar's look at targets; `held` for RadarLook::scan, and for a fixed scan of an antenna that is not an
 /// array.
-RadarLook lookOf(const scenario::Emitter& radar, scenario::RadarLook look);
+RadarLook lookOf(const scenario::Emitter& radar, scenario::RadarAim look);
 
 }  // namespace emscape::emfield

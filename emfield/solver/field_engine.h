@@ -97,7 +97,7 @@ class FieldEngine {
 /// (needsHostColumns()). @throws Error (device), or (bad_input) as makeGridColumns()
 GridColumns makeDeviceColumns(const Surface& surface, const scenario::Terrain* terrain);
 /// Copies the ground below such columns (GridColumns::ground_msl_m). @throws Error (device)
-std::vector<float> groundOf(const cuda::DevicePlaces& places);
+std::vector<float> groundOf(const cuda::DevicePositions& positions);
 
 /// @param setup  must outlive the engine
 /// @param slots  number of slots

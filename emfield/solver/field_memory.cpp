@@ -18,7 +18,7 @@ std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes) {
   std::size_t bytes = slot_bytes;
   for (const ChannelPlan& plan : setup.channel_plans) {
     const std::size_t accumulators = hasSecond(plan.reduction) ? 2 : 1;
-    // sums of all and of the resting emitters; one displayed volume and one being written
+    // sums of all and of the static_count emitters; one displayed volume and one being written
     bytes += (2 * accumulators + 2) * voxels * sizeof(float);
   }
   return bytes;
@@ -30,7 +30,7 @@ std::size_t cudaEngineBytes(const FieldSetup& setup, std::size_t slot_bytes,
   std::size_t bytes = slot_bytes;
   for (const ChannelPlan& plan : setup.channel_plans) {
     const std::size_t accumulators = hasSecond(plan.reduction) ? 2 : 1;
-    // sums of all and of the resting emitters; one displayed volume and one being written
+    // sums of all and of the static_count emitters; one displayed volume and one being written
     bytes += 2 * voxels * accumulators * sizeof(float) + 2 * volume::deviceBytes(setup.grid.dims, precision);
   }
   if (setup.terrain != nullptr) bytes += postBytes(setup.terrain->view());

@@ -120,7 +120,7 @@ void FieldSolver::Impl::requireFieldMemory() {
   const Dims dims = setup.grid.dims;
   const bool on_host = backend == Backend::cpu;
   const std::size_t columns_bytes =
-      columnsOf(dims) * (options.surface == nullptr ? sizeof(GridColumn) : sizeof(PlaceColumn));
+      columnsOf(dims) * (options.surface == nullptr ? sizeof(GridColumn) : sizeof(PositionColumn));
   const std::size_t needed =
       on_host ? cpuEngineBytes(setup, estimate.emitters)
               : columns_bytes + cudaEngineBytes(setup, estimate.emitters, options.device_precision);
@@ -149,14 +149,14 @@ void FieldSolver::Impl::requireFieldMemory() {
 }
 
 std::string FieldSolver::Impl::placeOf(std::size_t column) const {
-  GeodeticPosition place;
+  GeodeticPosition position;
   if (options.surface != nullptr) {
-    const Surface::Place& of_surface = options.surface->places[column];
-    place = {of_surface.latitude_deg, of_surface.longitude_deg, 0};
+    const Surface::Position& of_surface = options.surface->positions[column];
+    position = {of_surface.latitude_deg, of_surface.longitude_deg, 0};
   } else {
-    place = fromEcef(setup.columns.view()[column].base_ecef_m);
+    position = fromEcef(setup.columns.view()[column].base_ecef_m);
   }
-  return fmt::format("latitude {:.5f}, longitude {:.5f} deg", place.latitude_deg, place.longitude_deg);
+  return fmt::format("latitude {:.5f}, longitude {:.5f} deg", position.latitude_deg, position.longitude_deg);
 }
 
 void FieldSolver::Impl::checkHoles() const {
@@ -179,9 +179,9 @@ bool FieldSolver::Impl::canKeep(const FieldPlan& plan, const scenario::TerrainPt
   };
   const std::vector<scenario::Emitter>& old = setup.scenario->emitters;
   const std::vector<scenario::Emitter>& edited = plan.scenario->emitters;
-  const bool same_places =
+  const bool same_positions =
       options.surface != nullptr || sameRegion(setup.scenario->region, plan.scenario->region);
-  if (terrain != setup.terrain || !same_places ||
+  if (terrain != setup.terrain || !same_positions ||
       (setup.columns.on_device != nullptr && needsHostColumns(*plan.scenario)) ||
       !std::equal(old.begin(), old.end(), edited.begin(), edited.end(), sameName)) {
     return false;

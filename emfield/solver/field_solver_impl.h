@@ -45,9 +45,9 @@ struct FieldSolver::Impl {
   PatternReaches reaches;
 
   /// Number of emitters, counted from the first, whose sum is in the engine's static accumulators.
-  int resting = 0;
+  int static_count = 0;
   /// Number of unchanged emitters that were combined again since the static sum was last computed.
-  int wasted = 0;
+  int recombined_since = 0;
   bool is_first = true;
   bool is_stale = false;  ///< an update failed: all results are invalid
 

@@ -20,12 +20,12 @@ void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Ch
   }
   std::vector<bool> done(emitters.size());
   for (const Channel& channel : setup.channels) {
-    const bool jammed_anew =
+    const bool needs_rejamming =
         std::any_of(channel.jammers.begin(), channel.jammers.end(), [&](int j) { return jammer_changed[j]; });
     for (int e : channel.emitters) {
       EmitterCache& cache = emitters[e];
       if (channel.jammers.empty() || done[e] || !cache.state.active) continue;
-      if (!jammed_anew && !cache.mount_changed) continue;
+      if (!needs_rejamming && !cache.mount_changed) continue;
       std::string warning;
       cache.jammers = jammerPaths(snapshot, e, channel.jammers, setup.terrain.get(),
                                   options.allow_missing_terrain ? &warning : nullptr);
@@ -40,10 +40,10 @@ std::vector<RadarShare> FieldSolver::Impl::radarShares(int e) const {
   std::vector<RadarShare> shares;
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     const Channel& channel = setup.channels[c];
-    const auto place = std::find(channel.emitters.begin(), channel.emitters.end(), e);
-    if (place == channel.emitters.end() || setup.channel_plans[c].radars.empty()) continue;
+    const auto found = std::find(channel.emitters.begin(), channel.emitters.end(), e);
+    if (found == channel.emitters.end() || setup.channel_plans[c].radars.empty()) continue;
     scenario::EmitterState state = emitters[e].state;
-    RadarTask task = setup.channel_plans[c].radars[place - channel.emitters.begin()];
+    RadarTask task = setup.channel_plans[c].radars[found - channel.emitters.begin()];
     if (emitters[e].interval) lookInInterval(*emitters[e].interval, task, state);
     const std::vector<JammerPath> none;
     shares.push_back(

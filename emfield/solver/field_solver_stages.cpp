@@ -77,24 +77,24 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
 void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
   const auto first_changed =
       static_cast<int>(std::find(changed.begin(), changed.end(), true) - changed.begin());
-  int chosen = resting;
-  if (resting > first_changed) {
+  int chosen = static_count;
+  if (static_count > first_changed) {
     chosen = 0;
   } else {
-    wasted += first_changed - resting;
-    if (resting < first_changed && wasted >= first_changed) chosen = first_changed;
+    recombined_since += first_changed - static_count;
+    if (static_count < first_changed && recombined_since >= first_changed) chosen = first_changed;
   }
-  if (chosen == resting) return;
+  if (chosen == static_count) return;
 
-  wasted = 0;
-  resting = chosen;
+  recombined_since = 0;
+  static_count = chosen;
   std::vector<bool> has_static_sums;
   for (const Channel& channel : setup.channels) {
-    has_static_sums.push_back(
-        std::any_of(channel.emitters.begin(), channel.emitters.end(), [&](int e) { return e < resting; }));
+    has_static_sums.push_back(std::any_of(channel.emitters.begin(), channel.emitters.end(),
+                                          [&](int e) { return e < static_count; }));
   }
   engine->setStaticSums(has_static_sums);
-  if (resting > 0) combine(0, resting, has_static_sums, true);
+  if (static_count > 0) combine(0, static_count, has_static_sums, true);
 }
 
 /// An emitter's contributions to the channels.
@@ -120,9 +120,9 @@ CombineInputs FieldSolver::Impl::combineInputs(int e, double t_s) {
   part.beam.eirp_over_4pi_w = static_cast<float>(eirp_w / (4 * kPi));
   for (std::size_t c = 0; c < setup.channels.size(); ++c) {
     const auto& members = setup.channels[c].emitters;
-    const auto place = std::find(members.begin(), members.end(), e);
-    if (place == members.end() || !setup.channel_plans[c].reducesPower()) continue;
-    part.shares.push_back({static_cast<int>(c), setup.channel_plans[c].weights[place - members.begin()]});
+    const auto found = std::find(members.begin(), members.end(), e);
+    if (found == members.end() || !setup.channel_plans[c].reducesPower()) continue;
+    part.shares.push_back({static_cast<int>(c), setup.channel_plans[c].weights[found - members.begin()]});
   }
   return inputs;
 }

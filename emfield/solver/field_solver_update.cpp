@@ -59,14 +59,14 @@ FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::
 }
 
 void FieldSolver::Impl::setEnginePlan(bool channels_changed) {
-  if (channels_changed) resting = wasted = 0;
+  if (channels_changed) static_count = recombined_since = 0;
   engine->planChanged(channels_changed);
 }
 
 /// After a failure: the results may belong to either scenario.
 void FieldSolver::Impl::discardAll() {
   is_stale = true;
-  resting = wasted = 0;
+  static_count = recombined_since = 0;
   for (EmitterCache& cache : emitters) {
     const bool is_cached = cache.is_cached;
     cache = {};
@@ -94,7 +94,7 @@ void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& cha
   computeGeometry(recomputed, false);
   if (isAny(changes.sums)) {
     chooseResting(changes.emitters);
-    combine(resting, static_cast<int>(emitters.size()), changes.sums, false);
+    combine(static_count, static_cast<int>(emitters.size()), changes.sums, false);
   }
   makeVolumes(snapshot, changes);
 }
@@ -151,9 +151,9 @@ void FieldSolver::Impl::findCombined(const scenario::Snapshot& snapshot, Changes
   const bool is_all = changes.all || report.channels;
   changes.emitters.assign(emitters.size(), is_all);
   changes.sums.assign(setup.channels.size(), is_all);
-  std::vector<bool> told(emitters.size());
+  std::vector<bool> reported(emitters.size());
   for (const std::vector<int>* list : {&report.moved, &report.turned}) {
-    for (int e : *list) told[e] = true;
+    for (int e : *list) reported[e] = true;
   }
   std::vector<bool> moved(emitters.size());
   for (int e : report.moved) moved[e] = true;
@@ -167,7 +167,7 @@ void FieldSolver::Impl::findCombined(const scenario::Snapshot& snapshot, Changes
         markChangedChannels(moved[e] ? nullptr : orNull(before), orNull(emitters[e].combined), changes.sums);
     if (!has_changed) continue;
     changes.emitters[e] = true;
-    if (changes.is_edited && !told[e]) report.turned.push_back(static_cast<int>(e));
+    if (changes.is_edited && !reported[e]) report.turned.push_back(static_cast<int>(e));
   }
   std::sort(report.turned.begin(), report.turned.end());
 }

@@ -11,7 +11,7 @@ GridColumns makeDeviceColumns(const Surface&, const scenario::Terrain*) {
   throw Error(ErrorCode::device, "the field on a GPU: this build has no CUDA");
 }
 
-std::vector<float> groundOf(const cuda::DevicePlaces&) {
+std::vector<float> groundOf(const cuda::DevicePositions&) {
   return {};
 }
 

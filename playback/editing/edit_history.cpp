@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/text/shell_word.h"
+
 namespace emscape::playback {
 
 ScenarioPtr edited(const ScenarioPtr& scenario, const std::vector<scenario::Edit>& edits) {
@@ -40,17 +42,6 @@ void EditHistory::redo() {
 
 bool EditHistory::isModified() const {
   return scenario()->hash != saved_hash_;
-}
-
-std::string shellWord(const std::string& text) {
-  const bool is_plain = !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-           (c != '\0' && std::string("_-./,:=+@%").find(c) != std::string::npos);
-  });
-  if (is_plain) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
 }
 
 std::string commandText(const std::string& subcommand, const scenario::Scenario& scenario) {

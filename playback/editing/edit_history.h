@@ -56,8 +56,6 @@ class EditHistory {
   std::string saved_hash_;
 };
 
-/// A word quoted for a POSIX shell, with single quotes if necessary.
-std::string shellWord(const std::string& text);
 /// A command line that makes the same edits: `emscape render scenarios/a.yaml --set
 /// 'emitters.jammer.power_w=5'`, quoted for a POSIX shell.
 /// @param subcommand  of emscape

@@ -55,7 +55,7 @@ __global__ void finishMember(float* losses_db, const float* other_db, KnownCells
 }
 
 /// The loss at rank `place` in ascending order.
-__device__ float ofPlace_db(const float* losses_db, std::size_t pitch, int members, int place) {
+__device__ float ofRank_db(const float* losses_db, std::size_t pitch, int members, int rank) {
   for (int m = 0; m < members; ++m) {
     const float loss_db = losses_db[m * pitch];
     int before = 0, equal = 0;
@@ -63,18 +63,18 @@ __device__ float ofPlace_db(const float* losses_db, std::size_t pitch, int membe
       before += losses_db[n * pitch] < loss_db ? 1 : 0;
       equal += losses_db[n * pitch] == loss_db ? 1 : 0;
     }
-    if (before <= place && place < before + equal) return loss_db;
+    if (before <= rank && rank < before + equal) return loss_db;
   }
   return NAN;
 }
 
 /// @param losses_db  of the members, `count` each
 /// @param place      rank of the quantile; -1: the mean power
-__global__ void ofMembers(const float* losses_db, std::size_t count, int members, int place,
+__global__ void ofMembers(const float* losses_db, std::size_t count, int members, int rank,
                           float* ensemble_db) {
   each(count, [&](std::size_t i) {
-    if (place >= 0) {
-      ensemble_db[i] = ofPlace_db(losses_db + i, count, members, place);
+    if (rank >= 0) {
+      ensemble_db[i] = ofRank_db(losses_db + i, count, members, rank);
       return;
     }
     double sum = 0;
@@ -118,8 +118,8 @@ const float* FieldMarchCuda::start(FieldMarch& field, std::vector<BlockInput> in
   march_.addWarnings(warnings);
   float* const result_db = members > 1 ? last_db : losses_db_.data();
   if (members > 1) {
-    const int place = field.quantile ? placeOfQuantile(*field.quantile, int(members)) : -1;
-    ofMembers<<<blocksFor(count), kThreads, 0, stream>>>(losses_db_.data(), count, int(members), place,
+    const int rank = field.quantile ? rankOfQuantile(*field.quantile, int(members)) : -1;
+    ofMembers<<<blocksFor(count), kThreads, 0, stream>>>(losses_db_.data(), count, int(members), rank,
                                                          result_db);
     checkLaunch("ofMembers");
   }

@@ -79,37 +79,39 @@ P528Excess p528Excess(const PathInputs& inputs, std::vector<float>& tables) {
 }
 
 P528Excess p528ExcessAt(const PathInputs& inputs, const PathPoints& points, std::vector<float>& tables) {
-  constexpr int kPlacesAtOnce = 64;
+  constexpr int kPositionsAtOnce = 64;
   const EmitterInputs& emitter = inputs.emitter;
   const auto allowed = [&](double height_msl_m) {
     return std::clamp(height_msl_m - inputs.surface_msl_m, kP528Height.min, kP528Height.max);
   };
   const double tx_m = allowed(inputs.site.height_msl_m);
   const auto atmosphere = std::make_shared<const P528Atmosphere>(emitter.frequency_hz);
-  const std::size_t places = points.range_m.size();
+  const std::size_t positions = points.range_m.size();
   P528Excess result;
   result.surface_msl_m = inputs.surface_msl_m;
-  result.place_count = places;
-  tables.assign(places * points.above_base_m.size(), 0);
-  parallelFor(static_cast<int>((places + kPlacesAtOnce - 1) / kPlacesAtOnce), 1, [&](int begin, int end) {
-    const std::size_t first = static_cast<std::size_t>(begin) * kPlacesAtOnce;
-    const std::size_t last = std::min(places, static_cast<std::size_t>(end) * kPlacesAtOnce);
-    for (std::size_t k = 0; k < points.above_base_m.size(); ++k) {
-      std::optional<P528Curve> curve;  // neighbours above the sea have the same
-      double of_m = 0;
-      for (std::size_t p = first; p < last; ++p) {
-        if (std::isnan(points.range_m[p])) continue;
-        const double height_m = allowed(points.base_msl_m[p] + static_cast<double>(points.above_base_m[k]));
-        if (!curve || height_m != of_m) {
-          curve.emplace(atmosphere, emitter.frequency_hz, tx_m, height_m,
-                        emitter.polarization != Polarization::horizontal);
-          of_m = height_m;
+  result.position_count = positions;
+  tables.assign(positions * points.above_base_m.size(), 0);
+  parallelFor(
+      static_cast<int>((positions + kPositionsAtOnce - 1) / kPositionsAtOnce), 1, [&](int begin, int end) {
+        const std::size_t first = static_cast<std::size_t>(begin) * kPositionsAtOnce;
+        const std::size_t last = std::min(positions, static_cast<std::size_t>(end) * kPositionsAtOnce);
+        for (std::size_t k = 0; k < points.above_base_m.size(); ++k) {
+          std::optional<P528Curve> curve;  // neighbours above the sea have the same
+          double of_m = 0;
+          for (std::size_t p = first; p < last; ++p) {
+            if (std::isnan(points.range_m[p])) continue;
+            const double height_m =
+                allowed(points.base_msl_m[p] + static_cast<double>(points.above_base_m[k]));
+            if (!curve || height_m != of_m) {
+              curve.emplace(atmosphere, emitter.frequency_hz, tx_m, height_m,
+                            emitter.polarization != Polarization::horizontal);
+              of_m = height_m;
+            }
+            const P528Loss loss = curve->at(points.range_m[p], emitter.settings.p528.time_percent);
+            tables[k * positions + p] = static_cast<float>(loss.loss_db - loss.free_space_db);
+          }
         }
-        const P528Loss loss = curve->at(points.range_m[p], emitter.settings.p528.time_percent);
-        tables[k * places + p] = static_cast<float>(loss.loss_db - loss.free_space_db);
-      }
-    }
-  });
+      });
   result.tables = tables.data();
   return result;
 }

@@ -29,13 +29,13 @@ struct P528Excess {
   double surface_msl_m = 0;
   /// For a surface: the tables are the excess (dB) of each point, positions x heights, position fastest; 0:
   /// tables as above.
-  std::size_t place_count = 0;
+  std::size_t position_count = 0;
 
   /// @accuracy see docs/models.md
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch&, float* excess) const {
     for (int k = 0; k < column.count; ++k) {
-      if (place_count > 0) {
-        excess[k] = tables[static_cast<std::size_t>(k) * place_count + column.place];
+      if (position_count > 0) {
+        excess[k] = tables[static_cast<std::size_t>(k) * position_count + column.position];
         continue;
       }
       excess[k] = at(static_cast<float>(column.range_m),

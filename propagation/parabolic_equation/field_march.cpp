@@ -63,7 +63,7 @@ unsigned marchField(FieldMarch& field, float* excess_db) {
 float ofMembers_db(std::vector<float>& losses_db, const std::optional<double>& quantile) {
   if (losses_db.size() == 1) return losses_db.front();
   if (quantile) {
-    const int at = placeOfQuantile(*quantile, int(losses_db.size()));
+    const int at = rankOfQuantile(*quantile, int(losses_db.size()));
     std::nth_element(losses_db.begin(), losses_db.begin() + at, losses_db.end());
     return losses_db[std::size_t(at)];
   }
@@ -72,7 +72,7 @@ float ofMembers_db(std::vector<float>& losses_db, const std::optional<double>& q
   return static_cast<float>(-10 * std::log10(power / double(losses_db.size())));
 }
 
-int placeOfQuantile(double quantile, int members) {
+int rankOfQuantile(double quantile, int members) {
   return int(std::lround((1 - quantile) * (members - 1)));
 }
 

@@ -47,7 +47,7 @@ unsigned marchField(FieldMarch& field, float* excess_db);
 /// @param losses_db  of the members, none NaN; reordered
 float ofMembers_db(std::vector<float>& losses_db, const std::optional<double>& quantile);
 /// Index of a quantile of the power in `members` losses in ascending order.
-int placeOfQuantile(double quantile, int members);
+int rankOfQuantile(double quantile, int members);
 
 /// True if the GPU supports the march, and the number of azimuths makes it faster.
 bool isForGpu(const FieldMarch& field);

@@ -274,11 +274,11 @@ struct BlockTransform {
   static EMSCAPE_HD void transformRows(Team& team, const BlockMemory& memory, const OnSpectrum& onSpectrum) {
     constexpr int kSecond = Shape::kSecond, kThird = Shape::kThird;
     const auto rowOf = [&](int t) { return memory.rows + t / G * Shape::kPitch; };
-    const auto secondPlace = [](int lane, int e) {
+    const auto secondIndex = [](int lane, int e) {
       const int b = lane + G * (e / kSecond);
       return Shape::padded(b / kThird * G + b % kThird + kThird * (e % kSecond));
     };
-    const auto thirdPlace = [](int lane, int e) {
+    const auto thirdIndex = [](int lane, int e) {
       return Shape::padded((lane + G * (e / kThird)) * kThird + e % kThird);
     };
     team.eachInRows([&](int t, BlockThread& x) {
@@ -302,13 +302,13 @@ struct BlockTransform {
         const int lane = t % G;
         StoredComplex* const row = rowOf(t);
         EMSCAPE_UNROLL
-        for (int e = 0; e < 16; ++e) x.v[e] = row[secondPlace(lane, e)];
+        for (int e = 0; e < 16; ++e) x.v[e] = row[secondIndex(lane, e)];
         EMSCAPE_UNROLL
         for (int i = 0; i < 16 / kSecond; ++i) SmallFourier<kSecond, 1, float>::run(x.v + i * kSecond);
         const int rest = lane % kThird;  // G is a multiple of it
         EMSCAPE_UNROLL
         for (int e = 0; e < 16; ++e) {
-          row[secondPlace(lane, e)] =
+          row[secondIndex(lane, e)] =
               x.v[e] * Complex<float>(memory.second_turns[e % kSecond * kThird + rest]);
         }
       });
@@ -318,7 +318,7 @@ struct BlockTransform {
       const int lane = t % G;
       StoredComplex* const row = rowOf(t);
       constexpr int kLast = kThird > 1 ? kThird : kSecond;
-      const auto place = [&](int e) { return kThird > 1 ? thirdPlace(lane, e) : secondPlace(lane, e); };
+      const auto place = [&](int e) { return kThird > 1 ? thirdIndex(lane, e) : secondIndex(lane, e); };
       if (G > 1) {
         EMSCAPE_UNROLL
         for (int e = 0; e < 16; ++e) x.v[e] = row[place(e)];
@@ -340,13 +340,13 @@ struct BlockTransform {
         StoredComplex* const row = rowOf(t);
         EMSCAPE_UNROLL
         for (int e = 0; e < 16; ++e) {
-          x.v[e] = Complex<float>(row[secondPlace(lane, e)]) *
+          x.v[e] = Complex<float>(row[secondIndex(lane, e)]) *
                    conjugate<float>(memory.second_turns[e % kSecond * kThird + rest]);
         }
         EMSCAPE_UNROLL
         for (int i = 0; i < 16 / kSecond; ++i) SmallFourier<kSecond, -1, float>::run(x.v + i * kSecond);
         EMSCAPE_UNROLL
-        for (int e = 0; e < 16; ++e) row[secondPlace(lane, e)] = x.v[e];
+        for (int e = 0; e < 16; ++e) row[secondIndex(lane, e)] = x.v[e];
       });
     }
     team.each([&](int t, BlockThread& x) {

@@ -11,14 +11,14 @@
 namespace emscape::propagation {
 namespace {
 
-using Place = RefractivityField::Place;
+using Position = RefractivityField::Position;
 
 constexpr int kIntervals = 128;
 constexpr double kReach = 1.25;
 constexpr double kNearest_m = 100;
 
 /// Great circles of a sphere are accurate enough for the positions of profiles.
-double distance_m(const Place& a, const Place& b, double radius_m) {
+double distance_m(const Position& a, const Position& b, double radius_m) {
   const double lat_a = degToRad(a.latitude_deg), lat_b = degToRad(b.latitude_deg);
   const double half_lat = std::sin((lat_b - lat_a) / 2);
   const double half_lon = std::sin(degToRad(b.longitude_deg - a.longitude_deg) / 2);
@@ -26,7 +26,7 @@ double distance_m(const Place& a, const Place& b, double radius_m) {
   return 2 * radius_m * std::asin(std::sqrt(std::min(square, 1.0)));
 }
 
-Place placeAt(const Place& from, double azimuth_rad, double range_m, double radius_m) {
+Position placeAt(const Position& from, double azimuth_rad, double range_m, double radius_m) {
   const double arc = range_m / radius_m, latitude = degToRad(from.latitude_deg);
   const double sin_latitude =
       std::sin(latitude) * std::cos(arc) + std::cos(latitude) * std::sin(arc) * std::cos(azimuth_rad);
@@ -36,19 +36,20 @@ Place placeAt(const Place& from, double azimuth_rad, double range_m, double radi
 }
 
 RefractivityAlongPath byPlace(const RefractivityField& field, const Site& site, double azimuth_rad) {
-  const Place origin{site.latitude_deg, site.longitude_deg};
+  const Position origin{site.latitude_deg, site.longitude_deg};
   double farthest_m = 0;
-  for (const Place& place : field.places) {
-    farthest_m = std::max(farthest_m, distance_m(origin, place, site.earth_radius_m));
+  for (const Position& position : field.positions) {
+    farthest_m = std::max(farthest_m, distance_m(origin, position, site.earth_radius_m));
   }
   const double step_m = std::max(kReach * farthest_m, 1.0) / kIntervals;
-  std::vector<double> ranges_m, weights(field.places.size());
+  std::vector<double> ranges_m, weights(field.positions.size());
   std::vector<RefractivityProfile> profiles;
   for (int i = 0; i <= kIntervals; ++i) {
     ranges_m.push_back(i * step_m);
-    const Place here = placeAt(origin, azimuth_rad, ranges_m.back(), site.earth_radius_m);
+    const Position here = placeAt(origin, azimuth_rad, ranges_m.back(), site.earth_radius_m);
     for (std::size_t p = 0; p < weights.size(); ++p) {
-      weights[p] = std::pow(std::max(distance_m(here, field.places[p], site.earth_radius_m), kNearest_m), -2);
+      weights[p] =
+          std::pow(std::max(distance_m(here, field.positions[p], site.earth_radius_m), kNearest_m), -2);
     }
     profiles.push_back(meanProfile(field.profiles, weights));
   }

@@ -232,14 +232,14 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
     double& step_m = found.grid.range_step_m;
     std::string& text = found.choices.back().text;
     const bool has_posts = needs.post_spacing_m > 0;
-    const double places_m = std::max(has_posts ? needs.spacing_m : needs.spacing_m / 2, kFinestStep_m);
-    if (places_m < step_m) {
-      step_m = places_m;
+    const double positions_m = std::max(has_posts ? needs.spacing_m : needs.spacing_m / 2, kFinestStep_m);
+    if (positions_m < step_m) {
+      step_m = positions_m;
       text = fmt::format("{:.4g} m: {} the voxels' spacing, at least {:g} m", step_m,
                          has_posts ? "as" : "half of", kFinestStep_m);
     } else if (!has_posts) {
       text += fmt::format(" (at most {:.4g} m), a whole number in half of the voxels' spacing", step_m);
-      step_m = places_m / std::ceil(places_m / step_m * (1 - 1e-12));
+      step_m = positions_m / std::ceil(positions_m / step_m * (1 - 1e-12));
       text = fmt::format("{:.4g} m", step_m) + text.substr(text.find(':'));
     }
   }

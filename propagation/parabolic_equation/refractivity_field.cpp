@@ -12,7 +12,7 @@ bool same(const RefractivityLevel& a, const RefractivityLevel& b) {
   return height_msl_m == b.height_msl_m && m_units == b.m_units;
 }
 
-bool same(const RefractivityField::Place& a, const RefractivityField::Place& b) {
+bool same(const RefractivityField::Position& a, const RefractivityField::Position& b) {
   const auto& [latitude_deg, longitude_deg] = a;
   return latitude_deg == b.latitude_deg && longitude_deg == b.longitude_deg;
 }
@@ -32,8 +32,8 @@ bool same(const RefractivityProfile& a, const RefractivityProfile& b) {
 }
 
 bool same(const RefractivityField& a, const RefractivityField& b) {
-  const auto& [profiles, ranges_m, places, evaporation_duct_m] = a;
-  return same(profiles, b.profiles) && ranges_m == b.ranges_m && same(places, b.places) &&
+  const auto& [profiles, ranges_m, positions, evaporation_duct_m] = a;
+  return same(profiles, b.profiles) && ranges_m == b.ranges_m && same(positions, b.positions) &&
          evaporation_duct_m == b.evaporation_duct_m;
 }
 

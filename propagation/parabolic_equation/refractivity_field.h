@@ -12,12 +12,12 @@ namespace emscape::propagation {
 /// Profiles of the air around all emitters: a single one, or one per range from the emitter, or one per
 /// position.
 struct RefractivityField {
-  struct Place {
+  struct Position {
     double latitude_deg = 0, longitude_deg = 0;
   };
   std::vector<RefractivityProfile> profiles{standardRefractivity()};  ///< 1 or more
-  std::vector<double> ranges_m;  ///< of the profiles, ascending, from each emitter; empty: not by range
-  std::vector<Place> places;     ///< of the profiles, no two the same; empty: not by place
+  std::vector<double> ranges_m;     ///< of the profiles, ascending, from each emitter; empty: not by range
+  std::vector<Position> positions;  ///< of the profiles, no two the same; empty: not by place
   /// Height of an evaporation duct that is added to all profiles; 0: none.
   double evaporation_duct_m = 0;
 };

@@ -22,7 +22,7 @@ const char* toString(study::MapKind kind) {
       return "difference";
     case study::MapKind::probability:
       return "probability";
-    case study::MapKind::part:
+    case study::MapKind::fraction:
       return "part";
     case study::MapKind::count:
       return "count";

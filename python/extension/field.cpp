@@ -246,8 +246,8 @@ std::shared_ptr<Field> read(const std::string& file) {
 std::tuple<double, double, double> geodeticOf(const Field& field, double x_m, double y_m, double z_m) {
   const volume::Grid& grid = field.volumes.front().grid();
   if (!grid.georeferenced) throw Error(ErrorCode::usage, "the volume has no position on the earth");
-  const GeodeticPosition place = GeoFrame(grid.frame).toGeodetic({x_m, y_m, z_m});
-  return {place.latitude_deg, place.longitude_deg, place.height_ellipsoid_m};
+  const GeodeticPosition position = GeoFrame(grid.frame).toGeodetic({x_m, y_m, z_m});
+  return {position.latitude_deg, position.longitude_deg, position.height_ellipsoid_m};
 }
 
 }  // namespace

@@ -143,8 +143,8 @@ void bindScenario(nb::module_& module) {
       "to_geodetic",
       [](double origin_latitude_deg, double origin_longitude_deg, double x_m, double y_m) {
         const GeoFrame frame({FrameKind::altitude, origin_latitude_deg, origin_longitude_deg, 0});
-        const GeodeticPosition place = frame.toGeodetic({x_m, y_m, 0});
-        return std::pair(place.latitude_deg, place.longitude_deg);
+        const GeodeticPosition position = frame.toGeodetic({x_m, y_m, 0});
+        return std::pair(position.latitude_deg, position.longitude_deg);
       },
       nb::arg("origin_latitude_deg"), nb::arg("origin_longitude_deg"), nb::arg("x_m"), nb::arg("y_m"),
       "Latitude and longitude (deg) of a position in the frame \"altitude\".");

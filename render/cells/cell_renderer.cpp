@@ -20,7 +20,7 @@ void checkCellSettings(const RenderSettings& settings) {
   };
   if (settings.mode != CompositingMode::dvr) {
     throw Error(ErrorCode::usage, std::string("mode ") + toString(settings.mode) +
-                                      ": a field on tetrahedra is drawn by dvr alone");
+                                      ": fields on tetrahedra support only mode dvr");
   }
   if (settings.shading) refuse("shading");
   if (std::any_of(settings.planes.begin(), settings.planes.end(), [](const CutPlane& p) { return p.on; }))

@@ -354,7 +354,7 @@ void CudaFrameCaster::fetch(Image8& image) {
 
 std::shared_ptr<const DevicePicture> CudaFrameCaster::compose(const OverlayLayers& layers) {
   const ImageSize size = layers_.size;
-  if (layers.size != size) throw Error(ErrorCode::other, "labels of another size than the picture");
+  if (layers.size != size) throw Error(ErrorCode::other, "labels and picture differ in size");
   const auto is_other_size = [&](const auto& picture) { return picture->size() != size; };
   finished_.erase(std::remove_if(finished_.begin(), finished_.end(), is_other_size), finished_.end());
   const auto unused = std::find_if(finished_.begin(), finished_.end(),

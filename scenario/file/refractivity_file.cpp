@@ -22,7 +22,7 @@ namespace {
 using namespace propagation;
 using document::CsvCell;
 using document::CsvRow;
-using Place = RefractivityField::Place;
+using Position = RefractivityField::Position;
 
 constexpr const char* kHeader =
     "height_msl_m and m_units, or n_units, or pressure_hpa, temperature_k and relative_humidity_percent; for "
@@ -71,7 +71,7 @@ class CsvProfiles {
     for (std::vector<RefractivityLevel>& levels : levels_)
       field.profiles.push_back(profileOfLevels(std::move(levels)));
     if (has(range)) field.ranges_m = ranges_m_;
-    if (has(latitude)) field.places = places_;
+    if (has(latitude)) field.positions = positions_;
     const std::size_t count = field.profiles.size();
     result.description = count == 1   ? "1 profile"
                          : has(range) ? fmt::format("{} profiles by range", count)
@@ -165,21 +165,21 @@ class CsvProfiles {
   /// Begins a profile if range or position of the row differ from those of the previous row.
   void beginProfile() {
     const double range_m = has(range) ? number(range) : 0;
-    const Place place = has(latitude) ? Place{number(latitude), number(longitude)} : Place{};
-    const auto isHere = [&](const Place& other) {
-      return other.latitude_deg == place.latitude_deg && other.longitude_deg == place.longitude_deg;
+    const Position position = has(latitude) ? Position{number(latitude), number(longitude)} : Position{};
+    const auto isHere = [&](const Position& other) {
+      return other.latitude_deg == position.latitude_deg && other.longitude_deg == position.longitude_deg;
     };
-    if (!levels_.empty() && range_m == ranges_m_.back() && isHere(places_.back())) return;
+    if (!levels_.empty() && range_m == ranges_m_.back() && isHere(positions_.back())) return;
     finishProfile();
     if (!levels_.empty() && range_m < ranges_m_.back()) {
       fail(cell(range), fmt::format("range_m is {} behind {}; ranges ascend", range_m, ranges_m_.back()));
     }
-    if (has(latitude) && std::any_of(places_.begin(), places_.end(), isHere)) {
+    if (has(latitude) && std::any_of(positions_.begin(), positions_.end(), isHere)) {
       fail(cell(latitude), fmt::format("the rows of the place {}, {} do not follow each other",
-                                       place.latitude_deg, place.longitude_deg));
+                                       position.latitude_deg, position.longitude_deg));
     }
     ranges_m_.push_back(range_m);
-    places_.push_back(place);
+    positions_.push_back(position);
     levels_.emplace_back();
   }
 
@@ -196,7 +196,7 @@ class CsvProfiles {
   std::size_t columns_ = 0;
   std::array<std::optional<std::size_t>, kColumns> position_;
   std::vector<double> ranges_m_;
-  std::vector<Place> places_;
+  std::vector<Position> positions_;
   std::vector<std::vector<RefractivityLevel>> levels_;
 };
 

@@ -178,7 +178,7 @@ int indexOfNamed(const Section& section, const char* key, const char* what, cons
 OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseContext& context) {
   OutputSpec output{section.texts("quantities"),
                     section.choice<CombineMode>("combine"),
-                    section.choice<RadarLook>("radar_look"),
+                    section.choice<RadarAim>("radar_look"),
                     section.number("floor"),
                     section.number("count_threshold_dbwm2"),
                     {}};

@@ -41,7 +41,7 @@ bool showsScans(const OutputSpec& output) {
            const Quantity quantity = quantityFromName(name);
            const bool is_of_target = quantity == Quantity::jammer_to_signal_db ||
                                      quantity == Quantity::burn_through_margin_db ||
-                                     (needsRadar(quantity) && output.radar_look == RadarLook::target);
+                                     (needsRadar(quantity) && output.radar_look == RadarAim::target);
            return !is_of_target;
          });
 }

@@ -59,7 +59,7 @@ const ObjectSpec& outputSpec() {
                     OutputSpec{}.quantities, "one volume per quantity"),
           byDefault("combine", choiceOf<CombineMode>(), toString(OutputSpec{}.combine),
                     "combination of the emitters"),
-          byDefault("radar_look", choiceOf<RadarLook>(), toString(OutputSpec{}.radar_look),
+          byDefault("radar_look", choiceOf<RadarAim>(), toString(OutputSpec{}.radar_look),
                     "for snr_db and detection_probability: beams in the direction of their scans at the "
                     "time, or towards each voxel (coverage)"),
           byDefault("floor", number().from(-1000).to(1000), OutputSpec{}.floor,

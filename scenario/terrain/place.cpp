@@ -137,15 +137,15 @@ PostLattice geographicLattice(const GeoBox& part, double spacing_m) {
 /// Refuses a narrow strip across the meridians, or posts far closer along one axis than along the other,
 /// where a few posts take gigabytes.
 void requirePosts(const TerrainSheet& sheet, long long columns, long long rows) {
-  constexpr double kAlwaysAllowed = 1e7, kMostForEach = 100;
+  constexpr double kAlwaysAllowed = 1e7, kMaxForEach = 100;
   const double posts = static_cast<double>(columns) * static_cast<double>(rows);
   const double own = static_cast<double>(sheet.columns) * sheet.rows;
-  if (posts <= std::max(kAlwaysAllowed, kMostForEach * own)) return;
+  if (posts <= std::max(kAlwaysAllowed, kMaxForEach * own)) return;
   throw Error(ErrorCode::bad_input,
               fmt::format("elevation file {}: {} x {} of its posts take {} x {} posts at latitudes and "
                           "longitudes, more than {:.0f} for each; bring it to a geographic coordinate system "
                           "with square posts (gdalwarp)",
-                          sheet.file->name(), sheet.columns, sheet.rows, columns, rows, kMostForEach));
+                          sheet.file->name(), sheet.columns, sheet.rows, columns, rows, kMaxForEach));
 }
 
 TerrainSheet resample(const TerrainSheet& sheet, const GeoBox& part) {

@@ -57,7 +57,7 @@ class PathsTo {
   PathsTo(const ComparedScenario& of, const ChangedArea& area, scenario::Quantity quantity)
       : terrain_(of.terrain.get()), quantity_(quantity) {
     auto own = std::make_shared<scenario::Scenario>(*of.scenario);
-    own->output.radar_look = scenario::RadarLook::target;
+    own->output.radar_look = scenario::RadarAim::target;
     snapshot_ = scenario::snapshotAt(own, terrain_, area.time_s);
     height_msl_m_ = area.height.metres;
     if (area.height.reference == emfield::HeightReference::ground && terrain_ != nullptr) {
@@ -131,7 +131,7 @@ std::vector<ChangedArea> largestAreas(const MapGrid& grid, const std::vector<flo
     ChangedArea area;
     area.is_gained = changed == kGained;
     for (const std::size_t pixel : pixels) area.area_m2 += static_cast<double>(grid.areas_m2[pixel]);
-    const emfield::Surface::Place& middle = grid.places[middleOf(grid, pixels)];
+    const emfield::Surface::Position& middle = grid.positions[middleOf(grid, pixels)];
     area.latitude_deg = middle.latitude_deg;
     area.longitude_deg = middle.longitude_deg;
     areas.push_back(area);

@@ -134,7 +134,8 @@ std::vector<std::pair<std::size_t, std::size_t>> pairsOf(const CoverageFolder& a
     const CoverageMap& map = a.maps[m];
     if (!isChosen(map, choice)) continue;
     if (map.kind == MapKind::category)
-      throw Error(ErrorCode::usage, fmt::format("{}: an index has no difference", nameOf(map)));
+      throw Error(ErrorCode::usage,
+                  fmt::format("{}: differences of a categorical quantity are not defined", nameOf(map)));
     const auto n = static_cast<std::size_t>(indexOf(b, map));
     if (map.unit != b.maps[n].unit) {
       failDiffer(a, b, "the unit of " + nameOf(map), "'" + map.unit + "'", "'" + b.maps[n].unit + "'");

@@ -21,7 +21,7 @@ using scenario::Quantity;
 
 /// Number of track positions solved together. Fixed emitters have one geometry for all; the geometry of
 /// moving emitters is computed for all positions at each time.
-constexpr std::size_t kPlaces = 32;
+constexpr std::size_t kPositions = 32;
 
 /// @throws Error (usage)
 void checkRequest(const scenario::Scenario& scenario, const ExposureRequest& request) {
@@ -84,7 +84,7 @@ class Track {
     surface->heights_m = {0};
     for (const scenario::Snapshot& snapshot : snapshots) {
       const scenario::PlatformState& state = snapshot.platforms[request_.platform];
-      surface->places.push_back({state.position.latitude_deg, state.position.longitude_deg});
+      surface->positions.push_back({state.position.latitude_deg, state.position.longitude_deg});
       surface->offsets_m.push_back(static_cast<float>(state.height_msl_m));
     }
     emfield::FieldOptions on_track = options_;
@@ -138,12 +138,12 @@ class Track {
   }
 
   ExposureRow rowOf(const scenario::Snapshot& snapshot, const emfield::FieldSolver& solver,
-                    std::size_t place) const {
+                    std::size_t index) const {
     const scenario::PlatformState& state = snapshot.platforms[request_.platform];
     const auto valueOf = [&](std::size_t channel) {
       const auto volume = solver.volumes()[channel].host();
-      const bool is_valid = volume->first_valid_k.empty() || volume->first_valid_k[place] == 0;
-      return is_valid ? static_cast<double>(volume->values[place]) : NAN;
+      const bool is_valid = volume->first_valid_k.empty() || volume->first_valid_k[index] == 0;
+      return is_valid ? static_cast<double>(volume->values[index]) : NAN;
     };
     ExposureRow row;
     row.time_s = snapshot.time_s;
@@ -180,7 +180,7 @@ class Track {
 /// Sets the cumulative probabilities of detection.
 void accumulate(const scenario::Scenario& scenario, Exposure& exposure) {
   const bool has_looks = exposure.request.quantity == Quantity::detection_probability &&
-                         exposure.request.look == scenario::RadarLook::target;
+                         exposure.request.look == scenario::RadarAim::target;
   std::vector<double> missed(exposure.emitters.size(), 1.0);
   for (std::size_t t = 0; t < exposure.rows.size(); ++t) {
     ExposureRow& row = exposure.rows[t];
@@ -239,7 +239,7 @@ ExposureSummary summaryOf(const std::string& name, const Exposure& exposure, con
 
 /// Warning about time steps in which a beam may pass the platform unnoticed.
 std::optional<std::string> scanWarning(const scenario::Scenario& scenario, const Exposure& exposure) {
-  if (exposure.request.look != scenario::RadarLook::scan || exposure.rows.size() < 2) return std::nullopt;
+  if (exposure.request.look != scenario::RadarAim::scan || exposure.rows.size() < 2) return std::nullopt;
   double step_s = 0;
   for (std::size_t t = 1; t < exposure.rows.size(); ++t) {
     step_s = std::max(step_s, exposure.rows[t].time_s - exposure.rows[t - 1].time_s);
@@ -276,8 +276,8 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
   Track track(*scenario, terrain, request, std::move(options));
   exposure.emitters = track.emitters;
   for (const int e : track.emitters) exposure.names.push_back(scenario->emitters[e].name);
-  for (std::size_t begin = 0; begin < request.times_s.size(); begin += kPlaces) {
-    const std::size_t end = std::min(begin + kPlaces, request.times_s.size());
+  for (std::size_t begin = 0; begin < request.times_s.size(); begin += kPositions) {
+    const std::size_t end = std::min(begin + kPositions, request.times_s.size());
     track.addRows(begin, end, exposure.rows, progress);
   }
   if (progress) progress("track", 1);

@@ -27,7 +27,7 @@ Json colorJson(const render::Rgb& color, int alpha) {
 }
 
 /// Longitude, latitude (1e-7 degrees) and height above the ellipsoid (cm).
-void addPlace(Json& list, double longitude_deg, double latitude_deg, double height_m) {
+void addPosition(Json& list, double longitude_deg, double latitude_deg, double height_m) {
   list.push_back(std::round(longitude_deg * 1e7) / 1e7);
   list.push_back(std::round(latitude_deg * 1e7) / 1e7);
   list.push_back(std::round(height_m * 100) / 100);
@@ -91,8 +91,8 @@ class Czml : public MapCollection {
       Json samples = Json::array();
       for (const MapPosition& at : track.positions) {
         samples.push_back(at.time_s);
-        addPlace(samples, at.position.longitude_deg, at.position.latitude_deg,
-                 at.position.height_ellipsoid_m);
+        addPosition(samples, at.position.longitude_deg, at.position.latitude_deg,
+                    at.position.height_ellipsoid_m);
       }
       packets_.push_back(
           {{"id", "track/" + std::to_string(track_names_.size())},
@@ -130,7 +130,7 @@ class Czml : public MapCollection {
       } else {
         Json place = Json::array();
         const GeodeticPosition& at = emitters[e].positions.front().position;
-        addPlace(place, at.longitude_deg, at.latitude_deg, at.height_ellipsoid_m);
+        addPosition(place, at.longitude_deg, at.latitude_deg, at.height_ellipsoid_m);
         packet["position"] = {{"cartographicDegrees", place}};
       }
       packet["point"] = {{"pixelSize", 10},
@@ -151,7 +151,7 @@ class Czml : public MapCollection {
     for (int n = 0; n + 1 < OGR_G_GetPointCount(ring); ++n) {  // the last point is the first
       double x = OGR_G_GetX(ring, n), y = OGR_G_GetY(ring, n);
       OCTTransform(to_earth_.get(), 1, &x, &y, nullptr);
-      addPlace(list, x, y, floats ? map.height->metres + geoidUndulation_m(y, x) : 0);
+      addPosition(list, x, y, floats ? map.height->metres + geoidUndulation_m(y, x) : 0);
     }
     return list;
   }

@@ -62,9 +62,9 @@ class NewFeature {
   gdal::Feature feature_;
 };
 
-gdal::Geometry pointAt(const GeodeticPosition& place) {
+gdal::Geometry pointAt(const GeodeticPosition& position) {
   gdal::Geometry point(OGR_G_CreateGeometry(wkbPoint));
-  OGR_G_SetPoint_2D(point.get(), 0, place.longitude_deg, place.latitude_deg);
+  OGR_G_SetPoint_2D(point.get(), 0, position.longitude_deg, position.latitude_deg);
   return point;
 }
 

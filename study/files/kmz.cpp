@@ -41,7 +41,7 @@ std::vector<std::string> warpOptions(const MapGrid& grid) {
   std::vector<std::string> options{"-r", "near", "-of", "MEM", "-t_srs"};
   const bool has_north = grid.pixelAt(90, 0) >= 0;
   if (!has_north && grid.pixelAt(-90, 0) < 0) {
-    options.push_back(earth(grid.places[grid.pixels() / 2].longitude_deg));
+    options.push_back(earth(grid.positions[grid.pixels() / 2].longitude_deg));
     return options;
   }
   // GDAL finds no extent around a pole. The picture has all longitudes; its pixels are about those of the map
@@ -52,8 +52,8 @@ std::vector<std::string> warpOptions(const MapGrid& grid) {
   const int height = static_cast<int>(std::min<double>(kMaxWidth / 2, std::ceil(diagonal)));
   const double side = has_north ? 1 : -1;
   double edge_deg = 90;  // the latitude that is farthest from the pole, times `side`
-  for (const emfield::Surface::Place& place : grid.places) {
-    edge_deg = std::fmin(edge_deg, side * place.latitude_deg);
+  for (const emfield::Surface::Position& position : grid.positions) {
+    edge_deg = std::fmin(edge_deg, side * position.latitude_deg);
   }
   const double pixel_deg = grid.cell_m / 111e3;
   edge_deg = std::max(-90.0, edge_deg - pixel_deg);  // places are the pixels' centres

@@ -79,7 +79,7 @@ render::Legend legendOf(const Map& map) {
   }
   if (!(least <= largest)) least = largest = 0;
   double low = static_cast<double>(least), high = static_cast<double>(largest);
-  if (isPart(map.kind)) {
+  if (isFraction(map.kind)) {
     low = 0;
     high = 1;
     legend.note = fmt::format("no colour: < {}", kNoPart);
@@ -96,7 +96,7 @@ render::Legend legendOf(const Map& map) {
 std::optional<render::Rgb> colorOf(const Map& map, const render::Legend& legend, float value) {
   if (std::isnan(value)) return std::nullopt;
   if (!isWhole(map.kind)) {
-    if (isPart(map.kind) && value < kNoPart) return std::nullopt;
+    if (isFraction(map.kind) && value < kNoPart) return std::nullopt;
     return legend.function.color(static_cast<double>(value));
   }
   if (map.kind == MapKind::count) {

@@ -94,7 +94,7 @@ class MapPicture {
   /// True if a pixel of the area has no value.
   bool hasUnknown() const {
     for (std::size_t p = 0; p < map_.values.size(); ++p)
-      if (std::isnan(map_.values[p]) && !std::isnan(grid_.places[p].latitude_deg)) return true;
+      if (std::isnan(map_.values[p]) && !std::isnan(grid_.positions[p].latitude_deg)) return true;
     return false;
   }
 
@@ -124,7 +124,7 @@ class MapPicture {
   std::uint32_t pixelAt(std::size_t p, const std::vector<float>& shades) const {
     const float value = map_.values[p];
     const double shade = 0.25 + 0.7 * static_cast<double>(shades[p]);
-    const bool is_left_out = std::isnan(grid_.places[p].latitude_deg);
+    const bool is_left_out = std::isnan(grid_.positions[p].latitude_deg);
     Rgb color{static_cast<float>(shade), static_cast<float>(shade), static_cast<float>(shade)};
     if (is_left_out) color = {1, 1, 1};
     if (const std::optional<Rgb> over_ground = colorOf(map_, legend_, value)) {
@@ -172,7 +172,7 @@ class MapPicture {
   }
 
   void drawMarkers(Canvas& canvas) const {
-    std::vector<std::pair<Point2, const MapMarker*>> places;
+    std::vector<std::pair<Point2, const MapMarker*>> positions;
     std::vector<Rect> taken;  // by markers and labels
     for (const MapMarker& marker : options_.markers) {
       const long long pixel = grid_.pixelAt(marker.latitude_deg, marker.longitude_deg);
@@ -181,13 +181,13 @@ class MapPicture {
                       top_ + (static_cast<double>(pixel / grid_.width) + 0.5) * scale_};
       taken.push_back(
           {at.x - 6.5 * style_.unit, at.y - 6.5 * style_.unit, 13 * style_.unit, 13 * style_.unit});
-      places.push_back({at, &marker});
+      positions.push_back({at, &marker});
     }
-    for (const auto& [at, marker] : places) {
+    for (const auto& [at, marker] : positions) {
       canvas.disc(at, 6.5 * style_.unit, {{0.1f, 0.12f, 0.15f}});
       canvas.disc(at, 4.6 * style_.unit, {render::colorOf(marker->kind)});
     }
-    for (const auto& [at, marker] : places) {
+    for (const auto& [at, marker] : positions) {
       const Rect box = labelBox(canvas.textBox(marker->label, style_.small_px), at, taken);
       taken.push_back(box);
       canvas.textWithRim(marker->label, {box.x, box.y + box.height / 2}, style_.small_px,
@@ -253,7 +253,7 @@ std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrai
   std::vector<float> heights(grid.pixels(), NAN);
   parallelFor(static_cast<int>(grid.pixels()), 4096, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) {
-      const auto [latitude_deg, longitude_deg] = grid.places[p];
+      const auto [latitude_deg, longitude_deg] = grid.positions[p];
       if (std::isnan(latitude_deg)) continue;
       heights[p] = static_cast<float>(terrain.heightMsl_m(latitude_deg, longitude_deg));
     }

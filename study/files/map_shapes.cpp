@@ -129,7 +129,7 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
     one.max = is_last ? range.max : levels[above];
     one.geometry.reset(OGR_F_StealGeometry(feature.get()));
     if (one.geometry == nullptr || OGR_G_IsEmpty(one.geometry.get())) continue;
-    const bool is_nothing = isPart(map.kind) && above == 0 && !is_last;
+    const bool is_nothing = isFraction(map.kind) && above == 0 && !is_last;
     if (!is_nothing) one.color = colorOf(map, legend, static_cast<float>((one.min + one.max) / 2));
     shapes.bands.push_back(std::move(one));
   }
@@ -177,7 +177,7 @@ void addOutlines(const MapGrid& grid, const Map& map, const std::filesystem::pat
 std::vector<double> levelsOf(const Map& map) {
   if (isWhole(map.kind)) return {};
   const Range range = rangeOf(map);
-  if (isPart(map.kind) && range.max <= 1) return {0.1, 0.5, 0.9};
+  if (isFraction(map.kind) && range.max <= 1) return {0.1, 0.5, 0.9};
   if (!(range.min < range.max)) return {};
   double step = map.unit.rfind("dB", 0) == 0 ? 10 : roundStep((range.max - range.min) / 4);
   if ((range.max - range.min) / step > kMaxLevels) step = roundStep((range.max - range.min) / kMaxLevels);

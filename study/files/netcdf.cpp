@@ -180,16 +180,17 @@ class NetCdf : public MapCollection {
                   {{"standard_name", "projection_x_coordinate"}, {"long_name", "easting"}, {"axis", "X"}});
     // Single precision, for half the size; accurate to 2 m. x and y are exact.
     std::vector<float> latitudes, longitudes;
-    for (const emfield::Surface::Place& place : grid.places) {
-      latitudes.push_back(static_cast<float>(place.latitude_deg));
-      longitudes.push_back(std::isnan(place.latitude_deg) ? NAN : static_cast<float>(place.longitude_deg));
+    for (const emfield::Surface::Position& position : grid.positions) {
+      latitudes.push_back(static_cast<float>(position.latitude_deg));
+      longitudes.push_back(std::isnan(position.latitude_deg) ? NAN
+                                                             : static_cast<float>(position.longitude_deg));
     }
-    addPlaces(messages, "lat", "latitude", "degrees_north", latitudes);
-    addPlaces(messages, "lon", "longitude", "degrees_east", longitudes);
+    addPositions(messages, "lat", "latitude", "degrees_north", latitudes);
+    addPositions(messages, "lon", "longitude", "degrees_east", longitudes);
   }
 
-  void addPlaces(const scenario::GdalMessages& messages, const char* name, const char* standard_name,
-                 const char* unit, const std::vector<float>& values) {
+  void addPositions(const scenario::GdalMessages& messages, const char* name, const char* standard_name,
+                    const char* unit, const std::vector<float>& values) {
     const char* const options[] = {"COMPRESS=DEFLATE", nullptr};
     const gdal::ValueType real = numberType(GDT_Float32);
     const gdal::Array array =

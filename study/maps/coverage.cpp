@@ -34,7 +34,7 @@ bool hasChannelPerEmitter(const scenario::Scenario& scenario, const std::string&
 std::shared_ptr<const scenario::Scenario> atTargets(const scenario::Scenario& scenario, Quantity quantity) {
   auto at_targets = std::make_shared<scenario::Scenario>(scenario);
   at_targets->output.quantities = {scenario::info(quantity).name};
-  at_targets->output.radar_look = scenario::RadarLook::target;
+  at_targets->output.radar_look = scenario::RadarAim::target;
   const bool has_looks = at_targets->output.interval.kind == scenario::IntervalKind::cumulative;
   if (scenario::needsRadar(quantity) && !has_looks) at_targets->output.interval = {};
   if (at_targets->output.combine != scenario::CombineMode::max) {
@@ -63,7 +63,7 @@ std::optional<std::string> scaleWarning(const MapGrid& grid) {
   constexpr double kTolerated = 0.02;
   float least_m2 = INFINITY, largest_m2 = 0;
   for (std::size_t pixel = 0; pixel < grid.pixels(); ++pixel) {
-    if (std::isnan(grid.places[pixel].latitude_deg)) continue;
+    if (std::isnan(grid.positions[pixel].latitude_deg)) continue;
     least_m2 = std::min(least_m2, grid.areas_m2[pixel]);
     largest_m2 = std::max(largest_m2, grid.areas_m2[pixel]);
   }
@@ -193,10 +193,10 @@ struct CoverageSolver::Impl {
         requests(std::move(of_maps_requests)),
         options(of_maps),
         scale_warning(scaleWarning(map_grid)) {
-    const auto isInside = [](const emfield::Surface::Place& centre) {
+    const auto isInside = [](const emfield::Surface::Position& centre) {
       return !std::isnan(centre.latitude_deg);
     };
-    if (std::none_of(grid.places.begin(), grid.places.end(), isInside)) {
+    if (std::none_of(grid.positions.begin(), grid.positions.end(), isInside)) {
       throw Error(ErrorCode::usage,
                   fmt::format("no pixel of {} m has its centre in the area: a smaller cell or a larger area",
                               grid.cell_m));

@@ -20,15 +20,15 @@ class Strip {
   Strip(const MapGrid& grid, int first_row, int rows) {
     surface_.width = grid.width;
     surface_.height = rows;
-    const auto begin = grid.places.begin() + static_cast<std::ptrdiff_t>(first_row) * grid.width;
-    surface_.places.assign(begin, begin + static_cast<std::ptrdiff_t>(rows) * grid.width);
-    surface_.offsets_m.assign(surface_.places.size(), 0.0f);
-    found_m_.assign(surface_.places.size(), NAN);
+    const auto begin = grid.positions.begin() + static_cast<std::ptrdiff_t>(first_row) * grid.width;
+    surface_.positions.assign(begin, begin + static_cast<std::ptrdiff_t>(rows) * grid.width);
+    surface_.offsets_m.assign(surface_.positions.size(), 0.0f);
+    found_m_.assign(surface_.positions.size(), NAN);
   }
 
-  bool hasPlaces() const {
-    return std::any_of(surface_.places.begin(), surface_.places.end(),
-                       [](const auto& place) { return !std::isnan(place.latitude_deg); });
+  bool hasPositions() const {
+    return std::any_of(surface_.positions.begin(), surface_.positions.end(),
+                       [](const auto& position) { return !std::isnan(position.latitude_deg); });
   }
 
   /// The positions, with this number of steps of height above their offsets.
@@ -42,18 +42,18 @@ class Strip {
   /// that do not reach it, or reach it at the first height, are left out from now on.
   /// @param volume  over surfaceOf(step_m, steps)
   void search(double step_m, int steps, double threshold, const volume::DenseVolume& volume) {
-    const std::size_t places = surface_.places.size();
-    parallelFor(static_cast<int>(places), 4096, [&](int begin, int end) {
+    const std::size_t positions = surface_.positions.size();
+    parallelFor(static_cast<int>(positions), 4096, [&](int begin, int end) {
       for (int p = begin; p < end; ++p) {
-        if (std::isnan(surface_.places[p].latitude_deg)) continue;
+        if (std::isnan(surface_.positions[p].latitude_deg)) continue;
         int k = volume.first_valid_k.empty() ? 0 : volume.first_valid_k[p];
-        while (k <= steps && !(static_cast<double>(volume.values[k * places + p]) >= threshold)) ++k;
+        while (k <= steps && !(static_cast<double>(volume.values[k * positions + p]) >= threshold)) ++k;
         const bool is_found = k <= steps;
         if (is_found) {
           found_m_[p] = surface_.offsets_m[p] + static_cast<float>(k * step_m);
           surface_.offsets_m[p] += static_cast<float>((k - 1) * step_m);
         }
-        if (!is_found || k == 0) surface_.places[p].latitude_deg = NAN;
+        if (!is_found || k == 0) surface_.positions[p].latitude_deg = NAN;
       }
     });
   }
@@ -93,14 +93,14 @@ std::vector<std::vector<float>> LeastHeights::compute(
     Strip all(grid_, row, std::min(rows_at_once, grid_.height - row));
     std::shared_ptr<const volume::DenseVolume> first;
     constexpr double kFirstStep_m = kHighestSearched_m / kFirstSteps;
-    if (all.hasPlaces()) {
+    if (all.hasPositions()) {
       std::optional<emfield::FieldSolver> own;
       first = solve(all.surfaceOf(kFirstStep_m, kFirstSteps), is_kept ? first_steps_ : own);
     }
     for (std::size_t t = 0; t < thresholds_.size(); ++t) {
       Strip strip = all;
       if (first) strip.search(kFirstStep_m, kFirstSteps, thresholds_[t], *first);
-      for (double step_m = kFirstStep_m; strip.hasPlaces() && step_m > kMinHeightAccuracy_m;) {
+      for (double step_m = kFirstStep_m; strip.hasPositions() && step_m > kMinHeightAccuracy_m;) {
         step_m /= kLaterSteps;
         std::optional<emfield::FieldSolver> own;
         const auto volume = solve(strip.surfaceOf(step_m, kLaterSteps), own);

@@ -248,17 +248,17 @@ class AreaTest {
   explicit AreaTest(const MapArea& area) : area_(area) {
     if (area.circle) middle_ = fastGeodesy(area.circle->latitude_deg, area.circle->longitude_deg);
   }
-  bool isInside(const emfield::Surface::Place& place) const {
+  bool isInside(const emfield::Surface::Position& position) const {
     constexpr double kMargin_deg = 1e-9;
-    if (area_.circle) return distance_m(place) <= area_.circle->radius_m;
-    const double east_deg = place.longitude_deg - area_.box.west_deg;
-    return place.latitude_deg >= area_.box.south_deg - kMargin_deg &&
-           place.latitude_deg <= area_.box.north_deg + kMargin_deg &&
+    if (area_.circle) return distance_m(position) <= area_.circle->radius_m;
+    const double east_deg = position.longitude_deg - area_.box.west_deg;
+    return position.latitude_deg >= area_.box.south_deg - kMargin_deg &&
+           position.latitude_deg <= area_.box.north_deg + kMargin_deg &&
            east_deg - 360 * std::floor((east_deg + kMargin_deg) / 360) <=
                area_.box.east_deg - area_.box.west_deg + kMargin_deg;
   }
   /// Marks the positions of a patch's row that are inside. A circle is convex.
-  void markInside(const emfield::Surface::Place* row, int count, bool* is_inside) const {
+  void markInside(const emfield::Surface::Position* row, int count, bool* is_inside) const {
     const auto isIn = [&](int i) { return isInside(row[i]); };
     const bool begin_is_in = isIn(0), end_is_in = isIn(count - 1);
     if (!area_.circle || !(begin_is_in || end_is_in)) {
@@ -275,7 +275,7 @@ class AreaTest {
   }
   /// Of a patch.
   /// @param radius_m  upper bound of the distance of its positions from its middle
-  PatchPart partOf(const emfield::Surface::Place& middle, double radius_m) const {
+  PatchPart partOf(const emfield::Surface::Position& middle, double radius_m) const {
     if (!area_.circle) return PatchPart::across;
     const double middle_m = distance_m(middle);
     return middle_m + radius_m <= area_.circle->radius_m  ? PatchPart::inside
@@ -284,8 +284,8 @@ class AreaTest {
   }
 
  private:
-  double distance_m(const emfield::Surface::Place& place) const {
-    return fastInverse(middle_, toEcef({place.latitude_deg, place.longitude_deg, 0})).distance_m;
+  double distance_m(const emfield::Surface::Position& position) const {
+    return fastInverse(middle_, toEcef({position.latitude_deg, position.longitude_deg, 0})).distance_m;
   }
 
   const MapArea& area_;
@@ -311,20 +311,20 @@ double radiusOf(const Lattice& lattice, std::size_t node) {
 /// @param per_degree2  m2 per square degree, over areas of the patch
 EMSCAPE_SIMD_CLONES void fillRow(const Patch::Row& latitude, const Patch::Row& longitude,
                                  const Parabola& per_degree2, double step, int pixels,
-                                 emfield::Surface::Place* places, float* areas_m2) {
+                                 emfield::Surface::Position* positions, float* areas_m2) {
   int beyond = 0;
   for (int i = 0; i < pixels; ++i) {
     const double u = i * step;
     const double latitude_deg = latitude.value.at(u), longitude_deg = longitude.value.at(u);
     const double degrees2 = longitude.value.slope(u) * latitude.slope_south.at(u) -
                             longitude.slope_south.at(u) * latitude.value.slope(u);
-    places[i].latitude_deg = latitude_deg;
-    places[i].longitude_deg = longitude_deg;
+    positions[i].latitude_deg = latitude_deg;
+    positions[i].longitude_deg = longitude_deg;
     areas_m2[i] = static_cast<float>(std::fabs(degrees2) * per_degree2.at(u));
     beyond |= std::fabs(longitude_deg) < 180 ? 0 : 1;
   }
   if (beyond == 0) return;
-  for (int i = 0; i < pixels; ++i) places[i].longitude_deg = wrapLongitude_deg(places[i].longitude_deg);
+  for (int i = 0; i < pixels; ++i) positions[i].longitude_deg = wrapLongitude_deg(positions[i].longitude_deg);
 }
 
 /// Area (m2) of the pixel at a node of a lattice with one node per pixel: that of the parallelogram to the
@@ -338,9 +338,9 @@ double areaAt(const Lattice& lattice, std::size_t node) {
 }
 
 /// Sets positions and areas, on patches between the nodes of a lattice.
-void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
-  grid.places.resize(static_cast<std::size_t>(grid.width) * grid.height);
-  grid.areas_m2.resize(grid.places.size());
+void fillPositions(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
+  grid.positions.resize(static_cast<std::size_t>(grid.width) * grid.height);
+  grid.areas_m2.resize(grid.positions.size());
   const AreaTest test(area);
   const int side = lattice.side, nodes_x = lattice.nodesX();
   const double step = 1.0 / side;
@@ -358,11 +358,11 @@ void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
       for (int j = 0; j < rows; ++j) {
         const double v = j * step;
         const std::size_t first = static_cast<std::size_t>(patch_y * side + j) * grid.width + patch_x * side;
-        emfield::Surface::Place* const places = grid.places.data() + first;
+        emfield::Surface::Position* const positions = grid.positions.data() + first;
         float* const areas_m2 = grid.areas_m2.data() + first;
         Parabola per_degree2 = scales.row(v).value;
         for (double* const c : {&per_degree2.c0, &per_degree2.c1, &per_degree2.c2}) *c *= step * step;
-        fillRow(latitudes.row(v), longitudes.row(v), per_degree2, step, columns, places, areas_m2);
+        fillRow(latitudes.row(v), longitudes.row(v), per_degree2, step, columns, positions, areas_m2);
         if (lattice.is_polar) {
           for (int i = 0; i < columns; ++i)
             areas_m2[i] =
@@ -370,10 +370,10 @@ void fillPlaces(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
         }
         if (part == PatchPart::inside) continue;
         bool is_inside[kMaxPatchPixels] = {};
-        if (part == PatchPart::across) test.markInside(places, columns, is_inside);
+        if (part == PatchPart::across) test.markInside(positions, columns, is_inside);
         for (int i = 0; i < columns; ++i) {
           if (is_inside[i]) continue;
-          places[i].latitude_deg = NAN;
+          positions[i].latitude_deg = NAN;
           areas_m2[i] = 0;
         }
       }
@@ -427,7 +427,7 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   grid.height = static_cast<int>(end_row - first_row);
   grid.left_m = first_column * cell_m;
   grid.top_m = end_row * cell_m;
-  fillPlaces(latticeOf(Projection(reference, earth), grid), area, grid);
+  fillPositions(latticeOf(Projection(reference, earth), grid), area, grid);
   return grid;
 }
 
@@ -450,7 +450,7 @@ MapGrid mapGridAt(const std::string& wkt, const std::string& crs, double cell_m,
                                                   width, height, cell_m));
   }
   const MapArea everywhere{{-90, 90, -180, 180}, {}};
-  fillPlaces(latticeOf(Projection(study::referenceOf(grid), wgs84Reference()), grid), everywhere, grid);
+  fillPositions(latticeOf(Projection(study::referenceOf(grid), wgs84Reference()), grid), everywhere, grid);
   return grid;
 }
 

@@ -25,7 +25,7 @@ MapKind kindOf(const ProductInfo& product, Quantity quantity, const std::string&
   if (product.categorical) return MapKind::count;
   if (!unit.empty()) return MapKind::level;
   const bool is_probability = is_value && quantity == Quantity::detection_probability;
-  return is_probability ? MapKind::probability : MapKind::part;
+  return is_probability ? MapKind::probability : MapKind::fraction;
 }
 
 /// Colours of a product's classes: indices of render::categoryColor().
@@ -107,7 +107,7 @@ SurfaceField::SurfaceField(const MapGrid& grid, const std::vector<CoverageReques
   auto surface = std::make_shared<emfield::Surface>();
   surface->width = grid.width;
   surface->height = grid.height;
-  surface->places = grid.places;
+  surface->positions = grid.positions;
   surface->reference = reference;
   for (const CoverageRequest& request : requests) {
     for (const MapHeight& height : request.heights) {
@@ -248,7 +248,7 @@ float SurfaceMaps::ofEmitters(Product product, const std::vector<SurfaceValues::
       largest = value;
     }
     if (product == Product::max_range) {
-      const auto [latitude_deg, longitude_deg] = grid_.places[p];
+      const auto [latitude_deg, longitude_deg] = grid_.positions[p];
       const double distance_m =
           fastInverse(one.geodesy, surfacePoint(latitude_deg, longitude_deg).ecef_m).distance_m;
       farthest_m = std::fmax(farthest_m, distance_m);

@@ -16,17 +16,17 @@ class TimeFigures {
  public:
   /// @param places   0: nothing is computed
   /// @param times_s  ascending
-  TimeFigures(std::size_t places, std::vector<double> times_s);
+  TimeFigures(std::size_t positions, std::vector<double> times_s);
 
   /// Adds the next of the times.
-  void add(double time_s, const std::function<bool(std::size_t place)>& isCovered);
+  void add(double time_s, const std::function<bool(std::size_t pixel)>& isCovered);
 
   /// A product over time, after the last of the times. NaN: first_detection of a position that is never
   /// covered, revisit of a position that is covered less than twice.
-  float figure(Product product, std::size_t place) const;
+  float figure(Product product, std::size_t pixel) const;
 
  private:
-  struct Place {
+  struct Pixel {
     float first_s;        ///< since the first of the times, as all; NaN: not yet
     float covered_s = 0;  ///< time so far
     float gap_s = 0;      ///< of the present gap
@@ -39,7 +39,7 @@ class TimeFigures {
   };
   std::vector<double> times_s_;
   std::size_t next_ = 0;
-  std::vector<Place> places_;
+  std::vector<Pixel> pixels_;
 };
 
 }  // namespace emscape::study

@@ -56,14 +56,14 @@ void findInputs(const Json& record, CoverageFolder& folder) {
     MapArea area;
     area.box = {90, -90, 0, 0};
     scenario::GeoBox& box = area.box;
-    const double middle_deg = folder.grid->places[folder.grid->pixels() / 2].longitude_deg;
+    const double middle_deg = folder.grid->positions[folder.grid->pixels() / 2].longitude_deg;
     double west_deg = 0, east_deg = 0;
-    for (const emfield::Surface::Place& place : folder.grid->places) {
-      const double from_middle_deg = std::remainder(place.longitude_deg - middle_deg, 360.0);
+    for (const emfield::Surface::Position& position : folder.grid->positions) {
+      const double from_middle_deg = std::remainder(position.longitude_deg - middle_deg, 360.0);
       west_deg = std::min(west_deg, from_middle_deg);
       east_deg = std::max(east_deg, from_middle_deg);
-      box.south_deg = std::min(box.south_deg, place.latitude_deg);
-      box.north_deg = std::max(box.north_deg, place.latitude_deg);
+      box.south_deg = std::min(box.south_deg, position.latitude_deg);
+      box.north_deg = std::max(box.north_deg, position.latitude_deg);
     }
     box.west_deg = middle_deg + west_deg;
     box.east_deg = middle_deg + east_deg;

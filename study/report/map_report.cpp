@@ -77,8 +77,8 @@ std::string quoted(const std::string& word) {
 
 /// The closest active emitter of those for the quantity; -1: none.
 int nearestEmitter(const MapStudy& study, const scenario::Snapshot& snapshot,
-                   const emfield::Surface::Place& place) {
-  const FastGeodesy from = fastGeodesy(place.latitude_deg, place.longitude_deg);
+                   const emfield::Surface::Position& position) {
+  const FastGeodesy from = fastGeodesy(position.latitude_deg, position.longitude_deg);
   int nearest = -1;
   double nearest_m = INFINITY;
   for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
@@ -106,14 +106,14 @@ std::string explainCommand(const MapStudy& study, const std::vector<MapRecord>& 
   if (shown == nullptr) return "";
   const Map& map = shown->map;
   const scenario::Scenario& scenario = *study.scenarios.front();
-  const emfield::Surface::Place place = study.grid->places[shown->summary.largest_pixel];
+  const emfield::Surface::Position position = study.grid->positions[shown->summary.largest_pixel];
   const int emitter = nearestEmitter(
-      study, scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), *map.time_s), place);
+      study, scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), *map.time_s), position);
   if (emitter < 0) return "";
   std::string command =
       fmt::format("emscape profile {} --emitter {} --time {} --to {:.7f},{:.7f},{}{}", quoted(scenario.file),
-                  quoted(scenario.emitters[emitter].name), *map.time_s, place.latitude_deg,
-                  place.longitude_deg, map.height->metres, isAboveGround(*map.height) ? " --agl" : "");
+                  quoted(scenario.emitters[emitter].name), *map.time_s, position.latitude_deg,
+                  position.longitude_deg, map.height->metres, isAboveGround(*map.height) ? " --agl" : "");
   for (const std::string& edit : editsOf(scenario)) command += " --set " + quoted(edit);
   return command + " --set output.radar_look=target";
 }

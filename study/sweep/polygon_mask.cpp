@@ -174,8 +174,8 @@ std::vector<PixelCentre> centresIn(const LayerSystem& system, const MapGrid& gri
     const std::size_t end = std::min(begin + kAtOnce, grid.pixels());
     std::vector<double> x, y;
     for (std::size_t p = begin; p < end; ++p) {
-      x.push_back(grid.places[p].longitude_deg);
-      y.push_back(grid.places[p].latitude_deg);
+      x.push_back(grid.positions[p].longitude_deg);
+      y.push_back(grid.positions[p].latitude_deg);
     }
     const std::vector<int> done = system.fromWgs84(x, y);
     for (std::size_t p = begin; p < end; ++p) {

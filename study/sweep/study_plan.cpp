@@ -22,8 +22,8 @@ class ChangeProbe {
       : study_(study), terrain_(std::move(terrain)) {
     auto surface = std::make_shared<emfield::Surface>();
     surface->width = surface->height = 1;
-    surface->places = {{(study.area.box.south_deg + study.area.box.north_deg) / 2,
-                        (study.area.box.west_deg + study.area.box.east_deg) / 2}};
+    surface->positions = {{(study.area.box.south_deg + study.area.box.north_deg) / 2,
+                           (study.area.box.west_deg + study.area.box.east_deg) / 2}};
     surface->heights_m = {100};
     options_.surface = surface;
     options_.allow_missing_terrain = true;
@@ -64,7 +64,7 @@ class ChangeProbe {
  private:
   ScenarioPtr withOutput(const scenario::Scenario& scenario) const {
     auto changed = std::make_shared<scenario::Scenario>(scenario);
-    changed->output.radar_look = scenario::RadarLook::target;
+    changed->output.radar_look = scenario::RadarAim::target;
     changed->output.combine = scenario::CombineMode::sum;
     return changed;
   }

@@ -7,7 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "study/maps/kept_terrain.h"
+#include "study/maps/terrain_cache.h"
 #include "study/sweep/measure.h"
 #include "study/sweep/polygon_mask.h"
 
@@ -45,7 +45,7 @@ struct StudyRunner::Impl {
   std::vector<QuantityGroup> groups;
   std::vector<std::vector<std::uint8_t>> pixels;  ///< of each measure; empty: all
   std::set<std::string> warnings;
-  KeptTerrain terrain;
+  TerrainCache terrain;
   VariantFiles* files = nullptr;
   std::size_t together = 1;  ///< variants that are computed at the same time
 

@@ -14,7 +14,7 @@
 #include "emscape/volume/file.h"
 #include "study/files/geotiff.h"
 #include "study/files/map_metadata.h"
-#include "study/maps/kept_terrain.h"
+#include "study/maps/terrain_cache.h"
 
 namespace emscape::study {
 namespace {
@@ -70,7 +70,7 @@ struct VariantFiles::State {
   emfield::FieldOptions options;
   bool has_levels = false;  ///< several quantities or thresholds
   std::optional<emfield::FieldSolver> solver;
-  KeptTerrain terrain;
+  TerrainCache terrain;
   std::set<std::size_t> begun;  ///< variants whose folder has no temporaries of ended processes
 
   fs::path folderFor(std::size_t variant) {
@@ -108,7 +108,7 @@ void VariantFiles::addVolumes(std::size_t variant,
   State& state = *state_;
   if (state.kept != KeptFiles::volumes) return;
   auto own = std::make_shared<scenario::Scenario>(*scenario);
-  own->output.radar_look = scenario::RadarLook::target;
+  own->output.radar_look = scenario::RadarAim::target;
   if (own->output.combine != scenario::CombineMode::max) own->output.combine = scenario::CombineMode::sum;
   const scenario::TerrainPtr& terrain = state.terrain.of(scenario);
   const fs::path folder = state.folderFor(variant);

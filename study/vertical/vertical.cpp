@@ -115,9 +115,9 @@ class Solver {
     surface->heights_m = diagram.heights_m;
     for (const double azimuth_deg : request.azimuths_deg) {
       for (const double range_m : diagram.ranges_m) {
-        const GeodeticPosition place =
+        const GeodeticPosition position =
             geodesicDirect(diagram.latitude_deg, diagram.longitude_deg, degToRad(azimuth_deg), range_m);
-        surface->places.push_back({place.latitude_deg, place.longitude_deg});
+        surface->positions.push_back({position.latitude_deg, position.longitude_deg});
       }
     }
     options_.surface = surface;
@@ -133,13 +133,13 @@ class Solver {
     Solved solved;
     solved.warnings = solver.warnings();
     const std::size_t ranges = static_cast<std::size_t>(request_.ranges);
-    const std::size_t places = ranges * request_.azimuths_deg.size();
+    const std::size_t positions = ranges * request_.azimuths_deg.size();
     for (std::size_t cut = 0; cut < request_.azimuths_deg.size(); ++cut) {
       std::vector<float> values;
       for (std::size_t k = 0; k < options_.surface->heights_m.size(); ++k) {
         for (std::size_t p = cut * ranges; p < (cut + 1) * ranges; ++p) {
           const bool is_valid = volume->first_valid_k.empty() || k >= volume->first_valid_k[p];
-          values.push_back(is_valid ? volume->values[k * places + p] : NAN);
+          values.push_back(is_valid ? volume->values[k * positions + p] : NAN);
         }
       }
       solved.values.push_back(std::move(values));
@@ -207,10 +207,10 @@ double lowestGround_m(const VerticalRequest& request, const VerticalDiagram& dia
   double lowest = INFINITY;
   for (const double azimuth_deg : request.azimuths_deg) {
     for (const double range_m : diagram.ranges_m) {
-      const GeodeticPosition place =
+      const GeodeticPosition position =
           geodesicDirect(diagram.latitude_deg, diagram.longitude_deg, degToRad(azimuth_deg), range_m);
       const auto ground_m =
-          static_cast<double>(terrain->heightMsl_m(place.latitude_deg, place.longitude_deg));
+          static_cast<double>(terrain->heightMsl_m(position.latitude_deg, position.longitude_deg));
       if (ground_m < lowest) lowest = ground_m;
     }
   }
@@ -259,7 +259,7 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
   checkRequest(*scenario, request);
   auto own = std::make_shared<scenario::Scenario>(*scenario);
   own->output.quantities = {scenario::info(request.quantity).name};
-  own->output.radar_look = scenario::RadarLook::target;
+  own->output.radar_look = scenario::RadarAim::target;
   own->output.combine = scenario::CombineMode::per_emitter;
   own->output.interval = {};
   requireValueOfOneEmitter(*own, request);

@@ -71,7 +71,7 @@ TEST(MeshSeries, IsReproducible) {
     return result.err;
   };
   EXPECT_THAT(refusal({"--mode", "mida"}),
-              HasSubstr("mode mida: a field on tetrahedra is drawn by dvr alone"));
+              HasSubstr("mode mida: fields on tetrahedra support only mode dvr"));
   EXPECT_THAT(refusal({"--rays", "columns"}), HasSubstr("--rays columns: has no effect"));
   EXPECT_THAT(refusal({"--step", "0.5"}), HasSubstr("--step: has no effect"));
   EXPECT_THAT(refusal({"--compare", "original"}), HasSubstr("--compare: has no effect"));

@@ -228,7 +228,7 @@ class Clutter : public test::OnBackends {
 /// A tracking radar above the middle of a line of voxels.
 std::shared_ptr<scenario::Scenario> lineWith(const scenario::Emitter& radar) {
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   addEmitter(*scenario, middleOf(*scenario), radar);
   return scenario;
 }
@@ -353,7 +353,7 @@ TEST_P(Clutter, VoxelEqualsItsPath) {
       radar.scan.rate_rpm = 6;
     }
     scenario->atmosphere.rain_mm_h = 2;
-    scenario->output.radar_look = looks_at_target ? scenario::RadarLook::target : scenario::RadarLook::scan;
+    scenario->output.radar_look = looks_at_target ? scenario::RadarAim::target : scenario::RadarAim::scan;
     addEmitter(*scenario, {44.45, -71.52, 0}, radar);
     scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
     scenario->platforms[0].track[0].position.height_agl_m = 20;
@@ -456,7 +456,7 @@ TEST(CudaClutter, EqualsCpu) {
     auto scenario = emptyScenario(FrameKind::altitude, 44.5, -71.5, {40e3, 40e3, 5000}, {40, 40, 20});
     scenario->terrain = scenario::TerrainSpec{};
     scenario->output.quantities = {"sclnr_db"};
-    scenario->output.radar_look = scenario::RadarLook::target;
+    scenario->output.radar_look = scenario::RadarAim::target;
     scenario->atmosphere.rain_mm_h = 2;
     scenario::Emitter radar = cluttered(radarOf(antenna));
     radar.power_w = 2e5;

@@ -329,7 +329,7 @@ TEST_F(CudaField, ReflectedRaysInEveryPatternEqualCpu) {
   // The codes of reflected rays may differ by one step, which changes nulls 40 dB deep by 0.02 dB.
   std::mt19937 random(12);
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
-    for (const auto look : {scenario::RadarLook::scan, scenario::RadarLook::target}) {
+    for (const auto look : {scenario::RadarAim::scan, scenario::RadarAim::target}) {
       const auto scenario = randomScenario(random, frame,
                                            {PropagationModel::two_ray, PropagationModel::two_ray,
                                             PropagationModel::two_ray, PropagationModel::horizon},
@@ -382,7 +382,7 @@ TEST_F(CudaField, EveryReductionEqualsCpu) {
 
 TEST_F(CudaField, RadarProductsEqualCpu) {
   std::mt19937 random(6);
-  for (const auto look : {scenario::RadarLook::scan, scenario::RadarLook::target}) {
+  for (const auto look : {scenario::RadarAim::scan, scenario::RadarAim::target}) {
     const auto scenario = randomScenario(random, FrameKind::altitude,
                                          {PropagationModel::free_space, PropagationModel::horizon}, 900, 12);
     for (std::size_t e = 0; e < scenario->emitters.size(); ++e) {

@@ -72,7 +72,7 @@ TEST(BinaryIntegrationLoss, IsZeroForOnePulseAndSmallAtBestThreshold) {
 double detectionAt(const scenario::Emitter& radar, const char* term = "detection_probability") {
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
   addEmitter(*scenario, middleOf(*scenario), radar);
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   const PathEnd end{pointAt(*scenario, 30e3, 0), 500};
   return pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0, end, radar.propagation.model, nullptr)
       .find(term)

@@ -30,7 +30,7 @@ TEST_F(DetectionProduct, EqualsExactProbabilityOfRadarEquation) {
     radar.receiver.swerling = swerling;
     radar.receiver.pulses = 6;
     auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
-    scenario->output.radar_look = scenario::RadarLook::target;
+    scenario->output.radar_look = scenario::RadarAim::target;
     scenario->output.quantities = {"detection_probability"};
     addEmitter(*scenario, middleOf(*scenario), radar);
     const auto volume = solve(scenario);
@@ -45,7 +45,7 @@ TEST_F(DetectionProduct, JammingCountsAsNoise) {
   scenario::Emitter radar = trackingRadar();
   const scenario::Emitter jammer = jammerOf(1000);
   const auto scenario = duel(radar, jammer, 0, 60e3);
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   const RadarLink link = radarLinkOf(radar);
   const double jamming_to_noise = jammingPower_w(link, linkTowardsRadar(jammer, kGain_dbi - 35), 60e3) /
                                   noisePower_w(link.bandwidth_hz, link.noise_temperature_k);
@@ -62,7 +62,7 @@ TEST_F(DetectionProduct, EqualsFrequencyOfRandomTrials) {
   radar.receiver.pfa = 1e-2;
   const scenario::Emitter jammer = jammerOf(100);
   const auto scenario = duel(radar, jammer, 0, 60e3);
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   const double range_m = 16e3;
   const RadarLink link = radarLinkOf(radar);
   const double noise_w = noisePower_w(link.bandwidth_hz, link.noise_temperature_k);
@@ -85,7 +85,7 @@ TEST_F(DetectionProduct, SeveralRadarsAreIndependent) {
   scenario::Emitter radar = trackingRadar();
   radar.power_w = 100;
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   addEmitter(*scenario, middleOf(*scenario), radar);
   scenario::Emitter other = radar;
   other.receiver.swerling = 0;
@@ -104,7 +104,7 @@ TEST_F(DetectionProduct, IsZeroWithoutEcho) {
   radar.propagation.model = propagation::PropagationModel::horizon;
   auto scenario = emptyScenario(FrameKind::altitude, 44, -71, {300e3, 20e3, 2000}, {60, 4, 4});
   addEmitter(*scenario, {44, -71, 30}, radar);
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   scenario->output.quantities = {"detection_probability"};
   const auto volume = solve(scenario);
   EXPECT_EQ(valueAt(*volume, 0, 2, 0), 0) << "below the horizon";
@@ -118,7 +118,7 @@ TEST_F(DetectionProduct, FormulasReplaceExactStatistics) {
   radar.receiver.swerling = 0;
   radar.receiver.pulses = 10;
   auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   addEmitter(*scenario, middleOf(*scenario), radar);
   for (const auto method : {scenario::DetectionMethod::albersheim, scenario::DetectionMethod::shnidman}) {
     scenario->emitters[0].receiver.detection = method;
@@ -166,7 +166,7 @@ TEST(RadarChannels, UpdatesEqualNewSolver) {
   scenario->platforms[1].track.push_back(end);
   for (const char* quantity :
        {"snr_db", "detection_probability", "jammer_to_signal_db", "burn_through_margin_db"}) {
-    for (const auto look : {scenario::RadarLook::scan, scenario::RadarLook::target}) {
+    for (const auto look : {scenario::RadarAim::scan, scenario::RadarAim::target}) {
       SCOPED_TRACE(quantity);
       scenario->output.quantities = {quantity};
       scenario->output.radar_look = look;

@@ -294,7 +294,7 @@ const std::vector<Edit>& scenarioEdits() {
        }},
       {"output.radar_look",
        [](Scenario& s, Emitter&, Random& r) {
-         s.output.radar_look = oneOf(r, std::vector{scenario::RadarLook::scan, scenario::RadarLook::target});
+         s.output.radar_look = oneOf(r, std::vector{scenario::RadarAim::scan, scenario::RadarAim::target});
        }},
       {"output.wanted_emitter",
        [](Scenario& s, Emitter&, Random& r) { s.output.wanted_emitter = below(r, 3); }},
@@ -461,7 +461,7 @@ TEST(EditedScenario, EqualsANewSolverWhereRadarsAreJammed) {
   Random random(4);
   auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
   scenario->output.quantities = {"detection_probability", "jammer_to_signal_db", "burn_through_margin_db"};
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   checkEdits(scenario, hills(), 60, editValue, random);
 }
 
@@ -495,7 +495,7 @@ TEST_P(EditedEchoes, ThenPowerEqualANewSolver) {
   Random random(9);
   auto scenario = battlefield(random, FrameKind::altitude, {PropagationModel::horizon});
   scenario->output.quantities = {"power_density_dbwm2", "detection_probability"};
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   FieldSolver solver(scenario, nullptr, options);
   solver.update(scenario::snapshotAt(scenario, nullptr, 0));
   const auto edit = [&](const std::function<void(Scenario&)>& change) {

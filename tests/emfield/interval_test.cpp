@@ -207,7 +207,7 @@ std::shared_ptr<Scenario> radarAround(const ScanSpec& scan) {
   radar.power_w = 60;
   scenario->emitters = {radar};
   scenario->output.quantities = {"detection_probability"};
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   scenario->output.floor = 0;
   return scenario;
 }
@@ -402,7 +402,7 @@ TEST_P(Intervals, LookWhereTheBeamPassesInBursts) {
   raster.elevation_deg = raster.elevation_step_deg = 8;
   for (const ScanSpec& scan : {rotating(10), rotating(-8), sweeping(ScanKind::sector, 90, 50), raster}) {
     const auto scenario = radarAround(scan);
-    scenario->output.radar_look = scenario::RadarLook::scan;
+    scenario->output.radar_look = scenario::RadarAim::scan;
     const bool is_raster = scan.kind == ScanKind::raster;
     if (is_raster) scenario->emitters[0].antenna = scenario::makeGaussian(30, 4, 6, -35);
     FieldSolver solver = solverOf(scenario);

@@ -218,7 +218,7 @@ TEST(BurnThrough, DefaultThresholdIsHalfProbability) {
   // If jamming is far above the noise both agree: where the margin is 0, Pd is 1/2.
   scenario::Emitter jammer = jammerOf(1e6);
   const auto scenario = duel(radar, jammer, 0, 60e3);
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   const double margin_db = east(scenario, "burn_through_margin_db", 10e3);
   scenario->emitters[1].power_w *= dbToRatio(margin_db);
   EXPECT_NEAR(east(scenario, "burn_through_margin_db", 10e3), 0, 1e-3);

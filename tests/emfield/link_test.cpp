@@ -396,7 +396,7 @@ TEST(Detection, EqualsBudgetOfPathWithBeamOnTarget) {
   const DetectionRow row = detection.rows.at(0);
   scenario->emitters[0].receiver.target_rcs_m2 = 2;
   scenario->emitters[0].receiver.swerling = 3;
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0.5);
   const scenario::PlatformState& end = snapshot.platforms.at(1);
   const PathBudget budget = pathBudget(snapshot, 0, {end.position, end.height_msl_m},

@@ -118,9 +118,9 @@ struct Marched {
 /// Excess (dB) of the emitter's voxels: with an isotropic antenna the rest is free space.
 double excessIn(const volume::DenseVolume& volume, const Made& made, int i, int j, int k) {
   const GridColumn column = made.columns.view()[static_cast<std::size_t>(j * volume.grid.dims.x + i)];
-  const Vec3d place =
+  const Vec3d position =
       column.base_ecef_m + column.axis * static_cast<double>(made.columns.t_m[static_cast<std::size_t>(k)]);
-  const double distance_m = length(place - made.station.ecef_m);
+  const double distance_m = length(position - made.station.ecef_m);
   return 10 * std::log10(1000 / (4 * kPi * distance_m * distance_m)) -
          static_cast<double>(testing::valueAt(volume, i, j, k));
 }
@@ -515,8 +515,8 @@ TEST(ParabolicField, EqualsExplainedPathOverSmoothEarth) {
   const GeoFrame frame(volume->grid.frame);
   for (int i : {10, 60, 110, 160}) {
     for (int k : {4, 30, 55}) {
-      const GeodeticPosition place = frame.toGeodetic(volume->grid.center_m(i, 1, k));
-      const PathEnd end{place, volume->grid.center_m(i, 1, k).z};
+      const GeodeticPosition position = frame.toGeodetic(volume->grid.center_m(i, 1, k));
+      const PathEnd end{position, volume->grid.center_m(i, 1, k).z};
       const PathBudget budget = pathBudget(snapshot, 0, end, PropagationModel::parabolic_equation, nullptr);
       if (budget.excess.loss_db > 10) continue;  // nulls
       EXPECT_NEAR(budget.find("power_density_dbwm2")->value,
@@ -681,7 +681,7 @@ TEST(ParabolicField, SurfacesNearGroundEqualPaths) {
   Surface& surface = *made_surface;
   surface.width = surface.height = 30;
   for (int n = 0; n < 900; ++n) {
-    surface.places.push_back(
+    surface.positions.push_back(
         {kLatitude_deg - 0.1 + 0.2 * (n / 30) / 29, kLongitude_deg - 0.15 + 0.3 * (n % 30) / 29});
   }
   surface.heights_m = {3, 30, 100};
@@ -692,8 +692,8 @@ TEST(ParabolicField, SurfacesNearGroundEqualPaths) {
   std::vector<double> differences;
   for (int n = 7; n < 900; n += 47) {
     for (int k = 0; k < 3; ++k) {
-      scenario::SitePosition place;
-      const auto& at = surface.places[static_cast<std::size_t>(n)];
+      scenario::SitePosition position;
+      const auto& at = surface.positions[static_cast<std::size_t>(n)];
       const double height_msl_m = terrain->heightMsl_m(at.latitude_deg, at.longitude_deg) +
                                   surface.heights_m[static_cast<std::size_t>(k)];
       const PathBudget budget =
@@ -941,7 +941,7 @@ TEST(ParabolicField, RefusesInputsOutsideItsLimits) {
        [](auto& s) {
          s.emitters[0].propagation.parabolic_equation.source = propagation::PeRadiator::pattern;
          s.emitters[0].kind = scenario::EmitterKind::radar;
-         s.output.radar_look = scenario::RadarLook::target;
+         s.output.radar_look = scenario::RadarAim::target;
          s.emitters[0].antenna = scenario::makePhasedArray(20, 8, 8, 0.5, 1);
        },
        "the radar's beam follows targets"},

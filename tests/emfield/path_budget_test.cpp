@@ -262,21 +262,21 @@ TEST(PathBudget, VerdictOfRadarOnTargetOmitsScanDirection) {
   radar.scan.rate_deg_s = 10;
   radar.scan.width_deg = 60;
   const GeodeticPosition south{44.1, -71.4, 400}, north{44.6, -71.4, 400};
-  const auto budget = [&](const GeodeticPosition& at, scenario::RadarLook look) {
+  const auto budget = [&](const GeodeticPosition& at, scenario::RadarAim look) {
     scenario->output.radar_look = look;
     return pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0, {at, 400}, PropagationModel::free_space,
                       nullptr);
   };
-  const PathBudget of_scan = budget(south, scenario::RadarLook::scan);
+  const PathBudget of_scan = budget(south, scenario::RadarAim::scan);
   EXPECT_FALSE(of_scan.look_pattern_db);
   EXPECT_THAT(of_scan.verdict, HasSubstr("but the antenna points "));
-  const PathBudget at_target = budget(south, scenario::RadarLook::target);
+  const PathBudget at_target = budget(south, scenario::RadarAim::target);
   ASSERT_TRUE(at_target.look_pattern_db);
   EXPECT_GT(*at_target.look_pattern_db, -3);
   EXPECT_THAT(at_target.verdict, ::testing::Not(HasSubstr("but the ")));
   EXPECT_THAT(at_target.verdict, HasSubstr("a target there is detected with probability"));
   // Outside the sector the beam stays at the sector's end.
-  const PathBudget beside = budget(north, scenario::RadarLook::target);
+  const PathBudget beside = budget(north, scenario::RadarAim::target);
   EXPECT_NEAR(*beside.look_pattern_db, -40, 0.1);
   EXPECT_THAT(beside.verdict, HasSubstr("but the scan does not reach there, which costs 40.0 dB"));
 }

@@ -21,7 +21,7 @@ double lookGain_db(scenario::Emitter radar, double east_m, double up_m) {
   const Vec3d site = grid.center_m(40, 1, 0);
   addEmitter(*scenario, GeoFrame(grid.frame).toGeodetic(site), std::move(radar));
   scenario->output.quantities = {"snr_db"};
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   const auto volume = solve(scenario);
   const double range_m = std::hypot(east_m, up_m);
   const scenario::Emitter& used = scenario->emitters[0];

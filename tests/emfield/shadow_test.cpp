@@ -134,9 +134,9 @@ TEST(Shadow, EqualsWalkAlongEachRay) {
     radarOn(scenario, {site[0], site[1], 0});
     const auto terrain = whiteMountains(*scenario);
     const double site_msl_m = terrain->heightMsl_m(site[0], site[1]) + site[2];
-    const GeodeticPosition place{site[0], site[1], site_msl_m + geoidUndulation_m(site[0], site[1])};
-    scenario->platforms[0].track[0].position.height_ellipsoid_m = place.height_ellipsoid_m;
-    const Tally tally = compareWithWalk(*solve(scenario, terrain), terrain.get(), place, site_msl_m);
+    const GeodeticPosition position{site[0], site[1], site_msl_m + geoidUndulation_m(site[0], site[1])};
+    scenario->platforms[0].track[0].position.height_ellipsoid_m = position.height_ellipsoid_m;
+    const Tally tally = compareWithWalk(*solve(scenario, terrain), terrain.get(), position, site_msl_m);
     EXPECT_EQ(tally.wrong, 0) << tally.lit << " lit, " << tally.dark << " dark, " << tally.near_edge
                               << " near the edge";
     EXPECT_GT(tally.lit, 1000);

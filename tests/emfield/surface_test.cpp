@@ -49,8 +49,8 @@ class SurfaceField : public test::OnBackends {
     return scenario;
   }
 
-  std::shared_ptr<Surface> places(HeightReference reference, std::vector<double> heights_m, int width = 8,
-                                  int height = 5) const {
+  std::shared_ptr<Surface> positions(HeightReference reference, std::vector<double> heights_m, int width = 8,
+                                     int height = 5) const {
     auto surface = std::make_shared<Surface>();
     surface->width = width;
     surface->height = height;
@@ -59,7 +59,7 @@ class SurfaceField : public test::OnBackends {
     std::mt19937 random(23);
     std::uniform_real_distribution<double> within(-0.13, 0.13);
     for (int n = 0; n < width * height; ++n)
-      surface->places.push_back({36.303 + within(random), -84.246 + within(random)});
+      surface->positions.push_back({36.303 + within(random), -84.246 + within(random)});
     return surface;
   }
 
@@ -76,14 +76,14 @@ class SurfaceField : public test::OnBackends {
     const auto volume = solve(scenario, terrain_, options);
     const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain_.get(), 0);
     int compared = 0;
-    for (std::size_t p = 0; p < surface->places.size(); p += every) {
-      const auto [latitude_deg, longitude_deg] = surface->places[p];
+    for (std::size_t p = 0; p < surface->positions.size(); p += every) {
+      const auto [latitude_deg, longitude_deg] = surface->positions[p];
       const double ground_msl_m = terrain_->heightMsl_m(latitude_deg, longitude_deg);
       for (std::size_t k = 0; k < surface->heights_m.size(); ++k) {
         const double offset_m = surface->offsets_m.empty() ? 0 : static_cast<double>(surface->offsets_m[p]);
         const bool above_ground = surface->reference == HeightReference::ground;
         const double height_msl_m = surface->heights_m[k] + offset_m + (above_ground ? ground_msl_m : 0);
-        const float found = volume->values[k * surface->places.size() + p];
+        const float found = volume->values[k * surface->positions.size() + p];
         EXPECT_EQ(volume->first_valid_k[p] > k, height_msl_m < ground_msl_m);
         if (height_msl_m < ground_msl_m) continue;
         const PathEnd end{
@@ -113,10 +113,10 @@ TEST_P(SurfaceField, EqualsPathsAboveGroundWithEveryModel) {
                            PropagationModel::p528, PropagationModel::p1812, PropagationModel::p452}) {
     SCOPED_TRACE(propagation::toString(model));
     const auto scenario = radarOnRidge(model);
-    const auto surface = places(HeightReference::ground, {2, 30, 75, 150, 300, 800, 2000});
+    const auto surface = positions(HeightReference::ground, {2, 30, 75, 150, 300, 800, 2000});
     EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01), 280);
     scenario->output.quantities = {"detection_probability"};
-    scenario->output.radar_look = scenario::RadarLook::target;
+    scenario->output.radar_look = scenario::RadarAim::target;
     // two_ray keeps the reflected ray's amplitude in 16 bits.
     expectTheBudgets(scenario, surface, "detection_probability",
                      model == PropagationModel::two_ray ? 2e-4 : 1e-4);
@@ -126,10 +126,10 @@ TEST_P(SurfaceField, EqualsPathsAboveGroundWithEveryModel) {
 // With this many positions the searches for obstacles use bounds of the terrain and, on the CPU, of rays.
 TEST_P(SurfaceField, EqualsPathsAtManyPositions) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
-  const auto surface = places(HeightReference::ground, {5, 40, 150, 600}, 300, 200);
+  const auto surface = positions(HeightReference::ground, {5, 40, 150, 600}, 300, 200);
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
   scenario->output.quantities = {"detection_probability"};
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   expectTheBudgets(scenario, surface, "detection_probability", 1e-4, 60);
   // An emitter in a valley, whose near slopes hide most positions, and rays bent by an exponential
   // atmosphere.
@@ -144,12 +144,12 @@ TEST_P(SurfaceField, EqualsPathsAtManyPositions) {
 TEST_P(SurfaceField, ManyPositionsAroundAVoidEqualFew) {
   terrain_ = std::make_shared<MadeTerrain>(36.303, -84.246, 0.3, 0.04);
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
-  const auto many = places(HeightReference::ground, {5, 150}, 300, 200);
+  const auto many = positions(HeightReference::ground, {5, 150}, 300, 200);
   auto few = std::make_shared<Surface>(*many);
   few->width = 10;
   few->height = 100;
-  few->places.clear();
-  for (std::size_t p = 0; p < many->places.size(); p += 60) few->places.push_back(many->places[p]);
+  few->positions.clear();
+  for (std::size_t p = 0; p < many->positions.size(); p += 60) few->positions.push_back(many->positions[p]);
   FieldOptions options;
   options.backend = GetParam();
   options.allow_missing_terrain = true;
@@ -158,16 +158,16 @@ TEST_P(SurfaceField, ManyPositionsAroundAVoidEqualFew) {
   options.surface = few;
   const auto of_few = solve(scenario, terrain_, options);
   int behind = 0;
-  for (std::size_t p = 0; p < few->places.size(); ++p) {
+  for (std::size_t p = 0; p < few->positions.size(); ++p) {
     ASSERT_EQ(of_many->first_valid_k[60 * p], of_few->first_valid_k[p]);
-    const auto [latitude_deg, longitude_deg] = few->places[p];
+    const auto [latitude_deg, longitude_deg] = few->positions[p];
     if (of_few->first_valid_k[p] > 0) {
       behind += std::isnan(terrain_->heightMsl_m(latitude_deg, longitude_deg)) ? 0 : 1;
       continue;
     }
     for (std::size_t k = 0; k < 2; ++k) {
-      ASSERT_NEAR(of_many->values[k * many->places.size() + 60 * p],
-                  of_few->values[k * few->places.size() + p], 0.01);
+      ASSERT_NEAR(of_many->values[k * many->positions.size() + 60 * p],
+                  of_few->values[k * few->positions.size() + p], 0.01);
     }
   }
   EXPECT_GT(behind, 5);
@@ -176,8 +176,8 @@ TEST_P(SurfaceField, ManyPositionsAroundAVoidEqualFew) {
 
 TEST_P(SurfaceField, AboveSeaLevelIsMaskedBelowGround) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
-  const int compared = expectTheBudgets(scenario, places(HeightReference::mean_sea_level, {350, 600, 2000}),
-                                        "power_density_dbwm2", 0.01);
+  const int compared = expectTheBudgets(
+      scenario, positions(HeightReference::mean_sea_level, {350, 600, 2000}), "power_density_dbwm2", 0.01);
   EXPECT_GT(compared, 40);
   EXPECT_LT(compared, 120);
 }
@@ -189,14 +189,14 @@ TEST_P(SurfaceField, WithoutTerrainIsMaskedBelowMeanSeaLevel) {
   FieldOptions options;
   options.backend = GetParam();
   EXPECT_EQ(solve(scenario, nullptr, options)->first_valid_k, std::vector<std::uint16_t>(16, 2));
-  options.surface = places(HeightReference::mean_sea_level, {-100, -0.5, 0, 50});
+  options.surface = positions(HeightReference::mean_sea_level, {-100, -0.5, 0, 50});
   EXPECT_EQ(solve(scenario, nullptr, options)->first_valid_k, std::vector<std::uint16_t>(40, 2));
 }
 
 TEST_P(SurfaceField, OffsetsMayDifferPerPosition) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
-  const auto surface = places(HeightReference::ground, {0, 10});
-  for (std::size_t p = 0; p < surface->places.size(); ++p) {
+  const auto surface = positions(HeightReference::ground, {0, 10});
+  for (std::size_t p = 0; p < surface->positions.size(); ++p) {
     surface->offsets_m.push_back(5 + 30 * static_cast<float>(p));
   }
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01), 80);
@@ -204,36 +204,36 @@ TEST_P(SurfaceField, OffsetsMayDifferPerPosition) {
 
 TEST_P(SurfaceField, OmitsPositionsWithoutALatitude) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
-  const auto surface = places(HeightReference::ground, {100});
+  const auto surface = positions(HeightReference::ground, {100});
   FieldOptions options;
   options.backend = GetParam();
   options.surface = surface;
   const auto all = solve(scenario, terrain_, options);
   auto fewer = std::make_shared<Surface>(*surface);
-  for (std::size_t p = 0; p < fewer->places.size(); p += 3) fewer->places[p].latitude_deg = NAN;
+  for (std::size_t p = 0; p < fewer->positions.size(); p += 3) fewer->positions[p].latitude_deg = NAN;
   options.surface = fewer;
   const auto some = solve(scenario, terrain_, options);
-  for (std::size_t p = 0; p < fewer->places.size(); ++p) {
+  for (std::size_t p = 0; p < fewer->positions.size(); ++p) {
     EXPECT_EQ(some->first_valid_k[p], p % 3 == 0 ? 1 : 0);
     EXPECT_EQ(some->values[p], p % 3 == 0 ? some->info.floor : all->values[p]);
   }
-  for (Surface::Place& place : fewer->places) place.latitude_deg = NAN;
+  for (Surface::Position& place : fewer->positions) place.latitude_deg = NAN;
   EXPECT_THROW(solve(scenario, terrain_, options), Error);
 }
 
 TEST_P(SurfaceField, HasGroundBelowItsPositions) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
-  const auto surface = places(HeightReference::ground, {100}, 100, 50);
-  surface->places[7].latitude_deg = NAN;
+  const auto surface = positions(HeightReference::ground, {100}, 100, 50);
+  surface->positions[7].latitude_deg = NAN;
   FieldOptions options;
   options.backend = GetParam();
   options.surface = surface;
   const FieldSolver solver(scenario, terrain_, options);
   const std::vector<float>& ground_msl_m = solver.groundHeights_m();
-  ASSERT_EQ(ground_msl_m.size(), surface->places.size());
-  for (std::size_t p = 0; p < surface->places.size(); ++p) {
+  ASSERT_EQ(ground_msl_m.size(), surface->positions.size());
+  for (std::size_t p = 0; p < surface->positions.size(); ++p) {
     if (p == 7) continue;
-    const auto [latitude_deg, longitude_deg] = surface->places[p];
+    const auto [latitude_deg, longitude_deg] = surface->positions[p];
     EXPECT_NEAR(static_cast<double>(ground_msl_m[p]), terrain_->heightMsl_m(latitude_deg, longitude_deg),
                 1e-3);
   }
@@ -241,7 +241,7 @@ TEST_P(SurfaceField, HasGroundBelowItsPositions) {
 
 /// A GPU keeps the columns to itself until a model needs them on the host.
 TEST_P(SurfaceField, AfterEditToRadialModelEqualsNewSolver) {
-  const auto surface = places(HeightReference::ground, {100}, 12, 10);
+  const auto surface = positions(HeightReference::ground, {100}, 12, 10);
   FieldOptions options;
   options.backend = GetParam();
   options.surface = surface;

@@ -118,9 +118,9 @@ TEST_F(JacksboroMesh, FollowsTheGroundInBothFrames) {
       const double height_m = made.surface()->heights_m[n / (12 * 9)];
       EXPECT_NEAR(at.height_ellipsoid_m - geoidUndulation_m(at.latitude_deg, at.longitude_deg),
                   terrain_->heightMsl_m(at.latitude_deg, at.longitude_deg) + height_m, 0.01);
-      const Surface::Place& place = made.surface()->places[n % (12 * 9)];
-      EXPECT_NEAR(at.latitude_deg, place.latitude_deg, 1e-7);
-      EXPECT_NEAR(at.longitude_deg, place.longitude_deg, 1e-7);
+      const Surface::Position& position = made.surface()->positions[n % (12 * 9)];
+      EXPECT_NEAR(at.latitude_deg, position.latitude_deg, 1e-7);
+      EXPECT_NEAR(at.longitude_deg, position.longitude_deg, 1e-7);
     }
   }
 }
@@ -272,7 +272,7 @@ TEST_P(JacksboroMeshOfModel, NearTheGroundErrsAtMostAThirdAsMuchAsAGridOfAsManyP
     const double x_m = across(random), y_m = across(random);
     const auto height_m = static_cast<float>(above(random));
     const GeodeticPosition at = frame.toGeodetic({x_m, y_m, 0});
-    surface->places.push_back({at.latitude_deg, at.longitude_deg});
+    surface->positions.push_back({at.latitude_deg, at.longitude_deg});
     surface->offsets_m.push_back(height_m);
     points_m.push_back(
         {x_m, y_m, terrain_->heightMsl_m(at.latitude_deg, at.longitude_deg) + static_cast<double>(height_m)});

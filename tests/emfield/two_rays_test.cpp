@@ -152,10 +152,10 @@ TEST_P(TwoRays, BeamAboveTheSeaHasNoLobes) {
   // of the pattern. By 40 log((d + r |rho|) / (d - r |rho|)) both ways, with |rho| 0.96 and d 0.89 to 1.
   const auto scenario = overTheSea(3000, 520, {2, 2, 60}, {2, 2, 600});
   placeOver(*scenario, beamUpwards(), kShip, kShip_msl_m);
-  for (const auto look : {scenario::RadarLook::scan, scenario::RadarLook::target}) {
+  for (const auto look : {scenario::RadarAim::scan, scenario::RadarAim::target}) {
     scenario->output.radar_look = look;
     scenario->output.quantities = {"snr_db"};
-    const double expected_db = look == scenario::RadarLook::scan ? 0.361 : 0.333;
+    const double expected_db = look == scenario::RadarAim::scan ? 0.361 : 0.333;
     EXPECT_NEAR(ripple_db(scenario), expected_db, 0.025) << "codes of 1/128 dB, both ways";
     scenario->output.quantities = {"power_density_dbwm2"};
     EXPECT_NEAR(ripple_db(scenario), 0.361 / 2, 0.008);
@@ -368,7 +368,7 @@ TEST_P(TwoRays, RadarsAndJammersEqualProfile) {
   scenario->platforms[0].attitude = {15, 2, -3};
   placeOver(*scenario, jammer, eastOfShip(9000), 400);
   scenario->output.quantities = {"snr_db", "jammer_to_signal_db", "detection_probability"};
-  for (const auto look : {scenario::RadarLook::scan, scenario::RadarLook::target}) {
+  for (const auto look : {scenario::RadarAim::scan, scenario::RadarAim::target}) {
     scenario->output.radar_look = look;
     FieldSolver solver(scenario, nullptr, options());
     const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, nullptr, 0);

@@ -10,7 +10,7 @@ using document::DocumentNode;
 using document::DocumentNodePtr;
 using document::NodeKind;
 
-constexpr std::size_t kMostBytes = 1 << 16, kMostPaths = 5000;
+constexpr std::size_t kMaxBytes = 1 << 16, kMaxPaths = 5000;
 constexpr const char* kScalars[] = {"-1", "0", "1", "2147483648", "1e300", ".nan", "x", "true"};
 /// Besides a scalar: nothing, null, empty text, [], {}, [value], {x: value}.
 constexpr std::size_t kForms = 7;
@@ -55,18 +55,18 @@ DocumentNodePtr formed(std::size_t form, const DocumentNodePtr& value) {
 }  // namespace
 
 DocumentChanges::DocumentChanges(const std::string& text) {
-  if (text.size() > kMostBytes) return;
+  if (text.size() > kMaxBytes) return;
   document::ProblemList problems;
   root_ = document::readDocument("", text, problems);
   if (root_ == nullptr || problems.hasErrors()) return;
   is_json_ = text.find_first_not_of(" \r\n\t") == text.find_first_of("{[");
   addPaths(*root_, {});
-  if (paths_.size() > kMostPaths) paths_.clear();
+  if (paths_.size() > kMaxPaths) paths_.clear();
 }
 
 void DocumentChanges::addPaths(const DocumentNode& node, document::NodePath path) {
   if (!path.empty()) paths_.push_back(path);
-  if (paths_.size() > kMostPaths) return;
+  if (paths_.size() > kMaxPaths) return;
   path.emplace_back();
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     path.back() = i;

@@ -209,7 +209,7 @@ TEST(LiveView, ModesThatTetrahedraDoNotHaveAreAnError) {
   PictureStyle style = smallStyle();
   style.settings.mode = render::CompositingMode::mida;
   Live live(quickScenario(folder), options, style);
-  EXPECT_THAT(live.error(), HasSubstr("mode mida: a field on tetrahedra is drawn by dvr alone"));
+  EXPECT_THAT(live.error(), HasSubstr("mode mida: fields on tetrahedra support only mode dvr"));
 }
 
 TEST(LiveView, ComparisonShowsEffectOfEditsAndThenTheField) {

@@ -256,7 +256,7 @@ TEST(PathAir, HasTheEvaporationDuctInItsProfiles) {
 TEST(PathAir, ByPositionEqualsProfileThereAndMeanBetween) {
   Refractivity refractivity;
   refractivity.air.profiles = {surfaceDuct(20, 10), surfaceDuct(40, 10)};
-  refractivity.air.places = {{50, 0}, {50.9, 0}};  // at the site; 100.1 km north of it
+  refractivity.air.positions = {{50, 0}, {50.9, 0}};  // at the site; 100.1 km north of it
   const Atmosphere atmosphere = atmosphereOf(refractivity);
   const RefractivityAlongPath north = pathAir(atmosphere, kSite, 0),
                               east = pathAir(atmosphere, kSite, kPi / 2);

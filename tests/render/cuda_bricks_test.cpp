@@ -22,8 +22,8 @@ std::shared_ptr<volume::DenseVolume> cutVolume(float least) {
   }
   return volume;
 }
-constexpr float kMostIsLeft = -1000;
-constexpr float kLittleIsLeft = 10;
+constexpr float kKeepsMost = -1000;
+constexpr float kKeepsLittle = 10;
 
 /// Opaque above the floor.
 TransferFunction functionOf(const volume::DenseVolume& volume) {
@@ -78,13 +78,13 @@ TEST(CudaBricks, AreSearchedWherePreviousFrameShowsABenefit) {
   EMSCAPE_NEEDS_GPU();
   for (const CompositingMode mode : {CompositingMode::dvr, CompositingMode::mida}) {
     Launcher launcher;
-    launcher.set(cutVolume(kMostIsLeft), mode);
-    EXPECT_LT(skippableShare(levelsOnHost(launcher.scene, cutVolume(kMostIsLeft))), 0.1) << toString(mode);
+    launcher.set(cutVolume(kKeepsMost), mode);
+    EXPECT_LT(skippableShare(levelsOnHost(launcher.scene, cutVolume(kKeepsMost))), 0.1) << toString(mode);
     EXPECT_TRUE(launcher.looksForBricks()) << "nothing is known yet";
     EXPECT_FALSE(launcher.looksForBricks());
 
-    launcher.set(cutVolume(kLittleIsLeft), mode);
-    EXPECT_GT(skippableShare(levelsOnHost(launcher.scene, cutVolume(kLittleIsLeft))), 0.9) << toString(mode);
+    launcher.set(cutVolume(kKeepsLittle), mode);
+    EXPECT_GT(skippableShare(levelsOnHost(launcher.scene, cutVolume(kKeepsLittle))), 0.9) << toString(mode);
     EXPECT_FALSE(launcher.looksForBricks()) << "of the volume before";
     EXPECT_TRUE(launcher.looksForBricks());
 
@@ -118,7 +118,7 @@ TEST(CudaBricks, HaveTheLevelsOfTheHost) {
 
 TEST(CudaBricks, DoNotChangeThePicture) {
   EMSCAPE_NEEDS_GPU();
-  for (const float least : {kMostIsLeft, -30.0F, kLittleIsLeft}) {
+  for (const float least : {kKeepsMost, -30.0F, kKeepsLittle}) {
     const auto volume = cutVolume(least);
     for (const CompositingMode mode : {CompositingMode::dvr, CompositingMode::mida}) {
       Renderer renderer(onGpu());

@@ -90,8 +90,8 @@ TEST_F(RefractivityFiles, HoldPressureTemperatureAndHumidity) {
 TEST_F(RefractivityFiles, ContainProfilesByPosition) {
   const RefractivityFile file = read(
       "latitude_deg,longitude_deg,height_msl_m,m_units\n50,1,0,330\n50,1,10,320\n51,2,0,330\n51,2,30,320\n");
-  ASSERT_EQ(file.field.places.size(), 2u);
-  EXPECT_EQ(file.field.places[1].longitude_deg, 2);
+  ASSERT_EQ(file.field.positions.size(), 2u);
+  EXPECT_EQ(file.field.positions[1].longitude_deg, 2);
   EXPECT_EQ(file.description, "2 profiles by place");
   EXPECT_TRUE(file.field.ranges_m.empty());
   EXPECT_THAT(errorOf("latitude_deg,longitude_deg,height_msl_m,m_units\n5,1,0,330\n5,1,1,331\n6,1,0,330\n"

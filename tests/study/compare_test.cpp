@@ -112,8 +112,8 @@ TEST(LargestAreas, AreConnectedAndCutOffAtTheEdge) {
   MapGrid grid;
   grid.width = 5;
   grid.height = 4;
-  grid.places.resize(20);
-  for (std::size_t p = 0; p < 20; ++p) grid.places[p] = {double(p / 5), double(p % 5)};
+  grid.positions.resize(20);
+  for (std::size_t p = 0; p < 20; ++p) grid.positions[p] = {double(p / 5), double(p % 5)};
   grid.areas_m2.assign(20, 100);
   // The two at the ends of rows do not touch.
   const std::vector<float> changes{1,   1, 0, 0, 1,  //

@@ -213,7 +213,7 @@ TEST(Coverage, PixelEqualsProfileAtItsPosition) {
   int compared = 0;
   for (int n = 0; n < 60; ++n) {
     const std::size_t pixel = random() % coverage.grid.pixels();
-    const auto [latitude_deg, longitude_deg] = coverage.grid.places[pixel];
+    const auto [latitude_deg, longitude_deg] = coverage.grid.positions[pixel];
     if (std::isnan(latitude_deg)) continue;
     for (const MapHeight& height : {kLow, kHigh}) {
       const float value = coverage.find(Product::value, height, 80).values[pixel];
@@ -245,7 +245,7 @@ TEST(Coverage, LargePixelEqualsPathToItsProjectedCentre) {
   const CoverageOf coverage("jamming.yaml", 2000,
                             {{kLow}, {Product::value}, scenario::Quantity::snr_db, 10, {40}});
   auto at_targets = std::make_shared<scenario::Scenario>(*coverage.scenario);
-  at_targets->output.radar_look = scenario::RadarLook::target;
+  at_targets->output.radar_look = scenario::RadarAim::target;
   const scenario::Snapshot snapshot = scenario::snapshotAt(at_targets, coverage.terrain.get(), 40);
   const MapGrid& grid = coverage.grid;
   const std::vector<float>& values = coverage.find(Product::value, kLow, 40).values;
@@ -293,7 +293,7 @@ TEST(Coverage, ProductsFollowFromTheValues) {
         scenario::snapshotAt(coverage.scenario, coverage.terrain.get(), time_s);
     double area_m2 = 0;
     for (std::size_t p = 0; p < coverage.grid.pixels(); ++p) {
-      ASSERT_EQ(std::isnan(value.values[p]), std::isnan(coverage.grid.places[p].latitude_deg));
+      ASSERT_EQ(std::isnan(value.values[p]), std::isnan(coverage.grid.positions[p].latitude_deg));
       if (std::isnan(value.values[p])) continue;
       ASSERT_EQ(covered.values[p], value.values[p] >= 0.5f ? 1 : 0);
       ASSERT_EQ(best.values[p] >= 0, count.values[p] > 0);
@@ -301,7 +301,7 @@ TEST(Coverage, ProductsFollowFromTheValues) {
       ASSERT_EQ(spare.values[p], std::max(count.values[p] - 1, 0.0f));
       ASSERT_EQ(std::isnan(range.values[p]), count.values[p] == 0);
       if (count.values[p] == 1) {
-        const auto [latitude_deg, longitude_deg] = coverage.grid.places[p];
+        const auto [latitude_deg, longitude_deg] = coverage.grid.positions[p];
         const GeodeticPosition& radar = snapshot.emitters[static_cast<int>(best.values[p])].position;
         const double distance_m =
             geodesicInverse(radar.latitude_deg, radar.longitude_deg, latitude_deg, longitude_deg).distance_m;
@@ -341,12 +341,12 @@ TEST(Coverage, MinHeightIsLowestCoveredHeight) {
   ASSERT_EQ(coverage.maps.size(), 1u);
   const std::vector<float>& least_m = coverage.maps[0].values;
   auto edited = std::make_shared<scenario::Scenario>(*coverage.scenario);
-  edited->output.radar_look = scenario::RadarLook::target;
+  edited->output.radar_look = scenario::RadarAim::target;
   edited->output.quantities = {"detection_probability"};
   auto surface = std::make_shared<emfield::Surface>();
   surface->width = coverage.grid.width;
   surface->height = coverage.grid.height;
-  surface->places = coverage.grid.places;
+  surface->positions = coverage.grid.positions;
   surface->heights_m = {0, 1};  // the metre below, and the height itself
   for (const float height_m : least_m) {
     surface->offsets_m.push_back(height_m >= 1 ? height_m - 1 : 0);

@@ -35,7 +35,7 @@ TEST(Exposure, ValueEqualsProfileAtThePlatform) {
   request.platform = kDrone;
   request.quantity = scenario::Quantity::power_density_dbwm2;
   request.threshold = -60;
-  request.look = scenario::RadarLook::scan;
+  request.look = scenario::RadarAim::scan;
   for (int t = 0; t <= 60; ++t) request.times_s.push_back(t);  // more than are solved at once
   const Exposure exposure = computeExposure(given.scenario, given.terrain, request, {});
   ASSERT_EQ(exposure.rows.size(), 61u);
@@ -182,7 +182,7 @@ TEST(Exposure, StepsLongerThanScanAreReported) {
   ExposureRequest request;
   request.platform = 4;
   request.times_s = {0, 4, 8};
-  request.look = scenario::RadarLook::scan;
+  request.look = scenario::RadarAim::scan;
   const Exposure exposure = computeExposure(given.scenario, given.terrain, request, {});
   EXPECT_THAT(exposure.warnings, testing::Contains(HasSubstr("passes the platform every 5 s")));
   EXPECT_TRUE(std::isnan(exposure.together.cumulative_probability));

@@ -67,7 +67,7 @@ struct Fixture {
     map.time_s = time_s;
     map.values.assign(grid->pixels(), NAN);
     for (std::size_t p = 0; p < grid->pixels(); ++p) {
-      if (std::isnan(grid->places[p].latitude_deg) || p == grid->pixels() / 2) continue;
+      if (std::isnan(grid->positions[p].latitude_deg) || p == grid->pixels() / 2) continue;
       const double x = static_cast<double>(p % grid->width), y = static_cast<double>(p / grid->width);
       const double wave = 0.5 + 0.25 * (std::sin(x / 5 + time_s) + std::cos(y / 4));
       map.values[p] = static_cast<float>(low + wave * (high - low));
@@ -419,7 +419,7 @@ void expectShows(const KmzOverlay& overlay, const MapGrid& grid, const Map& cove
   int wrong = 0, compared = 0;
   for (std::size_t p = 0; p < covered.values.size(); ++p) {
     if (std::isnan(covered.values[p])) continue;
-    const auto [latitude_deg, longitude_deg] = grid.places[p];
+    const auto [latitude_deg, longitude_deg] = grid.positions[p];
     const int x = static_cast<int>((longitude_deg - overlay.west_deg) /
                                    (overlay.east_deg - overlay.west_deg) * overlay.width);
     const int y = static_cast<int>((overlay.north_deg - latitude_deg) /

@@ -21,7 +21,7 @@ struct GeographicPoint {
 };
 
 /// Compares every n-th pixel with GeographicLib's projection. @return the number compared
-int expectPlacesOfUtm(const GeographicPoint& middle, double radius_m, double cell_m, int every) {
+int expectPositionsOfUtm(const GeographicPoint& middle, double radius_m, double cell_m, int every) {
   const auto [latitude_deg, longitude_deg] = middle;
   const MapGrid grid = makeMapGrid(circularArea({latitude_deg, longitude_deg, radius_m}), cell_m, "utm");
   const int zone = GeographicLib::UTMUPS::StandardZone(latitude_deg, longitude_deg);
@@ -30,7 +30,7 @@ int expectPlacesOfUtm(const GeographicPoint& middle, double radius_m, double cel
   EXPECT_EQ(std::fmod(grid.top_m, cell_m), 0);
   int inside = 0;
   for (int p = 0; p < static_cast<int>(grid.pixels()); p += every) {
-    const auto [lat, lon] = grid.places[p];
+    const auto [lat, lon] = grid.positions[p];
     if (std::isnan(lat)) continue;
     ++inside;
     int found_zone = 0;
@@ -48,9 +48,9 @@ int expectPlacesOfUtm(const GeographicPoint& middle, double radius_m, double cel
 TEST(MapGrid, PixelsOfUtmAreWhereTheProjectionPutsThem) {
   for (const GeographicPoint& middle :
        {GeographicPoint{44.3, -71.4}, {-33.9, 151.2}, {0.01, 2.99}, {79.5, 17}, {60.4, 5.3}, {78.5, 11}}) {
-    EXPECT_GT(expectPlacesOfUtm(middle, 20e3, 90, 37), 3000);
-    EXPECT_GT(expectPlacesOfUtm(middle, 100e3, 700, 13), 3000);
-    EXPECT_GT(expectPlacesOfUtm(middle, 100e3, 2000, 1), 3000);
+    EXPECT_GT(expectPositionsOfUtm(middle, 20e3, 90, 37), 3000);
+    EXPECT_GT(expectPositionsOfUtm(middle, 100e3, 700, 13), 3000);
+    EXPECT_GT(expectPositionsOfUtm(middle, 100e3, 2000, 1), 3000);
   }
 }
 
@@ -71,7 +71,7 @@ TEST(MapGrid, ACircleMayHoldAPole) {
     const double area_m2 = std::accumulate(grid.areas_m2.begin(), grid.areas_m2.end(), 0.0);
     EXPECT_NEAR(area_m2 / (kPi * kRadius_m * kRadius_m), 1, 3e-4);
     for (std::size_t p = 0; p < grid.pixels(); p += 7) {
-      const auto [lat, lon] = grid.places[p];
+      const auto [lat, lon] = grid.positions[p];
       if (std::isnan(lat)) continue;
       const double x = grid.left_m + (static_cast<double>(p % grid.width) + 0.5) * grid.cell_m;
       const double y = grid.top_m - (static_cast<double>(p / grid.width) + 0.5) * grid.cell_m;
@@ -91,7 +91,8 @@ TEST(MapGrid, ARegionWithAPoleIsCoveredWholly) {
       const GeodeticPosition at = frame.toGeodetic({x, y, 0});
       const long long pixel = grid.pixelAt(at.latitude_deg, at.longitude_deg);
       ASSERT_GE(pixel, 0);
-      EXPECT_FALSE(std::isnan(grid.places[static_cast<std::size_t>(pixel)].latitude_deg)) << x << ", " << y;
+      EXPECT_FALSE(std::isnan(grid.positions[static_cast<std::size_t>(pixel)].latitude_deg))
+          << x << ", " << y;
     }
   }
 }
@@ -101,7 +102,7 @@ TEST(MapGrid, ABoxMayCrossTheAntimeridian) {
   area.box = {-17.2, -17.0, 179.9, 180.2};
   const MapGrid grid = makeMapGrid(area, 500, "local");
   int west = 0, east = 0;
-  for (const auto& [latitude_deg, longitude_deg] : grid.places) {
+  for (const auto& [latitude_deg, longitude_deg] : grid.positions) {
     if (std::isnan(latitude_deg)) continue;
     ASSERT_TRUE(longitude_deg >= 179.9 - 1e-6 || longitude_deg <= -179.8 + 1e-6) << longitude_deg;
     ++(longitude_deg > 0 ? west : east);

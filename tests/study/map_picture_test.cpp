@@ -32,7 +32,7 @@ MapGrid smallGrid() {
   grid.width = 20;
   grid.height = 10;
   grid.cell_m = 1000;
-  grid.places.resize(200, {5.0, 10.0});
+  grid.positions.resize(200, {5.0, 10.0});
   return grid;
 }
 

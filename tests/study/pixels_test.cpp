@@ -60,7 +60,7 @@ std::shared_ptr<scenario::Scenario> radarAt(const Site& site, PropagationModel m
   addEmitter(*scenario, {site.latitude_deg, site.longitude_deg, 0}, emitter);
   scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
   scenario->platforms[0].track[0].position.height_agl_m = site.height_agl_m;
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   return scenario;
 }
 
@@ -91,7 +91,7 @@ Differences compare(const Site& site, PropagationModel model, int pixels, std::m
       makeMapGrid(circularArea({site.latitude_deg, site.longitude_deg, site.radius_m}), site.cell_m, "utm");
   // Every fourth pixel: the map costs less.
   for (std::size_t p = 0; p < grid.pixels(); ++p) {
-    if (p % 4 != 0) grid.places[p].latitude_deg = NAN;
+    if (p % 4 != 0) grid.positions[p].latitude_deg = NAN;
   }
   std::vector<CoverageMap> power, probability;
   computeCoverage(scenario, terrain, grid,
@@ -104,7 +104,7 @@ Differences compare(const Site& site, PropagationModel model, int pixels, std::m
   Differences differences;
   for (int n = 0; n < pixels;) {
     const std::size_t p = random() % grid.pixels();
-    const auto [latitude_deg, longitude_deg] = grid.places[p];
+    const auto [latitude_deg, longitude_deg] = grid.positions[p];
     if (std::isnan(latitude_deg)) continue;
     ++n;
     const double ground_msl_m =

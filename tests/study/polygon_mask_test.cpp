@@ -37,7 +37,7 @@ class PolygonMask : public testing::Test {
     return std::count(pixels.begin(), pixels.end(), 1);
   }
   static std::ptrdiff_t inArea(const MapGrid& grid) {
-    return std::count_if(grid.places.begin(), grid.places.end(),
+    return std::count_if(grid.positions.begin(), grid.positions.end(),
                          [](const auto& place) { return !std::isnan(place.latitude_deg); });
   }
   static std::string problemOf(const std::string& file, const MapGrid& grid) {
@@ -57,7 +57,7 @@ TEST_F(PolygonMask, EdgesAreStraightInTheFilesOwnSystem) {
   const auto pixels = pixelsWithin(sparse, grid_);
   EXPECT_EQ(pixels, pixelsWithin(geojson(dense), grid_));
   for (std::size_t p = 0; p < pixels.size(); ++p)
-    EXPECT_EQ(pixels[p] == 1, grid_.places[p].latitude_deg >= 52);
+    EXPECT_EQ(pixels[p] == 1, grid_.positions[p].latitude_deg >= 52);
 }
 
 TEST_F(PolygonMask, APolygonAroundTheMapHoldsAllOfIt) {

@@ -28,7 +28,7 @@ using ::testing::HasSubstr;
 std::shared_ptr<const scenario::Scenario> jacksboro() {
   auto scenario =
       std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("jacksboro.yaml")));
-  scenario->output.radar_look = scenario::RadarLook::target;
+  scenario->output.radar_look = scenario::RadarAim::target;
   return scenario;
 }
 
@@ -51,9 +51,9 @@ GeodeticPosition placeOf(const VerticalDiagram& diagram, const VerticalCut& cut,
                         diagram.ranges_m[i]);
 }
 
-emfield::PathEnd endAt(const GeodeticPosition& place, double height_msl_m) {
-  const double undulation_m = geoidUndulation_m(place.latitude_deg, place.longitude_deg);
-  return {{place.latitude_deg, place.longitude_deg, height_msl_m + undulation_m}, height_msl_m};
+emfield::PathEnd endAt(const GeodeticPosition& position, double height_msl_m) {
+  const double undulation_m = geoidUndulation_m(position.latitude_deg, position.longitude_deg);
+  return {{position.latitude_deg, position.longitude_deg, height_msl_m + undulation_m}, height_msl_m};
 }
 
 // The diagram reads the cells of the marches on both sides of each azimuth; `profile` marches to each point.
@@ -109,13 +109,13 @@ TEST(Vertical, ValueEqualsProfile) {
         const std::size_t i = random() % 50, k = random() % 40;
         const auto value = static_cast<double>(cut.values[k * 50 + i]);
         if (std::isnan(value)) continue;
-        const GeodeticPosition place = placeOf(diagram, cut, i);
+        const GeodeticPosition position = placeOf(diagram, cut, i);
         const auto ground_m =
-            static_cast<double>(terrain->heightMsl_m(place.latitude_deg, place.longitude_deg));
+            static_cast<double>(terrain->heightMsl_m(position.latitude_deg, position.longitude_deg));
         EXPECT_NEAR(static_cast<double>(cut.ground_msl_m[i]), ground_m, 0.01);
         const double height_m = diagram.heights_m[k] + (axis == HeightReference::ground ? ground_m : 0);
         const emfield::PathBudget budget =
-            emfield::pathBudget(snapshot, emitter, endAt(place, height_m),
+            emfield::pathBudget(snapshot, emitter, endAt(position, height_m),
                                 scenario->emitters[emitter].propagation.model, terrain.get());
         if (emitter == kJammer) {
           EXPECT_NEAR(value, std::max(budget.find("power_density_dbwm2")->value, -120.0), 0.01);

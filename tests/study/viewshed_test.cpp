@@ -83,8 +83,8 @@ TEST(MinHeight, EqualsLineOfSight) {
   scenario->placed_receivers.clear();
   scenario->targets.clear();
   scenario::TrackPoint point;
-  point.position.latitude_deg = grid.places[static_cast<std::size_t>(observer)].latitude_deg;
-  point.position.longitude_deg = grid.places[static_cast<std::size_t>(observer)].longitude_deg;
+  point.position.latitude_deg = grid.positions[static_cast<std::size_t>(observer)].latitude_deg;
+  point.position.longitude_deg = grid.positions[static_cast<std::size_t>(observer)].longitude_deg;
   point.position.height_agl_m = kAntenna_agl_m;
   scenario->platforms[0].track = {point};
   scenario->output.quantities = {"power_density_dbwm2"};

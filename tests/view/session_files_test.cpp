@@ -45,7 +45,7 @@ TEST(SessionOfTetrahedra, ShowsEditsAndRefusesUnsupportedVerbs) {
   ASSERT_TRUE(shown.settle());
   EXPECT_EQ(shown->report()["cells"], "marched");
   const double before = shown->report()["range_max"];
-  EXPECT_THAT(shown.perform(R"({"do": "mode", "mode": "mip"})"), HasSubstr("drawn by dvr alone"));
+  EXPECT_THAT(shown.perform(R"({"do": "mode", "mode": "mip"})"), HasSubstr("support only mode dvr"));
   EXPECT_EQ(shown->report()["mode"], "dvr");
   shown.perform(R"({"do": "probe", "x": 80, "y": 60})");
   ASSERT_TRUE(shown->prober().result());

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "base/text/shell_word.h"
 #include "emscape/playback/pictures/picture_series.h"
 #include "emscape/render/picture/image.h"
 #include "playback/editing/edit_history.h"
@@ -239,8 +240,8 @@ TEST(SessionState, TheCopiedCommandNamesTheSavedViewUntilItChanges) {
   const std::string file = folder / "a.view.json";
   shown.perform(fmt::format(R"({{"do":"save_state","file":"{}"}})", file));
   ASSERT_TRUE(shown.settle());
-  EXPECT_EQ(copied(), "emscape render " + playback::shellWord(shippedScenario("quick.yaml")) + " --state " +
-                          file + " -o picture.png");
+  EXPECT_EQ(copied(), "emscape render " + shellWord(shippedScenario("quick.yaml")) + " --state " + file +
+                          " -o picture.png");
   shown.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   shown.perform(R"({"do":"opacity","factor":2})");
   ASSERT_TRUE(shown.settle());

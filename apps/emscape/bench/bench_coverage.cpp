@@ -57,7 +57,7 @@ MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
   auto surface = std::make_shared<emfield::Surface>();
   surface->width = grid.width;
   surface->height = grid.height;
-  surface->places = grid.places;
+  surface->positions = grid.positions;
   surface->heights_m = heights_m;
   emfield::FieldOptions options = target.fieldOptions();
   options.surface = surface;
@@ -91,7 +91,7 @@ MapTimes timesOf(const std::shared_ptr<const scenario::Scenario>& scenario,
 int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& global) {
   scenario::Scenario chosen = *scenario::loadScenario(options.scenario, options.edits);
   chosen.output.quantities = {scenario::info(scenario::quantityFromName(options.quantity)).name};
-  chosen.output.radar_look = scenario::RadarLook::target;
+  chosen.output.radar_look = scenario::RadarAim::target;
   const auto scenario = std::make_shared<const scenario::Scenario>(std::move(chosen));
   const study::MapArea area =
       options.area.empty() ? study::areaOf(scenario->region) : study::parseArea(options.area);
@@ -106,8 +106,8 @@ int benchCoverage(const BenchCoverageOptions& options, const GlobalOptions& glob
   }
   const double grid_ms = medianOf(grids_ms);
   const auto pixels = std::count_if(
-      grid.places.begin(), grid.places.end(),
-      [](const emfield::Surface::Place& place) { return place.latitude_deg == place.latitude_deg; });
+      grid.positions.begin(), grid.positions.end(),
+      [](const emfield::Surface::Position& place) { return place.latitude_deg == place.latitude_deg; });
 
   std::vector<double> heights_m{options.height_m};
   MapTimes first, all;
@@ -162,7 +162,7 @@ void addBenchCoverage(CLI::App& bench, const GlobalOptions& global, Action& acti
   command->fallthrough();
   command->footer(R"(
 Time of a map from its area to the values of its pixels, without reading the terrain and without writing files, and the time that each
-further height adds. pixels: their positions in the projection; places: terrain below them, and memory (on a GPU also the copy of the
+further height adds. pixels: their positions in the projection; positions: terrain below them, and memory (on a GPU also the copy of the
 terrain to it); columns to product: the stages of the field; rest: the remainder of its wall-clock time; values: copied from the GPU. Work that a
 program does once (start of the GPU, database of projections) is in the first repeat, not in the medians.
 

@@ -23,7 +23,7 @@ int namedIndex(const std::vector<Item>& items, const std::string& name, const ch
                const std::string& file) {
   if (const auto index = scenario::findNamed(items, name)) return static_cast<int>(*index);
   throw Error(ErrorCode::usage, fmt::format("{}: no {} '{}' in {}; it has {}", option, kind, name, file,
-                                            scenario::namesOf(items)));
+                                            scenario::quotedNames(items)));
 }
 
 /// Indices of the named items, each once; all items if no values are given.

@@ -70,7 +70,7 @@ void printExposure(const Exposure& exposure) {
         quantityText(request.threshold, exposure.unit));
   if (!exposure.cross_section.empty()) {
     print("Radars look {}; cross section: {}\n",
-          request.look == scenario::RadarLook::target ? "at the platform" : "as their scan points",
+          request.look == scenario::RadarAim::target ? "at the platform" : "as their scan points",
           exposure.cross_section);
   }
   print("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>9} {:>14} {:>8} {:>14}\n", "emitter", "max", "at s", "first s",

@@ -37,8 +37,9 @@ RefractivityProfile profileAt(const RefractivityField& field, std::size_t index)
 /// "40 km" or "50.1, -4.2"; empty for a single profile.
 std::string nameAt(const RefractivityField& field, std::size_t index) {
   if (!field.ranges_m.empty()) return fmt::format("{:.4g} km", field.ranges_m[index] / 1000);
-  if (field.places.empty()) return "";
-  return fmt::format("{:.4g}, {:.4g}", field.places[index].latitude_deg, field.places[index].longitude_deg);
+  if (field.positions.empty()) return "";
+  return fmt::format("{:.4g}, {:.4g}", field.positions[index].latitude_deg,
+                     field.positions[index].longitude_deg);
 }
 
 Json ductJson(const Duct& duct, const std::vector<double>& frequencies_hz) {
@@ -143,9 +144,9 @@ Json profilesJson(const RefractivityField& field, const std::vector<double>& fre
     const RefractivityProfile profile = profileAt(field, i);
     Json json = Json::object();
     if (!field.ranges_m.empty()) json["range_m"] = field.ranges_m[i];
-    if (!field.places.empty()) {
-      json["latitude_deg"] = field.places[i].latitude_deg;
-      json["longitude_deg"] = field.places[i].longitude_deg;
+    if (!field.positions.empty()) {
+      json["latitude_deg"] = field.positions[i].latitude_deg;
+      json["longitude_deg"] = field.positions[i].longitude_deg;
     }
     json["levels"] = field.profiles[i].levels.size();
     json["lowest_msl_m"] = roundedTo(profile.levels.front().height_msl_m, 1);

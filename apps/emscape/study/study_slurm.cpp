@@ -11,6 +11,7 @@
 
 #include "apps/emscape/common/console.h"
 #include "base/files/whole_file.h"
+#include "base/text/shell_word.h"
 #include "emscape/base/error.h"
 
 namespace emscape::app {
@@ -20,15 +21,6 @@ namespace fs = std::filesystem;
 
 /// Tasks of the array that may run at the same time.
 constexpr int kTasksAtOnce = 20;
-
-/// A word of a shell's command line.
-std::string shellWord(const std::string& text) {
-  static const std::regex kPlain("[A-Za-z0-9_./:=,+-]+");
-  if (std::regex_match(text, kPlain)) return text;
-  std::string word = "'";
-  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return word + "'";
-}
 
 void writeScript(const fs::path& file, const std::string& text) {
   writeWhole(file, [&](std::ostream& out) { out << text; });

@@ -12,6 +12,7 @@
 #include "apps/view/panels/theme.h"
 #include "base/files/json_writing.h"
 #include "base/text/quantity_text.h"
+#include "base/text/shell_word.h"
 
 namespace emscape::view {
 namespace {
@@ -178,7 +179,7 @@ void ParameterRows::drawLabelMenu(const Parameter& parameter) const {
     set(parameter.path, "null");
   }
   if (ImGui::MenuItem("Copy as --set")) {
-    ImGui::SetClipboardText(playback::shellWord(parameter.path + "=" + parameter.value).c_str());
+    ImGui::SetClipboardText(shellWord(parameter.path + "=" + parameter.value).c_str());
   }
   ImGui::EndPopup();
 }

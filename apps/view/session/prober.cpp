@@ -7,12 +7,13 @@
 #include <limits>
 #include <utility>
 
-#include "apps/view/session/named_item.h"
 #include "base/text/failure_text.h"
+#include "base/text/shell_word.h"
 #include "emfield/link/path_report.h"
 #include "emscape/base/error.h"
 #include "playback/editing/edit_history.h"
 #include "playback/editing/pick.h"
+#include "scenario/file/named_items.h"
 
 namespace emscape::view {
 namespace {
@@ -181,10 +182,10 @@ std::string profileCommand(const ProbeResult& result, const std::string& emitter
   if (!result.scenario || !result.reading || !result.reading->position) {
     throw Error(ErrorCode::bad_input, "there is no path to explain: the probe has no point of a scenario");
   }
-  indexOfNamed(result.scenario->emitters, emitter, "emitter");  // throws if there is none
+  scenario::indexOfNamed(result.scenario->emitters, emitter, "emitter");  // throws if there is none
   const GeodeticPosition& position = *result.reading->position;
   return fmt::format("{} --emitter {} --to={:.7f},{:.7f},{:.2f} --time {:g}",
-                     playback::commandText("profile", *result.scenario), playback::shellWord(emitter),
+                     playback::commandText("profile", *result.scenario), shellWord(emitter),
                      position.latitude_deg, position.longitude_deg, *result.reading->height_msl_m,
                      result.time_s);
 }

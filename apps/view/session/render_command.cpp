@@ -6,13 +6,12 @@
 #include <filesystem>
 #include <functional>
 
+#include "base/text/shell_word.h"
 #include "playback/editing/autosave.h"
 #include "playback/editing/edit_history.h"
 
 namespace emscape::view {
 namespace {
-
-using playback::shellWord;
 
 std::string beginOf(const ViewOptions& options) {
   std::string text = "emscape render " + shellWord(options.input);

@@ -167,7 +167,7 @@ bool Session::update() {
     reported_error_ = status_.error;
     if (!reported_error_.empty()) tell(reported_error_, true);
   }
-  takeBackRefused();
+  revertRejected();
   if (const auto recorded = files_->recorder.takeOutcome()) tell(recorded->text, recorded->is_error);
   takeChangedFiles();
   writePendingPicture();

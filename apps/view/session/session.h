@@ -175,7 +175,7 @@ class Session {
   void switchPlanes(const Command& command);
   void changePlane(const Command& command);
   void showQuantity(const std::string& name);
-  void takeBackRefused();
+  void revertRejected();
   /// The scenario that the field is computed from; null for volumes.
   playback::ScenarioPtr computedScenario() const { return options_.scenario.empty() ? scenario() : nullptr; }
   void browse(FileBrowser::Purpose purpose);

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "apps/view/session/named_item.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/scene.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "playback/editing/pick.h"
+#include "scenario/file/named_items.h"
 
 namespace emscape::view {
 namespace {
@@ -37,8 +37,8 @@ std::vector<render::Marker> Session::emittersOfPicture() const {
 void Session::focusEmitter(const std::optional<std::string>& name) {
   const std::vector<render::Marker> markers = emittersOfPicture();
   if (markers.empty()) throw Error(ErrorCode::bad_input, "focus: the picture has no emitters");
-  const std::size_t index =
-      name ? indexOfNamed(picture_->scenario->emitters, *name, "emitter") : focused_ % markers.size();
+  const std::size_t index = name ? scenario::indexOfNamed(picture_->scenario->emitters, *name, "emitter")
+                                 : focused_ % markers.size();
   focused_ = index + 1;
   camera_.focus(markers[index].position_m, kFocus_diagonals, *viewport());
   cameraMoved();

@@ -37,7 +37,7 @@ void Session::showQuantity(const std::string& name) {
 }
 
 /// Returns from a quantity or comparison that cannot be shown to those of the last field.
-void Session::takeBackRefused() {
+void Session::revertRejected() {
   if (!status_.failed) {
     if (picture_ && !status_.computing) last_shown_ = {quantity_, compares_};
     return;

@@ -3,10 +3,10 @@
 
 #include <utility>
 
-#include "apps/view/session/named_item.h"
 #include "apps/view/session/session.h"
 #include "apps/view/session/shown_quantity.h"
 #include "emscape/base/error.h"
+#include "scenario/file/named_items.h"
 #include "scenario/file/parameters.h"
 
 namespace emscape::view {
@@ -24,7 +24,7 @@ std::vector<scenario::Edit> editsOf(const Json& list) {
 std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const std::string& platform,
                                     double latitude_deg, double longitude_deg) {
   const scenario::Platform& moved =
-      scenario.platforms[indexOfNamed(scenario.platforms, platform, "platform")];
+      scenario.platforms[scenario::indexOfNamed(scenario.platforms, platform, "platform")];
   if (!moved.track_file.empty()) {
     throw Error(ErrorCode::bad_input,
                 fmt::format("'{}' cannot be put elsewhere: it moves along {}", platform, moved.track_file));
@@ -148,11 +148,11 @@ std::vector<Verb> Session::scenarioVerbs() {
        }},
       {"undo",
        {},
-       "Takes the last change of the scenario or of the colours back",
+       "Undoes the last change of the scenario or of the colours",
        [](Session& session, const Command&) { session.askUndo(true); }},
       {"redo",
        {},
-       "Makes the change that was taken back again",
+       "Redoes the change that was undone",
        [](Session& session, const Command&) { session.askUndo(false); }},
   };
 }

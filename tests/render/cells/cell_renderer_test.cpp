@@ -218,7 +218,7 @@ TEST(CellRenderer, RefusesUnsupportedSettings) {
   RenderSettings settings;
   settings.mode = CompositingMode::mida;
   EXPECT_THAT(test::errorOf([&] { renderer.setSettings(settings); }, ErrorCode::usage),
-              HasSubstr("mode mida: a field on tetrahedra is drawn by dvr alone"));
+              HasSubstr("mode mida: fields on tetrahedra support only mode dvr"));
   settings = {};
   settings.shading = true;
   EXPECT_THAT(test::errorOf([&] { renderer.setSettings(settings); }, ErrorCode::usage), HasSubstr("shading"));

@@ -45,18 +45,18 @@ constexpr auto namesOf(CombineMode) {
 }
 
 /// Direction of a radar's beam for the probability of detection and the signal-to-noise ratio.
-enum class RadarLook {
+enum class RadarAim {
   scan,   ///< the direction of the radar's scan at the time
   target  ///< towards each voxel, as closely as the scan permits
 };
-constexpr auto namesOf(RadarLook) {
+constexpr auto namesOf(RadarAim) {
   return std::array{"scan", "target"};
 }
 
 struct OutputSpec {
   std::vector<std::string> quantities{"power_density_dbwm2"};  ///< names of the quantity table
   CombineMode combine = CombineMode::sum;
-  RadarLook radar_look = RadarLook::scan;
+  RadarAim radar_look = RadarAim::scan;
   double floor = -120;                 ///< lowest stored value, in each quantity's unit
   double count_threshold_dbwm2 = -90;  ///< emitter_count, occupancy: emitters above this power density
   IntervalSpec interval = {};

@@ -25,7 +25,7 @@ struct ExposureRequest {
   double threshold = 0.5;  ///< in the quantity's unit
   /// target: the beam points at the platform as nearly as the scan permits. scan: the beam points as scanned
   /// at that time; this needs time steps shorter than the beam's passes.
-  scenario::RadarLook look = scenario::RadarLook::target;
+  scenario::RadarAim look = scenario::RadarAim::target;
   /// Index into Scenario::targets: the platform's target that gives cross section by aspect, fluctuation and
   /// radial speed; none: those that the radars assume.
   std::optional<int> target;

@@ -78,7 +78,7 @@ class CoverageSolver {
 void checkRequest(const CoverageRequest& request, const scenario::Scenario& scenario);
 
 /// Computes maps with the functions of the field: the value of a pixel equals that of `emscape profile`
-/// there. Radars look at the target (RadarLook::target), so coverage does not depend on the current direction
+/// there. Radars look at the target (RadarAim::target), so coverage does not depend on the current direction
 /// of a scan. Maps are ordered by time, height (above ground first) and product; those over all times are the
 /// last.
 /// @param terrain  of the whole map and all platforms; null: a smooth earth

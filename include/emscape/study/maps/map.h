@@ -14,7 +14,7 @@ enum class MapKind {
   level,        ///< value with a unit: dB, m, s
   difference,   ///< difference of two levels; the sign has a meaning
   probability,  ///< 0..1
-  part,         ///< 0..1: fractions
+  fraction,     ///< 0..1
   count,        ///< 0, 1, 2 ...
   classes,      ///< 0, 1 ... with a label each; 0: nothing to show
   category      ///< index of a label; -1: none
@@ -25,8 +25,8 @@ constexpr bool isWhole(MapKind kind) {
 }
 
 /// Kinds whose values are 0..1.
-constexpr bool isPart(MapKind kind) {
-  return kind == MapKind::probability || kind == MapKind::part;
+constexpr bool isFraction(MapKind kind) {
+  return kind == MapKind::probability || kind == MapKind::fraction;
 }
 
 struct Map {

@@ -13,14 +13,14 @@ namespace emscape::study {
 /// Rows run from north to south, pixels in them from west to east.
 struct MapGrid {
   int width = 0, height = 0;
-  double cell_m = 0;                            ///< side of a pixel in the projection
-  double left_m = 0, top_m = 0;                 ///< outer corner of the first pixel
-  std::string crs;                              ///< "EPSG:32616", or "local"
-  std::string wkt;                              ///< WKT2
-  UnsetVector<emfield::Surface::Place> places;  ///< the pixels' centres; latitude NaN: left out
-  std::vector<float> areas_m2;                  ///< of the pixels, on the ellipsoid
+  double cell_m = 0;                                  ///< side of a pixel in the projection
+  double left_m = 0, top_m = 0;                       ///< outer corner of the first pixel
+  std::string crs;                                    ///< "EPSG:32616", or "local"
+  std::string wkt;                                    ///< WKT2
+  UnsetVector<emfield::Surface::Position> positions;  ///< the pixels' centres; latitude NaN: left out
+  std::vector<float> areas_m2;                        ///< of the pixels, on the ellipsoid
 
-  std::size_t pixels() const { return places.size(); }
+  std::size_t pixels() const { return positions.size(); }
   /// The pixel that contains a position; -1: none.
   long long pixelAt(double latitude_deg, double longitude_deg) const;
 };

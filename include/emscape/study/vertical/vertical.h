@@ -77,7 +77,7 @@ struct VerticalDiagram {
 double defaultRange_m(const scenario::Scenario& scenario, const VerticalRequest& request);
 
 /// Computes a diagram with the functions of the field: a value equals that of `emscape profile` at its point,
-/// with the active jammers and the radar's beam on the target (RadarLook::target).
+/// with the active jammers and the radar's beam on the target (RadarAim::target).
 /// @param terrain  over the whole diagram (circularArea); null: a smooth earth
 /// @param options  backend and memory; the rest is set here
 /// @throws Error (usage) for an emitter that is off, a quantity that is not defined for a single emitter, and

@@ -11,15 +11,15 @@
 
 namespace emscape::emfield::cuda {
 
-/// Results of a PlaceTask, with the terrain from which they were computed.
-struct DevicePlaces {
+/// Results of a PositionTask, with the terrain from which they were computed.
+struct DevicePositions {
   std::shared_ptr<const DeviceTerrain> terrain;  ///< null: none
-  emscape::cuda::Buffer<PlaceColumn> columns;
+  emscape::cuda::Buffer<PositionColumn> columns;
   emscape::cuda::Buffer<float> ground_msl_m;  ///< empty without terrain
   emscape::cuda::Buffer<std::uint16_t> first_valid_k;
 
   std::size_t bytes() const {
-    return columns.size() * sizeof(PlaceColumn) + ground_msl_m.size() * sizeof(float) +
+    return columns.size() * sizeof(PositionColumn) + ground_msl_m.size() * sizeof(float) +
            first_valid_k.size() * sizeof(std::uint16_t);
   }
 };

@@ -50,7 +50,7 @@ struct GeoidCells {
 };
 
 /// Sums over a part of a surface's positions; those that are left out do not count.
-struct PlacesPart {
+struct PositionsPart {
   Vec3d feet{0, 0, 0};  ///< sum over positions with ground
   double lowest_msl_m = HUGE_VAL, highest_msl_m = -HUGE_VAL;
   long long holes = 0, first_hole = -1;  ///< positions without ground
@@ -59,7 +59,7 @@ struct PlacesPart {
     lowest_msl_m = height_msl_m < lowest_msl_m ? height_msl_m : lowest_msl_m;
     highest_msl_m = height_msl_m > highest_msl_m ? height_msl_m : highest_msl_m;
   }
-  EMSCAPE_HD void add(const PlacesPart& other) {
+  EMSCAPE_HD void add(const PositionsPart& other) {
     feet = feet + other.feet;
     lowest_msl_m = other.lowest_msl_m < lowest_msl_m ? other.lowest_msl_m : lowest_msl_m;
     highest_msl_m = other.highest_msl_m > highest_msl_m ? other.highest_msl_m : highest_msl_m;
@@ -69,19 +69,19 @@ struct PlacesPart {
   }
 };
 
-EMSCAPE_HD inline bool isLeftOut(const Surface::Place& place) {
-  return place.latitude_deg != place.latitude_deg;
+EMSCAPE_HD inline bool isLeftOut(const Surface::Position& position) {
+  return position.latitude_deg != position.latitude_deg;
 }
 
 /// Computes the columns of a surface. Pointers are to host or device memory.
-struct PlaceTask {
-  const Surface::Place* places = nullptr;
+struct PositionTask {
+  const Surface::Position* positions = nullptr;
   const float* offsets_m = nullptr;  ///< null: 0
   const double* heights_m = nullptr;
   int layers = 0;
   bool above_ground = true, has_terrain = false;
   scenario::TerrainView terrain;
-  PlaceColumn* columns = nullptr;
+  PositionColumn* columns = nullptr;
   float* ground_msl_m = nullptr;           ///< with terrain
   std::uint16_t* first_valid_k = nullptr;  ///< see GridColumns
 
@@ -89,21 +89,22 @@ struct PlaceTask {
   /// @param undulation_m(latitude_deg, longitude_deg)  as GeoidCells
   /// @param part  the column is added
   template <class Undulation>
-  EMSCAPE_HD void operator()(long long c, Undulation& undulation_m, PlacesPart& part) const {
-    const Surface::Place place = places[c];
-    if (isLeftOut(place)) {
+  EMSCAPE_HD void operator()(long long c, Undulation& undulation_m, PositionsPart& part) const {
+    const Surface::Position position = positions[c];
+    if (isLeftOut(position)) {
       if (has_terrain) ground_msl_m[c] = 0;
       first_valid_k[c] = static_cast<std::uint16_t>(layers);
       return;
     }
-    const double latitude_rad = degToRad(place.latitude_deg), longitude_rad = degToRad(place.longitude_deg);
+    const double latitude_rad = degToRad(position.latitude_deg),
+                 longitude_rad = degToRad(position.longitude_deg);
     const double ground_m =
         has_terrain ? static_cast<double>(terrain.heightAt(latitude_rad, longitude_rad)) : 0;
     const bool is_hole = ground_m != ground_m;
-    PlaceColumn column;
+    PositionColumn column;
     column.base_msl_m = (above_ground && !is_hole ? ground_m : 0) +
                         (offsets_m == nullptr ? 0 : static_cast<double>(offsets_m[c]));
-    column.base_ellipsoid_m = column.base_msl_m + undulation_m(place.latitude_deg, place.longitude_deg);
+    column.base_ellipsoid_m = column.base_msl_m + undulation_m(position.latitude_deg, position.longitude_deg);
     column.foot_ecef_m = ellipsoidPoint_m(latitude_rad, longitude_rad);
     columns[c] = column;
     if (has_terrain) ground_msl_m[c] = static_cast<float>(ground_m);
@@ -129,7 +130,7 @@ struct PlaceTask {
 };
 
 /// The arrays and pointers of a surface in host memory, without the results.
-PlaceTask placeTask(const Surface& surface, const scenario::Terrain* terrain);
+PositionTask positionTask(const Surface& surface, const scenario::Terrain* terrain);
 
 /// Columns of a surface without those of its positions: its dims and layers.
 GridColumns emptyColumns(const Surface& surface);
@@ -137,9 +138,9 @@ GridColumns emptyColumns(const Surface& surface);
 /// Sets the sums over all positions, and the first column of the outline, which is in their middle.
 /// @return that column, which positions that are left out get, so that their numbers are finite
 /// @throws Error (bad_input) if no position has ground
-PlaceColumn setMiddle(const std::vector<PlacesPart>& parts, bool has_terrain, GridColumns& columns);
+PositionColumn setMiddle(const std::vector<PositionsPart>& parts, bool has_terrain, GridColumns& columns);
 
 /// Distances from the middle of a surface. @param middle  of setMiddle()
-FastGeodesy geodesyOf(const PlaceColumn& middle);
+FastGeodesy geodesyOf(const PositionColumn& middle);
 
 }  // namespace emscape::emfield

@@ -11,12 +11,12 @@ namespace emscape::emfield {
 
 /// A look that is unchanged in a second pass is computed once more and stored; afterwards it is read. Results
 /// are bit-identical with and without the cache.
-class KeptLooks {
+class LookWeightCache {
  public:
   /// @param slots            emitters with their own geometry
   /// @param voxels           of the grid
   /// @param available_bytes  keptBytes() of it are used
-  KeptLooks(std::size_t slots, std::size_t voxels, std::size_t available_bytes);
+  LookWeightCache(std::size_t slots, std::size_t voxels, std::size_t available_bytes);
 
   /// The arrays for the next pass, which must be run with them.
   /// @param slot     of the radar; slots other than those of the constructor have no arrays

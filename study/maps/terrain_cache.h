@@ -10,13 +10,14 @@
 namespace emscape::study {
 
 /// Keeps the terrain of a scenario while the next ones need the same files and the same box. For one thread.
-class KeptTerrain {
+class TerrainCache {
  public:
   /// Loads terrain in scenario::terrainBox() of each scenario.
-  KeptTerrain() = default;
+  TerrainCache() = default;
   /// Loads terrain in terrainBoxOf() of each scenario and an area.
   /// @param scenario,terrain  loaded before
-  KeptTerrain(MapArea area, std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain);
+  TerrainCache(MapArea area, std::shared_ptr<const scenario::Scenario> scenario,
+               scenario::TerrainPtr terrain);
 
   /// True if a scenario needs the terrain that is kept.
   bool fits(const scenario::Scenario& scenario) const;

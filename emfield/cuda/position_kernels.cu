@@ -26,25 +26,27 @@ __device__ Sum sumOfBlock(const Sum& own, const Add& add) {
 
 /// Calls visit(c) for the positions of a thread.
 template <class Visit>
-__device__ void eachPlace(int places, const Visit& visit) {
+__device__ void eachPosition(int positions, const Visit& visit) {
   const int threads = static_cast<int>(gridDim.x * blockDim.x);
-  for (int c = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); c < places; c += threads) visit(c);
+  for (int c = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x); c < positions; c += threads) visit(c);
 }
 
 __global__ void __launch_bounds__(kThreads)
-    placesKernel(const __grid_constant__ PlaceTask task, int places, GeoidCells geoid, PlacesPart* parts) {
-  PlacesPart own;
-  eachPlace(places, [&](int c) { task(c, geoid, own); });
-  const PlacesPart all = sumOfBlock(own, [](PlacesPart& sum, const PlacesPart& other) { sum.add(other); });
+    positionsKernel(const __grid_constant__ PositionTask task, int positions, GeoidCells geoid,
+                    PositionsPart* parts) {
+  PositionsPart own;
+  eachPosition(positions, [&](int c) { task(c, geoid, own); });
+  const PositionsPart all =
+      sumOfBlock(own, [](PositionsPart& sum, const PositionsPart& other) { sum.add(other); });
   if (threadIdx.x == 0) parts[blockIdx.x] = all;
 }
 
 __global__ void __launch_bounds__(kThreads)
-    spanKernel(const __grid_constant__ PlaceTask task, int places, PlaceColumn middle,
+    spanKernel(const __grid_constant__ PositionTask task, int positions, PositionColumn middle,
                const __grid_constant__ FastGeodesy geodesy, double* beyond_m) {
   double own_m = 0;
-  eachPlace(places, [&](int c) {
-    if (isLeftOut(task.places[c])) {
+  eachPosition(positions, [&](int c) {
+    if (isLeftOut(task.positions[c])) {
       task.columns[c] = middle;
       return;
     }
@@ -58,15 +60,15 @@ __global__ void __launch_bounds__(kThreads)
 
 }  // namespace
 
-void computePlaces(const PlaceTask& task, int places, const GeoidView& geoid, PlacesPart* parts,
-                   cudaStream_t stream) {
-  placesKernel<<<kPlacesParts, kThreads, 0, stream>>>(task, places, GeoidCells{geoid}, parts);
+void computePositions(const PositionTask& task, int positions, const GeoidView& geoid, PositionsPart* parts,
+                      cudaStream_t stream) {
+  positionsKernel<<<kPositionsParts, kThreads, 0, stream>>>(task, positions, GeoidCells{geoid}, parts);
   checkLaunch("places");
 }
 
-void spanPlaces(const PlaceTask& task, int places, const PlaceColumn& middle, const FastGeodesy& geodesy,
-                double* beyond_m, cudaStream_t stream) {
-  spanKernel<<<kPlacesParts, kThreads, 0, stream>>>(task, places, middle, geodesy, beyond_m);
+void spanPositions(const PositionTask& task, int positions, const PositionColumn& middle,
+                   const FastGeodesy& geodesy, double* beyond_m, cudaStream_t stream) {
+  spanKernel<<<kPositionsParts, kThreads, 0, stream>>>(task, positions, middle, geodesy, beyond_m);
   checkLaunch("spanOfPlaces");
 }
 

@@ -1,4 +1,4 @@
-#include "emfield/cuda/device_places.h"
+#include "emfield/cuda/device_positions.h"
 
 #include <algorithm>
 
@@ -15,15 +15,15 @@ GridColumns makeDeviceColumns(const Surface& surface, const scenario::Terrain* t
   const emscape::cuda::Stream stream;
   GridColumns result = emptyColumns(surface);
   const std::size_t count = result.count();
-  const auto on_device = std::make_shared<cuda::DevicePlaces>();
+  const auto on_device = std::make_shared<cuda::DevicePositions>();
   on_device->columns.resize(count);
   on_device->first_valid_k.resize(count);
   if (terrain != nullptr) {
     on_device->terrain = std::make_shared<const cuda::DeviceTerrain>(terrain->view(), stream);
     on_device->ground_msl_m.resize(count);
   }
-  Buffer<Surface::Place> places;
-  uploadStaged(places, surface.places.data(), count, stream);
+  Buffer<Surface::Position> positions;
+  uploadStaged(positions, surface.positions.data(), count, stream);
   Buffer<float> offsets_m;
   uploadStaged(offsets_m, surface.offsets_m.data(), surface.offsets_m.size(), stream);
   Buffer<double> heights_m;
@@ -35,35 +35,36 @@ GridColumns makeDeviceColumns(const Surface& surface, const scenario::Terrain* t
                stream);
   geoid.posts_m = geoid_posts_m.data();
 
-  PlaceTask task = placeTask(surface, terrain);
-  task.places = places.data();
+  PositionTask task = positionTask(surface, terrain);
+  task.positions = positions.data();
   task.offsets_m = offsets_m.data();
   task.heights_m = heights_m.data();
   if (terrain != nullptr) task.terrain = on_device->terrain->view();
   task.columns = on_device->columns.data();
   task.ground_msl_m = on_device->ground_msl_m.data();
   task.first_valid_k = on_device->first_valid_k.data();
-  Buffer<PlacesPart> device_parts(cuda::kPlacesParts);
-  cuda::computePlaces(task, static_cast<int>(count), geoid, device_parts.data(), stream);
-  std::vector<PlacesPart> parts(cuda::kPlacesParts);
+  Buffer<PositionsPart> device_parts(cuda::kPositionsParts);
+  cuda::computePositions(task, static_cast<int>(count), geoid, device_parts.data(), stream);
+  std::vector<PositionsPart> parts(cuda::kPositionsParts);
   device_parts.download(parts.data(), stream);
 
-  const PlaceColumn middle = setMiddle(parts, terrain != nullptr, result);
-  Buffer<double> device_beyond_m(cuda::kPlacesParts);
-  cuda::spanPlaces(task, static_cast<int>(count), middle, geodesyOf(middle), device_beyond_m.data(), stream);
+  const PositionColumn middle = setMiddle(parts, terrain != nullptr, result);
+  Buffer<double> device_beyond_m(cuda::kPositionsParts);
+  cuda::spanPositions(task, static_cast<int>(count), middle, geodesyOf(middle), device_beyond_m.data(),
+                      stream);
   result.first_valid_k.resize(count);
   emscape::cuda::downloadStaged(result.first_valid_k.data(), on_device->first_valid_k.data(),
                                 count * sizeof(std::uint16_t), stream);
-  std::vector<double> beyond_m(cuda::kPlacesParts);
+  std::vector<double> beyond_m(cuda::kPositionsParts);
   device_beyond_m.download(beyond_m.data(), stream);
   result.beyond_outline_m = *std::max_element(beyond_m.begin(), beyond_m.end());
   result.on_device = on_device;
   return result;
 }
 
-std::vector<float> groundOf(const cuda::DevicePlaces& places) {
-  std::vector<float> ground_msl_m(places.ground_msl_m.size());
-  places.ground_msl_m.download(ground_msl_m.data());
+std::vector<float> groundOf(const cuda::DevicePositions& positions) {
+  std::vector<float> ground_msl_m(positions.ground_msl_m.size());
+  positions.ground_msl_m.download(ground_msl_m.data());
   return ground_msl_m;
 }
 

@@ -1,11 +1,11 @@
-#include "emfield/cpu/kept_looks.h"
+#include "emfield/cpu/look_weight_cache.h"
 
 #include <algorithm>
 #include <exception>
 #include <utility>
 
 #include "emfield/solver/field_inputs.h"
-#include "emfield/solver/kept_power.h"
+#include "emfield/solver/power_cache.h"
 
 namespace emscape::emfield {
 namespace {
@@ -15,13 +15,13 @@ constexpr std::size_t kMaxEntries = 16;
 
 }  // namespace
 
-KeptLooks::KeptLooks(std::size_t slots, std::size_t voxels, std::size_t available_bytes)
+LookWeightCache::LookWeightCache(std::size_t slots, std::size_t voxels, std::size_t available_bytes)
     : voxels_(voxels),
       limit_(keptBytes(available_bytes) / (sizeof(float) * std::max<std::size_t>(voxels, 1))),
       slots_(slots) {}
 
-LookWeights KeptLooks::choose(std::size_t slot, const scenario::AntennaPtr& antenna,
-                              const RadarShare& share) {
+LookWeights LookWeightCache::choose(std::size_t slot, const scenario::AntennaPtr& antenna,
+                                    const RadarShare& share) {
   LookWeights weights;
   if (slot >= slots_.size() || !share.arcs.directions.empty()) return weights;
   ++pass_;
@@ -32,8 +32,8 @@ LookWeights KeptLooks::choose(std::size_t slot, const scenario::AntennaPtr& ante
   return weights;
 }
 
-WeightArray KeptLooks::choose(std::vector<Entry>& entries, const scenario::AntennaPtr& antenna,
-                              const RadarShare& share, const JammerAtRadar* jammer) {
+WeightArray LookWeightCache::choose(std::vector<Entry>& entries, const scenario::AntennaPtr& antenna,
+                                    const RadarShare& share, const JammerAtRadar* jammer) {
   const auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& known) {
     const bool is_jammer = known.jammer.has_value();
     return is_jammer == (jammer != nullptr) && (!is_jammer || sameRays(*known.jammer, *jammer)) &&
@@ -65,20 +65,20 @@ WeightArray KeptLooks::choose(std::vector<Entry>& entries, const scenario::Anten
   return {};
 }
 
-void KeptLooks::forget(std::size_t slot) {
+void LookWeightCache::forget(std::size_t slot) {
   if (slot >= slots_.size()) return;
   for (Entry& entry : slots_[slot]) release(entry);
   slots_[slot].clear();
 }
 
-void KeptLooks::release(Entry& entry) {
+void LookWeightCache::release(Entry& entry) {
   if (!entry.values.empty()) free_.push_back(std::move(entry.values));
   entry.values.clear();
   entry.is_known = false;
 }
 
 /// @return false if there is no memory for another array
-bool KeptLooks::take(Entry& entry) {
+bool LookWeightCache::take(Entry& entry) {
   if (!free_.empty()) {
     entry.values = std::move(free_.back());
     free_.pop_back();

@@ -1,4 +1,4 @@
-#include "emfield/solver/kept_power.h"
+#include "emfield/solver/power_cache.h"
 
 #include "emfield/solver/field_inputs.h"
 

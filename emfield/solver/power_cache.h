@@ -26,12 +26,12 @@ constexpr std::size_t keptBytes(std::size_t available_bytes) {
 /// which is many times faster and bit-identical.
 /// @tparam Array  of floats: std::vector<float> or a GPU's buffer
 template <class Array>
-class KeptPower {
+class PowerCache {
  public:
   /// @param slots            emitters with their own geometry
   /// @param voxels           of the grid
   /// @param available_bytes  keptBytes() of it are used
-  KeptPower(std::size_t slots, std::size_t voxels, std::size_t available_bytes)
+  PowerCache(std::size_t slots, std::size_t voxels, std::size_t available_bytes)
       : voxels_(voxels),
         limit_(keptBytes(available_bytes) / (sizeof(float) * (voxels > 0 ? voxels : 1))),
         slots_(slots) {}
