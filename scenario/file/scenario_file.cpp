@@ -17,7 +17,7 @@
 #include "emscape/scenario/model/quantities.h"
 #include "scenario/file/parse_sections.h"
 #include "scenario/file/quantity_needs.h"
-#include "scenario/scan/scan_sampling.h"
+#include "scenario/file/scenario_warnings.h"
 
 namespace emscape::scenario {
 
@@ -231,104 +231,6 @@ OutputSpec parseOutput(const Section& section, const Scenario& scenario, ParseCo
   return output;
 }
 
-void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, ParseContext& context) {
-  const std::vector<Section> sections = root.sections("emitters");
-  for (std::size_t i = 0; i < sections.size() && !scenario.bands.empty(); ++i) {
-    const double frequency_hz = scenario.emitters[i].frequency_hz;
-    const bool in_band = std::any_of(scenario.bands.begin(), scenario.bands.end(), [&](const Band& band) {
-      return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
-    });
-    if (in_band) continue;
-    context.problems.addWarning(
-        sections[i].locationOf("frequency_hz"),
-        fmt::format("emitter '{}' ({} Hz) is in none of the bands", scenario.emitters[i].name, frequency_hz));
-  }
-}
-
-/// Warns about jammers outside the bands of all radars, if the output depends on jamming.
-void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
-  const std::vector<std::string>& quantities = scenario.output.quantities;
-  const bool counts = std::any_of(quantities.begin(), quantities.end(), [](const std::string& quantity) {
-    return needsJammer(quantityFromName(quantity));
-  });
-  const std::vector<Section> sections = root.sections("emitters");
-  for (std::size_t i = 0; i < sections.size() && counts; ++i) {
-    const Emitter& jammer = scenario.emitters[i];
-    if (jammer.kind != EmitterKind::jammer) continue;
-    const bool jams =
-        std::any_of(scenario.emitters.begin(), scenario.emitters.end(), [&jammer](const Emitter& radar) {
-          return radar.kind == EmitterKind::radar &&
-                 std::abs(radar.frequency_hz - jammer.frequency_hz) <=
-                     (radar.receiver.bandwidth_hz + jammer.bandwidth_hz) / 2;
-        });
-    if (jams) continue;
-    context.problems.addWarning(
-        sections[i].locationOf("frequency_hz"),
-        fmt::format("jammer '{}' ({} Hz, {} Hz wide) is outside the band of every radar: it jams none",
-                    jammer.name, jammer.frequency_hz, jammer.bandwidth_hz));
-  }
-}
-
-/// Warns about an antenna whose gain exceeds the directivity of its pattern.
-/// @param section  of the emitter or receiver
-void warnOfGain(const Antenna& antenna, const Section& section, const char* consequence,
-                ParseContext& context) {
-  constexpr double kTolerance_db = 0.5;
-  const double directivity_dbi = antenna.directivity_dbi();
-  if (antenna.gain_dbi <= directivity_dbi + kTolerance_db) return;
-  const Section own = section.section("antenna");
-  context.problems.addWarning(
-      own.has("gain_dbi") ? own.locationOf("gain_dbi") : own.location(),
-      fmt::format(
-          "the gain of {:.2f} dBi is {:.2f} dB above the pattern's directivity, {:.2f} dBi: the antenna "
-          "would {}; lower the gain, the beamwidths or the side lobes",
-          antenna.gain_dbi, antenna.gain_dbi - directivity_dbi, directivity_dbi, consequence));
-}
-
-void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& context) {
-  const std::vector<Section> emitters = root.sections("emitters");
-  for (std::size_t i = 0; i < emitters.size(); ++i)
-    warnOfGain(*scenario.emitters[i].antenna, emitters[i], "radiate more power than it is fed", context);
-  std::size_t placed = 0;
-  for (const Section& item : root.sections("receivers")) {
-    if (!item.has("platform")) continue;
-    const PlacedReceiver& receiver = scenario.placed_receivers[placed++];
-    if (item.has("antenna"))
-      warnOfGain(*receiver.antenna, item, "receive more power than reaches it", context);
-  }
-}
-
-/// Warns about fluctuating targets of radars whose method of detection supports only steady ones.
-void warnOfTargetsTakenAsSteady(const Scenario& scenario, const Section& root, ParseContext& context) {
-  const std::vector<Section> sections = root.sections("targets");
-  for (std::size_t i = 0; i < sections.size(); ++i) {
-    const Target& target = scenario.targets[i];
-    if (target.swerling == 0) continue;
-    std::string radars;
-    for (const Emitter& radar : scenario.emitters) {
-      if (radar.kind != EmitterKind::radar || radar.receiver.detection != DetectionMethod::albersheim ||
-          radar.platform == target.platform)
-        continue;
-      radars += fmt::format("{}'{}'", radars.empty() ? "" : ", ", radar.name);
-    }
-    if (radars.empty()) continue;
-    context.problems.addWarning(
-        sections[i].has("swerling") ? sections[i].locationOf("swerling") : sections[i].location(),
-        fmt::format("the target '{}' of swerling {} is taken as steady (swerling 0) by radars whose "
-                    "'detection' is albersheim: {}",
-                    target.name, target.swerling, radars));
-  }
-}
-
-/// Warns at the first of the beams.
-void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseContext& context) {
-  const std::optional<UnlitAzimuths> unlit = unlitAzimuths(scenario, scenario.clock);
-  if (!unlit) return;
-  const bool rotates = scenario.emitters[unlit->first_emitter].scan.kind == ScanKind::rotate;
-  const Section scan = root.sections("emitters")[unlit->first_emitter].section("scan");
-  context.problems.addWarning(scan.locationOf(rotates ? "rate_rpm" : "rate_deg_s"), unlit->warning);
-}
-
 Scenario parseRoot(const Section& root, ParseContext& context) {
   Scenario scenario;
   scenario.name = root.text("name");
@@ -356,20 +258,12 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
   for (const Section& item : root.sections("bands")) scenario.bands.push_back(parseBand(item, context));
   scenario.output = parseOutput(root.section("output"), scenario, context);
   if (!context.problems.hasErrors()) {
-    warnOfEmittersWithoutBand(scenario, root, context);
-    warnOfIdleJammers(scenario, root, context);
-    warnOfGains(scenario, root, context);
-    warnOfTargetsTakenAsSteady(scenario, root, context);
-    if (context.read_for == ReadFor::series) warnOfCoarseSteps(scenario, root, context);
+    addScenarioWarnings(scenario, root, context);
     warnOfRefractivity(scenario, root, context);
   }
   scenario.hash = context.hash.hex();
   return scenario;
 }
-
-}  // namespace
-
-namespace {
 
 /// Maps the locations in a scenario from the edited text to its file.
 void mapPlaces(Scenario& scenario, const document::EditedText& text) {

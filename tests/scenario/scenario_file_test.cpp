@@ -293,6 +293,25 @@ TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
   EXPECT_EQ(result.problems[0].location.line, 39);
 }
 
+TEST(ScenarioWarnings, KindThatConcernsManyEmittersIsOneLine) {
+  test::TemporaryFolder folder;
+  std::string text =
+      "schema_version: 1\nname: many\nregion: {origin: {latitude_deg: 52, longitude_deg: 5}, size_m: [9000, "
+      "9000, "
+      "900], dims: [9, 9, 9]}\nplatforms: [{name: p, position: {latitude_deg: 52, longitude_deg: 5, "
+      "height_agl_m: "
+      "9}}]\nemitters:\n";
+  for (int i = 0; i < 7; ++i) {
+    text += "- {name: e" + std::to_string(i) +
+            ", platform: p, kind: transmitter, frequency_hz: 1e9, power_w: 1, antenna: {pattern: gaussian, "
+            "gain_dbi: 20, beamwidth_az_deg: 60, beamwidth_el_deg: 30}}\n";
+  }
+  const ParseResult result = parseScenario(folder.write("many.yaml", text));
+  ASSERT_EQ(result.problems.size(), 1u);
+  EXPECT_EQ(result.problems[0].location.line, 6);
+  EXPECT_THAT(result.problems[0].message, testing::EndsWith("; likewise 'e1', 'e2', 'e3', 'e4' and 2 more"));
+}
+
 TEST_F(ScenarioYaml, WarnsOfAGainAboveThePatternsDirectivity) {
   const std::string text =
       replaced(valid_, "{pattern: gaussian, beamwidth_az_deg: 60, beamwidth_el_deg: 30}",

@@ -1,0 +1,163 @@
+#include "scenario/file/scenario_warnings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/scenario/model/quantities.h"
+#include "scenario/file/quantity_needs.h"
+#include "scenario/scan/scan_sampling.h"
+
+namespace emscape::scenario {
+namespace {
+
+/// A warning of one kind about any number of items of a scenario.
+class WarningOfItems {
+ public:
+  /// @param text  what is said of this item; that of the first item is shown
+  void add(const SourceLocation& location, const std::string& item, const std::string& text) {
+    if (items_.empty()) {
+      location_ = location;
+      text_ = text;
+    }
+    items_.push_back("'" + item + "'");
+  }
+
+  void addTo(document::ProblemList& problems) const {
+    constexpr std::size_t kMaxNames = 5;
+    if (items_.empty()) return;
+    std::string text = text_;
+    if (items_.size() > 1) {
+      const auto end = items_.begin() + static_cast<std::ptrdiff_t>(std::min(items_.size(), kMaxNames));
+      text += fmt::format("; likewise {}", fmt::join(items_.begin() + 1, end, ", "));
+      if (items_.size() > kMaxNames) text += fmt::format(" and {} more", items_.size() - kMaxNames);
+    }
+    problems.addWarning(location_, text);
+  }
+
+ private:
+  SourceLocation location_;
+  std::string text_;
+  std::vector<std::string> items_;  ///< names in quotation marks
+};
+
+void warnOfEmittersWithoutBand(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size() && !scenario.bands.empty(); ++i) {
+    const double frequency_hz = scenario.emitters[i].frequency_hz;
+    const bool in_band = std::any_of(scenario.bands.begin(), scenario.bands.end(), [&](const Band& band) {
+      return frequency_hz >= band.begin_hz && frequency_hz < band.end_hz;
+    });
+    if (in_band) continue;
+    const std::string& name = scenario.emitters[i].name;
+    warning.add(sections[i].locationOf("frequency_hz"), name,
+                fmt::format("emitter '{}' ({} Hz) is in none of the bands", name, frequency_hz));
+  }
+  warning.addTo(context.problems);
+}
+
+/// Warns about jammers outside the bands of all radars, if the output depends on jamming.
+void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<std::string>& quantities = scenario.output.quantities;
+  const bool counts = std::any_of(quantities.begin(), quantities.end(), [](const std::string& quantity) {
+    return needsJammer(quantityFromName(quantity));
+  });
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size() && counts; ++i) {
+    const Emitter& jammer = scenario.emitters[i];
+    if (jammer.kind != EmitterKind::jammer) continue;
+    const bool jams =
+        std::any_of(scenario.emitters.begin(), scenario.emitters.end(), [&jammer](const Emitter& radar) {
+          return radar.kind == EmitterKind::radar &&
+                 std::abs(radar.frequency_hz - jammer.frequency_hz) <=
+                     (radar.receiver.bandwidth_hz + jammer.bandwidth_hz) / 2;
+        });
+    if (jams) continue;
+    warning.add(
+        sections[i].locationOf("frequency_hz"), jammer.name,
+        fmt::format("jammer '{}' ({} Hz, {} Hz wide) is outside the band of every radar: it jams none",
+                    jammer.name, jammer.frequency_hz, jammer.bandwidth_hz));
+  }
+  warning.addTo(context.problems);
+}
+
+/// Adds an antenna to a warning if its gain exceeds the directivity of its pattern.
+/// @param section  of the emitter or receiver
+void addGain(WarningOfItems& warning, const std::string& name, const Antenna& antenna, const Section& section,
+             const char* consequence) {
+  constexpr double kTolerance_db = 0.5;
+  const double directivity_dbi = antenna.directivity_dbi();
+  if (antenna.gain_dbi <= directivity_dbi + kTolerance_db) return;
+  const Section own = section.section("antenna");
+  warning.add(
+      own.has("gain_dbi") ? own.locationOf("gain_dbi") : own.location(), name,
+      fmt::format("the gain of {:.2f} dBi is {:.2f} dB above the pattern's directivity, {:.2f} dBi: the "
+                  "antenna would {}; lower the gain, the beamwidths or the side lobes",
+                  antenna.gain_dbi, antenna.gain_dbi - directivity_dbi, directivity_dbi, consequence));
+}
+
+void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& context) {
+  WarningOfItems of_emitters, of_receivers;
+  const std::vector<Section> emitters = root.sections("emitters");
+  for (std::size_t i = 0; i < emitters.size(); ++i) {
+    const Emitter& emitter = scenario.emitters[i];
+    addGain(of_emitters, emitter.name, *emitter.antenna, emitters[i], "radiate more power than it is fed");
+  }
+  std::size_t placed = 0;
+  for (const Section& item : root.sections("receivers")) {
+    if (!item.has("platform")) continue;
+    const PlacedReceiver& receiver = scenario.placed_receivers[placed++];
+    if (item.has("antenna"))
+      addGain(of_receivers, receiver.name, *receiver.antenna, item, "receive more power than reaches it");
+  }
+  of_emitters.addTo(context.problems);
+  of_receivers.addTo(context.problems);
+}
+
+/// Warns about fluctuating targets of radars whose method of detection supports only steady ones.
+void warnOfTargetsTakenAsSteady(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("targets");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Target& target = scenario.targets[i];
+    if (target.swerling == 0) continue;
+    std::string radars;
+    for (const Emitter& radar : scenario.emitters) {
+      if (radar.kind != EmitterKind::radar || radar.receiver.detection != DetectionMethod::albersheim ||
+          radar.platform == target.platform)
+        continue;
+      radars += fmt::format("{}'{}'", radars.empty() ? "" : ", ", radar.name);
+    }
+    if (radars.empty()) continue;
+    warning.add(sections[i].has("swerling") ? sections[i].locationOf("swerling") : sections[i].location(),
+                target.name,
+                fmt::format("the target '{}' of swerling {} is taken as steady (swerling 0) by radars whose "
+                            "'detection' is albersheim: {}",
+                            target.name, target.swerling, radars));
+  }
+  warning.addTo(context.problems);
+}
+
+/// Warns at the first of the beams.
+void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::optional<UnlitAzimuths> unlit = unlitAzimuths(scenario, scenario.clock);
+  if (!unlit) return;
+  const bool rotates = scenario.emitters[unlit->first_emitter].scan.kind == ScanKind::rotate;
+  const Section scan = root.sections("emitters")[unlit->first_emitter].section("scan");
+  context.problems.addWarning(scan.locationOf(rotates ? "rate_rpm" : "rate_deg_s"), unlit->warning);
+}
+
+}  // namespace
+
+void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseContext& context) {
+  warnOfEmittersWithoutBand(scenario, root, context);
+  warnOfIdleJammers(scenario, root, context);
+  warnOfGains(scenario, root, context);
+  warnOfTargetsTakenAsSteady(scenario, root, context);
+  if (context.read_for == ReadFor::series) warnOfCoarseSteps(scenario, root, context);
+}
+
+}  // namespace emscape::scenario
