@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <string>
+#include <type_traits>
 
 #include "emscape/base/error.h"
 
@@ -15,7 +16,7 @@ namespace emscape {
 
 /// @param value  of an enumeration that has namesOf() and whose values count from 0
 template <class Enum>
-constexpr auto toString(Enum value) -> decltype(namesOf(value)[0]) {
+constexpr auto toString(Enum value) -> std::decay_t<decltype(namesOf(value)[0])> {
   return namesOf(value)[static_cast<std::size_t>(value)];
 }
 
