@@ -52,7 +52,7 @@ function(emscape_tests module)
   emscape_test_program(${module}_tests ${module})
 endfunction()
 
-# emscape_test_program(TARGET LABEL [PROPERTY VALUE ...]): makes each test of the program a ctest test with the label.
+# emscape_test_program(TARGET LABEL [PROPERTY VALUE ...]): runs a program of GoogleTest under ctest, with the label.
 function(emscape_test_program target label)
   target_link_libraries(${target} PRIVATE emscape_test_support)
   emscape_precompile(${target} <gmock/gmock.h> <gtest/gtest.h>)
@@ -63,20 +63,25 @@ function(emscape_test_program target label)
     target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
   endif()
   emscape_warnings(${target})
-  emscape_add_tests(${target} "" LABELS ${label} ${ARGN})
+  emscape_add_tests(${target} ${label} ${ARGN})
 endfunction()
 
-# emscape_add_tests(TARGET PREFIX PROPERTY VALUE ...): each test of a program of GoogleTest is one of ctest's. Under a sanitizer,
-# where a program takes longer to load than most tests to run, each of ctest's tests is one of six shards of the program; the
-# environment variable GTEST_FILTER then selects tests by name.
-function(emscape_add_tests target prefix)
-  if(NOT EMSCAPE_SANITIZE)
-    gtest_discover_tests(${target} DISCOVERY_TIMEOUT 60 TEST_PREFIX "${prefix}" PROPERTIES ${ARGN})
-    return()
-  endif()
-  foreach(shard RANGE 5)
-    set(name "${prefix}${target}.${shard}")
-    add_test(NAME "${name}" COMMAND ${target})
-    set_tests_properties("${name}" PROPERTIES ENVIRONMENT "GTEST_TOTAL_SHARDS=6;GTEST_SHARD_INDEX=${shard}" ${ARGN})
+# emscape_add_tests(TARGET LABEL [PROPERTY VALUE ...]): a test program takes longer to load than most of its tests to run, so
+# ctest runs it a few times, each time with a part of its tests: TARGET.0 to .3, and TARGET.slow.0 and .1 with the label `slow`
+# for the tests whose name has the prefix SLOW_. The results of the single tests are in test_results of the build folder;
+# scripts/test counts them.
+function(emscape_add_tests target label)
+  foreach(part 0 1 2 3 slow.0 slow.1)
+    set(name "${target}.${part}")
+    if(part MATCHES "slow.(.)")
+      set(environment "GTEST_FILTER=*SLOW_*;GTEST_TOTAL_SHARDS=2;GTEST_SHARD_INDEX=${CMAKE_MATCH_1}")
+      set(labels ${label} slow)
+    else()
+      set(environment "GTEST_FILTER=-*SLOW_*;GTEST_TOTAL_SHARDS=4;GTEST_SHARD_INDEX=${part}")
+      set(labels ${label})
+    endif()
+    add_test(NAME ${name} COMMAND ${target})
+    set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT 1500 ENVIRONMENT
+      "${environment};GTEST_BRIEF=1;GTEST_OUTPUT=xml:${PROJECT_BINARY_DIR}/test_results/${name}.xml" ${ARGN})
   endforeach()
 endfunction()

@@ -19,10 +19,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-std::string messageOf(const std::function<void()>& work) {
-  return test::errorOf(work, ErrorCode::device);
-}
-
 TEST(CudaMemory, RoundTripIsExact) {
   EMSCAPE_NEEDS_GPU();
   std::vector<int> numbers(1000);
@@ -53,7 +49,7 @@ TEST(CudaMemory, AValueIsReadBackWithoutWaiting) {
 TEST(CudaMemory, ExcessiveSizeIsNamed) {
   EMSCAPE_NEEDS_GPU();
   const std::size_t bytes = std::size_t{1} << 50;
-  EXPECT_THAT(messageOf([=] { Buffer<char> buffer(bytes); }),
+  EXPECT_THAT(test::errorOf([=] { Buffer<char> buffer(bytes); }, ErrorCode::device),
               AllOf(HasSubstr("GPU: cudaMalloc of " + std::to_string(bytes) + " bytes"),
                     HasSubstr("cudaErrorMemoryAllocation")));
 }
@@ -65,7 +61,7 @@ TEST(CudaLostDevice, IsAnErrorThatNamesCallAndKernel) {
     Buffer<int> buffer(10);
     test::loseDevice();
     std::vector<int> numbers(10);
-    const std::string message = messageOf([&] { buffer.download(numbers.data()); });
+    const std::string message = test::errorOf([&] { buffer.download(numbers.data()); }, ErrorCode::device);
     std::fprintf(stderr, "%s\n", message.c_str());
     std::_Exit(message.empty() ? 1 : 0);
   };

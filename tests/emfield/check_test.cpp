@@ -33,10 +33,6 @@ class CheckFolder : public testing::Test {
  protected:
   fs::path write(const std::string& name, const std::string& text) const { return root_.write(name, text); }
 
-  static std::string messageOf(const std::function<void()>& run) {
-    return test::errorOf(run, ErrorCode::bad_input);
-  }
-
   const test::TemporaryFolder root_;
 };
 
@@ -53,10 +49,12 @@ TEST_F(CheckFolder, ReadsATableByColumnNames) {
 TEST_F(CheckFolder, NamesFileAndLineOfAMalformedTable) {
   const auto message = [this](const std::string& text) {
     const fs::path file = write("t.csv", text);
-    return messageOf([&] {
-      const ReferenceTable table(file, {"a", "b"});
-      for (int i = 0; i < table.rows(); ++i) table.integer(i, "a");
-    });
+    return test::errorOf(
+        [&] {
+          const ReferenceTable table(file, {"a", "b"});
+          for (int i = 0; i < table.rows(); ++i) table.integer(i, "a");
+        },
+        ErrorCode::bad_input);
   };
   EXPECT_THAT(message(""), EndsWith("t.csv: no cases; expected column names and a row for each case"));
   EXPECT_THAT(message("a,b\n"), HasSubstr("t.csv: no cases"));
@@ -66,13 +64,14 @@ TEST_F(CheckFolder, NamesFileAndLineOfAMalformedTable) {
   EXPECT_THAT(message("a,b\n,2\n"), EndsWith("t.csv:2: a: '' is not a finite number"));
   EXPECT_THAT(message("a,b\nnan,2\n"), EndsWith("t.csv:2: a: 'nan' is not a finite number"));
   EXPECT_THAT(message("a,b\n1.5,2\n"), EndsWith("t.csv:2: a: '1.5' is not a whole number"));
-  EXPECT_THAT(messageOf([this] { ReferenceTable(root_ / "none.csv", {}); }), HasSubstr("none.csv"));
+  EXPECT_THAT(test::errorOf([this] { ReferenceTable(root_ / "none.csv", {}); }, ErrorCode::bad_input),
+              HasSubstr("none.csv"));
 }
 
 TEST_F(CheckFolder, NamesFileAndLineOfAMalformedProfile) {
   const auto message = [this](const std::string& text) {
     const fs::path file = write("profiles.csv", text);
-    return messageOf([&] { readReferenceProfiles(file); });
+    return test::errorOf([&] { readReferenceProfiles(file); }, ErrorCode::bad_input);
   };
   EXPECT_THAT(
       message("1,90,5,6\n2,90,5,6\n"),
@@ -99,8 +98,10 @@ TEST_F(CheckFolder, ListsPresentAbsentAndUnknownDatasets) {
 }
 
 TEST_F(CheckFolder, RefusesAFolderWithoutDatasets) {
-  EXPECT_THAT(messageOf([this] { findDatasets(root_.path()); }), HasSubstr("has no known dataset"));
-  EXPECT_THAT(messageOf([this] { findDatasets(root_ / "none"); }), EndsWith("none: no such folder"));
+  EXPECT_THAT(test::errorOf([this] { findDatasets(root_.path()); }, ErrorCode::bad_input),
+              HasSubstr("has no known dataset"));
+  EXPECT_THAT(test::errorOf([this] { findDatasets(root_ / "none"); }, ErrorCode::bad_input),
+              EndsWith("none: no such folder"));
 }
 
 TEST(FigureCheck, KeepsTheLargestDifferenceAndItsLine) {

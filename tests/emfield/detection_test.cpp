@@ -27,10 +27,6 @@ double probability(const Detector& detector, double snr) {
   return detectionProbability(detector, detectionThreshold(detector), snr);
 }
 
-std::string messageOf(const std::function<void()>& run) {
-  return test::errorOf(run, ErrorCode::bad_input);
-}
-
 TEST(Detection, ThresholdOfOnePulseEqualsLogarithmOfPfa) {
   for (const double pfa : {0.5, 1e-3, 1e-6, 1e-12}) {
     EXPECT_NEAR(detectionThreshold({Swerling::steady, 1, pfa}), -std::log(pfa), 1e-12 * -std::log(pfa));
@@ -224,23 +220,32 @@ TEST(Detection, RequiredSnrIsWhereTheMethodHasTheProbability) {
 }
 
 TEST(Detection, RefusesInputsOutsideItsLimits) {
-  EXPECT_EQ(messageOf([] {
-              detectionThreshold({Swerling::steady, 0, 1e-6});
-            }),
+  EXPECT_EQ(test::errorOf(
+                [] {
+                  detectionThreshold({Swerling::steady, 0, 1e-6});
+                },
+                ErrorCode::bad_input),
             "pulses: 0 is outside 1..1000000");
-  EXPECT_EQ(messageOf([] {
-              detectionThreshold({Swerling::steady, 1, 0.7});
-            }),
+  EXPECT_EQ(test::errorOf(
+                [] {
+                  detectionThreshold({Swerling::steady, 1, 0.7});
+                },
+                ErrorCode::bad_input),
             "probability of false alarm: 0.7 is outside 1e-15..0.5");
-  EXPECT_THAT(messageOf([] {
-                detectionThreshold({Swerling::steady, 1, std::nan("")});
-              }),
+  EXPECT_THAT(test::errorOf(
+                  [] {
+                    detectionThreshold({Swerling::steady, 1, std::nan("")});
+                  },
+                  ErrorCode::bad_input),
               HasSubstr("nan is outside"));
-  EXPECT_THAT(messageOf([] {
-                requiredSnrDb({Swerling::steady, 1, 1e-6}, 1);
-              }),
+  EXPECT_THAT(test::errorOf(
+                  [] {
+                    requiredSnrDb({Swerling::steady, 1, 1e-6}, 1);
+                  },
+                  ErrorCode::bad_input),
               HasSubstr("probability of detection: 1 is outside 1e-06..1"));
-  EXPECT_EQ(messageOf([] { swerlingOfCase(5); }), "Swerling case: 5 is outside 0..4");
+  EXPECT_EQ(test::errorOf([] { swerlingOfCase(5); }, ErrorCode::bad_input),
+            "Swerling case: 5 is outside 0..4");
 }
 
 RadarLink searchRadar() {

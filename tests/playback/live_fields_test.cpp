@@ -194,7 +194,7 @@ TEST(LiveFields, StepsAskedForInOrderAreComputedAhead) {
   live.waitFor([&] { return live.fields->status().cached_steps == std::vector<int>{0, 1, 2, 3}; });
   live.seek(7);
   live.wait();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_THAT(live.fields->status().cached_steps, ElementsAre(0, 1, 2, 3, 7)) << "a jump is no playing";
 }
 
@@ -204,7 +204,7 @@ TEST(LiveFields, ThreadSleepsWithoutWork) {
   live.wait();
   std::this_thread::sleep_for(std::chrono::milliseconds(50));
   const long long before = live.fields->status().wake_ups;
-  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
   EXPECT_EQ(live.fields->status().wake_ups, before);
 }
 

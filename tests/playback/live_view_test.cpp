@@ -448,9 +448,9 @@ TEST(LiveView, NoThreadWakesWhileIdle) {
   const TemporaryFolder folder;
   Live live(quickScenario(folder));
   live.settled();
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
   const long long before = live.view->status().wake_ups;
-  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
   EXPECT_EQ(live.view->status().wake_ups, before);
 }
 

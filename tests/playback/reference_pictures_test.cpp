@@ -1,5 +1,5 @@
 /// Pictures against those of tests/data/pictures. To rewrite them, and inspect them before committing:
-///     EMSCAPE_WRITE_PICTURES=1 ctest --preset release -R ReferencePicture
+///     EMSCAPE_WRITE_PICTURES=1 build/release/bin/playback_tests --gtest_filter='*ReferencePicture*'
 #include <cstdlib>
 #include <ostream>
 

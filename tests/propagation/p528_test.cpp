@@ -19,17 +19,17 @@ P528Curve curveOf(double frequency_hz, double first_m, double second_m, bool ver
   return P528Curve(std::make_shared<P528Atmosphere>(frequency_hz), frequency_hz, first_m, second_m, vertical);
 }
 
-std::string messageOf(double frequency_hz, double first_m, double second_m) {
+std::string errorOf(double frequency_hz, double first_m, double second_m) {
   return test::errorOf(
       [&] { P528Curve(std::make_shared<P528Atmosphere>(1e9), frequency_hz, first_m, second_m); },
       ErrorCode::bad_input);
 }
 
 TEST(P528, RefusesInputsOutsideItsLimits) {
-  EXPECT_EQ(messageOf(99e6, 10, 1000), "p528: frequency 99 MHz is outside 100..30000 MHz: refused");
-  EXPECT_EQ(messageOf(1e9, 1.4, 1000),
+  EXPECT_EQ(errorOf(99e6, 10, 1000), "p528: frequency 99 MHz is outside 100..30000 MHz: refused");
+  EXPECT_EQ(errorOf(1e9, 1.4, 1000),
             "p528: antenna height above the smooth earth 1.4 m is outside 1.5..20000 m: refused");
-  EXPECT_EQ(messageOf(1e9, 10, 20001),
+  EXPECT_EQ(errorOf(1e9, 10, 20001),
             "p528: antenna height above the smooth earth 20001 m is outside 1.5..20000 m: refused");
   const P528Curve curve = curveOf(1e9, 10, 1000);
   EXPECT_TRUE(std::isnan(curve.at(-1, 50).loss_db));

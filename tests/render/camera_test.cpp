@@ -14,7 +14,7 @@ using ::testing::HasSubstr;
 constexpr ImageSize kSize{1200, 900};
 const SceneBox kBox{{-15000, -15000, 0}, {15000, 15000, 6000}, 2.0};
 
-std::string refusalOf(const std::string& text) {
+std::string errorOf(const std::string& text) {
   return test::errorOf([&] { parseCamera(text); }, ErrorCode::usage);
 }
 
@@ -88,21 +88,20 @@ TEST(Camera, TextFormReadsBack) {
 }
 
 TEST(Camera, RefusalsNameKeyValueAndRange) {
-  EXPECT_THAT(refusalOf("orbit:azimut_deg=3"),
+  EXPECT_THAT(errorOf("orbit:azimut_deg=3"),
               HasSubstr("unknown key 'azimut_deg': expected projection, azimuth_deg"));
-  EXPECT_THAT(refusalOf("orbit:elevation_deg=91"),
-              HasSubstr("elevation_deg '91': expected a number -90..90"));
-  EXPECT_THAT(refusalOf("orbit:fov_deg=nan"), HasSubstr("fov_deg 'nan': expected a number 1..150"));
-  EXPECT_THAT(refusalOf("orbit:distance="), HasSubstr("distance '': expected a number"));
-  EXPECT_THAT(refusalOf("orbit:distance=1,distance=2"), HasSubstr("distance is given twice"));
-  EXPECT_THAT(refusalOf("orbit:distance"), HasSubstr("'distance': expected KEY=VALUE"));
-  EXPECT_THAT(refusalOf("orbit:target_x_m=1"),
+  EXPECT_THAT(errorOf("orbit:elevation_deg=91"), HasSubstr("elevation_deg '91': expected a number -90..90"));
+  EXPECT_THAT(errorOf("orbit:fov_deg=nan"), HasSubstr("fov_deg 'nan': expected a number 1..150"));
+  EXPECT_THAT(errorOf("orbit:distance="), HasSubstr("distance '': expected a number"));
+  EXPECT_THAT(errorOf("orbit:distance=1,distance=2"), HasSubstr("distance is given twice"));
+  EXPECT_THAT(errorOf("orbit:distance"), HasSubstr("'distance': expected KEY=VALUE"));
+  EXPECT_THAT(errorOf("orbit:target_x_m=1"),
               HasSubstr("target_x_m, target_y_m and target_z_m are needed together"));
-  EXPECT_THAT(refusalOf("lookat:eye_x_m=1,eye_y_m=1,eye_z_m=1"), HasSubstr("target_x_m"));
-  EXPECT_THAT(refusalOf("orbit:eye_x_m=1"), HasSubstr("unknown key 'eye_x_m'"));
-  EXPECT_THAT(refusalOf("orbit:projection=fisheye"), HasSubstr("expected perspective or orthographic"));
-  EXPECT_THAT(refusalOf("from:above"), HasSubstr("expected orbit"));
-  EXPECT_THAT(refusalOf(""), HasSubstr("expected orbit"));
+  EXPECT_THAT(errorOf("lookat:eye_x_m=1,eye_y_m=1,eye_z_m=1"), HasSubstr("target_x_m"));
+  EXPECT_THAT(errorOf("orbit:eye_x_m=1"), HasSubstr("unknown key 'eye_x_m'"));
+  EXPECT_THAT(errorOf("orbit:projection=fisheye"), HasSubstr("expected perspective or orthographic"));
+  EXPECT_THAT(errorOf("from:above"), HasSubstr("expected orbit"));
+  EXPECT_THAT(errorOf(""), HasSubstr("expected orbit"));
 }
 
 TEST(Camera, EyeAtTheTargetIsRefused) {

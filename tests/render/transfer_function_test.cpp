@@ -27,7 +27,7 @@ volume::VolumeInfo decibels() {
   return info;
 }
 
-std::string refusalOf(const std::string& text) {
+std::string errorOf(const std::string& text) {
   return test::errorOf([&] { parseTransferFunction(text, "tf.json", decibels()); }, ErrorCode::bad_input);
 }
 
@@ -149,40 +149,39 @@ TEST(TransferFile, ReadsValuesAndRelativePositions) {
 TEST(TransferFile, ErrorsHaveLocationAndReason) {
   const std::string head = "{\"schema_version\": 1,\n \"domain\": \"value\",\n \"colors\": \"viridis\",\n";
   EXPECT_THAT(
-      refusalOf(head + " \"opacity\": [{\"at\": -90, \"opacity\": 0}, {\"at\": -20, \"opacity\": 1.5}]}"),
+      errorOf(head + " \"opacity\": [{\"at\": -90, \"opacity\": 0}, {\"at\": -20, \"opacity\": 1.5}]}"),
       HasSubstr("tf.json:4:64: 'opacity' is 1.5, outside the allowed range 0 to 1"));
-  EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}, {\"at\": 0, \"opacity\": 1}]}"),
+  EXPECT_THAT(errorOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}, {\"at\": 0, \"opacity\": 1}]}"),
               HasSubstr("at 0: points must not decrease"));
-  EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}]}"),
+  EXPECT_THAT(errorOf(head + " \"opacity\": [{\"at\": 1, \"opacity\": 0}]}"),
               HasSubstr("tf.json:3:12: a colour map by name needs opacity points at two different values"));
-  EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": \"x\", \"opacity\": 0}]}"),
+  EXPECT_THAT(errorOf(head + " \"opacity\": [{\"at\": \"x\", \"opacity\": 0}]}"),
               HasSubstr("'at' must be a number, not the quoted text 'x'"));
-  EXPECT_THAT(refusalOf(head + " \"opacity\": []}"),
+  EXPECT_THAT(errorOf(head + " \"opacity\": []}"),
               HasSubstr("'opacity' has 0 items; allowed are 1 to 10000"));
-  EXPECT_THAT(refusalOf(head + " \"opacity\": [{\"at\": 1}]}"),
+  EXPECT_THAT(errorOf(head + " \"opacity\": [{\"at\": 1}]}"),
               HasSubstr("missing key 'opacity' of the opacity point"));
-  EXPECT_THAT(refusalOf(head + " \"colour\": 1}"), HasSubstr("tf.json:4:2: unknown key 'colour'"));
-  EXPECT_THAT(refusalOf(head + " \"domain\": \"value\"}"),
+  EXPECT_THAT(errorOf(head + " \"colour\": 1}"), HasSubstr("tf.json:4:2: unknown key 'colour'"));
+  EXPECT_THAT(errorOf(head + " \"domain\": \"value\"}"),
               HasSubstr("tf.json:4:2: duplicate key 'domain'; first at line 2"));
-  EXPECT_THAT(refusalOf("{\"schema_version\": 2}"),
+  EXPECT_THAT(errorOf("{\"schema_version\": 2}"),
               HasSubstr("'schema_version' is 2, outside the allowed range 1 to 1"));
-  EXPECT_THAT(refusalOf("{\"schema_version\": 1, \"domain\": "), HasSubstr("tf.json:1:"));
-  EXPECT_THAT(refusalOf("[]"), HasSubstr("transfer function must be a set of keys, not a list"));
-  EXPECT_THAT(refusalOf(""), HasSubstr("the file is empty"));
+  EXPECT_THAT(errorOf("{\"schema_version\": 1, \"domain\": "), HasSubstr("tf.json:1:"));
+  EXPECT_THAT(errorOf("[]"), HasSubstr("transfer function must be a set of keys, not a list"));
+  EXPECT_THAT(errorOf(""), HasSubstr("the file is empty"));
 }
 
 TEST(TransferFile, RefusesUnknownMapsBadColoursAndOtherUnits) {
   const std::string tail = "\"opacity\": [{\"at\": 0, \"opacity\": 0}, {\"at\": 1, \"opacity\": 1}]}";
-  EXPECT_THAT(refusalOf("{\"schema_version\": 1, \"domain\": \"relative\", \"colors\": \"jet\", " + tail),
+  EXPECT_THAT(errorOf("{\"schema_version\": 1, \"domain\": \"relative\", \"colors\": \"jet\", " + tail),
               HasSubstr("'colors' must be one of viridis, cividis"));
-  EXPECT_THAT(refusalOf("{\"schema_version\": 1, \"domain\": \"relative\", \"colors\": [{\"at\": 0, "
-                        "\"color\": \"red\"}], " +
-                        tail),
+  EXPECT_THAT(errorOf("{\"schema_version\": 1, \"domain\": \"relative\", \"colors\": [{\"at\": 0, "
+                      "\"color\": \"red\"}], " +
+                      tail),
               HasSubstr("colour 'red': expected \"#rrggbb\""));
   EXPECT_THAT(
-      refusalOf(
-          "{\"schema_version\": 1, \"domain\": \"value\", \"unit\": \"dBm\", \"colors\": \"viridis\", " +
-          tail),
+      errorOf("{\"schema_version\": 1, \"domain\": \"value\", \"unit\": \"dBm\", \"colors\": \"viridis\", " +
+              tail),
       HasSubstr("unit 'dBm' is not that of the volume: power_density_dbwm2 is in 'dBW/m2'"));
 }
 
@@ -238,11 +237,11 @@ TEST(TransferFile, WholeLevelsAreWrittenAsColoursAndOthersAsComponents) {
 TEST(TransferFile, AColourHasOneForm) {
   const std::string tail = "]}], \"opacity\": [{\"at\": 0, \"opacity\": 0}, {\"at\": 1, \"opacity\": 1}]}";
   const std::string head = "{\"schema_version\": 1, \"domain\": \"value\", \"colors\": [{\"at\": 0, ";
-  EXPECT_THAT(refusalOf(head + "\"color\": \"#000000\", \"rgb\": [0, 0, 0" + tail),
+  EXPECT_THAT(errorOf(head + "\"color\": \"#000000\", \"rgb\": [0, 0, 0" + tail),
               HasSubstr("the colour point must have exactly one of 'color', 'rgb'; it has 2"));
-  EXPECT_THAT(refusalOf(head + "\"rgb\": [0, 0, 2" + tail),
+  EXPECT_THAT(errorOf(head + "\"rgb\": [0, 0, 2" + tail),
               HasSubstr("is 2, outside the allowed range 0 to 1"));
-  EXPECT_THAT(refusalOf(head + "\"rgb\": [0, 0" + tail), HasSubstr("'rgb' has 2 items; it must have 3"));
+  EXPECT_THAT(errorOf(head + "\"rgb\": [0, 0" + tail), HasSubstr("'rgb' has 2 items; it must have 3"));
 }
 
 TEST(TransferFile, CategoriesAreNotWritten) {
