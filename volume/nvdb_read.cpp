@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <array>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "emscape/volume/statistics.h"
 #include "volume/byte_reader.h"
 #include "volume/description_check.h"

@@ -5,6 +5,7 @@
 #include <regex>
 #include <string>
 
+#include "base/files/file_reading.h"
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
 #include "emscape/volume/statistics.h"

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "base/files/file_patch.h"
+#include "base/files/file_reading.h"
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
 #include "volume/vdb_layout.h"

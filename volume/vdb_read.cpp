@@ -6,7 +6,7 @@
 #include <boost/iostreams/stream.hpp>
 #include <cmath>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "base/text/failure_text.h"
 #include "emscape/volume/statistics.h"
 #include "volume/description_check.h"

@@ -9,7 +9,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 
 namespace emscape::volume {
 namespace {

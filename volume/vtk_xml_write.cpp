@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "base/files/file_patch.h"
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
 #include "base/text/utf8.h"

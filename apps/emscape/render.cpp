@@ -14,7 +14,6 @@
 #include "apps/emscape/common/target.h"
 #include "apps/emscape/common/value_range.h"
 #include "apps/emscape/report/real_time_report.h"
-#include "base/files/whole_file.h"
 #include "base/memory.h"
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
@@ -222,7 +221,6 @@ Sinks openSinks(const RenderOptions& options, const PictureStyle& style, const s
                 int pictures, double frames_per_s) {
   Sinks sinks;
   for (const std::string& output : options.outputs) {
-    removeStaleTemporariesOf(output);
     sinks.push_back(playback::makePictureSink(output, name, pictures, style.size, frames_per_s));
   }
   return sinks;

@@ -4,13 +4,14 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 
 #include "apps/emscape/common/command_line.h"
 #include "apps/emscape/version.h"
 #include "apps/manual/completion.h"
 #include "apps/manual/manual_page.h"
+#include "base/files/folder.h"
+#include "base/files/whole_file.h"
 #ifdef EMSCAPE_WITH_VIEW
 #include "apps/view/view_parser.h"
 #endif
@@ -21,10 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 void write(const fs::path& file, const std::string& text) {
-  fs::create_directories(file.parent_path());
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw std::runtime_error(file.string() + ": cannot be written");
+  makeFolder(file.parent_path());
+  writeWhole(file, [&](std::ostream& out) { out << text; });
 }
 
 /// The command line of emscape; `emscape view` has the options of the program that it starts.

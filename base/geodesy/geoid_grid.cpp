@@ -3,14 +3,13 @@
 #include <cpl_conv.h>
 #include <cpl_error.h>
 #include <cpl_string.h>
-#include <cpl_vsi.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 
-#include "base/geodesy/gdal.h"
+#include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
 
 namespace emscape {
@@ -65,13 +64,12 @@ std::vector<std::string> gridFolders() {
 
 GeoidGrid::GeoidGrid(const std::string& file, const GeoidArea& area) {
   CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
-  GDALAllRegister();
   read(file, area);
 }
 
 void GeoidGrid::read(const std::string& file, const GeoidArea& area) {
-  const gdal::Dataset dataset(GDALOpenEx(
-      file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr, nullptr, nullptr));
+  static const char* const kDrivers[] = {"GTiff", "GTX", "PNM", nullptr};
+  const gdal::Dataset dataset = gdal::openFile(file, GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kDrivers);
   const int columns = dataset ? GDALGetRasterXSize(dataset.get()) : 0;
   const int rows = dataset ? GDALGetRasterYSize(dataset.get()) : 0;
   double west_deg = 0;  // of the file's first post; PGM files, which do not state it, begin at Greenwich
@@ -126,8 +124,7 @@ std::string findGeoidFile(const std::vector<std::string>& names, std::string& se
   const std::vector<std::string> folders = gridFolders();
   for (const std::string& name : names) {
     for (const std::string& folder : folders) {
-      VSIStatBufL status;
-      if (VSIStatL((folder + "/" + name).c_str(), &status) == 0) return folder + "/" + name;
+      if (gdal::faultOfName(folder + "/" + name).empty()) return folder + "/" + name;
     }
   }
   searched.clear();

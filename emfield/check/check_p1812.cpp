@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "document/csv.h"
 #include "emfield/check/datasets.h"
 #include "propagation/clear_air/single_path.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "document/csv.h"
 
 namespace emscape::emfield {

@@ -9,7 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/files/whole_file.h"
+#include "base/files/folder.h"
+#include "base/files/folder_lock.h"
 #include "base/text/utc.h"
 #include "document/text_file.h"
 #include "emscape/base/error.h"
@@ -64,12 +65,7 @@ bool Autosaves::claim(const std::string& input, const fs::path& file) {
 void Autosaves::keep(const std::string& input, const ViewState& state) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const fs::path first = autosaveFileOf(input);
-  std::error_code failure;
-  fs::create_directories(first.parent_path(), failure);
-  if (failure) {
-    throw Error(ErrorCode::other, {first.parent_path().string(), 0, 0},
-                "the folder cannot be made: " + failure.message());
-  }
+  makeFolder(first.parent_path());
   for (int number = 1; claims_.count(first) == 0; ++number) {
     if (number > kMaxFiles) {
       throw Error(ErrorCode::other, {first.string(), 0, 0},

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/volume_input.h"
 #include "emscape/scenario/file/scenario_file.h"

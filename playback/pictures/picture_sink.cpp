@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "base/files/folder.h"
+#include "base/files/unfinished_file.h"
 #include "emscape/base/error.h"
 #include "emscape/volume/file.h"
 #include "playback/pictures/video.h"
@@ -12,9 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+fs::path folderOf(const fs::path& file) {
+  return fs::absolute(file).parent_path();
+}
+
 class OnePng : public PictureSink {
  public:
-  explicit OnePng(fs::path file) : file_(std::move(file)) {}
+  explicit OnePng(fs::path file) : file_(std::move(file)) { removeAbandonedFiles(folderOf(file_)); }
   void add(int /*number*/, const render::Image8& picture, int /*frames*/) override {
     render::writePng(file_.string(), picture);
   }
@@ -27,10 +33,8 @@ class OnePng : public PictureSink {
 class PngFolder : public PictureSink {
  public:
   PngFolder(fs::path folder, const std::string& name) : folder_(std::move(folder)), name_(fileNameOf(name)) {
-    std::error_code error;
-    fs::create_directories(folder_, error);
-    if (error)
-      throw Error(ErrorCode::other, {folder_.string(), 0, 0}, "cannot make the folder: " + error.message());
+    makeFolder(folder_);
+    removeAbandonedFiles(folder_);
   }
   void add(int number, const render::Image8& picture, int /*frames*/) override {
     render::writePng(volume::seriesFile(folder_, name_, number, "png").string(), picture);
@@ -44,8 +48,10 @@ class PngFolder : public PictureSink {
 
 class Video : public PictureSink {
  public:
-  Video(fs::path file, render::ImageSize size, double frames_per_s)
-      : video_(std::move(file), size, frames_per_s) {}
+  Video(const fs::path& file, render::ImageSize size, double frames_per_s)
+      : video_(file, size, frames_per_s) {
+    removeAbandonedFiles(folderOf(file));
+  }
   void add(int /*number*/, const render::Image8& picture, int frames) override {
     for (int n = 0; n < frames; ++n) video_.add(picture);
   }

@@ -12,7 +12,6 @@
 #include <cstring>
 #include <vector>
 
-#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 
 extern char** environ;  // NOLINT: POSIX names it so
@@ -27,8 +26,7 @@ Error failure(const std::filesystem::path& path, const std::string& what) {
 }  // namespace
 
 VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double frames_per_s)
-    : path_(std::move(path)), temporary_(temporaryFor(path_)), size_(size) {
-  requireFileTarget(path_);
+    : file_(std::move(path)), size_(size) {
   // Without "file:" ffmpeg takes a name with a colon for an address.
   const std::vector<std::string> arguments{
       "ffmpeg", "-hide_banner", "-loglevel", "error", "-xerror", "-nostdin", "-y", "-f", "rawvideo",
@@ -36,17 +34,17 @@ VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double 
       fmt::format("{}", frames_per_s), "-i", "pipe:0", "-an",
       // 4:2:0 needs even sizes
       "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2", "-c:v", "libx264", "-preset", "medium", "-crf", "18",
-      "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", "file:" + temporary_.string()};
+      "-pix_fmt", "yuv420p", "-movflags", "+faststart", "-f", "mp4", "file:" + file_.temporary().string()};
   std::vector<char*> argv;
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
 
   messages_ = memfd_create("ffmpeg's messages", MFD_CLOEXEC);
   if (messages_ < 0)
-    throw failure(path_, std::string("cannot make a file in memory: ") + std::strerror(errno));
+    throw failure(file_.file(), std::string("cannot make a file in memory: ") + std::strerror(errno));
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0)
-    throw failure(path_, std::string("cannot make a pipe: ") + std::strerror(errno));
+    throw failure(file_.file(), std::string("cannot make a pipe: ") + std::strerror(errno));
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
@@ -59,8 +57,9 @@ VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double 
   if (error != 0) {
     process_ = -1;
     closePipe();
-    throw failure(path_, error == ENOENT ? "writing a video needs the program ffmpeg, which is not on PATH"
-                                         : std::string("cannot start ffmpeg: ") + std::strerror(error));
+    throw failure(file_.file(), error == ENOENT
+                                    ? "writing a video needs the program ffmpeg, which is not on PATH"
+                                    : std::string("cannot start ffmpeg: ") + std::strerror(error));
   }
 }
 
@@ -69,14 +68,12 @@ VideoFile::~VideoFile() {
     kill(process_, SIGKILL);
     closePipe();
     waitForEnd();
-    std::error_code ignored;
-    std::filesystem::remove(temporary_, ignored);
   }
   if (messages_ >= 0) close(messages_);
 }
 
 void VideoFile::add(const render::Image8& frame) {
-  if (!(frame.size == size_)) throw failure(path_, "a frame of another size than the video's");
+  if (!(frame.size == size_)) throw failure(file_.file(), "a frame of another size than the video's");
   std::vector<std::uint8_t> rgb(static_cast<std::size_t>(size_.count()) * 3);
   for (std::size_t pixel = 0; pixel < rgb.size() / 3; ++pixel) {
     std::memcpy(&rgb[3 * pixel], &frame.rgba[4 * pixel], 3);
@@ -94,17 +91,15 @@ void VideoFile::finish() {
   const int status = waitForEnd();
   if (status != 0 || !reported().empty()) fail("ffmpeg could not write the video");
   std::error_code error;
-  if (std::filesystem::file_size(temporary_, error) == 0 || error) fail("ffmpeg wrote no video");
-  publish(temporary_, path_);
+  if (std::filesystem::file_size(file_.temporary(), error) == 0 || error) fail("ffmpeg wrote no video");
+  file_.publish();
 }
 
 void VideoFile::fail(const std::string& what) {
   closePipe();
   if (process_ >= 0) waitForEnd();
-  std::error_code ignored;
-  std::filesystem::remove(temporary_, ignored);
   const std::string said = reported();
-  throw failure(path_, said.empty() ? what : what + ": " + said);
+  throw failure(file_.file(), said.empty() ? what : what + ": " + said);
 }
 
 /// The first lines that ffmpeg wrote, joined.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "base/files/unfinished_file.h"
 #include "emscape/render/picture/image.h"
 
 namespace emscape::playback {
@@ -34,8 +35,7 @@ class VideoFile {
   [[noreturn]] void fail(const std::string& what);
   std::string reported() const;
 
-  const std::filesystem::path path_;
-  const std::filesystem::path temporary_;
+  UnfinishedFile file_;
   const render::ImageSize size_;
   int pipe_ = -1;
   int messages_ = -1;  ///< a file in memory for ffmpeg's standard output and error

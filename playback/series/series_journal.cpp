@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "base/files/file_reading.h"
 #include "base/files/json_reading.h"
 #include "base/files/json_writing.h"
 #include "base/text/failure_text.h"
@@ -107,12 +108,12 @@ std::vector<std::optional<StepRecord>> SeriesJournal::read(int steps, std::size_
 }
 
 void SeriesJournal::append(const StepRecord& record) {
-  if (!is_open_ && std::filesystem::exists(file_)) {
-    const std::vector<std::uint8_t> bytes = readWhole(file_);
-    if (wholeLines(bytes) != bytes.size()) std::filesystem::resize_file(file_, wholeLines(bytes));
+  if (!open_) {
+    open_.emplace(file_);
+    open_->cut(wholeLines(readWhole(file_)));
   }
-  is_open_ = true;
-  appendToFile(file_, lineOf(record));
+  open_->append(lineOf(record));
+  open_->sync();
 }
 
 }  // namespace emscape::playback

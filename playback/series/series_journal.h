@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "base/files/whole_file.h"
+#include "base/files/appended_file.h"
+#include "base/files/file_digest.h"
 #include "emscape/playback/frames/field_series.h"
 
 namespace emscape::playback {
@@ -40,7 +41,7 @@ class SeriesJournal {
 
  private:
   const std::filesystem::path file_;
-  bool is_open_ = false;  // an incomplete line has been removed
+  std::optional<AppendedFile> open_;  // from the first record on; has no incomplete line
 };
 
 }  // namespace emscape::playback

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "base/files/file_digest.h"
+#include "base/files/file_reading.h"
 #include "base/files/json_reading.h"
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"

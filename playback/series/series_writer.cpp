@@ -4,7 +4,10 @@
 
 #include <algorithm>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_digest.h"
+#include "base/files/folder.h"
+#include "base/files/folder_lock.h"
+#include "base/files/unfinished_file.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/stop.h"
@@ -39,12 +42,7 @@ std::vector<fs::path> inputsOf(const FieldSeries& series) {
 }
 
 const fs::path& made(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) {
-    throw Error(ErrorCode::other,
-                fmt::format("'{}': cannot make the folder: {}", folder.string(), error.message()));
-  }
+  makeFolder(folder);
   return folder;
 }
 
@@ -65,7 +63,7 @@ class SeriesWriter {
                   fmt::format("a range is for one quantity, these are {}", series.channels().size()));
     }
     files_.requireNone(inputsOf(series));
-    removeStaleTemporaries(options.folder);
+    removeAbandonedFiles(options.folder);
     if (options.existing == Existing::replace) files_.removeOld();
   }
 

@@ -118,7 +118,7 @@ class VolumeDataset:
         document, _ = self.describe(index)
         with tempfile.TemporaryDirectory() as folder:
             file = os.path.join(folder, document["name"] + ".json")
-            with open(file, "w", encoding="utf-8") as stream:
+            with open(file, "x", encoding="utf-8") as stream:
                 json.dump(document, stream)
             return load(file)
 

@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "base/files/file_reading.h"
 #include "base/files/whole_file.h"
 #include "document/json_text.h"
 #include "document/schema_check.h"

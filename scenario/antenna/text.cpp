@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "document/text_file.h"
 
 namespace emscape::scenario {

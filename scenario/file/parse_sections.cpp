@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <limits>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
 #include "emscape/base/units.h"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "document/csv.h"
 #include "document/text_file.h"
 #include "emscape/base/error.h"

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "base/text/utc.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"

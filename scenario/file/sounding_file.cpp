@@ -8,7 +8,7 @@
 #include <limits>
 #include <string_view>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "base/text/utc.h"
 #include "emscape/base/error.h"
 #include "propagation/air/moist_air.h"

@@ -1,7 +1,4 @@
-#include "base/geodesy/gdal.h"
-
 #include <cpl_conv.h>
-#include <cpl_vsi.h>
 #include <gdal_alg.h>
 
 #include <algorithm>
@@ -13,6 +10,7 @@
 #include <sstream>
 #include <string>
 
+#include "base/geodesy/gdal_file.h"
 #include "emscape/base/units.h"
 #include "scenario/terrain/file.h"
 #include "scenario/terrain/gdal_messages.h"
@@ -172,13 +170,10 @@ std::set<fs::path> TerrainFile::Impl::checkedSources() const {
 }
 
 gdal::Dataset TerrainFile::Impl::open() const {
-  GdalMessages messages;
+  if (const std::string fault = gdal::faultOfName(name); !fault.empty()) fail(fault);
+  const GdalMessages messages;
   gdal::Dataset dataset = openElevation(name);
-  if (!dataset) {
-    VSIStatBufL status;
-    const bool exists = VSIStatExL(name.c_str(), &status, VSI_STAT_EXISTS_FLAG) == 0;
-    fail(exists ? messages.explain("not a raster that GDAL reads") : "no such file");
-  }
+  if (!dataset) fail(messages.explain("not a raster that GDAL reads"));
   return dataset;
 }
 
@@ -198,7 +193,7 @@ void TerrainFile::Impl::checkDatasets(GDALDatasetH dataset, const std::set<fs::p
 
 void TerrainFile::Impl::readHead() {
   const GdalMessages quiet;  // constructed before the dataset, whose destructor may report errors
-  GDALAllRegister();
+  gdal::prepare();
   const std::set<fs::path> sources = checkedSources();
   const gdal::Dataset dataset = open();
   const int bands = GDALGetRasterCount(dataset.get());

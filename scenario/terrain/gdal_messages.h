@@ -7,20 +7,25 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <string>
 
 namespace emscape::scenario {
 
 /// In the scope and thread of this object, suppresses GDAL's output and stores the first line of its first
 /// failure. It also prevents downloads: a GML file names its schema by URL, a GeoJSON file its coordinate
-/// system. Names that begin with /vsi are not covered; callers do not open such files.
+/// system, and any file may name others by /vsicurl/http://... .
 class GdalMessages {
  public:
   GdalMessages() {
     CPLPushErrorHandlerEx(&GdalMessages::take, this);
     CPLHTTPPushFetchCallback(&GdalMessages::refuseFetch, nullptr);
+    const char* const outer = CPLGetThreadLocalConfigOption(kAllowedAddress, nullptr);
+    if (outer != nullptr) allowed_outside_ = outer;
+    CPLSetThreadLocalConfigOption(kAllowedAddress, "none");
   }
   ~GdalMessages() {
+    CPLSetThreadLocalConfigOption(kAllowedAddress, allowed_outside_ ? allowed_outside_->c_str() : nullptr);
     CPLHTTPPopFetchCallback();
     CPLPopErrorHandler();
   }
@@ -51,7 +56,11 @@ class GdalMessages {
     return result;
   }
 
+  /// The option that names the only file that GDAL's virtual file systems of the network open.
+  static constexpr const char* kAllowedAddress = "CPL_VSIL_CURL_ALLOWED_FILENAME";
+
   std::string first_failure_;
+  std::optional<std::string> allowed_outside_;  ///< by an outer scope
 };
 
 }  // namespace emscape::scenario

@@ -3,6 +3,8 @@
 #include <cpl_string.h>
 #include <fmt/format.h>
 
+#include "base/geodesy/gdal_file.h"
+
 namespace emscape::scenario {
 namespace {
 
@@ -18,13 +20,12 @@ constexpr const char* kNoSiblings[] = {nullptr};
 
 /// @param siblings  names of other files of its folder; null: GDAL lists the folder
 gdal::Dataset open(const std::string& file, const char* const* siblings) {
-  return gdal::Dataset(GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
-                                  kElevationDrivers, nullptr, siblings));
+  return gdal::openFile(file, GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kElevationDrivers, nullptr, siblings);
 }
 
 /// The driver that GDAL takes for a file if all are allowed; empty if there is none.
 std::string driverOf(const std::string& file, const char* const* siblings) {
-  GDALDriverH driver = GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER, nullptr, siblings);
+  GDALDriverH driver = GDALIdentifyDriverEx(gdal::localName(file).c_str(), GDAL_OF_RASTER, nullptr, siblings);
   return driver == nullptr ? "" : GDALGetDriverShortName(driver);
 }
 

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <system_error>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/raster_access.h"
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/files/unfinished_file.h"
 #include "emscape/playback/frames/scene.h"
 #include "render/annotate/overlay_parts.h"
 #include "study/files/map_objects.h"
@@ -128,7 +129,7 @@ class GeoPackage : public MapCollection {
       dataset_.reset();
       check(scope, true);
     }
-    file_.publish();
+    file_.publish(kAuxiliary);
   }
 
  private:
@@ -145,7 +146,7 @@ class GeoPackage : public MapCollection {
   }
 
   void makeLayers(const Scope& scope) {
-    dataset_.reset(GDALCreate(driverOf("GPKG"), file_.temporary(), 0, 0, 0, GDT_Unknown, nullptr));
+    dataset_.reset(GDALCreate(driverOf("GPKG"), file_.temporary().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
     check(scope, dataset_ != nullptr);
     GDALDatasetStartTransaction(dataset_.get(), FALSE);
     const gdal::SpatialReference map_reference = referenceOf(*study_.grid), earth = wgs84Reference();

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/files/unfinished_file.h"
 #include "study/files/map_colors.h"
 #include "study/maps/gdal_support.h"
 
@@ -99,11 +100,11 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
   bool is_complete = false;
   {
     const gdal::Dataset copy(
-        GDALCreateCopy(cog, unfinished.temporary(), dataset.get(), TRUE, options, nullptr, nullptr));
+        GDALCreateCopy(cog, unfinished.temporary().c_str(), dataset.get(), TRUE, options, nullptr, nullptr));
     is_complete = copy != nullptr;
   }
   if (!is_complete || messages.hasFailure()) failWriting(messages, file);
-  unfinished.publish();
+  unfinished.publish(kAuxiliary);
 }
 
 }  // namespace emscape::study

@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/files/unfinished_file.h"
 #include "emscape/base/units.h"
 #include "emscape/playback/frames/scene.h"
 #include "emscape/render/picture/image.h"
@@ -128,7 +129,7 @@ class Kmz : public MapCollection {
  public:
   Kmz(const std::filesystem::path& file, const MapStudy& study) : file_(file), study_(study) {
     const scenario::GdalMessages messages;
-    zip_ = CPLCreateZip(file_.temporary(), nullptr);
+    zip_ = CPLCreateZip(file_.temporary().c_str(), nullptr);
     if (zip_ == nullptr) failWriting(messages, file_.file());
   }
 
@@ -179,7 +180,7 @@ class Kmz : public MapCollection {
       zip_ = nullptr;
       if (closed != CE_None || messages.hasFailure()) failWriting(messages, file_.file());
     }
-    file_.publish();
+    file_.publish(kAuxiliary);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "base/files/unfinished_file.h"
 #include "emscape/base/error.h"
 #include "study/files/map_metadata.h"
 #include "study/files/map_objects.h"
@@ -86,7 +87,7 @@ class NetCdf : public MapCollection {
       close();
       check(messages, true);
     }
-    file_.publish();
+    file_.publish(kAuxiliary);
   }
 
  private:

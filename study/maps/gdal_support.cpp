@@ -2,23 +2,13 @@
 
 #include <fmt/format.h>
 
-#include <mutex>
-
-#include "base/files/whole_file.h"
+#include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/transformation.h"
 
 namespace emscape::study {
-namespace {
-
-/// Data that a format of GDAL does not support is in a file beside it.
-constexpr const char* kAuxiliary = ".aux.xml";
-
-}  // namespace
-
 GDALDriverH driverOf(const char* name) {
-  static std::once_flag once;
-  std::call_once(once, [] { GDALAllRegister(); });
+  gdal::prepare();
   GDALDriverH driver = GDALGetDriverByName(name);
   if (driver == nullptr) throw Error(ErrorCode::other, fmt::format("GDAL has no driver '{}'", name));
   return driver;
@@ -29,15 +19,10 @@ gdal::Dataset openVectors(const scenario::GdalMessages& messages, const std::str
                                          "GML",  "CSV",     nullptr};
   // GML: no NAME.gfs beside the file. The @ is for the other drivers, which do not have the option.
   static const char* const kOptions[] = {"@WRITE_GFS=NO", nullptr};
-  std::error_code failure;
-  const std::filesystem::file_status status = std::filesystem::status(file, failure);
-  if (!std::filesystem::is_regular_file(status)) {
-    throw Error(ErrorCode::bad_input, {file, 0, 0},
-                std::filesystem::exists(status) ? "not a regular file" : "no such file");
+  if (const std::string fault = gdal::faultOfName(file); !fault.empty()) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0}, fault);
   }
-  GDALAllRegister();
-  gdal::Dataset dataset(
-      GDALOpenEx(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, kDrivers, kOptions, nullptr));
+  gdal::Dataset dataset = gdal::openFile(file, GDAL_OF_VECTOR, kDrivers, kOptions);
   if (dataset == nullptr) {
     throw Error(ErrorCode::bad_input, {file, 0, 0},
                 messages.explain("not a file of points or polygons that can be read"));
@@ -47,26 +32,6 @@ gdal::Dataset openVectors(const scenario::GdalMessages& messages, const std::str
 
 void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file) {
   throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
-}
-
-UnfinishedFile::UnfinishedFile(const std::filesystem::path& file)
-    : file_(file), temporary_(temporaryFor(file)) {
-  removeTemporary(temporary_);
-}
-
-UnfinishedFile::~UnfinishedFile() {
-  removeTemporary(temporary_);
-}
-
-void UnfinishedFile::publish() {
-  const std::string made = temporary_.string() + kAuxiliary, auxiliary = file_.string() + kAuxiliary;
-  std::error_code ignored;
-  if (std::filesystem::exists(made)) {
-    emscape::publish(made, auxiliary);
-  } else {
-    std::filesystem::remove(auxiliary, ignored);
-  }
-  emscape::publish(temporary_, file_);
 }
 
 gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::filesystem::path& file) {

@@ -23,24 +23,8 @@ gdal::Dataset openVectors(const scenario::GdalMessages& messages, const std::str
 /// @throws Error (other) that names the file and GDAL's reason
 [[noreturn]] void failWriting(const scenario::GdalMessages& messages, const std::filesystem::path& file);
 
-/// A file that GDAL writes under a temporary name. Removed with GDAL's auxiliary file, unless it was
-/// published.
-class UnfinishedFile {
- public:
-  explicit UnfinishedFile(const std::filesystem::path& file);
-  ~UnfinishedFile();
-  UnfinishedFile(const UnfinishedFile&) = delete;
-  UnfinishedFile& operator=(const UnfinishedFile&) = delete;
-
-  const std::filesystem::path& file() const { return file_; }
-  const char* temporary() const { return temporary_.c_str(); }
-  /// Renames the file, and FILE.aux.xml if GDAL made one; else that of an earlier file is removed.
-  /// @throws Error (other) naming it
-  void publish();
-
- private:
-  const std::filesystem::path file_, temporary_;
-};
+/// Ending of the file in which GDAL stores what a format does not support.
+constexpr const char* kAuxiliary = ".aux.xml";
 
 /// A raster of one band in memory, with a grid's pixels and georeference.
 /// @throws Error (other) naming the destination file

@@ -7,8 +7,10 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "base/files/file_digest.h"
+#include "base/files/file_reading.h"
 #include "base/files/json_reading.h"
-#include "base/files/whole_file.h"
+#include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "scenario/terrain/raster_access.h"
@@ -92,9 +94,9 @@ CoverageMap mapOf(const Json& record, const CoverageFolder& folder) {
 
 gdal::Dataset openGeoTiff(const scenario::GdalMessages& messages, const fs::path& file) {
   static const char* const kGeoTiff[] = {"GTiff", nullptr};
-  driverOf("GTiff");
-  gdal::Dataset dataset(
-      GDALOpenEx(file.c_str(), GDAL_OF_RASTER | GDAL_OF_READONLY, kGeoTiff, nullptr, nullptr));
+  gdal::prepare();
+  if (const std::string fault = scenario::Sidecars().faultOf(file); !fault.empty()) fail(file, fault);
+  gdal::Dataset dataset = gdal::openFile(file, GDAL_OF_RASTER, kGeoTiff);
   if (dataset == nullptr || GDALGetRasterCount(dataset.get()) != 1)
     fail(file, messages.explain("cannot be read as a map"));
   const std::string fault = scenario::faultOfDataset(dataset.get());

@@ -1,7 +1,7 @@
 #include "study/report/earlier_outputs.h"
 
+#include "base/files/file_reading.h"
 #include "base/files/json_reading.h"
-#include "base/files/whole_file.h"
 #include "study/report/map_report.h"
 
 namespace emscape::study {

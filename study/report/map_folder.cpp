@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "base/files/folder.h"
+#include "base/files/folder_lock.h"
+#include "base/files/unfinished_file.h"
 #include "base/files/whole_file.h"
 #include "base/text/quantity_text.h"
 #include "emscape/base/error.h"
@@ -46,21 +49,17 @@ const std::vector<Format>& formatTable() {
   return kTable;
 }
 
-/// Creates a folder and its parents. On destruction, created folders that are empty are removed: after an
-/// error before the first file.
+/// Creates an output folder, with its parents, and its inner folder. On destruction, created folders that are
+/// empty are removed: after an error before the first file.
 class MadeFolder {
  public:
-  explicit MadeFolder(const std::filesystem::path& folder) {
+  MadeFolder(const std::filesystem::path& folder, const std::filesystem::path& inner) {
     std::error_code failed;
-    for (std::filesystem::path at = folder; !at.empty() && !std::filesystem::exists(at, failed);
+    for (std::filesystem::path at = folder / inner; !at.empty() && !std::filesystem::exists(at, failed);
          at = at.parent_path()) {
       made_.push_back(at);
     }
-    std::filesystem::create_directories(folder, failed);
-    if (failed) {
-      throw Error(ErrorCode::other,
-                  fmt::format("{}: the folder cannot be made ({})", folder.string(), failed.message()));
-    }
+    makeFolderIn(folder, inner);
   }
   ~MadeFolder() {
     std::error_code is_not_empty;
@@ -108,11 +107,11 @@ struct MapFolder::State {
 
   State(const std::filesystem::path& path, MapStudy of)
       : folder(path),
-        maps_folder(path / "maps"),
+        maps_folder(path, "maps"),
         lock(path, ".maps.lock"),
         earlier_outputs(path),
         study(std::move(of)) {
-    for (const std::filesystem::path& written : {path, path / "maps"}) removeStaleTemporaries(written);
+    for (const std::filesystem::path& written : {path, path / "maps"}) removeAbandonedFiles(written);
     if (study.terrain != nullptr) ground_msl_m = groundOf(*study.grid, *study.terrain);
   }
 

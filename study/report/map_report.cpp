@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "base/files/file_digest.h"
 #include "base/files/json_writing.h"
-#include "base/files/whole_file.h"
 #include "base/geodesy/fast_geodesy.h"
 #include "base/text/quantity_text.h"
 #include "emscape/scenario/model/clock.h"

@@ -1,20 +1,16 @@
 #include "study/sweep/part_journal.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <nlohmann/json.hpp>
 #include <string_view>
-#include <system_error>
 
+#include "base/files/file_reading.h"
 #include "base/files/json_reading.h"
 #include "base/files/json_writing.h"
-#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "study/sweep/part_rows.h"
 
@@ -62,22 +58,8 @@ std::vector<std::uint8_t> pixelsOf(const Json& record) {
 }  // namespace
 
 PartJournal::PartJournal(std::filesystem::path file, std::vector<std::size_t> variants, std::size_t measures)
-    : file_(std::move(file)), variants_(std::move(variants)), measures_(measures) {
-  descriptor_ = ::open(file_.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) {
-    throw Error(ErrorCode::other, {file_.string(), 0, 0},
-                "cannot write: " + std::generic_category().message(errno));
-  }
-  try {
-    read(readWholeText(file_));
-  } catch (...) {
-    ::close(descriptor_);  // no destructor is called
-    throw;
-  }
-}
-
-PartJournal::~PartJournal() {
-  if (descriptor_ >= 0) ::close(descriptor_);
+    : file_(std::move(file)), open_(file_), variants_(std::move(variants)), measures_(measures) {
+  read(readWholeText(file_));
 }
 
 void PartJournal::read(const std::string& text) {
@@ -128,16 +110,7 @@ void PartJournal::add(VariantResult result, const std::set<std::string>& warning
   }
   const std::string content = dumpJson(record);
   // The previous line may be incomplete, so this one begins with a line end.
-  const std::string line = '\n' + checksumOf(content) + ' ' + content + '\n';
-  for (std::size_t done = 0; done < line.size();) {
-    const ssize_t written = ::write(descriptor_, line.data() + done, line.size() - done);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) {
-      throw Error(ErrorCode::other, {file_.string(), 0, 0},
-                  "cannot write: " + std::generic_category().message(errno));
-    }
-    done += static_cast<std::size_t>(written);
-  }
+  open_.append('\n' + checksumOf(content) + ' ' + content + '\n');
   machines_.insert(machine);
   warnings_.insert(warnings.begin(), warnings.end());
   const std::size_t variant = result.variant;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "base/files/appended_file.h"
 #include "study/sweep/study_runner.h"
 
 namespace emscape::study {
@@ -22,9 +23,6 @@ class PartJournal {
   /// @throws Error (other) naming the file; (bad_input) with the line number, for a line with a valid
   /// checksum that is not a record of a variant
   PartJournal(std::filesystem::path file, std::vector<std::size_t> variants, std::size_t measures);
-  ~PartJournal();
-  PartJournal(const PartJournal&) = delete;
-  PartJournal& operator=(const PartJournal&) = delete;
 
   /// The variants that are not finished, in the plan's order.
   std::vector<std::size_t> unfinished() const;
@@ -42,12 +40,12 @@ class PartJournal {
   void read(const std::string& text);
 
   std::filesystem::path file_;
+  AppendedFile open_;
   std::vector<std::size_t> variants_;
   std::size_t measures_;
   std::map<std::size_t, VariantResult> finished_;
   std::set<std::string> warnings_, machines_;
   std::set<std::string> reported_;  ///< warnings that this process has appended
-  int descriptor_ = -1;
 };
 
 }  // namespace emscape::study

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "base/files/unfinished_file.h"
 #include "base/files/whole_file.h"
 #include "document/schema_check.h"
 #include "emscape/base/error.h"
@@ -182,8 +183,8 @@ void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& stud
                         const StudyResults& results) {
   const scenario::GdalMessages messages;
   const VariantSet& variants = study.variants;
-  const std::filesystem::path temporary = temporaryFor(file);
-  NetcdfWriter writer(temporary.string());
+  UnfinishedFile unfinished(file);
+  NetcdfWriter writer(unfinished.temporary());
   writer.note("Conventions", "CF-1.8");
   writer.note("title", study.name);
   writer.note("source", "emscape study " + study.hash);
@@ -219,11 +220,9 @@ void writeResultsNetcdf(const std::filesystem::path& file, const StudySpec& stud
     writer.numbers(measure.name, dimensions, values, measure.name, udunit(unitOf(measure)));
   }
   if (!writer.close() || messages.hasFailure()) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
     throw Error(ErrorCode::other, file.string() + ": " + messages.explain("cannot be written"));
   }
-  publish(temporary, file);
+  unfinished.publish();
 }
 
 }  // namespace emscape::study

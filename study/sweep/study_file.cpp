@@ -7,7 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_digest.h"
+#include "base/files/file_reading.h"
 #include "document/schema_check.h"
 #include "document/text_file.h"
 #include "emscape/scenario/file/scenario_file.h"

@@ -10,8 +10,12 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "base/files/file_reading.h"
+#include "base/files/folder.h"
+#include "base/files/folder_lock.h"
 #include "base/files/json_reading.h"
 #include "base/files/json_writing.h"
+#include "base/files/unfinished_file.h"
 #include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "study/sweep/part_rows.h"
@@ -26,15 +30,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kManifest = "manifest.json";
 constexpr const char* kCsv = "results.csv";
 constexpr const char* kNetcdf = "results.nc";
-
-void makeFolder(const fs::path& folder) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) {
-    throw Error(ErrorCode::other,
-                fmt::format("{}: the folder cannot be made ({})", folder.string(), failed.message()));
-  }
-}
 
 /// Reads a record of this program.
 template <class Read>
@@ -102,9 +97,7 @@ std::optional<int> StudyFolder::partsOfManifest() const {
 }
 
 void StudyFolder::begin(int parts, std::optional<KeptFiles> kept) {
-  makeFolder(folder_ / "parts");
-  removeStaleTemporaries(folder_);
-  removeStaleTemporaries(folder_ / "parts");
+  for (const fs::path& written : {folder_, makeFolderIn(folder_, "parts")}) removeAbandonedFiles(written);
   parts_ = parts;
   // Of processes that begin at the same time one writes the manifest, and the others use it.
   const fs::path file = folder_ / kManifest;

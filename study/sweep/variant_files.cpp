@@ -8,7 +8,8 @@
 #include <set>
 #include <vector>
 
-#include "base/files/whole_file.h"
+#include "base/files/folder.h"
+#include "base/files/unfinished_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/file.h"
@@ -33,16 +34,6 @@ std::string pathNameOf(const std::string& name) {
     text += is_safe ? c : '_';
   }
   return text;
-}
-
-fs::path madeFolder(const fs::path& folder) {
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  if (failed) {
-    throw Error(ErrorCode::other,
-                fmt::format("{}: the folder cannot be made ({})", folder.string(), failed.message()));
-  }
-  return folder;
 }
 
 /// Quantities and thresholds of the measures.
@@ -74,8 +65,8 @@ struct VariantFiles::State {
   std::set<std::size_t> begun;  ///< variants whose folder has no temporaries of ended processes
 
   fs::path folderFor(std::size_t variant) {
-    fs::path own = madeFolder(folder / folderOfVariant(study, variant));
-    if (begun.insert(variant).second) removeStaleTemporaries(own);
+    fs::path own = makeFolderIn(folder, folderOfVariant(study, variant));
+    if (begun.insert(variant).second) removeAbandonedFiles(own);
     return own;
   }
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
 #include "study/maps/gdal_support.h"
 
@@ -37,10 +38,13 @@ VectorFile::VectorFile(const std::string& file) : file_(file), dataset_(openVect
 
 std::vector<std::string> VectorFile::files() const {
   std::vector<std::string> files{file_};
+  const std::filesystem::path own = gdal::localName(file_);
   char** const names = GDALGetFileList(dataset_.get());
   for (char** name = names; name != nullptr && *name != nullptr; ++name) {
     std::error_code ignored;
-    if (*name != file_ && std::filesystem::is_regular_file(*name, ignored)) files.emplace_back(*name);
+    if (*name == own || !std::filesystem::is_regular_file(*name, ignored)) continue;
+    // GDAL gives absolute names; the others are beside the file.
+    files.push_back(std::filesystem::path(file_).replace_filename(std::filesystem::path(*name).filename()));
   }
   CSLDestroy(names);
   std::sort(files.begin(), files.end());

@@ -2,12 +2,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <fstream>
 #include <string>
 
+#include "base/files/appended_file.h"
+#include "base/files/file_digest.h"
+#include "base/files/file_patch.h"
+#include "base/files/file_reading.h"
+#include "base/files/unfinished_file.h"
 #include "tests/support/errors.h"
 #include "tests/support/file_size_limit.h"
 #include "tests/support/temporary_folder.h"
@@ -43,10 +46,10 @@ TEST_F(WholeFile, AppearsWithItsText) {
 }
 
 TEST_F(WholeFile, ATargetIsRefusedBeforeItIsWritten) {
-  requireFileTarget(folder_ / "a");
-  EXPECT_EQ(errorOf([&] { requireFileTarget(folder_ / "none/a"); }),
+  UnfinishedFile(folder_ / "a");
+  EXPECT_EQ(errorOf([&] { UnfinishedFile(folder_ / "none/a"); }),
             (folder_ / "none/a") + ": cannot write: the folder " + (folder_ / "none") + " does not exist");
-  EXPECT_EQ(errorOf([&] { requireFileTarget(folder_.path()); }),
+  EXPECT_EQ(errorOf([&] { UnfinishedFile(folder_.path()); }),
             folder_.path().string() + ": cannot write: a folder of that name exists");
   EXPECT_EQ(filesInFolder(), 0);
 }
@@ -113,37 +116,6 @@ TEST_F(WholeFile, IsRemovedWhenTheDiskIsFull) {
   EXPECT_EQ(filesInFolder(), 0);
 }
 
-TEST_F(WholeFile, TemporariesOfKilledRunsAreKnownAndRemoved) {
-  const fs::path mine = temporaryFor(folder_ / "a.vdb");
-  EXPECT_TRUE(isTemporary(mine));
-  EXPECT_EQ(mine.filename().string().rfind("a.vdb.part-", 0), 0U);
-  EXPECT_FALSE(isTemporary("a.vdb"));
-  EXPECT_FALSE(isTemporary("a.part-"));
-  EXPECT_FALSE(isTemporary("a.part-12b"));
-  EXPECT_FALSE(isTemporary(".part-12"));
-  EXPECT_TRUE(isTemporary("a.part-12"));
-  EXPECT_FALSE(isTemporary("a.part-12-host"));
-  for (const char* ending : {"-journal", "-wal", "-shm", ".aux.xml"}) {
-    EXPECT_TRUE(isTemporary(mine.string() + ending)) << ending;
-    EXPECT_TRUE(isTemporary(std::string("a.part-12") + ending)) << ending;
-    EXPECT_FALSE(isTemporary(std::string("a.vdb") + ending)) << ending;
-  }
-  EXPECT_FALSE(isTemporary("a.part-12-note"));
-  std::ofstream(mine) << "running";
-  std::ofstream(folder_ / "a.vdb.part-999999999") << "killed";  // above the largest process number
-  std::ofstream(folder_ / "a.vdb.part-999999999-journal") << "of GDAL";
-  const fs::path elsewhere = folder_ / "a.vdb.part-999999999-00000000";
-  ASSERT_NE(machineName(), "00000000");
-  std::ofstream(elsewhere) << "of another machine, where it may run";
-  EXPECT_EQ(removeStaleTemporaries(folder_.path()), 2);
-  EXPECT_TRUE(fs::exists(mine));
-  EXPECT_TRUE(fs::remove(elsewhere));
-  publish(mine, folder_ / "a.vdb");
-  EXPECT_EQ(textOf(folder_ / "a.vdb"), "running");
-  EXPECT_EQ(filesInFolder(), 1);
-  EXPECT_EQ(removeStaleTemporaries(folder_ / "none"), 0);
-}
-
 TEST_F(WholeFile, TheNameMayBeAsLongAsTheFileSystemAllows) {
   std::string name = "1";
   while (name.size() < 251) name += "\u00e9";
@@ -153,39 +125,6 @@ TEST_F(WholeFile, TheNameMayBeAsLongAsTheFileSystemAllows) {
   EXPECT_EQ(textOf(one), "text");
   EXPECT_EQ(textOf(two), "text");
   EXPECT_EQ(filesInFolder(), 2);
-  const fs::path temporary = temporaryFor(one);
-  EXPECT_TRUE(isTemporary(temporary));
-  EXPECT_LE(temporary.filename().string().size() + std::string(".aux.xml").size(), 255U);
-  EXPECT_NE(temporary, temporaryFor(two));
-  const std::string stem = temporary.string().substr(0, temporary.string().rfind('-'));
-  const std::string killed = stem.substr(0, stem.rfind('-') + 1) + "999999999";
-  std::ofstream(killed) << "killed";
-  removeStaleTemporariesOf(two);
-  EXPECT_TRUE(fs::exists(killed));
-  removeStaleTemporariesOf(one);
-  EXPECT_FALSE(fs::exists(killed));
-}
-
-TEST_F(WholeFile, OnlyTheTemporariesOfAFileThatDeadProcessesLeftAreRemovedWithIt) {
-  const fs::path mine = temporaryFor(folder_ / "film.mp4");
-  std::ofstream(mine) << "running";
-  std::ofstream(folder_ / "film.mp4.part-999999999") << "killed";
-  std::ofstream(folder_ / "other.mp4.part-999999999") << "not asked for";
-  std::ofstream(folder_ / "film.mp4.part-notes") << "of another program";
-  removeStaleTemporariesOf(folder_ / "film.mp4");
-  EXPECT_FALSE(fs::exists(folder_ / "film.mp4.part-999999999"));
-  EXPECT_EQ(filesInFolder(), 3);
-  EXPECT_NO_THROW(removeStaleTemporariesOf(folder_ / "none/film.mp4"));
-}
-
-TEST_F(WholeFile, TheTemporaryOfAProcessThatEndedButWasNotWaitedForIsStale) {
-  const pid_t process = fork();
-  if (process == 0) _exit(0);
-  siginfo_t ended{};
-  waitid(P_PID, static_cast<id_t>(process), &ended, WEXITED | WNOWAIT);
-  std::ofstream(folder_ / ("a.vdb.part-" + std::to_string(process))) << "killed";
-  EXPECT_EQ(removeStaleTemporaries(folder_.path()), 1);
-  waitpid(process, nullptr, 0);
 }
 
 TEST_F(WholeFile, PatchesReplaceBytesWhereTheyLie) {
@@ -199,10 +138,14 @@ TEST_F(WholeFile, PatchesReplaceBytesWhereTheyLie) {
 }
 
 TEST_F(WholeFile, AppendingMakesTheFileAndAddsToIt) {
-  appendToFile(folder_ / "a", "one\n");
-  appendToFile(folder_ / "a", "two\n");
+  AppendedFile(folder_ / "a").append("one\n");
+  AppendedFile(folder_ / "a").append("two\n");
   EXPECT_EQ(textOf(folder_ / "a"), "one\ntwo\n");
-  EXPECT_THAT(errorOf([&] { appendToFile(folder_ / "none/a", "x"); }), HasSubstr("cannot write"));
+  AppendedFile cut(folder_ / "a");
+  cut.cut(4);
+  cut.append("three\n");
+  EXPECT_EQ(textOf(folder_ / "a"), "one\nthree\n");
+  EXPECT_THAT(errorOf([&] { AppendedFile(folder_ / "none/a"); }), HasSubstr("cannot write"));
 }
 
 TEST_F(WholeFile, DigestIsSizeAndCrc32OfContent) {

@@ -1,14 +1,12 @@
 // Files from which a study's points and polygons are read.
 #include "study/sweep/candidate_sites.h"
 
-#include <arpa/inet.h>
 #include <cpl_conv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include "tests/support/errors.h"
+#include "tests/support/listener.h"
 #include "tests/support/temporary_folder.h"
 
 namespace emscape::study {
@@ -17,38 +15,9 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A local server that never answers and records whether a client has connected.
-class Listener {
- public:
-  Listener() {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    socklen_t size = sizeof address;
-    auto* const place = reinterpret_cast<sockaddr*>(&address);
-    if (bind(socket_, place, size) != 0 || listen(socket_, 4) != 0 || getsockname(socket_, place, &size) != 0)
-      throw std::runtime_error("no socket can be opened");
-    url_ = "http://127.0.0.1:" + std::to_string(ntohs(address.sin_port)) + "/";
-  }
-  ~Listener() { close(socket_); }
-  Listener(const Listener&) = delete;
-  Listener& operator=(const Listener&) = delete;
-
-  const std::string& url() const { return url_; }
-  bool wasReached() const {
-    const int connection = accept4(socket_, nullptr, nullptr, 0);
-    if (connection >= 0) close(connection);
-    return connection >= 0;
-  }
-
- private:
-  int socket_ = socket(AF_INET, SOCK_STREAM | SOCK_NONBLOCK, 0);
-  std::string url_;
-};
-
 TEST(CandidateSites, AreNotReadFromTheNetwork) {
   const test::TemporaryFolder folder;
-  const Listener listener;
+  const test::Listener listener;
   CPLSetThreadLocalConfigOption("GDAL_HTTP_TIMEOUT", "1");  // limits the wait if the test fails
   const std::string gml = folder.write("a.gml", R"(<?xml version="1.0" encoding="utf-8"?>
 <wfs:FeatureCollection xmlns:wfs="http://www.opengis.net/wfs" xmlns:gml="http://www.opengis.net/gml"

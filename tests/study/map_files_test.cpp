@@ -23,6 +23,7 @@
 #include "tests/support/file_size_limit.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/unfinished_files.h"
 
 namespace emscape::study {
 namespace {
@@ -194,10 +195,8 @@ class MapFiles : public testing::Test {
 };
 
 TEST_F(MapFiles, TemporariesOfKilledProcessAreRemoved) {
-  for (const char* left :
-       {"a/maps/coverage.gpkg.part-999999999", "a/maps/coverage.gpkg.part-999999999-journal",
-        "a/maps/x.tif.part-999999999.aux.xml", "a/report.html.part-999999999"})
-    folder.write(left, "unfinished");
+  std::filesystem::create_directories(folder / "a/maps");
+  for (const char* left : {"a/maps/coverage.gpkg", "a/report.html"}) test::leaveUnfinished(folder / left);
   folder.write("a/maps/notes.txt", "of the user");
   { const MapFolder maps(folder.path() / "a", fixture.study(), {"cog"}); }
   EXPECT_THAT(folder.files(), ElementsAre("a/maps/notes.txt"));

@@ -10,7 +10,6 @@
 #include <memory>
 #include <set>
 
-#include "base/files/whole_file.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "study/sweep/study_folder.h"
 #include "study/sweep/study_report.h"
@@ -19,6 +18,7 @@
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/unfinished_files.h"
 
 namespace emscape::study {
 namespace {
@@ -385,12 +385,8 @@ variants: [{name: "../as it is/ä"}, {name: no jammer, set: {emitters.jammer.pow
   StudyFolder files(folder.path(), study.spec(), study.plan(), "test");
   files.begin(1, KeptFiles::maps);
   VariantFiles kept(study.spec(), folder.path(), files.kept(), {});
-  const pid_t ended = fork();
-  if (ended == 0) _exit(0);
-  ASSERT_EQ(waitpid(ended, nullptr, 0), ended);
-  std::string left = temporaryFor("covered.tif");
-  left.replace(left.find(std::to_string(getpid())), std::to_string(getpid()).size(), std::to_string(ended));
-  folder.write("variants/1_no_jammer/" + left, "unfinished");
+  std::filesystem::create_directories(folder / "variants/1_no_jammer");
+  test::leaveUnfinished(folder / "variants/1_no_jammer/covered.tif");
   std::size_t written = 0;
   StudyRunner(study.spec(), study.plan(), study.terrain(), {}, &kept)
       .run({0, 1}, [&](const VariantResult& result) {
@@ -399,8 +395,8 @@ variants: [{name: "../as it is/ä"}, {name: no jammer, set: {emitters.jammer.pow
         written += test::readFile(own / "value_msl900m_t0s.tif").size();
       });
   EXPECT_GT(written, 1000u);
-  EXPECT_THAT(folder.files(), ::testing::Not(::testing::Contains(HasSubstr(left))))
-      << "a process that ended before left it";
+  EXPECT_THAT(folder.files(), ::testing::Not(::testing::Contains(HasSubstr(".part-"))))
+      << "a killed process left it";
   EXPECT_THAT(test::errorOf([&] {
                 StudyFolder(folder.path(), study.spec(), study.plan(), "test").begin(1, KeptFiles::volumes);
               }),

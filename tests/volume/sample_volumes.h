@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "emscape/base/log.h"
 #include "emscape/volume/dense_volume.h"
 #include "tests/support/errors.h"

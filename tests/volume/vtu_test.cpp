@@ -5,7 +5,7 @@
 #include <fstream>
 #include <limits>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "emscape/volume/mesh_file.h"
 #include "tests/support/errors.h"
 #include "tests/support/meshes.h"

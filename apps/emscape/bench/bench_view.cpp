@@ -12,6 +12,7 @@
 #include "apps/emscape/bench/bench_statistics.h"
 #include "apps/emscape/bench/view_trial.h"
 #include "apps/emscape/common/window_program.h"
+#include "base/files/file_reading.h"
 #include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/inputs.h"
@@ -147,7 +148,7 @@ int benchView(const BenchViewOptions& options, const GlobalOptions& global) {
   const ScratchFolder folder;
   const std::string script = folder.path() / "script.jsonl";
   const std::string log = options.log.empty() ? std::string(folder.path() / "log.jsonl") : options.log;
-  std::ofstream(script) << trialScript(trialOf(options));
+  writeWhole(script, [&](std::ostream& out) { out << trialScript(trialOf(options)); });
   std::vector<std::string> arguments{options.input, "--size", options.size, "--scale", "1",
                                      "--script",    script,   "--log",      log};
   if (!options.share_gpu) arguments.emplace_back("--no-share-gpu");

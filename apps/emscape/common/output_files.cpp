@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "base/files/whole_file.h"
+#include "base/files/file_reading.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/study/maps/products.h"

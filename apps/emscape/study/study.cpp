@@ -17,7 +17,7 @@
 #include "apps/emscape/study/study_plan.h"
 #include "apps/emscape/study/study_slurm.h"
 #include "apps/emscape/version.h"
-#include "base/files/whole_file.h"
+#include "base/files/folder_lock.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"

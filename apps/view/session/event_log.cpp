@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <ctime>
+#include <fstream>
 
 #include "base/files/json_writing.h"
-#include "emscape/base/error.h"
 
 namespace emscape::view {
 namespace {
@@ -35,8 +35,8 @@ SteadyClock::duration processAge() {
 EventLog::EventLog() : start_(SteadyClock::now() - processAge()) {}
 
 EventLog::EventLog(const std::string& file) : EventLog() {
-  out_.open(file);
-  if (!out_) throw Error(ErrorCode::other, file + ": cannot be written");
+  out_.emplace(file);
+  out_->cut(0);
 }
 
 double EventLog::now_s() const {
@@ -47,7 +47,7 @@ void EventLog::write(const char* event, const Json& fields) {
   if (!open()) return;
   Json line{{"t_s", std::round(now_s() * 1e4) / 1e4}, {"event", event}};
   line.update(fields);
-  out_ << dumpJson(line) << std::endl;  // flushed, so that lines are complete after a crash
+  out_->append(dumpJson(line) + "\n");  // lines are complete after a crash of the program
 }
 
 double processorTime_s() {

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <chrono>
-#include <fstream>
+#include <optional>
 #include <string>
 
 #include "apps/view/session/command.h"
+#include "base/files/appended_file.h"
 
 namespace emscape::view {
 
@@ -16,7 +17,7 @@ class EventLog {
   /// @throws Error (other) if the file cannot be written
   explicit EventLog(const std::string& file);
 
-  bool open() const { return out_.is_open(); }
+  bool open() const { return out_.has_value(); }
   /// Seconds since the program started.
   double now_s() const;
   /// Writes {"t_s", "event", ...}; no effect if no file is open.
@@ -24,7 +25,7 @@ class EventLog {
 
  private:
   std::chrono::steady_clock::time_point start_;
-  std::ofstream out_;
+  std::optional<AppendedFile> out_;
 };
 
 /// Resident memory of this process (MiB).

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "base/files/file_reading.h"
+#include "base/files/folder.h"
 #include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "playback/editing/autosave.h"
@@ -38,8 +40,7 @@ std::vector<std::string> addRecentFile(const std::string& input) {
   files.erase(std::remove(files.begin(), files.end(), path), files.end());
   if (path.find('\n') == std::string::npos) files.insert(files.begin(), path);
   files.resize(std::min(files.size(), kMaxRecentFiles));
-  std::error_code ignored;  // the write reports it
-  fs::create_directories(recentFilesFile().parent_path(), ignored);
+  makeFolder(recentFilesFile().parent_path());
   writeWhole(recentFilesFile(), [&files](std::ostream& out) {
     for (const std::string& file : files) out << file << '\n';
   });

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 
+#include "base/files/folder.h"
 #include "base/text/shell_word.h"
 #include "playback/editing/autosave.h"
 #include "playback/editing/edit_history.h"
@@ -35,8 +36,7 @@ render::TransferFunction fittedColors(const playback::ViewState& view, const pla
 std::string writeColors(const render::TransferFunction& function, const std::string& text) {
   namespace fs = std::filesystem;
   const fs::path folder = playback::stateFolder() / "copied";
-  std::error_code ignored;  // the write reports it
-  fs::create_directories(folder, ignored);
+  makeFolder(folder);
   const fs::path file = folder / fmt::format("colors-{:016x}.json", std::hash<std::string>()(text));
   render::writeTransferFunction(file.string(), function);
   return file.string();

@@ -8,8 +8,8 @@
 #include <sstream>
 
 #include "apps/view/session/input_queue.h"
+#include "base/files/file_reading.h"
 #include "base/files/json_writing.h"
-#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {

@@ -1,0 +1,50 @@
+#include "base/files/file_reading.h"
+
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+
+#include "base/files/descriptor.h"
+#include "emscape/base/error.h"
+
+namespace emscape {
+namespace fs = std::filesystem;
+namespace {
+
+/// @tparam Bytes  a container of bytes that can be resized
+template <class Bytes>
+Bytes readAll(const fs::path& path, std::uintmax_t max_bytes) {
+  const auto fail = [&](const std::string& cause) {
+    throw Error(ErrorCode::bad_input, {path.string()}, cause);
+  };
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (!fs::exists(status)) fail("there is no such file");
+  if (fs::is_directory(status)) fail("cannot read: it is a folder");
+  if (!fs::is_regular_file(status)) fail("cannot read: it is not a regular file");
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) fail("cannot read: " + causeOf(errno));
+  const std::uintmax_t size = fs::file_size(path, error);
+  if (error) fail("cannot read: " + error.message());
+  if (size > max_bytes) {
+    fail("is " + std::to_string(size) + " bytes large, more than the allowed " + std::to_string(max_bytes));
+  }
+  Bytes bytes;
+  bytes.resize(static_cast<std::size_t>(size));
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (static_cast<std::uintmax_t>(stream.gcount()) != size) fail("cannot read: it ended early");
+  return bytes;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> readWhole(const fs::path& path, std::uintmax_t max_bytes) {
+  return readAll<std::vector<std::uint8_t>>(path, max_bytes);
+}
+
+std::string readWholeText(const fs::path& path, std::uintmax_t max_bytes) {
+  return readAll<std::string>(path, max_bytes);
+}
+
+}  // namespace emscape

@@ -1,0 +1,36 @@
+#include "base/files/folder.h"
+
+#include <string>
+#include <system_error>
+
+#include "emscape/base/error.h"
+
+namespace emscape {
+namespace fs = std::filesystem;
+namespace {
+
+[[noreturn]] void failMaking(const fs::path& folder, const std::string& cause) {
+  throw Error(ErrorCode::other, {folder.string()}, "cannot make the folder: " + cause);
+}
+
+}  // namespace
+
+void makeFolder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) failMaking(folder, failed.message());
+}
+
+fs::path makeFolderIn(const fs::path& folder, const fs::path& inner) {
+  makeFolder(folder);
+  fs::path made = folder;
+  for (const fs::path& component : inner) {
+    made /= component;
+    std::error_code failed;
+    if (fs::is_symlink(made, failed)) failMaking(made, "it is a symbolic link, which is not followed");
+    makeFolder(made);
+  }
+  return made;
+}
+
+}  // namespace emscape

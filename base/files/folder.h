@@ -1,0 +1,19 @@
+/// Making of output folders.
+#pragma once
+
+#include <filesystem>
+
+namespace emscape {
+
+/// Makes a folder and its parents, as far as they do not exist. Links are followed: the user names the
+/// folder.
+/// @throws Error (other) that names the folder and the cause
+void makeFolder(const std::filesystem::path& folder);
+
+/// Makes FOLDER/INNER. No component of INNER may be a symbolic link: it would lead the program's files to
+/// where the user did not send them.
+/// @return FOLDER/INNER
+/// @throws Error (other) that names the folder and the cause
+std::filesystem::path makeFolderIn(const std::filesystem::path& folder, const std::filesystem::path& inner);
+
+}  // namespace emscape

@@ -1,0 +1,109 @@
+#include "base/files/folder_lock.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <thread>
+#include <utility>
+
+#include "emscape/base/error.h"
+
+namespace emscape {
+namespace fs = std::filesystem;
+namespace {
+
+/// Begins the content of every lock.
+const std::string kLockWords = "lock of emscape, ";
+/// For a process that has created a lock to write it.
+constexpr int kAttempts = 50;
+constexpr std::chrono::milliseconds kBetweenAttempts{10};
+
+/// The beginning of a lock's content.
+std::string contentOf(const Descriptor& lock) {
+  std::string text(kLockWords.size() + 300, '\0');
+  const ssize_t bytes = ::pread(lock.number(), text.data(), text.size(), 0);
+  text.resize(bytes > 0 ? static_cast<std::size_t>(bytes) : 0);
+  return text;
+}
+
+bool isLock(const std::string& content) {
+  return content.rfind(kLockWords, 0) == 0;
+}
+
+/// True if the open file is still the one of that name: its holder removes it.
+bool isNamed(const Descriptor& open, const Descriptor& folder, const fs::path& file) {
+  struct stat held {
+  }, named{};
+  return ::fstat(open.number(), &held) == 0 &&
+         ::fstatat(folder.number(), file.filename().c_str(), &named, AT_SYMLINK_NOFOLLOW) == 0 &&
+         held.st_ino == named.st_ino && held.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+FolderLock::FolderLock(fs::path file) : file_(std::move(file)), folder_(openFolderOf(file_)) {}
+
+FolderLock::FolderLock(const fs::path& folder, const std::string& name) : FolderLock(folder / name) {
+  std::string holder;
+  if (!lock(holder)) {
+    throw Error(ErrorCode::other, {folder.string()}, "another process writes this folder: " + holder);
+  }
+}
+
+std::unique_ptr<FolderLock> FolderLock::tryLock(const fs::path& folder, const std::string& name) {
+  std::unique_ptr<FolderLock> result(new FolderLock(folder / name));
+  std::string holder;
+  if (!result->lock(holder)) return nullptr;
+  return result;
+}
+
+bool FolderLock::lock(std::string& holder) {
+  for (int attempts_left = kAttempts; !descriptor_.isOpen();) {
+    Descriptor found = createFile(folder_, file_, O_RDWR);
+    const bool is_new = found.isOpen();
+    if (!is_new) found = openFile(folder_, file_, O_RDWR);
+    if (!found.isOpen()) continue;  // removed between the two calls
+    const int cause = ::flock(found.number(), is_new ? LOCK_EX : LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
+    if (cause != 0 && cause != EWOULDBLOCK) {
+      if (is_new) remove();
+      failWriting(file_, causeOf(cause));
+    }
+    const std::string content = contentOf(found);
+    if (cause != 0) {
+      holder = isLock(content) ? content.substr(kLockWords.size()) : "not known which";
+      return false;
+    }
+    if (!isNamed(found, folder_, file_)) continue;
+    if (!is_new && content.empty() && attempts_left-- > 0) {
+      found.close();  // the process that created it is about to lock it
+      std::this_thread::sleep_for(kBetweenAttempts);
+      continue;
+    }
+    if (!is_new && !isLock(content)) {
+      failWriting(file_, "a file of that name exists that is no lock of emscape; use another folder");
+    }
+    descriptor_ = std::move(found);
+  }
+  char host[256] = "?";
+  ::gethostname(host, sizeof host - 1);
+  const std::string own = kLockWords + "process " + std::to_string(::getpid()) + " on " + host;
+  // The name of the process is for messages; it may be of a killed one, if it cannot be written.
+  if (::ftruncate(descriptor_.number(), 0) == 0) {
+    static_cast<void>(::pwrite(descriptor_.number(), own.data(), own.size(), 0) == 0);
+  }
+  return true;
+}
+
+void FolderLock::remove() {
+  ::unlinkat(folder_.number(), file_.filename().c_str(), 0);
+}
+
+FolderLock::~FolderLock() {
+  if (descriptor_.isOpen()) remove();
+}
+
+}  // namespace emscape

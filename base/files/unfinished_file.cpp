@@ -1,0 +1,172 @@
+#include "base/files/unfinished_file.h"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <ext/stdio_filebuf.h>
+#include <memory>
+#include <random>
+#include <utility>
+#include <vector>
+
+namespace emscape {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr char kPrefix[] = "emscape.part-";
+constexpr std::size_t kRandomLetters = 12;
+constexpr char kRecordName[] = "emscape.record";
+
+/// Unpredictable: the name may be in a folder of several users.
+std::string newFolderName() {
+  std::random_device random;  // of the system
+  std::uniform_int_distribution<int> letter('a', 'z');
+  std::string name = kPrefix;
+  for (std::size_t n = 0; n < kRandomLetters; ++n) name += static_cast<char>(letter(random));
+  return name;
+}
+
+bool mayBeOwnFolder(const std::string& name) {
+  return name.size() == sizeof kPrefix - 1 + kRandomLetters && name.rfind(kPrefix, 0) == 0;
+}
+
+/// The content of the record; it names its folder, so that a copy elsewhere proves nothing.
+std::string recordOf(const std::string& folder_name) {
+  return "unfinished file of emscape in " + folder_name + "\n";
+}
+
+Descriptor openInnerFolder(const Descriptor& folder, const std::string& name) {
+  return Descriptor(::openat(folder.number(), name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+}
+
+/// Removes the files of an inner folder, the record last, then the folder.
+/// @param record  closed before it is removed: NFS would keep an open file under another name
+/// @return false if something is left
+bool removeInnerFolder(const Descriptor& folder, const std::string& name, const Descriptor& inner,
+                       Descriptor record) {
+  const int copy = ::fcntl(inner.number(), F_DUPFD_CLOEXEC, 0);
+  const std::unique_ptr<DIR, int (*)(DIR*)> listing(copy < 0 ? nullptr : ::fdopendir(copy), ::closedir);
+  std::vector<std::string> files;
+  while (const dirent* const entry = listing == nullptr ? nullptr : ::readdir(listing.get())) {
+    if (entry->d_name != std::string(kRecordName)) files.emplace_back(entry->d_name);
+  }
+  for (const std::string& file : files) ::unlinkat(inner.number(), file.c_str(), 0);
+  record.close();
+  ::unlinkat(inner.number(), kRecordName, 0);
+  return ::unlinkat(folder.number(), name.c_str(), AT_REMOVEDIR) == 0;
+}
+
+/// True if a record proves that a killed process of this program has left its folder.
+bool provesAbandoned(const Descriptor& record, const std::string& folder_name) {
+  const std::string expected = recordOf(folder_name);
+  std::string text(expected.size() + 1, '\0');
+  const ssize_t bytes = ::pread(record.number(), text.data(), text.size(), 0);
+  if (bytes != static_cast<ssize_t>(expected.size())) return false;
+  text.resize(expected.size());
+  return text == expected && ::flock(record.number(), LOCK_EX | LOCK_NB) == 0;
+}
+
+/// Refuses a name to which nothing can be renamed: renaming to a folder fails late, and renaming to a device
+/// would replace it.
+void requireFileTarget(const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(file, ignored);
+  if (fs::exists(status) && !fs::is_regular_file(status)) {
+    failWriting(file, fs::is_directory(status) ? "a folder of that name exists" : "it is not a regular file");
+  }
+}
+
+}  // namespace
+
+UnfinishedFile::UnfinishedFile(fs::path file) : file_(std::move(file)), folder_(openFolderOf(file_)) {
+  requireFileTarget(file_);
+  try {
+    makeOwnFolder();
+  } catch (...) {
+    removeOwnFolder();
+    throw;
+  }
+  temporary_ = fs::absolute(file_).parent_path() / own_name_ / file_.filename();
+}
+
+UnfinishedFile::~UnfinishedFile() {
+  removeOwnFolder();
+}
+
+void UnfinishedFile::makeOwnFolder() {
+  int failed = 0;
+  do {
+    own_name_ = newFolderName();
+    failed = ::mkdirat(folder_.number(), own_name_.c_str(), 0700);
+  } while (failed != 0 && errno == EEXIST);
+  if (failed == 0) own_folder_ = openInnerFolder(folder_, own_name_);
+  if (!own_folder_.isOpen()) failWriting(file_, causeOf(errno));
+  record_ = createFile(own_folder_, file_.parent_path() / kRecordName, O_RDWR);
+  // Locked before it states anything. Where files cannot be locked it stays empty, which proves nothing.
+  if (::flock(record_.number(), LOCK_EX | LOCK_NB) == 0) writeBytes(record_, recordOf(own_name_), file_);
+}
+
+void UnfinishedFile::removeOwnFolder() {
+  if (!own_folder_.isOpen()) return;
+  removeInnerFolder(folder_, own_name_, own_folder_, std::move(record_));
+  own_folder_.close();
+}
+
+void UnfinishedFile::write(const std::function<void(std::ostream&)>& fill) {
+  __gnu_cxx::stdio_filebuf<char> buffer(createFile(own_folder_, file_, O_WRONLY).release(),
+                                        std::ios::out | std::ios::binary);
+  std::ostream stream(&buffer);
+  try {
+    stream.exceptions(std::ios::badbit | std::ios::failbit);
+    errno = 0;
+    fill(stream);
+    if (buffer.close() == nullptr) stream.setstate(std::ios::badbit);
+  } catch (const std::ios_base::failure&) {
+    failWriting(file_, causeOf(errno));
+  }
+}
+
+int UnfinishedFile::rename(const std::string& name) const {
+  const Descriptor opened(
+      ::openat(own_folder_.number(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  const bool is_renamed = opened.isOpen() && ::fsync(opened.number()) == 0 &&
+                          ::renameat(own_folder_.number(), name.c_str(), folder_.number(), name.c_str()) == 0;
+  return is_renamed ? 0 : errno;
+}
+
+void UnfinishedFile::publish(const std::string& beside) {
+  const std::string name = file_.filename();
+  if (!beside.empty()) {
+    const int cause = rename(name + beside);
+    if (cause == ENOENT) {
+      ::unlinkat(folder_.number(), (name + beside).c_str(), 0);
+    } else if (cause != 0) {
+      failWriting(file_.string() + beside, causeOf(cause));
+    }
+  }
+  const int cause = rename(name);
+  if (cause != 0) failWriting(file_, causeOf(cause));
+  removeOwnFolder();
+  // A rename is on the disk after this. Some file systems cannot sync a folder; the file is complete anyway.
+  static_cast<void>(::fsync(folder_.number()) == 0);
+}
+
+int removeAbandonedFiles(const fs::path& folder) {
+  int removed = 0;
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, failed)) {
+    const std::string name = entry.path().filename();
+    if (!mayBeOwnFolder(name)) continue;
+    const Descriptor outer(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    const Descriptor inner = openInnerFolder(outer, name);
+    Descriptor record(::openat(inner.number(), kRecordName, O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (provesAbandoned(record, name) && removeInnerFolder(outer, name, inner, std::move(record))) ++removed;
+  }
+  return removed;
+}
+
+}  // namespace emscape

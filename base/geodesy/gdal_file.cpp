@@ -1,0 +1,43 @@
+#include "base/geodesy/gdal_file.h"
+
+#include <cpl_error.h>
+
+#include <mutex>
+#include <system_error>
+
+namespace emscape::gdal {
+namespace fs = std::filesystem;
+
+void prepare() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    GDALAllRegister();
+    OSRSetPROJEnableNetwork(0);
+  });
+}
+
+std::string localName(const fs::path& file) {
+  return fs::absolute(file);
+}
+
+std::string faultOfName(const fs::path& file) {
+  std::error_code failed;
+  const fs::file_status status = fs::status(file, failed);
+  if (!fs::exists(status)) return "no such file";
+  if (!fs::is_regular_file(status)) return "not a regular file";
+  // A folder /vsi... of the disk cannot be told from a virtual file system of GDAL.
+  if (localName(file).rfind("/vsi", 0) == 0) return "names of GDAL's virtual file systems are not read";
+  return "";
+}
+
+Dataset openFile(const fs::path& file, unsigned flags, const char* const* drivers, const char* const* options,
+                 const char* const* siblings) {
+  prepare();
+  if (const std::string fault = faultOfName(file); !fault.empty()) {
+    CPLError(CE_Failure, CPLE_OpenFailed, "%s", fault.c_str());
+    return nullptr;
+  }
+  return Dataset(GDALOpenEx(localName(file).c_str(), flags | GDAL_OF_READONLY, drivers, options, siblings));
+}
+
+}  // namespace emscape::gdal

@@ -1,0 +1,186 @@
+// Folders of others: files of the user in an output folder stay, links in it are refused, and names of files
+// in a scenario or study reach no network.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <map>
+
+#include "tests/apps/program.h"
+#include "tests/support/listener.h"
+
+namespace emscape::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// The subcommands that write into a folder, with the shortest work. @param folder  has study.yaml
+std::vector<Arguments> writersInto(const TemporaryFolder& folder) {
+  const Arguments maps{"--cell", "2000",       "--heights", "agl:100",  "--times",
+                       "0",      "--products", "covered",   "--format", "cog"};
+  std::vector<Arguments> writers{
+      {"simulate", quick(), "--times", "0", "-o", folder / "out"},
+      {"coverage", quick(), "-o", folder / "out"},
+      {"compare", quick(), "--set-b", "emitters.radar.power_w=1", "-o", folder / "out"},
+      {"study", folder / "study.yaml", "--keep", "maps", "-o", folder / "out"}};
+  for (const std::size_t n : {1u, 2u}) writers[n].insert(writers[n].end(), maps.begin(), maps.end());
+  return writers;
+}
+
+/// study.yaml, whose terms are in `more`.
+void writeStudy(const TemporaryFolder& folder,
+                const std::string& more = "sweep: {emitters.radar.power_w: {values: [1, 2]}}") {
+  folder.write("study.yaml", "schema_version: 1\nscenario: " + quick() + "\ntimes: 0\ncell_m: 5000\n" + more +
+                                 "\nmeasures:\n  - {name: covered, height: \"agl:300\"}\n");
+}
+
+TEST(ForeignFolder, FilesOfTheUserThatAreNamedLikePartsAreKept) {
+  const TemporaryFolder folder;
+  writeStudy(folder);
+  std::vector<std::string> kept;
+  for (const std::string inner : {"out/", "out/maps/", "out/parts/", "out/variants/0/"}) {
+    for (int n = 0; n < 4; ++n) kept.push_back(inner + "backup.tar.gz.part-0" + std::to_string(n));
+    for (const char* name :
+         {"archive.zip.part-99999", "Holiday film.part-22222.aux.xml", "notes.part-31337-journal",
+          "quick_0001.vdb.part-999999999-00000000", "report.html.part-999999999"}) {
+      kept.push_back(inner + name);
+    }
+  }
+  for (const std::string& file : kept) folder.write(file, "data");
+  const fs::path empty = folder.path() / "out/folder.part-54321";
+  fs::create_directory(empty);
+  for (const Arguments& arguments : writersInto(folder)) {
+    const ProgramResult result = run(arguments);
+    ASSERT_EQ(result.status, 0) << result.err;
+    for (const std::string& file : kept)
+      EXPECT_EQ(readFile(folder / file), "data") << arguments[0] << ": " << file;
+    EXPECT_TRUE(fs::is_directory(empty)) << arguments[0];
+    EXPECT_THAT(folder.files(), testing::Not(testing::Contains(HasSubstr("emscape.part-"))));
+  }
+}
+
+TEST(ForeignFolder, LinksAreRefusedByNameAndNothingIsWrittenThroughThem) {
+  const std::vector<std::string> links_of[] = {
+      {"out/series.lock"},
+      {"out/.maps.lock", "out/maps"},
+      {"out/.maps.lock", "out/maps"},
+      {"out/.study.lock", "out/.manifest.lock", "out/parts", "out/parts/part_00001.rows", "out/variants",
+       "out/variants/0"}};
+  for (std::size_t writer = 0; writer < std::size(links_of); ++writer) {
+    for (const std::string& link : links_of[writer]) {
+      for (const bool is_dangling : {false, true}) {
+        const TemporaryFolder folder;
+        writeStudy(folder);
+        const fs::path victim = folder.path() / "home/victim", at = folder.path() / link;
+        const bool names_folder =
+            !fs::path(link).filename().has_extension() && link.find("lock") == std::string::npos;
+        fs::create_directories(is_dangling    ? victim.parent_path()
+                               : names_folder ? victim
+                                              : victim.parent_path());
+        if (!is_dangling && !names_folder) writeFile(victim, "precious");
+        fs::create_directories(at.parent_path());
+        fs::create_symlink(victim, at);
+        const std::vector<std::string> before = folder.files();
+        const Arguments arguments = writersInto(folder)[writer];
+        const ProgramResult result = run(arguments);
+        EXPECT_EQ(result.status, 1) << arguments[0] << " " << link << ": " << result.err;
+        EXPECT_THAT(result.err, HasSubstr(link + ": cannot ")) << arguments[0];
+        EXPECT_THAT(result.err, HasSubstr("it is a symbolic link, which is not followed")) << arguments[0];
+        if (!is_dangling && !names_folder)
+          EXPECT_EQ(readFile(victim), "precious") << arguments[0] << " " << link;
+        EXPECT_TRUE(fs::is_symlink(at)) << link;
+        for (const std::string& file : folder.files()) {
+          EXPECT_TRUE(file.rfind("home", 0) != 0 || testing::Value(before, testing::Contains(file))) << file;
+        }
+      }
+    }
+  }
+}
+
+TEST(ForeignFolder, AJournalThatIsALinkRunsNoCommandOfAStranger) {
+  const TemporaryFolder folder;
+  writeStudy(folder);
+  writeFile(folder / "bashrc", "true\n");
+  fs::create_directories(folder / "out/parts");
+  fs::create_symlink("../../bashrc", folder / "out/parts/part_00001.rows");
+  const ProgramResult result =
+      run({"study", "study.yaml", "-o", "out"}, "cd " + folder.path().string() + ";");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("out/parts/part_00001.rows: cannot write: it is a symbolic link"));
+  EXPECT_EQ(readFile(folder / "bashrc"), "true\n");
+}
+
+/// Names that GDAL takes for its drivers and virtual file systems, of files that a stranger has made in the
+/// folder.
+std::vector<std::string> namesWithPrefixes(const TemporaryFolder& folder, const std::string& url) {
+  std::vector<std::string> names;
+  for (const std::string prefix : {"", "GTIFF_DIR:1:", "CSV:", "GPKG:", "vrt://", "/vsizip/"}) {
+    for (const std::string& address : {"/vsicurl/" + url + "x.tif", url + "x.csv"}) {
+      names.push_back(prefix + address);
+      if (names.back()[0] != '/') folder.write(names.back(), "x");
+    }
+  }
+  return names;
+}
+
+TEST(ForeignFolder, NamesOfFilesReachNoNetwork) {
+  const TemporaryFolder folder;
+  const Listener listener;
+  const std::string there = "cd " + folder.path().string() + "; export GDAL_HTTP_TIMEOUT=1 PROJ_NETWORK=ON;";
+  const std::string scenario = readFile(quick());
+  const auto with = [&](const std::string& old, const std::string& text) {
+    std::string changed = scenario;
+    changed.replace(changed.find(old), old.size(), text);
+    return changed;
+  };
+  const std::string isotropic = "{pattern: isotropic}";
+  for (const std::string& name : namesWithPrefixes(folder, listener.url())) {
+    const std::string quoted = "'" + name + "'";
+    folder.write("terrain.yaml", scenario + "terrain: {files: [" + quoted + "], vertical_datum: egm96}\n");
+    folder.write("antenna.yaml", with(isotropic, "{pattern: file, file: " + quoted + "}"));
+    folder.write("track.yaml", with("position: {latitude_deg: 52.05, longitude_deg: 5.06, height_agl_m: 50}",
+                                    "track: {file: " + quoted + "}"));
+    folder.write("air.yaml",
+                 scenario + "atmosphere: {refractivity: {kind: profile, file: " + quoted + "}}\n");
+    writeStudy(folder, "sites: {platform: mast, candidates: " + quoted + ", choose: 1}");
+    folder.write("over.yaml", "schema_version: 1\nscenario: " + quick() +
+                                  "\ntimes: 0\ncell_m: 5000\nsweep: {emitters.radar.power_w: {values: [1, "
+                                  "2]}}\nmeasures:\n  - {name: covered, height: \"agl:300\", over: " +
+                                  quoted + "}\n");
+    const std::vector<Arguments> readers{{"validate", "terrain.yaml"},
+                                         {"validate", "antenna.yaml"},
+                                         {"validate", "track.yaml"},
+                                         {"validate", "air.yaml"},
+                                         {"info", name},
+                                         {"render", name, "-o", "a.png"},
+                                         {"coverage", name, "-o", "out"},
+                                         {"study", "study.yaml", "--plan"},
+                                         {"study", "over.yaml", "--plan"}};
+    for (const Arguments& arguments : readers) {
+      const ProgramResult result = run(arguments, there);
+      EXPECT_THAT(result.status, testing::AnyOf(2, 3))
+          << arguments[0] << " " << arguments[1] << ": " << result.err;
+      EXPECT_FALSE(listener.wasReached()) << arguments[0] << " " << name << ": " << result.err;
+    }
+  }
+}
+
+TEST(ForeignFolder, CoordinateSystemsReachNoNetwork) {
+  const TemporaryFolder folder;
+  const Listener listener;
+  folder.write("a.asc", "ncols 2\nnrows 2\nxllcorner 4.5\nyllcorner 51.5\ncellsize 0.5\n1 2\n3 4\n");
+  folder.write("a.vrt",
+               "<VRTDataset rasterXSize=\"2\" rasterYSize=\"2\"><SRS>+proj=longlat +ellps=bessel +nadgrids=" +
+                   listener.url() +
+                   "g.tif</SRS><GeoTransform>4.5, 0.5, 0, 52.5, 0, -0.5</GeoTransform>"
+                   "<VRTRasterBand dataType=\"Float32\" band=\"1\"><SimpleSource><SourceFilename "
+                   "relativeToVRT=\"1\">a.asc</SourceFilename><SourceBand>1</SourceBand></SimpleSource>"
+                   "</VRTRasterBand></VRTDataset>");
+  folder.write("s.yaml", readFile(quick()) + "terrain: {files: [a.vrt], vertical_datum: egm96}\n");
+  run({"validate", folder / "s.yaml"}, "export PROJ_NETWORK=ON;");
+  EXPECT_FALSE(listener.wasReached());
+}
+
+}  // namespace
+}  // namespace emscape::test
