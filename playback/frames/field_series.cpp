@@ -97,7 +97,6 @@ void FieldSeries::update(int step) {
   updated_step_ = -1;
   if (solver_.update(snapshot(step), input_.terrain).any) changed_since_given_ = true;
   updated_step_ = step;
-  ++updates_;
 }
 
 std::vector<ValueRange> FieldSeries::findRanges(int stride, const ProgressSink& progress) {

@@ -212,11 +212,6 @@ void LiveCaster::applyColors(const ColorOrder& order) {
   switch (order.kind) {
     case ColorOrder::Kind::first_step:
       break;
-    case ColorOrder::Kind::step:
-      painter_.fitColors();
-      range_.reset();
-      raise(SceneEvent::transfer_function);
-      break;
     case ColorOrder::Kind::range:
       if (field_) fitColorsTo(order.range);
       break;

@@ -36,7 +36,6 @@ struct Versioned {
 struct ColorOrder {
   enum class Kind {
     first_step,  ///< fitted to the first drawn step, or as in the style
-    step,        ///< fitted to the step on screen
     range,
     function
   };

@@ -20,11 +20,6 @@ TEST(FrameSource, TheNearestIndexToATimeIsFoundBeyondTheEndsToo) {
   EXPECT_EQ(MadeFrames({3}).nearestIndex(-1), 0);
 }
 
-TEST(FrameSource, FrameByTimeIsNearestStep) {
-  MadeFrames source({0, 1, 2});
-  EXPECT_EQ(source.frameAt(1.2).volume.info().time_s, 1);
-}
-
 TEST(FrameSource, ComputesAScenariosStepsWithOneRange) {
   const TemporaryFolder folder;
   FrameSelection selection;

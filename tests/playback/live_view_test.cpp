@@ -137,7 +137,7 @@ struct Expected {
     const auto source = openFrameSource(selection, {});
     Painter painter(style, *source, {});
     if (transfer) painter.setTransferFunction(*transfer);
-    painter.setFrame(source->frameAt(time_s));
+    painter.setFrame(source->frame(source->nearestIndex(time_s)));
     painter.draw({});
     render::Image8 image;
     painter.fetch(image);
@@ -485,7 +485,7 @@ TEST(LiveView, EmptySizeIsNotDrawn) {
   EXPECT_EQ(live.settled()->status.shown_s, 2);
 }
 
-TEST(LiveView, ColorsAreFittedToRangeOrStepOnRequest) {
+TEST(LiveView, ColorsAreFittedToARequestedRange) {
   const TemporaryFolder folder;
   const std::string input = quickScenario(folder);
   Live live(input);
@@ -507,8 +507,6 @@ TEST(LiveView, ColorsAreFittedToRangeOrStepOnRequest) {
   EXPECT_EQ(shown->transfer.highest(), render::defaultTransferFunction(series).highest());
   live.view->setRange({-90, -20});
   EXPECT_EQ(live.settled()->transfer.lowest(), -90);
-  live.view->fitToStep();
-  EXPECT_FALSE(live.settled()->range);
 }
 
 TEST(LiveView, VolumesFromFilesAreShownWithTheirTimes) {

@@ -71,8 +71,6 @@ class FieldSeries {
 
   /// True if the last volumes of compute() differ from those of the call before.
   bool changed() const { return changed_; }
-  /// Number of updates of the solver.
-  long long updates() const { return updates_; }
   /// Warnings of the solver.
   std::vector<std::string> warnings() const;
 
@@ -90,7 +88,6 @@ class FieldSeries {
   int updated_step_ = -1;
   bool changed_since_given_ = false;  // by an update since the last compute()
   bool changed_ = true;
-  long long updates_ = 0;
 };
 
 }  // namespace emscape::playback

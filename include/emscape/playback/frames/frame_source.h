@@ -79,8 +79,6 @@ class FrameSource {
   /// The index with the nearest time; of two equally near, the earlier. @param time_s any, beyond the ends
   /// too
   int nearestIndex(double time_s) const;
-  /// The frame nearest to a time. @throws Error, Stopped
-  Frame frameAt(double time_s) { return frame(nearestIndex(time_s)); }
 };
 
 /// @param target    the processor for a scenario's field
