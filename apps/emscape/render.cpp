@@ -17,6 +17,7 @@
 #include "base/files/whole_file.h"
 #include "base/memory.h"
 #include "base/stopwatch.h"
+#include "base/worker.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/frame_source.h"
@@ -28,13 +29,11 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "playback/editing/view_state.h"
 #include "playback/pictures/real_time_loop.h"
-#include "playback/series/background_writer.h"
 #include "render/patterns/reconstruction.h"
 
 namespace emscape::app {
 namespace {
 
-using playback::BackgroundWriter;
 using playback::Display;
 using playback::FrameSource;
 using playback::Painter;
@@ -361,7 +360,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
 
   // Enough for delays of the encoder.
   constexpr long long kWaitingBytes = 256LL << 20;
-  BackgroundWriter writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * style.size.count()))));
+  Worker writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * style.size.count()))));
   int number = 0;
   Display display;
   if (!sinks.empty()) {

@@ -40,7 +40,7 @@ LiveFields::LiveFields(Open open, FieldRequest first, const Options& options, Ev
   quantity_ = first.quantity;
   compares_ = first.compares;
   box_.put(std::move(first));
-  thread_ = std::thread([this] { run(); });
+  worker_.push([this] { run(); });
 }
 
 LiveFields::~LiveFields() {
@@ -49,7 +49,7 @@ LiveFields::~LiveFields() {
 
 void LiveFields::close() {
   stop();
-  if (thread_.joinable()) thread_.join();
+  worker_.finish();
 }
 
 void LiveFields::stop() {

@@ -7,13 +7,12 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "base/thread_arena.h"
+#include "base/worker.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/frame_source.h"
-#include "emscape/playback/live/async_task.h"
 #include "playback/frames/frame_cache.h"
 #include "playback/live/mailbox.h"
 
@@ -142,7 +141,7 @@ class LiveFields {
   mutable std::mutex mutex_;
   FieldsStatus status_;
 
-  std::thread thread_;
+  Worker worker_;
 };
 
 }  // namespace emscape::playback

@@ -5,11 +5,11 @@
 #include <algorithm>
 
 #include "base/files/whole_file.h"
+#include "base/worker.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/stop.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "playback/series/background_writer.h"
 #include "playback/series/series_files.h"
 #include "playback/series/series_journal.h"
 #include "playback/series/series_state.h"
@@ -172,7 +172,7 @@ class SeriesWriter {
     int computed = 0;
     const int found = finished_count_;
     // While one step is written the next is computed, and one more may wait.
-    BackgroundWriter writer(1);
+    Worker writer(1);
     std::vector<int> missing;
     for (int step = 0; step < series_.count(); ++step) {
       if (!steps_[static_cast<std::size_t>(step)]) missing.push_back(step);

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "base/event.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/pictures/clock.h"
 #include "tests/support/errors.h"
