@@ -244,8 +244,8 @@ Stage openStage(const playback::FrameSelection& selection, const RenderOptions& 
     stage.painter = std::make_unique<Painter>(style, *stage.source, target);
     const playback::Frame frame = stage.source->frame(0);
     stage.painter->setFrame(frame);
-    const volume::VolumeInfo& info = frame.info();
-    if (info.range_min < info.range_max) stage.range = {info.range_min, info.range_max};
+    const playback::ValueRange range = render::colorRangeOf(frame.info(), frame.color_range);
+    if (range.min < range.max) stage.range = range;
     return stage;
   });
 }

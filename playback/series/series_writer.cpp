@@ -184,7 +184,6 @@ class SeriesWriter {
       record.own = rangesOf(volumes);
       addToRange(record.own);
       record.stored = ranges_;
-      setRanges(volumes, ranges_);
       writer.push(
           [this, volumes = std::move(volumes), record = std::move(record)] { write(volumes, record); });
       tell("computing", found + ++computed);
@@ -195,7 +194,7 @@ class SeriesWriter {
 
   /// On the writer's thread.
   void write(const std::vector<volume::Volume>& volumes, StepRecord record) {
-    files_.write(record.step, volumes);
+    files_.write(record.step, volumes, record.stored);
     for (const std::string& name : files_.namesOf(record.step)) {
       record.files.push_back({name, digestOf(options_.folder / name)});
     }

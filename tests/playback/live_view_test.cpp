@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <thread>
 
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/volume/file.h"
@@ -498,13 +499,14 @@ TEST(LiveView, ColorsAreFittedToARequestedRange) {
   live.waitUntil([&](const LiveStatus& status) { return status.isSettled(); });
   FrameSelection selection;
   selection.input = input;
-  const volume::VolumeInfo series = openFrameSource(selection, {})->frame(0).volume.info();
-  EXPECT_EQ(*live.view->status().series_range, (ValueRange{series.range_min, series.range_max}));
+  const Frame first = openFrameSource(selection, {})->frame(0);
+  const ValueRange series = *first.color_range;
+  EXPECT_EQ(*live.view->status().series_range, series);
   EXPECT_EQ(live.settled()->transfer.lowest(), fitted.lowest()) << "what is shown stays";
-  live.view->setRange({series.range_min, series.range_max});
+  live.view->setRange(series);
   const auto shown = live.settled();
-  EXPECT_EQ(*shown->range, (ValueRange{series.range_min, series.range_max}));
-  EXPECT_EQ(shown->transfer.highest(), render::defaultTransferFunction(series).highest());
+  EXPECT_EQ(*shown->range, series);
+  EXPECT_EQ(shown->transfer.highest(), render::defaultTransferFunction(first.info(), series).highest());
   live.view->setRange({-90, -20});
   EXPECT_EQ(live.settled()->transfer.lowest(), -90);
 }
