@@ -16,6 +16,7 @@
 #include "apps/emscape/report/real_time_report.h"
 #include "base/memory.h"
 #include "base/stopwatch.h"
+#include "base/worker.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/frame_source.h"
@@ -27,13 +28,11 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "playback/editing/view_state.h"
 #include "playback/pictures/real_time_loop.h"
-#include "playback/series/background_writer.h"
 #include "render/patterns/reconstruction.h"
 
 namespace emscape::app {
 namespace {
 
-using playback::BackgroundWriter;
 using playback::Display;
 using playback::FrameSource;
 using playback::Painter;
@@ -243,8 +242,8 @@ Stage openStage(const playback::FrameSelection& selection, const RenderOptions& 
     stage.painter = std::make_unique<Painter>(style, *stage.source, target);
     const playback::Frame frame = stage.source->frame(0);
     stage.painter->setFrame(frame);
-    const volume::VolumeInfo& info = frame.info();
-    if (info.range_min < info.range_max) stage.range = {info.range_min, info.range_max};
+    const playback::ValueRange range = render::colorRangeOf(frame.info(), frame.color_range);
+    if (range.min < range.max) stage.range = range;
     return stage;
   });
 }
@@ -359,7 +358,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
 
   // Enough for delays of the encoder.
   constexpr long long kWaitingBytes = 256LL << 20;
-  BackgroundWriter writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * style.size.count()))));
+  Worker writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * style.size.count()))));
   int number = 0;
   Display display;
   if (!sinks.empty()) {

@@ -28,7 +28,7 @@
 #include "emscape/playback/frames/scene.h"
 #include "emscape/playback/frames/shown_field.h"
 #include "emscape/playback/frames/volume_input.h"
-#include "emscape/playback/live/async_task.h"
+#include "emscape/playback/frames/volume_series.h"
 #include "emscape/playback/pictures/clock.h"
 #include "emscape/playback/pictures/painter.h"
 #include "emscape/playback/pictures/picture_series.h"

@@ -15,6 +15,8 @@
 #include "emscape/volume/mesh_file.h"
 #include "playback/frames/difference_source.h"
 #include "playback/frames/platform_tracks.h"
+#include "playback/frames/range_search.h"
+#include "volume/difference.h"
 
 namespace emscape::playback {
 namespace {
@@ -77,26 +79,16 @@ struct ComputedMesh {
 class ComputedFrames : public FrameSource {
  public:
   ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const ComputeTarget& target,
-                 const ProgressSink& progress, const StopFlag* stop)
+                 const StopFlag* stop)
       : selection_(selection), mesh_(selection.mesh, input) {
     emfield::FieldOptions options = fieldOptionsOf(selection, target, *input.scenario);
     options.surface = mesh_.surface();
     series_ = std::make_unique<FieldSeries>(input, timesOf(selection, input.scenario->clock), options, stop);
-    range_ = rangeOf(*series_, selection.quantity, progress);
+    channelOf(series_->channels(), selection.quantity);  // throws if there is none
   }
 
   int count() const override { return series_->count(); }
   double time_s(int index) const override { return series_->time_s(index); }
-  Frame frame(int index) override {
-    std::vector<volume::Volume> volumes = series_->compute(index);
-    std::vector<volume::Volume> chosen{volumes[channelOf(series_->channels(), selection_.quantity)]};
-    if (range_) setRanges(chosen, {*range_});
-    Frame frame{mesh_.shown(chosen.front()), {}, {}, series_->changed()};
-    const LoadedScenario& input = series_->input();
-    frame.markers = markersOf(series_->snapshot(index), input.terrain.get(), frame.grid());
-    frame.tracks = tracks_.at(series_->time_s(index), input, frame.grid());
-    return frame;
-  }
   std::string name() const override { return series_->input().scenario->name; }
   const LoadedScenario* scene() const override { return &series_->input(); }
   std::vector<std::string> warnings() const override { return series_->warnings(); }
@@ -120,24 +112,26 @@ class ComputedFrames : public FrameSource {
     options.quantities = quantitiesOf(quantity, *series_->input().scenario);
     auto series =
         std::make_unique<FieldSeries>(series_->input(), series_->times_s(), options, series_->stopFlag());
-    range_ = rangeOf(*series, quantity, {});
+    channelOf(series->channels(), quantity);  // throws if there is none
     series_ = std::move(series);
     selection_.quantity = quantity;
   }
 
- private:
-  /// The range of all frames; none if each has its own.
-  std::optional<ValueRange> rangeOf(FieldSeries& series, const std::string& quantity,
-                                    const ProgressSink& progress) const {
-    const std::size_t channel = channelOf(series.channels(), quantity);
-    if (selection_.range || selection_.independent) return selection_.range;
-    return series.findRanges(rangeSearchStride(series.count()), progress)[channel];
+ protected:
+  Frame makeFrame(int index) override {
+    const std::vector<volume::Volume> volumes = series_->compute(index);
+    const std::size_t channel = channelOf(series_->channels(), selection_.quantity);
+    Frame frame{mesh_.shown(volumes[channel]), {}, {}, series_->changed(), {}};
+    const LoadedScenario& input = series_->input();
+    frame.markers = markersOf(series_->snapshot(index), input.terrain.get(), frame.grid());
+    frame.tracks = tracks_.at(series_->time_s(index), input, frame.grid());
+    return frame;
   }
 
+ private:
   FrameSelection selection_;
   ComputedMesh mesh_;
   std::unique_ptr<FieldSeries> series_;
-  std::optional<ValueRange> range_;
   PlatformTracks tracks_;
 };
 
@@ -167,19 +161,6 @@ class StoredFrames : public FrameSource {
 
   int count() const override { return static_cast<int>(files_.size()); }
   double time_s(int index) const override { return files_[static_cast<std::size_t>(index)].time_s; }
-  Frame frame(int index) override {
-    throwIfStopped(stop_);
-    const VolumeFile& file = files_[static_cast<std::size_t>(index)];
-    Frame frame{holds_meshes_ ? readCells(file) : readVoxels(file), {}, {}, true};
-    if (scene_ && frame.grid().georeferenced) {
-      const double time_s = frame.info().time_s;
-      const scenario::Snapshot snapshot =
-          scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), time_s);
-      frame.markers = markersOf(snapshot, scene_->terrain.get(), frame.grid());
-      frame.tracks = tracks_.at(time_s, *scene_, frame.grid());
-    }
-    return frame;
-  }
   std::string name() const override { return name_; }
   const LoadedScenario* scene() const override { return scene_ ? &*scene_ : nullptr; }
   std::vector<std::string> warnings() const override { return {}; }
@@ -195,6 +176,21 @@ class StoredFrames : public FrameSource {
     quantity_ = chosen;
   }
 
+ protected:
+  Frame makeFrame(int index) override {
+    throwIfStopped(stop_);
+    const VolumeFile& file = files_[static_cast<std::size_t>(index)];
+    Frame frame{holds_meshes_ ? readCells(file) : readVoxels(file), {}, {}, true, {}};
+    if (scene_ && frame.grid().georeferenced) {
+      const double time_s = frame.info().time_s;
+      const scenario::Snapshot snapshot =
+          scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), time_s);
+      frame.markers = markersOf(snapshot, scene_->terrain.get(), frame.grid());
+      frame.tracks = tracks_.at(time_s, *scene_, frame.grid());
+    }
+    return frame;
+  }
+
  private:
   /// The files to be shown. @param quantity  as for volumeFilesOf()
   std::vector<VolumeFile> filesOf(std::string& quantity) const {
@@ -202,24 +198,15 @@ class StoredFrames : public FrameSource {
     return chosenFiles(list(selection_.input, quantity), selection_.times, selection_.first_only);
   }
 
-  void setRange(volume::VolumeInfo& info) const {
-    if (!selection_.range) return;
-    info.range_min = selection_.range->min;
-    info.range_max = selection_.range->max;
-  }
   ShownField readVoxels(const VolumeFile& file) const {
     volume::DenseVolume read = volume::readVolume(file.file, quantity_);
     read.info.time_s = file.time_s;
-    auto volume = std::make_shared<const volume::DenseVolume>(std::move(read));
-    volume::VolumeInfo info = volume->info;
-    setRange(info);
-    return {{volume, info}, nullptr};
+    return {volume::Volume(std::move(read)), nullptr};
   }
   ShownField readCells(const VolumeFile& file) {
     volume::MeshFile read = volume::readMesh(file.file, quantity_);
     volume::MeshField& field = read.fields.front();
     field.info.time_s = file.time_s;
-    setRange(field.info);
     if (mesh_ && sameMesh(*mesh_, *read.mesh)) {
       field.mesh = mesh_;
     } else {
@@ -255,19 +242,20 @@ void FrameSource::setQuantity(const std::string& quantity) {
   throw Error(ErrorCode::usage, fmt::format("quantity '{}': {} has only one quantity", quantity, name()));
 }
 
-int FrameSource::nearestIndex(double time_s) const {
-  int first = 0, last = count() - 1;
-  while (last - first > 1) {  // time_s(first) <= time_s < time_s(last), or time_s is beyond an end
-    const int middle = first + (last - first) / 2;
-    (this->time_s(middle) <= time_s ? first : last) = middle;
+const volume::Volume& comparableVolume(const Frame& frame) {
+  const volume::VolumeInfo& info = frame.info();
+  if (frame.cells) {
+    throw Error(ErrorCode::usage,
+                info.quantity + ": fields on tetrahedra are not compared; their volumes are");
   }
-  return std::abs(this->time_s(last) - time_s) < std::abs(this->time_s(first) - time_s) ? last : first;
+  volume::requireDifference(info.quantity, info.categorical);
+  return frame.volume;
 }
 
 namespace {
 
 std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const ComputeTarget& target,
-                                       const ProgressSink& progress, const StopFlag* stop) {
+                                       const StopFlag* stop) {
   const InputKind kind = inputKindOf(selection.input);
   if (!selection.mesh.empty() && kind != InputKind::scenario) {
     throw Error(ErrorCode::usage,
@@ -280,7 +268,7 @@ std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const Co
   switch (kind) {
     case InputKind::scenario:
       return std::make_unique<ComputedFrames>(loadScenarioWithTerrain(selection.input, selection.edits),
-                                              selection, target, progress, stop);
+                                              selection, target, stop);
     case InputKind::volume:
     case InputKind::mesh:
       return std::make_unique<StoredFrames>(selection, stop);
@@ -306,35 +294,42 @@ FrameSelection referenceOf(const FrameSelection& selection) {
   return reference;
 }
 
-std::unique_ptr<DifferenceSource> openComparison(const FrameSelection& selection, const ComputeTarget& target,
-                                                 const StopFlag* stop) {
+std::unique_ptr<FrameSource> openComparison(const FrameSelection& selection, const ComputeTarget& target,
+                                            const StopFlag* stop) {
   FrameSelection field = selection;
   field.independent = true;
   const bool compares = !selection.compare.empty();
-  if (compares) {
-    field.range.reset();  // the range is that of the differences
-    referenceOf(field);   // throws its faults here
-  }
-  const auto openReference = [field, target, stop] {
-    return openField(referenceOf(field), target, {}, stop);
-  };
+  if (compares) referenceOf(field);  // throws its faults here
+  const auto openReference = [field, target, stop] { return openField(referenceOf(field), target, stop); };
   const std::string name =
       !compares || selection.compare == kOriginal ? "the original scenario" : selection.compare;
-  return std::make_unique<DifferenceSource>(openField(field, target, {}, stop), openReference, name,
-                                            compares);
+  return std::make_unique<DifferenceSource>(openField(field, target, stop), openReference, name, compares);
+}
+
+/// The range of the values of a series.
+render::ColorRange rangeOf(FrameSource& source, const ProgressSink& progress) {
+  RangeSearch search(source.count());
+  while (const std::optional<int> step = search.next()) {
+    search.add(source.frame(*step).info());
+    if (progress) progress("value range", static_cast<double>(*step + 1) / source.count());
+  }
+  return search.range().empty() ? render::ColorRange() : search.range();
 }
 
 }  // namespace
 
 std::unique_ptr<FrameSource> openFrameSource(const FrameSelection& selection, const ComputeTarget& target,
                                              const ProgressSink& progress, const StopFlag* stop) {
-  if (selection.compare.empty() && !selection.independent)
-    return openField(selection, target, progress, stop);
-  std::unique_ptr<DifferenceSource> source = openComparison(selection, target, stop);
-  if (selection.range && !selection.compare.empty()) {
-    source->setRange(*selection.range);
-  } else if (!selection.independent && source->count() > 1) {
-    source->findRange(progress);
+  const bool compares = !selection.compare.empty();
+  std::unique_ptr<FrameSource> source = compares || selection.independent
+                                            ? openComparison(selection, target, stop)
+                                            : openField(selection, target, stop);
+  // Files state the range of their series.
+  const bool has_range = !compares && inputKindOf(selection.input) != InputKind::scenario;
+  if (selection.range || selection.independent || has_range || source->count() == 1) {
+    source->setColorRange(selection.range);
+  } else {
+    source->setColorRange(rangeOf(*source, progress));
   }
   return source;
 }

@@ -95,7 +95,7 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
   return markers;
 }
 
-std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info,
+std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info, const volume::ValueRange& range,
                                            const scenario::Scenario* scenario) {
   const std::string name = info.quantity.substr(0, info.quantity.find(':'));
   const std::vector<std::string> labels = volume::labelsOf(info);
@@ -112,7 +112,7 @@ std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info,
   }
   for (std::size_t index = 0; index < labels.size(); ++index) {
     const auto value = static_cast<float>(index);
-    if (value >= info.range_min && value <= info.range_max)
+    if (value >= range.min && value <= range.max)
       categories.push_back({static_cast<int>(index), labels[index]});
   }
   return categories;

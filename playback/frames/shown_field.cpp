@@ -16,9 +16,9 @@ std::shared_ptr<const volume::DenseVolume> ShownField::values() const {
   return cells ? std::make_shared<const volume::DenseVolume>(volume::valuesOf(cells->field)) : volume.host();
 }
 
-render::TransferFunction ShownField::defaultColors() const {
-  return cells ? render::defaultTransferFunction(cells->field)
-               : render::defaultTransferFunction(*volume.host());
+render::TransferFunction ShownField::defaultColors(const render::ColorRange& range) const {
+  return cells ? render::defaultTransferFunction(cells->field, range)
+               : render::defaultTransferFunction(*volume.host(), range);
 }
 
 bool sameValues(const ShownField& a, const ShownField& b) {

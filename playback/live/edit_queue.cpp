@@ -16,19 +16,6 @@ bool haveSamePaths(const std::vector<scenario::Edit>& a, const std::vector<scena
 
 }  // namespace
 
-EditQueue::EditQueue(std::function<void()> wake)
-    : worker_(
-          [](const Request& request) {
-            Result result{request.number, request.base, nullptr, ""};
-            try {
-              result.edited = edited(request.base, request.edits);
-            } catch (const std::exception& error) {
-              result.error = failureText(error);
-            }
-            return result;
-          },
-          std::move(wake)) {}
-
 void EditQueue::drag(std::vector<scenario::Edit> edits) {
   if (!std::exchange(is_dragging_, true)) push({Kind::begin_drag, {}, {}});
   const bool is_begun = is_asked_ && waiting_.size() == 1;
@@ -51,23 +38,30 @@ void EditQueue::cancelDrag() {
 void EditQueue::clear() {
   waiting_.clear();
   is_asked_ = is_dragging_ = false;
-  ++number_;
 }
 
 /// @return true if the first operation, which makes edits, is finished
 bool EditQueue::makeEdits(EditHistory& history, std::vector<Outcome>& outcomes) {
-  const std::optional<Result> result = is_asked_ ? worker_.take() : std::nullopt;
-  if (is_asked_ && !result) return false;
-  const bool holds = result && result->number == number_ && result->base == history.scenario();
-  if (!holds) {
-    worker_.ask({++number_, history.scenario(), waiting_.front().edits});
-    is_asked_ = true;
-    return false;
+  if (task_.active()) {
+    if (!task_.done()) return false;
+    const Result result = task_.take();
+    if (std::exchange(is_asked_, false) && result.base == history.scenario()) {
+      if (result.edited) history.adopt(result.edited);
+      outcomes.push_back({std::move(waiting_.front().edits), result.error});
+      return true;
+    }
   }
-  is_asked_ = false;
-  if (result->edited) history.adopt(result->edited);
-  outcomes.push_back({std::move(waiting_.front().edits), result->error});
-  return true;
+  task_.start([base = history.scenario(), edits = waiting_.front().edits] {
+    Result result{base, nullptr, ""};
+    try {
+      result.edited = edited(base, edits);
+    } catch (const std::exception& error) {
+      result.error = failureText(error);
+    }
+    return result;
+  });
+  is_asked_ = true;
+  return false;
 }
 
 std::vector<EditQueue::Outcome> EditQueue::update(EditHistory& history) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "base/worker.h"
 #include "playback/editing/edit_history.h"
-#include "playback/live/latest_worker.h"
 
 namespace emscape::playback {
 
@@ -24,7 +24,7 @@ class EditQueue {
   };
 
   /// @param wake  called on the thread of this object when update() has something to do; may be empty
-  explicit EditQueue(std::function<void()> wake);
+  explicit EditQueue(std::function<void()> wake) : task_(std::move(wake)) {}
 
   /// As the functions of EditHistory.
   void set(std::vector<scenario::Edit> edits) { push({Kind::set, std::move(edits), {}}); }
@@ -51,13 +51,7 @@ class EditQueue {
     std::vector<scenario::Edit> edits;
     std::function<void()> callback;
   };
-  struct Request {
-    long long number;
-    ScenarioPtr base;
-    std::vector<scenario::Edit> edits;
-  };
   struct Result {
-    long long number;
     ScenarioPtr base, edited;  ///< edited is null if the edits are refused
     std::string error;
   };
@@ -68,8 +62,7 @@ class EditQueue {
   std::deque<Operation> waiting_;
   bool is_asked_ = false;  // the first pending one is in progress
   bool is_dragging_ = false;
-  long long number_ = 0;
-  LatestWorker<Request, Result> worker_;
+  AsyncTasks<Result> task_;
 };
 
 }  // namespace emscape::playback

@@ -39,7 +39,7 @@ LiveCaster::LiveCaster(const PictureStyle& style, const ViewRequest& first, cons
       controller_options_(controller),
       controller_(controller),
       view_(first) {
-  thread_ = std::thread([this] { run(); });
+  worker_.push([this] { run(); });
 }
 
 LiveCaster::~LiveCaster() {
@@ -48,7 +48,7 @@ LiveCaster::~LiveCaster() {
 
 void LiveCaster::close() {
   stop();
-  if (thread_.joinable()) thread_.join();
+  worker_.finish();
 }
 
 void LiveCaster::request(ViewRequest request) {
@@ -211,11 +211,6 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
 void LiveCaster::applyColors(const ColorOrder& order) {
   switch (order.kind) {
     case ColorOrder::Kind::first_step:
-      break;
-    case ColorOrder::Kind::step:
-      painter_.fitColors();
-      range_.reset();
-      raise(SceneEvent::transfer_function);
       break;
     case ColorOrder::Kind::range:
       if (field_) fitColorsTo(order.range);

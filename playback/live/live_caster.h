@@ -8,10 +8,9 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "base/thread_arena.h"
-#include "emscape/playback/live/async_task.h"
+#include "base/worker.h"
 #include "emscape/playback/pictures/painter.h"
 #include "emscape/render/patterns/frame_controller.h"
 #include "playback/live/live_fields.h"
@@ -36,7 +35,6 @@ struct Versioned {
 struct ColorOrder {
   enum class Kind {
     first_step,  ///< fitted to the first drawn step, or as in the style
-    step,        ///< fitted to the step on screen
     range,
     function
   };
@@ -168,7 +166,7 @@ class LiveCaster {
   CasterStatus status_;
   std::vector<StateChange> state_changes_;
 
-  std::thread thread_;
+  Worker worker_;
 };
 
 }  // namespace emscape::playback

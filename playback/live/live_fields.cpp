@@ -40,7 +40,7 @@ LiveFields::LiveFields(Open open, FieldRequest first, const Options& options, Ev
   quantity_ = first.quantity;
   compares_ = first.compares;
   box_.put(std::move(first));
-  thread_ = std::thread([this] { run(); });
+  worker_.push([this] { run(); });
 }
 
 LiveFields::~LiveFields() {
@@ -49,7 +49,7 @@ LiveFields::~LiveFields() {
 
 void LiveFields::close() {
   stop();
-  if (thread_.joinable()) thread_.join();
+  worker_.finish();
 }
 
 void LiveFields::stop() {
@@ -148,7 +148,7 @@ bool LiveFields::applyChanges() {
     compares_ = wanted_.compares;
     cache_.clear();
   }
-  if (!search_left_.empty()) beginSearch();
+  if (range_search_.next()) beginSearch();
   const std::lock_guard<std::mutex> lock(mutex_);
   status_.times_s = timesOf(*source_);
   status_.cached_steps.clear();
@@ -185,7 +185,7 @@ void LiveFields::deliver(const Frame& frame) {
 
 void LiveFields::fail(const std::string& line, ErrorCode code) {
   is_due_ = false;
-  search_left_.clear();
+  range_search_ = RangeSearch();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.error = line;
@@ -198,12 +198,8 @@ void LiveFields::fail(const std::string& line, ErrorCode code) {
 
 void LiveFields::beginSearch() {
   search_ = wanted_.search;
-  search_left_.clear();
-  search_range_ = {};
   if (!source_) return endSearch({});
-  const int stride = rangeSearchStride(source_->count());
-  for (int index = 0; index < source_->count(); index += stride) search_left_.push_back(index);
-  std::reverse(search_left_.begin(), search_left_.end());
+  range_search_ = RangeSearch(source_->count());
 }
 
 void LiveFields::endSearch(const ValueRange& range) {
@@ -219,18 +215,16 @@ std::optional<int> LiveFields::idleStep() const {
       if (!cache_.find(index) && cache_.wouldKeep(index, distance())) return index;
     }
   }
-  if (!search_left_.empty()) return search_left_.back();
-  return std::nullopt;
+  return range_search_.next();
 }
 
 void LiveFields::doIdleWork(int index) {
   try {
     const Frame* cached = cache_.find(index);
     const Frame frame = cached ? *cached : compute(index);
-    if (!search_left_.empty() && index == search_left_.back()) {
-      search_range_.add({frame.info().range_min, frame.info().range_max});
-      search_left_.pop_back();
-      if (search_left_.empty()) endSearch(search_range_);
+    if (range_search_.next() == index) {
+      range_search_.add(frame.info());
+      if (!range_search_.next()) endSearch(range_search_.range());
     }
     events_.changed();
   } catch (const Stopped&) {
@@ -252,7 +246,7 @@ void LiveFields::wait() {
   ++status_.wake_ups;
 }
 
-FrameCache::Distance LiveFields::distance() const {
+StepCache<Frame>::Distance LiveFields::distance() const {
   return [this](int index) {
     const long long steps = static_cast<long long>(index) - index_;
     return steps >= 0 ? steps : options_.steps_ahead - steps;

@@ -7,14 +7,14 @@
 #include <mutex>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "base/thread_arena.h"
+#include "base/worker.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/frame_source.h"
-#include "emscape/playback/live/async_task.h"
-#include "playback/frames/frame_cache.h"
+#include "playback/frames/range_search.h"
+#include "playback/frames/step_cache.h"
 #include "playback/live/mailbox.h"
 
 namespace emscape::playback {
@@ -111,7 +111,7 @@ class LiveFields {
   void doIdleWork(int index);
   void waitUntil(Time time);
   void wait();
-  FrameCache::Distance distance() const;
+  StepCache<Frame>::Distance distance() const;
 
   const Open open_;
   const Options options_;
@@ -124,7 +124,7 @@ class LiveFields {
   std::unique_ptr<FrameSource> source_;
   ThreadArena arena_;         // of Options::threads; 0: all
   ThreadArena narrow_arena_;  // leaves a core to others
-  FrameCache cache_;
+  StepCache<Frame> cache_;
   FieldRequest wanted_;
   Time asked_;  // when
   bool is_due_ = false;
@@ -135,14 +135,13 @@ class LiveFields {
   bool is_playing_ = false;          // steps are requested one after another
   std::optional<Time> field_begin_;  // of the last field
   Time quiet_from_{};
-  long long search_ = 0;          // of the series' range: number of the last search begun
-  std::vector<int> search_left_;  // steps, the next one last
-  ValueRange search_range_;
+  long long search_ = 0;  // number of the last search begun
+  RangeSearch range_search_;
 
   mutable std::mutex mutex_;
   FieldsStatus status_;
 
-  std::thread thread_;
+  Worker worker_;
 };
 
 }  // namespace emscape::playback

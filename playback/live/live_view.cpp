@@ -239,10 +239,6 @@ void LiveView::keepOnDevice(bool keep) {
   impl_->askView([&](ViewRequest& view) { view.on_device.set(keep); });
 }
 
-void LiveView::fitToStep() {
-  impl_->askView([](ViewRequest& view) { view.colors.set({ColorOrder::Kind::step, {}, {}}); });
-}
-
 void LiveView::searchSeriesRange() {
   impl_->askField([](FieldRequest& field) { ++field.search; });
 }

@@ -120,7 +120,7 @@ struct LivePicture : ShownField {
 /// of tiles, then IDLE. An IDLE picture is bit-identical to a full cast of the same scene by Painter.
 ///
 /// Colours are fitted to the histogram of the first frame, as in `render`, and again after a change of the
-/// quantity. Otherwise they are constant, so that steps and edits can be compared; fitToStep(), setRange()
+/// quantity. Otherwise they are constant, so that steps and edits can be compared; setRange()
 /// and setTransferFunction() change them. Each picture contains the function in use, which reproduces it
 /// together with camera and settings.
 class LiveView {
@@ -171,8 +171,6 @@ class LiveView {
   /// Sets whether busy pictures of a GPU stay in its memory, to be displayed from there; false at first.
   void keepOnDevice(bool keep);
 
-  /// Fits the colours to the step on screen.
-  void fitToStep();
   /// Fits the colours to a range.
   void setRange(const volume::ValueRange& range);
   /// Searches the range of the values over the series, for status().series_range: computes up to 24 steps

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-#include "emscape/playback/live/async_task.h"
+#include "base/event.h"
 
 namespace emscape::playback {
 

@@ -7,7 +7,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/scene.h"
-#include "playback/frames/difference_source.h"
+#include "playback/frames/difference_series.h"
 
 namespace emscape::playback {
 namespace {
@@ -90,7 +90,8 @@ void Painter::setFrame(const Frame& frame) {
   setGround();
   if (is_other_grid) fitCamera();
   if (is_first_of_colors && style_.settings.mode == render::CompositingMode::iso) {
-    const std::string missing = render::missingIsosurface(renderer_.isoValue(), *frame.volume.host());
+    const std::string missing =
+        render::missingIsosurface(renderer_.isoValue(), *frame.volume.host(), frame.color_range);
     if (!missing.empty() && style_.must_show_isosurface) throw Error(ErrorCode::bad_input, missing);
     if (!missing.empty()) logWarning(missing + "; no surface is drawn");
   }
@@ -136,10 +137,7 @@ void Painter::fitColors() {
 }
 
 void Painter::fitColors(const volume::ValueRange& range) {
-  volume::VolumeInfo info = frame_->info();
-  info.range_min = range.min;
-  info.range_max = range.max;
-  setTransferFunction(render::defaultTransferFunction(info));
+  setTransferFunction(render::defaultTransferFunction(frame_->info(), range));
 }
 
 void Painter::showTerrain(bool show) {
@@ -235,14 +233,15 @@ std::shared_ptr<const render::DevicePicture> Painter::annotatedOnDevice(const st
   return renderer_.compose(layers_);
 }
 
-render::TransferFunction Painter::functionFor(const ShownField& field) const {
-  const volume::VolumeInfo& info = field.info();
-  if (!style_.transfer.empty()) return render::readTransferFunction(style_.transfer, info);
+render::TransferFunction Painter::functionFor(const Frame& frame) const {
+  const volume::VolumeInfo& info = frame.info();
+  if (!style_.transfer.empty()) return render::readTransferFunction(style_.transfer, info, frame.color_range);
   if (style_.function && !info.categorical) {
     render::requireUnitOf(*style_.function, info);
     return *style_.function;
   }
-  return style_.colors_span_range ? render::defaultTransferFunction(info) : field.defaultColors();
+  return style_.colors_span_range ? render::defaultTransferFunction(info, frame.color_range)
+                                  : frame.defaultColors(frame.color_range);
 }
 
 const render::TransferFunction& Painter::transferFunction() const {
@@ -299,7 +298,9 @@ void Painter::setLegend() {
   if (style_.settings.mode == render::CompositingMode::iso)
     annotations_.legend->iso_value = renderer_.isoValue();
   if (frame_->info().categorical) {
-    annotations_.legend->categories = categoriesOf(frame_->info(), scene_ ? scene_->scenario.get() : nullptr);
+    annotations_.legend->categories =
+        categoriesOf(frame_->info(), render::colorRangeOf(frame_->info(), frame_->color_range),
+                     scene_ ? scene_->scenario.get() : nullptr);
   }
   const double space = render::overlayMargins(style_.size, annotations_).right;
   if (std::exchange(legend_space_, space) != space) fitCamera();

@@ -1,7 +1,7 @@
 #include "emscape/playback/pictures/picture_series.h"
 
+#include "base/worker.h"
 #include "emscape/playback/stop.h"
-#include "playback/series/background_writer.h"
 
 namespace emscape::playback {
 
@@ -9,7 +9,7 @@ double drawPictures(FrameSource& source, Painter& painter, const render::FramePl
                     const std::vector<std::unique_ptr<PictureSink>>& sinks,
                     const std::function<void(int)>& done, const StopFlag* stop) {
   double cast_ms = 0;
-  BackgroundWriter writer(2);  // PNG and video are encoded while the next picture is cast
+  Worker writer(2);  // PNG and video are encoded while the next picture is cast
   for (int index = 0; index < source.count(); ++index) {
     throwIfStopped(stop);
     if (index > 0) painter.setFrame(source.frame(index));

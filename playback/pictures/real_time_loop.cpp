@@ -117,6 +117,7 @@ void RealTimeLoop::waitUntil(double time_ms) {
 }
 
 void RealTimeLoop::beginField(int step) {
+  event_.begin();
   field_.start([this, step] {
     const double begin_ms = clock_.now_ms();
     NewField field;
@@ -233,6 +234,7 @@ void RealTimeLoop::drawFrame(const render::FramePlan& plan) {
 
 void RealTimeLoop::beginRestoration() {
   stop_ = false;
+  event_.begin();
   restoration_.start([this] { return painter_.restore(&stop_); });
 }
 

@@ -5,9 +5,10 @@
 #include <optional>
 #include <set>
 
+#include "base/event.h"
+#include "base/worker.h"
 #include "emscape/base/progress.h"
 #include "emscape/playback/frames/frame_source.h"
-#include "emscape/playback/live/async_task.h"
 #include "emscape/playback/pictures/clock.h"
 #include "emscape/playback/pictures/painter.h"
 #include "emscape/render/patterns/frame_controller.h"
@@ -123,8 +124,8 @@ class RealTimeLoop {
 
   StopFlag stop_{false};
   Event event_;
-  AsyncTask<render::FrameReport> restoration_{event_};
-  AsyncTask<NewField> field_{event_};
+  AsyncTasks<render::FrameReport> restoration_{[this] { event_.finish(); }};
+  AsyncTasks<NewField> field_{[this] { event_.finish(); }};
 };
 
 }  // namespace emscape::playback

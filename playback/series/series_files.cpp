@@ -88,9 +88,16 @@ std::vector<std::string> SeriesFiles::namesOf(int step) const {
   return names;
 }
 
-void SeriesFiles::write(int step, const std::vector<volume::Volume>& channels) const {
+void SeriesFiles::write(int step, std::vector<volume::Volume> channels,
+                        const std::vector<ValueRange>& ranges) const {
   std::vector<std::shared_ptr<const volume::DenseVolume>> on_host;
-  for (const volume::Volume& channel : channels) on_host.push_back(channel.host());
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    volume::VolumeInfo info = channels[c].info();
+    info.range_min = ranges[c].empty() ? info.floor : ranges[c].min;
+    info.range_max = ranges[c].empty() ? info.floor : ranges[c].max;
+    channels[c].setInfo(std::move(info));
+    on_host.push_back(channels[c].host());
+  }
   for (const VolumeFile& file : volumeFilesOf(step)) {
     if (volume::isMeshFile(file.name)) {
       writeOnMesh(file.name, on_host);

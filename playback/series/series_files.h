@@ -27,8 +27,10 @@ class SeriesFiles {
   /// Names in the folder of all files of a step, sidecars included; always in the same order.
   std::vector<std::string> namesOf(int step) const;
 
-  /// Writes a step in every format. @throws Error (other, device); then there is no file of the failed format
-  void write(int step, const std::vector<volume::Volume>& channels) const;
+  /// Writes a step in every format.
+  /// @param ranges  that the files state, one per channel; an empty one is stated as the floor
+  /// @throws Error (other, device); then there is no file of the failed format
+  void write(int step, std::vector<volume::Volume> channels, const std::vector<ValueRange>& ranges) const;
 
   /// Changes the ranges in a step's files. @param ranges one per channel; empty ranges are not changed
   /// @return the names of the files that may have changed

@@ -8,11 +8,11 @@
 #include "base/files/folder.h"
 #include "base/files/folder_lock.h"
 #include "base/files/unfinished_file.h"
+#include "base/worker.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/stop.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "playback/series/background_writer.h"
 #include "playback/series/series_files.h"
 #include "playback/series/series_journal.h"
 #include "playback/series/series_state.h"
@@ -170,7 +170,7 @@ class SeriesWriter {
     int computed = 0;
     const int found = finished_count_;
     // While one step is written the next is computed, and one more may wait.
-    BackgroundWriter writer(1);
+    Worker writer(1);
     std::vector<int> missing;
     for (int step = 0; step < series_.count(); ++step) {
       if (!steps_[static_cast<std::size_t>(step)]) missing.push_back(step);
@@ -182,7 +182,6 @@ class SeriesWriter {
       record.own = rangesOf(volumes);
       addToRange(record.own);
       record.stored = ranges_;
-      setRanges(volumes, ranges_);
       writer.push(
           [this, volumes = std::move(volumes), record = std::move(record)] { write(volumes, record); });
       tell("computing", found + ++computed);
@@ -193,7 +192,7 @@ class SeriesWriter {
 
   /// On the writer's thread.
   void write(const std::vector<volume::Volume>& volumes, StepRecord record) {
-    files_.write(record.step, volumes);
+    files_.write(record.step, volumes, record.stored);
     for (const std::string& name : files_.namesOf(record.step)) {
       record.files.push_back({name, digestOf(options_.folder / name)});
     }

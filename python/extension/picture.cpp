@@ -37,11 +37,7 @@ playback::Frame frameOf(const Field& field, std::size_t index,
                         const std::optional<std::pair<float, float>>& range) {
   playback::Frame frame;
   frame.volume = field.volumes[index];
-  if (range) {
-    volume::VolumeInfo info = frame.volume.info();
-    std::tie(info.range_min, info.range_max) = *range;
-    frame.volume.setInfo(info);
-  }
+  if (range) frame.color_range = volume::ValueRange{range->first, range->second};
   if (field.scene) {
     const scenario::TerrainPtr& terrain = field.scene->terrain;
     const auto snapshot = scenario::snapshotAt(field.scene->scenario, terrain.get(), field.time_s);

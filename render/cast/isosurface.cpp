@@ -9,7 +9,7 @@
 
 namespace emscape::render {
 
-std::string missingIsosurface(double value, const volume::DenseVolume& volume) {
+std::string missingIsosurface(double value, const volume::DenseVolume& volume, const ColorRange& range) {
   const volume::VolumeInfo& info = volume.info;
   if (info.categorical) {
     throw Error(
@@ -17,16 +17,12 @@ std::string missingIsosurface(double value, const volume::DenseVolume& volume) {
         fmt::format("iso value {:g}: {} holds indices, which have no isosurface", value, info.quantity));
   }
   const volume::Statistics values = volume::statisticsOf(volume);
-  const float lowest = std::min(values.min, info.range_min);
-  const float highest = std::max(values.max, info.range_max);
+  const volume::ValueRange of_series = colorRangeOf(info, range);
+  const float lowest = std::min(values.min, of_series.min);
+  const float highest = std::max(values.max, of_series.max);
   if (value >= lowest && value <= highest) return "";
   return fmt::format("iso value {:g}{}{}: {} ranges from {:g} to {:g}", value, info.unit.empty() ? "" : " ",
                      info.unit, info.quantity, lowest, highest);
-}
-
-void checkIsoValue(double value, const volume::DenseVolume& volume) {
-  const std::string missing = missingIsosurface(value, volume);
-  if (!missing.empty()) throw Error(ErrorCode::bad_input, missing);
 }
 
 }  // namespace emscape::render

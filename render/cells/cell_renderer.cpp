@@ -38,9 +38,10 @@ volume::Grid referenceGridOf(const volume::TetrahedralMesh& mesh) {
   return grid;
 }
 
-TransferFunction defaultTransferFunction(const volume::MeshField& field) {
+TransferFunction defaultTransferFunction(const volume::MeshField& field, const ColorRange& range) {
   const volume::DenseVolume values = volume::valuesOf(field);
-  return values.values.empty() ? defaultTransferFunction(field.info) : defaultTransferFunction(values);
+  return values.values.empty() ? defaultTransferFunction(field.info, range)
+                               : defaultTransferFunction(values, range);
 }
 
 CellRenderer::CellRenderer(Backend backend) : impl_(std::make_unique<Impl>()) {

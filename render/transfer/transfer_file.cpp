@@ -20,7 +20,7 @@ constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{1} << 20;
 }  // namespace
 
 TransferFunction parseTransferFunction(const std::string& text, const std::string& file,
-                                       const volume::VolumeInfo& info) {
+                                       const volume::VolumeInfo& info, const ColorRange& range) {
   if (info.categorical) {
     throw Error(
         ErrorCode::bad_input, {file, 0, 0},
@@ -33,14 +33,15 @@ TransferFunction parseTransferFunction(const std::string& text, const std::strin
   const auto root = document::readDocument(file, document::checkedUtf8(file, text), problems);
   const TransferFormat format(root.get());
   if (root && document::checkObject(file, *root, format.object(), problems)) {
-    function = readTransferFunction({file, root.get(), format.object()}, format, &info, problems);
+    function = readTransferFunction({file, root.get(), format.object()}, format, &info, problems, range);
   }
   document::requireNoProblem(problems);
   return function;
 }
 
-TransferFunction readTransferFunction(const std::string& file, const volume::VolumeInfo& info) {
-  return parseTransferFunction(readWholeText(file, kMaxFileBytes), file, info);
+TransferFunction readTransferFunction(const std::string& file, const volume::VolumeInfo& info,
+                                      const ColorRange& range) {
+  return parseTransferFunction(readWholeText(file, kMaxFileBytes), file, info, range);
 }
 
 std::string transferFunctionText(const TransferFunction& function) {

@@ -40,8 +40,9 @@ const DocumentNode* valueOf(const DocumentNode* map, const std::string& key) {
 
 class Reader {
  public:
-  Reader(const TransferFormat& format, const volume::VolumeInfo* info, ProblemList& problems)
-      : format_(format), info_(info), problems_(problems) {}
+  Reader(const TransferFormat& format, const volume::VolumeInfo* info, ProblemList& problems,
+         const ColorRange& range)
+      : format_(format), info_(info), problems_(problems), range_(range) {}
 
   TransferFunction read(const Section& root) {
     TransferFunction function;
@@ -78,9 +79,9 @@ class Reader {
     const double given = point.number("at");
     double at = given;
     if (format_.isRelative() && info_ != nullptr) {
-      const double range =
-          info_->range_max > info_->range_min ? double{info_->range_max} - info_->range_min : 1.0;
-      at = info_->range_min + range * given;
+      const volume::ValueRange range = colorRangeOf(*info_, range_);
+      const double width = range.max > range.min ? double{range.max} - range.min : 1.0;
+      at = range.min + width * given;
     }
     if (before != nullptr && (may_repeat ? at < *before : at <= *before)) {
       problems_.addError(point.locationOf("at"), fmt::format("at {}: points must {}", given,
@@ -123,6 +124,7 @@ class Reader {
   const TransferFormat& format_;
   const volume::VolumeInfo* const info_;
   ProblemList& problems_;
+  const ColorRange& range_;
 };
 
 /// "#rrggbb" if that is exactly this colour, else its components.
@@ -169,8 +171,9 @@ TransferFormat::TransferFormat(const DocumentNode* node) {
 }
 
 TransferFunction readTransferFunction(const Section& section, const TransferFormat& format,
-                                      const volume::VolumeInfo* info, ProblemList& problems) {
-  return Reader(format, info, problems).read(section);
+                                      const volume::VolumeInfo* info, ProblemList& problems,
+                                      const ColorRange& range) {
+  return Reader(format, info, problems, range).read(section);
 }
 
 Json toJson(const TransferFunction& function) {

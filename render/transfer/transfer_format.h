@@ -33,8 +33,10 @@ class TransferFormat {
 /// @param format  of this object
 /// @param info    of its volume; null: positions must be values, and the unit is not checked
 /// @param problems  receives faults that the table does not cover; the result is then undefined
+/// @param range   of relative positions
 TransferFunction readTransferFunction(const document::Section& section, const TransferFormat& format,
-                                      const volume::VolumeInfo* info, document::ProblemList& problems);
+                                      const volume::VolumeInfo* info, document::ProblemList& problems,
+                                      const ColorRange& range = {});
 
 /// @throws Error (bad_input) for a categorical function
 nlohmann::ordered_json toJson(const TransferFunction& function);

@@ -152,7 +152,7 @@ double usualDifference(const volume::DenseVolume& volume) {
 }
 
 /// The function of the volume's scale; none if the volume has no scale.
-std::optional<TransferFunction> functionOfScale(const volume::VolumeInfo& info) {
+std::optional<TransferFunction> functionOfScale(const volume::VolumeInfo& info, const ColorRange& range) {
   const auto scale = info.extra.find(volume::kScaleKey);
   if (scale == info.extra.end()) return std::nullopt;
   TransferFunction function = namedDefault(info);
@@ -162,8 +162,9 @@ std::optional<TransferFunction> functionOfScale(const volume::VolumeInfo& info) 
     return function;
   }
   if (scale->second == volume::kDifferenceScale) {
+    const volume::ValueRange of_colors = colorRangeOf(info, range);
     return functionOfDifference(info,
-                                std::max(std::abs(double{info.range_min}), std::abs(double{info.range_max})));
+                                std::max(std::abs(double{of_colors.min}), std::abs(double{of_colors.max})));
   }
   const bool is_above = scale->second == volume::kRatioAboveScale;
   if (!is_above && scale->second != volume::kRatioBelowScale) return std::nullopt;
@@ -252,35 +253,36 @@ double TransferFunction::highest() const {
   return colors.empty() ? opacities.back().at : std::max(colors.back().at, opacities.back().at);
 }
 
-TransferFunction defaultTransferFunction(const volume::VolumeInfo& info) {
-  if (const auto function = functionOfScale(info)) return *function;
+TransferFunction defaultTransferFunction(const volume::VolumeInfo& info, const ColorRange& range) {
+  if (const auto function = functionOfScale(info, range)) return *function;
   TransferFunction function = namedDefault(info);
-  const double lowest = info.range_min;
-  const double range = info.range_max > info.range_min ? double{info.range_max} - info.range_min : 1.0;
+  const volume::ValueRange of_colors = colorRangeOf(info, range);
+  const double lowest = of_colors.min;
+  const double width = of_colors.max > of_colors.min ? double{of_colors.max} - of_colors.min : 1.0;
   if (info.categorical) {
-    function.opacities = {{lowest, kCategoryOpacity}, {lowest + range, kCategoryOpacity}};
+    function.opacities = {{lowest, kCategoryOpacity}, {lowest + width, kCategoryOpacity}};
     return function;
   }
-  function.colors = colorsOver(colorMap("viridis"), lowest, lowest + range);
+  function.colors = colorsOver(colorMap("viridis"), lowest, lowest + width);
   for (const TransferFunction::OpacityPoint& point : kRangeOpacity) {
-    function.opacities.push_back({lowest + range * point.at, point.opacity});
+    function.opacities.push_back({lowest + width * point.at, point.opacity});
   }
   return function;
 }
 
-TransferFunction defaultTransferFunction(const volume::DenseVolume& volume) {
+TransferFunction defaultTransferFunction(const volume::DenseVolume& volume, const ColorRange& range) {
   if (hasScale(volume.info, volume::kDifferenceScale)) {
     return functionOfDifference(volume.info, usualDifference(volume));
   }
-  if (const auto function = functionOfScale(volume.info)) return *function;
+  if (const auto function = functionOfScale(volume.info, range)) return *function;
   const std::vector<float> values = sortedSample(volume);
-  if (volume.info.categorical || values.empty()) return defaultTransferFunction(volume.info);
+  if (volume.info.categorical || values.empty()) return defaultTransferFunction(volume.info, range);
   const auto quantile = [&](double part) {
     return double{values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))]};
   };
   const double weakest = quantile(kColorsFrom);
   const double strongest = quantile(std::prev(std::end(kQuantileOpacity))->quantile);
-  if (!(strongest > weakest)) return defaultTransferFunction(volume.info);
+  if (!(strongest > weakest)) return defaultTransferFunction(volume.info, range);
   const double unit = roundUnit(strongest - weakest);
   const double lowest = std::floor(weakest / unit) * unit;
   const double highest = std::ceil(strongest / unit) * unit;

@@ -172,6 +172,7 @@ TEST(FieldSolver, OnlyTheChannelsOfAChangedEmitterAreNew) {
   solver.update(scenario::snapshotAt(scenario, nullptr, 1));
   EXPECT_NE(solver.volumes()[0].dense(), before[0].dense()) << "the radar turned";
   EXPECT_EQ(solver.volumes()[3].dense(), before[3].dense()) << "the beacon did not";
+  for (const volume::Volume& volume : solver.volumes()) EXPECT_EQ(volume.info().time_s, 1);
 }
 
 TEST(FieldSolver, DominantEmitterIsNearestOfEqualOnes) {

@@ -97,6 +97,37 @@ TEST(DifferenceSource, TheReferenceMustHaveTheSameSteps) {
             "the other has no step at 1.25 s to compare with; the nearest is at 1 s");
 }
 
+TEST(DifferenceSource, FieldOnTetrahedraIsRefusedOnEitherSide) {
+  const TemporaryFolder folder;
+  FrameSelection mesh = selectionOf(quickScenario(folder, kSmall));
+  mesh.compare.clear();
+  mesh.mesh = "terrain:4";
+  mesh.independent = true;
+  const auto open = [&] { return openFrameSource(mesh, {}); };
+  DifferenceSource of_mesh(
+      open(),
+      [] {
+        return made({0, 1, 2, 3});
+      },
+      "the other", true);
+  EXPECT_THAT(errorOf([&] { of_mesh.frame(0); }), HasSubstr("fields on tetrahedra are not compared"));
+  DifferenceSource to_mesh(made({0, 1, 2, 3}), open, "the mesh", true);
+  EXPECT_THAT(errorOf([&] { to_mesh.frame(0); }), HasSubstr("fields on tetrahedra are not compared"));
+}
+
+TEST(DifferenceSource, WarningsOfTheReferenceNameIt) {
+  const TemporaryFolder folder;
+  const LoadedScenario input =
+      loadScenarioWithTerrain(quickScenario(folder, {{"[40, 40, 20]", "[8, 8, 6]"}}));
+  FieldSeries series(input, seconds(2), {});
+  series.compareWith(input, "the other");
+  series.rehearse();
+  const std::vector<std::string> warnings = series.warnings();
+  ASSERT_EQ(warnings.size() % 2, 0U);
+  for (std::size_t w = 0; w < warnings.size() / 2; ++w)
+    EXPECT_EQ(warnings[warnings.size() / 2 + w], "the other: " + warnings[w]);
+}
+
 TEST(DifferenceSource, IndicesAreRefused) {
   const TemporaryFolder folder;
   FrameSelection selection = selectionOf(quickScenario(folder, kSmall));

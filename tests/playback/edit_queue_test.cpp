@@ -4,7 +4,6 @@
 #include <thread>
 
 #include "emscape/scenario/file/scenario_file.h"
-#include "playback/live/latest_worker.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {
@@ -105,27 +104,6 @@ TEST(EditQueue, EditsApplyToScenarioOfTheHistory) {
   EXPECT_FALSE(edited.queue.isBusy());
   EXPECT_TRUE(edited.finish().empty());
   EXPECT_EQ(edited.power_w(), 5);
-}
-
-TEST(LatestWorker, LatestRequestIsDoneAndHasAResult) {
-  std::atomic<int> done{0}, woken{0};
-  LatestWorker<int, int> worker(
-      [&](const int& request) {
-        std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        ++done;
-        return request * 2;
-      },
-      [&] { ++woken; });
-  EXPECT_FALSE(worker.isBusy());
-  for (int request = 1; request <= 1000; ++request) worker.ask(request);
-  std::optional<int> last;
-  while (worker.isBusy()) {
-    if (const std::optional<int> result = worker.take()) last = result;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  EXPECT_EQ(last, 2000);
-  EXPECT_EQ(worker.take(), std::nullopt);
-  EXPECT_LT(done, 20);
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "emscape/playback/frames/volume_input.h"
 #include "emscape/playback/stop.h"
 #include "emscape/volume/file.h"
+#include "playback/frames/range_search.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {
@@ -20,24 +22,30 @@ TEST(FrameSource, TheNearestIndexToATimeIsFoundBeyondTheEndsToo) {
   EXPECT_EQ(MadeFrames({3}).nearestIndex(-1), 0);
 }
 
-TEST(FrameSource, FrameByTimeIsNearestStep) {
-  MadeFrames source({0, 1, 2});
-  EXPECT_EQ(source.frameAt(1.2).volume.info().time_s, 1);
-}
-
 TEST(FrameSource, ComputesAScenariosStepsWithOneRange) {
   const TemporaryFolder folder;
   FrameSelection selection;
   selection.input = quickScenario(folder, {{"[40, 40, 20]", "[8, 8, 6]"}});
   selection.times = "0:3:1";
-  const auto source = openFrameSource(selection, {});
+  std::vector<double> fractions;
+  const auto source = openFrameSource(
+      selection, {}, [&](const std::string&, double fraction) { fractions.push_back(fraction); });
+  EXPECT_THAT(fractions, testing::ElementsAre(0.25, 0.5, 0.75, 1));
   EXPECT_EQ(source->count(), 4);
   EXPECT_EQ(source->name(), "quick");
   ASSERT_NE(source->scene(), nullptr);
   const Frame first = source->frame(0), last = source->frame(3);
   EXPECT_EQ(first.markers.size(), 2U);
   EXPECT_TRUE(first.tracks.empty());
-  EXPECT_EQ(first.volume.info().range_max, last.volume.info().range_max);
+  ValueRange together;
+  for (int step = 0; step < 4; ++step) {
+    const Frame frame = source->frame(step);
+    together.add({frame.info().range_min, frame.info().range_max});
+    const auto& values = frame.volume.host()->values;
+    EXPECT_EQ(frame.info().range_max, *std::max_element(values.begin(), values.end())) << "its own";
+  }
+  EXPECT_EQ(first.color_range, together);
+  EXPECT_EQ(last.color_range, together);
   EXPECT_EQ(last.volume.info().time_s, 3);
   EXPECT_FALSE(source->frame(3).changed);
 }
@@ -85,7 +93,8 @@ TEST(FrameSource, ReadsVolumesNearestToTheTimesThatAreAskedFor) {
   ASSERT_EQ(source->count(), 2);
   EXPECT_EQ(source->time_s(1), 3);
   EXPECT_EQ(source->frame(1).volume.host()->values.front(), 3.5F);
-  EXPECT_EQ(source->frame(1).volume.info().range_min, -5);
+  EXPECT_EQ(source->frame(1).color_range->min, -5);
+  EXPECT_EQ(source->frame(1).volume.info().range_min, 0) << "as the file states it";
 }
 
 TEST(FrameSource, StepWithoutTimeHasTimeOfTheList) {
@@ -178,6 +187,54 @@ TEST(FrameSource, InvalidInputIsRefusedByName) {
   selection.input = quickScenario(folder);
   selection.quantity = "power_density_dbwm2:nobody";
   EXPECT_THAT(errorOf([&] { openFrameSource(selection, {}); }), HasSubstr("there is no such channel"));
+}
+
+TEST(RangeSearch, VisitsEveryStepOrAtMost24) {
+  const auto stepsOf = [](int count) {
+    std::vector<int> steps;
+    RangeSearch search(count);
+    volume::VolumeInfo info;
+    while (const auto step = search.next()) {
+      steps.push_back(*step);
+      info.range_max = static_cast<float>(*step);
+      search.add(info);
+    }
+    const ValueRange all = steps.empty() ? ValueRange() : ValueRange{0, static_cast<float>(steps.back())};
+    EXPECT_EQ(search.range(), all);
+    return steps;
+  };
+  EXPECT_TRUE(stepsOf(0).empty());
+  EXPECT_THAT(stepsOf(3), testing::ElementsAre(0, 1, 2));
+  EXPECT_EQ(stepsOf(24).size(), 24U);
+  EXPECT_THAT(stepsOf(25).back(), 24);
+  EXPECT_EQ(stepsOf(25).size(), 13U);
+}
+
+TEST(VolumeFiles, AreListedByTimeAndChosenByTheNearest) {
+  const TemporaryFolder folder;
+  volume::DenseVolume volume = *MadeFrames(seconds(1)).frame(0).volume.host();
+  for (const int n : {1, 2, 3}) {
+    volume.info.time_s = 30 - 10 * n;  // the last file is the first step
+    volume::writeVolumes(folder / ("v_000" + std::to_string(n) + ".vti"), {&volume});
+  }
+  std::string quantity;
+  const std::vector<VolumeFile> files = volumeFilesOf(folder.path(), quantity);
+  EXPECT_EQ(quantity, "made");
+  const auto timesOf = [](const std::vector<VolumeFile>& of) {
+    std::vector<double> times_s;
+    for (const VolumeFile& file : of) times_s.push_back(file.time_s);
+    return times_s;
+  };
+  EXPECT_THAT(timesOf(files), testing::ElementsAre(0, 10, 20));
+  EXPECT_EQ(files.front().file.filename(), "v_0003.vti");
+  EXPECT_THAT(timesOf(chosenFiles(files, "", false)), testing::ElementsAre(0, 10, 20));
+  EXPECT_THAT(timesOf(chosenFiles(files, "", true)), testing::ElementsAre(0));
+  EXPECT_THAT(timesOf(chosenFiles(files, "14", false)), testing::ElementsAre(10));
+  EXPECT_THAT(timesOf(chosenFiles(files, "0:20", false)), testing::ElementsAre(0, 10, 20));
+  EXPECT_THAT(timesOf(chosenFiles(files, "4:20:12", false)), testing::ElementsAre(0, 20));
+  quantity = "snr_db";
+  EXPECT_THAT(errorOf([&] { volumeFilesOf(folder.path(), quantity); }),
+              HasSubstr("there are volumes of made"));
 }
 
 TEST(FrameSource, AStopFlagEndsTheSearchForTheRange) {

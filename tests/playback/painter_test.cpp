@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "emscape/base/log.h"
+#include "emscape/playback/pictures/picture_sink.h"
 #include "emscape/volume/file.h"
 #include "tests/playback/playback_samples.h"
 #include "volume/labels.h"
@@ -50,6 +51,79 @@ TEST(Painter, ReturningCameraGivesSamePicture) {
   painter.setCamera(style.camera);
   painter.draw({});
   EXPECT_EQ(render::compare(render::quantize(painter.image()), render::quantize(before)).erroneous, 0);
+}
+
+TEST(Painter, AzimuthIsThatOfACameraWithIt) {
+  MadeFrames source(seconds(2));
+  PictureStyle style;
+  style.size = {80, 60};
+  Painter turned(style, source, {}), made(style, source, {});
+  turned.setFrame(source.frame(1));
+  made.setFrame(source.frame(1));
+  turned.setAzimuth(style.camera.azimuth_deg + 70);
+  render::CameraSpec camera = style.camera;
+  camera.azimuth_deg += 70;
+  made.setCamera(camera);
+  turned.draw({});
+  made.draw({});
+  EXPECT_TRUE(render::quantize(turned.image()).rgba == render::quantize(made.image()).rgba);
+}
+
+TEST(Painter, FullCastEqualsRestoredPictureAndLeavesIt) {
+  MadeFrames source(seconds(2));
+  PictureStyle style;
+  style.size = {80, 60};
+  Painter painter(style, source, {});
+  painter.setFrame(source.frame(1));
+  painter.draw({render::Pattern::quarter, {}});
+  const render::Image8 drawn = render::quantize(painter.image());
+  painter.restore();
+  const render::Image8 restored = render::quantize(painter.image());
+  EXPECT_FALSE(restored.rgba == drawn.rgba);
+  EXPECT_TRUE(render::quantize(painter.fullCast()).rgba == restored.rgba);
+  EXPECT_TRUE(render::quantize(painter.image()).rgba == restored.rgba);
+}
+
+TEST(Painter, ColorsAreFittedToAFrameOrARange) {
+  MadeFrames source(seconds(2));
+  PictureStyle style;
+  style.size = {80, 60};
+  Painter painter(style, source, {});
+  Frame frame = source.frame(1);
+  painter.setFrame(frame);
+  const render::TransferFunction fitted = painter.transferFunction();
+  painter.fitColors(volume::ValueRange{-3, 9});
+  EXPECT_EQ(painter.transferFunction().lowest(), -3);
+  EXPECT_EQ(painter.transferFunction().highest(), 9);
+  painter.fitColors();
+  EXPECT_EQ(painter.transferFunction().lowest(), fitted.lowest());
+  EXPECT_EQ(painter.transferFunction().highest(), fitted.highest());
+  style.colors_span_range = true;
+  Painter spanning(style, source, {});
+  frame.color_range = volume::ValueRange{-4, 6};
+  spanning.setFrame(frame);
+  EXPECT_EQ(spanning.transferFunction().lowest(), -4);
+  EXPECT_EQ(spanning.transferFunction().highest(), 6);
+}
+
+TEST(PictureSink, WritesOnePngOrANumberedFolder) {
+  const TemporaryFolder folder;
+  render::Image8 picture;
+  picture.size = {4, 4};
+  picture.rgba.assign(4 * 4 * 4, 255);
+  const auto one = makePictureSink(folder / "one.png", "made", 1, picture.size, 10);
+  one->add(1, picture, 1);
+  one->finish();
+  EXPECT_TRUE(std::filesystem::exists(folder / "one.png"));
+  const auto several = makePictureSink(folder / "frames", "a/b", 2, picture.size, 10);
+  for (const int number : {1, 2}) several->add(number, picture, 1);
+  several->finish();
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames/a_b_0001.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames/a_b_0002.png"));
+  EXPECT_THAT(errorOf([&] { makePictureSink(folder / "one.png", "made", 2, picture.size, 10); }),
+              testing::HasSubstr("one .png for 2 pictures"));
+  EXPECT_THAT(errorOf([&] { makePictureSink(folder / "a.gif", "made", 1, picture.size, 10); }),
+              testing::HasSubstr("must end in .png or .mp4"));
 }
 
 TEST(Painter, EmptyIsosurfaceIsAnErrorOrAWarning) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "base/event.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/pictures/clock.h"
 #include "tests/support/errors.h"
@@ -49,7 +50,7 @@ class MadeFrames : public FrameSource {
 
   int count() const override { return static_cast<int>(times_s_.size()); }
   double time_s(int index) const override { return times_s_[static_cast<std::size_t>(index)]; }
-  Frame frame(int index) override {
+  Frame makeFrame(int index) override {
     if (before_) before_(index);
     {
       std::lock_guard<std::mutex> lock(mutex_);
@@ -68,7 +69,7 @@ class MadeFrames : public FrameSource {
       volume.values.push_back(
           std::fmod(static_cast<float>(index) + 0.5F + 0.37F * static_cast<float>(voxel), greatest));
     }
-    return {{volume::Volume(std::move(volume)), nullptr}, {}, {}, changes};
+    return {{volume::Volume(std::move(volume)), nullptr}, {}, {}, changes, {}};
   }
   std::string name() const override { return "made"; }
   const LoadedScenario* scene() const override { return nullptr; }

@@ -172,26 +172,21 @@ TEST(Isosurface, IsNotDrawnAgainstMaskedOrUnknownVoxels) {
     EXPECT_FALSE(Scene(unknown).cross({1, 1, 19}, {1, 1, 0}, 15, step).found) << step;
 }
 
-std::string errorOf(double iso_value, const volume::DenseVolume& volume) {
-  return test::errorOf([&] { checkIsoValue(iso_value, volume); });
-}
-
-TEST(IsoValue, OutsideTheValuesIsRefusedWithTheirRange) {
+TEST(IsoValue, OutsideTheValuesIsReportedWithTheirRange) {
   auto volume =
       makeVolume({4, 4, 4}, {1, 1, 1}, [](int i, int, int) { return 10.0F * static_cast<float>(i); });
   volume->info.unit = "dBW/m2";
-  volume->info.range_max = 80;  // of the series
-  EXPECT_EQ(errorOf(80, *volume), "");
-  EXPECT_EQ(errorOf(0, *volume), "");
-  EXPECT_THAT(errorOf(80.5, *volume),
-              ::testing::HasSubstr("iso value 80.5 dBW/m2: test ranges from 0 to 80"));
-  EXPECT_THAT(errorOf(-1, *volume), ::testing::HasSubstr("from 0 to 80"));
-  volume->info.range_max = 20;  // of the colours, as the user wants them
-  EXPECT_EQ(errorOf(30, *volume), "");
-  EXPECT_EQ(missingIsosurface(30, *volume), "");
-  EXPECT_EQ(missingIsosurface(-1, *volume), "iso value -1 dBW/m2: test ranges from 0 to 30");
+  const volume::ValueRange series{0, 80};
+  EXPECT_EQ(missingIsosurface(80, *volume, series), "");
+  EXPECT_EQ(missingIsosurface(0, *volume, series), "");
+  EXPECT_EQ(missingIsosurface(80.5, *volume, series), "iso value 80.5 dBW/m2: test ranges from 0 to 80");
+  EXPECT_EQ(missingIsosurface(-1, *volume, series), "iso value -1 dBW/m2: test ranges from 0 to 80");
+  const volume::ValueRange narrow{0, 20};
+  EXPECT_EQ(missingIsosurface(30, *volume, narrow), "");
+  EXPECT_EQ(missingIsosurface(-1, *volume, narrow), "iso value -1 dBW/m2: test ranges from 0 to 30");
   volume->info.categorical = true;
-  EXPECT_THAT(errorOf(1, *volume), ::testing::HasSubstr("test holds indices"));
+  EXPECT_THAT(test::errorOf([&] { missingIsosurface(1, *volume); }),
+              ::testing::HasSubstr("test holds indices"));
 }
 
 class IsoPicture : public ::testing::Test {

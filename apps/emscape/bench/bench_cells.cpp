@@ -57,7 +57,7 @@ class CellScene {
                   selection.input + " has no tetrahedra; --mesh computes a scenario on tetrahedra");
     }
     renderer_.setField(frame_.cells->field, frame_.cells->faces);
-    renderer_.setTransferFunction(benchFunction(frame_.info(), options.transfer));
+    renderer_.setTransferFunction(benchFunction(frame_, options.transfer));
     render::RenderSettings settings;
     settings.vertical_exaggeration = options.exaggeration;
     renderer_.setSettings(settings);

@@ -42,11 +42,12 @@ Duration durationOf(const ComputeTarget& target, const Work& work) {
 
 }  // namespace
 
-render::TransferFunction benchFunction(const volume::VolumeInfo& info, const std::string& file) {
-  if (!file.empty()) return render::readTransferFunction(file, info);
-  const bool has_range = info.range_max > info.range_min;
-  if (info.categorical || !has_range) return render::defaultTransferFunction(info);
-  return render::parseTransferFunction(kPaperTransfer, "scenarios/transfer/paper.json", info);
+render::TransferFunction benchFunction(const playback::Frame& frame, const std::string& file) {
+  const volume::VolumeInfo& info = frame.info();
+  if (!file.empty()) return render::readTransferFunction(file, info, frame.color_range);
+  const volume::ValueRange range = render::colorRangeOf(info, frame.color_range);
+  if (info.categorical || !(range.max > range.min)) return render::defaultTransferFunction(info, range);
+  return render::parseTransferFunction(kPaperTransfer, "scenarios/transfer/paper.json", info, range);
 }
 
 render::CameraSpec turned(render::CameraSpec spec, double angle_deg) {
@@ -108,10 +109,11 @@ BenchScene::BenchScene(const BenchSceneOptions& options, const GlobalOptions& gl
   const std::unique_ptr<playback::FrameSource> source =
       playback::openFrameSource(selection, target, progressSink(global), &stopFlag());
   name_ = source->name();
-  volume_ = source->frame(0).volume;
+  const playback::Frame frame = source->frame(0);
+  volume_ = frame.volume;
   logWarnings(source->warnings());
   renderer_.setVolume(volume_);
-  renderer_.setTransferFunction(benchFunction(volume_.info(), options.transfer));
+  renderer_.setTransferFunction(benchFunction(frame, options.transfer));
   turnTo(0);
 }
 

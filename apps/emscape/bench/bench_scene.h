@@ -29,7 +29,7 @@ struct BenchSceneOptions {
 
 /// The transfer function of a file, or scenarios/transfer/paper.json for all fields, so that measurements can
 /// be compared.
-render::TransferFunction benchFunction(const volume::VolumeInfo& info, const std::string& file);
+render::TransferFunction benchFunction(const playback::Frame& frame, const std::string& file);
 /// A camera rotated clockwise, as seen from above, about the vertical through its target.
 render::CameraSpec turned(render::CameraSpec spec, double angle_deg);
 /// Writes the image over black.

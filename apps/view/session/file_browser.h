@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/playback/live/async_task.h"
+#include "base/worker.h"
 
 namespace emscape::view {
 
@@ -69,8 +69,7 @@ class FileBrowser {
   std::string error_;
   int selected_ = 0;
   bool again_ = false;  // another folder was requested meanwhile
-  playback::Event event_;
-  playback::AsyncTask<Listing> task_{event_};
+  AsyncTasks<Listing> task_;
 };
 
 }  // namespace emscape::view

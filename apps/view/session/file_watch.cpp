@@ -8,15 +8,13 @@
 namespace emscape::view {
 
 FileWatch::FileWatch(std::function<void()> wake, double interval_s)
-    : wake_(std::move(wake)), interval_s_(interval_s), thread_([this] { run(); }) {}
+    : wake_(std::move(wake)), interval_s_(interval_s) {
+  worker_.push([this] { run(); });
+}
 
 FileWatch::~FileWatch() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stops_ = true;
-  }
-  stopped_.notify_all();
-  thread_.join();
+  stops_ = true;
+  stopped_.set();
 }
 
 FileWatch::Stamp FileWatch::stampOf(const std::string& file) {
@@ -63,14 +61,18 @@ bool FileWatch::look(const std::vector<std::string>& files) {
 }
 
 void FileWatch::run() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  const auto interval = std::chrono::duration<double>(interval_s_);
-  while (!stopped_.wait_for(lock, interval, [this] { return stops_; })) {
+  using Clock = std::chrono::steady_clock;
+  const auto interval =
+      std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(interval_s_));
+  for (;;) {
+    stopped_.waitUntil(Clock::now() + interval);
+    if (stops_) return;
     std::vector<std::string> files;
-    for (const auto& [file, watched] : files_) files.push_back(file);
-    lock.unlock();
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      for (const auto& [file, watched] : files_) files.push_back(file);
+    }
     if (look(files)) wake_();
-    lock.lock();
   }
 }
 

@@ -1,15 +1,17 @@
 /// Detects files that have changed on the disk.
 #pragma once
 
-#include <condition_variable>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <mutex>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
+
+#include "base/event.h"
+#include "base/worker.h"
 
 namespace emscape::view {
 
@@ -51,11 +53,11 @@ class FileWatch {
   const std::function<void()> wake_;
   const double interval_s_;
   std::mutex mutex_;
-  std::condition_variable stopped_;
-  bool stops_ = false;
   std::map<std::string, Watched> files_;
   std::set<std::string> changed_;
-  std::thread thread_;
+  std::atomic<bool> stops_{false};
+  Event stopped_;
+  Worker worker_;
 };
 
 }  // namespace emscape::view

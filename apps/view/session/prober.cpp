@@ -75,7 +75,7 @@ class Prober::Reader {
   std::shared_ptr<const volume::DenseVolume> host_;
 };
 
-Prober::Prober(std::function<void()> wake) : worker_(Reader(), std::move(wake)) {}
+Prober::Prober(std::function<void()> wake) : reader_(std::make_shared<Reader>()), task_(std::move(wake)) {}
 
 void Prober::turnOn(bool on) {
   if (std::exchange(is_on_, on) != on) is_due_ = on;
@@ -131,25 +131,26 @@ void Prober::ask(const PicturePtr& picture) {
   } else {
     question.pixel = pixel_;
   }
-  worker_.ask(std::move(question));
+  task_.start([reader = reader_, question = std::move(question)] { return (*reader)(question); });
 }
 
 bool Prober::update(const PicturePtr& picture) {
   bool is_new = false;
-  if (auto answer = worker_.take()) {
-    if (answer->lock == lock_) {
+  if (task_.done()) {
+    Answer answer = task_.take();
+    if (answer.lock == lock_) {
       if (is_locked_ && !locked_m_) {
-        if (answer->result.reading) {
-          locked_m_ = answer->result.reading->position_m;
+        if (answer.result.reading) {
+          locked_m_ = answer.result.reading->position_m;
         } else {
           is_locked_ = false;
         }
       }
-      result_ = std::move(answer->result);
+      result_ = std::move(answer.result);
       is_new = true;
     }
   }
-  if (!is_on_ || !picture) return is_new;
+  if (!is_on_ || !picture || task_.active()) return is_new;
   const bool is_stale =
       !asked_picture_ || (locked_m_ ? isOtherField(*asked_picture_, *picture) : asked_picture_ != picture);
   if (is_due_ || (is_stale && (is_locked_ || pixel_))) ask(picture);

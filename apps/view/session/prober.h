@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "base/worker.h"
 #include "playback/editing/probe.h"
-#include "playback/live/latest_worker.h"
 #include "playback/live/live_view.h"
 
 namespace emscape::view {
@@ -34,8 +34,8 @@ struct ProbeResult {
   double time_s = 0;
 };
 
-/// Reads the picture on screen under the cursor, or at a locked point whenever the field changes. Only the
-/// latest request is served. For use by the window's thread.
+/// Reads the picture on screen under the cursor, or at a locked point whenever the field changes. While a
+/// reading is in progress, only the latest request is kept. For use by the window's thread.
 class Prober {
  public:
   using PicturePtr = std::shared_ptr<const playback::LivePicture>;
@@ -64,7 +64,7 @@ class Prober {
   /// The latest result; null before the first one.
   const ProbeResult* result() const { return result_ ? &*result_ : nullptr; }
   /// True if a reading is pending.
-  bool isBusy() const { return is_on_ && (is_due_ || worker_.isBusy()); }
+  bool isBusy() const { return is_on_ && (is_due_ || task_.active()); }
 
  private:
   struct Pixel {
@@ -93,7 +93,8 @@ class Prober {
   // The last request
   PicturePtr asked_picture_;
   std::optional<ProbeResult> result_;
-  playback::LatestWorker<Question, Answer> worker_;
+  std::shared_ptr<Reader> reader_;
+  AsyncTasks<Answer> task_;
 };
 
 /// The `emscape profile` command for the path from an emitter to the reading's position.

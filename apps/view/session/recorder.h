@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "base/worker.h"
 #include "emscape/playback/frames/compute_target.h"
 #include "emscape/playback/frames/frame_source.h"
-#include "emscape/playback/live/async_task.h"
 #include "emscape/playback/pictures/painter.h"
 
 namespace emscape::view {
@@ -70,8 +70,7 @@ class Recorder {
   StopFlag stop_{false};
   std::shared_ptr<Counter> counter_ = std::make_shared<Counter>();
   std::string output_;
-  playback::Event event_;
-  playback::AsyncTask<Outcome> task_{event_};
+  AsyncTasks<Outcome> task_;
 };
 
 }  // namespace emscape::view

@@ -26,10 +26,7 @@ std::string beginOf(const ViewOptions& options) {
 /// The colours that `render` would fit without a transfer function.
 render::TransferFunction fittedColors(const playback::ViewState& view, const playback::ShownField& shown) {
   if (!view.range) return shown.defaultColors();
-  volume::VolumeInfo info = shown.info();
-  info.range_min = view.range->min;
-  info.range_max = view.range->max;
-  return render::defaultTransferFunction(info);
+  return render::defaultTransferFunction(shown.info(), view.range);
 }
 
 /// Writes the function to a file; equal functions share a file.

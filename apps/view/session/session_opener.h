@@ -6,8 +6,7 @@
 
 #include "apps/view/session/opening.h"
 #include "apps/view/session/session.h"
-#include "emscape/playback/live/async_task.h"
-#include "playback/series/background_writer.h"
+#include "base/worker.h"
 
 namespace emscape::view {
 
@@ -35,11 +34,10 @@ class SessionOpener {
 
   std::shared_ptr<Files> files_;
   const Make make_;
-  playback::Event event_;
-  playback::AsyncTask<Opening> task_{event_};
+  AsyncTasks<Opening> task_;
   Opening opening_;
   std::unique_ptr<Session> next_;
-  playback::BackgroundWriter old_sessions_{1000};
+  Worker old_sessions_;
 };
 
 }  // namespace emscape::view

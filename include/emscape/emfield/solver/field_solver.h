@@ -129,8 +129,8 @@ class FieldSolver {
 
   /// The channels' volumes after the last update, in the order of channels(), in the memory where they were
   /// computed: host or GPU. Later updates do not change them: a caller may keep one while the next is
-  /// computed. info().range_* is the range of each volume; a series sets a common range. A volume that did
-  /// not change with time keeps the time at which it was computed. Empty handles before the first update.
+  /// computed. info().range_* is the range of each volume, info().time_s the time of the last update. Empty
+  /// handles before the first update.
   const std::vector<volume::Volume>& volumes() const;
   /// cpu or cuda.
   Backend backend() const;

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "emscape/base/progress.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/playback/frames/inputs.h"
+#include "emscape/playback/frames/volume_series.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/value_range.h"
 #include "emscape/volume/volume.h"
@@ -16,27 +18,26 @@ namespace emscape::playback {
 
 using volume::ValueRange;
 
+class DifferenceSeries;
+
 /// The range of each volume.
 std::vector<ValueRange> rangesOf(const std::vector<volume::Volume>& volumes);
-/// Sets info().range_* of each volume; to its floor if the range is empty. @param ranges  one per volume
-void setRanges(std::vector<volume::Volume>& volumes, const std::vector<ValueRange>& ranges);
-/// Stride of the search for the range of the colours of a series: at most 24 steps are searched.
-int rangeSearchStride(int steps);
 
 /// Computes the field of a scenario at a list of times. For one thread.
-class FieldSeries {
+class FieldSeries : public VolumeSeries {
  public:
   /// @param times_s  ascending
   /// @param stop     ends the work between two steps; may be null, else outlives this
   /// @throws Error (bad_input, device)
   FieldSeries(LoadedScenario input, std::vector<double> times_s, const emfield::FieldOptions& options,
               const StopFlag* stop = nullptr);
+  ~FieldSeries() override;
 
-  int count() const { return static_cast<int>(times_s_.size()); }
-  double time_s(int step) const { return times_s_[static_cast<std::size_t>(step)]; }
+  int count() const override { return static_cast<int>(times_s_.size()); }
+  double time_s(int step) const override { return times_s_[static_cast<std::size_t>(step)]; }
   const std::vector<double>& times_s() const { return times_s_; }
   const std::vector<emfield::Channel>& channels() const {
-    return reference_ ? difference_channels_ : solver_.channels();
+    return difference_ ? difference_channels_ : solver_.channels();
   }
   const LoadedScenario& input() const { return input_; }
   /// May be null.
@@ -55,26 +56,17 @@ class FieldSeries {
   /// @throws Error (bad_input) if the grids or channels differ, or for indices; (device)
   void compareWith(const LoadedScenario& reference, const std::string& name);
   /// Null without a reference.
-  const LoadedScenario* reference() const { return reference_ ? &reference_->input() : nullptr; }
+  const LoadedScenario* reference() const { return reference_ ? &*reference_ : nullptr; }
 
   /// Computes the first step, so that its errors are thrown here. @throws Error, Stopped
   void rehearse();
 
-  /// Computes every `stride`-th step to find the range of each channel; not with a reference.
-  /// @param progress  may be empty
-  /// @throws Error, Stopped
-  std::vector<ValueRange> findRanges(int stride, const ProgressSink& progress);
+  /// The channels' volumes at a step, or their differences. The last computed step is not recomputed.
+  std::vector<volume::Volume> compute(int step) override;
 
-  /// The channels' volumes at a step, or their differences; info().range_* is the range of each volume. The
-  /// last computed step is not recomputed. @throws Error, Stopped
-  std::vector<volume::Volume> compute(int step);
-
-  /// True if the last volumes of compute() differ from those of the call before.
+  /// False if the last volumes of compute() are those of the call before; true for differences.
   bool changed() const { return changed_; }
-  /// Number of updates of the solver.
-  long long updates() const { return updates_; }
-  /// Warnings of the solver.
-  std::vector<std::string> warnings() const;
+  std::vector<std::string> warnings() const override;
 
  private:
   void update(int step);
@@ -84,13 +76,12 @@ class FieldSeries {
   emfield::FieldOptions options_;
   const StopFlag* stop_;
   emfield::FieldSolver solver_;
-  std::unique_ptr<FieldSeries> reference_;
-  std::string reference_name_;
+  std::optional<LoadedScenario> reference_;
+  std::unique_ptr<DifferenceSeries> difference_;
   std::vector<emfield::Channel> difference_channels_;
   int updated_step_ = -1;
   bool changed_since_given_ = false;  // by an update since the last compute()
   bool changed_ = true;
-  long long updates_ = 0;
 };
 
 }  // namespace emscape::playback

@@ -19,6 +19,7 @@ struct Frame : ShownField {
   std::vector<render::Marker> markers;
   std::vector<render::Track> tracks;  ///< of moving platforms
   bool changed = true;                ///< false: the field's values are those of the previous call
+  render::ColorRange color_range;     ///< of the series; none: that of the field's values
 };
 
 /// The selection of an input to draw.
@@ -26,11 +27,11 @@ struct FrameSelection {
   std::string input;  ///< scenario, volume, field on tetrahedra, .pvd, folder of them
   /// For a scenario: the mesh on which its field is computed (emfield::parseTerrainMesh()); empty: the grid.
   std::string mesh;
-  std::string quantity;             ///< empty: the first
-  std::string times;                ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
-  bool first_only = false;          ///< without times: only the first
-  std::optional<ValueRange> range;  ///< of the colours; none: that of the series
-  std::string scenario;             ///< for volumes: the scenario of the ground and emitters; may be empty
+  std::string quantity;      ///< empty: the first
+  std::string times;         ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
+  bool first_only = false;   ///< without times: only the first
+  render::ColorRange range;  ///< of the colours; none: that of the series
+  std::string scenario;      ///< for volumes: the scenario of the ground and emitters; may be empty
   bool allow_missing_terrain = false;
   std::vector<scenario::Edit> edits;  ///< to the scenario
   /// Frames are differences to this reference: kOriginal (the scenario without the edits), or a scenario or
@@ -43,24 +44,29 @@ struct FrameSelection {
 
 constexpr const char* kOriginal = "original";
 
+/// The volume of a frame that is to be compared.
+/// @throws Error (usage) for a field on tetrahedra, (bad_input) for indices
+const volume::Volume& comparableVolume(const Frame& frame);
+
 /// Frames in order of time; either all are volumes or all are fields on tetrahedra. One thread at a time
 /// calls frame(); the other functions, except warnings(), may be called at the same time.
-class FrameSource {
+class FrameSource : public VolumeSeries {
  public:
-  virtual ~FrameSource() = default;
-  /// At least 1.
-  virtual int count() const = 0;
-  /// Of the scenario, ascending.
-  virtual double time_s(int index) const = 0;
   /// The frame with index 0..count() - 1; fields on one mesh share it. @throws Error, Stopped
-  virtual Frame frame(int index) = 0;
+  Frame frame(int index) {
+    Frame made = makeFrame(index);
+    made.color_range = color_range_;
+    return made;
+  }
+  /// Sets the range of the colours of all frames; none: each has that of its values.
+  void setColorRange(const render::ColorRange& range) { color_range_ = range; }
+  /// The volume of frame(). @throws Error, Stopped; as comparableVolume()
+  std::vector<volume::Volume> compute(int index) override { return {comparableVolume(frame(index))}; }
 
   /// For titles and file names.
   virtual std::string name() const = 0;
   /// The scenario that the pictures show; null without one.
   virtual const LoadedScenario* scene() const = 0;
-  /// The models' warnings on the frames so far.
-  virtual std::vector<std::string> warnings() const = 0;
 
   /// Changes the scenario to an edit of that of scene(). The number and times of frames may change. Called by
   /// the thread that calls frame(), while no other one uses the source.
@@ -76,11 +82,11 @@ class FrameSource {
   /// is no reference
   virtual void setComparison(bool on);
 
-  /// The index with the nearest time; of two equally near, the earlier. @param time_s any, beyond the ends
-  /// too
-  int nearestIndex(double time_s) const;
-  /// The frame nearest to a time. @throws Error, Stopped
-  Frame frameAt(double time_s) { return frame(nearestIndex(time_s)); }
+ protected:
+  virtual Frame makeFrame(int index) = 0;
+
+ private:
+  render::ColorRange color_range_;
 };
 
 /// @param target    the processor for a scenario's field

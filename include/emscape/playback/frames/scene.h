@@ -29,9 +29,10 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
 std::vector<render::Track> tracksOf(const LoadedScenario& scene, const volume::Grid& grid, double time_s);
 
 /// The categories of a volume of indices, for legends: those that can occur in its scenario; if it was
-/// computed from another one, or names its indices otherwise, those of its own names that are in its range.
+/// computed from another one, or names its indices otherwise, those of its own names that are in the range.
+/// @param range     of the colours
 /// @param scenario  may be null
-std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info,
+std::vector<render::Category> categoriesOf(const volume::VolumeInfo& info, const volume::ValueRange& range,
                                            const scenario::Scenario* scenario);
 
 }  // namespace emscape::playback

@@ -33,8 +33,9 @@ struct ShownField {
   /// The values in host memory; for tetrahedra the values at the points as a row of voxels, without NaN.
   /// @throws Error (device)
   std::shared_ptr<const volume::DenseVolume> values() const;
-  /// Fitted to the histogram of the values. @throws Error (device)
-  render::TransferFunction defaultColors() const;
+  /// Fitted to the histogram of the values. @param range  as for render::defaultTransferFunction()
+  /// @throws Error (device)
+  render::TransferFunction defaultColors(const render::ColorRange& range = {}) const;
 };
 
 /// True if the values are the same object; false for empty fields.

@@ -3,7 +3,9 @@
 
 #include <chrono>
 
-#include "emscape/playback/live/async_task.h"
+namespace emscape {
+class Event;
+}
 
 namespace emscape::playback {
 

@@ -166,7 +166,7 @@ class Painter {
   void setLegend();
   render::Camera cameraOf(const render::CameraSpec& spec) const;
   void fitCamera();
-  render::TransferFunction functionFor(const ShownField& field) const;
+  render::TransferFunction functionFor(const Frame& frame) const;
 
   PictureStyle style_;
   std::optional<LoadedScenario> scene_;

@@ -29,7 +29,7 @@ constexpr int kReferenceSteps = 100;
 volume::Grid referenceGridOf(const volume::TetrahedralMesh& mesh);
 
 /// Default for the values at the points, as for a volume; NaN is ignored.
-TransferFunction defaultTransferFunction(const volume::MeshField& field);
+TransferFunction defaultTransferFunction(const volume::MeshField& field, const ColorRange& range = {});
 
 /// Cost of a picture.
 struct CellReport {

@@ -95,11 +95,10 @@ class Renderer {
   std::unique_ptr<Impl> impl_;
 };
 
+/// @param range  of the series; none: that of info
 /// @return one line with the range of values if an isosurface cannot be visible in a volume or in its series:
 /// its value is neither in the range of the volume nor in that of its series; else empty
 /// @throws Error (bad_input) for indices
-std::string missingIsosurface(double value, const volume::DenseVolume& volume);
-/// The same. @throws Error (bad_input) with that line
-void checkIsoValue(double value, const volume::DenseVolume& volume);
+std::string missingIsosurface(double value, const volume::DenseVolume& volume, const ColorRange& range = {});
 
 }  // namespace emscape::render

@@ -1,11 +1,13 @@
 /// Transfer functions: from values to colours and opacities.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "emscape/render/picture/image.h"
 #include "emscape/volume/dense_volume.h"
+#include "emscape/volume/value_range.h"
 
 namespace emscape::render {
 
@@ -62,13 +64,21 @@ struct TransferFunction {
   double highest() const;
 };
 
+/// The range that colours are fitted to; none: that of the volume's values.
+using ColorRange = std::optional<volume::ValueRange>;
+inline volume::ValueRange colorRangeOf(const volume::VolumeInfo& info, const ColorRange& range) {
+  return range.value_or(volume::ValueRange{info.range_min, info.range_max});
+}
+
 /// The default function of a volume: that of its scale (volume::kScaleKey); the palette for categorical
 /// volumes; else viridis with opacity rising from 0, both fitted to the frequency of the values, so that the
 /// common weak field is transparent and the rare strong field is visible. Both ends are round numbers. For a
 /// series use the function of one of its volumes, so that colours are comparable.
-TransferFunction defaultTransferFunction(const volume::DenseVolume& volume);
-/// The same if only the range of the values is known.
-TransferFunction defaultTransferFunction(const volume::VolumeInfo& info);
+/// @param range  of the colours, where they are not fitted to the frequency of values; none: that of the
+/// values
+TransferFunction defaultTransferFunction(const volume::DenseVolume& volume, const ColorRange& range = {});
+/// The default function if only the range of the colours is known.
+TransferFunction defaultTransferFunction(const volume::VolumeInfo& info, const ColorRange& range = {});
 
 /// Reads a transfer function (JSON or YAML) for a volume.
 ///
@@ -76,16 +86,17 @@ TransferFunction defaultTransferFunction(const volume::VolumeInfo& info);
 ///       "colors": [{"at": -90, "color": "#440154"}, {"at": -20, "rgb": [0.99, 0.906, 0.145]}],
 ///       "opacity": [{"at": -90, "opacity": 0}, {"at": -20, "opacity": 0.08}] }
 ///
-/// "domain": "value": `at` in the quantity's unit; "relative": 0..1 of info.range_*. "unit", optional with
-/// "value", must be that of the volume. "colors" may be the name of a colour map, which then covers the
-/// interval of the opacity points.
+/// "domain": "value": `at` in the quantity's unit; "relative": 0..1 of the range of the colours. "unit",
+/// optional with "value", must be that of the volume. "colors" may be the name of a colour map, which then
+/// covers the interval of the opacity points.
 ///
 /// @throws Error (bad_input) with file:line:column for unknown, missing or repeated keys, and wrong types,
 /// ranges, order or unit
-TransferFunction readTransferFunction(const std::string& file, const volume::VolumeInfo& info);
+TransferFunction readTransferFunction(const std::string& file, const volume::VolumeInfo& info,
+                                      const ColorRange& range = {});
 /// The same from a text; `file` is the name that errors give.
 TransferFunction parseTransferFunction(const std::string& text, const std::string& file,
-                                       const volume::VolumeInfo& info);
+                                       const volume::VolumeInfo& info, const ColorRange& range = {});
 
 /// The text of a function ("domain": "value"); parseTransferFunction() reads it back exactly.
 /// @throws Error (bad_input) for a categorical function: categories have their own colours

@@ -1,40 +1,38 @@
-#include "playback/series/background_writer.h"
+#include "base/worker.h"
 
-namespace emscape::playback {
+namespace emscape {
 
-BackgroundWriter::BackgroundWriter(std::size_t max_waiting)
-    : max_waiting_(max_waiting), thread_([this] { run(); }) {}
-
-BackgroundWriter::~BackgroundWriter() {
+Worker::~Worker() {
   {
     std::lock_guard<std::mutex> lock(mutex_);
     closing_ = true;
     waiting_.clear();
   }
   changed_.notify_all();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
-void BackgroundWriter::push(std::function<void()> job) {
+void Worker::push(std::function<void()> job) {
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait(lock, [this] { return failure_ || waiting_.size() < max_waiting_; });
   if (failure_) std::rethrow_exception(failure_);
   waiting_.push_back(std::move(job));
+  if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
   changed_.notify_all();
 }
 
-void BackgroundWriter::finish() {
+void Worker::finish() {
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait(lock, [this] { return failure_ || (waiting_.empty() && !busy_); });
   if (failure_) std::rethrow_exception(failure_);
 }
 
-void BackgroundWriter::run() {
+void Worker::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   for (;;) {
     changed_.wait(lock, [this] { return closing_ || !waiting_.empty(); });
     if (closing_) return;
-    const std::function<void()> job = std::move(waiting_.front());
+    std::function<void()> job = std::move(waiting_.front());
     waiting_.pop_front();
     busy_ = true;
     lock.unlock();
@@ -44,6 +42,7 @@ void BackgroundWriter::run() {
     } catch (...) {
       failure = std::current_exception();
     }
+    job = nullptr;  // its data is released without the lock
     lock.lock();
     busy_ = false;
     if (failure) {
@@ -54,4 +53,4 @@ void BackgroundWriter::run() {
   }
 }
 
-}  // namespace emscape::playback
+}  // namespace emscape
