@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <set>
 #include <utility>
 
 #include "apps/emscape/common/interrupt.h"
@@ -38,6 +39,13 @@ std::string titleOf(const ViewOptions& options) {
   const std::filesystem::path path = std::filesystem::path(options.input).lexically_normal();
   if (path.empty()) return "emscape";
   return (path.has_filename() ? path : path.parent_path()).filename().string() + " — emscape";
+}
+
+/// True if a text field may take the chord: all without Ctrl, and those of editing.
+bool editsText(const KeyChord& chord) {
+  static const std::set<std::string> kEditing{"A",    "C",     "V",    "X",   "Y",         "Z",
+                                              "Left", "Right", "Home", "End", "Backspace", "Delete"};
+  return !chord.control || kEditing.count(chord.key) != 0;
 }
 
 }  // namespace
@@ -276,13 +284,16 @@ void App::draw(const Layout& layout) {
 
 void App::handleKeys(const std::vector<InputEvent>& events) {
   const Panels& panels = session_->panels;
-  const bool typing = ImGui::GetIO().WantTextInput || panels.record || panels.restore || panels.unsaved;
+  const bool dialog = panels.record || panels.restore || panels.unsaved || panels.time;
+  const bool typing = ImGui::GetIO().WantTextInput && !panels.open;
   for (const InputEvent& event : events) {
     if (event.kind != InputEvent::Kind::key || event.action == GLFW_RELEASE) continue;
     const KeyChord chord = chordOf(event);
     if (chord.key.empty()) continue;
-    const bool is_for_panel = typing || (panels.open && !chord.control);
-    if (is_for_panel && chord.key != "Esc" && chord.key != "F1" && chord.key != "F12") continue;
+    const bool is_for_panel = dialog || typing || (panels.open && editsText(chord));
+    const bool is_global =
+        chord.key == "F1" || chord.key == "F12" || (chord.key == "Esc" && (dialog || !typing));
+    if (is_for_panel && !is_global) continue;
     const bool flying = window_.buttonDown(GLFW_MOUSE_BUTTON_RIGHT) && !chord.control;
     if (flying && chord.key.size() == 1 && std::string("WASDQE").find(chord.key) != std::string::npos)
       continue;

@@ -59,6 +59,14 @@ void catchLostDisplay() {
   dlclose(xlib);
 }
 
+void setModifiers(int modifiers) {
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyShift = (modifiers & GLFW_MOD_SHIFT) != 0;
+  io.KeyCtrl = (modifiers & GLFW_MOD_CONTROL) != 0;
+  io.KeyAlt = (modifiers & GLFW_MOD_ALT) != 0;
+  io.KeySuper = (modifiers & GLFW_MOD_SUPER) != 0;
+}
+
 Window& windowOf(GLFWwindow* window) {
   return *static_cast<Window*>(glfwGetWindowUserPointer(window));
 }
@@ -234,15 +242,14 @@ void Window::forward(const InputEvent& event) {
     case InputEvent::Kind::key:
       if (event.code >= 0 && event.code < 512) keys_[event.code] = event.action != GLFW_RELEASE;
       ImGui_ImplGlfw_KeyCallback(window_, event.code, event.scancode, event.action, event.modifiers);
-      // The backend queries GLFW for modifiers, which misses keys pressed by a script.
-      ImGui::GetIO().KeyCtrl = (event.modifiers & GLFW_MOD_CONTROL) != 0;
-      ImGui::GetIO().KeyShift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
+      setModifiers(event.modifiers);  // the backend knows only those whose keys it has seen
       break;
     case InputEvent::Kind::text:
       ImGui_ImplGlfw_CharCallback(window_, static_cast<unsigned>(event.code));
       break;
     case InputEvent::Kind::button:
       if (event.code >= 0 && event.code < 8) buttons_[event.code] = event.action == GLFW_PRESS;
+      setModifiers(event.modifiers);
       break;
     case InputEvent::Kind::cursor:
       cursor_x_ = event.x;
@@ -258,7 +265,7 @@ void Window::forward(const InputEvent& event) {
 
 std::vector<InputEvent> Window::beginFrame() {
   if (style_changed_) applyStyle();
-  std::vector<InputEvent> events = input_.takeFrame();
+  std::vector<InputEvent> events = input_.takeFrame(ImGui::GetIO().WantTextInput);
   for (const InputEvent& event : events) forward(event);
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();

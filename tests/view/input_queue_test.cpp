@@ -8,8 +8,11 @@
 namespace emscape::view {
 namespace {
 
-InputEvent key(int code, int action) {
-  return {InputEvent::Kind::key, code, 0, action, 0, 0, 0};
+InputEvent key(int code, int action, int modifiers = 0) {
+  return {InputEvent::Kind::key, code, 0, action, modifiers, 0, 0};
+}
+InputEvent button(int action, int modifiers = 0) {
+  return {InputEvent::Kind::button, GLFW_MOUSE_BUTTON_LEFT, 0, action, modifiers, 0, 0};
 }
 InputEvent cursor(double x, double y) {
   return {InputEvent::Kind::cursor, 0, 0, 0, 0, x, y};
@@ -19,33 +22,86 @@ TEST(InputQueue, PressAndReleaseOfAKeyComeInTwoFrames) {
   InputQueue queue;
   queue.push(key(GLFW_KEY_SPACE, GLFW_PRESS));
   queue.push(key(GLFW_KEY_SPACE, GLFW_RELEASE));
-  EXPECT_EQ(queue.takeFrame().size(), 1U);
+  EXPECT_EQ(queue.takeFrame(false).size(), 1U);
   EXPECT_FALSE(queue.empty());
-  EXPECT_EQ(queue.takeFrame().size(), 1U);
+  EXPECT_EQ(queue.takeFrame(false).size(), 1U);
   EXPECT_TRUE(queue.empty());
 }
 
-TEST(InputQueue, DifferentKeysAndMovementsShareAFrameInOrder) {
+TEST(InputQueue, KeyAndMovementsShareAFrameInOrder) {
   InputQueue queue;
-  queue.push(key(GLFW_KEY_A, GLFW_PRESS));
   queue.push(cursor(1, 2));
-  queue.push(key(GLFW_KEY_B, GLFW_PRESS));
+  queue.push(key(GLFW_KEY_A, GLFW_PRESS));
   queue.push(cursor(3, 4));
-  const std::vector<InputEvent> frame = queue.takeFrame();
-  ASSERT_EQ(frame.size(), 4U);
-  EXPECT_EQ(frame[2].code, GLFW_KEY_B);
-  EXPECT_DOUBLE_EQ(frame[3].x, 3);
+  const std::vector<InputEvent> frame = queue.takeFrame(false);
+  ASSERT_EQ(frame.size(), 3U);
+  EXPECT_EQ(frame[1].code, GLFW_KEY_A);
+  EXPECT_DOUBLE_EQ(frame[2].x, 3);
+}
+
+/// Frames until the queue is empty.
+int framesOf(InputQueue& queue, bool is_typing) {
+  int frames = 0;
+  for (; !queue.empty(); ++frames) queue.takeFrame(is_typing);
+  return frames;
+}
+
+TEST(InputQueue, KeyAfterAClickOrACommandWaitsForTheFocus) {
+  InputQueue queue;
+  for (const int code : {GLFW_KEY_G, GLFW_KEY_3}) queue.push(key(code, GLFW_PRESS));
+  EXPECT_EQ(framesOf(queue, false), 5);
+  EXPECT_TRUE(queue.takeFrame(false).empty());
+  queue = {};
+  queue.push(button(GLFW_RELEASE));
+  queue.push(key(GLFW_KEY_3, GLFW_PRESS));
+  EXPECT_EQ(framesOf(queue, false), 5);
+}
+
+TEST(InputQueue, KeysTypedIntoAFieldAndControlClicksDoNotWaitForTheFocus) {
+  InputQueue queue;
+  for (const int code : {GLFW_KEY_G, GLFW_KEY_3, GLFW_KEY_ENTER, GLFW_KEY_G})
+    queue.push(key(code, GLFW_PRESS));
+  EXPECT_EQ(framesOf(queue, true), 3 + 4);
+  queue = {};
+  queue.push(button(GLFW_PRESS));
+  queue.push(key(GLFW_KEY_3, GLFW_PRESS));
+  EXPECT_EQ(framesOf(queue, false), 2);
+}
+
+TEST(InputQueue, KeyOfAModifierCarriesTheStateAfterIt) {
+  InputQueue queue;
+  queue.push(key(GLFW_KEY_LEFT_CONTROL, GLFW_PRESS));
+  queue.push(key(GLFW_KEY_RIGHT_CONTROL, GLFW_PRESS, GLFW_MOD_CONTROL));
+  queue.push(key(GLFW_KEY_LEFT_CONTROL, GLFW_RELEASE, GLFW_MOD_CONTROL));
+  queue.push(key(GLFW_KEY_RIGHT_CONTROL, GLFW_RELEASE, GLFW_MOD_CONTROL));
+  queue.push(key(GLFW_KEY_RIGHT_SHIFT, GLFW_PRESS));
+  std::vector<int> modifiers;
+  while (!queue.empty()) {
+    for (const InputEvent& event : queue.takeFrame(false)) modifiers.push_back(event.modifiers);
+  }
+  EXPECT_EQ(modifiers,
+            (std::vector<int>{GLFW_MOD_CONTROL, GLFW_MOD_CONTROL, GLFW_MOD_CONTROL, 0, GLFW_MOD_SHIFT}));
+}
+
+TEST(InputQueue, FrameHasOneStateOfTheModifiers) {
+  InputQueue queue;
+  queue.push(key(GLFW_KEY_LEFT_CONTROL, GLFW_PRESS));
+  queue.push(button(GLFW_PRESS, GLFW_MOD_CONTROL));
+  queue.push(key(GLFW_KEY_LEFT_CONTROL, GLFW_RELEASE, GLFW_MOD_CONTROL));
+  queue.push(button(GLFW_RELEASE));
+  for (const std::size_t expected : {2U, 2U}) EXPECT_EQ(queue.takeFrame(false).size(), expected);
+  EXPECT_TRUE(queue.empty());
 }
 
 TEST(InputQueue, ButtonsChangeWhereTheCursorIs) {
   InputQueue queue;
   queue.push(cursor(5, 0));
-  queue.push({InputEvent::Kind::button, 0, 0, GLFW_PRESS, 0, 0, 0});
+  queue.push(button(GLFW_PRESS));
   queue.push(cursor(10, 0));
   queue.push(cursor(20, 0));
-  queue.push({InputEvent::Kind::button, 0, 0, GLFW_RELEASE, 0, 0, 0});
+  queue.push(button(GLFW_RELEASE));
   queue.push(cursor(30, 0));
-  for (const std::size_t expected : {1U, 1U, 2U, 1U, 1U}) EXPECT_EQ(queue.takeFrame().size(), expected);
+  for (const std::size_t expected : {1U, 1U, 2U, 1U, 1U}) EXPECT_EQ(queue.takeFrame(false).size(), expected);
   EXPECT_TRUE(queue.empty());
 }
 
@@ -53,7 +109,7 @@ TEST(InputQueue, HeldKeysRepeatWithinAFrame) {
   InputQueue queue;
   queue.push(key(GLFW_KEY_RIGHT, GLFW_PRESS));
   queue.push(key(GLFW_KEY_RIGHT, GLFW_REPEAT));
-  EXPECT_EQ(queue.takeFrame().size(), 2U);
+  EXPECT_EQ(queue.takeFrame(false).size(), 2U);
 }
 
 TEST(InputQueue, PlusAndQuestionMarkNeedNoShift) {

@@ -484,6 +484,19 @@ TEST(WindowWithoutADisplay, IsReportedWithStatusFour) {
   EXPECT_THAT(result.err, HasSubstr("emscape render"));
 }
 
+TEST(WindowWithoutProc, StartsNoProgramOfTheCurrentFolder) {
+  const std::string hide = "unshare --mount sh -c 'mount -t tmpfs none /proc && ";
+  if (std::system((hide + "true' 2>/dev/null").c_str()) != 0) GTEST_SKIP() << "/proc cannot be hidden";
+  const TemporaryFolder folder;
+  writeFile(folder / "emscape-view", "#!/bin/sh\ntouch ran\n");
+  std::filesystem::permissions(folder / "emscape-view", std::filesystem::perms::owner_all);
+  const std::string command = "cd " + folder.path().string() + " && " + hide + "exec " +
+                              besideThisProgram("emscape") + " view' 2>err";
+  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 4);
+  EXPECT_FALSE(std::filesystem::exists(folder / "ran"));
+  EXPECT_THAT(readFile(folder / "err"), HasSubstr("/proc/self/exe"));
+}
+
 TEST(WindowHelp, ComesFromTheWindow) {
   const ProgramResult result = run({"view", "--help"});
   EXPECT_EQ(result.status, 0);

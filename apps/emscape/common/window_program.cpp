@@ -28,8 +28,8 @@ Error notStarted(const std::string& program, int cause) {
   return Error(ErrorCode::device,
                cause == ENOENT
                    ? program +
-                         " is not there: it is built where GLFW, Dear ImGui and libepoxy are found "
-                         "(-DEMSCAPE_VIEW=ON); 'emscape render' draws pictures and videos without a window"
+                         " is not there: build its target, emscape_view, which needs GLFW, Dear ImGui and "
+                         "libepoxy; 'emscape render' draws pictures and videos without a window"
                    : program + ": " + std::strerror(cause));
 }
 
@@ -39,6 +39,10 @@ std::vector<std::string> windowCommand(const GlobalOptions& global,
                                        const std::vector<std::string>& arguments) {
   std::error_code failed;
   const std::filesystem::path here = std::filesystem::read_symlink("/proc/self/exe", failed);
+  if (failed) {
+    throw Error(ErrorCode::device,
+                "emscape-view cannot be found beside this program: /proc/self/exe: " + failed.message());
+  }
   std::vector<std::string> words{(here.parent_path() / "emscape-view").string()};
   if (global.backend != "auto") words.insert(words.end(), {"--backend", global.backend});
   if (global.threads != 0) words.insert(words.end(), {"--threads", std::to_string(global.threads)});

@@ -1,7 +1,7 @@
 /// The file browser.
 #include <fmt/format.h>
 
-#include <cstring>
+#include <array>
 #include <filesystem>
 
 #include "apps/view/panels/names.h"
@@ -27,30 +27,38 @@ const char* nameOf(FileKind kind) {
   return "";
 }
 
-bool pressed(ImGuiKey key) {
-  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key));
-}
-
 void openFile(Session& session, const std::optional<std::string>& file) {
   if (!file) return;
   session.perform({session.files().browser.purpose() == FileBrowser::Purpose::view ? "load_state" : "open",
                    {{"file", *file}}});
 }
 
-/// Up, Down, page keys, Home and End move the selection; Enter and Right open it; Left and Backspace go up.
-void handleKeys(Session& session, bool typing) {
+/// Text of the path field.
+using TypedPath = std::array<char, 4096>;
+
+/// Opens the typed path, or the selected entry if nothing is typed.
+void openChosen(Session& session, TypedPath& typed) {
+  FileBrowser& browser = session.files().browser;
+  const std::string path = typed.data();
+  typed.fill('\0');
+  openFile(session, path.empty() ? browser.choose() : browser.choose(path));
+}
+
+/// Up, Down and page keys move the selection; while nothing is typed so do Home and End, Right opens it, and
+/// Left and Backspace go up.
+void handleKeys(Session& session, bool is_typed) {
   FileBrowser& browser = session.files().browser;
   constexpr int kPage = 12;
-  if (pressed(ImGuiKey_UpArrow)) browser.moveSelection(-1);
-  if (pressed(ImGuiKey_DownArrow)) browser.moveSelection(1);
-  if (pressed(ImGuiKey_PageUp)) browser.moveSelection(-kPage);
-  if (pressed(ImGuiKey_PageDown)) browser.moveSelection(kPage);
-  if (typing) return;
-  if (pressed(ImGuiKey_Home)) browser.select(0);
-  if (pressed(ImGuiKey_End)) browser.select(static_cast<int>(browser.entries().size()));
-  if (pressed(ImGuiKey_Enter) || pressed(ImGuiKey_KeyPadEnter) || pressed(ImGuiKey_RightArrow)) {
+  if (isKeyPressed(ImGuiKey_UpArrow, true)) browser.moveSelection(-1);
+  if (isKeyPressed(ImGuiKey_DownArrow, true)) browser.moveSelection(1);
+  if (isKeyPressed(ImGuiKey_PageUp, true)) browser.moveSelection(-kPage);
+  if (isKeyPressed(ImGuiKey_PageDown, true)) browser.moveSelection(kPage);
+  if (is_typed) return;
+  if (isKeyPressed(ImGuiKey_Home)) browser.select(0);
+  if (isKeyPressed(ImGuiKey_End)) browser.select(static_cast<int>(browser.entries().size()));
+  if (isKeyPressed(ImGuiKey_RightArrow)) {
     openFile(session, browser.choose());
-  } else if (pressed(ImGuiKey_LeftArrow) || pressed(ImGuiKey_Backspace)) {
+  } else if (isKeyPressed(ImGuiKey_LeftArrow) || isKeyPressed(ImGuiKey_Backspace)) {
     browser.goUp();
   }
 }
@@ -95,21 +103,14 @@ void drawPathBar(PanelContext& context) {
   ImGui::TextUnformatted(browser.folder().c_str());
 }
 
-/// @return true if the text field has the keyboard focus
-bool drawTypedPath(PanelContext& context) {
-  Session& session = context.session;
-  FileBrowser& browser = session.files().browser;
-  static char typed[4096] = "";
+/// Draws the path field and its button. The field has the focus while the dialog has it.
+void drawTypedPath(PanelContext& context, TypedPath& typed) {
+  const bool has_focus = ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows);
+  if (has_focus && !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();
   ImGui::SetNextItemWidth(-90 * context.scale);
-  const bool entered = ImGui::InputTextWithHint("##path", "type a path, from the folder above on", typed,
-                                                sizeof typed, ImGuiInputTextFlags_EnterReturnsTrue);
-  const bool active = ImGui::IsItemActive();
+  ImGui::InputTextWithHint("##path", "type a path, from the folder above on", typed.data(), typed.size());
   ImGui::SameLine();
-  if (ImGui::Button("Open", {-1, 0}) || entered) {
-    openFile(session, typed[0] != '\0' ? browser.choose(std::string(typed)) : browser.choose());
-    typed[0] = '\0';
-  }
-  return active;
+  if (ImGui::Button("Open", {-1, 0}) || (has_focus && isEnterPressed())) openChosen(context.session, typed);
 }
 
 }  // namespace
@@ -139,13 +140,16 @@ void drawFileBrowser(PanelContext& context) {
     ImGui::BeginChild("entries", {0, -below}, true, ImGuiWindowFlags_NoNav);
     drawEntries(context);
     ImGui::EndChild();
-    const bool typing = drawTypedPath(context);
+    static TypedPath typed;
+    if (ImGui::IsWindowAppearing()) typed.fill('\0');
+    const bool was_typed = typed[0] != '\0';  // before the keys of this frame edit it
+    drawTypedPath(context, typed);
     if (!views) {
       if (ImGui::Button("Open this folder of volumes")) openFile(session, browser.folder().string());
       ImGui::SameLine();
     }
     ImGui::TextDisabled("arrows and Enter; Left: up; Esc closes");
-    if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) handleKeys(session, typing);
+    if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) handleKeys(session, was_typed);
   }
   ImGui::End();
   ImGui::PopStyleVar();

@@ -39,6 +39,13 @@ void sameLineIfRoom(float width, float spacing = 0);
 
 /// Runs the command of an action, like its key.
 void perform(PanelContext& context, const char* command);
+/// True in the frame in which the key was pressed. @param repeats  also while it is held, at intervals
+bool isKeyPressed(ImGuiKey key, bool repeats = false);
+/// The same for Enter of the main block or the keypad.
+bool isEnterPressed();
+/// A number field as wide as the next item. @return true if a number was entered: with Enter, or because the
+/// focus is lost
+bool numberField(const char* id, double& value, const char* format);
 
 void drawMenuBar(PanelContext& context);
 void drawScenarioPanel(PanelContext& context);

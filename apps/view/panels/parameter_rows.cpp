@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <optional>
+#include <utility>
 
 #include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
@@ -197,13 +198,17 @@ void ParameterRows::drawNumber(const Parameter& parameter) {
   // Dear ImGui derives the smallest value of a logarithmic slider from the precision.
   const char* number = is_integer ? "%.0f" : range->is_logarithmic ? "%.12g" : "%.6g";
   const std::string format = number + (unit.unit.empty() ? "" : " " + unit.unit);
-  if (ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format.c_str(),
-                          range->is_logarithmic ? ImGuiSliderFlags_Logarithmic : 0)) {
-    context_.session.dragValue(
-        parameter.path,
-        numberText(value * unit.factor, ImGui::GetIO().WantTextInput ? kTypedDigits : kDraggedDigits));
+  const bool is_changed =
+      ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format.c_str(),
+                          range->is_logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+  const bool is_typed = ImGui::GetIO().WantTextInput && !ImGui::IsItemActivated();
+  if (is_changed && !is_typed) {
+    context_.session.dragValue(parameter.path, numberText(value * unit.factor, kDraggedDigits));
   }
   if (ImGui::IsItemDeactivated()) context_.session.endDrag();
+  // A typed number is taken when it is complete: its first digits alone may change the unit.
+  const auto typed = takeTyped(parameter.path, is_typed, numberText(value * unit.factor));
+  if (typed && *typed != numberText(given)) set(parameter.path, *typed);
 }
 
 void ParameterRows::drawChoice(const Parameter& parameter) {
@@ -223,12 +228,18 @@ std::optional<std::string> ParameterRows::drawField(const Parameter& parameter, 
   std::array<char, 1024> text{};
   std::strncpy(text.data(), shown.c_str(), text.size() - 1);
   ImGui::InputTextWithHint("##value", hint, text.data(), text.size());
-  if (ImGui::IsItemActive()) typing_ = {parameter.path, text.data()};
-  // A field without the focus no longer returns its text.
-  if (!ImGui::IsItemDeactivatedAfterEdit() || typing_.path != parameter.path) return std::nullopt;
-  const bool is_taken_back = ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape));
-  if (is_taken_back || typing_.text == shown) return std::nullopt;
-  return typing_.text;
+  const std::optional<std::string> typed = takeTyped(parameter.path, true, text.data());
+  return typed == shown ? std::nullopt : typed;
+}
+
+std::optional<std::string> ParameterRows::takeTyped(const std::string& path, bool is_typed,
+                                                    const std::string& text) {
+  // In the frame of its activation another field may still return its text.
+  if (is_typed && ImGui::IsItemActive() && !ImGui::IsItemActivated()) typing_ = {path, text};
+  if (!ImGui::IsItemDeactivatedAfterEdit() || typing_.path != path) return std::nullopt;
+  const std::string typed = std::exchange(typing_, {}).text;
+  if (isKeyPressed(ImGuiKey_Escape)) return std::nullopt;
+  return typed;
 }
 
 void ParameterRows::drawText(const Parameter& parameter) {

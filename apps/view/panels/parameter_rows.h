@@ -43,6 +43,9 @@ class ParameterRows {
   /// Draws a text field. @return the text when Enter is pressed or the focus is lost
   std::optional<std::string> drawField(const scenario::Parameter& parameter, const std::string& shown,
                                        const char* hint);
+  /// Keeps the text of the item drawn last while it is edited. @return the text when Enter is pressed or the
+  /// focus is lost, because a field without the focus no longer returns it; empty if Esc is pressed
+  std::optional<std::string> takeTyped(const std::string& path, bool is_typed, const std::string& text);
   void drawRejection(const std::string& path);
   void set(const std::string& path, const std::string& value) const;
 

@@ -35,11 +35,13 @@ void drawEdits(const std::vector<scenario::Edit>& edits, render::Theme theme) {
   ImGui::PopStyleColor();
 }
 
-/// The default button, also pressed by Enter.
+/// The default button, also pressed by Enter unless another dialog has the focus.
 bool firstButton(const char* text) {
   const bool pressed = ImGui::Button((std::string(text) + " (Enter)").c_str());
   ImGui::SameLine();
-  return pressed || (!ImGui::IsWindowAppearing() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Enter)));
+  const bool takes_keys = !ImGui::IsWindowAppearing() &&
+                          (ImGui::IsWindowFocused() || !ImGui::IsWindowFocused(ImGuiFocusedFlags_AnyWindow));
+  return pressed || (takes_keys && isEnterPressed());
 }
 
 }  // namespace

@@ -16,11 +16,9 @@ float half(float scale) {
   return 0.5F * (ImGui::GetContentRegionAvail().x - 8 * scale);
 }
 
-/// A number field. @return true if a number was entered
 bool typed(const char* id, double& value, const char* format, float width) {
   ImGui::SetNextItemWidth(width);
-  ImGui::InputDouble(id, &value, 0, 0, format, ImGuiInputTextFlags_AutoSelectAll);
-  return ImGui::IsItemDeactivatedAfterEdit();
+  return numberField(id, value, format);
 }
 
 /// printf format of a value with its unit.

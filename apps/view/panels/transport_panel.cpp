@@ -80,8 +80,7 @@ void drawRate(PanelContext& context) {
   const double rate = session.timeline().rate();
   double typed = rate;
   ImGui::SetNextItemWidth(64 * s);
-  ImGui::InputDouble("##rate", &typed, 0, 0, "× %.4g", ImGuiInputTextFlags_AutoSelectAll);
-  if (ImGui::IsItemDeactivatedAfterEdit()) session.perform({"rate", {{"value", typed}}});
+  if (numberField("##rate", typed, "× %.4g")) session.perform({"rate", {{"value", typed}}});
   if (ImGui::IsItemHovered()) {
     ImGui::SetTooltip("Scenario seconds per second, negative: backwards (J lower, L higher)");
   }

@@ -3,6 +3,9 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <optional>
+
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -42,23 +45,58 @@ bool isCharacter(int code, char first, char last) {
   return code >= first && code <= last;
 }
 
+/// Frames from a command to the first one in which a field of the dialog that it opens takes characters.
+constexpr int kFramesToFocus = 4;
+
+bool leavesField(int code) {
+  return code == GLFW_KEY_ENTER || code == GLFW_KEY_KP_ENTER || code == GLFW_KEY_TAB ||
+         code == GLFW_KEY_ESCAPE;
+}
+
+/// Shift, Control, Alt or Super of either side.
+bool isModifier(int code) {
+  return code >= GLFW_KEY_LEFT_SHIFT && code <= GLFW_KEY_RIGHT_SUPER;
+}
+
 }  // namespace
 
-std::vector<InputEvent> InputQueue::takeFrame() {
+void InputQueue::push(InputEvent event) {
+  if (event.kind == InputEvent::Kind::key && isModifier(event.code)) {
+    const int key = event.code - GLFW_KEY_LEFT_SHIFT, modifier = key % kModifiers;
+    held_[static_cast<std::size_t>(key)] = event.action != GLFW_RELEASE;
+    const bool is_held =
+        held_[static_cast<std::size_t>(modifier)] || held_[static_cast<std::size_t>(modifier + kModifiers)];
+    event.modifiers = (event.modifiers & ~(1 << modifier)) | (is_held ? 1 << modifier : 0);
+  }
+  events_.push_back(event);
+}
+
+std::vector<InputEvent> InputQueue::takeFrame(bool is_typing) {
+  using Kind = InputEvent::Kind;
   std::vector<InputEvent> frame;
-  std::set<std::pair<InputEvent::Kind, int>> changed;
-  bool has_cursor = false, has_button = false;
+  std::set<std::pair<Kind, int>> changed;
+  std::optional<int> modifiers;
+  bool has_cursor = false, has_button = false, has_press = false, moves_focus = false;
+  frames_to_focus_ = std::max(0, frames_to_focus_ - 1);
   while (!events_.empty()) {
     const InputEvent& event = events_.front();
-    has_cursor = has_cursor || event.kind == InputEvent::Kind::cursor;
-    has_button = has_button || event.kind == InputEvent::Kind::button;
+    const bool is_press = event.kind == Kind::key && event.action == GLFW_PRESS && !isModifier(event.code);
+    if (is_press && (has_press || has_button || frames_to_focus_ > 0)) break;
+    has_press = has_press || is_press;
+    has_cursor = has_cursor || event.kind == Kind::cursor;
+    has_button = has_button || event.kind == Kind::button;
     if (has_cursor && has_button) break;
-    const bool is_switch = (event.kind == InputEvent::Kind::key || event.kind == InputEvent::Kind::button) &&
-                           event.action != GLFW_REPEAT;
-    if (is_switch && !changed.insert({event.kind, event.code}).second) break;
+    if (event.kind == Kind::key || event.kind == Kind::button) {
+      if (event.modifiers != modifiers.value_or(event.modifiers)) break;
+      modifiers = event.modifiers;
+      if (event.action != GLFW_REPEAT && !changed.insert({event.kind, event.code}).second) break;
+    }
+    moves_focus = moves_focus || (is_press && (!is_typing || leavesField(event.code))) ||
+                  (event.kind == Kind::button && event.action == GLFW_RELEASE);
     frame.push_back(event);
     events_.pop_front();
   }
+  if (moves_focus) frames_to_focus_ = kFramesToFocus;
   return frame;
 }
 
@@ -88,7 +126,7 @@ std::array<InputEvent, 2> eventsOf(const KeyChord& chord) {
   if (code == GLFW_KEY_UNKNOWN) throw Error(ErrorCode::bad_input, fmt::format("unknown key '{}'", chord.key));
   const int modifiers = (chord.control ? GLFW_MOD_CONTROL : 0) | (chord.shift ? GLFW_MOD_SHIFT : 0);
   return {InputEvent{InputEvent::Kind::key, code, 0, GLFW_PRESS, modifiers, 0, 0},
-          InputEvent{InputEvent::Kind::key, code, 0, GLFW_RELEASE, modifiers, 0, 0}};
+          InputEvent{InputEvent::Kind::key, code, 0, GLFW_RELEASE, 0, 0, 0}};
 }
 
 const std::vector<MouseButton>& mouseButtons() {

@@ -1,0 +1,288 @@
+/// Real keys and mouse buttons: X events of the server, in a window that a window manager manages.
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "tests/view/window_fixture.h"
+
+namespace emscape::test {
+namespace {
+
+using testing::AllOf;
+using testing::EndsWith;
+using testing::Gt;
+using testing::Lt;
+
+/// Position in the window.
+struct Place {
+  int x, y;
+};
+// With quick.yaml in a window of 1000 x 800 pixels
+constexpr Place kFrequency{890, 221}, kBandwidth{890, 248}, kPower{850, 275}, kLosses{950, 302},
+    kGain{850, 456};
+constexpr Place kRate{228, 648}, kPicture{120, 150}, kLowerPicture{120, 480}, kTimeLine{500, 722},
+    kFileMenu{27, 12}, kOpenItem{50, 35};
+
+std::string at(const Place& place) {
+  return " mousemove --window $w " + std::to_string(place.x) + " " + std::to_string(place.y);
+}
+std::string click(const Place& place) {
+  return at(place) + " click 1";
+}
+std::string controlClick(const Place& place) {
+  return at(place) + " keydown ctrl click 1 keyup ctrl";
+}
+std::string drag(const Place& place, int right_px) {
+  return at(place) + " mousedown 1" + at({place.x + right_px / 2, place.y}) +
+         at({place.x + right_px, place.y}) + " mouseup 1";
+}
+std::string type(const std::string& text) {
+  return " type --args 1 --delay 20 -- '" + text + "'";
+}
+
+class WindowManager {
+ public:
+  explicit WindowManager(const std::string& display) : process_(fork()) {
+    if (process_ != 0) return;
+    setenv("DISPLAY", display.c_str(), 1);
+    const int nowhere = open("/dev/null", O_RDWR);
+    dup2(nowhere, STDOUT_FILENO);
+    dup2(nowhere, STDERR_FILENO);
+    execlp("openbox", "openbox", "--sm-disable", static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  ~WindowManager() {
+    ::kill(process_, SIGTERM);
+    waitpid(process_, nullptr, 0);
+  }
+  WindowManager(const WindowManager&) = delete;
+  WindowManager& operator=(const WindowManager&) = delete;
+
+ private:
+  const pid_t process_;
+};
+
+class RealInput : public Window {
+ protected:
+  void SetUp() override {
+    for (const char* program : {"xdotool", "openbox"}) {
+      if (!hasProgram(program)) GTEST_SKIP() << program << " is not installed";
+    }
+    Window::SetUp();
+    if (IsSkipped() || HasFatalFailure()) return;
+    manager_ = std::make_unique<WindowManager>(display_->name());
+  }
+  void TearDown() override {
+    if (program_) kill(SIGKILL);
+    manager_.reset();
+  }
+
+  /// Opens an input, and waits until it is shown and has the focus.
+  void open(const std::string& input) {
+    std::filesystem::remove(logFile());
+    Arguments arguments = viewOf(input, R"({"do":"wait_state","state":"exact"}
+{"do":"mark","text":"ready"}
+{"do":"wait_s","seconds":300}
+)");
+    arguments[3] = "1000x800";
+    program_ = std::make_unique<RunningProgram>(arguments, environment());
+    ASSERT_TRUE(comesToLog("mark"));
+    ASSERT_TRUE(xdotool("search --sync --onlyvisible --name emscape windowactivate --sync"));
+  }
+  /// Runs commands of xdotool; $w is the window.
+  bool xdotool(const std::string& commands) const {
+    const std::string line = environment() + "w=$(xdotool search --onlyvisible --name emscape);" +
+                             "timeout 60 xdotool " + commands + " >/dev/null 2>&1";
+    return std::system(line.c_str()) == 0;
+  }
+  void kill(int signal) {
+    program_->signal(signal);
+    EXPECT_EQ(program_->wait().status, 128 + signal);
+    program_.reset();
+  }
+  /// Ends the program as a session's end does. @return its last report
+  Json end() {
+    kill(SIGTERM);
+    const std::vector<Json> reports = log("end");
+    return reports.empty() ? Json() : reports.front();
+  }
+
+  /// Waits until the log meets a condition, at most a minute.
+  static bool comes(const std::function<bool()>& condition) {
+    for (int i = 0; i < 600 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    return condition();
+  }
+  /// Waits until a value of the report, which each frame logs, meets a condition.
+  bool reports(const std::string& key, const std::function<bool(const Json&)>& condition) const {
+    return comes([&] {
+      const std::vector<Json> frames = log("frame");
+      return !frames.empty() && condition(frames.back()[key]);
+    });
+  }
+  bool reports(const std::string& key, const Json& expected) const {
+    return reports(key, [&](const Json& value) { return value == expected; });
+  }
+  /// The commands since the input was shown.
+  std::string commands() const {
+    std::string names;
+    for (const Json& line : log()) {
+      if (line["event"] == "mark") names.clear();
+      if (line["event"] == "command" && line["do"] != "wait_s")
+        names += (names.empty() ? "" : " ") + line["do"].get<std::string>();
+    }
+    return names;
+  }
+  bool commandsBecome(const std::string& names) const {
+    return comes([&] { return commands().size() >= names.size(); }) && commands() == names;
+  }
+
+  std::unique_ptr<WindowManager> manager_;
+  std::unique_ptr<RunningProgram> program_;
+};
+
+struct TypedNumber {
+  const char* name;
+  Place slider;
+  const char* path;
+  const char* typed;
+  double value;
+};
+class TypedIntoASlider : public RealInput, public testing::WithParamInterface<TypedNumber> {};
+
+TEST_P(TypedIntoASlider, NumberBecomesTheValueAndIsNoCommand) {
+  const TypedNumber& number = GetParam();
+  open(quick());
+  ASSERT_TRUE(xdotool(controlClick(number.slider) + type(number.typed) + " key Return"));
+  EXPECT_TRUE(commandsBecome("set")) << commands();
+  ASSERT_TRUE(comesToLog("edit"));
+  EXPECT_EQ(end()["edits"], 1);
+  const std::vector<Json> edits = log("edit");
+  ASSERT_EQ(edits.size(), 1U);
+  EXPECT_EQ(edits[0]["path"], number.path);
+  EXPECT_DOUBLE_EQ(std::stod(edits[0]["value"].get<std::string>()), number.value);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Window, TypedIntoASlider,
+    testing::Values(
+        TypedNumber{"PowerOfMoreThanAThousandKilowatts", kPower, "emitters.radar.power_w", "2000", 2e6},
+        TypedNumber{"PowerOfLessThanAKilowatt", kPower, "emitters.radar.power_w", "0.5", 500},
+        TypedNumber{"Losses", kLosses, "emitters.radar.losses_db", "4.256789", 4.256789},
+        TypedNumber{"GainOutsideTheSlider", kGain, "emitters.radar.antenna.gain_dbi", "-12.5", -12.5}),
+    [](const auto& number) { return std::string(number.param.name); });
+
+TEST_F(RealInput, TypedNumbersAreTakenWhenAnotherFieldIsClicked) {
+  open(quick());
+  ASSERT_TRUE(xdotool(click(kRate) + type("4") + click(kBandwidth) + " key ctrl+a" + type("5 MHz") +
+                      controlClick(kLosses) + type("7") + click(kFrequency)));
+  EXPECT_TRUE(commandsBecome("rate set set")) << commands();
+  EXPECT_TRUE(reports("rate", 4));
+  ASSERT_TRUE(comes([&] { return log("edit").size() == 2; }));
+  EXPECT_EQ(log("edit")[0]["path"], "emitters.radar.bandwidth_hz");
+  EXPECT_EQ(log("edit")[0]["value"], "5000000");
+  EXPECT_EQ(log("edit")[1]["path"], "emitters.radar.losses_db");
+  EXPECT_EQ(log("edit")[1]["value"], "7");
+}
+
+TEST_F(RealInput, EscapeInAFieldTakesBackTheTypedNumberAndNothingElse) {
+  open(quick());
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Escape"));
+  ASSERT_TRUE(xdotool(controlClick(kGain) + type("9") + " key Return"));
+  EXPECT_TRUE(commandsBecome("set")) << commands();
+  ASSERT_TRUE(xdotool("key Escape"));
+  EXPECT_TRUE(commandsBecome("set back")) << commands();
+  EXPECT_EQ(log("edit").size(), 1U);
+}
+
+TEST_F(RealInput, AClickAfterControlIsReleasedMovesTheSlider) {
+  open(quick());
+  ASSERT_TRUE(xdotool("keydown ctrl keyup ctrl" + click(kLosses)));
+  ASSERT_TRUE(comesToLog("edit"));
+  EXPECT_THAT(std::stod(log("edit")[0]["value"].get<std::string>()), AllOf(Gt(20), Lt(30)));
+}
+
+TEST_F(RealInput, ShiftAndDragPanTheTimeLineAndAPlainDragSeeks) {
+  open(quick());
+  ASSERT_TRUE(xdotool(at(kTimeLine) + " click 4 click 4 click 4"));
+  ASSERT_TRUE(commandsBecome("timeline timeline timeline")) << commands();
+  const Json before = log("frame").back();
+  ASSERT_TRUE(xdotool("keydown shift" + drag(kTimeLine, 60) + " keyup shift"));
+  ASSERT_TRUE(reports("visible_from_s", [&](const Json& value) { return value < before["visible_from_s"]; }));
+  EXPECT_EQ(commands().find("seek"), std::string::npos) << commands();
+  ASSERT_TRUE(xdotool(drag(kTimeLine, 60)));
+  EXPECT_TRUE(reports("asked_s", [](const Json& value) { return value > 1; }));
+}
+
+TEST_F(RealInput, ShiftAndDragPanThePictureAndAPlainDragTurnsIt) {
+  open(quick());
+  const Json before = log("mark").front();
+  ASSERT_TRUE(xdotool("keydown shift" + drag(kPicture, 60) + " keyup shift"));
+  ASSERT_TRUE(comes([&] { return log("frame").back()["frame"] > before["frame"]; }));
+  EXPECT_EQ(log("frame").back()["azimuth_deg"], before["azimuth_deg"]);
+  ASSERT_TRUE(xdotool(drag(kLowerPicture, 60)));  // elsewhere: no double click
+  EXPECT_TRUE(reports("azimuth_deg", [&](const Json& value) { return value != before["azimuth_deg"]; }));
+}
+
+TEST_F(RealInput, KeysAfterGoToTimeAreItsNumber) {
+  open(quick());
+  ASSERT_TRUE(xdotool("key g 3 Return"));
+  EXPECT_TRUE(commandsBecome("panel seek")) << commands();
+  EXPECT_TRUE(reports("asked_s", 3));
+}
+
+/// A folder of two scenarios, another one below it, and views.
+class OpenDialog : public RealInput {
+ protected:
+  void SetUp() override {
+    RealInput::SetUp();
+    if (IsSkipped()) return;
+    std::filesystem::create_directories(folder_ / "inputs/below");
+    for (const char* name : {"a.yaml", "b.yaml", "below/c.yaml"}) writeFile(input(name), readFile(quick()));
+  }
+  std::string input(const std::string& name) const { return folder_ / ("inputs/" + name); }
+};
+
+TEST_F(OpenDialog, OpensTheTypedFile) {
+  open(input("a.yaml"));
+  ASSERT_TRUE(xdotool("key ctrl+o" + type("b.yaml") + " key Return"));
+  EXPECT_TRUE(commandsBecome("open open")) << commands();
+  EXPECT_TRUE(reports("input", input("b.yaml")));
+}
+
+TEST_F(OpenDialog, EntersTheTypedFolderAndOpensTheTypedFileThere) {
+  open(input("a.yaml"));
+  ASSERT_TRUE(xdotool("key ctrl+o" + type("below") + " key Return" + type("c.yaml") + " key KP_Enter"));
+  EXPECT_TRUE(commandsBecome("open open")) << commands();
+  EXPECT_TRUE(reports("input", input("below/c.yaml")));
+}
+
+TEST_F(OpenDialog, OpensTheSelectedFileIfNothingIsTyped) {
+  open(input("a.yaml"));
+  ASSERT_TRUE(xdotool("key ctrl+o sleep 1" + type("x") + " key BackSpace key Down key Down key Return"));
+  EXPECT_TRUE(commandsBecome("open open")) << commands();
+  EXPECT_TRUE(reports("input", input("b.yaml")));
+}
+
+TEST_F(OpenDialog, LoadsTheTypedView) {
+  writeFile(input("first.view.json"), R"({"schema_version": 1, "mode": "mip"})");
+  writeFile(input("second.view.json"), R"({"schema_version": 1, "mode": "mida"})");
+  open(input("a.yaml"));
+  ASSERT_TRUE(xdotool("key ctrl+shift+l" + type("second.view.json") + " key Return"));
+  EXPECT_TRUE(commandsBecome("load_state load_state")) << commands();
+  EXPECT_TRUE(reports("mode", "mida"));
+}
+
+TEST_F(OpenDialog, TakesTheKeysFromAQuestionBehindIt) {
+  open(input("a.yaml"));
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Return"));
+  ASSERT_TRUE(comesToLog("autosave"));
+  kill(SIGKILL);
+  open(input("a.yaml"));
+  ASSERT_TRUE(xdotool(click(kFileMenu) + click(kOpenItem) + type("b.yaml") + " key Return"));
+  EXPECT_TRUE(commandsBecome("open open")) << commands();
+  EXPECT_TRUE(reports("input", input("b.yaml")));
+}
+
+}  // namespace
+}  // namespace emscape::test
