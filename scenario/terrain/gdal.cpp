@@ -1,9 +1,5 @@
 #include "base/geodesy/gdal.h"
 
-#include <cpl_conv.h>
-#include <cpl_vsi.h>
-#include <gdal_alg.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>

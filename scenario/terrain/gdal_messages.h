@@ -1,13 +1,11 @@
 /// Use of GDAL and PROJ that neither prints nor reaches the network.
 #pragma once
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
-#include <cpl_http.h>
-
 #include <algorithm>
 #include <cstring>
 #include <string>
+
+#include "base/geodesy/gdal.h"
 
 namespace emscape::scenario {
 
