@@ -1,6 +1,5 @@
 # The third-party components of the programs and libraries, with version and licence: the single source for `emscape --licences`,
 # the bill of materials, and the Debian packages' dependencies and copyright files.
-find_package(PkgConfig REQUIRED)
 
 # emscape_component(NAME LICENCE SPDX SHARED|STATIC LIBRARY|HEADERS MODULE pkg-config|VERSION version [PACKAGE debian] [PROGRAM])
 #   LICENCE  SPDX expression                    SHARED, STATIC  beginning of the library's file name; HEADERS: compiled in
@@ -29,12 +28,12 @@ endfunction()
 
 emscape_component(Highway LICENCE Apache-2.0 SHARED libhwy MODULE libhwy PACKAGE libhwy-dev)
 emscape_component(oneTBB LICENCE Apache-2.0 SHARED libtbb MODULE tbb PACKAGE libtbb-dev)
-emscape_component(GDAL LICENCE MIT SHARED libgdal MODULE gdal PACKAGE libgdal-dev)
+emscape_component(GDAL LICENCE MIT SHARED libgdal MODULE gdal PACKAGE libgdal-dev PROGRAM)
 emscape_component(GeographicLib LICENCE MIT SHARED libGeographicLib MODULE geographiclib PACKAGE libgeographiclib-dev)
-emscape_component(OpenVDB LICENCE MPL-2.0 SHARED libopenvdb VERSION "${OpenVDB_VERSION}" PACKAGE libopenvdb-dev)
-emscape_component(NanoVDB LICENCE MPL-2.0 HEADERS VERSION "${OpenVDB_VERSION}" PACKAGE libnanovdb-dev)
-emscape_component(Imath LICENCE BSD-3-Clause SHARED libImath MODULE Imath PACKAGE libimath-dev)
-emscape_component(Boost LICENCE BSL-1.0 HEADERS VERSION "${Boost_VERSION_STRING}" PACKAGE libboost-iostreams-dev)
+emscape_component(OpenVDB LICENCE MPL-2.0 SHARED libopenvdb VERSION "${OpenVDB_VERSION}" PACKAGE libopenvdb-dev PROGRAM)
+emscape_component(NanoVDB LICENCE MPL-2.0 HEADERS VERSION "${OpenVDB_VERSION}" PACKAGE libnanovdb-dev PROGRAM)
+emscape_component(Imath LICENCE BSD-3-Clause SHARED libImath MODULE Imath PACKAGE libimath-dev PROGRAM)
+emscape_component(Boost LICENCE BSL-1.0 HEADERS VERSION "${Boost_VERSION_STRING}" PACKAGE libboost-iostreams-dev PROGRAM)
 emscape_component(pugixml LICENCE MIT SHARED libpugixml MODULE pugixml PACKAGE libpugixml-dev)
 emscape_component(yaml-cpp LICENCE MIT SHARED libyaml-cpp MODULE yaml-cpp PACKAGE libyaml-cpp-dev)
 emscape_component("JSON for Modern C++" LICENCE MIT HEADERS MODULE nlohmann_json PACKAGE nlohmann-json3-dev)

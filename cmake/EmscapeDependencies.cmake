@@ -1,8 +1,6 @@
 # The packages that the libraries link; shared by the build and by the installed find_package(emscape).
-list(APPEND CMAKE_MODULE_PATH
-  "/usr/lib/${CMAKE_LIBRARY_ARCHITECTURE}/cmake/OpenVDB"  # where Debian keeps these two find modules
-  /usr/share/cmake/geographiclib)
-set(EMSCAPE_DEPENDENCIES TBB GDAL GeographicLib OpenVDB pugixml yaml-cpp nlohmann_json fmt PNG ZLIB)
+list(APPEND CMAKE_MODULE_PATH /usr/share/cmake/geographiclib)  # where Debian keeps its find module
+set(EMSCAPE_DEPENDENCIES PkgConfig TBB GeographicLib pugixml yaml-cpp nlohmann_json fmt PNG ZLIB)
 
 # emscape_find_dependencies(COMMAND ...): find_package REQUIRED or find_dependency, for each package.
 macro(emscape_find_dependencies command)
@@ -14,4 +12,7 @@ macro(emscape_find_dependencies command)
   endforeach()
   set(CMAKE_MESSAGE_LOG_LEVEL "${_emscape_log_level}")
   set(BUILD_SHARED_LIBS "${_emscape_shared_libs}")  # Debian's FindOpenVDB sets it
+  pkg_check_modules(HWY REQUIRED QUIET IMPORTED_TARGET libhwy)
+  pkg_check_modules(CAIRO REQUIRED QUIET IMPORTED_TARGET cairo)
+  pkg_check_modules(EPOXY QUIET IMPORTED_TARGET epoxy)
 endmacro()

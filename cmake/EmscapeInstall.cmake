@@ -1,17 +1,18 @@
 # Installs the programs with their data, manual pages and documentation (component program), and the libraries with their public
-# headers and the files that find_package(emscape) reads (component development).
+# headers and the files that find_package(emscape) reads (component development). What was not built is left out (OPTIONAL): after
+# `cmake --build . --target emscape`, the manual pages and the completion.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(share "${PROJECT_BINARY_DIR}/share")
 install(DIRECTORY scenarios DESTINATION "${CMAKE_INSTALL_DATADIR}/emscape" COMPONENT program PATTERN "*.py" EXCLUDE)
-install(DIRECTORY "${share}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT program)
-install(FILES "${share}/completion/emscape" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program)
+install(DIRECTORY "${share}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COMPONENT program OPTIONAL)
+install(FILES "${share}/completion/emscape" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program OPTIONAL)
 install(FILES "${share}/completion/_emscape" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions"  # where Debian's zsh looks
-  COMPONENT program)
+  COMPONENT program OPTIONAL)
 # The documentation, and what it links to, at the same relative places as in the source folder.
-install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE "${share}/emscape.cdx.json"
-  DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+install(FILES "${share}/emscape.cdx.json" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program OPTIONAL)
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program
   FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.gif" PATTERN "*.ipynb" PATTERN ".*" EXCLUDE)
 install(DIRECTORY examples DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program

@@ -14,7 +14,19 @@ function(emscape_module name)
   target_link_libraries(emscape_${name} PUBLIC ${ARG_LINKS} PRIVATE ${ARG_PRIVATE_LINKS})
   emscape_warnings(emscape_${name})
   emscape_unity(emscape_${name})
-  install(TARGETS emscape_${name} EXPORT emscape COMPONENT development)
+  emscape_install(TARGETS emscape_${name} EXPORT emscape COMPONENT development)
+endfunction()
+
+# install(), if it was requested.
+macro(emscape_install)
+  if(EMSCAPE_INSTALL)
+    install(${ARGN})
+  endif()
+endmacro()
+
+# Gives a module GDAL's headers; it is not linked with the library, which is loaded at its first use (base/geodesy/gdal_functions.h).
+function(emscape_gdal_headers module)
+  target_include_directories(emscape_${module} SYSTEM PRIVATE $<TARGET_PROPERTY:GDAL::GDAL,INTERFACE_INCLUDE_DIRECTORIES>)
 endfunction()
 
 # Compiles the sources of a target in groups, if requested.

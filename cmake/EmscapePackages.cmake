@@ -53,8 +53,10 @@ set(CPACK_DEBIAN_COMPRESSION_TYPE xz)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME emscape)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# In addition to the libraries: the EGM96 geoid, and the font of labels and of the window.
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "proj-data, fonts-dejavu-core")
+# In addition to the libraries that it is linked with: GDAL, which is loaded, the EGM96 geoid, and the font of labels and of the window.
+execute_process(COMMAND dpkg-query --search "*/${EMSCAPE_GDAL_FILE}" OUTPUT_VARIABLE gdal_package ERROR_QUIET)
+string(REGEX REPLACE ":.*" "" gdal_package "${gdal_package}")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${gdal_package}, proj-data, fonts-dejavu-core")
 # Videos; OpenGL for the window, which loads it when it starts.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "ffmpeg, libgl1, libegl1, libgl1-mesa-dri")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Computes the field of radars, transmitters and jammers on moving platforms over
@@ -64,7 +66,7 @@ a window, maps of coverage, links, what-if studies.")
 list(JOIN library_packages ", " library_packages)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libemscape-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_packages}")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "emscape (= ${PROJECT_VERSION}-1), ${library_packages}")  # emscape_vdb.so
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries and C++17 headers of Emscape, and what find_package(emscape) of
 CMake reads.")
 include(CPack)

@@ -1,8 +1,7 @@
-"""Shared by scripts/wheel and scripts/bundle: libraries that are copied into a package, and GDAL, which is not.
+"""Shared by scripts/wheel and scripts/bundle: libraries that are copied into a package.
 
-GDAL is left to the system, as Debian's contains code under the GPL; a package takes the libgdal that it finds, of any version
-between GDAL_VERSIONS. For that its programs are linked with an empty library GDAL_LIBRARY, of which there is one for each version of
-libgdal, linked with that. This works as Emscape calls the C functions of GDAL alone, which stay the same.
+GDAL is left to the system, as Debian's contains code under the GPL: the programs load the version that they find
+(base/geodesy/gdal_library.cpp), and use its C functions alone, which stay the same.
 """
 
 import os
@@ -15,8 +14,6 @@ import tempfile
 import venv
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-GDAL_VERSIONS = range(32, 39)  # of the library: GDAL 3.6 to 3.12
-GDAL_LIBRARY = "libemscape_gdal.so"
 
 
 def run(*words, **options):
@@ -45,24 +42,6 @@ def prepare_environment():
         run(environment / "bin" / "pip", "install", "--quiet", "--disable-pip-version-check", "--requirement", packages)
         shutil.copy(packages, installed)
     return lambda tool: environment / "bin" / tool
-
-
-def make_empty_library(file, soname, needed=None):
-    words = ["cc", "-shared", "-nostdlib", "-s", "-Wl,--no-as-needed", f"-Wl,-soname,{soname}", "-x", "c", os.devnull, "-x", "none"]
-    run(*words, "-o", file, *([needed] if needed else []))
-
-
-def detach_gdal(tool, binaries, folder):
-    """Replaces the binaries' libgdal by GDAL_LIBRARY; writes one for each version into the folder, as VERSION.so."""
-    for binary in binaries:
-        for linked in re.findall(r"\[(libgdal\.so\.\d+)\]", output("readelf", "--dynamic", binary)):
-            run(tool("patchelf"), "--replace-needed", linked, GDAL_LIBRARY, binary)
-    folder.mkdir()
-    with tempfile.TemporaryDirectory() as temporary:
-        for version in GDAL_VERSIONS:
-            gdal = pathlib.Path(temporary) / f"libgdal.so.{version}"
-            make_empty_library(gdal, gdal.name)
-            make_empty_library(folder / f"{version}.so", GDAL_LIBRARY, gdal)
 
 
 def copy_copyrights(sonames, folder):

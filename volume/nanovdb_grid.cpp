@@ -1,22 +1,8 @@
-// The only unit that converts OpenVDB grids to NanoVDB: it takes long to compile.
 #include "volume/nanovdb_grid.h"
-
-#include <nanovdb/util/OpenToNanoVDB.h>
 
 #include <algorithm>
 
-#include "volume/vdb_grid.h"
-
 namespace emscape::volume {
-
-nano::Handle toNano(const DenseVolume& volume, const SourceLocation& location) {
-  const openvdb::GridBase::Ptr grid = toOpenVdb(volume, location);
-  if (volume.info.categorical) {
-    return nanovdb::OpenToNanoVDB<std::int32_t, std::int32_t>()(
-        *openvdb::gridPtrCast<openvdb::Int32Grid>(grid));
-  }
-  return nanovdb::OpenToNanoVDB<float, float>()(*openvdb::gridPtrCast<openvdb::FloatGrid>(grid));
-}
 
 DenseVolume readyForSampling(const DenseVolume& volume) {
   DenseVolume ready = volume;

@@ -2,25 +2,23 @@
 /// C++ classes differ between versions.
 #pragma once
 
-#include <gdal.h>
-#include <ogr_api.h>
-#include <ogr_srs_api.h>
-
 #include <memory>
 #include <type_traits>
 
+#include "base/geodesy/gdal_functions.h"
+
 namespace emscape::gdal {
 
-template <auto* kRelease>
-struct Release;
-template <class Result, class Handle, Result (*kRelease)(Handle)>
-struct Release<kRelease> {
-  using pointer = Handle;
-  void operator()(Handle object) const { kRelease(object); }
+/// Releases an object by a function of GDAL.
+template <const auto& kFunction>
+struct Release {
+  using pointer = typename std::remove_reference_t<decltype(kFunction)>::FirstArgument;
+  void operator()(pointer object) const { kFunction(object); }
 };
-/// Owns an object that is released by a GDAL function.
-template <auto* kRelease>
-using Owned = std::unique_ptr<std::remove_pointer_t<typename Release<kRelease>::pointer>, Release<kRelease>>;
+/// Owns an object that is released by a function of GDAL.
+template <const auto& kFunction>
+using Owned =
+    std::unique_ptr<std::remove_pointer_t<typename Release<kFunction>::pointer>, Release<kFunction>>;
 
 using Dataset = Owned<GDALClose>;
 using SpatialReference = Owned<OSRDestroySpatialReference>;

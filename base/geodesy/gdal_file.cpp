@@ -1,7 +1,5 @@
 #include "base/geodesy/gdal_file.h"
 
-#include <cpl_error.h>
-
 #include <mutex>
 #include <system_error>
 

@@ -1,9 +1,5 @@
 #include "base/geodesy/geoid_grid.h"
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
-#include <cpl_string.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
@@ -60,10 +56,20 @@ std::vector<std::string> gridFolders() {
   return folders;
 }
 
+/// Suppresses GDAL's messages.
+struct QuietGdal {
+  QuietGdal() {
+    CPLPushErrorHandlerEx([](CPLErr, CPLErrorNum, const char*) {}, nullptr);
+  }
+  ~QuietGdal() { CPLPopErrorHandler(); }
+  QuietGdal(const QuietGdal&) = delete;
+  QuietGdal& operator=(const QuietGdal&) = delete;
+};
+
 }  // namespace
 
 GeoidGrid::GeoidGrid(const std::string& file, const GeoidArea& area) {
-  CPLErrorHandlerPusher quiet(CPLQuietErrorHandler);
+  const QuietGdal quiet;
   read(file, area);
 }
 

@@ -1,5 +1,3 @@
-#include <cpl_conv.h>
-#include <gdal_alg.h>
 
 #include <algorithm>
 #include <cctype>

@@ -1,14 +1,12 @@
 /// Use of GDAL and PROJ that neither prints nor reaches the network.
 #pragma once
 
-#include <cpl_conv.h>
-#include <cpl_error.h>
-#include <cpl_http.h>
-
 #include <algorithm>
 #include <cstring>
 #include <optional>
 #include <string>
+
+#include "base/geodesy/gdal.h"
 
 namespace emscape::scenario {
 

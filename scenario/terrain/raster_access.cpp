@@ -1,6 +1,5 @@
 #include "scenario/terrain/raster_access.h"
 
-#include <cpl_string.h>
 #include <fmt/format.h>
 
 #include "base/geodesy/gdal_file.h"

@@ -1,7 +1,5 @@
 #include "scenario/terrain/transformation.h"
 
-#include <cpl_error.h>
-
 #include <cstdlib>
 #include <cstring>
 

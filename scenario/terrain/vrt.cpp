@@ -1,17 +1,15 @@
 #include "scenario/terrain/vrt.h"
 
-#include <cpl_minixml.h>
-
 #include <cctype>
 #include <filesystem>
 #include <fstream>
-#include <memory>
 #include <set>
 #include <string>
 #include <string_view>
 #include <system_error>
 
 #include "base/files/file_reading.h"
+#include "base/geodesy/gdal.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/raster_access.h"
 
@@ -84,8 +82,7 @@ class Sources {
     if (nesting > kMaxNesting)
       refuse("names VRTs that name VRTs, more than " + std::to_string(kMaxNesting) + " deep");
     const std::string text = readWholeText(file, kMaxVrtBytes);
-    const std::unique_ptr<CPLXMLNode, void (*)(CPLXMLNode*)> root(CPLParseXMLString(text.c_str()),
-                                                                  CPLDestroyXMLNode);
+    const gdal::Owned<CPLDestroyXMLNode> root(CPLParseXMLString(text.c_str()));
     if (!root) refuse("is not a VRT that can be read");
     addElements(root.get(), file, nesting);
   }

@@ -1,6 +1,5 @@
 #include "study/files/geopackage.h"
 
-#include <cpl_conv.h>
 #include <fmt/format.h>
 
 #include <algorithm>

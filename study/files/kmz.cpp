@@ -1,8 +1,6 @@
 #include "study/files/kmz.h"
 
-#include <cpl_conv.h>
 #include <fmt/format.h>
-#include <gdal_utils.h>
 
 #include <algorithm>
 #include <array>

@@ -1,7 +1,6 @@
 #include "study/files/map_shapes.h"
 
 #include <fmt/format.h>
-#include <gdal_alg.h>
 
 #include <algorithm>
 #include <cmath>

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <thread>
@@ -17,6 +18,7 @@ namespace emscape::test {
 namespace {
 
 using nlohmann::json;
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 const char* const kSurfaceBased = "height_msl_m,m_units\n0,330\n200,353.6\n300,313.6\n";
@@ -53,6 +55,16 @@ TEST(Info, NamesAListOnceAndKeepsEachTextOnALine) {
   EXPECT_THAT(out, HasSubstr("two\\nlines.yaml\"\n"));
   EXPECT_THAT(out, HasSubstr("emitters:\n  -\n    name: radar\n"));
   EXPECT_EQ(out.find("emitters:"), out.rfind("emitters:"));
+}
+
+TEST(Info, MissingLibraryOfOpenVdbIsNamedWithItsPackage) {
+  const TemporaryFolder folder;
+  const std::string copy = folder / "emscape", said = folder / "said.txt";
+  std::filesystem::copy_file(besideThisProgram("emscape"), copy);  // without lib/emscape
+  const std::string volume = folder.write("volume.vdb", "");
+  EXPECT_NE(std::system((copy + " info " + volume + " 2>" + said).c_str()), 0);
+  EXPECT_THAT(readFile(said), AllOf(HasSubstr("emscape_vdb.so"), HasSubstr("libopenvdb10.0")));
+  EXPECT_EQ(std::system((copy + " validate " + quick() + " >" + said).c_str()), 0) << "needs no OpenVDB";
 }
 
 TEST(InfoOfRefractivity, ListsDuctsOfAProfile) {

@@ -18,7 +18,11 @@ namespace emscape::test {
 namespace {
 
 using nlohmann::json;
+using testing::AnyOf;
+using testing::Each;
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
 std::string shareFile(const std::string& name) {
   const std::string file = besideThisProgram("../share/" + name);
@@ -132,7 +136,7 @@ TEST(Completion, OfBashOffersSubcommandsOptionsAndChoices) {
   EXPECT_EQ(completed("emscape study --wor"), "") << "hidden options are not offered";
 }
 
-/// File names of the libraries that a program names: "libgdal.so.32".
+/// File names of the libraries that a program or library is linked with: "libtbb.so.12".
 std::vector<std::string> librariesOf(const std::string& program) {
   const std::string text = outputOf("readelf --dynamic --wide " + besideThisProgram(program));
   std::vector<std::string> names;
@@ -158,6 +162,11 @@ TEST(Licences, NameEveryLibraryThatTheProgramsLoadAndNoOther) {
   }
   std::vector<std::string> loaded = librariesOf("emscape");
   ASSERT_FALSE(loaded.empty());
+  EXPECT_THAT(loaded, Each(Not(AnyOf(StartsWith("libgdal"), StartsWith("libopenvdb")))))
+      << "they are loaded when first needed";
+  const std::vector<std::string> of_vdb = librariesOf("../lib/emscape/emscape_vdb.so");
+  loaded.insert(loaded.end(), of_vdb.begin(), of_vdb.end());
+  loaded.push_back("libgdal.so");
   if (hasWindow()) {
     const std::vector<std::string> of_window = librariesOf("emscape-view");
     loaded.insert(loaded.end(), of_window.begin(), of_window.end());

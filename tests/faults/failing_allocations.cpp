@@ -1,8 +1,9 @@
 // To be preloaded into a program: makes one allocation by `operator new` fail. Counts allocations of
 // EMSCAPE_FAILING_BYTES or more during main(); the EMSCAPE_FAILING_ALLOCATION-th one fails (1, 2, ...; unset:
 // none), or the next one outside GDAL, its libraries and Mesa's driver, which omit results for lack of
-// memory, or crash. If EMSCAPE_ALLOCATIONS names a file, the count is written into it. malloc() is not
-// affected, since C libraries end the program when it fails.
+// memory, or crash, and outside the loader of libraries, whose constructors cannot report it. If
+// EMSCAPE_ALLOCATIONS names a file, the count is written into it. malloc() is not affected, since C libraries
+// end the program when it fails.
 #include <dlfcn.h>
 #include <execinfo.h>
 
@@ -31,7 +32,7 @@ bool isWithinFragileLibrary() {
     Dl_info found{};
     if (dladdr(frames[n], &found) == 0 || found.dli_fname == nullptr) continue;
     for (const char* const library :
-         {"libgdal", "libproj", "libnetcdf", "libhdf5", "libLLVM", "swrast_dri"}) {
+         {"ld-linux", "libgdal", "libproj", "libnetcdf", "libhdf5", "libLLVM", "swrast_dri"}) {
       if (std::strstr(found.dli_fname, library) != nullptr) return true;
     }
   }

@@ -1,4 +1,4 @@
-#include "volume/vdb_grid.h"
+#include "volume/vdb/grid.h"
 
 #include <algorithm>
 #include <cstring>
@@ -6,7 +6,7 @@
 
 #include "emscape/base/parallel.h"
 
-namespace emscape::volume {
+namespace emscape::volume::vdb {
 namespace {
 
 /// The voxels of one leaf, cut at the volume's edge.
@@ -164,4 +164,4 @@ openvdb::GridBase::Ptr toOpenVdb(const DenseVolume& volume, const SourceLocation
   return grid;
 }
 
-}  // namespace emscape::volume
+}  // namespace emscape::volume::vdb

@@ -12,11 +12,11 @@
 #include "volume/description_check.h"
 #include "volume/foreign.h"
 #include "volume/sparse.h"
-#include "volume/vdb.h"
-#include "volume/vdb_grid.h"
+#include "volume/vdb/grid.h"
+#include "volume/vdb_functions.h"
 #include "volume/vdb_layout.h"
 
-namespace emscape::volume {
+namespace emscape::volume::vdb {
 namespace {
 
 /// A file's bytes from the reader's position on, as a stream for OpenVDB. Reading beyond the end throws.
@@ -314,22 +314,22 @@ void readGrid(VdbFile& file, const VdbGrid& entry, VdbDescription& description) 
 
 }  // namespace
 
-DenseVolume readVdb(const std::filesystem::path& path, const std::string& grid_name) {
+DenseVolume read(const std::filesystem::path& path, const std::string& grid_name) {
   return withFileNamed(path, [&] {
     VdbFile file(path);
-    const auto read = [&](const VdbGrid& entry) {
+    const auto volumeOfEntry = [&](const VdbGrid& entry) {
       VdbDescription description(entry);
       readGrid(file, entry, description);
       if (description.why_copied != nullptr)
         warnOfCopiedMetadata(path.string(), "grid " + entry.descriptor.name, description.why_copied);
       return std::move(description.volume);
     };
-    if (!grid_name.empty()) return read(file.find(grid_name));
-    return std::move(readableOf(path.string(), file.entries(), 1, read).front());
+    if (!grid_name.empty()) return volumeOfEntry(file.find(grid_name));
+    return std::move(readableOf(path.string(), file.entries(), 1, volumeOfEntry).front());
   });
 }
 
-std::vector<DenseVolume> describeVdb(const std::filesystem::path& path) {
+std::vector<DenseVolume> describe(const std::filesystem::path& path) {
   return withFileNamed(path, [&] {
     VdbFile file(path);
     return readableOf(path.string(), file.entries(), file.entries().size(), [&](const VdbGrid& entry) {
@@ -348,4 +348,4 @@ std::vector<DenseVolume> describeVdb(const std::filesystem::path& path) {
   });
 }
 
-}  // namespace emscape::volume
+}  // namespace emscape::volume::vdb

@@ -6,12 +6,12 @@
 
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
-#include "volume/vdb.h"
-#include "volume/vdb_grid.h"
+#include "volume/vdb/grid.h"
+#include "volume/vdb_functions.h"
 #include "volume/vdb_layout.h"
 #include "volume/volume_json.h"
 
-namespace emscape::volume {
+namespace emscape::volume::vdb {
 namespace {
 
 /// Writes to our own stream, which throws, because OpenVDB's File does not detect a full disk. Unlike
@@ -70,7 +70,7 @@ std::string identifierOf(const std::vector<const DenseVolume*>& volumes) {
 
 }  // namespace
 
-void writeVdb(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes) {
+void write(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes) {
   openvdb::GridCPtrVec grids;
   for (const DenseVolume* volume : volumes) {
     checkVolume(*volume, {path.string()});
@@ -87,4 +87,4 @@ void writeVdb(const std::filesystem::path& path, const std::vector<const DenseVo
   });
 }
 
-}  // namespace emscape::volume
+}  // namespace emscape::volume::vdb
