@@ -28,7 +28,7 @@ const LoadedLibrary& library();
 #define EMSCAPE_GDAL_FUNCTIONS(F) \
   F(CPLCalloc) F(CPLCloseFileInZip) F(CPLCloseZip) F(CPLCreateFileInZip) F(CPLCreateZip) \
   F(CPLDestroyXMLNode) F(CPLError) F(CPLGetConfigOption) F(CPLGetErrorHandlerUserData) \
-  F(CPLGetLastErrorMsg) F(CPLGetXMLValue) F(CPLHTTPPopFetchCallback) F(CPLHTTPPushFetchCallback) \
+  F(CPLGetLastErrorMsg) F(CPLGetThreadLocalConfigOption) F(CPLGetXMLValue) F(CPLHTTPPopFetchCallback) F(CPLHTTPPushFetchCallback) \
   F(CPLParseXMLString) F(CPLPopErrorHandler) F(CPLPushErrorHandlerEx) F(CPLSetThreadLocalConfigOption) \
   F(CPLStrdup) F(CPLWriteFileInZip) F(CSLDestroy) F(CSLTokenizeString2) F(GDALAddBand) F(GDALAllRegister) \
   F(GDALApproxTransform) F(GDALAttributeRelease) F(GDALAttributeWriteRaw) F(GDALAttributeWriteString) \
@@ -67,7 +67,7 @@ const LoadedLibrary& library();
   F(OSRGetAttrValue) F(OSRGetAuthorityCode) F(OSRGetAuthorityName) F(OSRGetAxesCount) \
   F(OSRGetLinearUnits) F(OSRGetName) F(OSRGetPROJSearchPaths) F(OSRImportFromEPSG) F(OSRImportFromProj4) \
   F(OSRIsGeocentric) F(OSRIsGeographic) F(OSRIsProjected) F(OSRNewSpatialReference) \
-  F(OSRSetAxisMappingStrategy) F(OSRSetWellKnownGeogCS) F(OSRStripVertical) F(VSIFree) F(VSIStatExL) \
+  F(OSRSetAxisMappingStrategy) F(OSRSetPROJEnableNetwork) F(OSRSetWellKnownGeogCS) F(OSRStripVertical) F(VSIFree) F(VSIStatExL) \
   F(VSIStatL)
 // clang-format on
 
