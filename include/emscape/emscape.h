@@ -3,6 +3,7 @@
 
 #include "emscape/base/backend.h"
 #include "emscape/base/cuda/device.h"
+#include "emscape/base/enum_names.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"

@@ -353,7 +353,7 @@ TEST_F(TerrainFileTest, AMissingFileIsNamed) {
 TEST_F(TerrainFileTest, FileThatIsNoRasterIsRefused) {
   std::ofstream(folder_ / "notes.tif") << "not a raster";
   EXPECT_THAT(problemOf(folder_ / "notes.tif"), AllOf(HasSubstr("notes.tif"), HasSubstr("not a raster")));
-  EXPECT_THAT(problemOf(folder_.path().string()), HasSubstr("not a raster"));
+  EXPECT_THAT(problemOf(folder_.path().string()), HasSubstr("not a regular file"));
   std::ofstream(folder_ / "empty.dt1").flush();
   EXPECT_THAT(problemOf(folder_ / "empty.dt1"), HasSubstr("not a raster"));
 }
