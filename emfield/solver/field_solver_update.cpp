@@ -54,6 +54,12 @@ FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::
     discardAll();
     throw;
   }
+  for (volume::Volume& volume : volumes) {
+    volume::VolumeInfo info = volume.info();
+    info.time_s = snapshot.time_s;
+    info.time_utc = snapshot.time_utc;
+    volume.setInfo(std::move(info));
+  }
   is_first = is_stale = false;
   return changes.report;
 }

@@ -175,6 +175,18 @@ TEST(FieldSolver, OnlyTheChannelsOfAChangedEmitterAreNew) {
   for (const volume::Volume& volume : solver.volumes()) EXPECT_EQ(volume.info().time_s, 1);
 }
 
+TEST(FieldSolver, UnchangedVolumesHaveTheTimeOfTheLastUpdate) {
+  const auto scenario = battlefield();
+  scenario->emitters = {scenario->emitters[3]};
+  FieldSolver solver(scenario, nullptr, {});
+  solver.update(scenario::snapshotAt(scenario, nullptr, 0));
+  const auto before = solver.volumes();
+  EXPECT_FALSE(solver.update(scenario::snapshotAt(scenario, nullptr, 1)).any);
+  EXPECT_EQ(solver.volumes()[0].dense(), before[0].dense());
+  EXPECT_EQ(solver.volumes()[0].info().time_s, 1);
+  EXPECT_EQ(before[0].info().time_s, 0);
+}
+
 TEST(FieldSolver, DominantEmitterIsNearestOfEqualOnes) {
   auto scenario = emptyScenario(FrameKind::altitude, 0, 0, {20e3, 20e3, 2000}, {20, 20, 4});
   addEmitter(*scenario, {0, -0.05, 500}, plainEmitter("west", 0));
