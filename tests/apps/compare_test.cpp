@@ -96,7 +96,7 @@ void cover(const std::string& folder, const Arguments& more) {
   ASSERT_EQ(result.status, 0) << result.err;
 }
 
-TEST(Compare, FoldersOfMapsHaveTheDifferencesOfTheirScenarios) {
+TEST(Compare, SLOW_FoldersOfMapsHaveTheDifferencesOfTheirScenarios) {
   const TemporaryFolder folder;
   const Arguments same{"--cell", "500", "--products", "covered,value,best,min_height"};
   cover(folder / "a", same);
@@ -147,7 +147,7 @@ TEST(Compare, FoldersWithoutTheirScenariosAreComparedButNotExplained) {
   EXPECT_THAT(readFile(folder / "out/report.html"), HasSubstr("Largest areas that changed"));
 }
 
-TEST(Compare, FoldersWhoseTimesDifferByARoundingErrorMatch) {
+TEST(Compare, SLOW_FoldersWhoseTimesDifferByARoundingErrorMatch) {
   const TemporaryFolder folder;
   for (const char* name : {"a", "b"}) cover(folder / name, {"--times", "0:0.3:0.1", "--products", "value"});
   EXPECT_THAT(folder.files(), testing::Contains("a/maps/value_agl100m_t0.3s.tif"));
@@ -164,7 +164,7 @@ TEST(Compare, FoldersWhoseTimesDifferByARoundingErrorMatch) {
   }
 }
 
-TEST(Compare, RefusesIncompatibleFolders) {
+TEST(Compare, SLOW_RefusesIncompatibleFolders) {
   const TemporaryFolder folder;
   const auto with = [&](const std::string& name, const Arguments& more) { cover(folder / name, more); };
   with("a", {});

@@ -21,7 +21,7 @@ Arguments simulate(const std::string& folder, const Arguments& more = {}) {
   return arguments;
 }
 
-TEST(MeshSeries, IsReproducible) {
+TEST(MeshSeries, SLOW_IsReproducible) {
   const TemporaryFolder folder;
   for (const char* name : {"a", "b"}) {
     const ProgramResult result = run(simulate(folder / name, {"--mesh", "terrain:9,4"}));
@@ -80,7 +80,7 @@ TEST(MeshSeries, IsReproducible) {
   EXPECT_FALSE(std::filesystem::exists(folder / "no.png"));
 }
 
-TEST(MeshSeries, ScenarioIsDrawnLikeItsFiles) {
+TEST(MeshSeries, SLOW_ScenarioIsDrawnLikeItsFiles) {
   const TemporaryFolder folder;
   const Arguments mesh{"--mesh", "terrain:9,4"}, picture{"--size", "320x240", "--quiet", "--json"};
   ASSERT_EQ(run(simulate(folder / "a", mesh)).status, 0);

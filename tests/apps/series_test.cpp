@@ -208,7 +208,7 @@ TEST(Simulate, EqualWarningsOfSeveralEmittersAreOneLine) {
       << result.err;
 }
 
-TEST(Simulate, AWarningOfEachStepNamesItsEmitterOnceWithTheRangeOfItsNumbers) {
+TEST(Simulate, SLOW_AWarningOfEachStepNamesItsEmitterOnceWithTheRangeOfItsNumbers) {
   const TemporaryFolder folder;
   std::string scenario = readFile(quick());
   const std::string site = "position: {latitude_deg: 52.05, longitude_deg: 5.06, height_agl_m: 50}";

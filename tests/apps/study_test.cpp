@@ -47,7 +47,7 @@ void expectSameResults(const TemporaryFolder& folder, const std::string& a, cons
   }
 }
 
-TEST(Study, ProcessesAndPartsGiveTheBytesOfOneProcess) {
+TEST(Study, SLOW_ProcessesAndPartsGiveTheBytesOfOneProcess) {
   const TemporaryFolder folder;
   const std::string file = study(folder);
   compute({"study", file, "-o", folder / "one"});
@@ -164,7 +164,7 @@ std::map<int, int> variantsInJournals(const std::filesystem::path& parts) {
   return counts;
 }
 
-TEST(Study, AStudyWhoseProcessesAreKilledComputesNoFinishedVariantAgain) {
+TEST(Study, SLOW_AStudyWhoseProcessesAreKilledComputesNoFinishedVariantAgain) {
   const TemporaryFolder folder;
   const std::string file = study(folder, 150);
   compute({"study", file, "-o", folder / "whole"});

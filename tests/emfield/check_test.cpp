@@ -159,7 +159,8 @@ std::string datasetTestName(const testing::TestParamInfo<int>& info) {
   for (char& c : name) {
     if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
   }
-  return name;
+  const bool is_slow = name == "pe_ntia_lfmf_10_30mhz_csv";  // 20 s
+  return (is_slow ? "SLOW_" : "") + name;
 }
 INSTANTIATE_TEST_SUITE_P(Datasets, Reference, testing::ValuesIn(checkedDatasets()), datasetTestName);
 

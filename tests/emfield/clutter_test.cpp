@@ -334,7 +334,7 @@ TEST_P(Clutter, EntersDetectionAsNoise) {
   EXPECT_LT(valueEast(*field(scenario, "detection_probability"), 5e3), 1e-4) << "a blind speed";
 }
 
-TEST_P(Clutter, VoxelEqualsItsPath) {
+TEST_P(Clutter, SLOW_VoxelEqualsItsPath) {
   const auto terrain = std::make_shared<MadeTerrain>(44.5, -71.5, 1);
   for (const bool looks_at_target : {true, false}) {
     auto scenario = emptyScenario(FrameKind::altitude, 44.5, -71.5, {40e3, 40e3, 5000}, {40, 40, 12});

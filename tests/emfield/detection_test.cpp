@@ -165,7 +165,7 @@ TEST(Detection, CurvesOfFormulasAreNearThemAndNeverFall) {
   }
 }
 
-TEST(Detection, AlbersheimsFormulaContinuesToThePfa) {
+TEST(Detection, SLOW_AlbersheimsFormulaContinuesToThePfa) {
   for (const int pulses : {1, 4, 100, 10000}) {
     for (const double pfa : {1e-12, 1e-6, 1e-3, 0.01, 0.1, 0.5}) {
       SCOPED_TRACE(::testing::Message() << pulses << " pulses, Pfa " << pfa);

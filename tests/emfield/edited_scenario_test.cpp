@@ -442,7 +442,7 @@ TEST(EditedScenario, EqualsANewSolverWithoutTerrain) {
       {nullptr}, 80, editValue, random);
 }
 
-TEST(EditedScenario, EqualsANewSolverOverTerrainInAllModels) {
+TEST(EditedScenario, SLOW_EqualsANewSolverOverTerrainInAllModels) {
   Random random(2);
   checkEdits(battlefield(random, FrameKind::altitude,
                          {PropagationModel::diffraction, PropagationModel::horizon, PropagationModel::itm,
@@ -451,7 +451,7 @@ TEST(EditedScenario, EqualsANewSolverOverTerrainInAllModels) {
              hills(), 50, editValue, random);
 }
 
-TEST(EditedScenario, EqualsNewSolverInTiltedFrame) {
+TEST(EditedScenario, SLOW_EqualsNewSolverInTiltedFrame) {
   Random random(3);
   checkEdits(battlefield(random, FrameKind::enu, {PropagationModel::diffraction, PropagationModel::horizon}),
              hills(), 40, editValue, random);

@@ -40,7 +40,7 @@ void expectTheSameVolumes(const FieldSolver& updated, const FieldSolver& fresh) 
 
 class EditedText : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(EditedText, EqualsNewSolverBitForBit) {
+TEST_P(EditedText, SLOW_EqualsNewSolverBitForBit) {
   const std::filesystem::path folder = emscape::test::shippedScenario("");
   auto scenario = std::make_shared<const Scenario>([&] {
     Scenario small = *scenario::loadScenario((folder / GetParam()).string());
@@ -52,7 +52,7 @@ TEST_P(EditedText, EqualsNewSolverBitForBit) {
   solver.update(scenario::snapshotAt(scenario, terrain.get(), 0));
   scenario::RandomEdits random(21);
   int compared = 0;
-  for (int tries = 0; tries < 400 && compared < 50; ++tries) {
+  for (int tries = 0; tries < 400 && compared < 25; ++tries) {
     const Edit edit = someEdit(*scenario, random);
     SCOPED_TRACE(scenario::toString(edit));
     const auto edited = scenario::editScenario(*scenario, {edit}).scenario;
@@ -74,7 +74,7 @@ TEST_P(EditedText, EqualsNewSolverBitForBit) {
       continue;  // refused: below the ground, beyond a model, over missing terrain
     }
   }
-  EXPECT_EQ(compared, 50);
+  EXPECT_EQ(compared, 25);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenarios, EditedText,

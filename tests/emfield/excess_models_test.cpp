@@ -432,7 +432,7 @@ double p528TableError_db(const P528Excess& table, const std::shared_ptr<const P5
   return static_cast<double>(excess) - (loss.loss_db - loss.free_space_db);
 }
 
-TEST(ExcessModels, P528BetweenTableNodesEqualsCurve) {
+TEST(ExcessModels, SLOW_P528BetweenTableNodesEqualsCurve) {
   auto scenario = smoothEarth(PropagationModel::p528, 1.2e9, 20);
   std::mt19937 random(6);
   std::uniform_real_distribution<double> part(0, 1);
@@ -460,7 +460,7 @@ TEST(ExcessModels, P528BetweenTableNodesEqualsCurve) {
   }
 }
 
-TEST(ExcessModels, P528OfSteepRaysBetweenTableNodesEqualsCurve) {
+TEST(ExcessModels, SLOW_P528OfSteepRaysBetweenTableNodesEqualsCurve) {
   auto scenario = smoothEarth(PropagationModel::p528, 3e9, 20);
   std::mt19937 random(7);
   std::uniform_real_distribution<double> part(0, 1);

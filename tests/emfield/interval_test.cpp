@@ -104,7 +104,7 @@ class Intervals : public test::OnBackends {
 };
 
 // A step turns a beam by a twentieth of its width.
-TEST_P(Intervals, OneTurnEqualsFineSteps) {
+TEST_P(Intervals, SLOW_OneTurnEqualsFineSteps) {
   const double beamwidth_deg = 4;
   for (const AntennaPtr& antenna : {
            scenario::makeGaussian(30, beamwidth_deg, 6, -35),
@@ -126,7 +126,7 @@ TEST_P(Intervals, PartsOfATurnEqualFineSteps) {
   expectAsByInstants(scenario, 8.3, 0.2 / 60);
 }
 
-TEST_P(Intervals, SectorsAndRastersEqualFineSteps) {
+TEST_P(Intervals, SLOW_SectorsAndRastersEqualFineSteps) {
   const AntennaPtr antenna = scenario::makeGaussian(30, 4, 5, -35);
   for (const double seconds : {0.8, 3.7, 9.1}) {
     SCOPED_TRACE(seconds);
@@ -136,7 +136,7 @@ TEST_P(Intervals, SectorsAndRastersEqualFineSteps) {
   expectAsByInstants(around(antenna, sweeping(ScanKind::raster, 70, 60, 3)), 3.7, 0.02 / 60, 0.2);
 }
 
-TEST_P(Intervals, DwellsEqualFineSteps) {
+TEST_P(Intervals, SLOW_DwellsEqualFineSteps) {
   for (const double seconds : {0.25, 1.0, 3.6}) {
     SCOPED_TRACE(seconds);
     const auto array = around(scenario::makePhasedArray(25, 16, 12, 0.5, 1, -40), dwelling());
@@ -395,7 +395,7 @@ class SteppedBeam {
 };
 
 // The beam is stepped through all active times: its largest probability of detection, and its passes.
-TEST_P(Intervals, LookWhereTheBeamPassesInBursts) {
+TEST_P(Intervals, SLOW_LookWhereTheBeamPassesInBursts) {
   Bursts many;
   for (int n = 0; n < 13; ++n) many.push_back({kBegin_s + 0.7 * n, kBegin_s + 0.7 * n + 0.31});
   ScanSpec raster = sweeping(ScanKind::raster, 70, 60, 3);

@@ -95,7 +95,7 @@ std::vector<double> differencesAround(const scenario::TerrainPtr& terrain, doubl
   return differencesFromSingleMarches(scenario, terrain);
 }
 
-TEST(ParabolicField, EqualsSingleMarchesOverSmoothEarth) {
+TEST(ParabolicField, SLOW_EqualsSingleMarchesOverSmoothEarth) {
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
     SCOPED_TRACE(toString(frame));
     const std::vector<double> differences = differencesAround(nullptr, 60, 0, 0, frame);
@@ -107,7 +107,7 @@ TEST(ParabolicField, EqualsSingleMarchesOverSmoothEarth) {
 
 // Between azimuths the terrain differs, and so do the reflections: lobes move. With azimuths one voxel apart
 // at the far side, as they are in small regions by themselves, this is lost at single nulls only.
-TEST(ParabolicField, EqualsSingleMarchesOverHills) {
+TEST(ParabolicField, SLOW_EqualsSingleMarchesOverHills) {
   for (const FrameKind frame : {FrameKind::altitude, FrameKind::enu}) {
     SCOPED_TRACE(toString(frame));
     const std::vector<double> differences = differencesAround(gentleHills(), 180, 80, 0, frame);
@@ -151,7 +151,7 @@ RealGround whiteMountains() {
 
 // Real ground changes with azimuth and with the positions of a march's steps: two marches along one azimuth,
 // with shifted steps of 70 m, differ by 0.6 dB or more at one of ten points.
-TEST(ParabolicField, IsNearSingleMarchesOverMountains) {
+TEST(ParabolicField, SLOW_IsNearSingleMarchesOverMountains) {
   const RealGround valley = valleyOfJacksboro(), mountains = whiteMountains();
   const std::vector<double> of_valley = differencesFromSingleMarches(valley.scenario, valley.terrain),
                             of_mountains =
@@ -165,7 +165,7 @@ TEST(ParabolicField, IsNearSingleMarchesOverMountains) {
 }
 
 // With azimuths, range steps and angles fine enough the interpolation is as good as over smooth ground.
-TEST(ParabolicField, ConvergesToSingleMarchesOverMountains) {
+TEST(ParabolicField, SLOW_ConvergesToSingleMarchesOverMountains) {
   if (std::getenv("EMSCAPE_FINE_MARCHES") == nullptr)
     GTEST_SKIP() << "takes minutes; set EMSCAPE_FINE_MARCHES=1 to run it";
   const struct {

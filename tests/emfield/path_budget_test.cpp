@@ -103,7 +103,7 @@ TEST(PathBudget, EqualsFieldInFreeSpace) {
   EXPECT_LT(compared.quantile(1), 2e-3);
 }
 
-TEST(PathBudget, EqualsFieldOfEveryModelOverSmoothEarth) {
+TEST(PathBudget, SLOW_EqualsFieldOfEveryModelOverSmoothEarth) {
   for (const PropagationModel model : kModels) {
     SCOPED_TRACE(toString(model));
     const auto scenario = whiteMountains(model);
@@ -118,7 +118,7 @@ TEST(PathBudget, EqualsFieldOfEveryModelOverSmoothEarth) {
   }
 }
 
-TEST(PathBudget, EqualsFieldInExponentialAtmosphere) {
+TEST(PathBudget, SLOW_EqualsFieldInExponentialAtmosphere) {
   for (const PropagationModel model : {PropagationModel::free_space, PropagationModel::horizon,
                                        PropagationModel::diffraction, PropagationModel::two_ray}) {
     SCOPED_TRACE(toString(model));
@@ -146,7 +146,7 @@ TEST(PathBudget, TheWarningOfGreatHeightsEndsWithAnExponentialAtmosphere) {
   EXPECT_THAT(warnings(), ::testing::IsEmpty());
 }
 
-TEST(PathBudget, EqualsFieldOfEveryModelOverRealTerrain) {
+TEST(PathBudget, SLOW_EqualsFieldOfEveryModelOverRealTerrain) {
   const scenario::TerrainPtr terrain = whiteMountainsTile();
   for (const PropagationModel model : kModels) {
     SCOPED_TRACE(toString(model));

@@ -124,7 +124,7 @@ std::shared_ptr<scenario::Scenario> radarOn(const std::shared_ptr<scenario::Scen
   return scenario;
 }
 
-TEST(Shadow, EqualsWalkAlongEachRay) {
+TEST(Shadow, SLOW_EqualsWalkAlongEachRay) {
   // A valley, a slope and a summit of the White Mountains; one site outside the region.
   const double sites[][3] = {
       {44.42, -71.68, 12}, {44.30, -71.33, 20}, {44.2706, -71.3033, 5}, {44.55, -71.80, 30}};

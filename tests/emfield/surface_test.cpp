@@ -107,7 +107,7 @@ class SurfaceField : public test::OnBackends {
   scenario::TerrainPtr terrain_;
 };
 
-TEST_P(SurfaceField, EqualsPathsAboveGroundWithEveryModel) {
+TEST_P(SurfaceField, SLOW_EqualsPathsAboveGroundWithEveryModel) {
   for (const auto model : {PropagationModel::free_space, PropagationModel::horizon,
                            PropagationModel::diffraction, PropagationModel::itm, PropagationModel::two_ray,
                            PropagationModel::p528, PropagationModel::p1812, PropagationModel::p452}) {
@@ -124,7 +124,7 @@ TEST_P(SurfaceField, EqualsPathsAboveGroundWithEveryModel) {
 }
 
 // With this many positions the searches for obstacles use bounds of the terrain and, on the CPU, of rays.
-TEST_P(SurfaceField, EqualsPathsAtManyPositions) {
+TEST_P(SurfaceField, SLOW_EqualsPathsAtManyPositions) {
   const auto scenario = radarOnRidge(PropagationModel::diffraction);
   const auto surface = positions(HeightReference::ground, {5, 40, 150, 600}, 300, 200);
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
@@ -240,7 +240,7 @@ TEST_P(SurfaceField, HasGroundBelowItsPositions) {
 }
 
 /// A GPU keeps the columns to itself until a model needs them on the host.
-TEST_P(SurfaceField, AfterEditToRadialModelEqualsNewSolver) {
+TEST_P(SurfaceField, SLOW_AfterEditToRadialModelEqualsNewSolver) {
   const auto surface = positions(HeightReference::ground, {100}, 12, 10);
   FieldOptions options;
   options.backend = GetParam();

@@ -92,7 +92,7 @@ TEST(Memory, IsFlatOverTheUpdatesOfAFieldWithMovingEmitters) {
   watch.expectFlat();
 }
 
-TEST(Memory, IsFlatOverTheStepsAndEditsOfALiveView) {
+TEST(Memory, SLOW_IsFlatOverTheStepsAndEditsOfALiveView) {
   const TemporaryFolder folder;
   PictureStyle style;
   style.size = kSize;

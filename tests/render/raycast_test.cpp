@@ -254,7 +254,7 @@ std::shared_ptr<volume::DenseVolume> randomVolume(std::mt19937& random) {
   return volume;
 }
 
-TEST(Skipping, DoesNotChangeThePictureAfterAnyChange) {
+TEST(Skipping, SLOW_DoesNotChangeThePictureAfterAnyChange) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> part(0, 1);
   SkippingPair pair;

@@ -437,7 +437,7 @@ void expectSamePlaces(const DocumentNode& a, const DocumentNode& b) {
 }
 
 /// An edit and a file written with the new value must be equivalent, for every key of the table.
-TEST(EditEveryKey, EqualsAFileWithThatValue) {
+TEST(EditEveryKey, SLOW_EqualsAFileWithThatValue) {
   TemporaryFolder folder;
   for (const char* data : {"track.csv", "sector.msi", "valid.yaml"})
     folder.write(data, test::readFile(test::testData() / data));
@@ -474,7 +474,7 @@ TEST(EditEveryKey, EqualsAFileWithThatValue) {
   EXPECT_GT(sound, all / 3) << "of " << all;
 }
 
-TEST(EditAtRandom, RandomEditsKeepTextAndScenarioConsistent) {
+TEST(EditAtRandom, SLOW_RandomEditsKeepTextAndScenarioConsistent) {
   TemporaryFolder folder;
   for (const char* data : {"track.csv", "sector.msi", "valid.yaml"})
     folder.write(data, test::readFile(test::testData() / data));

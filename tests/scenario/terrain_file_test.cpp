@@ -527,7 +527,7 @@ TEST_F(TerrainFileTest, TheEpsgCodeOfAnotherKindOfSystemIsRefused) {
                                      HasSubstr("EPSG:4342, which is of another kind of system")));
 }
 
-TEST_F(TerrainFileTest, VeryLargeFileIsDescribedByAPart) {
+TEST_F(TerrainFileTest, SLOW_VeryLargeFileIsDescribedByAPart) {
   const TerrainFileInfo info = Terrain::describe(writeBlocks(folder_ / "large.tif", 512, 1, 30000));
   EXPECT_EQ(info.rows, 30000);
   EXPECT_EQ(info.highest_m, 0);

@@ -202,7 +202,7 @@ TEST_F(MapFiles, TemporariesOfKilledProcessAreRemoved) {
   EXPECT_THAT(folder.files(), ElementsAre("a/maps/notes.txt"));
 }
 
-TEST_F(MapFiles, TwoRunsWriteTheSameBytes) {
+TEST_F(MapFiles, SLOW_TwoRunsWriteTheSameBytes) {
   write("a");
   write("b");
   for (const char* file : {"coverage.gpkg", "coverage.nc", "coverage.kmz", "coverage.czml"}) {

@@ -126,7 +126,7 @@ Differences compare(const Site& site, PropagationModel model, int pixels, std::m
   return differences;
 }
 
-TEST(PixelsOfMaps, EqualProfileWithEveryModel) {
+TEST(PixelsOfMaps, SLOW_EqualProfileWithEveryModel) {
   std::mt19937 random(7);
   std::size_t compared = 0;
   for (const ModelInfo& model : propagation::models()) {
@@ -144,7 +144,7 @@ TEST(PixelsOfMaps, EqualProfileWithEveryModel) {
 
 // A map has the mean over cells between marched azimuths, `profile` the field of the path's own.
 // With EMSCAPE_PIXELS, that many pixels of each site; otherwise 20 of two sites.
-TEST(PixelsOfMaps, ParabolicEquationGivesMeansOfCells) {
+TEST(PixelsOfMaps, SLOW_ParabolicEquationGivesMeansOfCells) {
   const char* const pixels = std::getenv("EMSCAPE_PIXELS");
   std::mt19937 random(7);
   const std::vector<Site> sites = pixels != nullptr ? std::vector<Site>(std::begin(kSites), std::end(kSites))

@@ -116,7 +116,7 @@ sweep:
   EXPECT_THAT(study.plan().changes, ElementsAre(4u, 4u, 8u, 16u));
 }
 
-TEST(Study, ResultsDoNotDependOnEarlierRuns) {
+TEST(Study, SLOW_ResultsDoNotDependOnEarlierRuns) {
   const Study study(R"(
 times: "60:90:15"
 sweep:

@@ -57,7 +57,7 @@ emfield::PathEnd endAt(const GeodeticPosition& position, double height_msl_m) {
 }
 
 // The diagram reads the cells of the marches on both sides of each azimuth; `profile` marches to each point.
-TEST(Vertical, ParabolicEquationIsNearProfile) {
+TEST(Vertical, SLOW_ParabolicEquationIsNearProfile) {
   auto scenario = std::make_shared<scenario::Scenario>(*jacksboro());
   constexpr int kMast = 2;
   propagation::ModelSettings& settings = scenario->emitters[kMast].propagation;

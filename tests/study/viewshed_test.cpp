@@ -50,7 +50,7 @@ std::vector<double> viewshedOf(const MapGrid& grid, const std::vector<float>& gr
   return heights_m;
 }
 
-TEST(MinHeight, EqualsLineOfSight) {
+TEST(MinHeight, SLOW_EqualsLineOfSight) {
   constexpr double kAntenna_agl_m = 25, kCell_m = 30;
   auto scenario =
       std::make_shared<scenario::Scenario>(*scenario::loadScenario(test::shippedScenario("jacksboro.yaml")));

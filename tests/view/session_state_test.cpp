@@ -120,7 +120,7 @@ void expectThePictureOfRender(const std::string& input, RandomView& random) {
   EXPECT_EQ(difference.erroneous, 0);
 }
 
-TEST(SessionState, RandomViewsEqualPicturesOfRender) {
+TEST(SessionState, SLOW_RandomViewsEqualPicturesOfRender) {
   const StateFolder folder;
   for (unsigned seed = 1; seed <= 14; ++seed) {
     SCOPED_TRACE(fmt::format("seed {}", seed));
@@ -129,7 +129,7 @@ TEST(SessionState, RandomViewsEqualPicturesOfRender) {
   }
 }
 
-TEST(SessionState, RandomViewsOfRealGroundEqualPicturesOfRender) {
+TEST(SessionState, SLOW_RandomViewsOfRealGroundEqualPicturesOfRender) {
   const StateFolder folder;
   for (unsigned seed = 15; seed <= 20; ++seed) {
     SCOPED_TRACE(fmt::format("seed {}", seed));

@@ -141,7 +141,7 @@ TEST(CellRenderer, LinearFieldIsDrawnEquallyOnAnyMesh) {
   }
 }
 
-TEST(CellRenderer, TheOrderOfVerticesCellsAndPointsDoesNotMatter) {
+TEST(CellRenderer, SLOW_TheOrderOfVerticesCellsAndPointsDoesNotMatter) {
   const auto wavy = [](const Vec3d& p) { return 0.5 + 0.5 * std::sin(p.x) * std::cos(p.y + p.z); };
   const MeshField field = fieldOn(boxMesh({8, 7, 6}, {0, 0, 0}, {9, 8, 4}, 0.2), wavy);
   TetrahedralMesh shuffled = *field.mesh;

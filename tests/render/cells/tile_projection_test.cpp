@@ -102,7 +102,7 @@ class TileProjections : public test::OnBackends {
 };
 EMSCAPE_ON_BACKENDS(TileProjections);
 
-TEST_P(TileProjections, EqualMarchedPictureInAllPixels) {
+TEST_P(TileProjections, SLOW_EqualMarchedPictureInAllPixels) {
   const MeshField field = wavy(8);
   for (const char* camera : kCameras) {
     EXPECT_LT(difference(field, camera), 1e-5) << camera;
@@ -110,7 +110,7 @@ TEST_P(TileProjections, EqualMarchedPictureInAllPixels) {
   }
 }
 
-TEST_P(TileProjections, KeepRaysInPlanesAndAlongEdgesOfCells) {
+TEST_P(TileProjections, SLOW_KeepRaysInPlanesAndAlongEdgesOfCells) {
   // Rows and columns of pixels are in inner planes of a regular lattice, some pixels on its edges.
   const MeshField field = wavy(9, 0);
   const double fov_deg = 2 * std::atan(0.5 * 121 * 3.125 / 2000) * 180 / 3.14159265358979323846;
@@ -149,7 +149,7 @@ TEST_P(TileProjections, TheGroundEndsRays) {
   }
 }
 
-TEST_P(TileProjections, TheOrderOfVerticesAndCellsDoesNotMatter) {
+TEST_P(TileProjections, SLOW_TheOrderOfVerticesAndCellsDoesNotMatter) {
   const MeshField field = wavy(8);
   TetrahedralMesh shuffled = *field.mesh;
   std::mt19937 random(11);
