@@ -201,8 +201,8 @@ const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& chann
   return own.empty() ? above_ground : own;
 }
 
-/// Makes the volumes of changed channels. The other volumes get the time, and after an edit the name and
-/// metadata of the edited scenario.
+/// Makes the volumes of changed channels. After an edit the other volumes get the name and metadata of the
+/// edited scenario.
 void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes) {
   if (changes.report.channels) {
     volumes.assign(setup.channels.size(), {});
@@ -210,13 +210,7 @@ void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Ch
   }
   std::vector<VolumeRequest> requests;
   for (std::size_t c = 0; c < volumes.size(); ++c) {
-    if (!changes.products[c] && !changes.is_edited) {
-      volume::VolumeInfo info = volumes[c].info();
-      info.time_s = snapshot.time_s;
-      info.time_utc = snapshot.time_utc;
-      volumes[c].setInfo(std::move(info));
-      continue;
-    }
+    if (!changes.products[c] && !changes.is_edited) continue;
     VolumeRequest request = volumeRequest(static_cast<int>(c), snapshot);
     if (changes.products[c]) {
       volumes[c] = {};  // so that its memory can be reused
