@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "apps/emscape/bench/itm_cases.h"
+#include "apps/bench/itm_cases.h"
 
 namespace {
 

@@ -73,5 +73,5 @@ include(CPack)
 
 add_custom_target(emscape_packages
   COMMAND "${CMAKE_CPACK_COMMAND}" --config "${PROJECT_BINARY_DIR}/CPackConfig.cmake"
-  DEPENDS emscape emscape_share $<TARGET_NAME_IF_EXISTS:emscape_view>
+  DEPENDS emscape emscape_bench emscape_share $<TARGET_NAME_IF_EXISTS:emscape_view>
   WORKING_DIRECTORY "${PROJECT_BINARY_DIR}" USES_TERMINAL)

@@ -12,21 +12,18 @@
 #include <string>
 #include <vector>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/common/map_options.h"
-#include "apps/emscape/common/output_files.h"
-#include "apps/emscape/common/target.h"
-#include "apps/emscape/report/compare_report.h"
-#include "base/files/json_writing.h"
+#include "apps/common/console.h"
+#include "apps/common/target.h"
+#include "apps/emscape/common/study_options.h"
+#include "apps/emscape/subcommands.h"
 #include "base/text/quantity_text.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
-#include "emscape/study/maps/area.h"
 #include "emscape/study/report/map_folder.h"
 #include "emscape/volume/file.h"
+#include "report/compare_report.h"
+#include "report/output_files.h"
 #include "volume/difference.h"
 
 namespace emscape::app {
@@ -36,7 +33,7 @@ struct CompareCommand {
   std::string a, b;
   std::vector<scenario::Edit> edits, edits_b;
   std::string folder;
-  MapOptions maps;
+  report::MapOptions maps;
   std::string volume;
   int areas = 3;
   std::set<std::string> given;  ///< names of the options on the command line
@@ -69,19 +66,14 @@ void printHeading(const std::string& a, const std::string& b, const study::MapGr
         grid.cell_m, grid.crs, info.name, quantityText(threshold, info.unit));
 }
 
-/// Completes the folder of the differences, and prints them.
-int finish(study::MapFolder& folder, const study::Comparison& comparison, const study::ComparedScenario& a,
-           const study::ComparedScenario& b, const std::string& quantity, const GlobalOptions& global) {
-  logWarnings(comparison.warnings);
-  folder.finish(joinedWarnings(comparison.warnings), dumpJson(comparisonJson(comparison, a, b)),
-                [&](study::HtmlReport& report) { addSections(report, comparison, quantity); });
+void printOutcome(const std::string& report_json, const study::Comparison& comparison,
+                  const std::string& quantity, const GlobalOptions& global) {
   if (global.json) {
-    printResult(folder.reportJson());
+    printResult(report_json);
     finishResult();
   } else {
-    printComparison(comparison, quantity);
+    printResult(report::comparisonText(comparison, quantity));
   }
-  return 0;
 }
 
 /// Of B: its scenario's name, or what it changes in A.
@@ -99,54 +91,22 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
   if (!command.volume.empty()) volume::formatOf(command.volume);
   std::vector<scenario::Edit> edits_b = command.edits;
   edits_b.insert(edits_b.end(), command.edits_b.begin(), command.edits_b.end());
-  study::ComparedScenario a{scenario::loadScenario(command.a, command.edits, scenario::ReadFor::chosen_times),
-                            nullptr};
-  study::ComparedScenario b{scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b,
-                                                   scenario::ReadFor::chosen_times),
-                            nullptr};
-  checkMapFolder(command.folder, {a.scenario, b.scenario});
-  checkOutputs({{"--volume", command.volume}}, {}, {a.scenario, b.scenario});
-  study::CompareRequest request;
-  request.coverage = requestOf(command.maps, a.scenario->clock);
-  request.areas = command.areas;
-  study::checkRequest(request, *a.scenario, *b.scenario);
-  const study::CoverageRequest& of = request.coverage;
-
-  const study::MapArea area = areaOf(command.maps, *a.scenario);
-  const auto grid = gridOf(command.maps, *a.scenario, area);
-  a.terrain = study::loadTerrain(*a.scenario, area);
-  b.terrain = study::loadTerrain(*b.scenario, area);
-
-  study::MapFolder folder(command.folder,
-                          {"compare",
-                           fmt::format("Comparison of {} (A) and {} (B)", a.scenario->name,
-                                       command.b.empty() ? "its change" : b.scenario->name),
-                           {a.scenario, b.scenario},
-                           a.terrain,
-                           grid,
-                           of.quantity,
-                           of.threshold,
-                           of.times_s,
-                           of.heights},
-                          command.maps.formats);
-  if (!global.json)
-    printHeading(a.scenario->name, nameOfB(command, *b.scenario), *grid, of.quantity, of.threshold);
-  const ProgressSink show = progressSink(global);
+  const auto a = scenario::loadScenario(command.a, command.edits, scenario::ReadFor::chosen_times);
+  const auto b = scenario::loadScenario(command.b.empty() ? command.a : command.b, edits_b,
+                                        scenario::ReadFor::chosen_times);
+  report::checkOutputs({{"--volume", command.volume}}, {}, {a, b});
+  report::ScenarioComparison run(a, b, command.maps, command.areas, command.folder,
+                                 command.b.empty() ? "its change" : b->name);
+  const study::CoverageRequest& of = run.request();
+  if (!global.json) printHeading(a->name, nameOfB(command, *b), run.grid(), of.quantity, of.threshold);
   const study::Comparison comparison = openOnTarget(global, "float", [&](const ComputeTarget& target) {
-    study::Comparison result = study::computeComparison(
-        a, b, *grid, request, target.fieldOptions(),
-        [&](const study::Map& map) {
-          stopIfInterrupted();
-          folder.add(map);
-        },
-        [&](const std::string& step, double fraction) {
-          stopIfInterrupted();
-          show(step, fraction);
-        });
-    if (!command.volume.empty()) writeVolume(command, a, b, of.times_s.front(), target.fieldOptions());
+    study::Comparison result = run.compute(target.fieldOptions(), stoppingProgress(global));
+    if (!command.volume.empty())
+      writeVolume(command, run.a(), run.b(), of.times_s.front(), target.fieldOptions());
     return result;
   });
-  return finish(folder, comparison, a, b, command.maps.quantity, global);
+  printOutcome(run.finish(comparison), comparison, command.maps.quantity, global);
+  return 0;
 }
 
 /// For folders of maps only these options are allowed: the contents of the maps were chosen when they were
@@ -166,9 +126,9 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
   const auto isGiven = [&](const char* option) { return command.given.count(option) > 0; };
   const study::CoverageFolder a = study::openCoverageFolder(command.a),
                               b = study::openCoverageFolder(command.b);
-  checkMapFolder(command.folder, {a.scenario, b.scenario});
+  report::checkMapFolder(command.folder, {a.scenario, b.scenario}, "--output");
   study::MapChoice choice;
-  if (isGiven("--products")) choice.products = productsOf(command.maps);
+  if (isGiven("--products")) choice.products = report::productsOf(command.maps);
   if (isGiven("--heights")) choice.heights = study::parseHeights(command.maps.heights);
   if (isGiven("--times")) choice.times_s = scenario::parseTimes(command.maps.times, a.scenario->clock);
   const auto pairs = study::pairsOf(a, b, choice);
@@ -194,14 +154,12 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
                            heights},
                           command.maps.formats);
   if (!global.json) printHeading(command.a, command.b, *a.grid, a.quantity, a.threshold);
-  const ProgressSink show = progressSink(global);
   const study::Comparison comparison = study::compareFolders(
-      a, b, pairs, command.areas, [&](const study::Map& map) { folder.add(map); },
-      [&](const std::string& step, double fraction) {
-        stopIfInterrupted();
-        show(step, fraction);
-      });
-  return finish(folder, comparison, {a.scenario, a.terrain}, {b.scenario, b.terrain}, quantity, global);
+      a, b, pairs, command.areas, [&](const study::Map& map) { folder.add(map); }, stoppingProgress(global));
+  const std::string json = report::finishComparison(folder, comparison, {a.scenario, a.terrain},
+                                                    {b.scenario, b.terrain}, quantity);
+  printOutcome(json, comparison, quantity, global);
+  return 0;
 }
 
 int compare(const CompareCommand& command, const GlobalOptions& global) {

@@ -7,16 +7,17 @@
 #include <cmath>
 #include <memory>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/common/map_options.h"
-#include "apps/emscape/common/output_files.h"
-#include "apps/emscape/common/target.h"
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
+#include "apps/common/target.h"
+#include "apps/emscape/common/study_options.h"
+#include "apps/emscape/subcommands.h"
 #include "base/text/quantity_text.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/study/report/map_folder.h"
+#include "report/output_files.h"
+#include "report/warnings.h"
 
 namespace emscape::app {
 namespace {
@@ -25,7 +26,7 @@ struct CoverageCommand {
   std::string scenario;
   std::vector<scenario::Edit> edits;
   std::string folder;
-  MapOptions maps;
+  report::MapOptions maps;
 };
 
 void printRow(const study::MapRecord& record) {
@@ -43,11 +44,11 @@ void printRow(const study::MapRecord& record) {
 int coverage(const CoverageCommand& command, const GlobalOptions& global) {
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
-  const study::CoverageRequest request = requestOf(command.maps, scenario->clock);
+  const study::CoverageRequest request = report::requestOf(command.maps, scenario->clock);
   study::checkRequest(request, *scenario);
-  checkMapFolder(command.folder, {scenario});
-  const study::MapArea area = areaOf(command.maps, *scenario);
-  const auto grid = gridOf(command.maps, *scenario, area);
+  report::checkMapFolder(command.folder, {scenario}, "--output");
+  const study::MapArea area = report::areaOf(command.maps, *scenario);
+  const auto grid = report::gridOf(command.maps, *scenario, area);
   const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
 
   study::MapFolder folder(command.folder,
@@ -72,16 +73,12 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
     const study::MapRecord& record = folder.add(map);
     if (!global.json) printRow(record);
   };
-  const ProgressSink show = progressSink(global);
   const std::vector<std::string> warnings = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     return study::computeCoverage(scenario, terrain, *grid, request, target.fieldOptions(), take,
-                                  [&](const std::string& step, double fraction) {
-                                    stopIfInterrupted();
-                                    show(step, fraction);
-                                  });
+                                  stoppingProgress(global));
   });
-  logWarnings(warnings);
-  folder.finish(joinedWarnings(warnings));
+  report::logWarnings(warnings);
+  folder.finish(report::joinedWarnings(warnings));
   if (global.json) {
     printResult(folder.reportJson());
     finishResult();

@@ -7,16 +7,17 @@
 #include <cmath>
 #include <memory>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/common/output_files.h"
+#include "apps/common/console.h"
+#include "apps/common/target.h"
 #include "apps/emscape/common/study_options.h"
-#include "apps/emscape/common/target.h"
-#include "apps/emscape/report/exposure_report.h"
+#include "apps/emscape/subcommands.h"
 #include "base/files/json_writing.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "report/exposure_report.h"
+#include "report/output_files.h"
+#include "report/warnings.h"
+#include "scenario/file/named_index.h"
 
 namespace emscape::app {
 namespace {
@@ -37,20 +38,17 @@ struct ExposureCommand {
 study::ExposureRequest requestOf(const ExposureCommand& command, const scenario::Scenario& scenario) {
   study::ExposureRequest request;
   request.platform =
-      namedIndex(scenario.platforms, command.platform, "--platform", "platform", scenario.file);
+      scenario::namedIndex(scenario.platforms, command.platform, "--platform", "platform", scenario.file);
   request.quantity = scenario::quantityFromName(command.quantity);
-  request.threshold = thresholdOf(command.threshold, request.quantity);
+  request.threshold = study::thresholdOf(command.threshold, request.quantity, "--threshold");
   request.times_s = command.times.empty() ? scenario::timesOf(scenario.clock)
                                           : scenario::parseTimes(command.times, scenario.clock);
   if (command.look == "scan") request.look = scenario::RadarAim::scan;
   if (command.target.empty()) {
-    // The platform's first target, if it carries one.
-    const auto found =
-        std::find_if(scenario.targets.begin(), scenario.targets.end(),
-                     [&](const scenario::Target& target) { return target.platform == request.platform; });
-    if (found != scenario.targets.end()) request.target = static_cast<int>(found - scenario.targets.begin());
+    request.target = study::targetOn(scenario, request.platform);
   } else if (command.target != "none") {
-    request.target = namedIndex(scenario.targets, command.target, "--rcs-target", "target", scenario.file);
+    request.target =
+        scenario::namedIndex(scenario.targets, command.target, "--rcs-target", "target", scenario.file);
   }
   return request;
 }
@@ -59,26 +57,22 @@ int exposure(const ExposureCommand& command, const GlobalOptions& global) {
   const render::ImageSize size = render::parseImageSize(command.size);
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
-  checkOutputs(outputsOf("--output", command.outputs), {}, {scenario});
+  report::checkOutputs(report::outputsOf("--output", command.outputs), {}, {scenario});
   const study::ExposureRequest request = requestOf(command, *scenario);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-  const ProgressSink show = progressSink(global);
   const study::Exposure result = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     return study::computeExposure(scenario, terrain, request, target.fieldOptions(),
-                                  [&](const std::string& step, double fraction) {
-                                    stopIfInterrupted();
-                                    show(step, fraction);
-                                  });
+                                  stoppingProgress(global));
   });
-  logWarnings(result.warnings);
+  report::logWarnings(result.warnings);
   writeStudyOutputs(command.outputs,
                     {[&](const std::string& file) { study::plotExposure(result, size, file); },
-                     [&](const std::string& file) { writeExposureCsv(result, file); },
-                     [&] { return dumpJson(exposureJson(result), 2); }});
+                     [&](const std::string& file) { report::writeExposureCsv(result, file); },
+                     [&] { return dumpJson(report::exposureJson(result), 2); }});
   if (global.json) {
-    printJson(exposureJson(result));
+    printJson(report::exposureJson(result));
   } else {
-    printExposure(result);
+    printResult(report::exposureText(result));
   }
   return 0;
 }

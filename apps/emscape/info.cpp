@@ -8,14 +8,9 @@
 #include <memory>
 #include <set>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/common/output_files.h"
-#include "apps/emscape/report/choices_report.h"
-#include "apps/emscape/report/refractivity_report.h"
-#include "apps/emscape/report/waveform_report.h"
-#include "apps/emscape/report/work_report.h"
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
+#include "apps/emscape/subcommands.h"
 #include "base/files/json_writing.h"
 #include "emfield/excess/model_choices.h"
 #include "emscape/base/log.h"
@@ -29,6 +24,11 @@
 #include "emscape/volume/statistics.h"
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
+#include "report/choices_report.h"
+#include "report/output_files.h"
+#include "report/refractivity_report.h"
+#include "report/waveform_report.h"
+#include "report/work_report.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/file/csv_columns.h"
 #include "scenario/file/refractivity_file.h"
@@ -66,7 +66,7 @@ Json choicesOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
   if (!has_any) return Json::array();
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const double time_s = scenario::timesOf(scenario->clock).front();
-  return choicesJson(
+  return report::choicesJson(
       emfield::modelChoices(scenario::snapshotAt(scenario, terrain.get(), time_s), terrain.get()));
 }
 
@@ -76,7 +76,7 @@ Json workOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
   options.allow_missing_terrain = true;
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-    return workJson(workEstimateOf({scenario, terrain, options}, *scenario, terrain.get()));
+    return report::workJson(report::workEstimateOf({scenario, terrain, options}, *scenario, terrain.get()));
   } catch (const Error&) {
     return nullptr;
   }
@@ -108,7 +108,7 @@ Description describeScenario(const std::string& file) {
                         {"antenna", emitter.antenna->description},
                         {"gain_dbi", emitter.antenna->gain_dbi},
                         {"propagation", toString(emitter.propagation.model)}});
-    if (emitter.waveform) emitters.back()["waveform"] = waveformJson(emitter);
+    if (emitter.waveform) emitters.back()["waveform"] = report::waveformJson(emitter);
   }
   Json platforms = Json::array();
   for (const scenario::Platform& platform : scenario->platforms) {
@@ -153,7 +153,7 @@ Description describeScenario(const std::string& file) {
             {"choices", choicesOf(scenario)},
             {"work", workOf(scenario)}};
   const auto& refractivity = scenario->atmosphere.refractivity;
-  if (refractivity) json["refractivity"] = refractivityJson(*refractivity, frequenciesOf(*scenario));
+  if (refractivity) json["refractivity"] = report::refractivityJson(*refractivity, frequenciesOf(*scenario));
   return {json, refractivity};
 }
 
@@ -168,7 +168,7 @@ Description describeRefractivity(const std::string& file) {
   return {{{"kind", "refractivity"},
            {"file", file},
            {"holds", read.description},
-           {"profiles", profilesJson(read.field, {1 * kGHz, 3 * kGHz, 10 * kGHz})}},
+           {"profiles", report::profilesJson(read.field, {1 * kGHz, 3 * kGHz, 10 * kGHz})}},
           refractivity};
 }
 
@@ -373,14 +373,15 @@ struct InfoOptions {
 
 int info(const InfoOptions& options, const GlobalOptions& global) {
   if (options.plot.empty()) endAtInterrupts();
-  checkOutputs({{"--plot", options.plot}}, {{"the input", options.file}}, {});
+  report::checkOutputs({{"--plot", options.plot}}, {{"the input", options.file}}, {});
   const Description description = describe(options.file);
   if (!options.plot.empty()) {
     if (!description.refractivity) {
       throw Error(ErrorCode::usage, "--plot draws refractivity; " + options.file + " has none");
     }
-    plotRefractivity(*description.refractivity, std::filesystem::path(options.file).filename().string(),
-                     render::parseImageSize(options.size), options.plot);
+    report::plotRefractivity(*description.refractivity,
+                             std::filesystem::path(options.file).filename().string(),
+                             render::parseImageSize(options.size), options.plot);
     logInfo("wrote " + options.plot);
   }
   if (global.json) {

@@ -1,22 +1,20 @@
 /// emscape link: signals of emitters at receivers, and detection of targets by radars, over time.
-#include "emscape/emfield/link/link.h"
-
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <memory>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/common/output_files.h"
+#include "apps/common/console.h"
 #include "apps/emscape/common/study_options.h"
-#include "apps/emscape/report/link_plot.h"
-#include "apps/emscape/report/link_report.h"
+#include "apps/emscape/subcommands.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
+#include "report/link_plot.h"
+#include "report/link_report.h"
+#include "report/output_files.h"
+#include "report/warnings.h"
 
 namespace emscape::app {
 namespace {
@@ -24,56 +22,31 @@ namespace {
 struct LinkCommand {
   std::string scenario;
   std::vector<scenario::Edit> edits;
-  std::string times;
-  std::vector<std::string> emitters, receivers, targets;
-  std::string model;
+  report::LinkSelection selection{"--", "", {}, {}, {}, ""};
   std::string csv;
   std::string plot;
   std::string size = "1400x800";
 };
 
 int link(const LinkCommand& command, const GlobalOptions& global) {
-  NamedLinks links{command.scenario, scenario::loadScenario(command.scenario, command.edits), {}};
+  report::NamedLinks links{command.scenario, scenario::loadScenario(command.scenario, command.edits), {}};
   const scenario::Scenario& scenario = *links.scenario;
-  checkOutputs({{"--csv", command.csv}, {"--plot", command.plot}}, {}, {links.scenario});
-  emfield::LinkOptions options;
-  options.times_s = command.times.empty() ? scenario::timesOf(scenario.clock)
-                                          : scenario::parseTimes(command.times, scenario.clock);
-  options.emitters = namedIndices(scenario.emitters, command.emitters, "--emitter", "emitter", scenario.file);
-  // Naming only receivers excludes the targets, and vice versa.
-  if (!command.receivers.empty() || command.targets.empty())
-    options.receivers = namedIndices(scenario.placed_receivers, command.receivers, "--receiver",
-                                     "receiver with a platform", scenario.file);
-  if (!command.targets.empty() || command.receivers.empty())
-    options.targets = namedIndices(scenario.targets, command.targets, "--target", "target", scenario.file);
-  if (!command.model.empty()) options.model = propagation::modelNamed(command.model)->model;
-
-  const scenario::TerrainPtr terrain = scenario::loadTerrain(scenario);
-  const ProgressSink show = progressSink(global);
-  links.report = emfield::computeLinks(links.scenario, terrain.get(), options,
-                                       [&](const std::string& step, double fraction) {
-                                         stopIfInterrupted();
-                                         show(step, fraction);
-                                       });
-  if (links.report.links.empty() && links.report.detections.empty()) {
-    throw Error(ErrorCode::bad_input, {scenario.file},
-                "there is no link: it takes a receiver with a platform that is tuned to an emitter, or a "
-                "target and a radar, on another "
-                "platform than the emitter");
-  }
-  logWarnings(links.report.warnings);
+  report::checkOutputs({{"--csv", command.csv}, {"--plot", command.plot}}, {}, {links.scenario});
+  const emfield::LinkOptions options = report::linkOptions(scenario, command.selection);
+  links.report = report::computeLinks(links.scenario, options, stoppingProgress(global));
+  report::logWarnings(links.report.warnings);
   if (!command.csv.empty()) {
-    writeCsv(links, command.csv);
+    report::writeCsv(links, command.csv);
     logInfo("wrote " + command.csv);
   }
   if (!command.plot.empty()) {
-    plotLinks(links, render::parseImageSize(command.size), command.plot);
+    report::plotLinks(links, render::parseImageSize(command.size), command.plot);
     logInfo("wrote " + command.plot);
   }
   if (global.json) {
-    printJson(toJson(links));
+    printJson(report::toJson(links));
   } else {
-    printAsTable(links);
+    printResult(report::linksText(links));
   }
   return 0;
 }
@@ -103,14 +76,15 @@ terrain and a scenario without receivers and targets.)");
   for (const propagation::ModelInfo& row : propagation::models()) names.push_back(row.name);
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
-  command->add_option("--times", options->times,
+  command->add_option("--times", options->selection.times,
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
-  addNamesOption(*command, "--emitter", options->emitters,
+  addNamesOption(*command, "--emitter", options->selection.emitters,
                  "Emitters, with commas between them, or the option again; default: all");
-  addNamesOption(*command, "--receiver", options->receivers,
+  addNamesOption(*command, "--receiver", options->selection.receivers,
                  "Receivers; default: all, unless --target is given");
-  addNamesOption(*command, "--target", options->targets, "Targets; default: all, unless --receiver is given");
-  command->add_option("--model", options->model, "Propagation model in place of the emitters' own")
+  addNamesOption(*command, "--target", options->selection.targets,
+                 "Targets; default: all, unless --receiver is given");
+  command->add_option("--model", options->selection.model, "Propagation model in place of the emitters' own")
       ->check(CLI::IsMember(names));
   command->add_option("--csv", options->csv, "Write all rows into a CSV file");
   command->add_option("--plot", options->plot, "Draw SINR and probabilities over time into a .png or .svg")

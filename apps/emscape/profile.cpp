@@ -6,28 +6,20 @@
 #include <memory>
 #include <sstream>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/output_files.h"
+#include "apps/common/console.h"
 #include "apps/emscape/common/study_options.h"
-#include "apps/emscape/report/profile_plot.h"
-#include "apps/emscape/report/profile_report.h"
-#include "apps/emscape/report/section_plot.h"
-#include "emfield/link/path_section.h"
+#include "apps/emscape/subcommands.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
-#include "emscape/emfield/link/path_budget.h"
-#include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "emscape/scenario/model/snapshot.h"
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
+#include "report/output_files.h"
+#include "report/profile_report.h"
+#include "scenario/file/named_index.h"
 
 namespace emscape::app {
 namespace {
-
-using propagation::PropagationModel;
-using scenario::Scenario;
 
 struct ProfileOptions {
   std::string scenario;
@@ -66,83 +58,31 @@ scenario::SitePosition parsePoint(const std::string& text, bool above_ground) {
   return point;
 }
 
-/// The scenario with one more platform, the last one, at the point: its ground is read and its height checked
-/// as for any platform.
-std::shared_ptr<const Scenario> withPoint(const Scenario& scenario, const scenario::SitePosition& point) {
-  auto result = std::make_shared<Scenario>(scenario);
-  scenario::Platform platform;
-  platform.name = "--to";
-  platform.track.emplace_back();
-  platform.track.back().position = point;
-  result->platforms.push_back(platform);
-  return result;
-}
-
-/// The first budget, of the emitter's model or a compared one, whose model provides a field over range and
-/// height.
-const emfield::PathBudget* budgetOfSection(const ProfileReport& report) {
-  const auto hasSection = [](const emfield::PathBudget& budget) {
-    return propagation::modelInfo(budget.model).radial != nullptr;
-  };
-  if (hasSection(report.budget)) return &report.budget;
-  for (const Comparison& comparison : report.compared) {
-    if (comparison.refusal.empty() && hasSection(comparison.budget)) return &comparison.budget;
+report::ProfileReport makeReport(const ProfileOptions& options) {
+  report::ProfileRequest request;
+  request.to = parsePoint(options.to, options.above_ground);
+  request.time_s = options.time_s;
+  for (const std::string& name : options.models)
+    request.models.push_back(propagation::modelNamed(name)->model);
+  const auto scenario =
+      scenario::loadScenario(options.scenario, options.edits, scenario::ReadFor::chosen_times);
+  request.emitter =
+      scenario::namedIndex(scenario->emitters, options.emitter, "--emitter", "emitter", scenario->file);
+  report::checkOutputs({{"--plot", options.plot}}, {}, {scenario});
+  report::ProfileReport report = report::profileReport(options.scenario, *scenario, request);
+  if (!options.plot.empty()) {
+    report::plotPath(report, render::parseImageSize(options.size), options.plot);
+    logInfo("wrote " + options.plot);
   }
-  return nullptr;
-}
-
-/// Draws the loss over range and height if a model provides it, otherwise the path over the terrain.
-void draw(const ProfileReport& report, const scenario::Snapshot& snapshot, int emitter,
-          const scenario::Terrain* terrain, const ProfileOptions& options) {
-  constexpr int kRanges = 400, kHeights = 240;
-  const render::ImageSize size = render::parseImageSize(options.size);
-  if (const emfield::PathBudget* const budget = budgetOfSection(report)) {
-    const emfield::PathSection section =
-        emfield::pathSection(snapshot, emitter, budget->model, budget->profile, terrain, kRanges, kHeights);
-    plotSection(*budget, section, size, options.plot);
-  } else {
-    plotProfile(report.budget, size, options.plot);
-  }
-  logInfo("wrote " + options.plot);
-}
-
-ProfileReport makeReport(const ProfileOptions& options) {
-  const scenario::SitePosition to = parsePoint(options.to, options.above_ground);
-  const auto scenario = withPoint(
-      *scenario::loadScenario(options.scenario, options.edits, scenario::ReadFor::chosen_times), to);
-  const int emitter = namedIndex(scenario->emitters, options.emitter, "--emitter", "emitter", scenario->file);
-  checkOutputs({{"--plot", options.plot}}, {}, {scenario});
-  const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-  const scenario::Snapshot snapshot = scenario::instantAt(scenario, terrain.get(), options.time_s);
-  const emfield::PathEnd point{snapshot.platforms.back().position, snapshot.platforms.back().height_msl_m};
-  const auto budgetBy = [&](PropagationModel model) {
-    return emfield::pathBudget(snapshot, emitter, point, model, terrain.get());
-  };
-  ProfileReport report{options.scenario,
-                       snapshot.time_utc,
-                       scenario->emitters[emitter],
-                       budgetBy(scenario->emitters[emitter].propagation.model),
-                       {}};
-  for (const std::string& name : options.models) {
-    Comparison comparison;
-    comparison.model = propagation::modelNamed(name)->model;
-    try {
-      comparison.budget = budgetBy(comparison.model);
-    } catch (const Error& error) {
-      comparison.refusal = error.message();
-    }
-    report.compared.push_back(std::move(comparison));
-  }
-  if (!options.plot.empty()) draw(report, snapshot, emitter, terrain.get(), options);
   return report;
 }
 
 int profile(const ProfileOptions& options, const GlobalOptions& global) {
-  const ProfileReport report = makeReport(options);
+  const report::ProfileReport report = makeReport(options);
   if (global.json) {
-    printJson(toJson(report));
+    printJson(report::toJson(report));
   } else {
-    printAsTable(report);
+    printResult(report::profileText(report));
   }
   return 0;
 }

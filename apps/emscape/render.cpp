@@ -7,13 +7,11 @@
 #include <memory>
 #include <optional>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/common/output_files.h"
-#include "apps/emscape/common/target.h"
-#include "apps/emscape/common/value_range.h"
-#include "apps/emscape/report/real_time_report.h"
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
+#include "apps/common/target.h"
+#include "apps/common/value_range.h"
+#include "apps/emscape/subcommands.h"
 #include "base/memory.h"
 #include "base/stopwatch.h"
 #include "base/worker.h"
@@ -29,6 +27,9 @@
 #include "playback/editing/view_state.h"
 #include "playback/pictures/real_time_loop.h"
 #include "render/patterns/reconstruction.h"
+#include "report/output_files.h"
+#include "report/real_time_report.h"
+#include "report/warnings.h"
 
 namespace emscape::app {
 namespace {
@@ -180,15 +181,15 @@ void checkMeshOptions(const RenderOptions& options, const ViewState& view) {
   if (!view.compare.empty()) throw Error(ErrorCode::usage, "comparison: has no effect on tetrahedra");
 }
 
-/// checkOutputs(). Scenarios and lists of volumes are read for it only if an output exists already.
+/// report::checkOutputs(). Scenarios and lists of volumes are read for it only if an output exists already.
 void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
-  std::vector<NamedFile> outputs = outputsOf("--output", options.outputs);
+  std::vector<report::NamedFile> outputs = report::outputsOf("--output", options.outputs);
   outputs.push_back({"--save-state", options.save_state});
   const playback::FrameSelection& selection = options.selection;
-  std::vector<NamedFile> inputs{{"the input", selection.input},
-                                {"the scenario", selection.scenario},
-                                {"the comparison", view.compare},
-                                {"the transfer function", options.transfer}};
+  std::vector<report::NamedFile> inputs{{"the input", selection.input},
+                                        {"the scenario", selection.scenario},
+                                        {"the comparison", view.compare},
+                                        {"the transfer function", options.transfer}};
   std::vector<std::shared_ptr<const scenario::Scenario>> scenarios;
   const auto addSteps = [&](const std::string& file, const char* name) {
     if (!std::filesystem::exists(file)) return;
@@ -203,15 +204,16 @@ void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
     if (file != selection.scenario && playback::inputKindOf(file) != playback::InputKind::scenario) return;
     if (const auto scenario = scenario::parseScenario(file, edits).scenario) scenarios.push_back(scenario);
   };
-  if (std::any_of(outputs.begin(), outputs.end(),
-                  [](const NamedFile& output) { return std::filesystem::is_regular_file(output.file); })) {
+  if (std::any_of(outputs.begin(), outputs.end(), [](const report::NamedFile& output) {
+        return std::filesystem::is_regular_file(output.file);
+      })) {
     addScenario(selection.input, view.edits);
     addScenario(selection.scenario, {});
     addScenario(view.compare, {});
     addSteps(selection.input, "a file of the input");
     addSteps(view.compare, "a file of the comparison");
   }
-  checkOutputs(outputs, inputs, scenarios);
+  report::checkOutputs(outputs, inputs, scenarios);
 }
 
 using Sinks = std::vector<std::unique_ptr<PictureSink>>;
@@ -304,7 +306,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
         *source, painter, plan, sinks,
         [&](int pictures) { progress.show(static_cast<double>(pictures) / source->count()); }, &stopFlag());
   }
-  logWarnings(source->warnings());
+  report::logWarnings(source->warnings());
 
   const double seconds = watch.lap_ms() / 1000;
   if (global.json) {
@@ -370,12 +372,13 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   }
   playback::SystemClock clock;
   RealTimeLoop loop(loop_options, style, *source, *stage.painter, display, clock, &stopFlag());
-  const RealTimeReport report = loop.play([](const RealTimeEvent& event) { logInfo(lineOf(event)); });
+  const report::RealTimeReport report =
+      loop.play([](const report::RealTimeEvent& event) { logInfo(report::lineOf(event)); });
   writer.finish();
   for (const auto& sink : sinks) sink->finish();
-  logWarnings(source->warnings());
+  report::logWarnings(source->warnings());
 
-  logInfo(summaryOf(report));
+  logInfo(report::summaryOf(report));
   if (global.json) {
     Json json{{"device", stage.target.device()},
               {"size", {style.size.width, style.size.height}},
@@ -383,7 +386,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
               {"rays", options.rays},
               {"outputs", options.outputs},
               {"budget_ms", loop_options.controller.budget_ms}};
-    json.update(app::toJson(report));
+    json.update(report::toJson(report));
     printJson(json);
   }
   if (report.totals.unequal() > 0) {

@@ -7,16 +7,18 @@
 #include <set>
 #include <utility>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/common/target.h"
-#include "apps/emscape/common/value_range.h"
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
+#include "apps/common/target.h"
+#include "apps/common/value_range.h"
+#include "apps/emscape/subcommands.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/series/series_writer.h"
 #include "emscape/scenario/model/quantities.h"
+#include "report/series_report.h"
+#include "report/warnings.h"
 
 namespace emscape::app {
 namespace {
@@ -80,15 +82,6 @@ void checkFolderIsFree(const SimulateOptions& options) {
   }
 }
 
-Json rangesToJson(const playback::SeriesResult& result) {
-  Json ranges = Json::object();
-  for (std::size_t c = 0; c < result.channels.size(); ++c) {
-    const playback::ValueRange& range = result.ranges[c];
-    ranges[result.channels[c]] = range.empty() ? Json(nullptr) : Json{range.min, range.max};
-  }
-  return ranges;
-}
-
 /// Changes the series to differences from the comparison.
 void compare(playback::FieldSeries& series, const SimulateOptions& options) {
   const bool with_original = options.compare == playback::kOriginal;
@@ -131,17 +124,11 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
     return opened;
   });
   const playback::SeriesResult result = playback::writeSeries(*series, series_options, progressSink(global));
-  logWarnings(series->warnings());
+  report::logWarnings(series->warnings());
 
   const double seconds = watch.lap_ms() / 1000;
   if (global.json) {
-    printJson({{"device", device},
-               {"folder", options.folder},
-               {"steps", result.steps},
-               {"steps_computed", result.steps_computed},
-               {"channels", result.channels},
-               {"ranges", rangesToJson(result)},
-               {"seconds", seconds}});
+    printJson(report::seriesJson(device, options.folder, result, seconds));
   } else {
     logInfo(fmt::format("{} step{} of {} in {}, {:.1f} s", result.steps, result.steps == 1 ? "" : "s",
                         fmt::join(result.channels, ", "), options.folder, seconds));

@@ -6,16 +6,16 @@
 #include <memory>
 #include <optional>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/report/choices_report.h"
-#include "apps/emscape/report/work_report.h"
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
+#include "apps/emscape/subcommands.h"
 #include "emfield/excess/model_choices.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "report/choices_report.h"
+#include "report/work_report.h"
 
 namespace emscape::app {
 namespace {
@@ -87,7 +87,7 @@ bool checkSteps(const scenario::Scenario& scenario, const scenario::Terrain* ter
 /// @param choices  receives the models' automatic choices at the first step
 /// @param work     receives the field's memory, time and disk space, if it can be computed
 void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std::vector<Problem>& problems,
-                  std::vector<emfield::EmitterChoice>& choices, std::optional<WorkEstimate>& work) {
+                  std::vector<emfield::EmitterChoice>& choices, std::optional<report::WorkEstimate>& work) {
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
     if (terrain) checkCoverage(*scenario, *terrain, problems);
@@ -95,7 +95,7 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std
     emfield::FieldOptions options;
     options.allow_missing_terrain = true;  // reported above
     const emfield::FieldSolver solver(scenario, terrain, options);
-    work = workEstimateOf(solver, *scenario, terrain.get());
+    work = report::workEstimateOf(solver, *scenario, terrain.get());
     for (const std::string& warning : solver.warnings()) {
       Problem problem;
       problem.location.file = scenario->file;
@@ -116,7 +116,7 @@ int validate(const std::string& file, const std::vector<scenario::Edit>& edits, 
   endAtInterrupts();
   scenario::ParseResult result = scenario::parseScenario(file, edits);
   std::vector<emfield::EmitterChoice> choices;
-  std::optional<WorkEstimate> work;
+  std::optional<report::WorkEstimate> work;
   if (result.scenario) checkMeaning(result.scenario, result.problems, choices, work);
   const bool ok = std::none_of(result.problems.begin(), result.problems.end(),
                                [](const Problem& problem) { return problem.severity == Severity::error; });
@@ -132,8 +132,8 @@ int validate(const std::string& file, const std::vector<scenario::Edit>& edits, 
     }
     printJson({{"ok", ok},
                {"problems", problems},
-               {"choices", choicesJson(choices)},
-               {"work", work ? workJson(*work) : Json(nullptr)}});
+               {"choices", report::choicesJson(choices)},
+               {"work", work ? report::workJson(*work) : Json(nullptr)}});
   } else {
     for (const Problem& problem : result.problems) {
       print("{}: {}: {}\n", emscape::toString(problem.location), toString(problem.severity), problem.message);
@@ -141,7 +141,7 @@ int validate(const std::string& file, const std::vector<scenario::Edit>& edits, 
     if (ok && !global.quiet) {
       for (const emfield::EmitterChoice& choice : choices)
         print("emitter '{}': {}: {} {}\n", choice.emitter, choice.model, choice.name, choice.text);
-      if (work) print("{}\n", workText(*work));
+      if (work) print("{}\n", report::workText(*work));
       print("{}: ok\n", file);
     }
   }

@@ -7,19 +7,19 @@
 #include <cmath>
 #include <memory>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/common/output_files.h"
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
+#include "apps/common/target.h"
 #include "apps/emscape/common/study_options.h"
-#include "apps/emscape/common/target.h"
-#include "apps/emscape/report/vertical_report.h"
+#include "apps/emscape/subcommands.h"
 #include "base/files/json_writing.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "emscape/scenario/model/snapshot.h"
-#include "emscape/study/maps/area.h"
 #include "render/annotate/plot.h"
+#include "report/output_files.h"
+#include "report/vertical_report.h"
+#include "report/warnings.h"
+#include "scenario/file/named_index.h"
 
 namespace emscape::app {
 namespace {
@@ -42,24 +42,19 @@ struct VerticalCommand {
 
 study::VerticalRequest requestOf(const VerticalCommand& command, const scenario::Scenario& scenario) {
   study::VerticalRequest request;
-  request.emitter = namedIndex(scenario.emitters, command.emitter, "--emitter", "emitter", scenario.file);
-  const bool is_radar = scenario.emitters[request.emitter].kind == scenario::EmitterKind::radar;
-  request.quantity = !command.quantity.empty() ? scenario::quantityFromName(command.quantity)
-                     : is_radar                ? scenario::Quantity::detection_probability
-                                               : scenario::Quantity::power_density_dbwm2;
-  request.threshold = thresholdOf(command.threshold, request.quantity);
+  request.emitter =
+      scenario::namedIndex(scenario.emitters, command.emitter, "--emitter", "emitter", scenario.file);
+  if (!command.quantity.empty()) request.quantity = scenario::quantityFromName(command.quantity);
+  request.threshold = command.threshold;
   request.azimuths_deg = command.azimuths_deg;
   request.time_s = command.time_s;
   request.smooth_earth = command.blake;
   request.ranges = command.grid.front();
   request.heights = command.grid.back();
-  const bool above_ground = command.axis == "agl";
-  if (above_ground) request.axis = emfield::HeightReference::ground;
-  request.range_m = std::isnan(command.range_m) ? study::defaultRange_m(scenario, request) : command.range_m;
-  const scenario::Region& region = scenario.region;
-  const double bottom_m = above_ground || command.blake ? 0 : region.origin.height_msl_m;
-  request.max_height_m = std::isnan(command.max_height_m) ? bottom_m + region.size_m.z : command.max_height_m;
-  return request;
+  if (command.axis == "agl") request.axis = emfield::HeightReference::ground;
+  request.range_m = command.range_m;
+  request.max_height_m = command.max_height_m;
+  return study::withDefaults(request, scenario, !command.quantity.empty(), "--threshold");
 }
 
 int vertical(const VerticalCommand& command, const GlobalOptions& global) {
@@ -69,27 +64,23 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
     study::checkVerticalPlot(size, command.azimuths_deg.size());
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
-  checkOutputs(outputsOf("--output", command.outputs), {}, {scenario});
+  report::checkOutputs(report::outputsOf("--output", command.outputs), {}, {scenario});
   const study::VerticalRequest request = requestOf(command, *scenario);
-  const scenario::Emitter& emitter = scenario->emitters[request.emitter];
-  const scenario::TrackPoint site = scenario::pointAt(scenario->platforms[emitter.platform], command.time_s);
-  const study::MapArea area = study::circularArea(
-      {site.position.latitude_deg, site.position.longitude_deg, 1.001 * request.range_m + 200});
-  const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
+  const scenario::TerrainPtr terrain = study::loadVerticalTerrain(*scenario, request);
   stopIfInterrupted();
   const study::VerticalDiagram diagram = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     return study::computeVertical(scenario, terrain, request, target.fieldOptions());
   });
-  logWarnings(diagram.warnings);
+  report::logWarnings(diagram.warnings);
   stopIfInterrupted();
   writeStudyOutputs(command.outputs,
                     {[&](const std::string& file) { study::plotVertical(diagram, size, file); },
-                     [&](const std::string& file) { writeVerticalCsv(diagram, file); },
-                     [&] { return dumpJson(verticalJson(diagram, true)); }});
+                     [&](const std::string& file) { report::writeVerticalCsv(diagram, file); },
+                     [&] { return dumpJson(report::verticalJson(diagram, true)); }});
   if (global.json) {
-    printJson(verticalJson(diagram, false));
+    printJson(report::verticalJson(diagram, false));
   } else {
-    printVertical(diagram);
+    printResult(report::verticalText(diagram));
   }
   return 0;
 }

@@ -6,8 +6,9 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "apps/emscape/common/command_line.h"
-#include "apps/emscape/version.h"
+#include "apps/bench/bench.h"
+#include "apps/common/version.h"
+#include "apps/emscape/subcommands.h"
 #include "apps/manual/completion.h"
 #include "apps/manual/manual_page.h"
 #include "base/files/folder.h"
@@ -26,19 +27,26 @@ void write(const fs::path& file, const std::string& text) {
   writeWhole(file, [&](std::ostream& out) { out << text; });
 }
 
-/// The command line of emscape; `emscape view` has the options of the program that it starts.
+CommandDescription& subcommandOf(CommandDescription& program, const std::string& name) {
+  const auto found = std::find_if(program.subcommands.begin(), program.subcommands.end(),
+                                  [&](const CommandDescription& command) { return command.name == name; });
+  if (found == program.subcommands.end()) throw std::logic_error("emscape has no subcommand " + name);
+  return *found;
+}
+
+/// The command line of emscape; view and bench have the options of the programs that they start.
 CommandDescription describeProgram() {
-  CommandDescription program = describe(*app::commandLineParser());
-  const auto view = std::find_if(program.subcommands.begin(), program.subcommands.end(),
-                                 [](const CommandDescription& command) { return command.name == "view"; });
-  if (view == program.subcommands.end()) throw std::logic_error("emscape has no subcommand view");
+  CommandDescription program = describe(app::CommandLine(app::addSubcommands).parser());
+  CommandDescription benchmarks = describe(app::CommandLine(app::addBench).parser());
+  subcommandOf(program, "bench") = subcommandOf(benchmarks, "bench");
+  CommandDescription& view = subcommandOf(program, "view");
 #ifdef EMSCAPE_WITH_VIEW
-  const std::string summary = view->summary;
-  *view = describe(*view::viewParser());
-  view->name = "view";
-  view->summary = summary;
+  const std::string summary = view.summary;
+  view = describe(*view::viewParser());
+  view.name = "view";
+  view.summary = summary;
 #else
-  program.subcommands.erase(view);
+  program.subcommands.erase(program.subcommands.begin() + (&view - program.subcommands.data()));
 #endif
   return program;
 }

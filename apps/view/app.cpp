@@ -12,7 +12,7 @@
 #include <set>
 #include <utility>
 
-#include "apps/emscape/common/interrupt.h"
+#include "apps/common/interrupt.h"
 #include "apps/view/panels/theme.h"
 #include "base/stopwatch.h"
 #include "emscape/base/backend.h"

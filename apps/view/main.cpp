@@ -3,7 +3,7 @@
 #include <exception>
 #include <optional>
 
-#include "apps/emscape/common/interrupt.h"
+#include "apps/common/interrupt.h"
 #include "apps/view/app.h"
 #include "base/text/failure_text.h"
 #include "emscape/base/error.h"

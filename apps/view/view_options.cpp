@@ -3,9 +3,9 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 
-#include "apps/emscape/common/arguments.h"
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/value_range.h"
+#include "apps/common/arguments.h"
+#include "apps/common/command.h"
+#include "apps/common/value_range.h"
 #include "apps/view/session/action.h"
 #include "apps/view/view_parser.h"
 #include "emscape/base/error.h"

@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from ._maps import coverage as coverage
     from ._maps import products as products
     from ._picture import render as render
+    from ._program import command as command
     from ._scenario import Scenario as Scenario
     from ._scenario import load as load
     from ._scenario import path_step as path_step
     from ._studies import check as check
-    from ._studies import command as command
     from ._studies import compare as compare
     from ._studies import exposure as exposure
     from ._studies import link as link
@@ -53,8 +53,9 @@ _NAMES = {
     "_field": ("Field", "Solver", "read"),
     "_maps": ("coverage", "products"),
     "_picture": ("render",),
+    "_program": ("command",),
     "_scenario": ("Scenario", "load", "path_step"),
-    "_studies": ("check", "command", "compare", "exposure", "link", "profile", "simulate", "study", "vertical"),
+    "_studies": ("check", "compare", "exposure", "link", "profile", "simulate", "study", "vertical"),
 }
 _MODULES = ("datasets", "distributed")
 _MODULE_OF = {name: module for module, names in _NAMES.items() for name in names}

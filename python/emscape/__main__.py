@@ -1,19 +1,17 @@
-"""The command line: python -m emscape SUBCOMMAND ..."""
+"""The command line: python -m emscape SUBCOMMAND ... is the installed program ``emscape``."""
 
 from __future__ import annotations
 
-import signal
+import os
 import sys
 
+from ._program import program
 
-def main() -> int:
-    """Runs the command line in this process; returns its exit status."""
-    from ._emscape import run_command_line
 
-    # The program's own handlers: the first Ctrl-C shuts down in order, the second ends the program at once.
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    return run_command_line(["emscape", *sys.argv[1:]])
+def main() -> None:
+    """Replaces this process by the program."""
+    os.execv(program(), ["emscape", *sys.argv[1:]])
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import atexit
 import logging
-import sys
 
 from . import _emscape as native
 
@@ -19,5 +18,4 @@ def _log(level: int, message: str) -> None:
 
 
 native.set_log(_log)
-native.set_program_command([sys.executable, "-m", "emscape"])
 atexit.register(native.set_log, None)

@@ -55,11 +55,6 @@ def edit_texts(edits: Mapping[str, Any] | None) -> list[tuple[str, str]]:
     return texts
 
 
-def set_words(edits: Iterable[tuple[str, str]]) -> list[str]:
-    """Edits as options of the command line."""
-    return [word for path, value in edits for word in ("--set", f"{path}={value}")]
-
-
 def utc_time(text: str) -> datetime.datetime | None:
     """The time of a UTC text "YYYY-MM-DDTHH:MM:SS[.fraction][Z]"; None if it has another form, or is empty."""
     whole, _, fraction = text.removesuffix("Z").partition(".")

@@ -1,4 +1,4 @@
-"""The command line's subcommands for what-if analysis and explanation as functions. Results are the command line's JSON."""
+"""What-if analysis and explanations. Results are the JSON of the subcommands of the same names."""
 
 from __future__ import annotations
 
@@ -6,92 +6,28 @@ import json
 import os
 import tempfile
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Union
+from typing import TYPE_CHECKING, Any
 
-from ._arguments import PathName, listed, path_text, utf8
-from ._errors import InputError, UsageError
+from ._arguments import PathName, distinct, listed, path_text
+from ._errors import UsageError
 from ._native import native
 from ._progress import Progress, callback
-from ._scenario import Scenario, Times, _checked, edit_texts, set_words
+from ._scenario import Scenario, Times, edit_texts
+from ._worker import worker_command
 
 if TYPE_CHECKING:
     import xarray
 
 Json = dict[str, Any]
-_Option = Union[str, float, bool, list[Any], None]
 
 
-def command(*arguments: PathName, progress: Progress = None) -> Any:
-    """Runs a subcommand in this process and returns the JSON that ``emscape SUBCOMMAND ... --json`` prints.
-
-    :param arguments: words of the command line, texts or paths: ``command("info", "out/jacksboro_0001.vdb")``. Not "view",
-        whose window is a program of its own: ``python -m emscape view``
-    Raises UsageError for arguments that cannot be parsed, otherwise the Error of the command's exit status. A failed check is a
-    result, not an error.
-    """
-    words = []
-    for argument in arguments:
-        if not isinstance(argument, (str, bytes, os.PathLike)):
-            raise UsageError(f"command: {argument!r} is neither a text nor a path; give each word as an argument of its own")
-        words.append(utf8(argument) if isinstance(argument, str) else path_text(argument))
-    _, text = native.command(words, callback(progress))
-    return json.loads(text) if text.strip() else None
+def _read(text: str) -> Json:
+    result: Json = json.loads(text)
+    return result
 
 
-def _options(options: Mapping[str, _Option]) -> list[str]:
-    """Options of the command line; None, False and empty texts are omitted. A list gives an option per item, because items may
-    have commas."""
-    words: list[str] = []
-    for name, value in options.items():
-        if value is True:
-            words.append("--" + name)
-        elif value is not None and value is not False and value != "":
-            for item in value if isinstance(value, list) else [value]:
-                words.append(f"--{name}=" + (item if isinstance(item, str) else repr(float(item))))
-    return words
-
-
-def _times(scenario: Scenario, times: Times | None) -> str | None:
-    """Times in the command line's syntax, which requires even spacing."""
-    if times is None or isinstance(times, str):
-        return times
-    values = scenario.times(times)
-    if len(values) == 1:
-        return repr(values[0])
-    import numpy as np
-
-    step, rounding = values[1] - values[0], 1e-9
-    dtype = np.asarray(times).dtype
-    if dtype.kind == "f" and dtype.itemsize < 8:  # rounded to fewer digits
-        step, rounding = (values[-1] - values[0]) / (len(values) - 1), 2 * float(np.finfo(dtype).eps)
-    for i, value in enumerate(values):
-        if abs(values[0] + i * step - value) > rounding * max(1.0, abs(values[0]), abs(values[-1])):
-            raise UsageError(f"times: {value} s is not in steps of {step} s; give evenly spaced times or a text BEGIN:END:STEP")
-    return f"{values[0]!r}:{values[-1]!r}:{step!r}"
-
-
-def _subject(scenario: Scenario) -> list[str]:
-    """A scenario as arguments: its file, which must not have changed since it was loaded, and its edits."""
-    edits = scenario._handle.edits
-    current, rows = native.load(scenario.file, edits)
-    # Without the warnings, which the command logs.
-    if _checked(current, [row for row in rows if row[3] == "error"]).hash != scenario.hash:
-        raise InputError("has changed since the scenario was loaded from it", scenario.file)
-    return [scenario.file, *set_words(edits)]
-
-
-def _run(verb: str, scenario: Scenario, options: Mapping[str, _Option], progress: Progress) -> Any:
-    return command(verb, *_subject(scenario), *_options(options), progress=progress)
-
-
-def _run_into_file(verb: str, scenario: Scenario, options: Mapping[str, _Option], progress: Progress) -> Json:
-    """The contents of a JSON file that a subcommand writes."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = os.path.join(folder, verb + ".json")
-        _run(verb, scenario, {**options, "output": file}, progress)
-        with open(file, encoding="utf-8") as stream:
-            result: Json = json.load(stream)
-            return result
+def _times(scenario: Scenario, times: Times | None, usual: str = "") -> list[float]:
+    return scenario.times(usual if times is None else times)
 
 
 def profile(
@@ -116,10 +52,8 @@ def profile(
         numbers = []
     if len(numbers) != 3 or isinstance(to, (str, bytes)):
         raise UsageError(f"to: {to!r} is not (latitude, longitude, height), three numbers")
-    place = ",".join(map(repr, numbers))
-    options: dict[str, _Option] = {"emitter": emitter, "to": place, "agl": agl, "time": time_s, "model": listed(models)}
-    result: Json = _run("profile", scenario, options, None)
-    return result
+    latitude_deg, longitude_deg, height_m = numbers
+    return _read(native.profile(scenario._handle, emitter, (latitude_deg, longitude_deg, height_m), agl, time_s, listed(models)))
 
 
 def link(
@@ -137,10 +71,8 @@ def link(
     :param times: as ``Scenario.times``; None: the scenario's clock
     :return: ``links`` and ``detections``, each with rows by time (powers in dBm, ratios in dB)
     """
-    options: dict[str, _Option] = {"emitter": listed(emitters), "receiver": listed(receivers), "target": listed(targets)}
-    options |= {"times": _times(scenario, times), "model": model}
-    result: Json = _run("link", scenario, options, progress)
-    return result
+    names = (listed(emitters), listed(receivers), listed(targets))
+    return _read(native.link(scenario._handle, *names, _times(scenario, times), model, callback(progress)))
 
 
 def exposure(
@@ -163,9 +95,12 @@ def exposure(
     :param rcs_target: target whose cross section radars see; "none": the one assumed by each radar
     :return: ``rows`` by time (position in deg and m, value of each emitter), ``each`` and ``together`` over all times
     """
-    options: dict[str, _Option] = {"platform": platform, "quantity": quantity, "threshold": threshold, "look": look}
-    options |= {"times": _times(scenario, times), "rcs-target": rcs_target, "backend": backend}
-    return _run_into_file("exposure", scenario, options, progress)
+    times_s = _times(scenario, times)
+    return _read(
+        native.exposure(
+            scenario._handle, platform, quantity, threshold, times_s, look, rcs_target, backend, callback(progress)
+        )
+    )
 
 
 def vertical(
@@ -198,10 +133,22 @@ def vertical(
 
     from ._arrays import udunit_of
 
-    options: dict[str, _Option] = {"emitter": emitter, "azimuth": listed(azimuths_deg), "quantity": quantity}
-    options |= {"threshold": threshold, "time": time_s, "height-axis": height_axis, "blake": blake, "range": range_m}
-    options |= {"max-height": max_height_m, "backend": backend}
-    result = _run_into_file("vertical", scenario, options, progress)
+    result = _read(
+        native.vertical(
+            scenario._handle,
+            emitter,
+            [float(azimuth_deg) for azimuth_deg in listed(azimuths_deg)],
+            quantity,
+            threshold,
+            time_s,
+            height_axis,
+            blake,
+            range_m,
+            max_height_m,
+            backend,
+            callback(progress),
+        )
+    )
     height = next(key for key in result if key.startswith("height_"))
     cuts = result.pop("azimuths")
     ranges, heights = result.pop("range_m"), result.pop(height)
@@ -257,40 +204,26 @@ def compare(
     :param explain: number of explained areas of gain, and of loss
     :return: report.json of the folder: areas in km2, differences, changed areas with the decisive paths
     """
-    options: dict[str, _Option] = {"heights": heights, "products": listed(products), "quantity": quantity}
-    options |= {"threshold": threshold, "times": _times(a, times), "cell": cell_m, "area": area, "crs": crs}
-    options |= {"format": listed(formats), "explain": str(explain) if explain is not None else None, "backend": backend}
     with tempfile.TemporaryDirectory() as folder:
-        options["output"] = path_text(output) if output is not None else os.path.join(folder, "compare")
-        if output is None and not formats:
-            options["format"] = ["cog"]
-        result: Json = command("compare", *_subjects(a, b, folder), *_options(options), progress=progress)
-        return result
-
-
-def _subjects(a: Scenario, b: Scenario, folder: str) -> list[str]:
-    """Two scenarios as arguments of ``compare``, whose --set changes both and whose --set-b changes the second.
-
-    :param folder: for copies of scenarios that the options cannot express
-    """
-    words = _subject(a)
-    _subject(b)
-    common, own = a._handle.edits, list(b._handle.edits)
-    for edit in common:
-        if own[:1] != [edit]:
-            break
-        del own[0]
-    both, _ = native.load(b.file, common + own)
-    if both is None or both.hash != b.hash:
-        words = [os.path.join(folder, name) for name in ("a.yaml", "b.yaml")]
-        a.save(words[0])
-        b.save(words[1])
-        return words
-    if a.file != b.file or not own:
-        words.append(b.file)
-    for path, value in own:
-        words += ["--set-b", f"{path}={value}"]
-    return words
+        return _read(
+            native.compare(
+                a._handle,
+                b._handle,
+                path_text(output) if output is not None else os.path.join(folder, "compare"),
+                heights,
+                distinct(products, "products"),
+                quantity,
+                threshold,
+                _times(a, times, "0"),
+                cell_m,
+                area,
+                crs,
+                listed(formats) or (["cog"] if output is None else []),
+                3 if explain is None else explain,
+                backend,
+                callback(progress),
+            )
+        )
 
 
 def study(
@@ -311,10 +244,8 @@ def study(
     :param edits: of the scenario, applied before those of the variants
     :return: numbers of variants and parts, and the extremes of each measure
     """
-    words = ["study", path_text(file), *set_words(edit_texts(edits))]
-    options: dict[str, _Option] = {"output": path_text(output), "jobs": str(jobs), "resume": resume, "backend": backend}
-    result: Json = command(*words, *_options(options), progress=progress)
-    return result
+    of = (path_text(file), edit_texts(edits), path_text(output))
+    return _read(native.study(*of, jobs, resume, backend, worker_command(*of, backend), callback(progress)))
 
 
 def check(folder: PathName) -> Json:
@@ -322,8 +253,7 @@ def check(folder: PathName) -> Json:
 
     :return: ``datasets`` with the largest difference, tolerance and unit of each, and ``pass``
     """
-    result: Json = command("check", path_text(folder))
-    return result
+    return _read(native.check(path_text(folder)))
 
 
 def simulate(
@@ -337,7 +267,7 @@ def simulate(
     force: bool = False,
     backend: str = "auto",
     progress: Progress = None,
-) -> Any:
+) -> Json:
     """Writes a scenario's field over time as files into a folder.
 
     A folder that holds a series is refused, unless ``resume`` continues the series or ``force`` replaces it.
@@ -346,6 +276,18 @@ def simulate(
     :param times: as ``Scenario.times``; None: the scenario's clock
     :return: what ``emscape simulate --json`` prints
     """
-    options: dict[str, _Option] = {"output": path_text(output), "format": listed(formats), "quantity": listed(quantities)}
-    options |= {"times": _times(scenario, times), "resume": resume, "force": force, "backend": backend}
-    return _run("simulate", scenario, options, progress)
+    if resume and force:
+        raise UsageError("resume and force exclude each other")
+    return _read(
+        native.simulate(
+            scenario._handle,
+            path_text(output),
+            listed(formats),
+            _times(scenario, times),
+            distinct(quantities, "quantities"),
+            resume,
+            force,
+            backend,
+            callback(progress),
+        )
+    )

@@ -1,4 +1,4 @@
-"""Studies on a cluster of Dask: each part is computed by ``python -m emscape study ... --part I/N`` on a worker.
+"""Studies on a cluster of Dask: each part is computed by a process of its own on a worker.
 
 All workers must have access to the folder of the results. Existing parts are not computed again, so the same call continues an
 interrupted study.
@@ -6,22 +6,24 @@ interrupted study.
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
-import sys
 from collections.abc import Mapping
 from typing import Any
 
 from ._arguments import PathName, path_text
 from ._errors import Error, OtherError, UsageError, make
-from ._scenario import edit_texts, set_words
-from ._studies import Json, command
+from ._native import native
+from ._scenario import edit_texts
+from ._studies import Json
+from ._worker import worker_command
 
 
-def _compute_part(arguments: list[str], part: int, parts: int) -> str:
+def _compute_part(file: str, edits: list[tuple[str, str]], folder: str, backend: str, threads: int, part: int) -> str:
     """Runs on a worker. Returns the exit status and messages of a failed part, otherwise an empty text."""
-    words = [sys.executable, "-m", "emscape", *arguments, "--part", f"{part}/{parts}", "--quiet"]
-    result = subprocess.run(words, capture_output=True, text=True)
+    words = [*worker_command(file, edits, folder, backend), str(threads)]
+    result = subprocess.run(words, input=f"{part}\n", capture_output=True, text=True)
     return "" if result.returncode == 0 else f"{result.returncode} {result.stderr.strip()}"
 
 
@@ -44,13 +46,13 @@ def study(
     """
     if parts < 1:
         raise UsageError(f"parts is {parts}, outside the allowed range 1 to the number of variants")
-    arguments = ["study", os.path.abspath(path_text(file)), "-o", os.path.abspath(path_text(output))]
-    arguments += ["--backend", backend, "--threads", str(threads), *set_words(edit_texts(edits))]
-    futures = [client.submit(_compute_part, arguments, part, parts, pure=False) for part in range(1, parts + 1)]
+    of = (os.path.abspath(path_text(file)), edit_texts(edits), os.path.abspath(path_text(output)))
+    native.begin_study(*of, parts)
+    futures = [client.submit(_compute_part, *of, backend, threads, part, pure=False) for part in range(1, parts + 1)]
     failures = [failure for failure in client.gather(futures) if failure]
     if failures:
         raise _error_of(failures[0])
-    merged: Json = command(*arguments, "--merge")
+    merged: Json = json.loads(native.merge_study(*of))
     return merged
 
 

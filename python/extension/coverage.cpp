@@ -3,10 +3,9 @@
 
 #include <cmath>
 
-#include "emscape/base/log.h"
-#include "emscape/playback/frames/compute_target.h"
-#include "emscape/study/maps/area.h"
+#include "playback/frames/open_on_target.h"
 #include "python/extension/module.h"
+#include "report/map_options.h"
 
 namespace emscape::python {
 namespace {
@@ -79,32 +78,25 @@ MapsAndGrid coverage(const ScenarioHandle& handle, const std::string& heights,
   const ProgressSink sink = progressSink(progress);
   {
     const nb::gil_scoped_release unlocked;
-    study::CoverageRequest request;
-    request.heights = study::parseHeights(heights);
-    bool needs_threshold = false;
-    for (const std::string& name : products) {
-      request.products.push_back(study::productNamed(name));
-      needs_threshold = needs_threshold || request.products.back() != study::Product::value;
-    }
-    request.quantity = scenario::quantityFromName(quantity);
-    if (!threshold) threshold = study::defaultThreshold(request.quantity);
-    if (!threshold && needs_threshold) {
-      throw Error(ErrorCode::usage, "a threshold is required: " + quantity + " has no default threshold");
-    }
-    request.threshold = threshold.value_or(0);
-    request.times_s = std::move(times_s);
-    const study::MapArea area =
-        area_text.empty() ? study::areaOf(scenario->region) : study::parseArea(area_text);
-    const double voxel_m = scenario->region.size_m.x / scenario->region.dims.x;
-    grid = study::makeMapGrid(area, cell_m.value_or(std::max(1.0, std::round(voxel_m))), crs);
+    report::MapOptions options;
+    options.heights = heights;
+    options.products = products;
+    options.quantity = quantity;
+    options.threshold = threshold.value_or(NAN);
+    options.times_s = std::move(times_s);
+    options.cell_m = cell_m.value_or(NAN);
+    options.area = area_text;
+    options.crs = crs;
+    const study::CoverageRequest request = report::requestOf(options, scenario->clock);
+    const study::MapArea area = report::areaOf(options, *scenario);
+    grid = *report::gridOf(options, *scenario, area);
     const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
-    const auto open = [&](const ResolvedBackend& choice) {
+    warnings = playback::openOnTarget(backend, [&](const playback::ComputeTarget& target) {
       maps.clear();
       return study::computeCoverage(
-          scenario, terrain, grid, request, playback::ComputeTarget{choice}.fieldOptions(),
+          scenario, terrain, grid, request, target.fieldOptions(),
           [&](study::CoverageMap map) { maps.push_back(std::move(map)); }, sink);
-    };
-    warnings = withBackendFallback(parseBackend(backend), open, logInfo);
+    });
   }
   nb::list described;
   for (study::CoverageMap& map : maps) described.append(describe(std::move(map), grid));

@@ -9,5 +9,5 @@ NB_MODULE(_emscape, module) {
   bindField(module);
   bindCoverage(module);
   bindPicture(module);
-  bindCommand(module);
+  bindStudies(module);
 }

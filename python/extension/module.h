@@ -39,7 +39,7 @@ void bindScenario(nb::module_& module);
 void bindField(nb::module_& module);
 void bindCoverage(nb::module_& module);
 void bindPicture(nb::module_& module);
-void bindCommand(nb::module_& module);
+void bindStudies(nb::module_& module);
 
 /// To be called at the start of work that uses threads or a GPU.
 /// @throws Error (usage) in a process that was forked from one that had called it: neither oneTBB nor CUDA

@@ -259,6 +259,14 @@ std::optional<std::string> scanWarning(const scenario::Scenario& scenario, const
 
 }  // namespace
 
+std::optional<int> targetOn(const scenario::Scenario& scenario, int platform) {
+  const auto found =
+      std::find_if(scenario.targets.begin(), scenario.targets.end(),
+                   [&](const scenario::Target& target) { return target.platform == platform; });
+  if (found == scenario.targets.end()) return std::nullopt;
+  return static_cast<int>(found - scenario.targets.begin());
+}
+
 Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenario,
                          const scenario::TerrainPtr& terrain, const ExposureRequest& request,
                          emfield::FieldOptions options, const ProgressSink& progress) {

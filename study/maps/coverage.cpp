@@ -131,6 +131,18 @@ void requireThreshold(Quantity quantity, double threshold) {
     throw Error(ErrorCode::usage, fmt::format("threshold {} of {} must be between 0 and 1", threshold, name));
 }
 
+double thresholdOf(double threshold, Quantity quantity, const std::string& option) {
+  const scenario::QuantityInfo& info = scenario::info(quantity);
+  if (std::isnan(threshold)) {
+    if (const std::optional<double> usual = defaultThreshold(quantity)) return *usual;
+    const std::string unit = info.unit;
+    throw Error(ErrorCode::usage, fmt::format("{}: quantity '{}' has no default threshold; give one{}",
+                                              option, info.name, unit.empty() ? "" : " in " + unit));
+  }
+  requireThreshold(quantity, threshold);
+  return threshold;
+}
+
 void checkRequest(const CoverageRequest& request, const scenario::Scenario& scenario) {
   const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
   if (request.heights.empty()) throw Error(ErrorCode::usage, "a map needs a height");

@@ -8,6 +8,7 @@
 
 #include "base/files/unfinished_file.h"
 #include "base/files/whole_file.h"
+#include "base/text/csv_cell.h"
 #include "document/schema_check.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/gdal_messages.h"
@@ -143,13 +144,6 @@ void writeParameter(NetcdfWriter& writer, const std::string& name, const std::st
 }
 
 }  // namespace
-
-std::string csvCell(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string cell = "\"";
-  for (const char c : text) cell += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return cell + "\"";
-}
 
 std::string csvNumber(double value) {
   return std::isnan(value) ? "" : fmt::format("{}", value);

@@ -8,8 +8,6 @@
 
 namespace emscape::study {
 
-/// A text as a cell of a CSV file (RFC 4180), in quotes if necessary.
-std::string csvCell(const std::string& text);
 /// The shortest text from which the number is read back; empty for NaN.
 std::string csvNumber(double value);
 

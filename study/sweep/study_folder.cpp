@@ -17,6 +17,7 @@
 #include "base/files/json_writing.h"
 #include "base/files/unfinished_file.h"
 #include "base/files/whole_file.h"
+#include "base/text/csv_cell.h"
 #include "emscape/base/error.h"
 #include "study/sweep/part_rows.h"
 #include "study/sweep/result_files.h"

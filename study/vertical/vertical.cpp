@@ -10,6 +10,8 @@
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "emscape/study/maps/area.h"
+#include "emscape/study/maps/coverage.h"
 #include "emscape/volume/dense_volume.h"
 #include "study/files/contour_lines.h"
 
@@ -251,6 +253,31 @@ double defaultRange_m(const scenario::Scenario& scenario, const VerticalRequest&
     }
   }
   return std::max(range_m > 0 ? range_m : farthest_m, VerticalRequest::kMinRange_m);
+}
+
+VerticalRequest withDefaults(VerticalRequest request, const scenario::Scenario& scenario, bool has_quantity,
+                             const std::string& option) {
+  const bool is_radar =
+      scenario.emitters[static_cast<std::size_t>(request.emitter)].kind == scenario::EmitterKind::radar;
+  if (!has_quantity) {
+    request.quantity =
+        is_radar ? scenario::Quantity::detection_probability : scenario::Quantity::power_density_dbwm2;
+  }
+  request.threshold = thresholdOf(request.threshold, request.quantity, option);
+  if (std::isnan(request.range_m)) request.range_m = defaultRange_m(scenario, request);
+  const scenario::Region& region = scenario.region;
+  const bool is_above_ground = request.axis == emfield::HeightReference::ground || request.smooth_earth;
+  const double bottom_m = is_above_ground ? 0 : region.origin.height_msl_m;
+  if (std::isnan(request.max_height_m)) request.max_height_m = bottom_m + region.size_m.z;
+  return request;
+}
+
+scenario::TerrainPtr loadVerticalTerrain(const scenario::Scenario& scenario, const VerticalRequest& request) {
+  const scenario::Emitter& emitter = scenario.emitters[static_cast<std::size_t>(request.emitter)];
+  const scenario::Platform& platform = scenario.platforms[static_cast<std::size_t>(emitter.platform)];
+  const scenario::SitePosition site = scenario::pointAt(platform, request.time_s).position;
+  return loadTerrain(scenario,
+                     circularArea({site.latitude_deg, site.longitude_deg, 1.001 * request.range_m + 200}));
 }
 
 VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>& scenario,

@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "apps/emscape/common/command_line.h"
-#include "apps/emscape/common/value_range.h"
+#include "apps/bench/bench.h"
+#include "apps/common/value_range.h"
+#include "apps/emscape/subcommands.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace emscape::test {
@@ -26,10 +27,15 @@ std::vector<std::string> argumentsOf(const std::string& bytes) {
 
 void parseCommandLine(const std::string& bytes) {
   constexpr int kInputsPerParser = 1000;
-  static std::unique_ptr<app::CommandLineCheck> check;
+  static std::unique_ptr<app::CommandLine> emscape, benchmarks;
   static int inputs = 0;
-  if (inputs++ % kInputsPerParser == 0) check = std::make_unique<app::CommandLineCheck>();
-  check->parse(argumentsOf(bytes));
+  if (inputs++ % kInputsPerParser == 0) {
+    emscape = std::make_unique<app::CommandLine>(app::addSubcommands);
+    benchmarks = std::make_unique<app::CommandLine>(app::addBench);
+  }
+  const std::vector<std::string> arguments = argumentsOf(bytes);
+  const bool is_bench = !arguments.empty() && arguments.front() == "bench";
+  (is_bench ? benchmarks : emscape)->parse(arguments);
 }
 
 const FuzzTargetsAdded added({

@@ -4,11 +4,13 @@
 
 #include <map>
 
-#include "apps/emscape/common/command_line.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "emscape/study/maps/area.h"
+#include "emscape/study/maps/coverage.h"
 #include "emscape/study/maps/map_grid.h"
 #include "emscape/study/maps/products.h"
 #include "emscape/study/report/coverage_folder.h"
+#include "emscape/study/report/map_folder.h"
 #include "study/sweep/candidate_sites.h"
 #include "study/sweep/part_journal.h"
 #include "study/sweep/polygon_mask.h"
@@ -47,9 +49,28 @@ void readPartRecord(const fs::path& file, const std::string& bytes) {
 
 /// Writes the output of `emscape coverage` for a small map into FOLDER/map.
 void writeMaps(const fs::path& folder) {
-  app::commandResult({"coverage", shippedScenario("quick.yaml"), "--quantity", "power_density_dbwm2",
-                      "--threshold", "-60", "--cell", "5000", "--format", "cog", "-o", folder / "map"},
-                     {});
+  const auto scenario = scenario::loadScenario(shippedScenario("quick.yaml"));
+  study::CoverageRequest request;
+  request.heights = study::parseHeights("agl:150");
+  request.products = {study::Product::covered, study::Product::value};
+  request.quantity = scenario::Quantity::power_density_dbwm2;
+  request.threshold = -60;
+  request.times_s = {0};
+  const auto grid = std::make_shared<const study::MapGrid>(
+      study::makeMapGrid(study::areaOf(scenario->region), 5000, "utm"));
+  study::MapFolder maps(folder / "map",
+                        {"coverage",
+                         "Coverage of " + scenario->name,
+                         {scenario},
+                         nullptr,
+                         grid,
+                         request.quantity,
+                         request.threshold,
+                         request.times_s,
+                         request.heights},
+                        {"cog"});
+  maps.finish(study::computeCoverage(scenario, nullptr, *grid, request, {},
+                                     [&](const study::CoverageMap& map) { maps.add(map); }));
 }
 
 void readMaps(const fs::path& file, const std::string&) {

@@ -69,7 +69,7 @@ expected |= {f"share/doc/emscape/{name}" for name in (
     "README.md", "CHANGELOG.md", "LICENSE", "emscape.cdx.json", "copyright", "changelog.Debian.gz", "docs/models.md",
     "docs/images/profile.png")}
 expected |= {"lib/emscape/emscape_vdb.so"}
-expected |= {f"bin/{name}" for name in ("emscape", "emscape-view") if (build / "bin" / name).exists()}
+expected |= {f"bin/{name}" for name in ("emscape", "emscape-bench", "emscape-view") if (build / "bin" / name).exists()}
 check(expected <= files, f"missing: {sorted(expected - files)}")
 check(not {file for file in files if file.startswith(("include", "lib")) and not file.startswith("lib/emscape/")}, "emscape has files of libemscape-dev")
 

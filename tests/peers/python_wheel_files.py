@@ -19,9 +19,10 @@ with tempfile.TemporaryDirectory() as temporary:
         quantities = field.quantities[:1]
         field.write(folder / name, quantities)
         assert np.array_equal(em.read(folder / name).numpy(), field.numpy(), equal_nan=True), name
-    em.command(
-        "coverage", "scenarios/jacksboro.yaml", "-o", str(folder / "maps"), "--heights", "agl:100", "--cell", "1000",
-        "--products", "value,covered,best", "--times", "70", "--format", "cog,png,gpkg,kmz,czml,nc", "--quiet",
+    louder = scenario.with_set({"emitters.jammer.power_w": 500})
+    em.compare(
+        scenario, louder, folder / "maps", heights="agl:100", cell_m=1000.0, products=["covered", "value"], times=70,
+        formats=["cog", "png", "gpkg", "kmz", "czml", "nc"],
     )
     formats = {file.suffix for file in (folder / "maps" / "maps").iterdir()}
     assert {".tif", ".png", ".gpkg", ".kmz", ".czml", ".nc"} <= formats, formats

@@ -4,7 +4,7 @@
 
 #include "base/files/whole_file.h"
 #include "emscape/base/log.h"
-#include "emscape/study/maps/coverage.h"
+#include "emscape/study/report/map_folder.h"
 #include "render/annotate/plot.h"
 
 namespace emscape::app {
@@ -43,17 +43,29 @@ void addThresholdOption(CLI::App& command, double& threshold) {
       ->default_str("");
 }
 
-double thresholdOf(double threshold, scenario::Quantity quantity) {
-  const scenario::QuantityInfo& info = scenario::info(quantity);
-  if (std::isnan(threshold)) {
-    if (const std::optional<double> usual = study::defaultThreshold(quantity)) return *usual;
-    const std::string unit = info.unit;
-    throw Error(ErrorCode::usage,
-                fmt::format("--threshold: quantity '{}' has no default threshold; give one{}", info.name,
-                            unit.empty() ? "" : " in " + unit));
-  }
-  study::requireThreshold(quantity, threshold);
-  return threshold;
+void addMapOptions(CLI::App& command, report::MapOptions& options) {
+  options.prefix = "--";
+  command.add_option(
+      "--heights", options.heights,
+      "Heights in metres above ground (agl:) and above mean sea level (msl:): agl:30,150;msl:500:3000:500");
+  addListOption(command, "--products", options.products, "Products, with commas between them");
+  command.add_option("--quantity", options.quantity, "Quantity to map; see docs/scenario-format.md");
+  addThresholdOption(command, options.threshold);
+  command.add_option(
+      "--times", options.times,
+      "BEGIN:END:STEP, BEGIN:END (in steps of the scenario) or T, in seconds since the scenario's epoch");
+  command.add_option("--cell", options.cell_m, "Side of a pixel (m); default: the scenario's voxels")
+      ->default_str("");
+  command.add_option(
+      "--area", options.area,
+      "LATITUDE,LONGITUDE,RADIUS_M or bbox:WEST,SOUTH,EAST,NORTH (deg); default: the box around the region");
+  command.add_option(
+      "--crs", options.crs,
+      "Projection: utm (zone of the area's middle), local (azimuthal equidistant) or EPSG:NUMBER");
+  std::vector<std::string> formats;
+  for (const study::MapFormat& format : study::mapFormats()) formats.emplace_back(format.name);
+  addListOption(command, "--format", options.formats, "Formats of maps, with commas between them")
+      ->check(CLI::IsMember(formats));
 }
 
 }  // namespace emscape::app

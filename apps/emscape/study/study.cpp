@@ -8,22 +8,17 @@
 #include <iostream>
 #include <memory>
 
-#include "apps/emscape/common/command.h"
-#include "apps/emscape/common/console.h"
-#include "apps/emscape/common/interrupt.h"
-#include "apps/emscape/common/output_files.h"
-#include "apps/emscape/study/study_jobs.h"
-#include "apps/emscape/study/study_parts.h"
-#include "apps/emscape/study/study_plan.h"
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
 #include "apps/emscape/study/study_slurm.h"
-#include "apps/emscape/version.h"
+#include "apps/emscape/subcommands.h"
 #include "base/files/folder_lock.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
-#include "emscape/study/maps/map.h"
-#include "study/sweep/study_folder.h"
-#include "study/sweep/study_report.h"
+#include "report/output_files.h"
+#include "report/study_results.h"
+#include "study/sweep/part_processes.h"
 
 namespace emscape::app {
 namespace {
@@ -73,70 +68,29 @@ void checkAllThere(const study::StudyFolder& folder, const std::vector<int>& mis
                   fmt::join(missing.begin(), named, ", "), missing.size() > kNamed ? ", ..." : ""));
 }
 
-int mergeParts(const LoadedStudy& loaded, study::StudyFolder& folder, bool partial,
-               const GlobalOptions& global) {
-  const std::vector<int> missing = folder.missingParts();
-  if (!partial) checkAllThere(folder, missing);
-  const study::StudyResults results = folder.read();
-  std::vector<std::string> warnings(results.warnings.begin(), results.warnings.end());
-  if (results.machines.size() > 1) {
-    std::string machines;
-    for (const std::string& machine : results.machines) machines += (machines.empty() ? "" : "; ") + machine;
-    warnings.push_back("parts were computed on different processors, which may differ in the last digit: " +
-                       machines);
-  }
-  folder.writeResults(results);
-  const auto report =
-      study::writeStudyReport(folder.path() / "report.html", loaded.spec, loaded.plan, results);
-  logWarnings(warnings);
+int merge(const study::LoadedStudy& loaded, const study::StudyFolder& folder, bool partial,
+          const GlobalOptions& global) {
+  if (!partial) checkAllThere(folder, folder.missingParts());
+  const report::StudyReport report = report::mergeParts(loaded, folder);
+  for (const std::string& warning : report.warnings) logWarning(warning);
   if (global.json) {
-    Json json{{"study", loaded.spec.name},        {"hash", loaded.spec.hash},
-              {"folder", folder.path().string()}, {"variants", loaded.spec.variants.count()},
-              {"parts", folder.parts()},          {"missing_parts", missing}};
-    json["warnings"] = joinedWarnings(warnings);
-    json["best"] = Json::array();
-    for (const study::MeasureSummary& summary : report.measures) {
-      json["best"].push_back({{"measure", summary.name},
-                              {"unit", summary.unit},
-                              {"max", number(summary.max)},
-                              {"max_variant", summary.max_variant},
-                              {"min", number(summary.min)},
-                              {"min_variant", summary.min_variant}});
-    }
-    if (!report.sites.empty()) json["sites"] = {{"chosen", report.sites}, {"value", report.sites_value}};
-    printJson(json);
-    return 0;
+    printJson(report::toJson(report));
+  } else {
+    printResult(report::studyText(report));
   }
-  for (const study::MeasureSummary& summary : report.measures) {
-    if (std::isnan(summary.max)) {
-      print("{:<24} no value in any variant\n", summary.name);
-      continue;
-    }
-    const std::string unit = summary.unit.empty() ? "" : " " + summary.unit;
-    print("{:<24} {} to {}{}; the largest: {}\n", summary.name, study::figureText(summary.min, summary.unit),
-          study::figureText(summary.max, summary.unit), unit,
-          study::describeVariant(loaded.spec, summary.max_variant));
-  }
-  if (!report.sites.empty()) {
-    std::string names;
-    for (const std::string& site : report.sites) names += (names.empty() ? "" : ", ") + site;
-    const std::string unit = unitOf(loaded.spec.measures[loaded.spec.sites->measure]);
-    print("sites: {}: {} {}\n", names, study::figureText(report.sites_value, unit), unit);
-  }
-  print("{}: results.csv, results.nc, report.html\n", folder.path().string());
   return 0;
 }
 
 /// Computes the parts whose numbers are read from standard input. The parent process reports that it was
 /// stopped.
-int work(const LoadedStudy& loaded, study::StudyFolder& folder, const GlobalOptions& global) {
+int work(const study::LoadedStudy& loaded, const study::StudyFolder& folder, const GlobalOptions& global) {
   try {
-    PartComputer computer(loaded, folder, global);
-    for (int part; std::cin >> part;) {
-      computer.compute(part, {});
+    const auto isComplete = [](int part) {
       print("{}\n", part);
       finishResult();
-    }
+    };
+    study::PartComputer(loaded, folder, global.backend)
+        .serve(std::cin, isComplete, [](const std::string&, double) { stopIfInterrupted(); });
     return 0;
   } catch (const playback::Stopped&) {
     return 128 + caughtSignal();
@@ -150,15 +104,15 @@ void checkStudyOutputs(const StudyCommand& command, const study::StudySpec& spec
   for (const std::string& name : study::StudyFolder::files()) {
     results.push_back((std::filesystem::path(command.folder) / name).string());
   }
-  std::vector<NamedFile> outputs = outputsOf("--output", results);
+  std::vector<report::NamedFile> outputs = report::outputsOf("--output", results);
   if (!command.slurm.script.empty()) {
     outputs.push_back({"--slurm", command.slurm.script});
     outputs.push_back({"--slurm", mergeScriptOf(command.slurm)});
   }
-  std::vector<NamedFile> inputs{{"the study", command.study}};
+  std::vector<report::NamedFile> inputs{{"the study", command.study}};
   for (const std::string& file : spec.files) inputs.push_back({"a file that the study names", file});
-  checkOutputs(outputs, inputs, {spec.base});
-  checkReports(command.folder, {"report.html"});
+  report::checkOutputs(outputs, inputs, {spec.base});
+  report::checkReports(command.folder, {"report.html"}, "--output");
 }
 
 /// The files that --keep names; empty if it was not given.
@@ -167,6 +121,7 @@ std::optional<study::KeptFiles> keptFiles(const StudyCommand& command) {
   return command.kept == "maps" ? study::KeptFiles::maps : study::KeptFiles::volumes;
 }
 
+/// @return the arguments of a process that computes parts
 std::vector<std::string> workerArguments(const StudyCommand& command, const GlobalOptions& global,
                                          int threads) {
   std::vector<std::string> arguments{
@@ -179,47 +134,59 @@ std::vector<std::string> workerArguments(const StudyCommand& command, const Glob
   return arguments;
 }
 
+int runPlan(const study::LoadedStudy& loaded, const StudyCommand& command, double loading_s,
+            const GlobalOptions& global) {
+  const int parts =
+      command.slurm.chunks > 0 ? command.slurm.chunks : study::usualParts(loaded.spec.variants.count());
+  const report::PlanReport plan = report::planReport(loaded, parts, command.jobs, loading_s, global.backend,
+                                                     [](const std::string&, double) { stopIfInterrupted(); });
+  if (global.json) {
+    printJson(report::toJson(plan));
+  } else {
+    printResult(report::planText(plan));
+  }
+  return 0;
+}
+
+int runPart(const study::LoadedStudy& loaded, study::StudyFolder& folder, const StudyCommand& command,
+            const GlobalOptions& global) {
+  const PartNumber number = parsePart(command.part);
+  study::checkParts(number.parts, loaded.spec.variants.count());
+  folder.begin(number.parts, keptFiles(command));
+  study::PartComputer(loaded, folder, global.backend).compute(number.part, stoppingProgress(global));
+  if (global.json) printJson({{"part", number.part}, {"parts", number.parts}});
+  return 0;
+}
+
 int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   Stopwatch watch;
-  const int threads = global.threads > 0 ? global.threads : allowedProcessors();
+  const int threads = global.threads > 0 ? global.threads : study::allowedProcessors();
   setThreadLimit(threads);
   if (command.worker) setLogSink([](LogLevel, const std::string&) {});  // the parent process logs
   if (!command.plan && command.folder.empty()) {
     throw Error(ErrorCode::usage, "--output is required, except with --plan");
   }
-  const LoadedStudy loaded(command.study, command.edits, !command.worker);
-  if (command.plan) {
-    const int parts =
-        command.slurm.chunks > 0 ? command.slurm.chunks : study::usualParts(loaded.spec.variants.count());
-    return showPlan(loaded, parts, command.jobs, watch.lap_ms() / 1000, global);
-  }
+  const study::LoadedStudy loaded(command.study, command.edits, !command.worker);
+  if (command.plan) return runPlan(loaded, command, watch.lap_ms() / 1000, global);
   checkStudyOutputs(command, loaded.spec);
-  study::StudyFolder folder(command.folder, loaded.spec, loaded.plan, kVersion);
+  study::StudyFolder folder = loaded.folder(command.folder);
   const std::optional<int> planned = folder.partsOfManifest();
   const std::size_t variants = loaded.spec.variants.count();
-  if (!command.part.empty()) {
-    const PartNumber number = parsePart(command.part);
-    checkParts(number.parts, variants);
-    folder.begin(number.parts, keptFiles(command));
-    PartComputer(loaded, folder, global).compute(number.part, progressSink(global));
-    if (global.json) printJson({{"part", number.part}, {"parts", number.parts}});
-    return 0;
-  }
+  if (!command.part.empty()) return runPart(loaded, folder, command, global);
   const int parts = planned                    ? *planned
                     : command.slurm.chunks > 0 ? command.slurm.chunks
                                                : study::usualParts(variants);
-  checkParts(parts, variants);
-  if (!command.slurm.script.empty()) {
-    folder.begin(parts, keptFiles(command));
-    return writeSlurmJobs(command.slurm, workerArguments(command, global, 0), parts, global);
-  }
-  if (command.merge && !planned) {
+  study::checkParts(parts, variants);
+  if (command.merge && !planned && command.slurm.script.empty()) {
     throw Error(ErrorCode::bad_input, command.folder + ": has no manifest.json: no part was computed");
   }
   folder.begin(parts, keptFiles(command));
+  if (!command.slurm.script.empty()) {
+    return writeSlurmJobs(command.slurm, workerArguments(command, global, 0), parts, global);
+  }
   if (command.worker) return work(loaded, folder, global);
   const FolderLock lock(folder.path(), ".study.lock");
-  if (command.merge) return mergeParts(loaded, folder, command.partial, global);
+  if (command.merge) return merge(loaded, folder, command.partial, global);
 
   const std::vector<int> missing = folder.missingParts();
   if (!command.resume && static_cast<int>(missing.size()) < parts) {
@@ -230,16 +197,12 @@ int runStudy(const StudyCommand& command, const GlobalOptions& global) {
   }
   logInfo(fmt::format("{} variants of {} in {} parts, {} of them to compute", variants,
                       loaded.spec.base->name, parts, missing.size()));
-  if (command.jobs > 1 && missing.size() > 1) {
-    const int each = std::max(1, threads / command.jobs);
-    computeInProcesses(
-        missing, command.jobs, workerArguments(command, global, each),
-        [&](int part) { return folder.journalBytes(part); }, progressSink(global));
-  } else if (!missing.empty()) {
-    PartComputer computer(loaded, folder, global);
-    computeParts(computer, missing, progressSink(global));
-  }
-  return mergeParts(loaded, folder, false, global);
+  study::PartWorkers workers{command.jobs, {"/proc/self/exe"}};
+  const std::vector<std::string> arguments =
+      workerArguments(command, global, std::max(1, threads / command.jobs));
+  workers.command.insert(workers.command.end(), arguments.begin(), arguments.end());
+  study::computeParts(loaded, folder, missing, global.backend, workers, stoppingProgress(global));
+  return merge(loaded, folder, false, global);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <memory>
 #include <regex>
 
-#include "apps/emscape/common/console.h"
+#include "apps/common/console.h"
 #include "base/files/whole_file.h"
 #include "base/text/shell_word.h"
 #include "emscape/base/error.h"

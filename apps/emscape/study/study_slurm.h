@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/emscape/common/command.h"
+#include "apps/common/command.h"
 
 namespace emscape::app {
 

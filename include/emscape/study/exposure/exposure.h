@@ -77,6 +77,9 @@ struct Exposure {
   std::vector<std::string> warnings;
 };
 
+/// The first target that a platform carries; none: it carries none.
+std::optional<int> targetOn(const scenario::Scenario& scenario, int platform);
+
 /// Computes the values along the track with the field's functions: each equals that of `emscape profile` at
 /// the platform's position. The platform's radars and transmitters are left out; its jammers are left out as
 /// emitters, but jam the radars.

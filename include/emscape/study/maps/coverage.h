@@ -37,6 +37,9 @@ struct CoverageMap : Map {
 std::optional<double> defaultThreshold(scenario::Quantity quantity);
 /// @throws Error (usage) for a threshold that is not finite, or of a probability not between 0 and 1
 void requireThreshold(scenario::Quantity quantity, double threshold);
+/// The threshold, or the default of the quantity. @param threshold  NaN: none  @param option  its name
+/// @throws Error (usage) that names the option if there is neither; as requireThreshold()
+double thresholdOf(double threshold, scenario::Quantity quantity, const std::string& option);
 
 /// Receives a finished map, on the thread that computes.
 using MapSink = std::function<void(CoverageMap)>;

@@ -76,6 +76,16 @@ struct VerticalDiagram {
 /// corner.
 double defaultRange_m(const scenario::Scenario& scenario, const VerticalRequest& request);
 
+/// Fills what is NaN: the threshold (thresholdOf()), the range (defaultRange_m()), and the height, with that
+/// of the region.
+/// @param has_quantity  false: detection_probability of a radar, power_density_dbwm2 of another emitter
+/// @param option        name of the threshold, for the message
+/// @throws Error (usage) as thresholdOf() does
+VerticalRequest withDefaults(VerticalRequest request, const scenario::Scenario& scenario, bool has_quantity,
+                             const std::string& option);
+/// The terrain of a diagram; null: a smooth earth. @throws Error (bad_input)
+scenario::TerrainPtr loadVerticalTerrain(const scenario::Scenario& scenario, const VerticalRequest& request);
+
 /// Computes a diagram with the functions of the field: a value equals that of `emscape profile` at its point,
 /// with the active jammers and the radar's beam on the target (RadarAim::target).
 /// @param terrain  over the whole diagram (circularArea); null: a smooth earth

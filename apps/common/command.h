@@ -1,0 +1,62 @@
+/// Global options, and options that several subcommands have.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/common/command_line.h"
+#include "emscape/base/error.h"
+#include "emscape/playback/pictures/painter.h"
+#include "emscape/render/scene/cut_plane.h"
+#include "emscape/render/scene/render_settings.h"
+#include "emscape/scenario/model/edit.h"
+
+namespace emscape::app {
+
+/// Options that every subcommand takes, before or after its name.
+struct GlobalOptions {
+  std::string backend = "auto";
+  int threads = 0;  ///< 0: one per core
+  bool json = false;
+  bool quiet = false;
+};
+
+/// Adds an option with several values, separated by commas, since a word after a blank may be the
+/// subcommand's input.
+inline CLI::Option* addListOption(CLI::App& command, const std::string& name,
+                                  std::vector<std::string>& values, const std::string& description) {
+  return command.add_option(name, values, description)->delimiter(',')->allow_extra_args(false);
+}
+
+/// Adds an option with names of a scenario's items: separated by commas, and it may be given several times,
+/// for names that contain a comma; see namedIndices().
+inline CLI::Option* addNamesOption(CLI::App& command, const std::string& name,
+                                   std::vector<std::string>& values, const std::string& description) {
+  return command.add_option(name, values, description)->allow_extra_args(false);
+}
+
+/// The check of an option that is a setting of pictures.
+inline CLI::Range within(const render::SettingLimits& limits) {
+  return {limits.min, limits.max};
+}
+
+/// The option that a hint suggests, as " (...)"; empty for Hint::none.
+std::string optionText(Hint hint);
+
+/// Adds --set PATH=VALUE, which may be given several times. Parsing it throws Error (usage) for a text
+/// without '='.
+void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits, const std::string& name = "--set",
+                  const std::string& what = "changes a value of the scenario");
+
+/// Adds --compare original|FILE. @param what  result of the command, for the help
+void addCompareOption(CLI::App& command, std::string& compare, const std::string& what);
+/// Adds --plane, which may be given several times and replaces the contents of `planes`. Parsing it throws
+/// Error (usage) for a text that is not a plane and for too many planes.
+void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes);
+
+/// Adds --mesh, --cells, --cell-rasterizer, --cell-order and --cell-perspective, for pictures.
+/// Parsing them throws Error (usage).
+void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& cells);
+
+}  // namespace emscape::app

@@ -1,0 +1,173 @@
+#include "apps/common/command_line.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <sstream>
+#include <string>
+
+#include "apps/common/arguments.h"
+#include "apps/common/command.h"
+#include "apps/common/components.h"
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
+#include "base/text/failure_text.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+
+namespace emscape::app {
+namespace {
+
+constexpr const char* kFooter = R"(
+Examples:
+  emscape validate scenarios/jacksboro.yaml
+  emscape simulate scenarios/jacksboro.yaml -o out --format vdb,vti --times 0:10:0.5
+  emscape render scenarios/jacksboro.yaml -o jacksboro.mp4 --size 1280x720
+  emscape info out/jacksboro_0001.vdb --json
+
+Exit status: 0 done, 1 another error, 2 usage, 3 bad input, 4 device, 5 a check failed,
+128 + N stopped by signal N (130 after Ctrl-C; finished files are kept).)";
+
+void addGlobalOptions(CLI::App& app, GlobalOptions& global) {
+  app.add_option("--backend", global.backend, "Processor: auto, cpu or cuda")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}))
+      ->capture_default_str();
+  app.add_option("--threads", global.threads, "Threads to use; 0: one per core")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app.add_flag("--json", global.json, "Print only the result, as JSON, on standard output");
+  app.add_flag("--quiet,-q", global.quiet, "Print only warnings and errors, no progress or messages");
+}
+
+/// To be called after the global options are added, since it depends on --json.
+void addLicences(CLI::App& app, const GlobalOptions& global) {
+  const auto print_licences = [&global] {
+    throw CLI::CallForVersion(global.json ? billOfMaterials().dump(2) : licencesText(), 0);
+  };
+  app.add_flag_callback("--licences", print_licences,
+                        "Print the licences of Emscape and of all that is linked, and exit; with --json as a "
+                        "CycloneDX bill of materials");
+}
+
+}  // namespace
+
+std::string optionText(Hint hint) {
+  switch (hint) {
+    case Hint::none:
+      break;
+    case Hint::allow_missing_terrain:
+      return " (--allow-missing-terrain draws holes)";
+  }
+  return "";
+}
+
+namespace {
+
+int fail(ErrorCode code, const std::string& message) {
+  printMessage("emscape: error: {}\n", message);
+  return static_cast<int>(code);
+}
+
+int run(const Action& action) {
+  try {
+    const int status = action();
+    finishResult();
+    return status;
+  } catch (const playback::Stopped&) {
+    printMessage("emscape: stopped by signal {}; finished files are kept\n", caughtSignal());
+    return 128 + caughtSignal();
+  } catch (const Error& error) {
+    return fail(error.code(), error.what() + optionText(error.hint()));
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::other, "out of memory; fewer voxels, pixels, emitters or times take less");
+  } catch (const std::exception& error) {
+    return fail(ErrorCode::other, failureText(error));
+  } catch (...) {
+    return fail(ErrorCode::other, "unknown exception");
+  }
+}
+
+/// Parses the command line; returns an exit status if there is nothing to run.
+/// @param words  reversed, as CLI11 takes them
+int parseAndReport(CLI::App& app, std::vector<std::string> words) {
+  try {
+    app.parse(std::move(words));
+    checkValues(app);
+    return -1;
+  } catch (const CLI::Success& help) {
+    std::ostringstream text;
+    app.exit(help, text, text);
+    printResult(text.str());
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    printMessage("emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n",
+                 messageOf(app, error));
+    return static_cast<int>(ErrorCode::usage);
+  }
+}
+
+}  // namespace
+
+struct CommandLine::Impl {
+  CLI::App app{
+      "Computes the electromagnetic environment of a scenario as a volume that changes with time, and shows "
+      "it.",
+      "emscape"};
+  GlobalOptions global;
+  Action action;
+};
+
+CommandLine::CommandLine(const AddSubcommands& addSubcommands) : impl_(std::make_unique<Impl>()) {
+  CLI::App& app = impl_->app;
+  app.footer(kFooter);
+  app.set_version_flag("--version", std::function<std::string()>(versionText),
+                       "Print version, compiler, instruction sets and GPU, and exit");
+  app.require_subcommand(1);
+  app.option_defaults()->always_capture_default();
+  addGlobalOptions(app, impl_->global);
+  addLicences(app, impl_->global);
+  addSubcommands(app, impl_->global, impl_->action);
+  readWholeNumbersAsDecimal(app);
+}
+CommandLine::~CommandLine() = default;
+
+const CLI::App& CommandLine::parser() const {
+  return impl_->app;
+}
+
+void CommandLine::parse(const std::vector<std::string>& arguments) {
+  try {
+    impl_->app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // reversed for CLI11
+    checkValues(impl_->app);
+  } catch (const CLI::Success&) {
+    throw Error(ErrorCode::usage, "help and version are texts of the program, without a result");
+  } catch (const CLI::ParseError& error) {
+    throw Error(ErrorCode::usage, messageOf(impl_->app, error));
+  }
+}
+
+int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& addSubcommands) {
+  openStandardStreams();
+  return run([&] {
+    CommandLine line(addSubcommands);
+    CommandLine::Impl& parsed = *line.impl_;
+    if (const int status = parseAndReport(parsed.app, {words.rbegin(), words.rend()}); status >= 0)
+      return status;
+    installLog(parsed.global);
+    setThreadLimit(parsed.global.threads);
+    handleSignals();
+    return parsed.action();
+  });
+}
+
+void runProgram(const std::vector<std::string>& words, const AddSubcommands& addSubcommands) {
+  const int status = runCommandLine(words, addSubcommands);
+  if (status == 0) std::exit(0);
+  // After a netCDF file could not be written to a full disk, HDF5 crashes in its exit handler. Nothing else
+  // is left to do here.
+  std::fflush(nullptr);
+  std::_Exit(status);
+}
+
+}  // namespace emscape::app

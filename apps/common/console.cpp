@@ -1,0 +1,144 @@
+#include "apps/common/console.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <system_error>
+
+#include "apps/common/interrupt.h"
+#include "base/files/json_writing.h"
+#include "emscape/base/error.h"
+#include "emscape/base/log.h"
+
+namespace emscape::app {
+namespace {
+
+constexpr std::chrono::seconds kProgressInterval(10);
+
+std::mutex console_mutex;
+std::string shown_line;  // the progress line on the screen; empty if there is none
+
+/// The text that erases the progress line.
+std::string clearLine() {
+  return shown_line.empty() ? "" : "\r\033[K";
+}
+
+[[noreturn]] void failWriting(int error_number) {
+  throw Error(ErrorCode::other, "standard output: cannot write the result: " +
+                                    std::generic_category().message(error_number == 0 ? EIO : error_number));
+}
+
+std::string duration(double seconds) {
+  const int whole = static_cast<int>(seconds + 0.5);
+  return whole < 3600 ? fmt::format("{}:{:02}", whole / 60, whole % 60)
+                      : fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
+}
+
+}  // namespace
+
+void installLog(const GlobalOptions& global) {
+  const bool quiet = global.quiet;
+  setLogSink([quiet](LogLevel level, const std::string& message) {
+    if (level == LogLevel::debug || (quiet && level == LogLevel::info)) return;
+    std::lock_guard<std::mutex> lock(console_mutex);
+    writeMessage(fmt::format("{}emscape: {}{}\n{}", clearLine(),
+                             level == LogLevel::warning ? "warning: " : "", message, shown_line));
+  });
+}
+
+void openStandardStreams() {
+  // Opened for the opposite direction, so that reading or writing fails, and so that the next open() gets
+  // another number.
+  for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
+    static_cast<void>(::open("/dev/null", descriptor == STDIN_FILENO ? O_WRONLY : O_RDONLY));
+  }
+}
+
+void printResult(const std::string& text) {
+  errno = 0;
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size()) failWriting(errno);
+}
+
+void printJson(const Json& result) {
+  printResult(dumpJson(result, 2) + "\n");
+  finishResult();
+}
+
+void finishResult() {
+  errno = 0;
+  std::cout.flush();  // CLI11 prints help texts through it
+  if (!std::cout || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) failWriting(errno);
+}
+
+void writeMessage(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+  std::clearerr(stderr);
+}
+
+Progress::Progress(const GlobalOptions& global, std::string task)
+    : task_(std::move(task)),
+      on_terminal_(isatty(STDERR_FILENO) != 0),
+      visible_(!global.quiet),
+      start_(Clock::now()),
+      reported_(start_) {
+  show(0);
+}
+
+Progress::~Progress() {
+  if (!visible_ || !on_terminal_) return;
+  std::lock_guard<std::mutex> lock(console_mutex);
+  writeMessage(clearLine());
+  shown_line.clear();
+}
+
+void Progress::show(double fraction) {
+  if (!visible_) return;
+  const Clock::time_point now = Clock::now();
+  const double elapsed_s = std::chrono::duration<double>(now - start_).count();
+  const std::string left = fraction > 0 ? duration(elapsed_s / fraction - elapsed_s) + " left" : "";
+  std::lock_guard<std::mutex> lock(console_mutex);
+  if (on_terminal_) {
+    constexpr int kWidth = 30;
+    const int filled = static_cast<int>(fraction * kWidth);
+    const std::string clear = clearLine();
+    shown_line = fmt::format("{} [{:#<{}}{:.<{}}] {:.0f} % {}", task_, "", filled, "", kWidth - filled,
+                             100 * fraction, left);
+    writeMessage(clear + shown_line);
+    return;
+  }
+  if (fraction <= 0 || fraction >= 1 || now - reported_ < kProgressInterval) return;
+  reported_ = now;
+  writeMessage(fmt::format("emscape: {}: {:.0f} %, {}\n", task_, 100 * fraction, left));
+}
+
+ProgressSink progressSink(const GlobalOptions& global) {
+  struct Current {
+    std::string step;
+    std::unique_ptr<Progress> progress;
+  };
+  return [&global, current = std::make_shared<Current>()](const std::string& step, double fraction) {
+    if (!current->progress || current->step != step) {
+      current->progress.reset();  // erases its line before the next object draws its own
+      current->step = step;
+      current->progress = std::make_unique<Progress>(global, step);
+    }
+    current->progress->show(fraction);
+    if (fraction >= 1) current->progress.reset();
+  };
+}
+
+ProgressSink stoppingProgress(const GlobalOptions& global) {
+  return [show = progressSink(global)](const std::string& step, double fraction) {
+    stopIfInterrupted();
+    show(step, fraction);
+  };
+}
+
+}  // namespace emscape::app

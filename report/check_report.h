@@ -1,0 +1,33 @@
+/// The propagation models against reference figures, as JSON and text.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "emfield/check/reference_check.h"
+#include "report/json.h"
+
+namespace emscape::report {
+
+struct CheckReport {
+  /// A dataset that was run.
+  struct Outcome {
+    const emfield::ReferenceDataset* dataset;
+    emfield::DatasetCheck check;
+  };
+  emfield::ReferenceFolder folder;
+  std::vector<Outcome> checked;
+  std::vector<std::string> not_checked;  ///< datasets without a model
+
+  /// True if datasets were run and all are within their tolerances.
+  bool pass() const;
+};
+
+/// Runs the datasets of a folder. @param next  called before each; an exception that it throws ends the work
+/// @throws Error (bad_input) for a folder without known datasets and for a malformed file
+CheckReport checkReport(const std::string& folder, const std::function<void()>& next);
+Json toJson(const CheckReport& report);
+std::string checkText(const CheckReport& report);
+
+}  // namespace emscape::report

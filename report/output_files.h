@@ -1,0 +1,43 @@
+/// Checks, before any work, of the files that a command is to write.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/model/scenario.h"
+
+namespace emscape::report {
+
+/// An input or an output of a command.
+struct NamedFile {
+  std::string name;  ///< of an output the option: "--csv"; of an input what it is: "the study"
+  std::string file;  ///< empty: not given
+};
+
+/// The outputs of an option that may be given several times.
+std::vector<NamedFile> outputsOf(const std::string& option, const std::vector<std::string>& files);
+
+/// Checks that outputs are different, and none of the inputs. Files are the same if they have the same
+/// identity, or the same name if they do not exist.
+/// @param scenarios  inputs, with the files that they name
+/// @throws Error (usage) that names the option and the file
+void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
+                  const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios);
+
+/// Checks reports in a folder. @param option  name of the folder, for the message
+/// @throws Error (usage) if one exists that none of `coverage`, `compare` and `study` wrote
+void checkReports(const std::filesystem::path& folder, const std::vector<std::string>& names,
+                  const std::string& option);
+
+/// Checks the folder of `coverage` or `compare`.
+/// @param scenarios  inputs, with the files that they name  @param option  name of the folder, for the
+/// message
+/// @throws Error (usage) if a report would replace a file that neither of them nor `study` wrote, or an input
+/// in the folder's maps/ has the name of a map, which would replace it
+void checkMapFolder(const std::filesystem::path& folder,
+                    const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
+                    const std::string& option);
+
+}  // namespace emscape::report

@@ -1,0 +1,15 @@
+/// A series that was written, as JSON.
+#pragma once
+
+#include <string>
+
+#include "emscape/playback/series/series_writer.h"
+#include "report/json.h"
+
+namespace emscape::report {
+
+/// @param device  on which it was computed  @param seconds  that it took
+Json seriesJson(const std::string& device, const std::string& folder, const playback::SeriesResult& result,
+                double seconds);
+
+}  // namespace emscape::report

@@ -1,0 +1,44 @@
+// Links by the names of their ends.
+#include "report/link_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "emscape/scenario/file/scenario_file.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+
+namespace emscape::report {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+TEST(LinkOptions, ReceiversAloneExcludeTheTargets) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("links.yaml"));
+  const std::string receiver = scenario->placed_receivers.front().name;
+  const emfield::LinkOptions all = linkOptions(*scenario, {}),
+                             some = linkOptions(*scenario, {"", "", {}, {receiver}, {}, ""});
+  EXPECT_THAT(all.targets, Not(IsEmpty()));
+  EXPECT_EQ(some.receivers, std::vector<int>{0});
+  EXPECT_THAT(some.targets, IsEmpty());
+  EXPECT_EQ(some.emitters.size(), scenario->emitters.size());
+}
+
+TEST(LinkOptions, UnknownNameIsRefusedWithTheExistingOnes) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("links.yaml"));
+  EXPECT_THAT(test::errorOf([&] {
+                linkOptions(*scenario, {"--", "", {"nobody"}, {}, {}, ""});
+              }),
+              HasSubstr("--emitter: no emitter 'nobody' in " + scenario->file + "; it has '"));
+}
+
+TEST(Links, ScenarioWithoutThemIsRefused) {
+  const auto scenario = scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  EXPECT_THAT(test::errorOf([&] { computeLinks(scenario, linkOptions(*scenario, {}), {}); }),
+              HasSubstr("there is no link"));
+}
+
+}  // namespace
+}  // namespace emscape::report

@@ -1,0 +1,28 @@
+// Warnings of many emitters as one line each kind.
+#include "report/warnings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace emscape::report {
+namespace {
+
+using ::testing::ElementsAre;
+
+TEST(JoinedWarnings, EmittersWithTheSameWarningAreNamedTogether) {
+  EXPECT_THAT(
+      joinedWarnings({"emitter 'a': far field from 120 m", "a warning of none",
+                      "emitter 'b': far field from 80 m", "emitter 'a': off"}),
+      ElementsAre("emitters 'a', 'b': far field from 120, 80 m", "a warning of none", "emitter 'a': off"));
+}
+
+TEST(JoinedWarnings, MoreThanFiveEmittersAreCounted) {
+  std::vector<std::string> warnings;
+  for (int i = 1; i <= 7; ++i)
+    warnings.push_back("emitter 'e" + std::to_string(i) + "': reaches " + std::to_string(10 * i) + " km");
+  EXPECT_THAT(joinedWarnings(warnings),
+              ElementsAre("emitters 'e1', 'e2', 'e3', 'e4', 'e5' and 2 others: reaches 10 to 70 km"));
+}
+
+}  // namespace
+}  // namespace emscape::report
