@@ -245,7 +245,7 @@ TEST(Bench, TableStatesRestorationOfEachPattern) {
   EXPECT_THAT(result.out, HasSubstr("equal"));
 }
 
-TEST(Bench, ImpossibleMeasurementIsAnErrorWithoutOutput) {
+TEST(Bench, SLOW_ImpossibleMeasurementIsAnErrorWithoutOutput) {
   const TemporaryFolder folder;
   writeFile(folder / "short.dat", ballDat(8).substr(0, 500));
   writeFile(folder / "nameless.raw", "abc");

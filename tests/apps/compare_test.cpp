@@ -50,7 +50,7 @@ TEST(Compare, WritesMapsAReportAndAVolume) {
   EXPECT_FALSE(readFile(folder / "difference.vti").empty());
 }
 
-TEST(Compare, TwoRunsWriteTheSameBytes) {
+TEST(Compare, SLOW_TwoRunsWriteTheSameBytes) {
   const TemporaryFolder first, second;
   for (const TemporaryFolder* folder : {&first, &second}) {
     const ProgramResult result =
@@ -128,7 +128,7 @@ TEST(Compare, SLOW_FoldersOfMapsHaveTheDifferencesOfTheirScenarios) {
   EXPECT_EQ(json::parse(one.out)["comparison"].size(), 1u);
 }
 
-TEST(Compare, FoldersWithoutTheirScenariosAreComparedButNotExplained) {
+TEST(Compare, SLOW_FoldersWithoutTheirScenariosAreComparedButNotExplained) {
   const TemporaryFolder folder;
   const std::string scenario = folder.write("own.yaml", readFile(shippedScenario("quick.yaml")));
   for (const char* power : {"10", "1000"}) {

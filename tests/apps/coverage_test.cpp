@@ -60,7 +60,7 @@ TEST(Coverage, WritesMapsPicturesAndAReport) {
   EXPECT_EQ(study["outputs"].size(), 12u);
 }
 
-TEST(Coverage, TwoRunsWriteTheSameBytes) {
+TEST(Coverage, SLOW_TwoRunsWriteTheSameBytes) {
   const TemporaryFolder first, second;
   for (const TemporaryFolder* folder : {&first, &second}) {
     const ProgramResult result =
@@ -72,7 +72,7 @@ TEST(Coverage, TwoRunsWriteTheSameBytes) {
     EXPECT_EQ(readFile(first / file), readFile(second / file)) << file;
 }
 
-TEST(Coverage, RemovesTheOutputsOfAnEarlierRun) {
+TEST(Coverage, SLOW_RemovesTheOutputsOfAnEarlierRun) {
   const TemporaryFolder folder;
   const auto runWith = [&](const Arguments& more) {
     const ProgramResult result = run(coverage(folder, more));

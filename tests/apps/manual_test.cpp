@@ -111,7 +111,7 @@ int expectDescribed(const Arguments& command) {
   return count;
 }
 
-TEST(Manual, PagesAndCompletionHaveEveryOptionOfHelp) {
+TEST(Manual, SLOW_PagesAndCompletionHaveEveryOptionOfHelp) {
   EXPECT_GT(expectDescribed({}), 200);
 }
 

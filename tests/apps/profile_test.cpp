@@ -129,7 +129,7 @@ TEST(Profile, RefusesPlotsOfOtherKindsAndUnknownModels) {
   EXPECT_EQ(run(blockedPath({"--model", "magic"})).status, 2);
 }
 
-TEST(BenchModels, JsonHasContractKeys) {
+TEST(BenchModels, SLOW_JsonHasContractKeys) {
   const ProgramResult result = run({"bench", "models", "--repeats", "1", "--json"});
   ASSERT_EQ(result.status, 0) << result.err;
   const json report = json::parse(result.out);

@@ -43,7 +43,7 @@ void expectSettledPicturesAreExact(const json& report) {
   }
 }
 
-TEST(Realtime, GoesFromBusyToRestoreToIdleAtEveryStepAndSettlesExactly) {
+TEST(Realtime, SLOW_GoesFromBusyToRestoreToIdleAtEveryStepAndSettlesExactly) {
   for (const char* pattern : {"columns", "checkerboard", "quarter", "adaptive"}) {
     const json report = play({"--rays", pattern, "--speed", "8", "--epsilon", "20"});
     EXPECT_THAT(all(report, "state"), IsSupersetOf({"BUSY", "RESTORE", "IDLE"})) << pattern;

@@ -48,7 +48,7 @@ TEST(SameBytes, Videos) {
   expectSameBytes({"render", quick(), "-o", "OUT/film.mp4", "--size", "160x120", "--times", "0:4:1"});
 }
 
-TEST(SameBytes, MapsOfCoverage) {
+TEST(SameBytes, SLOW_MapsOfCoverage) {
   expectSameBytes({"coverage", shippedScenario("jamming.yaml"), "-o", "OUT/maps", "--cell", "500", "--times",
                    "40", "--format", "cog,png,gpkg,nc,kmz,czml"});
 }

@@ -90,7 +90,7 @@ TEST(Simulate, ResumeRefusesOtherOptionsByName) {
   EXPECT_THAT(result.err, HasSubstr("another times"));
 }
 
-TEST(Simulate, ASeriesThatWasKilledResumesToTheSameFiles) {
+TEST(Simulate, SLOW_ASeriesThatWasKilledResumesToTheSameFiles) {
   const TemporaryFolder folder;
   const std::string scenario = longScenario(folder, 80);
   const Arguments arguments{"simulate", scenario, "-o",      folder / "s",

@@ -67,7 +67,7 @@ TEST(Study, SLOW_ProcessesAndPartsGiveTheBytesOfOneProcess) {
   expectSameResults(folder, "one", "parts");
 }
 
-TEST(Study, ResumedStudyComputesMissingVariants) {
+TEST(Study, SLOW_ResumedStudyComputesMissingVariants) {
   const TemporaryFolder folder;
   const std::string file = study(folder);
   compute({"study", file, "-o", folder / "whole"});
@@ -105,7 +105,7 @@ std::vector<pid_t> childrenOf(pid_t parent) {
   return children;
 }
 
-TEST(Study, KilledProcessIsReplacedWithoutLoss) {
+TEST(Study, SLOW_KilledProcessIsReplacedWithoutLoss) {
   const TemporaryFolder folder;
   const std::string file = study(folder, 150);
   compute({"study", file, "-o", folder / "whole"});
@@ -214,7 +214,7 @@ TEST(Study, KeepsVolumesOfEachVariant) {
   EXPECT_THAT(other.err, HasSubstr("keeps volumes of each variant, not maps"));
 }
 
-TEST(Study, AFullDiskEndsTheStudyAndItCanBeResumed) {
+TEST(Study, SLOW_AFullDiskEndsTheStudyAndItCanBeResumed) {
   const TemporaryFolder folder;
   const std::string file = study(folder);
   compute({"study", file, "-o", folder / "whole"});
@@ -261,7 +261,7 @@ measures:
   EXPECT_THAT(result.out, HasSubstr("seen again               no value in any variant\n"));
 }
 
-TEST(Study, SlurmScriptsRunTheParts) {
+TEST(Study, SLOW_SlurmScriptsRunTheParts) {
   const TemporaryFolder folder;
   compute({"study", study(folder), "-o", folder / "out dir", "--slurm", folder / "job.sh", "--chunks", "5",
            "--time", "00:20:00", "--gpus", "1", "--set", "emitters.search radar.power_w=3000"});

@@ -82,7 +82,7 @@ TEST_F(WatchedFolder, OtherFilesAreIgnored) {
   EXPECT_THAT(changesSoon(), IsEmpty());
 }
 
-TEST(ChangedFiles, AreOfferedForReloadingWithTheEditsThatApply) {
+TEST(ChangedFiles, SLOW_AreOfferedForReloadingWithTheEditsThatApply) {
   const StateFolder folder;
   const std::string file = folder / "own.yaml";
   const std::string text = readFile(shippedScenario("quick.yaml"));

@@ -131,7 +131,7 @@ render::Projected pixelOf(const Session& session, std::size_t emitter) {
                          picture.box.toDrawn(picture.annotations.markers[emitter].position_m));
 }
 
-TEST(PlatformDrag, FollowsTheCursorOverTheGround) {
+TEST(PlatformDrag, SLOW_FollowsTheCursorOverTheGround) {
   SessionSample sample("jacksboro.yaml", {{"region.dims", "[40, 40, 20]"}});
   const std::size_t mast = 2;
   for (int i = 0; i < 3; ++i) {

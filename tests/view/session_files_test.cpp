@@ -310,7 +310,7 @@ bool waitForAutosave(SessionSample& shown, bool wanted) {
   });
 }
 
-TEST_F(Opener, EditsAreAutosavedAndRestored) {
+TEST_F(Opener, SLOW_EditsAreAutosavedAndRestored) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   ASSERT_TRUE(waitForAutosave(shown_, true));
@@ -336,7 +336,7 @@ TEST_F(Opener, EditsAreAutosavedAndRestored) {
   EXPECT_TRUE(waitForAutosave(again, false));
 }
 
-TEST_F(Opener, EditsThatLeaveNoIsosurfaceAreRestored) {
+TEST_F(Opener, SLOW_EditsThatLeaveNoIsosurfaceAreRestored) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"iso","value":-25})");
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"1e-6"})");
@@ -353,7 +353,7 @@ TEST_F(Opener, EditsThatLeaveNoIsosurfaceAreRestored) {
   EXPECT_TRUE(waitForAutosave(again, false));
 }
 
-TEST_F(Opener, AnAutosaveGoesWhenEditsAreUndoneOrDiscarded) {
+TEST_F(Opener, SLOW_AnAutosaveGoesWhenEditsAreUndoneOrDiscarded) {
   ASSERT_TRUE(shown_.settle());
   shown_.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"500"})");
   ASSERT_TRUE(waitForAutosave(shown_, true));
