@@ -64,7 +64,7 @@ function(emscape_tests module)
   emscape_test_program(${module}_tests ${module})
 endfunction()
 
-# emscape_test_program(TARGET LABELS [PROPERTY VALUE ...]): runs a program of GoogleTest under ctest, with the labels.
+# emscape_test_program(TARGET LABEL [PROPERTY VALUE ...]): runs a program of GoogleTest under ctest, with the label.
 function(emscape_test_program target label)
   target_link_libraries(${target} PRIVATE emscape_test_support)
   emscape_precompile(${target} <gmock/gmock.h> <gtest/gtest.h>)
@@ -75,10 +75,10 @@ function(emscape_test_program target label)
     target_compile_options(${target} PRIVATE $<$<AND:$<COMPILE_LANGUAGE:CXX>,$<CONFIG:Release>>:-O1>)
   endif()
   emscape_warnings(${target})
-  emscape_add_tests(${target} "${label}" ${ARGN})
+  emscape_add_tests(${target} ${label} ${ARGN})
 endfunction()
 
-# emscape_add_tests(TARGET LABELS [PROPERTY VALUE ...]): a test program takes longer to load than most of its tests to run, so
+# emscape_add_tests(TARGET LABEL [PROPERTY VALUE ...]): a test program takes longer to load than most of its tests to run, so
 # ctest runs it a few times, each time with a part of its tests: TARGET.0 to .3, and TARGET.slow.0 and .1 with the label `slow`
 # for the tests whose name has the prefix SLOW_. The results of the single tests are in test_results of the build folder;
 # scripts/test counts them.

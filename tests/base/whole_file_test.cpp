@@ -23,9 +23,6 @@ using ::testing::HasSubstr;
 
 class WholeFile : public ::testing::Test {
  protected:
-  static std::string errorOf(const std::function<void()>& body) {
-    return test::errorOf(body, ErrorCode::other);
-  }
   static std::string textOf(const fs::path& path) {
     const auto bytes = readWhole(path);
     return {bytes.begin(), bytes.end()};
@@ -47,9 +44,9 @@ TEST_F(WholeFile, AppearsWithItsText) {
 
 TEST_F(WholeFile, ATargetIsRefusedBeforeItIsWritten) {
   UnfinishedFile(folder_ / "a");
-  EXPECT_EQ(errorOf([&] { UnfinishedFile(folder_ / "none/a"); }),
+  EXPECT_EQ(test::errorOf([&] { UnfinishedFile(folder_ / "none/a"); }, ErrorCode::other),
             (folder_ / "none/a") + ": cannot write: the folder " + (folder_ / "none") + " does not exist");
-  EXPECT_EQ(errorOf([&] { UnfinishedFile(folder_.path()); }),
+  EXPECT_EQ(test::errorOf([&] { UnfinishedFile(folder_.path()); }, ErrorCode::other),
             folder_.path().string() + ": cannot write: a folder of that name exists");
   EXPECT_EQ(filesInFolder(), 0);
 }
@@ -77,14 +74,14 @@ TEST_F(WholeFile, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
 
 TEST_F(WholeFile, NamesAMissingFolder) {
   EXPECT_THAT(
-      errorOf([&] { writeWhole(folder_ / "none/a", [](std::ostream&) {}); }),
+      test::errorOf([&] { writeWhole(folder_ / "none/a", [](std::ostream&) {}); }, ErrorCode::other),
       HasSubstr(folder_ / "none/a" + ": cannot write: the folder " + folder_ / "none" + " does not exist"));
 }
 
 TEST_F(WholeFile, RefusesFoldersAndDevices) {
-  EXPECT_THAT(errorOf([&] { writeWhole(folder_.path(), [](std::ostream&) {}); }),
+  EXPECT_THAT(test::errorOf([&] { writeWhole(folder_.path(), [](std::ostream&) {}); }, ErrorCode::other),
               HasSubstr("a folder of that name exists"));
-  EXPECT_THAT(errorOf([] { writeWhole("/dev/full", [](std::ostream&) {}); }),
+  EXPECT_THAT(test::errorOf([] { writeWhole("/dev/full", [](std::ostream&) {}); }, ErrorCode::other),
               HasSubstr("not a regular file"));
 }
 
@@ -94,7 +91,8 @@ TEST_F(WholeFile, NamesAMissingPermission) {
   const uid_t user = geteuid();
   constexpr uid_t kNobody = 65534;  // root may write everywhere
   ASSERT_EQ(seteuid(user == 0 ? kNobody : user), 0);
-  const std::string error = errorOf([&] { writeWhole(folder_ / "a", [](std::ostream&) {}); });
+  const std::string error =
+      test::errorOf([&] { writeWhole(folder_ / "a", [](std::ostream&) {}); }, ErrorCode::other);
   ASSERT_EQ(seteuid(user), 0);
   EXPECT_THAT(error, HasSubstr("Permission denied"));
   fs::permissions(folder_.path(), fs::perms::owner_all);
@@ -104,8 +102,10 @@ TEST_F(WholeFile, IsRemovedWhenTheDiskIsFull) {
   const test::FileSizeLimit limit(100000);
   for (const int bytes : {150000, 3000000}) {
     const std::string text(static_cast<std::size_t>(bytes), 'x');
-    EXPECT_THAT(errorOf([&] { writeWhole(folder_ / "a", [&](std::ostream& stream) { stream << text; }); }),
-                HasSubstr("a: cannot write: File too large"));
+    EXPECT_THAT(
+        test::errorOf([&] { writeWhole(folder_ / "a", [&](std::ostream& stream) { stream << text; }); },
+                      ErrorCode::other),
+        HasSubstr("a: cannot write: File too large"));
   }
   // Small writes fail when the buffer is flushed at the end.
   EXPECT_THROW(writeWhole(folder_ / "a",
@@ -131,9 +131,11 @@ TEST_F(WholeFile, PatchesReplaceBytesWhereTheyLie) {
   writeWhole(folder_ / "a", [](std::ostream& stream) { stream << "0123456789"; });
   patchFile(folder_ / "a", {{2, "xy"}, {9, "z"}});
   EXPECT_EQ(textOf(folder_ / "a"), "01xy45678z");
-  EXPECT_THAT(errorOf([&] {
-                patchFile(folder_ / "none", {{0, "x"}});
-              }),
+  EXPECT_THAT(test::errorOf(
+                  [&] {
+                    patchFile(folder_ / "none", {{0, "x"}});
+                  },
+                  ErrorCode::other),
               HasSubstr("none: cannot write: No such file or directory"));
 }
 
@@ -145,7 +147,8 @@ TEST_F(WholeFile, AppendingMakesTheFileAndAddsToIt) {
   cut.cut(4);
   cut.append("three\n");
   EXPECT_EQ(textOf(folder_ / "a"), "one\nthree\n");
-  EXPECT_THAT(errorOf([&] { AppendedFile(folder_ / "none/a"); }), HasSubstr("cannot write"));
+  EXPECT_THAT(test::errorOf([&] { AppendedFile(folder_ / "none/a"); }, ErrorCode::other),
+              HasSubstr("cannot write"));
 }
 
 TEST_F(WholeFile, DigestIsSizeAndCrc32OfContent) {
