@@ -45,9 +45,6 @@ bool isCharacter(int code, char first, char last) {
   return code >= first && code <= last;
 }
 
-/// Frames from a command to the first one in which a field of the dialog that it opens takes characters.
-constexpr int kFramesToFocus = 4;
-
 bool leavesField(int code) {
   return code == GLFW_KEY_ENTER || code == GLFW_KEY_KP_ENTER || code == GLFW_KEY_TAB ||
          code == GLFW_KEY_ESCAPE;

@@ -10,6 +10,9 @@
 
 namespace emscape::view {
 
+/// Frames from a command to the first one in which a field of the dialog that it opens takes characters.
+inline constexpr int kFramesToFocus = 4;
+
 /// A GUI that reads the state of keys once per frame misses a key that is pressed and released within one,
 /// and does not know where the cursor was, or which modifiers were held, when a button changed. Therefore a
 /// frame takes events only until a key or button would change for the second time, or the modifiers would

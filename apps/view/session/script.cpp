@@ -16,8 +16,8 @@ namespace emscape::view {
 namespace {
 
 constexpr double kWaitLimit_s = 60;
-constexpr int kFramesAfterInput = 3;
-constexpr int kFramesAfterMouse = 6;  // a drag needs four
+constexpr int kFramesAfterInput = kFramesToFocus;  // the next key is then taken at once
+constexpr int kFramesAfterMouse = 6;               // a drag needs four
 
 bool isWait(const std::string& verb) {
   return verb == "wait_s" || verb == "wait_state" || verb == "wait_frame";
