@@ -72,6 +72,7 @@ class RealInput : public Window {
     Window::SetUp();
     if (IsSkipped() || HasFatalFailure()) return;
     manager_ = std::make_unique<WindowManager>(display_->name());
+    ASSERT_TRUE(comes([&] { return xdotool("get_desktop"); })) << "openbox did not start";
   }
   void TearDown() override {
     if (program_) kill(SIGKILL);
