@@ -110,6 +110,14 @@ TEST(Bench, JsonOfFieldHasContractKeys) {
   EXPECT_GT(bench.at("voxels_per_s"), 0.0);
 }
 
+TEST(Bench, GlobalOptionsBeforeTheSubcommandReachTheProgram) {
+  const ProgramResult result = run({"--json", "--quiet", "--threads", "1", "bench", "field",
+                                    shippedScenario("quick.yaml"), "--repeats", "1"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_TRUE(json::parse(result.out).contains("stages_ms"));
+  EXPECT_EQ(result.err, "");
+}
+
 TEST(Bench, JsonOfRenderHasContractKeys) {
   const json result = bench({"render", shippedScenario("quick.yaml"), "--size", "64x48", "--frames", "3"});
   EXPECT_EQ(result.at("device"), deviceName());
