@@ -177,10 +177,10 @@ TEST(RadarChannels, UpdatesEqualNewSolver) {
         const auto snapshot = scenario::snapshotAt(scenario, nullptr, t_s);
         FieldSolver fresh(scenario, nullptr, {});
         fresh.update(snapshot);
-        const auto& expected = fresh.volumes().front().host()->values;
+        const auto expected = fresh.volumes().front().host()->values;
         for (FieldSolver* updated : {&solver, &uncached}) {
           updated->update(snapshot);
-          const auto& values = updated->volumes().front().host()->values;
+          const auto values = updated->volumes().front().host()->values;
           for (std::size_t v = 0; v < values.size(); ++v) ASSERT_NEAR(values[v], expected[v], 1e-4);
         }
       }

@@ -19,7 +19,7 @@ TEST(Quantities, JammingScenarioShowsShadowOfRidge) {
   FieldSolver solver(scenario, terrain, {});
   const auto covered = [&](double t_s) {
     solver.update(scenario::snapshotAt(scenario, terrain.get(), t_s));
-    const UnsetVector<float>& values = solver.volumes()[0].host()->values;
+    const UnsetVector<float> values = solver.volumes()[0].host()->values;
     return std::count_if(values.begin(), values.end(), [](float pd) { return pd > 0.5f; });
   };
   const auto unjammed = [&] {

@@ -41,7 +41,7 @@ TEST(FrameSource, ComputesAScenariosStepsWithOneRange) {
   for (int step = 0; step < 4; ++step) {
     const Frame frame = source->frame(step);
     together.add({frame.info().range_min, frame.info().range_max});
-    const auto& values = frame.volume.host()->values;
+    const auto values = frame.volume.host()->values;
     EXPECT_EQ(frame.info().range_max, *std::max_element(values.begin(), values.end())) << "its own";
   }
   EXPECT_EQ(first.color_range, together);
