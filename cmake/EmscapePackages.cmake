@@ -66,7 +66,7 @@ a window, maps of coverage, links, what-if studies.")
 list(JOIN library_packages ", " library_packages)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libemscape-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "emscape (= ${PROJECT_VERSION}-1), ${library_packages}")  # emscape_vdb.so
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "emscape (= ${PROJECT_VERSION}-1), pkg-config, ${library_packages}")  # emscape_vdb.so
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "Static libraries and C++17 headers of Emscape, and what find_package(emscape) of
 CMake reads.")
 include(CPack)

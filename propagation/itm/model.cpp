@@ -57,8 +57,7 @@ std::vector<Setting> itmSettings() {
   };
   return {
       choiceSetting<kItm, &ItmSettings::form>(
-          "form",
-          "point_to_point: over the terrain's profiles; area: over terrain of irregularity_m"),
+          "form", "point_to_point: over the terrain's profiles; area: over terrain of irregularity_m"),
       percent(numberSetting<kItm, &ItmSettings::time_percent>, "time_percent",
               "percentage of time for which the loss is not exceeded"),
       percent(numberSetting<kItm, &ItmSettings::location_percent>, "location_percent",
@@ -69,10 +68,8 @@ std::vector<Setting> itmSettings() {
       numberSetting<kItm, &ItmSettings::irregularity_m>(
           "irregularity_m", "m", 0, 1000,
           "of the terrain, area form: 0 sea, 30 plains, 90 hills, 200 mountains"),
-      choiceSetting<kItm, &ItmSettings::transmitter_siting>("transmitter_siting",
-                                                            "area form"),
-      choiceSetting<kItm, &ItmSettings::receiver_siting>("receiver_siting",
-                                                         "area form"),
+      choiceSetting<kItm, &ItmSettings::transmitter_siting>("transmitter_siting", "area form"),
+      choiceSetting<kItm, &ItmSettings::receiver_siting>("receiver_siting", "area form"),
   };
 }
 

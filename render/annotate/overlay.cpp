@@ -15,7 +15,6 @@
 namespace emscape::render {
 namespace {
 
-
 // Lengths at 1200 x 900.
 constexpr double kMargin = 26;
 constexpr double kTitle = 23;

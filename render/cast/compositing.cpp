@@ -6,10 +6,7 @@
 #include "emscape/render/scene/render_settings.h"
 
 namespace emscape::render {
-namespace {
-
-
-}  // namespace
+namespace {}  // namespace
 
 void SettingLimits::require(double value) const {
   if (value >= min && value <= max) return;

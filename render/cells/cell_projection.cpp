@@ -15,7 +15,6 @@
 namespace emscape::render {
 namespace {
 
-
 CellOrder orderOf(const CellMesh& mesh, const CameraView& camera, CellSorting sorting) {
   return sorting == CellSorting::visibility ? visibilityOrder(mesh, camera) : centroidOrder(mesh, camera);
 }

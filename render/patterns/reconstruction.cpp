@@ -7,7 +7,6 @@
 namespace emscape::render {
 namespace {
 
-
 constexpr int kFillGrain = 16;
 
 Lattice lattice(ImageSize size, int first_x, int first_y, int step_x, int step_y) {

@@ -1,10 +1,10 @@
 /// Amplitude taper of an aperture or of a line of array elements: its pattern, width and efficiency.
 #pragma once
 
-#include "emscape/base/enum_names.h"
-
 #include <array>
 #include <vector>
+
+#include "emscape/base/enum_names.h"
 
 namespace emscape::scenario {
 

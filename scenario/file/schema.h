@@ -3,8 +3,8 @@
 
 #include <array>
 
-#include "emscape/base/enum_names.h"
 #include "document/schema.h"
+#include "emscape/base/enum_names.h"
 
 namespace emscape::scenario {
 
@@ -34,7 +34,8 @@ enum class RefractivityKind {
   bulk
 };
 constexpr auto namesOf(RefractivityKind) {
-  return std::array{"standard", "linear", "evaporation_duct", "surface_duct", "trilinear", "profile", "soundings", "bulk"};
+  return std::array{"standard",  "linear",  "evaporation_duct", "surface_duct",
+                    "trilinear", "profile", "soundings",        "bulk"};
 }
 
 /// The section atmosphere.refractivity.

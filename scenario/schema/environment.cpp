@@ -89,8 +89,7 @@ const ObjectSpec& atmosphereSpec() {
           byDefault("gases", choiceOf<GasLosses>(), toString(Atmosphere{}.gases),
                     "attenuation by oxygen and water vapour; auto: with every model except free_space and "
                     "horizon; p528 and p452 include their own"),
-          byDefault("refraction", choiceOf<RefractionProfile>(),
-                    toString(Atmosphere{}.refraction),
+          byDefault("refraction", choiceOf<RefractionProfile>(), toString(Atmosphere{}.refraction),
                     "refractivity over height, for horizon, diffraction, two_ray and the directions of all "
                     "rays: linear, by k_factor, right up to about 10 km; exponential, from "
                     "sea_level_refractivity, at all heights"),
@@ -98,8 +97,8 @@ const ObjectSpec& atmosphereSpec() {
                     "N-units; for refraction: exponential, for itm, whose rays are bent by it, not by "
                     "k_factor, and "
                     "for the troposcatter of p1812 and p452"),
-          byDefault("climate", choiceOf<RadioClimate>(),
-                    toString(Atmosphere{}.climate), "for itm's statistics"),
+          byDefault("climate", choiceOf<RadioClimate>(), toString(Atmosphere{}.climate),
+                    "for itm's statistics"),
           optional("refractivity", object(refractivitySpec()),
                    "profiles of the air, for parabolic_equation; not together with k_factor, which the other "
                    "models then have by default, or from kind: linear"),

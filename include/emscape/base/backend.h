@@ -4,8 +4,8 @@
 #include <array>
 #include <string>
 
-#include "emscape/base/enum_names.h"
 #include "emscape/base/cuda/device.h"
+#include "emscape/base/enum_names.h"
 #include "emscape/base/error.h"
 
 namespace emscape {

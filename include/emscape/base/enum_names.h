@@ -1,4 +1,5 @@
-/// Names of the values of an enumeration, as in files, on the command line and in messages: written once, beside it.
+/// Names of the values of an enumeration, as in files, on the command line and in messages: written once,
+/// beside it.
 ///
 ///     enum class Polarity { north, south };
 ///     constexpr auto namesOf(Polarity) { return std::array{"north", "south"}; }

@@ -31,7 +31,8 @@ enum class PropagationModel {
   parabolic_equation
 };
 constexpr auto namesOf(PropagationModel) {
-  return std::array{"free_space", "horizon", "diffraction", "two_ray", "itm", "p528", "p1812", "p452", "parabolic_equation"};
+  return std::array{"free_space", "horizon", "diffraction", "two_ray",           "itm",
+                    "p528",       "p1812",   "p452",        "parabolic_equation"};
 }
 
 /// Method of diffraction over terrain.
@@ -213,7 +214,13 @@ enum class RadioClimate {
   maritime_temperate_over_sea
 };
 constexpr auto namesOf(RadioClimate) {
-  return std::array{"equatorial", "continental_subtropical", "maritime_subtropical", "desert", "continental_temperate", "maritime_temperate_over_land", "maritime_temperate_over_sea"};
+  return std::array{"equatorial",
+                    "continental_subtropical",
+                    "maritime_subtropical",
+                    "desert",
+                    "continental_temperate",
+                    "maritime_temperate_over_land",
+                    "maritime_temperate_over_sea"};
 }
 
 /// Refractivity over height.

@@ -26,7 +26,6 @@ constexpr auto namesOf(FrameKind) {
   return std::array{"altitude", "enu"};
 }
 
-
 /// Definition of a frame, as in the metadata of files.
 struct FrameOrigin {
   FrameKind kind = FrameKind::altitude;

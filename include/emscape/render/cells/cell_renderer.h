@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "emscape/base/enum_names.h"
 #include "emscape/base/backend.h"
+#include "emscape/base/enum_names.h"
 #include "emscape/base/progress.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/render/scene/camera.h"

@@ -1,11 +1,11 @@
 /// The patterns of pixel interpolation: which pixels of a frame are cast.
 #pragma once
 
-#include "emscape/base/enum_names.h"
-
 #include <array>
 #include <string>
 #include <vector>
+
+#include "emscape/base/enum_names.h"
 
 namespace emscape::render {
 

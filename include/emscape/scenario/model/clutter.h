@@ -1,10 +1,10 @@
 /// Clutter of a radar: the echoes of land, sea and rain, and the Doppler filter that suppresses them.
 #pragma once
 
-#include "emscape/base/enum_names.h"
-
 #include <array>
 #include <optional>
+
+#include "emscape/base/enum_names.h"
 
 namespace emscape::scenario {
 

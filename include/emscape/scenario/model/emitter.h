@@ -24,7 +24,6 @@ constexpr auto namesOf(EmitterKind) {
   return std::array{"radar", "transmitter", "jammer"};
 }
 
-
 /// Default cross-polarisation isolation (dB) of antennas: a typical value off the axis.
 /// @see D. L. Adamy, EW 101, 2001, chapter 3: about 25 dB between orthogonal linear, and between circular
 /// senses

@@ -1,10 +1,10 @@
 /// Motion of an antenna's beam.
 #pragma once
 
-#include "emscape/base/enum_names.h"
-
 #include <array>
 #include <vector>
+
+#include "emscape/base/enum_names.h"
 
 namespace emscape::scenario {
 
