@@ -136,6 +136,7 @@ bool Painter::setColors(const ViewState& view) {
 void Painter::setScenery(const ViewState& view) {
   view_.show_terrain = view.show_terrain;
   view_.show_emitters = view.show_emitters;
+  view_.labels = view.labels;
   view_.theme = annotations_.theme = view.theme;
   setMarkers();
   if (frame_) setGround();
@@ -282,6 +283,13 @@ void Painter::setMarkers() {
   const bool shows = view_.show_emitters && frame_;
   annotations_.markers = shows ? frame_->markers : std::vector<render::Marker>{};
   annotations_.tracks = shows ? frame_->tracks : std::vector<render::Track>{};
+  if (view_.labels == Labels::all) return;
+  annotations_.tracks.clear();
+  for (render::Marker& marker : annotations_.markers) {
+    marker.beam.reset();
+    marker.ground_m.reset();
+    if (view_.labels == Labels::off) marker.label.clear();
+  }
 }
 
 void Painter::setLegend() {

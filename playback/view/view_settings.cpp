@@ -332,6 +332,14 @@ void addScenery(Table& table) {
       .withVerb("emitters", "on", "Draws the emitters")
       .withAction("Emitters", "E");
   table
+      .member(
+          "labels", choiceOf<Labels>(), [](auto& view) -> auto& { return view.labels; },
+          "labels of the emitters: none; names; or names, beams, stems and tracks")
+      .withEffect(&ViewChange::labels)
+      .withOption("--labels", "Labels of the emitters; default: all")
+      .withVerb("labels", "labels", "Labels of the emitters: off, names or all; without a name the next one")
+      .withAction("Labels", "N");
+  table
       .parsed(
           "size", spec::listOf(spec::simple(ValueType::integer).from(1).to(render::kMaxImageSide), 2, 2),
           [](auto& view) -> auto& { return view.size; }, render::parseImageSize, sizeText, "pixels")

@@ -128,6 +128,32 @@ TEST(PictureSink, WritesOnePngOrANumberedFolder) {
               testing::HasSubstr("must end in .png or .mp4"));
 }
 
+TEST(Painter, LabelsOfEmittersAreNoneNamesOrAll) {
+  MadeFrames source(seconds(1));
+  Frame frame = source.frame(0);
+  render::Marker& marker = frame.markers.emplace_back();
+  marker.label = "radar";
+  marker.beam = Vec3d{0, 1, 0};
+  marker.ground_m = 0;
+  frame.tracks.resize(1);
+  ViewState view;
+  view.size = {160, 120};
+  Painter painter(view, source, {});
+  painter.setFrame(frame);
+  EXPECT_EQ(painter.annotations().markers[0].label, "radar");
+  EXPECT_TRUE(painter.annotations().markers[0].beam);
+  EXPECT_EQ(painter.annotations().tracks.size(), 1U);
+  for (const Labels labels : {Labels::names, Labels::off}) {
+    view.labels = labels;
+    painter.setScenery(view);
+    ASSERT_EQ(painter.annotations().markers.size(), 1U) << "the symbol stays";
+    EXPECT_EQ(painter.annotations().markers[0].label, labels == Labels::names ? "radar" : "");
+    EXPECT_FALSE(painter.annotations().markers[0].beam);
+    EXPECT_FALSE(painter.annotations().markers[0].ground_m);
+    EXPECT_TRUE(painter.annotations().tracks.empty());
+  }
+}
+
 TEST(Painter, EmptyIsosurfaceIsAnErrorOrAWarning) {
   MadeFrames source(seconds(2));
   ViewState view;

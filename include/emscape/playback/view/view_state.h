@@ -36,6 +36,16 @@ struct CellStyle {
   render::ProjectionOptions projection;
 };
 
+/// What is drawn of an emitter beside its symbol.
+enum class Labels {
+  off,
+  names,
+  all  ///< name, beam, stem to the ground, and track
+};
+constexpr auto namesOf(Labels) {
+  return std::array{"off", "names", "all"};
+}
+
 /// A stored camera, and a time if that is stored too.
 struct Bookmark {
   std::string name;
@@ -56,6 +66,7 @@ struct ViewState : FieldChoice {
   render::Theme theme = render::Theme::dark;
   bool show_terrain = true;
   bool show_emitters = true;
+  Labels labels = Labels::all;
   render::ImageSize size{1280, 720};
   /// Pixels that are cast while the picture changes; none: as many as time allows.
   std::optional<render::Pattern> pattern;
