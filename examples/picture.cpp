@@ -18,10 +18,9 @@ int main(int argc, char** argv) {
     selection.times = argv[2];
     const auto source = playback::openFrameSource(selection, target);
 
-    playback::PictureStyle style;
-    style.size = {1280, 720};
-    style.camera = render::parseCamera("orbit:azimuth_deg=200,elevation_deg=35");
-    playback::Painter painter(style, *source, target);
+    playback::ViewState view;
+    view.camera = render::parseCamera("orbit:azimuth_deg=200,elevation_deg=35");
+    playback::Painter painter(view, *source, target);
     painter.setFrame(source->frame(0));
     painter.draw({});  // every pixel is cast; other plans interpolate some, and restore() makes them exact
     render::writePng(argv[3], painter.picture("drawn by an example"));

@@ -29,25 +29,6 @@ void addCompareOption(CLI::App& command, std::string& compare, const std::string
                          "another scenario on the same grid (FILE)");
 }
 
-void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes) {
-  const auto take = [&planes](const std::vector<std::string>& texts) {
-    try {
-      planes.clear();
-      for (const std::string& text : texts) planes.push_back(render::parseCutPlane(text));
-      render::checkCutPlanes(planes);
-    } catch (const Error& error) {
-      throw CLI::ValidationError("--plane", error.message());
-    }
-  };
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--plane", take,
-          "Cuts the volume open: horizontal:altitude_m=..[,keep=below|above] or "
-          "vertical:bearing_deg=..[,x_m=..,y_m=..,offset_m=..,keep=left|right] (docs/view-state.md); may be "
-          "given 3 times")
-      ->allow_extra_args(false);
-}
-
 void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& cells) {
   command.add_option(
       "--mesh", mesh,

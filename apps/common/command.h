@@ -7,8 +7,7 @@
 
 #include "apps/common/command_line.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/pictures/painter.h"
-#include "emscape/render/scene/cut_plane.h"
+#include "emscape/playback/view/view_state.h"
 #include "emscape/render/scene/render_settings.h"
 #include "emscape/scenario/model/edit.h"
 
@@ -51,10 +50,6 @@ void addSetOption(CLI::App& command, std::vector<scenario::Edit>& edits, const s
 
 /// Adds --compare original|FILE. @param what  result of the command, for the help
 void addCompareOption(CLI::App& command, std::string& compare, const std::string& what);
-/// Adds --plane, which may be given several times and replaces the contents of `planes`. Parsing it throws
-/// Error (usage) for a text that is not a plane and for too many planes.
-void addPlaneOption(CLI::App& command, std::vector<render::CutPlane>& planes);
-
 /// Adds --mesh, --cells, --cell-rasterizer, --cell-order and --cell-perspective, for pictures.
 /// Parsing them throws Error (usage).
 void addMeshOptions(CLI::App& command, std::string& mesh, playback::CellStyle& cells);

@@ -10,7 +10,7 @@
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
 #include "apps/common/target.h"
-#include "apps/common/value_range.h"
+#include "apps/common/view_arguments.h"
 #include "apps/emscape/subcommands.h"
 #include "base/memory.h"
 #include "base/stopwatch.h"
@@ -24,8 +24,8 @@
 #include "emscape/playback/pictures/picture_series.h"
 #include "emscape/playback/pictures/picture_sink.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "playback/editing/view_state.h"
 #include "playback/pictures/real_time_loop.h"
+#include "playback/view/view_file.h"
 #include "render/patterns/reconstruction.h"
 #include "report/output_files.h"
 #include "report/real_time_report.h"
@@ -38,40 +38,21 @@ using playback::Display;
 using playback::FrameSource;
 using playback::Painter;
 using playback::PictureSink;
-using playback::PictureStyle;
 using playback::RealTimeLoop;
 using playback::RealTimeOptions;
 using playback::ViewState;
 
-/// Options that are also part of a view have an effect only if they are given; viewOf() has their defaults.
 struct RenderOptions {
   const CLI::App* command = nullptr;
-  playback::FrameSelection selection;
-  playback::CellStyle cells;
+  ViewState view;       ///< its input and how that is drawn; viewOf() adds the rest
+  ViewArguments given;  ///< to the view
+  std::vector<scenario::Edit> edits;
+  std::string times;
   std::vector<std::string> outputs;
   std::string state;
   std::string save_state;
-  std::string size;
-  std::string mode;
-  std::string rays = "auto";
   std::string interpolate = "float";
-  std::string camera;
-  std::string transfer;
-  std::string quantity;
-  std::string compare;
-  std::string range;
-  std::string theme;
-  double step_voxels = render::RenderSettings{}.step_voxels;
-  double mida_gamma = 0;
-  double iso_value = 0;
-  double iso_opacity = render::RenderSettings{}.iso_opacity;
-  bool shading = false;
-  double exaggeration = 0;
-  std::vector<render::CutPlane> planes;
   std::optional<double> frames_per_s;
-  bool exact = false;
-  bool show_terrain = true;
-  bool show_emitters = true;
   bool realtime = false;
   double speed = 1;
   std::optional<double> duration_s;
@@ -94,29 +75,9 @@ void requireMemoryOf(const render::ImageSize& size) {
 /// so that errors are reported before anything is computed.
 ViewState viewOf(const RenderOptions& options) {
   ViewState view = options.state.empty() ? ViewState{} : playback::readViewState(options.state);
-  const auto isGiven = [&options](const char* name) { return options.command->count(name) > 0; };
-  const auto take = [&isGiven](const char* name, const auto& value, auto& target) {
-    if (isGiven(name)) target = value;
-  };
-  if (isGiven("--size")) view.size = render::parseImageSize(options.size);
-  if (isGiven("--camera")) view.camera = render::parseCamera(options.camera);
-  if (isGiven("--theme")) view.theme = render::parseTheme(options.theme);
-  if (isGiven("--quantity")) playback::changeQuantity(view, options.quantity);
-  if (isGiven("--compare")) playback::changeComparison(view, options.compare);
-  if (isGiven("--range")) playback::changeRange(view, parseRange(options.range));
-  if (isGiven("--mode")) view.settings.mode = render::parseCompositingMode(options.mode);
-  take("--step", options.step_voxels, view.settings.step_voxels);
-  take("--mida-gamma", options.mida_gamma, view.settings.mida_gamma);
-  take("--iso-value", options.iso_value, view.settings.iso_value);
-  take("--iso-opacity", options.iso_opacity, view.settings.iso_opacity);
-  take("--shading", options.shading, view.settings.shading);
-  take("--exact", options.exact, view.settings.exact);
-  take("--exaggeration", options.exaggeration, view.settings.vertical_exaggeration);
-  take("--plane", options.planes, view.settings.planes);
-  take("--terrain", options.show_terrain, view.show_terrain);
-  take("--emitters", options.show_emitters, view.show_emitters);
-  const std::vector<scenario::Edit>& edits = options.selection.edits;
-  view.edits.insert(view.edits.end(), edits.begin(), edits.end());
+  playback::setInput(view, options.view);
+  options.given.apply(view);
+  view.edits.insert(view.edits.end(), options.edits.begin(), options.edits.end());
   requireMemoryOf(view.size);
   return view;
 }
@@ -127,21 +88,9 @@ bool isOnePicture(const std::vector<std::string>& outputs) {
   });
 }
 
-PictureStyle styleOf(const ViewState& view, const RenderOptions& options) {
-  PictureStyle style = playback::pictureStyleOf(view);
-  style.transfer = options.transfer;
-  style.cells = options.cells;
-  style.must_show_isosurface =
-      options.command->count("--iso-value") > 0 && !options.realtime && isOnePicture(options.outputs);
-  return style;
-}
-
 playback::FrameSelection selectionOf(const ViewState& view, const RenderOptions& options) {
-  playback::FrameSelection selection = options.selection;
-  selection.quantity = view.quantity;
-  selection.compare = view.compare;
-  selection.range = view.range;
-  selection.edits = view.edits;
+  playback::FrameSelection selection(view);
+  selection.times = options.times;
   if (selection.times.empty() && !options.realtime && isOnePicture(options.outputs)) {
     if (options.state.empty()) {
       selection.first_only = true;
@@ -152,15 +101,18 @@ playback::FrameSelection selectionOf(const ViewState& view, const RenderOptions&
   return selection;
 }
 
-bool drawsTetrahedra(const RenderOptions& options) {
-  const std::string& input = options.selection.input;
-  return !options.selection.mesh.empty() ||
-         (std::filesystem::exists(input) && playback::inputKindOf(input) == playback::InputKind::mesh);
+std::string raysOf(const ViewState& view) {
+  return view.pattern ? render::toString(*view.pattern) : "auto";
+}
+
+bool drawsTetrahedra(const ViewState& view) {
+  return !view.mesh.empty() || (std::filesystem::exists(view.input) &&
+                                playback::inputKindOf(view.input) == playback::InputKind::mesh);
 }
 
 /// @throws Error (usage) for options without an effect on what is drawn
 void checkMeshOptions(const RenderOptions& options, const ViewState& view) {
-  const bool has_cells = drawsTetrahedra(options);
+  const bool has_cells = drawsTetrahedra(view);
   const auto refuseAll = [&](std::initializer_list<const char*> names, const std::string& why) {
     for (const char* name : names) {
       if (options.command->count(name) > 0) throw Error(ErrorCode::usage, name + why);
@@ -174,9 +126,9 @@ void checkMeshOptions(const RenderOptions& options, const ViewState& view) {
   refuseAll({"--realtime", "--interpolate", "--step", "--mida-gamma", "--iso-value", "--iso-opacity",
              "--device-volume", "--compare"},
             ": has no effect on a field on tetrahedra");
-  if (options.rays != "auto" && options.rays != "full") {
+  if (view.pattern && *view.pattern != render::Pattern::full) {
     throw Error(ErrorCode::usage,
-                "--rays " + options.rays + ": has no effect on a field on tetrahedra, all pixels are cast");
+                "--rays " + raysOf(view) + ": has no effect on a field on tetrahedra, all pixels are cast");
   }
   if (!view.compare.empty()) throw Error(ErrorCode::usage, "comparison: has no effect on tetrahedra");
 }
@@ -185,11 +137,10 @@ void checkMeshOptions(const RenderOptions& options, const ViewState& view) {
 void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
   std::vector<report::NamedFile> outputs = report::outputsOf("--output", options.outputs);
   outputs.push_back({"--save-state", options.save_state});
-  const playback::FrameSelection& selection = options.selection;
-  std::vector<report::NamedFile> inputs{{"the input", selection.input},
-                                        {"the scenario", selection.scenario},
+  std::vector<report::NamedFile> inputs{{"the input", view.input},
+                                        {"the scenario", view.scenario},
                                         {"the comparison", view.compare},
-                                        {"the transfer function", options.transfer}};
+                                        {"the transfer function", view.transfer_file}};
   std::vector<std::shared_ptr<const scenario::Scenario>> scenarios;
   const auto addSteps = [&](const std::string& file, const char* name) {
     if (!std::filesystem::exists(file)) return;
@@ -201,16 +152,16 @@ void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
   const auto addScenario = [&](const std::string& file, const std::vector<scenario::Edit>& edits) {
     if (!std::filesystem::is_regular_file(file)) return;
     // --scenario is a scenario whatever its ending.
-    if (file != selection.scenario && playback::inputKindOf(file) != playback::InputKind::scenario) return;
+    if (file != view.scenario && playback::inputKindOf(file) != playback::InputKind::scenario) return;
     if (const auto scenario = scenario::parseScenario(file, edits).scenario) scenarios.push_back(scenario);
   };
   if (std::any_of(outputs.begin(), outputs.end(), [](const report::NamedFile& output) {
         return std::filesystem::is_regular_file(output.file);
       })) {
-    addScenario(selection.input, view.edits);
-    addScenario(selection.scenario, {});
+    addScenario(view.input, view.edits);
+    addScenario(view.scenario, {});
     addScenario(view.compare, {});
-    addSteps(selection.input, "a file of the input");
+    addSteps(view.input, "a file of the input");
     addSteps(view.compare, "a file of the comparison");
   }
   report::checkOutputs(outputs, inputs, scenarios);
@@ -218,11 +169,11 @@ void checkOutputFiles(const RenderOptions& options, const ViewState& view) {
 
 using Sinks = std::vector<std::unique_ptr<PictureSink>>;
 
-Sinks openSinks(const RenderOptions& options, const PictureStyle& style, const std::string& name,
-                int pictures, double frames_per_s) {
+Sinks openSinks(const RenderOptions& options, const ViewState& view, const std::string& name, int pictures,
+                double frames_per_s) {
   Sinks sinks;
   for (const std::string& output : options.outputs) {
-    sinks.push_back(playback::makePictureSink(output, name, pictures, style.size, frames_per_s));
+    sinks.push_back(playback::makePictureSink(output, name, pictures, view.size, frames_per_s));
   }
   return sinks;
 }
@@ -235,13 +186,17 @@ struct Stage {
   std::optional<playback::ValueRange> range;  ///< of the searched steps of the series
 };
 
-Stage openStage(const playback::FrameSelection& selection, const RenderOptions& options,
-                const PictureStyle& style, const GlobalOptions& global) {
+Stage openStage(const ViewState& view, const RenderOptions& options, const GlobalOptions& global) {
+  const bool must_show_isosurface =
+      options.command->count("--iso-value") > 0 && !options.realtime && isOnePicture(options.outputs);
   for (const std::string& output : options.outputs) playback::checkPictureOutput(output);
   return openOnTarget(global, options.device_volume, [&](const ComputeTarget& target) {
     Stage stage{
-        target, playback::openFrameSource(selection, target, progressSink(global), &stopFlag()), nullptr, {}};
-    stage.painter = std::make_unique<Painter>(style, *stage.source, target);
+        target,
+        playback::openFrameSource(selectionOf(view, options), target, progressSink(global), &stopFlag()),
+        nullptr,
+        {}};
+    stage.painter = std::make_unique<Painter>(view, *stage.source, target, must_show_isosurface);
     const playback::Frame frame = stage.source->frame(0);
     stage.painter->setFrame(frame);
     const playback::ValueRange range = render::colorRangeOf(frame.info(), frame.color_range);
@@ -281,22 +236,20 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   const ViewState view = viewOf(options);
   checkMeshOptions(options, view);
   checkOutputFiles(options, view);
-  const PictureStyle style = styleOf(view, options);
   const std::string mode = render::toString(view.settings.mode);
   // `auto` casts every pixel for files.
-  const render::FramePlan plan{
-      options.rays == "auto" ? render::Pattern::full : render::parsePattern(options.rays),
-      render::parseInterpolation(options.interpolate)};
-  const Stage stage = openStage(selectionOf(view, options), options, style, global);
+  const render::FramePlan plan{view.pattern.value_or(render::Pattern::full),
+                               render::parseInterpolation(options.interpolate)};
+  const Stage stage = openStage(view, options, global);
   saveState(options, view, stage);
   if (options.outputs.empty()) return 0;
   const std::unique_ptr<FrameSource>& source = stage.source;
   Painter& painter = *stage.painter;
   const Sinks sinks =
-      openSinks(options, style, source->name(), source->count(), options.frames_per_s.value_or(10));
+      openSinks(options, view, source->name(), source->count(), options.frames_per_s.value_or(10));
 
   logInfo(fmt::format("drawing {} picture{} of {}x{} into {}", source->count(),
-                      source->count() == 1 ? "" : "s", style.size.width, style.size.height,
+                      source->count() == 1 ? "" : "s", view.size.width, view.size.height,
                       fmt::join(options.outputs, ", ")));
   Stopwatch watch;
   double cast_ms = 0;
@@ -311,7 +264,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   const double seconds = watch.lap_ms() / 1000;
   if (global.json) {
     Json json{{"device", stage.target.device()},
-              {"size", {style.size.width, style.size.height}},
+              {"size", {view.size.width, view.size.height}},
               {"mode", mode},
               {"frames", source->count()},
               {"outputs", options.outputs},
@@ -327,7 +280,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
 }
 
 /// @param keeps_events  for --json, which reports each frame
-RealTimeOptions realTimeOptionsOf(const RenderOptions& options, bool keeps_events) {
+RealTimeOptions realTimeOptionsOf(const RenderOptions& options, const ViewState& view, bool keeps_events) {
   RealTimeOptions loop;
   constexpr double kBudget_ms = 40;  // the paper's limit for real time
   loop.frames_per_s = options.frames_per_s.value_or(1000 / options.budget_ms.value_or(kBudget_ms));
@@ -336,7 +289,7 @@ RealTimeOptions realTimeOptionsOf(const RenderOptions& options, bool keeps_event
   loop.orbit_rate_deg_s = options.orbit_rate_deg_s;
   loop.verify = options.verify;
   loop.keep_events = keeps_events;
-  if (options.rays != "auto") loop.controller.pattern = render::parsePattern(options.rays);
+  loop.controller.pattern = view.pattern;
   loop.controller.interpolation = render::parseInterpolation(options.interpolate);
   loop.controller.budget_ms = options.budget_ms.value_or(1000 / loop.frames_per_s);
   loop.controller.epsilon_ms = options.epsilon_ms;
@@ -347,20 +300,19 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   const ViewState view = viewOf(options);
   checkMeshOptions(options, view);
   checkOutputFiles(options, view);
-  const PictureStyle style = styleOf(view, options);
-  const RealTimeOptions loop_options = realTimeOptionsOf(options, global.json);
-  if (loop_options.orbit_rate_deg_s != 0 && style.camera.kind != render::CameraSpec::Kind::orbit) {
+  const RealTimeOptions loop_options = realTimeOptionsOf(options, view, global.json);
+  if (loop_options.orbit_rate_deg_s != 0 && view.camera.kind != render::CameraSpec::Kind::orbit) {
     throw Error(ErrorCode::usage, "--orbit-rate: the camera must be an orbit");
   }
-  const Stage stage = openStage(selectionOf(view, options), options, style, global);
+  const Stage stage = openStage(view, options, global);
   saveState(options, view, stage);
   const std::unique_ptr<FrameSource>& source = stage.source;
   constexpr int kSeveral = 2;
-  const Sinks sinks = openSinks(options, style, source->name(), kSeveral, loop_options.frames_per_s);
+  const Sinks sinks = openSinks(options, view, source->name(), kSeveral, loop_options.frames_per_s);
 
   // Enough for delays of the encoder.
   constexpr long long kWaitingBytes = 256LL << 20;
-  Worker writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * style.size.count()))));
+  Worker writer(static_cast<std::size_t>(std::max(2LL, kWaitingBytes / (4 * view.size.count()))));
   int number = 0;
   Display display;
   if (!sinks.empty()) {
@@ -371,7 +323,7 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
     };
   }
   playback::SystemClock clock;
-  RealTimeLoop loop(loop_options, style, *source, *stage.painter, display, clock, &stopFlag());
+  RealTimeLoop loop(loop_options, view, *source, *stage.painter, display, clock, &stopFlag());
   const report::RealTimeReport report =
       loop.play([](const report::RealTimeEvent& event) { logInfo(report::lineOf(event)); });
   writer.finish();
@@ -381,9 +333,9 @@ int playInRealTime(const RenderOptions& options, const GlobalOptions& global) {
   logInfo(report::summaryOf(report));
   if (global.json) {
     Json json{{"device", stage.target.device()},
-              {"size", {style.size.width, style.size.height}},
+              {"size", {view.size.width, view.size.height}},
               {"mode", render::toString(view.settings.mode)},
-              {"rays", options.rays},
+              {"rays", raysOf(view)},
               {"outputs", options.outputs},
               {"budget_ms", loop_options.controller.budget_ms}};
     json.update(report::toJson(report));
@@ -443,11 +395,10 @@ Examples:
   options->command = command;
   command
       ->add_option(
-          "INPUT", options->selection.input,
+          "INPUT", options->view.input,
           "Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd or folder of them")
       ->required();
-  addSetOption(*command, options->selection.edits);
-  addCompareOption(*command, options->compare, "Draw");
+  addSetOption(*command, options->edits);
   command->add_option(
       "--state", options->state,
       "View file: camera, colours, time, edits and the rest; options on the command line override it");
@@ -455,54 +406,17 @@ Examples:
                       "Write the view as a view file; --output may then be omitted");
   command->add_option("-o,--output", options->outputs,
                       "NAME.png, NAME.mp4 or a folder for frames; may be given several times");
-  command->add_option("--size", options->size, "Picture size in pixels, WxH; default: 1280x720");
-  command->add_option("--mode", options->mode, "Compositing mode; default: dvr")
-      ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
-  command->add_option("--rays", options->rays, "Pixels to cast; the others are interpolated; auto: all")
-      ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter", "adaptive"}));
+  options->given.addTo(*command, "--time");
   command->add_option("--interpolate", options->interpolate, "Precision of interpolated pixels")
       ->check(CLI::IsMember({"float", "8bit"}));
-  command->add_option("--camera", options->camera,
-                      "orbit:azimuth_deg=..,elevation_deg=..,distance=..,fov_deg=.. or "
-                      "lookat:eye_x_m=..,..,target_x_m=..,..");
-  command->add_option("--transfer", options->transfer,
-                      "Colours and opacities (JSON); default: fitted to the values of the first picture");
-  command->add_option("--times", options->selection.times,
+  command->add_option("--times", options->times,
                       "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: all steps, or the first if the "
                       "only output is a .png");
-  command->add_option("--quantity", options->quantity, "Quantity or channel to draw; default: the first");
-  command->add_option("--range", options->range,
-                      "MIN:MAX of the colours; default: fitted to the values of the first picture");
-  command->add_option("--scenario", options->selection.scenario,
-                      "Scenario of the ground and emitters to draw with volumes");
-  command
-      ->add_option("--exaggeration", options->exaggeration, "Vertical exaggeration; 0: chosen from the box")
-      ->check(within(render::kExaggerationLimits));
-  addPlaneOption(*command, options->planes);
-  command->add_option("--step", options->step_voxels, "Distance between samples, in voxels")
-      ->check(within(render::kStepLimits));
-  command->add_option("--mida-gamma", options->mida_gamma, "-1 (dvr) .. 0 (mida) .. 1 (mip)")
-      ->check(within(render::kMidaGammaLimits));
-  command
-      ->add_option("--iso-value", options->iso_value,
-                   "Value of the isosurface, in the quantity's unit; default: the middle of the colours")
-      ->default_str("");
-  command->add_option("--iso-opacity", options->iso_opacity, "Opacity of the isosurface")
-      ->check(within(render::kIsoOpacityLimits));
-  command->add_flag("--shading", options->shading, "Shading of dvr and mida; iso is always shaded");
-  command->add_option("--theme", options->theme, "Background and labels; default: dark")
-      ->check(CLI::IsMember({"dark", "light"}));
   command
       ->add_option("--fps", options->frames_per_s,
                    "Frames per second of a video (default 10); with --realtime: the maximum")
       ->check(CLI::Range(0.1, 240.0));
-  command->add_flag("--exact", options->exact, "No early termination of rays");
-  command->add_option("--terrain", options->show_terrain, "Draw the ground: on or off")->default_str("on");
-  command->add_option("--emitters", options->show_emitters, "Draw and name the emitters: on or off")
-      ->default_str("on");
-  command->add_flag("--allow-missing-terrain", options->selection.allow_missing_terrain,
-                    "Compute although elevation data is missing; voxels over holes are masked");
-  addMeshOptions(*command, options->selection.mesh, options->cells);
+  addMeshOptions(*command, options->view.mesh, options->view.cells);
   addDeviceVolumeOption(*command, options->device_volume);
   addRealTimeOptions(*command, *options);
   command->callback([options, &global, &action] {

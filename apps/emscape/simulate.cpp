@@ -10,13 +10,13 @@
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
 #include "apps/common/target.h"
-#include "apps/common/value_range.h"
 #include "apps/emscape/subcommands.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/series/series_writer.h"
 #include "emscape/scenario/model/quantities.h"
+#include "playback/view/view_settings.h"
 #include "report/series_report.h"
 #include "report/warnings.h"
 
@@ -58,7 +58,7 @@ playback::SeriesOptions seriesOptionsOf(const SimulateOptions& options) {
   playback::SeriesOptions series;
   series.folder = options.folder;
   series.formats = formatsOf(options);
-  if (!options.range.empty()) series.range = parseRange(options.range);
+  if (!options.range.empty()) series.range = playback::parseRange(options.range);
   series.existing = options.resume ? Existing::resume : options.force ? Existing::replace : Existing::refuse;
   return series;
 }

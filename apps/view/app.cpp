@@ -36,7 +36,7 @@ constexpr double kFitLimit_s = 5;
 constexpr render::ImageSize kUsualSize{1200, 900};
 
 std::string titleOf(const ViewOptions& options) {
-  const std::filesystem::path path = std::filesystem::path(options.input).lexically_normal();
+  const std::filesystem::path path = std::filesystem::path(options.view.input).lexically_normal();
   if (path.empty()) return "emscape";
   return (path.has_filename() ? path : path.parent_path()).filename().string() + " — emscape";
 }
@@ -61,7 +61,7 @@ App::App(const ViewOptions& options)
   log_.write("start", {{"gl_renderer", window_.renderer()},
                        {"shares_gpu", shares_gpu_},
                        {"scale", window_.scale()},
-                       {"input", options.input}});
+                       {"input", options.view.input}});
 }
 
 std::unique_ptr<Session> App::makeFirstSession(const ViewOptions& options) {

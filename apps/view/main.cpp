@@ -32,15 +32,16 @@ void show(const ViewOptions& options) {
   // A wrong name and all errors in a scenario are reported before a window appears.
   using playback::InputKind;
   const std::optional<InputKind> kind =
-      options.input.empty() ? std::nullopt : std::optional(playback::inputKindOf(options.input));
-  if (kind == InputKind::scenario) playback::requireScenarioFile(options.input);
-  if (!options.mesh.empty()) {
-    emfield::parseTerrainMesh(options.mesh);
+      options.view.input.empty() ? std::nullopt : std::optional(playback::inputKindOf(options.view.input));
+  if (kind == InputKind::scenario) playback::requireScenarioFile(options.view.input);
+  if (!options.view.mesh.empty()) {
+    emfield::parseTerrainMesh(options.view.mesh);
     if (kind != InputKind::scenario) throw Error(ErrorCode::usage, "--mesh: INPUT must be a scenario");
   }
-  if (!options.mesh.empty() || kind == InputKind::mesh) render::checkCellSettings(options.view.settings);
-  if (kind == InputKind::scenario && !scenario::parseScenario(options.input, options.view.edits).scenario) {
-    scenario::loadScenario(options.input, options.view.edits);
+  if (!options.view.mesh.empty() || kind == InputKind::mesh) render::checkCellSettings(options.view.settings);
+  if (kind == InputKind::scenario &&
+      !scenario::parseScenario(options.view.input, options.view.edits).scenario) {
+    scenario::loadScenario(options.view.input, options.view.edits);
   }
   App(options).run();
 }

@@ -83,7 +83,7 @@ void MouseControl::press(const InputEvent& event, const Area& picture, Session& 
   if (isDoubleClick(session.log().now_s())) {
     drag_ = Drag::none;
     if (emitter) {
-      session.perform({"focus", {{"emitter", session.picture()->annotations.markers[*emitter].label}}});
+      session.perform({"focus", {{"emitter", session.picture()->scenario->emitters[*emitter].name}}});
     } else {
       session.perform({"focus", {{"x", x}, {"y", y}}});
     }

@@ -5,10 +5,11 @@
 
 #include "apps/common/arguments.h"
 #include "apps/common/command.h"
-#include "apps/common/value_range.h"
+#include "apps/common/view_arguments.h"
 #include "apps/view/session/action.h"
 #include "apps/view/view_parser.h"
 #include "emscape/base/error.h"
+#include "playback/view/view_file.h"
 
 namespace emscape::view {
 namespace {
@@ -27,54 +28,32 @@ Examples:
 
 Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectation of the script was not met.)";
 
-/// Parsed options. Those that are also part of a view have an effect only if they are given.
+/// Options that need more than to be stored.
 struct Typed {
-  std::string state, size, mode, rays = "auto", camera, range, theme, quantity;
-  double time_s = 0, exaggeration = 0, step_voxels = render::RenderSettings{}.step_voxels, budget_ms = 40;
-  bool shading = false;
+  std::string state, size;
+  app::ViewArguments given;
   std::vector<scenario::Edit> edits;
-  std::string compare;
-  std::vector<render::CutPlane> planes;
 };
 
 void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_option(
-      "INPUT", options.input,
+      "INPUT", options.view.input,
       "Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd or folder of them; "
       "without it the window asks for one");
-  app.add_option("--scenario", options.scenario, "Scenario of the ground and emitters to draw with volumes");
-  app::addMeshOptions(app, options.mesh, options.cells);
+  app::addMeshOptions(app, options.view.mesh, options.view.cells);
   app.add_option(
       "--state", typed.state,
       "View file: camera, colours, time, edits and the rest; options on the command line override it");
   app::addSetOption(app, typed.edits);
-  app::addCompareOption(app, typed.compare, "Show first");
+  typed.given.addTo(app, "--size");
   app.add_option("--size", typed.size,
                  "Window size in pixels, WxH; default: 1200x900, with --state as large as its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
       ->check(CLI::Range(0.5, 4.0))
       ->default_str("");
-  app.add_option("--time", typed.time_s, "First instant, in seconds");
-  app.add_option("--quantity", typed.quantity, "Quantity or channel to draw; default: the first");
-  app.add_option("--mode", typed.mode, "Compositing mode; default: dvr")
-      ->check(CLI::IsMember({"dvr", "mida", "mip", "iso"}));
-  app.add_option("--camera", typed.camera, "orbit:azimuth_deg=..,.. or lookat:eye_x_m=..,..; default: orbit");
-  app.add_option("--range", typed.range, "MIN:MAX of the colours; default: fitted to the first step");
-  app.add_option("--transfer", options.transfer, "Colours and opacities (JSON); default: fitted");
-  app.add_option("--theme", typed.theme, "Colours of texts and background; default: dark")
-      ->check(CLI::IsMember({"dark", "light"}));
-  app.add_option("--rays", typed.rays, "Pixels to cast while the picture changes; auto: as the budget allows")
-      ->check(CLI::IsMember({"auto", "full", "columns", "checkerboard", "quarter", "adaptive"}));
-  app.add_option("--budget", typed.budget_ms, "Milliseconds between two pictures while it changes")
+  app.add_option("--budget", options.controller.budget_ms,
+                 "Milliseconds between two pictures while it changes")
       ->check(CLI::Range(1.0, 1e5));
-  app.add_option("--exaggeration", typed.exaggeration, "Vertical exaggeration; 0: chosen from the box")
-      ->check(app::within(render::kExaggerationLimits));
-  app::addPlaneOption(app, typed.planes);
-  app.add_option("--step", typed.step_voxels, "Distance between samples, in voxels")
-      ->check(app::within(render::kStepLimits));
-  app.add_flag("--shading", typed.shading, "Shading of dvr and mida; iso is always shaded");
-  app.add_flag("--allow-missing-terrain", options.allow_missing_terrain,
-               "Compute although elevation data is missing; voxels over holes are masked");
   app.add_option("--script", options.script, "Script: JSON lines (docs/viewer.md)");
   app.add_option("--log", options.log, "Write the window's log, as JSON lines");
   app.add_flag_callback(
@@ -89,42 +68,32 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
 
 /// Refuses options that apply only to an INPUT.
 void refuseOptionsOfInput(const CLI::App& app) {
-  for (const char* name :
-       {"--scenario", "--mesh", "--cells", "--cell-rasterizer", "--cell-order", "--cell-perspective",
-        "--state", "--set", "--compare", "--time", "--quantity", "--mode", "--camera", "--range",
-        "--transfer", "--exaggeration", "--plane", "--step", "--shading"}) {
-    if (app.count(name) == 0) continue;
-    throw Error(ErrorCode::usage, std::string(name) + " needs INPUT\nTry 'emscape view --help'.");
+  std::vector<std::string> names{
+      "--mesh", "--cells", "--cell-rasterizer", "--cell-order", "--cell-perspective", "--state", "--set"};
+  for (const playback::ViewSetting& setting : playback::viewSettings()) names.push_back(setting.option);
+  for (const std::string& name : names) {
+    const bool needs_none = name.empty() || name == "--size" || name == "--theme" || name == "--rays" ||
+                            name == "--allow-missing-terrain";
+    if (needs_none || app.count(name) == 0) continue;
+    throw Error(ErrorCode::usage, name + " needs INPUT\nTry 'emscape view --help'.");
   }
 }
 
 /// Sets the first view: that of --state, or the default one, changed by the given options.
-void readView(const CLI::App& app, const Typed& typed, ViewOptions& options) {
-  playback::ViewState& view = options.view;
+void readView(const Typed& typed, ViewOptions& options) {
+  playback::ViewState view;
   if (!typed.state.empty()) {
     view = playback::readViewState(typed.state);
     options.state = typed.state;
     options.window_size.reset();
   }
   if (!typed.size.empty()) options.window_size = render::parseImageSize(typed.size);
-  const auto take = [&](const char* name, const auto& change) {
-    if (app.count(name) == 0) return;
-    change();
-    options.state.clear();  // the view differs from the file
-  };
-  take("--camera", [&] { view.camera = render::parseCamera(typed.camera); });
-  take("--theme", [&] { view.theme = render::parseTheme(typed.theme); });
-  take("--time", [&] { view.time_s = typed.time_s; });
-  take("--quantity", [&] { playback::changeQuantity(view, typed.quantity); });
-  take("--compare", [&] { playback::changeComparison(view, typed.compare); });
-  take("--range", [&] { playback::changeRange(view, app::parseRange(typed.range)); });
-  take("--transfer", [&] { view.transfer.reset(); });
-  take("--mode", [&] { view.settings.mode = render::parseCompositingMode(typed.mode); });
-  take("--step", [&] { view.settings.step_voxels = typed.step_voxels; });
-  take("--exaggeration", [&] { view.settings.vertical_exaggeration = typed.exaggeration; });
-  take("--plane", [&] { view.settings.planes = typed.planes; });
-  take("--shading", [&] { view.settings.shading = typed.shading; });
-  take("--set", [&] { view.edits.insert(view.edits.end(), typed.edits.begin(), typed.edits.end()); });
+  const std::string of_file = playback::viewStateText(view);
+  playback::setInput(view, options.view);
+  typed.given.apply(view);
+  view.edits.insert(view.edits.end(), typed.edits.begin(), typed.edits.end());
+  if (playback::viewStateText(view) != of_file || !view.transfer_file.empty()) options.state.clear();
+  options.view = view;
 }
 
 /// The parser, and the variables it fills.
@@ -166,10 +135,8 @@ std::optional<ViewOptions> parseOptions(int argc, char** argv) {
     std::cout << manualTables();
     return std::nullopt;
   }
-  if (line.options.input.empty()) refuseOptionsOfInput(line.app);
-  readView(line.app, line.typed, line.options);
-  if (line.typed.rays != "auto") line.options.controller.pattern = render::parsePattern(line.typed.rays);
-  line.options.controller.budget_ms = line.typed.budget_ms;
+  if (line.options.view.input.empty()) refuseOptionsOfInput(line.app);
+  readView(line.typed, line.options);
   return line.options;
 }
 

@@ -36,6 +36,7 @@
 #include "emscape/playback/pictures/picture_sink.h"
 #include "emscape/playback/series/series_writer.h"
 #include "emscape/playback/stop.h"
+#include "emscape/playback/view/view_state.h"
 #include "emscape/propagation/explanation.h"
 #include "emscape/propagation/reflected_ray.h"
 #include "emscape/propagation/settings.h"

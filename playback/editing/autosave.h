@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "playback/editing/view_state.h"
+#include "playback/view/view_file.h"
 
 namespace emscape {
 class FolderLock;

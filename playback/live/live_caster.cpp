@@ -9,6 +9,7 @@
 #include "emscape/base/parallel.h"
 #include "emscape/playback/pictures/picture_series.h"
 #include "playback/live/first_line.h"
+#include "playback/view/view_settings.h"
 
 namespace emscape::playback {
 namespace {
@@ -24,21 +25,21 @@ double between_ms(SteadyClock::time_point begin, SteadyClock::time_point end) {
 }
 
 /// A size of 0 draws nothing, but a camera needs one.
-PictureStyle drawableStyle(PictureStyle style) {
-  if (style.size.count() == 0) style.size = {1, 1};
-  return style;
+ViewState drawable(ViewState view) {
+  if (view.size.count() == 0) view.size = {1, 1};
+  return view;
 }
 
 }  // namespace
 
-LiveCaster::LiveCaster(const PictureStyle& style, const ViewRequest& first, const ComputeTarget& target,
+LiveCaster::LiveCaster(const ViewRequest& first, const ComputeTarget& target,
                        const render::ControllerOptions& controller, int threads, int niceness, Events events)
     : events_(std::move(events)),
       arena_(threads > 0 ? threads : threadCount(), niceness),
-      painter_(drawableStyle(style), target),
+      painter_(drawable(first.view), target, /*must_show_isosurface=*/false),
       controller_options_(controller),
       controller_(controller),
-      view_(first) {
+      request_(first) {
   worker_.push([this] { run(); });
 }
 
@@ -131,48 +132,31 @@ void LiveCaster::takeMail() {
 }
 
 void LiveCaster::applyView(const ViewRequest& request) {
-  const ViewRequest before = std::exchange(view_, request);
-  if (request.size.version != before.size.version && request.size.value.count() > 0) {
+  const ViewRequest before = std::exchange(request_, request);
+  const ViewState& view = request.view;
+  const ViewChange change = changeOf(before.view, view);
+  const auto apply = [this](bool differs, SceneEvent event, const auto& set) {
+    if (!differs) return;
     attempt([&] {
-      painter_.setSize(request.size.value);
-      raise(SceneEvent::resized);
+      set();
+      raise(event);
+    });
+  };
+  apply(change.size && view.size.count() > 0, SceneEvent::resized, [&] { painter_.setSize(view.size); });
+  apply(change.settings, SceneEvent::mode, [&] { painter_.setSettings(view.settings); });
+  apply(change.camera, SceneEvent::view, [&] { painter_.setCamera(view.camera); });
+  if (change.colors && (view.transfer || view.range)) {
+    attempt([&] {
+      if (painter_.setColors(view)) raise(SceneEvent::transfer_function);
     });
   }
-  if (request.settings.version != before.settings.version) {
-    attempt([&] {
-      painter_.setSettings(request.settings.value);
-      raise(SceneEvent::mode);
-    });
-  }
-  if (request.camera.version != before.camera.version) {
-    attempt([&] {
-      painter_.setCamera(request.camera.value);
-      raise(SceneEvent::view);
-    });
-  }
-  if (request.colors.version != before.colors.version) {
-    attempt([&] { applyColors(request.colors.value); });
-  }
-  if (request.show_terrain.version != before.show_terrain.version) {
-    attempt([&] {
-      painter_.showTerrain(request.show_terrain.value);
-      raise(SceneEvent::mode);
-    });
-  }
-  if (request.show_emitters.version != before.show_emitters.version) {
-    painter_.showEmitters(request.show_emitters.value);
-    changeLabels();
-  }
-  if (request.theme.version != before.theme.version) {
-    painter_.setTheme(request.theme.value);
-    changeLabels();
-  }
-  if (request.on_device.version != before.on_device.version) changeLabels();
-  if (request.pattern.version != before.pattern.version) {
-    controller_options_.pattern = request.pattern.value;
+  apply(change.ground, SceneEvent::mode, [&] { painter_.setScenery(view); });
+  if (change.labels) painter_.setScenery(view);
+  if (change.labels || request.on_device != before.on_device) changeLabels();
+  apply(change.pattern, SceneEvent::mode, [&] {
+    controller_options_.pattern = view.pattern;
     controller_.setOptions(controllerOptions(), now_ms());
-    raise(SceneEvent::mode);
-  }
+  });
 }
 
 void LiveCaster::applyField(const FieldDelivery& delivery) {
@@ -193,40 +177,14 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
   } catch (const Error&) {
     refused = std::current_exception();
     if (!painter_.hasColors()) {  // not from the file: as without one
-      painter_.fitColors();
+      painter_.setColors({});
       painter_.setFrame(delivery.frame);
     }
   }
   if (is_first && delivery.frame.cells) controller_.setOptions(controllerOptions(), now_ms());
   if (!is_same_field) raise(is_other_grid ? SceneEvent::resized : SceneEvent::field);
-  if (is_other_quantity) {
-    painter_.fitColors();
-    range_.reset();
-  } else if (is_first) {
-    applyColors(view_.colors.value);
-  }
+  if (is_other_quantity) painter_.setColors({});
   if (refused) std::rethrow_exception(refused);
-}
-
-void LiveCaster::applyColors(const ColorOrder& order) {
-  switch (order.kind) {
-    case ColorOrder::Kind::first_step:
-      break;
-    case ColorOrder::Kind::range:
-      if (field_) fitColorsTo(order.range);
-      break;
-    case ColorOrder::Kind::function:
-      painter_.setTransferFunction(order.function);
-      range_.reset();
-      raise(SceneEvent::transfer_function);
-      break;
-  }
-}
-
-void LiveCaster::fitColorsTo(const ValueRange& range) {
-  painter_.fitColors(range);
-  range_ = range;
-  raise(SceneEvent::transfer_function);
 }
 
 void LiveCaster::attempt(const std::function<void()>& change) {
@@ -260,7 +218,7 @@ void LiveCaster::noteInput(Time since) {
 }
 
 bool LiveCaster::canDraw() const {
-  return painter_.hasFrame() && view_.size.value.count() > 0;
+  return painter_.hasFrame() && request_.view.size.count() > 0;
 }
 
 render::ControllerOptions LiveCaster::controllerOptions() const {
@@ -311,7 +269,7 @@ void LiveCaster::drawFrame(const render::FramePlan& plan) {
   const double other_ms =
       std::exchange(prepare_ms_, 0) + between_ms(begin, SteadyClock::now()) - drawn_.total_ms();
   controller_.frameDone({drawn_.total_ms(), std::max(other_ms, 0.0),
-                         static_cast<double>(drawn_.rays) / static_cast<double>(view_.size.value.count())});
+                         static_cast<double>(drawn_.rays) / static_cast<double>(request_.view.size.count())});
   is_drawing_ = false;
 }
 
@@ -345,7 +303,7 @@ void LiveCaster::publish() {
       painter_.fetch(picture.image);
       return;
     }
-    if (view_.on_device.value) picture.on_device = painter_.annotatedOnDevice(note);
+    if (request_.on_device) picture.on_device = painter_.annotatedOnDevice(note);
     if (picture.on_device) return;
     painter_.fetch(busy_image_);
     picture.finished = painter_.annotated(busy_image_, note);
@@ -357,7 +315,6 @@ void LiveCaster::publish() {
   picture.annotations = painter_.annotations();
   picture.transfer = painter_.transferFunction();
   picture.settings = painter_.settings();
-  picture.range = range_;
   static_cast<ShownField&>(picture) = field_->frame;
   if (field_->scene) {
     picture.scenario = field_->scene->scenario;

@@ -19,42 +19,11 @@
 
 namespace emscape::playback {
 
-/// A value with a revision count, by which holders of a copy detect changes.
-template <class T>
-struct Versioned {
-  T value{};
-  long long version = 0;
-
-  void set(T other) {
-    value = std::move(other);
-    ++version;
-  }
-};
-
-/// Source of the colours.
-struct ColorOrder {
-  enum class Kind {
-    first_step,  ///< fitted to the first drawn step, or as in the style
-    range,
-    function
-  };
-  Kind kind = Kind::first_step;
-  ValueRange range;
-  render::TransferFunction function;
-};
-
 /// A request for the view.
 struct ViewRequest {
   long long revision = 0;  ///< counts requests
-  Versioned<render::CameraSpec> camera;
-  Versioned<render::RenderSettings> settings;
-  Versioned<render::ImageSize> size;
-  Versioned<std::optional<render::Pattern>> pattern;
-  Versioned<ColorOrder> colors;
-  Versioned<bool> show_terrain;
-  Versioned<bool> show_emitters;
-  Versioned<render::Theme> theme;
-  Versioned<bool> on_device;
+  ViewState view;
+  bool on_device = false;  ///< LiveView::keepOnDevice()
 };
 
 struct CasterStatus {
@@ -82,11 +51,10 @@ class LiveCaster {
     std::function<void()> changed;  ///< of the status
   };
 
-  /// @param first    the request that corresponds to `style`
   /// @param threads   of loops; 0: all
   /// @param niceness  of the threads
   /// @throws Error (bad_input, device)
-  LiveCaster(const PictureStyle& style, const ViewRequest& first, const ComputeTarget& target,
+  LiveCaster(const ViewRequest& first, const ComputeTarget& target,
              const render::ControllerOptions& controller, int threads, int niceness, Events events);
   ~LiveCaster();
   LiveCaster(const LiveCaster&) = delete;
@@ -113,8 +81,6 @@ class LiveCaster {
   void takeMail();
   void applyView(const ViewRequest& request);
   void applyField(const FieldDelivery& delivery);
-  void applyColors(const ColorOrder& order);
-  void fitColorsTo(const ValueRange& range);
   /// Makes a change; exceptions become the error of the status.
   void attempt(const std::function<void()>& change);
   void raise(render::SceneEvent event);
@@ -147,9 +113,8 @@ class LiveCaster {
   Painter painter_;
   render::ControllerOptions controller_options_;
   render::FrameController controller_;
-  ViewRequest view_;
+  ViewRequest request_;
   std::optional<FieldDelivery> field_;
-  std::optional<ValueRange> range_;
   PictureProgress progress_;     // of the picture
   bool is_labels_only_ = false;  // the next picture only needs new labels
   bool is_raised_ = false;       // an event since the last frame was begun

@@ -37,8 +37,8 @@ LiveFields::LiveFields(Open open, FieldRequest first, const Options& options, Ev
       arena_(options.threads > 0 ? options.threads : threadCount(), options.niceness),
       narrow_arena_(threadCount() - 1, options.niceness),
       cache_(options.cache_bytes) {
-  quantity_ = first.quantity;
-  compares_ = first.compares;
+  compares_ = !first.view.compare.empty();
+  wanted_ = first;
   box_.put(std::move(first));
   worker_.push([this] { run(); });
 }
@@ -85,8 +85,10 @@ void LiveFields::open() {
   try {
     source_ = open_(stop_);
     if (!source_) return;
+    if (const LoadedScenario* scene = source_->scene()) scenario_ = scene->scenario;
+    quantity_ = quantityOf(wanted_);
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (const LoadedScenario* scene = source_->scene()) status_.scenario = scene->scenario;
+    status_.scenario = scenario_;
     status_.times_s = timesOf(*source_);
   } catch (const std::exception& error) {
     source_ = nullptr;
@@ -112,7 +114,7 @@ void LiveFields::serve() {
   }
   try {
     const bool is_changed = applyChanges();
-    const int index = source_->nearestIndex(wanted_.time_s);
+    const int index = source_->nearestIndex(wanted_.view.time_s);
     const Frame* frame = cache_.find(index);
     if (!frame && !is_changed && field_begin_) {
       const Time may_begin = *field_begin_ + milliseconds(options_.min_seek_interval_ms);
@@ -127,11 +129,20 @@ void LiveFields::serve() {
   }
 }
 
+/// The name of the requested quantity: if the view has none, the first of the computed scenario.
+std::string LiveFields::quantityOf(const FieldRequest& request) const {
+  const bool is_computed = source_->scene() != nullptr && request.view.scenario.empty();
+  if (!request.view.quantity.empty() || !is_computed) return request.view.quantity;
+  return (request.scenario ? request.scenario : scenario_)->output.quantities.front();
+}
+
 /// Sets the requested scenario and quantity of the source. @return true if they have changed
 bool LiveFields::applyChanges() {
-  const bool is_edited = wanted_.scenario != scenario_;
-  const bool is_other_quantity = wanted_.quantity != quantity_;
-  const bool is_other_comparison = wanted_.compares != compares_;
+  const std::string quantity = quantityOf(wanted_);
+  const bool compares = !wanted_.view.compare.empty();
+  const bool is_edited = wanted_.scenario && wanted_.scenario != scenario_;
+  const bool is_other_quantity = quantity != quantity_;
+  const bool is_other_comparison = compares != compares_;
   if (!is_edited && !is_other_quantity && !is_other_comparison) return false;
   if (is_edited) {
     source_->setScenario(wanted_.scenario);
@@ -139,13 +150,13 @@ bool LiveFields::applyChanges() {
     cache_.clear();
   }
   if (is_other_quantity) {
-    source_->setQuantity(wanted_.quantity);
-    quantity_ = wanted_.quantity;
+    source_->setQuantity(quantity);
+    quantity_ = quantity;
     cache_.clear();
   }
   if (is_other_comparison) {
-    source_->setComparison(wanted_.compares);
-    compares_ = wanted_.compares;
+    source_->setComparison(compares);
+    compares_ = compares;
     cache_.clear();
   }
   if (range_search_.next()) beginSearch();

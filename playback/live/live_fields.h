@@ -13,20 +13,19 @@
 #include "base/worker.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/frame_source.h"
+#include "emscape/playback/view/view_state.h"
 #include "playback/frames/range_search.h"
 #include "playback/frames/step_cache.h"
 #include "playback/live/mailbox.h"
 
 namespace emscape::playback {
 
-/// A request for the field.
+/// A request for the field: of the view the quantity, the time, and whether it compares.
 struct FieldRequest {
   long long revision = 0;  ///< counts requests
-  double time_s = 0;
+  ViewState view;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
-  std::string quantity;
-  bool compares = false;  ///< with the reference: FrameSource::setComparison()
-  long long search = 0;   ///< number of the requested search of the series' range; 0: none
+  long long search = 0;  ///< number of the requested search of the series' range; 0: none
 };
 
 /// A field and its data.
@@ -100,6 +99,7 @@ class LiveFields {
   void open();
   void accept(Mailbox<FieldRequest>::Letter letter);
   void serve();
+  std::string quantityOf(const FieldRequest& request) const;
   bool applyChanges();
   Frame compute(int index);
   void deliver(const Frame& frame);
@@ -128,7 +128,8 @@ class LiveFields {
   FieldRequest wanted_;
   Time asked_;  // when
   bool is_due_ = false;
-  std::shared_ptr<const scenario::Scenario> scenario_;  // of the source, if it is not the opened one
+  // Of the source
+  std::shared_ptr<const scenario::Scenario> scenario_;
   std::string quantity_;
   bool compares_ = false;
   int index_ = 0;                    // of the last requested step, in the source

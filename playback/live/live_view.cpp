@@ -6,6 +6,7 @@
 
 #include "playback/live/live_caster.h"
 #include "playback/live/live_fields.h"
+#include "playback/view/view_settings.h"
 
 namespace emscape::playback {
 namespace {
@@ -17,45 +18,23 @@ double nearestOf(const std::vector<double>& times_s, double time_s) {
   });
 }
 
-ViewRequest viewOf(const PictureStyle& style, const LiveOptions& options) {
-  ViewRequest view;
-  view.camera.value = style.camera;
-  view.settings.value = style.settings;
-  view.size.value = style.size;
-  view.pattern.value = options.controller.pattern;
-  view.show_terrain.value = style.show_terrain;
-  view.show_emitters.value = style.show_emitters;
-  view.theme.value = style.theme;
-  return view;
-}
-
 /// Pictures of existing fields have priority over new fields.
 int solveNiceness(const LiveOptions& options) {
   constexpr int kBehindPictures = 4;
   return options.niceness > 0 ? options.niceness + kBehindPictures : 0;
 }
 
-FieldRequest fieldOf(const LiveOptions& options) {
-  FieldRequest field;
-  field.revision = 1;
-  field.time_s = options.time_s;
-  field.quantity = options.quantity;
-  field.compares = !options.compare.empty();
-  return field;
-}
-
-FrameSelection selectionOf(const std::string& input, const std::string& scenario,
-                           const LiveOptions& options) {
-  FrameSelection selection;
-  selection.input = input;
-  selection.scenario = scenario;
-  selection.mesh = options.mesh;
-  selection.quantity = options.quantity;
-  selection.edits = options.edits;
-  selection.compare = options.compare;
-  selection.allow_missing_terrain = options.allow_missing_terrain;
+FrameSelection selectionOf(const ViewState& view) {
+  FrameSelection selection(view);
+  selection.range.reset();  // of the colours, which the painter fits
   selection.independent = true;
   return selection;
+}
+
+render::ControllerOptions controllerOptionsOf(const LiveOptions& options, const ViewState& view) {
+  render::ControllerOptions controller = options.controller;
+  controller.pattern = view.pattern;
+  return controller;
 }
 
 }  // namespace
@@ -73,18 +52,17 @@ struct LiveView::Impl {
   LiveCaster caster;
   LiveFields fields;
 
-  Impl(const std::string& input, const std::string& scenario, const PictureStyle& style,
-       const LiveOptions& options, std::function<void()> wake_in)
+  Impl(const ViewState& shown, const LiveOptions& options, std::function<void()> wake_in)
       : wake(std::move(wake_in)),
         device(options.target.device()),
-        view(viewOf(style, options)),
-        field(fieldOf(options)),
-        caster(style, view, options.target, options.controller, options.cast_threads, options.niceness,
+        view{0, shown},
+        field{1, shown, nullptr},
+        caster(view, options.target, controllerOptionsOf(options, shown), options.cast_threads,
+               options.niceness,
                {[this](LivePicture made, PictureProgress of_made) { publish(std::move(made), of_made); },
                 [this] { tell(); }}),
         fields(
-            [selection = selectionOf(input, scenario, options),
-             target = options.target](const StopFlag& stop) {
+            [selection = selectionOf(shown), target = options.target](const StopFlag& stop) {
               return selection.input.empty() ? nullptr : openFrameSource(selection, target, {}, &stop);
             },
             field,
@@ -129,7 +107,7 @@ struct LiveView::Impl {
     status.failed = !is_field_shown && has_failed;
     status.exact = progress.complete && progress.scene == cast.scene && cast.view_revision == view.revision &&
                    !status.computing;
-    status.asked_s = nearestOf(solve.times_s, field.time_s);
+    status.asked_s = nearestOf(solve.times_s, field.view.time_s);
     status.searching = solve.series.search != field.search;
     if (!status.searching && !solve.series.range.empty()) status.series_range = solve.series.range;
     status.field_ms = solve.field_ms;
@@ -142,109 +120,50 @@ struct LiveView::Impl {
     return status;
   }
 
-  /// Changes the request for the view.
-  void askView(const std::function<void(ViewRequest&)>& change) {
-    ViewRequest request;
-    {
-      const std::lock_guard<std::mutex> lock(mutex);
-      change(view);
-      ++view.revision;
-      request = view;
-    }
-    caster.request(std::move(request));
-  }
-
-  void askField(const std::function<void(FieldRequest&)>& change) {
-    FieldRequest request;
-    {
-      const std::lock_guard<std::mutex> lock(mutex);
-      change(field);
-      ++field.revision;
-      request = field;
-    }
-    fields.request(std::move(request));
+  /// Sends a changed request. The mutex is not locked.
+  template <class Request, class Thread>
+  void ask(Request& request, Thread& thread, const std::function<void()>& change) {
+    std::unique_lock<std::mutex> lock(mutex);
+    change();
+    ++request.revision;
+    Request sent = request;
+    lock.unlock();
+    thread.request(std::move(sent));
   }
 };
 
-LiveView::LiveView(const std::string& input, const std::string& scenario_beside_volumes,
-                   const PictureStyle& style, const LiveOptions& options, std::function<void()> wake)
-    : impl_(std::make_unique<Impl>(input, scenario_beside_volumes, style, options, std::move(wake))) {}
+LiveView::LiveView(const ViewState& view, const LiveOptions& options, std::function<void()> wake)
+    : impl_(std::make_unique<Impl>(view, options, std::move(wake))) {}
 
 LiveView::~LiveView() = default;
 
-void LiveView::seek(double time_s) {
+void LiveView::show(const ViewState& view, std::shared_ptr<const scenario::Scenario> edited) {
   const std::vector<double> steps_s = times_s();
+  bool is_other_view = false, is_other_field = false;
   {
     const std::lock_guard<std::mutex> lock(impl_->mutex);
-    if (!steps_s.empty() && nearestOf(steps_s, time_s) == nearestOf(steps_s, impl_->field.time_s)) {
-      impl_->field.time_s = time_s;
-      return;
-    }
+    const ViewState& before = impl_->view.view;
+    const ViewChange change = changeOf(before, view);
+    const bool is_other_step = change.time && (steps_s.empty() || nearestOf(steps_s, view.time_s) !=
+                                                                      nearestOf(steps_s, before.time_s));
+    is_other_view = change.size || change.camera || change.settings || change.colors || change.ground ||
+                    change.labels || change.pattern;
+    is_other_field = change.field || is_other_step || (edited && edited != impl_->field.scenario);
+    impl_->view.view = impl_->field.view = view;
   }
-  impl_->askField([&](FieldRequest& field) { field.time_s = time_s; });
-}
-
-void LiveView::setScenario(std::shared_ptr<const scenario::Scenario> scenario) {
-  impl_->askField([&](FieldRequest& field) { field.scenario = std::move(scenario); });
-}
-
-void LiveView::setScenario(std::shared_ptr<const scenario::Scenario> scenario, const std::string& quantity) {
-  impl_->askField([&](FieldRequest& field) {
-    field.scenario = std::move(scenario);
-    field.quantity = quantity;
+  if (is_other_view) impl_->ask(impl_->view, impl_->caster, [] {});
+  if (!is_other_field) return;
+  impl_->ask(impl_->field, impl_->fields, [&] {
+    if (edited) impl_->field.scenario = std::move(edited);
   });
 }
 
-void LiveView::setQuantity(const std::string& quantity) {
-  impl_->askField([&](FieldRequest& field) { field.quantity = quantity; });
-}
-
-void LiveView::setComparison(bool on) {
-  impl_->askField([&](FieldRequest& field) { field.compares = on; });
-}
-
-void LiveView::setCamera(const render::CameraSpec& camera) {
-  impl_->askView([&](ViewRequest& view) { view.camera.set(camera); });
-}
-
-void LiveView::setTransferFunction(const render::TransferFunction& function) {
-  impl_->askView([&](ViewRequest& view) { view.colors.set({ColorOrder::Kind::function, {}, function}); });
-}
-
-void LiveView::setSettings(const render::RenderSettings& settings) {
-  impl_->askView([&](ViewRequest& view) { view.settings.set(settings); });
-}
-
-void LiveView::resize(render::ImageSize size) {
-  impl_->askView([&](ViewRequest& view) { view.size.set(size); });
-}
-
-void LiveView::setPattern(std::optional<render::Pattern> pattern) {
-  impl_->askView([&](ViewRequest& view) { view.pattern.set(pattern); });
-}
-
-void LiveView::showTerrain(bool show) {
-  impl_->askView([&](ViewRequest& view) { view.show_terrain.set(show); });
-}
-
-void LiveView::showEmitters(bool show) {
-  impl_->askView([&](ViewRequest& view) { view.show_emitters.set(show); });
-}
-
-void LiveView::setTheme(render::Theme theme) {
-  impl_->askView([&](ViewRequest& view) { view.theme.set(theme); });
-}
-
 void LiveView::keepOnDevice(bool keep) {
-  impl_->askView([&](ViewRequest& view) { view.on_device.set(keep); });
+  impl_->ask(impl_->view, impl_->caster, [&] { impl_->view.on_device = keep; });
 }
 
 void LiveView::searchSeriesRange() {
-  impl_->askField([](FieldRequest& field) { ++field.search; });
-}
-
-void LiveView::setRange(const volume::ValueRange& range) {
-  impl_->askView([&](ViewRequest& view) { view.colors.set({ColorOrder::Kind::range, range, {}}); });
+  impl_->ask(impl_->field, impl_->fields, [&] { ++impl_->field.search; });
 }
 
 std::shared_ptr<const LivePicture> LiveView::picture() const {

@@ -32,12 +32,6 @@ struct LiveOptions {
   ComputeTarget target;
   render::ControllerOptions controller;
   std::size_t cache_bytes = std::size_t{1} << 30;  ///< of the cached volumes of steps
-  bool allow_missing_terrain = false;
-  std::string quantity;               ///< quantity or channel; empty: the first
-  std::vector<scenario::Edit> edits;  ///< applied when the scenario is opened
-  std::string mesh;                   ///< as FrameSelection::mesh
-  std::string compare;                ///< as FrameSelection::compare: the view starts with the comparison
-  double time_s = 0;                  ///< the view starts with the nearest step
   /// Minimum interval (ms) between the starts of two fields that only a change of time requests.
   double min_seek_interval_ms = 60;
   /// Number of steps computed ahead of the one on screen, while steps are requested in sequence and there is
@@ -104,8 +98,6 @@ struct LivePicture : ShownField {
   render::Annotations annotations;
   render::TransferFunction transfer;
   render::RenderSettings settings;
-  /// Range of the colours after setRange(); none: they were fitted to the values of a step, or set.
-  std::optional<volume::ValueRange> range;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null for volumes without one
   scenario::TerrainPtr terrain;                        ///< may be null
   std::shared_ptr<const render::HeightField> ground;   ///< as drawn; null if there is none
@@ -119,60 +111,36 @@ struct LivePicture : ShownField {
 /// edit). *cast* draws: BUSY while requests arrive, then RESTORE, which any request stops within a few rows
 /// of tiles, then IDLE. An IDLE picture is bit-identical to a full cast of the same scene by Painter.
 ///
-/// Colours are fitted to the histogram of the first frame, as in `render`, and again after a change of the
-/// quantity. Otherwise they are constant, so that steps and edits can be compared; setRange()
-/// and setTransferFunction() change them. Each picture contains the function in use, which reproduces it
-/// together with camera and settings.
+/// A view without colours has those that were fitted to the histogram of its first frame, as in `render`, and
+/// again after a change of the quantity or comparison. They are constant otherwise, so that steps and edits
+/// can be compared. Each picture contains the function in use, which reproduces it together with camera and
+/// settings.
 class LiveView {
  public:
-  /// @param input  scenario or volume file, .pvd, folder of volumes; empty: no pictures
-  /// @param scenario_beside_volumes  scenario of the ground and emitters that are drawn with volumes; may be
-  /// empty
-  /// @param style  with a size of 0 nothing is drawn before resize()
+  /// @param view  its input may be empty: no pictures. With a size of 0 nothing is drawn before another one
   /// @param wake   called on the threads of this object after each picture and each change of the status; may
   /// be empty. It may call picture() and status(), and must not wait for this object
   /// @throws Error (bad_input) for settings out of their range, (device); faults of the input are in
   /// status().error
-  LiveView(const std::string& input, const std::string& scenario_beside_volumes, const PictureStyle& style,
-           const LiveOptions& options, std::function<void()> wake);
+  LiveView(const ViewState& view, const LiveOptions& options, std::function<void()> wake);
   /// Stops the work in progress: a picture within a few rows of tiles, a field at the end of its step.
   ~LiveView();
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
 
-  /// Shows the step nearest to a time. @param time_s any, also beyond the ends
-  void seek(double time_s);
-  /// Shows an edited scenario. Results that the edit does not invalidate are kept; cached steps are dropped.
-  /// If a model refuses an input, the message is in status().error and the picture stays. @param scenario
-  /// not null
-  void setScenario(std::shared_ptr<const scenario::Scenario> scenario);
-  /// setScenario() and setQuantity() in one request, for a scenario that does not have the present quantity.
-  void setScenario(std::shared_ptr<const scenario::Scenario> scenario, const std::string& quantity);
-  /// Shows another quantity or channel; empty: the first. Colours are fitted again.
-  void setQuantity(const std::string& quantity);
-
-  /// Shows the difference to the reference: LiveOptions::compare, else the opened scenario without
-  /// LiveOptions::edits. Colours are fitted again. An edit does not recompute the reference. If the two
-  /// cannot be compared (indices, for example), the message is in status().error and the picture stays.
-  void setComparison(bool on);
-
-  void setCamera(const render::CameraSpec& camera);
-  void setTransferFunction(const render::TransferFunction& function);
-  /// Sets the render settings. For values out of range the message is in status().error and the settings
-  /// stay.
-  void setSettings(const render::RenderSettings& settings);
-  /// Sets the size of the picture. With a side of 0 nothing is drawn until the next resize.
-  void resize(render::ImageSize size);
-  /// Pattern of busy frames; none: the one that meets the budget.
-  void setPattern(std::optional<render::Pattern> pattern);
-  void showTerrain(bool show);
-  void showEmitters(bool show);
-  void setTheme(render::Theme theme);
+  /// Shows another view: only what differs from the last one is computed and drawn.
+  ///
+  /// The step is the nearest to its time, also beyond the ends. An edited scenario keeps the results that the
+  /// edit does not invalidate; cached steps are dropped. A comparison is with the reference of the first
+  /// view, else with the opened scenario without edits; an edit does not recompute the reference. Of another
+  /// input, scenario or mesh than the first view's nothing is shown. If a model refuses an input, fields
+  /// cannot be compared, or settings are out of their range, the message is in status().error and the picture
+  /// stays as it was in this respect.
+  /// @param edited  the scenario with the edits of the view; null: as it was shown last
+  void show(const ViewState& view, std::shared_ptr<const scenario::Scenario> edited = nullptr);
   /// Sets whether busy pictures of a GPU stay in its memory, to be displayed from there; false at first.
   void keepOnDevice(bool keep);
 
-  /// Fits the colours to a range.
-  void setRange(const volume::ValueRange& range);
   /// Searches the range of the values over the series, for status().series_range: computes up to 24 steps
   /// when there is no other work. The picture stays.
   void searchSeriesRange();

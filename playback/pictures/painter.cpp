@@ -18,31 +18,22 @@ std::string subtitleOf(const volume::VolumeInfo& info) {
   return reference == info.extra.end() ? "" : "difference to " + reference->second;
 }
 
-constexpr std::pair<const char*, CellMethod> kCellMethods[] = {
-    {"auto", CellMethod::automatic}, {"march", CellMethod::march}, {"project", CellMethod::project}};
-
 }  // namespace
-
-CellMethod parseCellMethod(const std::string& name) {
-  for (const auto& [known, method] : kCellMethods) {
-    if (name == known) return method;
-  }
-  throw Error(ErrorCode::usage, "unknown way of drawing cells '" + name + "': expected auto, march, project");
-}
 
 std::string CellPicture::text() const {
   return projected ? std::string("projected by ") + render::toString(sorting) : "marched";
 }
 
-Painter::Painter(const PictureStyle& style, const FrameSource& source, const ComputeTarget& target)
-    : Painter(style, target) {
+Painter::Painter(const ViewState& view, const FrameSource& source, const ComputeTarget& target,
+                 bool must_show_isosurface)
+    : Painter(view, target, must_show_isosurface) {
   setScene(source.name(), source.scene());
 }
 
-Painter::Painter(const PictureStyle& style, const ComputeTarget& target)
-    : style_(style), renderer_(target.rendererOptions()) {
-  renderer_.setSettings(style.settings);
-  annotations_.theme = style.theme;
+Painter::Painter(const ViewState& view, const ComputeTarget& target, bool must_show_isosurface)
+    : view_(view), must_show_isosurface_(must_show_isosurface), renderer_(target.rendererOptions()) {
+  renderer_.setSettings(view.settings);
+  annotations_.theme = view.theme;
 }
 
 void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
@@ -53,10 +44,10 @@ void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
 void Painter::prepareCells(const Frame& frame) {
   if (!frame.cells || cells_) return;
   auto cells = std::make_unique<render::CellRenderer>(renderer_.backend());
-  cells->setSettings(style_.settings);
+  cells->setSettings(view_.settings);
   if (has_colors_) cells->setTransferFunction(renderer_.transferFunction());
-  projects_ = style_.cells.method == CellMethod::project;
-  if (style_.cells.method == CellMethod::automatic && renderer_.backend() == Backend::cpu) {
+  projects_ = view_.cells.method == CellMethod::project;
+  if (view_.cells.method == CellMethod::automatic && renderer_.backend() == Backend::cpu) {
     try {
       projects_ = !cells->projectsOnCpu();
     } catch (const Error& error) {
@@ -89,27 +80,27 @@ void Painter::setFrame(const Frame& frame) {
   if (is_other_grid) setGround(nullptr);
   setGround();
   if (is_other_grid) fitCamera();
-  if (is_first_of_colors && style_.settings.mode == render::CompositingMode::iso) {
+  if (is_first_of_colors && view_.settings.mode == render::CompositingMode::iso) {
     const std::string missing =
         render::missingIsosurface(renderer_.isoValue(), *frame.volume.host(), frame.color_range);
-    if (!missing.empty() && style_.must_show_isosurface) throw Error(ErrorCode::bad_input, missing);
+    if (!missing.empty() && must_show_isosurface_) throw Error(ErrorCode::bad_input, missing);
     if (!missing.empty()) logWarning(missing + "; no surface is drawn");
   }
 }
 
 void Painter::setAzimuth(double azimuth_deg) {
-  render::CameraSpec spec = style_.camera;
+  render::CameraSpec spec = view_.camera;
   spec.azimuth_deg = azimuth_deg;
   onRenderer([&](auto& to) { to.setCamera(cameraOf(spec)); });
 }
 
 void Painter::setCamera(const render::CameraSpec& spec) {
   if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(spec)); });
-  style_.camera = spec;
+  view_.camera = spec;
 }
 
 void Painter::setSize(render::ImageSize size) {
-  style_.size = size;
+  view_.size = size;
   fitCamera();
 }
 
@@ -117,7 +108,7 @@ void Painter::setSettings(const render::RenderSettings& settings) {
   if (cells_) render::checkCellSettings(settings);
   renderer_.setSettings(settings);
   if (cells_) cells_->setSettings(settings);
-  style_.settings = settings;
+  view_.settings = settings;
   setLegend();
   fitCamera();  // the vertical exaggeration may have changed
 }
@@ -128,44 +119,45 @@ void Painter::setTransferFunction(const render::TransferFunction& function) {
   setLegend();
 }
 
-void Painter::fitColors() {
-  style_.transfer.clear();
-  style_.function.reset();
-  style_.colors_span_range = false;
-  has_colors_ = false;
-  if (frame_) setTransferFunction(functionFor(*frame_));
+bool Painter::setColors(const ViewState& view) {
+  view_.transfer_file.clear();
+  view_.transfer = view.transfer;
+  view_.range = view.range;
+  if (!frame_) {
+    has_colors_ = false;
+    return false;
+  }
+  const render::TransferFunction function = functionFor(*frame_);
+  if (function == transferFunction()) return false;
+  setTransferFunction(function);
+  return true;
 }
 
-void Painter::fitColors(const volume::ValueRange& range) {
-  setTransferFunction(render::defaultTransferFunction(frame_->info(), range));
-}
-
-void Painter::showTerrain(bool show) {
-  style_.show_terrain = show;
-  if (frame_) setGround();
-}
-
-void Painter::showEmitters(bool show) {
-  style_.show_emitters = show;
+void Painter::setScenery(const ViewState& view) {
+  view_.show_terrain = view.show_terrain;
+  view_.show_emitters = view.show_emitters;
+  view_.labels = view.labels;
+  view_.theme = annotations_.theme = view.theme;
   setMarkers();
+  if (frame_) setGround();
 }
 
 render::FrameReport Painter::drawCells(bool is_complete, const StopFlag* stop) {
   render::FrameReport frame;
   CellPicture picture;
   fetched_ = true;
-  if (projects_ && (!is_complete || style_.cells.method == CellMethod::project)) {
-    render::ProjectionOptions options = style_.cells.projection;
+  if (projects_ && (!is_complete || view_.cells.method == CellMethod::project)) {
+    render::ProjectionOptions options = view_.cells.projection;
     if (!is_complete) options.sorting = render::CellSorting::centroids;
     render::ProjectionReport report;
-    image_ = cells_->project(style_.size, options, &report);
+    image_ = cells_->project(view_.size, options, &report);
     picture = {true, options.sorting, report.device, report.cells, report.cycles, report.sent_bytes};
-    frame.rays = style_.size.count();
+    frame.rays = view_.size.count();
     frame.cast_ms = report.order_ms + report.draw_ms;
   } else {
     render::CellReport report;
-    image_ = cells_->render(style_.size, stop, &report);
-    frame.rays = style_.size.count();
+    image_ = cells_->render(view_.size, stop, &report);
+    frame.rays = view_.size.count();
     frame.cast_ms = report.cast_ms;
     frame.complete = report.complete;
   }
@@ -181,7 +173,7 @@ render::FrameReport Painter::draw(const render::FramePlan& plan, const StopFlag*
   }
   // A picture in host memory need not be fetched.
   fetched_ = renderer_.backend() == Backend::cpu;
-  return fetched_ ? renderer_.draw(plan, style_.size, image_, stop) : renderer_.draw(plan, style_.size, stop);
+  return fetched_ ? renderer_.draw(plan, view_.size, image_, stop) : renderer_.draw(plan, view_.size, stop);
 }
 
 render::FrameReport Painter::restore(const StopFlag* stop) {
@@ -210,7 +202,7 @@ render::Image Painter::fullCast() {
     drawCells(true, nullptr);
     return std::exchange(image_, std::move(kept));
   }
-  return renderer_.render(style_.size);
+  return renderer_.render(view_.size);
 }
 
 render::Image8 Painter::picture(const std::string& note) {
@@ -228,20 +220,21 @@ render::Image8 Painter::annotated(const render::Image8& fetched, const std::stri
 std::shared_ptr<const render::DevicePicture> Painter::annotatedOnDevice(const std::string& note) {
   if (cells_ || renderer_.backend() == Backend::cpu) return nullptr;
   annotations_.note = note;
-  render::drawLayers(layers_, style_.size, renderer_.camera(), renderer_.sceneBox(), annotations_,
+  render::drawLayers(layers_, view_.size, renderer_.camera(), renderer_.sceneBox(), annotations_,
                      [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
   return renderer_.compose(layers_);
 }
 
 render::TransferFunction Painter::functionFor(const Frame& frame) const {
   const volume::VolumeInfo& info = frame.info();
-  if (!style_.transfer.empty()) return render::readTransferFunction(style_.transfer, info, frame.color_range);
-  if (style_.function && !info.categorical) {
-    render::requireUnitOf(*style_.function, info);
-    return *style_.function;
+  if (!view_.transfer_file.empty())
+    return render::readTransferFunction(view_.transfer_file, info, frame.color_range);
+  if (view_.transfer && !info.categorical) {
+    render::requireUnitOf(*view_.transfer, info);
+    return *view_.transfer;
   }
-  return style_.colors_span_range ? render::defaultTransferFunction(info, frame.color_range)
-                                  : frame.defaultColors(frame.color_range);
+  return view_.range ? render::defaultTransferFunction(info, view_.range)
+                     : frame.defaultColors(frame.color_range);
 }
 
 const render::TransferFunction& Painter::transferFunction() const {
@@ -258,25 +251,25 @@ bool Painter::isHidden(const Vec3d& frame_m) const {
 }
 
 std::string Painter::note(render::Pattern pattern) const {
-  const char* const mode = render::toString(style_.settings.mode);
+  const char* const mode = render::toString(view_.settings.mode);
   if (frame_ && frame_->cells) {
     return fmt::format("{}, {} tetrahedra{}", mode, frame_->cells->field.mesh->cells.size(),
                        cell_picture_ ? ", " + cell_picture_->text() : "");
   }
   return fmt::format("{}, {} rays, step {:g} voxel", mode, render::toString(pattern),
-                     style_.settings.step_voxels);
+                     view_.settings.step_voxels);
 }
 
 render::Camera Painter::cameraOf(const render::CameraSpec& spec) const {
-  return render::makeCamera(spec, sceneBox(), style_.size, render::overlayMargins(style_.size, annotations_));
+  return render::makeCamera(spec, sceneBox(), view_.size, render::overlayMargins(view_.size, annotations_));
 }
 
 void Painter::fitCamera() {
-  if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(style_.camera)); });
+  if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(view_.camera)); });
 }
 
 void Painter::setGround() {
-  setGround(style_.show_terrain && scene_ ? scene_->terrain : nullptr);
+  setGround(view_.show_terrain && scene_ ? scene_->terrain : nullptr);
 }
 
 void Painter::setGround(const scenario::TerrainPtr& ground) {
@@ -287,22 +280,29 @@ void Painter::setGround(const scenario::TerrainPtr& ground) {
 }
 
 void Painter::setMarkers() {
-  const bool shows = style_.show_emitters && frame_;
+  const bool shows = view_.show_emitters && frame_;
   annotations_.markers = shows ? frame_->markers : std::vector<render::Marker>{};
   annotations_.tracks = shows ? frame_->tracks : std::vector<render::Track>{};
+  if (view_.labels == Labels::all) return;
+  annotations_.tracks.clear();
+  for (render::Marker& marker : annotations_.markers) {
+    marker.beam.reset();
+    marker.ground_m.reset();
+    if (view_.labels == Labels::off) marker.label.clear();
+  }
 }
 
 void Painter::setLegend() {
   if (!frame_) return;
   annotations_.legend = render::legendOf(frame_->info(), transferFunction());
-  if (style_.settings.mode == render::CompositingMode::iso)
+  if (view_.settings.mode == render::CompositingMode::iso)
     annotations_.legend->iso_value = renderer_.isoValue();
   if (frame_->info().categorical) {
     annotations_.legend->categories =
         categoriesOf(frame_->info(), render::colorRangeOf(frame_->info(), frame_->color_range),
                      scene_ ? scene_->scenario.get() : nullptr);
   }
-  const double space = render::overlayMargins(style_.size, annotations_).right;
+  const double space = render::overlayMargins(view_.size, annotations_).right;
   if (std::exchange(legend_space_, space) != space) fitCamera();
 }
 

@@ -23,10 +23,10 @@ bool sameBits(const render::Image& a, const render::Image& b) {
 
 }  // namespace
 
-RealTimeLoop::RealTimeLoop(const RealTimeOptions& options, const PictureStyle& style, FrameSource& source,
+RealTimeLoop::RealTimeLoop(const RealTimeOptions& options, const ViewState& view, FrameSource& source,
                            Painter& painter, Display display, Clock& clock, const StopFlag* interrupt)
     : options_(options),
-      style_(style),
+      view_(view),
       source_(source),
       display_(std::move(display)),
       clock_(clock),
@@ -34,7 +34,7 @@ RealTimeLoop::RealTimeLoop(const RealTimeOptions& options, const PictureStyle& s
       controller_(options.controller),
       painter_(painter),
       period_ms_(1000 / options.frames_per_s) {
-  if (options.orbit_rate_deg_s != 0 && style.camera.kind != render::CameraSpec::Kind::orbit) {
+  if (options.orbit_rate_deg_s != 0 && view.camera.kind != render::CameraSpec::Kind::orbit) {
     throw Error(ErrorCode::usage, "a rotating camera must be an orbit");
   }
   report_.frames_per_s = options.frames_per_s;
@@ -73,7 +73,7 @@ RealTimeReport RealTimeLoop::play(const std::function<void(const RealTimeEvent&)
 
 render::FrameCost RealTimeLoop::costOf(const render::FrameReport& frame, double other_ms) const {
   return {frame.total_ms(), other_ms,
-          static_cast<double>(frame.rays) / static_cast<double>(style_.size.count())};
+          static_cast<double>(frame.rays) / static_cast<double>(view_.size.count())};
 }
 
 double RealTimeLoop::now_ms() const {
@@ -146,7 +146,7 @@ void RealTimeLoop::rehearse() {
   constexpr int kFrames = 4;
   for (int n = 0; n < kFrames; ++n) {
     controller_.event(SceneEvent::field, 0);
-    painter_.setAzimuth(style_.camera.azimuth_deg);
+    painter_.setAzimuth(view_.camera.azimuth_deg);
     controller_.frameDone(costOf(painter_.draw(controller_.next(0).plan), 0));
   }
 }
@@ -215,7 +215,7 @@ void RealTimeLoop::drawFrame(const render::FramePlan& plan) {
     pending_.reset();
   }
   if (options_.orbit_rate_deg_s != 0) {
-    painter_.setAzimuth(style_.camera.azimuth_deg + options_.orbit_rate_deg_s * slotBegin_ms(slot) / 1000);
+    painter_.setAzimuth(view_.camera.azimuth_deg + options_.orbit_rate_deg_s * slotBegin_ms(slot) / 1000);
   }
   event.prepare_ms = now_ms() - begin_ms;
   drawn_ = painter_.draw(plan);

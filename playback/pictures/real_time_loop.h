@@ -36,14 +36,14 @@ using Display = std::function<void(const render::Image8& picture, int slots)>;
 /// an event can stop them.
 class RealTimeLoop {
  public:
-  /// @param painter    draws the source in this style. Painter, style, source and clock must outlive this
+  /// @param painter    draws the source in this view. Painter, view, source and clock must outlive this
   /// object
   /// @param display    empty: pictures are not labelled and not displayed
   /// @param clock      tests use a simulated clock
   /// @param interrupt  ends play() with Stopped; may be null, else outlives this
   /// @throws Error (usage) for an orbit rate with a camera that does not orbit
-  RealTimeLoop(const RealTimeOptions& options, const PictureStyle& style, FrameSource& source,
-               Painter& painter, Display display, Clock& clock, const StopFlag* interrupt = nullptr);
+  RealTimeLoop(const RealTimeOptions& options, const ViewState& view, FrameSource& source, Painter& painter,
+               Display display, Clock& clock, const StopFlag* interrupt = nullptr);
   /// Stops the work in progress.
   ~RealTimeLoop();
   RealTimeLoop(const RealTimeLoop&) = delete;
@@ -91,7 +91,7 @@ class RealTimeLoop {
   void report(RealTimeEvent event);
 
   const RealTimeOptions options_;
-  const PictureStyle& style_;
+  const ViewState& view_;
   FrameSource& source_;
   const Display display_;
   Clock& clock_;

@@ -57,21 +57,21 @@ nb::object render(const Field& field, const std::string& quantity, std::pair<int
   render::Image8 picture;
   {
     const nb::gil_scoped_release unlocked;
-    playback::PictureStyle style;
-    style.size = render::parseImageSize(std::to_string(size.first) + "x" + std::to_string(size.second));
-    style.camera = render::parseCamera(camera);
-    style.theme = render::parseTheme(theme);
-    style.settings.mode = render::parseCompositingMode(mode);
-    style.settings.shading = shading;
-    if (iso_value) style.settings.iso_value = *iso_value;
-    style.settings.vertical_exaggeration = exaggeration;
-    style.transfer = transfer;
-    style.colors_span_range = range.has_value();
-    style.show_terrain = terrain;
-    style.show_emitters = emitters;
+    playback::ViewState view;
+    view.size = render::parseImageSize(std::to_string(size.first) + "x" + std::to_string(size.second));
+    view.camera = render::parseCamera(camera);
+    view.theme = render::parseTheme(theme);
+    view.settings.mode = render::parseCompositingMode(mode);
+    view.settings.shading = shading;
+    if (iso_value) view.settings.iso_value = *iso_value;
+    view.settings.vertical_exaggeration = exaggeration;
+    view.transfer_file = transfer;
+    if (range) view.range = playback::ValueRange{range->first, range->second};
+    view.show_terrain = terrain;
+    view.show_emitters = emitters;
     const playback::Frame frame = frameOf(field, field.indexOf(quantity), range);
     const auto draw = [&](const ResolvedBackend& choice) {
-      playback::Painter painter(style, ComputeTarget{choice});
+      playback::Painter painter(view, ComputeTarget{choice});
       painter.setScene(field.scene ? field.scene->scenario->name : std::string(),
                        field.scene ? &*field.scene : nullptr);
       painter.setFrame(frame);

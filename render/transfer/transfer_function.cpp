@@ -246,6 +246,20 @@ double TransferFunction::opacity(double value) const {
   return below.opacity + (above->opacity - below.opacity) * (value - below.at) / (above->at - below.at);
 }
 
+bool operator==(const TransferFunction& a, const TransferFunction& b) {
+  const auto same_color = [](const TransferFunction::ColorPoint& p, const TransferFunction::ColorPoint& q) {
+    return p.at == q.at && p.color.r == q.color.r && p.color.g == q.color.g && p.color.b == q.color.b;
+  };
+  const auto same_opacity = [](const TransferFunction::OpacityPoint& p,
+                               const TransferFunction::OpacityPoint& q) {
+    return p.at == q.at && p.opacity == q.opacity;
+  };
+  return a.name == b.name && a.unit == b.unit && a.categorical == b.categorical &&
+         std::equal(a.colors.begin(), a.colors.end(), b.colors.begin(), b.colors.end(), same_color) &&
+         std::equal(a.opacities.begin(), a.opacities.end(), b.opacities.begin(), b.opacities.end(),
+                    same_opacity);
+}
+
 double TransferFunction::lowest() const {
   return colors.empty() ? opacities.front().at : std::min(colors.front().at, opacities.front().at);
 }

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "apps/bench/bench.h"
-#include "apps/common/value_range.h"
 #include "apps/emscape/subcommands.h"
+#include "playback/view/view_settings.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace emscape::test {
@@ -61,7 +61,7 @@ const FuzzTargetsAdded added({
            "bench\nfield\na.yaml\n--frames\n3",
            "--version"};
      }},
-    {"value_range", "", [](const fs::path&, const std::string& text) { app::parseRange(text); },
+    {"value_range", "", [](const fs::path&, const std::string& text) { playback::parseRange(text); },
      [] {
        return std::vector<std::string>{"-120:0", "1e-3:2.5"};
      }},

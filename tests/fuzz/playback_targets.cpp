@@ -1,7 +1,7 @@
 // View files, and the description and journal of a series.
 #include "emscape/playback/frames/field_series.h"
 #include "emscape/playback/series/series_writer.h"
-#include "playback/editing/view_state.h"
+#include "playback/view/view_file.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

@@ -65,7 +65,7 @@ class Fields {
     fields->request(request_);
   }
   void seek(int step) {
-    ask([step](FieldRequest& request) { request.time_s = step; });
+    ask([step](FieldRequest& request) { request.view.time_s = step; });
   }
   /// Waits until the last request is answered or has failed.
   void wait() {
@@ -130,7 +130,7 @@ TEST(LiveFields, AnEditEmptiesTheCacheAndIsComputedAtOnce) {
   Fields live(10, options);
   live.wait();
   live.ask([](FieldRequest& request) {
-    request.time_s = 4;
+    request.view.time_s = 4;
     request.scenario = scenarioNamed("edited");
   });
   live.wait();

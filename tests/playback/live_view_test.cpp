@@ -18,15 +18,17 @@ using testing::HasSubstr;
 
 constexpr render::ImageSize kSize{200, 150};
 
-PictureStyle smallStyle() {
-  PictureStyle style;
-  style.size = kSize;
-  return style;
+/// A small view that casts a quarter of the rays while it changes.
+ViewState smallView(const std::string& input) {
+  ViewState view;
+  view.input = input;
+  view.size = kSize;
+  view.pattern = render::Pattern::quarter;
+  return view;
 }
 
-LiveOptions quarterOptions() {
+LiveOptions fastOptions() {
   LiveOptions options;
-  options.controller.pattern = render::Pattern::quarter;
   options.controller.epsilon_ms = 20;
   return options;
 }
@@ -34,9 +36,9 @@ LiveOptions quarterOptions() {
 /// A LiveView, and the sequence of its states.
 class Live {
  public:
-  explicit Live(const std::string& input, const LiveOptions& options = quarterOptions(),
-                const PictureStyle& style = smallStyle(), const std::string& scenario = "") {
-    view = std::make_unique<LiveView>(input, scenario, style, options, [this] { wake(); });
+  explicit Live(const std::string& input) : Live(smallView(input)) {}
+  explicit Live(const ViewState& first, const LiveOptions& options = fastOptions()) : shown(first) {
+    view = std::make_unique<LiveView>(first, options, [this] { wake(); });
     const std::lock_guard<std::mutex> lock(mutex_);
     has_view_ = true;
   }
@@ -113,32 +115,39 @@ class Live {
   int passed_ = 0;
 
  public:
+  ViewState shown;
   std::unique_ptr<LiveView> view;
+
+  void show(const std::function<void(ViewState&)>& change) {
+    change(shown);
+    view->show(shown);
+  }
+  void seek(double time_s) {
+    show([&](ViewState& to) { to.time_s = time_s; });
+  }
+  void turn() {
+    show([](ViewState& to) { to.camera.azimuth_deg += 30; });
+  }
+  void edit(const std::string& path, const std::string& value) {
+    auto edited = std::make_shared<scenario::Scenario>(*view->scenario());
+    edited->set(path, value);
+    view->show(shown, std::move(edited));
+  }
 };
 
 /// The picture that a separate Painter casts in full.
 struct Expected {
-  explicit Expected(std::string file) : input(std::move(file)) {}
+  explicit Expected(const std::string& file) : view(smallView(file)) {}
 
-  std::string input;
-  std::string mesh;
-  double time_s = 0;
-  std::string quantity;
-  std::vector<scenario::Edit> edits;
-  PictureStyle style = smallStyle();
-  std::optional<render::TransferFunction> transfer;
+  ViewState view;
 
   render::Image8 picture() const {
-    FrameSelection selection;
-    selection.input = input;
-    selection.mesh = mesh;
-    selection.quantity = quantity;
-    selection.edits = edits;
+    FrameSelection selection(view);
+    selection.range.reset();
     selection.independent = true;
     const auto source = openFrameSource(selection, {});
-    Painter painter(style, *source, {});
-    if (transfer) painter.setTransferFunction(*transfer);
-    painter.setFrame(source->frame(source->nearestIndex(time_s)));
+    Painter painter(view, *source, {});
+    painter.setFrame(source->frame(source->nearestIndex(view.time_s)));
     painter.draw({});
     render::Image8 image;
     painter.fetch(image);
@@ -151,13 +160,6 @@ void expectSame(const std::shared_ptr<const LivePicture>& shown, const Expected&
   ASSERT_EQ(shown->size, full.size);
   EXPECT_TRUE(shown->image.rgba == full.rgba);
   EXPECT_TRUE(std::any_of(full.rgba.begin(), full.rgba.end(), [](std::uint8_t level) { return level > 0; }));
-}
-
-std::shared_ptr<const scenario::Scenario> edited(const LiveView& view, const std::string& path,
-                                                 const std::string& value) {
-  auto scenario = std::make_shared<scenario::Scenario>(*view.scenario());
-  scenario->set(path, value);
-  return scenario;
 }
 
 constexpr auto kBusyRestoreIdle = {ControllerState::busy, ControllerState::restore, ControllerState::idle};
@@ -174,74 +176,73 @@ std::string busyText() {
 TEST(LiveView, TetrahedraAreProjectedWhileBusyAndMarchedWhenSettled) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
-  expected.mesh = "terrain:4,50";
+  expected.view.mesh = "terrain:4,50";
+  expected.view.pattern.reset();
   LiveOptions options;
-  options.mesh = expected.mesh;
   options.controller.epsilon_ms = 1e6;
   {
-    Live busy(expected.input, options);
+    Live busy(expected.view, options);
     busy.waitUntil([](const LiveStatus& status) { return status.frame > 0; });
     EXPECT_EQ(busy.view->status().cells, busyText());
     EXPECT_EQ(busy.view->status().state, ControllerState::busy);
   }
   {
-    PictureStyle style = smallStyle();
-    style.cells.method = CellMethod::project;
-    Live busy(expected.input, options, style);
+    ViewState view = expected.view;
+    view.cells.method = CellMethod::project;
+    Live busy(view, options);
     busy.waitUntil([](const LiveStatus& status) { return status.frame > 0; });
     EXPECT_EQ(busy.view->status().cells, "projected by centroids");
   }
   options.controller.epsilon_ms = 20;
-  Live live(expected.input, options);
+  Live live(expected.view, options);
   expectSame(live.settled(), expected);
   EXPECT_EQ(live.view->status().cells, "marched");
   EXPECT_GT(live.view->picture()->cells->field.mesh->cells.size(), 1000);
-  live.view->setScenario(edited(*live.view, "region.dims", "[10, 12, 4]"));
-  expected.edits = {{"region.dims", "[10, 12, 4]"}};
+  live.edit("region.dims", "[10, 12, 4]");
+  expected.view.edits = {{"region.dims", "[10, 12, 4]"}};
   const auto changed = live.settled();
-  expected.transfer = changed->transfer;  // of the first picture's range
+  expected.view.transfer = changed->transfer;  // of the first picture's range
   expectSame(changed, expected);
 }
 
 TEST(LiveView, ModesThatTetrahedraDoNotHaveAreAnError) {
   const TemporaryFolder folder;
-  LiveOptions options;
-  options.mesh = "terrain:4,50";
-  PictureStyle style = smallStyle();
-  style.settings.mode = render::CompositingMode::mida;
-  Live live(quickScenario(folder), options, style);
+  ViewState view = smallView(quickScenario(folder));
+  view.mesh = "terrain:4,50";
+  view.settings.mode = render::CompositingMode::mida;
+  Live live(view);
   EXPECT_THAT(live.error(), HasSubstr("mode mida: fields on tetrahedra support only mode dvr"));
 }
 
 TEST(LiveView, ComparisonShowsEffectOfEditsAndThenTheField) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
-  Live live(expected.input);
+  Live live(expected.view);
   const auto field = live.settled();
-  live.view->setComparison(true);
+  live.show([](ViewState& to) { to.compare = kOriginal; });
   const auto equal = live.settled();
   EXPECT_EQ(equal->volume.info().quantity, "power_density_difference_db");
   EXPECT_EQ(equal->annotations.subtitle, "difference to the original scenario");
   EXPECT_EQ(equal->volume.info().range_max, 0) << "nothing is edited";
-  live.view->setScenario(edited(*live.view, "emitters.radar.power_w", "100000"));
+  live.edit("emitters.radar.power_w", "100000");
   const auto changed = live.settled();
   EXPECT_GT(changed->volume.info().range_max, 9.9F);
   EXPECT_GE(changed->volume.info().range_min, 0);
-  live.view->setComparison(false);
+  live.show([](ViewState& to) { to.compare.clear(); });
   const auto again = live.settled();
   EXPECT_EQ(again->volume.info().quantity, "power_density_dbwm2");
   EXPECT_EQ(again->annotations.subtitle, "");
-  expected.edits = {{"emitters.radar.power_w", "100000"}};
+  expected.view.edits = {{"emitters.radar.power_w", "100000"}};
   expectSame(again, expected);
 }
 
 TEST(LiveView, UndefinedDifferenceIsReportedAndPictureStays) {
   const TemporaryFolder folder;
-  LiveOptions options = quarterOptions();
-  options.quantity = "dominant_emitter";
-  Live live(quickScenario(folder), options);
+  ViewState view = smallView(quickScenario(folder));
+  view.quantity = "dominant_emitter";
+  Live live(view);
   const auto field = live.settled();
-  live.view->setComparison(true);
+  live.show([](ViewState& to) { to.compare = kOriginal; });
   EXPECT_THAT(live.error(), HasSubstr("dominant_emitter: indices have no difference"));
   EXPECT_EQ(live.settled()->volume.info().quantity, "dominant_emitter");
 }
@@ -249,7 +250,7 @@ TEST(LiveView, UndefinedDifferenceIsReportedAndPictureStays) {
 TEST(LiveView, EveryKindOfEventSettlesOnFullCast) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
-  Live live(expected.input);
+  Live live(expected.view);
   const auto expectSettled = [&](const char* event) {
     SCOPED_TRACE(event);
     const auto shown = live.settled();
@@ -262,39 +263,37 @@ TEST(LiveView, EveryKindOfEventSettlesOnFullCast) {
   expectSame(first, expected);
   EXPECT_EQ(first->status.pattern, render::Pattern::quarter);
   EXPECT_EQ(live.view->times_s(), (std::vector<double>{0, 1, 2, 3, 4}));
-  expected.transfer = first->transfer;
+  expected.view.transfer = first->transfer;
 
-  live.view->seek(2.2);
-  expected.time_s = 2;
+  live.seek(2.2);
+  expected.view.time_s = 2;
   expectSettled("seek");
   EXPECT_EQ(live.view->picture()->annotations.time, "t = 2 s");
 
-  live.view->setScenario(edited(*live.view, "emitters.radar.power_w", "900"));
-  expected.edits = {{"emitters.radar.power_w", "900"}};
+  live.edit("emitters.radar.power_w", "900");
+  expected.view.edits = {{"emitters.radar.power_w", "900"}};
   expectSettled("edit");
   EXPECT_EQ(live.view->picture()->scenario->emitters[0].power_w, 900);
 
-  expected.style.camera.azimuth_deg = 20;
-  live.view->setCamera(expected.style.camera);
+  expected.view.camera.azimuth_deg = 20;
+  live.view->show(expected.view);
   expectSettled("camera");
 
-  expected.transfer = render::TransferFunction(*expected.transfer);
-  for (auto& point : expected.transfer->opacities) point.opacity *= 0.5;
-  live.view->setTransferFunction(*expected.transfer);
+  for (auto& point : expected.view.transfer->opacities) point.opacity *= 0.5;
+  live.view->show(expected.view);
   expectSettled("transfer function");
 
-  expected.style.settings.vertical_exaggeration = 3;
-  expected.style.settings.mode = render::CompositingMode::mip;
-  live.view->setSettings(expected.style.settings);
+  expected.view.settings.vertical_exaggeration = 3;
+  expected.view.settings.mode = render::CompositingMode::mip;
+  live.view->show(expected.view);
   expectSettled("settings");
 
-  expected.style.size = {160, 220};
-  live.view->resize(expected.style.size);
+  expected.view.size = {160, 220};
+  live.view->show(expected.view);
   expectSettled("size");
 
-  live.view->setQuantity("snr_db");
-  expected.quantity = "snr_db";
-  expected.transfer.reset();  // fitted anew
+  changeQuantity(expected.view, "snr_db");
+  live.view->show(expected.view);
   expectSettled("quantity");
   EXPECT_EQ(live.view->picture()->volume.info().quantity, "snr_db");
 }
@@ -302,16 +301,16 @@ TEST(LiveView, EveryKindOfEventSettlesOnFullCast) {
 TEST(LiveView, EventStopsRestorationAndSettledPictureShowsIt) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));
-  Live live(expected.input);
+  Live live(expected.view);
   live.settled();
   for (int round = 0; round < 3; ++round) {
     live.hold(ControllerState::restore);
-    expected.style.camera.azimuth_deg += 30;
-    live.view->setCamera(expected.style.camera);
+    expected.view.camera.azimuth_deg += 30;
+    live.view->show(expected.view);
     live.waitUntilHeld();
     const auto interpolated = live.view->picture();
-    expected.style.camera.azimuth_deg += 30;
-    live.view->setCamera(expected.style.camera);
+    expected.view.camera.azimuth_deg += 30;
+    live.view->show(expected.view);
     live.pass(ControllerState::busy);  // until the restoration has been stopped
     live.waitUntilHeld();
     EXPECT_EQ(live.view->picture(), interpolated) << "a stopped restoration is not shown";
@@ -328,7 +327,7 @@ TEST(LiveView, OnTheCpuBusyPicturesAreFinishedInTheHostsMemory) {
   live.view->keepOnDevice(true);
   live.settled();
   live.hold(ControllerState::restore);
-  live.view->setCamera({});
+  live.turn();
   live.waitUntilHeld();
   const auto busy = live.view->picture();
   EXPECT_EQ(busy->on_device, nullptr);
@@ -339,15 +338,15 @@ TEST(LiveView, OnTheCpuBusyPicturesAreFinishedInTheHostsMemory) {
 TEST(LiveView, BusyPicturesStayOnGpuOnRequest) {
   EMSCAPE_NEEDS_GPU();
   const TemporaryFolder folder;
-  LiveOptions options = quarterOptions();
+  LiveOptions options = fastOptions();
   options.target.choice = resolveBackend(Backend::cuda);
-  Live live(quickScenario(folder), options);
+  Live live(smallView(quickScenario(folder)), options);
   live.settled();
   for (const bool keeps : {true, false}) {
     live.view->keepOnDevice(keeps);
     live.settled();
     live.hold(ControllerState::restore);
-    live.view->setCamera({});
+    live.turn();
     live.waitUntilHeld();
     const auto busy = live.view->picture();
     EXPECT_EQ(busy->size, kSize);
@@ -367,15 +366,15 @@ TEST(LiveView, SeekingBackUsesCacheAndEditClearsIt) {
   const TemporaryFolder folder;
   Live live(quickScenario(folder));
   for (const double time_s : {0.0, 3.0}) {
-    live.view->seek(time_s);
+    live.seek(time_s);
     live.settled();
   }
   EXPECT_THAT(live.view->status().cached_steps, ElementsAre(0, 3));
   const long long computed = live.view->status().fields_computed;
-  live.view->seek(0);
+  live.seek(0);
   EXPECT_EQ(live.settled()->status.shown_s, 0);
   EXPECT_EQ(live.view->status().fields_computed, computed);
-  live.view->setScenario(edited(*live.view, "emitters.radar.power_w", "1"));
+  live.edit("emitters.radar.power_w", "1");
   live.settled();
   EXPECT_EQ(live.view->status().fields_computed, computed + 1);
   EXPECT_THAT(live.view->status().cached_steps, ElementsAre(0));
@@ -386,9 +385,9 @@ TEST(LiveView, RequestedAndShownStepDifferAndPictureStays) {
   Live live(quickScenario(folder));
   const auto before = live.settled();
   live.hold();
-  live.view->setCamera({});
+  live.turn();
   live.waitUntilHeld();  // the casting thread is blocked
-  live.view->seek(3.1);
+  live.seek(3.1);
   const LiveStatus status = live.view->status();
   EXPECT_EQ(status.asked_s, 3);
   EXPECT_EQ(status.shown_s, 0);
@@ -406,12 +405,10 @@ TEST(LiveView, SettingsOutOfRangeAreReportedAndPictureStays) {
   const TemporaryFolder folder;
   Live live(quickScenario(folder));
   const auto before = live.settled();
-  render::RenderSettings settings;
-  settings.step_voxels = 99;
-  live.view->setSettings(settings);
+  live.show([](ViewState& to) { to.settings.step_voxels = 99; });
   EXPECT_EQ(live.error(), "step_voxels 99: expected a number 0.05..10");
   EXPECT_EQ(live.settled(), before);
-  live.view->setCamera({});
+  live.turn();
   live.settled();
   EXPECT_EQ(live.view->status().error, "");
 }
@@ -426,12 +423,12 @@ TEST(LiveView, AnEditThatCannotBeComputedLeavesThePictureUntilItIsUndone) {
   bad->output.quantities = {"no_such_quantity"};
   bad->terrain.emplace();
   bad->terrain->files = {"no_such_file.tif"};
-  live.view->setScenario(bad);
+  live.view->show(live.shown, bad);
   EXPECT_THAT(live.error(), HasSubstr("no_such_file.tif"));
   EXPECT_FALSE(live.view->status().computing);
   EXPECT_EQ(live.view->picture()->image.rgba, before->image.rgba);
   EXPECT_EQ(live.view->scenario(), bad);
-  live.view->setScenario(good);
+  live.view->show(live.shown, good);
   live.settled();
   EXPECT_EQ(live.view->status().error, "");
 }
@@ -439,8 +436,8 @@ TEST(LiveView, AnEditThatCannotBeComputedLeavesThePictureUntilItIsUndone) {
 TEST(LiveView, UnreadableFileIsReportedAndViewContinues) {
   Live live("no/such/file.yaml");
   EXPECT_EQ(live.error(), "no/such/file.yaml: no such file or folder");
-  live.view->seek(3);
-  live.view->setCamera({});
+  live.seek(3);
+  live.turn();
   EXPECT_EQ(live.view->picture(), nullptr);
   EXPECT_EQ(live.view->scenario(), nullptr);
 }
@@ -461,7 +458,7 @@ TEST(LiveView, LabelsChangeWithoutACast) {
   const auto before = live.settled();
   EXPECT_EQ(before->annotations.markers.size(), 2U);
   live.states();
-  live.view->showEmitters(false);
+  live.show([](ViewState& to) { to.show_emitters = false; });
   const auto after = live.settled();
   EXPECT_TRUE(after->annotations.markers.empty());
   EXPECT_EQ(after->image.rgba, before->image.rgba);
@@ -470,19 +467,19 @@ TEST(LiveView, LabelsChangeWithoutACast) {
 
 TEST(LiveView, EmptySizeIsNotDrawn) {
   const TemporaryFolder folder;
-  PictureStyle style = smallStyle();
-  style.size = {0, 0};
   Expected expected(quickScenario(folder));
-  Live live(expected.input, quarterOptions(), style);
+  ViewState view = expected.view;
+  view.size = {};
+  Live live(view);
   live.waitUntil([](const LiveStatus& status) { return status.fields_computed == 1 && !status.computing; });
   EXPECT_EQ(live.view->picture(), nullptr);
-  live.view->resize(kSize);
+  live.show([](ViewState& to) { to.size = kSize; });
   expectSame(live.settled(), expected);
-  live.view->resize({0, 0});
-  live.view->seek(2);
+  live.show([](ViewState& to) { to.size = {}; });
+  live.seek(2);
   live.waitUntil([](const LiveStatus& status) { return !status.computing; });
   EXPECT_EQ(live.view->status().shown_s, 0);
-  live.view->resize(kSize);
+  live.show([](ViewState& to) { to.size = kSize; });
   EXPECT_EQ(live.settled()->status.shown_s, 2);
 }
 
@@ -491,7 +488,7 @@ TEST(LiveView, ColorsAreFittedToARequestedRange) {
   const std::string input = quickScenario(folder);
   Live live(input);
   const render::TransferFunction fitted = live.settled()->transfer;
-  live.view->seek(2);
+  live.seek(2);
   EXPECT_EQ(live.settled()->transfer.lowest(), fitted.lowest()) << "colours stay over the series";
   EXPECT_FALSE(live.view->status().series_range);
   live.view->searchSeriesRange();
@@ -503,11 +500,10 @@ TEST(LiveView, ColorsAreFittedToARequestedRange) {
   const ValueRange series = *first.color_range;
   EXPECT_EQ(*live.view->status().series_range, series);
   EXPECT_EQ(live.settled()->transfer.lowest(), fitted.lowest()) << "what is shown stays";
-  live.view->setRange(series);
-  const auto shown = live.settled();
-  EXPECT_EQ(*shown->range, series);
-  EXPECT_EQ(shown->transfer.highest(), render::defaultTransferFunction(first.info(), series).highest());
-  live.view->setRange({-90, -20});
+  live.show([&](ViewState& to) { changeRange(to, series); });
+  EXPECT_EQ(live.settled()->transfer.highest(),
+            render::defaultTransferFunction(first.info(), series).highest());
+  live.show([](ViewState& to) { changeRange(to, {-90, -20}); });
   EXPECT_EQ(live.settled()->transfer.lowest(), -90);
 }
 
@@ -519,11 +515,11 @@ TEST(LiveView, VolumesFromFilesAreShownWithTheirTimes) {
                          {made.frame(i).volume.host().get()});
   }
   Live live(folder.path().string());
-  live.view->seek(1.2);
+  live.seek(1.2);
   const auto shown = live.settled();
   EXPECT_EQ(shown->status.shown_s, 1);
   EXPECT_EQ(shown->scenario, nullptr);
-  live.view->setScenario(std::make_shared<scenario::Scenario>());
+  live.view->show(live.shown, std::make_shared<scenario::Scenario>());
   EXPECT_THAT(live.error(), HasSubstr("volumes without a scenario cannot be edited"));
 }
 
@@ -531,16 +527,18 @@ TEST(LiveView, EndsWhileWorkIsRunning) {
   const TemporaryFolder folder;
   const std::string input = quickScenario(folder);
   for (int round = 0; round < 10; ++round) {
-    LiveView view(input, "", smallStyle(), quarterOptions(), {});
+    ViewState shown = smallView(input);
+    LiveView view(shown, fastOptions(), {});
     for (int n = 0; n < 20 * round; ++n) {
-      view.seek(n % 5);
-      render::CameraSpec camera;
-      camera.azimuth_deg = n;
-      view.setCamera(camera);
-      if (n % 7 == 0) view.searchSeriesRange();
+      std::shared_ptr<scenario::Scenario> edited;
       if (n % 50 == 49 && view.scenario()) {
-        view.setScenario(edited(view, "emitters.radar.power_w", std::to_string(n)));
+        edited = std::make_shared<scenario::Scenario>(*view.scenario());
+        edited->set("emitters.radar.power_w", std::to_string(n));
       }
+      shown.time_s = n % 5;
+      shown.camera.azimuth_deg = n;
+      view.show(shown, std::move(edited));
+      if (n % 7 == 0) view.searchSeriesRange();
     }
   }
 }

@@ -94,14 +94,15 @@ TEST(Memory, IsFlatOverTheUpdatesOfAFieldWithMovingEmitters) {
 
 TEST(Memory, SLOW_IsFlatOverTheStepsAndEditsOfALiveView) {
   const TemporaryFolder folder;
-  PictureStyle style;
-  style.size = kSize;
+  ViewState shown;
+  shown.input = flyingScenario(folder);
+  shown.size = kSize;
   LiveOptions options;
   options.controller.epsilon_ms = 1;
   options.min_seek_interval_ms = 0;
   options.cache_bytes = 10 * 16 * 16 * 8 * sizeof(float);
   Event changed;
-  LiveView view(flyingScenario(folder), "", style, options, [&] { changed.set(); });
+  LiveView view(shown, options, [&] { changed.set(); });
   const auto settle = [&] {
     while (!view.status().isSettled()) changed.wait();
     ASSERT_EQ(view.status().error, "");
@@ -109,12 +110,13 @@ TEST(Memory, SLOW_IsFlatOverTheStepsAndEditsOfALiveView) {
   settle();
   MemoryWatch watch;
   for (int n = 0; n < updates(); ++n) {
-    view.seek(n);
+    std::shared_ptr<scenario::Scenario> edited;
     if (n % 10 == 5) {
-      auto edited = std::make_shared<scenario::Scenario>(*view.scenario());
+      edited = std::make_shared<scenario::Scenario>(*view.scenario());
       edited->set("emitters.radar.power_w", std::to_string(1000 + n));
-      view.setScenario(std::move(edited));
     }
+    shown.time_s = n;
+    view.show(shown, std::move(edited));
     settle();
     watch.note();
   }
@@ -127,16 +129,16 @@ TEST(Memory, IsFlatOverARealTimePlayback) {
   FrameSelection selection;
   selection.input = flyingScenario(folder);
   const auto source = openFrameSource(selection, {});
-  PictureStyle style;
-  style.size = kSize;
-  Painter painter(style, *source, {});
+  ViewState view;
+  view.size = kSize;
+  Painter painter(view, *source, {});
   RealTimeOptions options;
   options.frames_per_s = 1;
   options.controller.pattern = render::Pattern::full;
   options.keep_events = false;
   ManualClock clock;
   MemoryWatch watch;
-  RealTimeLoop loop(options, style, *source, painter, {}, clock);
+  RealTimeLoop loop(options, view, *source, painter, {}, clock);
   const RealTimeReport report = loop.play([&](const RealTimeEvent& event) {
     if (event.state == render::ControllerState::busy) watch.note();
   });

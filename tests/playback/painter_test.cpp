@@ -13,10 +13,10 @@ namespace {
 
 TEST(Painter, LabelsAreDrawnOverTheCastPictureOrByTheCaller) {
   MadeFrames source(seconds(2));
-  PictureStyle style;
-  style.size = {160, 120};
-  style.colors_span_range = true;
-  Painter painter(style, source, {});
+  ViewState view;
+  view.size = {160, 120};
+  view.range = ValueRange{0, 2};
+  Painter painter(view, source, {});
   painter.setFrame(source.frame(1));
   painter.draw({});
   const render::Image cast = painter.image();
@@ -34,34 +34,34 @@ TEST(Painter, LabelsAreDrawnOverTheCastPictureOrByTheCaller) {
 
 TEST(Painter, ReturningCameraGivesSamePicture) {
   MadeFrames source(seconds(2));
-  PictureStyle style;
-  style.size = {160, 120};
-  style.colors_span_range = true;
-  Painter painter(style, source, {});
+  ViewState view;
+  view.size = {160, 120};
+  view.range = ValueRange{0, 2};
+  Painter painter(view, source, {});
   painter.setFrame(source.frame(1));
   painter.draw({});
   const render::Image before = painter.image();
   EXPECT_TRUE(std::any_of(before.pixels.begin(), before.pixels.end(),
                           [](const render::Rgba& pixel) { return pixel.a > 0; }));
-  render::CameraSpec closer = style.camera;
+  render::CameraSpec closer = view.camera;
   closer.elevation_deg += 20;
   painter.setCamera(closer);
   painter.draw({});
   EXPECT_GT(render::compare(render::quantize(painter.image()), render::quantize(before)).erroneous, 0);
-  painter.setCamera(style.camera);
+  painter.setCamera(view.camera);
   painter.draw({});
   EXPECT_EQ(render::compare(render::quantize(painter.image()), render::quantize(before)).erroneous, 0);
 }
 
 TEST(Painter, AzimuthIsThatOfACameraWithIt) {
   MadeFrames source(seconds(2));
-  PictureStyle style;
-  style.size = {80, 60};
-  Painter turned(style, source, {}), made(style, source, {});
+  ViewState view;
+  view.size = {80, 60};
+  Painter turned(view, source, {}), made(view, source, {});
   turned.setFrame(source.frame(1));
   made.setFrame(source.frame(1));
-  turned.setAzimuth(style.camera.azimuth_deg + 70);
-  render::CameraSpec camera = style.camera;
+  turned.setAzimuth(view.camera.azimuth_deg + 70);
+  render::CameraSpec camera = view.camera;
   camera.azimuth_deg += 70;
   made.setCamera(camera);
   turned.draw({});
@@ -71,9 +71,9 @@ TEST(Painter, AzimuthIsThatOfACameraWithIt) {
 
 TEST(Painter, FullCastEqualsRestoredPictureAndLeavesIt) {
   MadeFrames source(seconds(2));
-  PictureStyle style;
-  style.size = {80, 60};
-  Painter painter(style, source, {});
+  ViewState view;
+  view.size = {80, 60};
+  Painter painter(view, source, {});
   painter.setFrame(source.frame(1));
   painter.draw({render::Pattern::quarter, {}});
   const render::Image8 drawn = render::quantize(painter.image());
@@ -86,21 +86,23 @@ TEST(Painter, FullCastEqualsRestoredPictureAndLeavesIt) {
 
 TEST(Painter, ColorsAreFittedToAFrameOrARange) {
   MadeFrames source(seconds(2));
-  PictureStyle style;
-  style.size = {80, 60};
-  Painter painter(style, source, {});
+  ViewState view;
+  view.size = {80, 60};
+  Painter painter(view, source, {});
   Frame frame = source.frame(1);
   painter.setFrame(frame);
   const render::TransferFunction fitted = painter.transferFunction();
-  painter.fitColors(volume::ValueRange{-3, 9});
+  ViewState ranged;
+  ranged.range = ValueRange{-3, 9};
+  EXPECT_TRUE(painter.setColors(ranged));
   EXPECT_EQ(painter.transferFunction().lowest(), -3);
   EXPECT_EQ(painter.transferFunction().highest(), 9);
-  painter.fitColors();
+  EXPECT_FALSE(painter.setColors(ranged));
+  EXPECT_TRUE(painter.setColors({}));
   EXPECT_EQ(painter.transferFunction().lowest(), fitted.lowest());
   EXPECT_EQ(painter.transferFunction().highest(), fitted.highest());
-  style.colors_span_range = true;
-  Painter spanning(style, source, {});
-  frame.color_range = volume::ValueRange{-4, 6};
+  view.range = ValueRange{-4, 6};
+  Painter spanning(view, source, {});
   spanning.setFrame(frame);
   EXPECT_EQ(spanning.transferFunction().lowest(), -4);
   EXPECT_EQ(spanning.transferFunction().highest(), 6);
@@ -126,18 +128,43 @@ TEST(PictureSink, WritesOnePngOrANumberedFolder) {
               testing::HasSubstr("must end in .png or .mp4"));
 }
 
+TEST(Painter, LabelsOfEmittersAreNoneNamesOrAll) {
+  MadeFrames source(seconds(1));
+  Frame frame = source.frame(0);
+  render::Marker& marker = frame.markers.emplace_back();
+  marker.label = "radar";
+  marker.beam = Vec3d{0, 1, 0};
+  marker.ground_m = 0;
+  frame.tracks.resize(1);
+  ViewState view;
+  view.size = {160, 120};
+  Painter painter(view, source, {});
+  painter.setFrame(frame);
+  EXPECT_EQ(painter.annotations().markers[0].label, "radar");
+  EXPECT_TRUE(painter.annotations().markers[0].beam);
+  EXPECT_EQ(painter.annotations().tracks.size(), 1U);
+  for (const Labels labels : {Labels::names, Labels::off}) {
+    view.labels = labels;
+    painter.setScenery(view);
+    ASSERT_EQ(painter.annotations().markers.size(), 1U) << "the symbol stays";
+    EXPECT_EQ(painter.annotations().markers[0].label, labels == Labels::names ? "radar" : "");
+    EXPECT_FALSE(painter.annotations().markers[0].beam);
+    EXPECT_FALSE(painter.annotations().markers[0].ground_m);
+    EXPECT_TRUE(painter.annotations().tracks.empty());
+  }
+}
+
 TEST(Painter, EmptyIsosurfaceIsAnErrorOrAWarning) {
   MadeFrames source(seconds(2));
-  PictureStyle style;
-  style.size = {160, 120};
-  style.settings.mode = render::CompositingMode::iso;
-  style.settings.iso_value = 99;
-  Painter strict(style, source, {});
+  ViewState view;
+  view.size = {160, 120};
+  view.settings.mode = render::CompositingMode::iso;
+  view.settings.iso_value = 99;
+  Painter strict(view, source, {});
   EXPECT_EQ(errorOf([&] { strict.setFrame(source.frame(1)); }), "iso value 99: made ranges from 0 to 2");
   std::vector<std::string> messages;
   setLogSink([&](LogLevel, const std::string& message) { messages.push_back(message); });
-  style.must_show_isosurface = false;
-  Painter painter(style, source, {});
+  Painter painter(view, source, {}, /*must_show_isosurface=*/false);
   painter.setFrame(source.frame(1));
   painter.setFrame(source.frame(0));
   setLogSink({});
@@ -165,9 +192,9 @@ TEST(Painter, TheLegendOfIndicesHasTheNamesOfTheVolume) {
     selection.input = folder / "a.vdb";
     selection.scenario = scenario;
     const auto source = openFrameSource(selection, {});
-    PictureStyle style;
-    style.size = {160, 120};
-    Painter painter(style, *source, {});
+    ViewState view;
+    view.size = {160, 120};
+    Painter painter(view, *source, {});
     painter.setFrame(source->frame(0));
     std::string names;
     for (const render::Category& category : painter.annotations().legend->categories)

@@ -40,14 +40,14 @@ RealTimeOptions optionsOf(std::optional<Pattern> pattern) {
 
 Played play(const RealTimeOptions& options, FrameSource& source, Clock& clock, bool displayed = false,
             const StopFlag* interrupt = nullptr) {
-  PictureStyle style;
-  style.size = {97, 75};
-  style.colors_span_range = true;
-  Painter painter(style, source, {});
+  ViewState view;
+  view.size = {97, 75};
+  view.range = ValueRange{0, static_cast<float>(source.count())};
+  Painter painter(view, source, {});
   Played played;
   Display display;
   if (displayed) display = [&](const render::Image8&, int slots) { played.slots.push_back(slots); };
-  RealTimeLoop loop(options, style, source, painter, display, clock, interrupt);
+  RealTimeLoop loop(options, view, source, painter, display, clock, interrupt);
   played.report = loop.play([](const RealTimeEvent&) {});
   const std::vector<render::Rgba>& pixels = painter.image().pixels;
   EXPECT_TRUE(
@@ -211,16 +211,16 @@ TEST(RealTimeLoop, ExceptionOfTheSourceEndsIt) {
 
 TEST(RealTimeLoop, OnlyAnOrbitGoesRound) {
   MadeFrames source(seconds(1));
-  PictureStyle style;
-  style.size = {8, 6};
-  style.camera.kind = render::CameraSpec::Kind::lookat;
+  ViewState view;
+  view.size = {8, 6};
+  view.camera.kind = render::CameraSpec::Kind::lookat;
   RealTimeOptions options;
   options.orbit_rate_deg_s = 5;
-  PictureStyle orbit = style;
+  ViewState orbit = view;
   orbit.camera.kind = render::CameraSpec::Kind::orbit;
   Painter painter(orbit, source, {});
   ManualClock clock;
-  EXPECT_THAT(errorOf([&] { RealTimeLoop(options, style, source, painter, {}, clock); }),
+  EXPECT_THAT(errorOf([&] { RealTimeLoop(options, view, source, painter, {}, clock); }),
               testing::HasSubstr("orbit"));
 }
 

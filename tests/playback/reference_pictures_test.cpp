@@ -5,7 +5,7 @@
 
 #include "emscape/playback/pictures/painter.h"
 #include "emscape/render/picture/image.h"
-#include "playback/editing/view_state.h"
+#include "playback/view/view_file.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {
@@ -37,16 +37,12 @@ render::Image8 draw(const Shot& shot) {
                            R"("range": {"min": -90, "max": -20}, "edits": ["region.dims=[40, 40, 20]"], )" +
                            "\"size\": [" + std::to_string(shot.width) + ", " + std::to_string(shot.height) +
                            "], " + shot.view + "}";
-  const ViewState view = parseViewState(text, "view.json");
-  FrameSelection selection;
-  selection.input = emscape::test::shippedScenario("jacksboro.yaml");
+  ViewState view = parseViewState(text, "view.json");
+  view.input = emscape::test::shippedScenario("jacksboro.yaml");
+  FrameSelection selection(view);
   selection.times = "40";
-  selection.range = view.range;
-  selection.edits = view.edits;
   const auto source = openFrameSource(selection, {});
-  PictureStyle style = pictureStyleOf(view);
-  style.colors_span_range = true;
-  Painter painter(style, *source, {});
+  Painter painter(view, *source, {});
   painter.setFrame(source->frame(0));
   painter.draw({});
   return shot.labelled ? painter.picture("note") : render::quantize(painter.image());

@@ -1,8 +1,7 @@
-#include "playback/editing/view_state.h"
-
 #include <algorithm>
 #include <random>
 
+#include "playback/view/view_file.h"
 #include "tests/playback/playback_samples.h"
 #include "tests/support/working_folder.h"
 
@@ -299,8 +298,7 @@ TEST(ViewState, AComparedFileOfAnOldViewFileMayBeInTheWorkingFolder) {
 
 /// What a painter that is set to a view draws of a frame.
 std::vector<std::uint8_t> pictureOf(const ViewState& view, const Frame& frame, const FrameSource& source) {
-  const PictureStyle style = pictureStyleOf(view);
-  Painter painter(style, source, {});
+  Painter painter(view, source, {});
   painter.setFrame(frame);
   painter.draw({});
   return painter.picture("").rgba;
@@ -344,8 +342,7 @@ TEST(ViewState, ATransferFunctionOfAnotherUnitIsRefused) {
   ViewState state;
   state.transfer = render::defaultTransferFunction(*source.frame(0).volume.host());
   state.transfer->unit = "dB";
-  const PictureStyle style = pictureStyleOf(state);
-  Painter painter(style, source, {});
+  Painter painter(state, source, {});
   EXPECT_THAT(errorOf([&] { painter.setFrame(source.frame(0)); }),
               HasSubstr("unit 'dB' is not that of the volume: made is in ''"));
 }

@@ -17,9 +17,9 @@ namespace {
 TEST(Action, EveryActionHasKeyCommandAndCommandLine) {
   for (const Action& action : actions()) {
     EXPECT_STRNE(action.menu, "") << action.name;
-    EXPECT_STRNE(action.command_line, "") << action.name;
+    EXPECT_NE(action.command_line, "") << action.name;
     EXPECT_FALSE(chordsOf(action).empty()) << action.name;
-    EXPECT_NO_THROW(parseCommand(std::string(action.command))) << action.name;
+    EXPECT_NO_THROW(parseCommand(action.command)) << action.name;
   }
 }
 

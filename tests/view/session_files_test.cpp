@@ -40,7 +40,7 @@ bool waitUntilOpened(SessionSample& shown, SessionOpener& opener) {
 TEST(SessionOfTetrahedra, ShowsEditsAndRefusesUnsupportedVerbs) {
   const StateFolder folder;
   ViewOptions options = optionsFor(shippedScenario("quick.yaml"), {160, 120});
-  options.mesh = "terrain:4,50";
+  options.view.mesh = "terrain:4,50";
   SessionSample shown(options);
   ASSERT_TRUE(shown.settle());
   EXPECT_EQ(shown->report()["cells"], "marched");
@@ -156,13 +156,13 @@ TEST(Opening, RecognizesFilesByContent) {
   const ViewOptions present = optionsFor(shippedScenario("quick.yaml"));
   folder.write("a.view.json", R"({"schema_version": 1, "time_s": 2})");
   Opening opening = prepareOpening({folder / "a.view.json", "", std::nullopt, false}, present);
-  EXPECT_EQ(opening.options.input, present.input);
+  EXPECT_EQ(opening.options.view.input, present.view.input);
   EXPECT_EQ(opening.options.view.time_s, 2);
   folder.write("b.json", R"({"schema_version": 1, "domain": "relative", "opacity": [], "colors": []})");
   opening = prepareOpening({folder / "b.json", "", std::nullopt, false}, present);
   EXPECT_EQ(opening.colors, folder / "b.json");
   opening = prepareOpening({ownScenario(folder), "", std::nullopt, false}, present);
-  EXPECT_EQ(opening.options.input, folder / "own.yaml");
+  EXPECT_EQ(opening.options.view.input, folder / "own.yaml");
 }
 
 TEST(Opening, RefusesFilesWithoutAPicture) {
@@ -227,7 +227,7 @@ TEST_F(Opener, ReplacesInputOnScreen) {
   shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", ownScenario(folder_)));
   EXPECT_FALSE(shown_->settled());
   ASSERT_TRUE(waitUntilOpened(shown_, opener_));
-  EXPECT_EQ(shown_->options().input, folder_ / "own.yaml");
+  EXPECT_EQ(shown_->view().input, folder_ / "own.yaml");
   EXPECT_EQ(shown_->theme(), render::Theme::light);
   EXPECT_THAT(readRecentFiles(), ElementsAre(folder_ / "own.yaml"));
 }
@@ -306,7 +306,7 @@ TEST_F(Opener, AFaultIsLoggedOnce) {
 
 bool waitForAutosave(SessionSample& shown, bool wanted) {
   return shown.waitUntil([&] {
-    return fs::exists(playback::autosaveFileOf(shown->options().input)) == wanted && !shown->working();
+    return fs::exists(playback::autosaveFileOf(shown->view().input)) == wanted && !shown->working();
   });
 }
 

@@ -57,7 +57,7 @@ inline playback::ComputeTarget cpu() {
 
 inline ViewOptions optionsFor(const std::string& input, render::ImageSize size = {320, 240}) {
   ViewOptions options;
-  options.input = input;
+  options.view.input = input;
   options.view.size = size;
   return options;
 }
@@ -112,7 +112,7 @@ class SessionSample {
   static ViewOptions quarterOptions(const std::string& name, std::vector<scenario::Edit> edits) {
     ViewOptions options = optionsFor(shippedScenario(name), {240, 180});
     options.view.edits = std::move(edits);
-    options.controller.pattern = render::Pattern::quarter;
+    options.view.pattern = render::Pattern::quarter;
     return options;
   }
   void wake() {

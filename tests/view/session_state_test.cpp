@@ -7,6 +7,7 @@
 #include "emscape/playback/pictures/picture_series.h"
 #include "emscape/render/picture/image.h"
 #include "playback/editing/edit_history.h"
+#include "playback/view/view_file.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {
@@ -22,19 +23,12 @@ struct Rendered {
 
 Rendered render(const std::string& input, const playback::ViewState& written,
                 bool must_show_isosurface = true) {
-  const playback::ViewState view =
-      playback::parseViewState(playback::viewStateText(written), "test.view.json");
-  playback::FrameSelection selection;
-  selection.input = input;
-  selection.quantity = view.quantity;
-  selection.range = view.range;
-  selection.edits = view.edits;
-  selection.compare = view.compare;
+  playback::ViewState view = playback::parseViewState(playback::viewStateText(written), "test.view.json");
+  view.input = input;
+  playback::FrameSelection selection(view);
   selection.times = fmt::format("{}", view.time_s);
   const auto source = playback::openFrameSource(selection, cpu());
-  playback::PictureStyle style = playback::pictureStyleOf(view);
-  style.must_show_isosurface = must_show_isosurface;
-  playback::Painter painter(style, *source, cpu());
+  playback::Painter painter(view, *source, cpu(), must_show_isosurface);
   painter.setFrame(source->frame(0));
   painter.draw({});
   return {render::quantize(painter.image()), painter.picture(painter.note(render::Pattern::full))};
@@ -158,6 +152,7 @@ TEST(SessionState, IsSavedAndShownAgain) {
 
   ViewOptions options = optionsFor(shippedScenario("quick.yaml"));
   options.view = playback::readViewState(file);
+  options.view.input = shippedScenario("quick.yaml");
   options.state = file;
   SessionSample again(options);
   ASSERT_TRUE(again.settle());
@@ -180,7 +175,8 @@ TEST(SessionState, IsosurfaceOutsideOfTheValuesIsNotDrawn) {
   ASSERT_TRUE(shown.settle());
   EXPECT_EQ(shown.error(), "");
   EXPECT_EQ(shown->status().error, "");
-  EXPECT_TRUE(shown->picture()->image.rgba == render(options.input, shown->viewState(), false).volume.rgba);
+  EXPECT_TRUE(shown->picture()->image.rgba ==
+              render(options.view.input, shown->viewState(), false).volume.rgba);
 }
 
 TEST(SessionState, AnotherQuantityIsShownInColoursOfItsOwn) {

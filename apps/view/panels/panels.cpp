@@ -9,6 +9,7 @@
 #include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
 #include "emscape/render/annotate/legend.h"
+#include "playback/view/view_settings.h"
 #include "volume/difference.h"
 
 namespace emscape::view {
@@ -23,9 +24,9 @@ bool isChecked(const Session& session, const std::string& name) {
   const Panels& panels = session.panels;
   if (name == "Loop") return session.timeline().loop();
   if (name == "Play or pause") return session.timeline().playing();
-  if (name == "Ground") return session.showsTerrain();
-  if (name == "Emitters") return session.showsEmitters();
-  if (name == "Shading") return session.settings().shading;
+  for (const playback::ViewSetting& setting : playback::viewSettings()) {
+    if (setting.isSwitch() && setting.action == name) return std::get<bool>(setting.get(session.view()));
+  }
   if (name == "Isosurface") return session.settings().mode == render::CompositingMode::iso;
   if (name == "Scenario: what if") return panels.scenario && !panels.hidden;
   if (name == "Colours and opacity") return panels.colors && !panels.hidden;
@@ -70,7 +71,7 @@ std::string statusText(const Session& session, float room) {
   if (volume::isDifference(session.picture()->info())) parts.emplace_back("DIFFERENCE");
   parts.emplace_back(session.exact() ? "exact" : "approximate");
   if (status.cells.empty()) {
-    parts.push_back(fmt::format("{}{}, {:.0f} % of rays", session.pattern() ? "" : "auto: ",
+    parts.push_back(fmt::format("{}{}, {:.0f} % of rays", session.view().pattern ? "" : "auto: ",
                                 render::toString(status.pattern), 100 * status.rays_fraction));
   } else {
     parts.push_back(status.cells);
@@ -150,7 +151,7 @@ void drawMenuBar(PanelContext& context) {
       const std::string key = toString(chordsOf(action).front());
       if (ImGui::MenuItem(action.name, key.c_str(), isChecked(context.session, action.name),
                           isEnabled(context.session, action.name))) {
-        perform(context, action.command);
+        perform(context, action.command.c_str());
       }
       if (action.name == std::string("Open the input before this")) drawRecentMenu(context);
     }
@@ -299,7 +300,7 @@ void drawHelp(PanelContext& context) {
           ImGui::TextWrapped("%s", action.name);
           ImGui::TableNextColumn();
           ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
-          ImGui::TextWrapped("%s", action.command_line);
+          ImGui::TextWrapped("%s", action.command_line.c_str());
           ImGui::PopStyleColor();
         }
       }

@@ -48,7 +48,7 @@ void fillIn(Typed& typed, const Session& session) {
   typed.end_s = times_s.back();
   typed.step_s = times_s.size() > 1 ? times_s[1] - times_s[0] : 1;
   if (typed.file[0] != '\0') return;
-  std::string name = session.options().input;
+  std::string name = session.view().input;
   while (!name.empty() && name.back() == '/') name.pop_back();
   name = name.substr(name.rfind('/') + 1);
   name = name.substr(0, name.find('.')) + ".mp4";

@@ -107,7 +107,7 @@ void drawQuantity(PanelContext& context, ParameterRows& rows, const scenario::Sc
   rows.label("shown", "The quantity in the picture\n--quantity NAME", false);
   ImGui::TableNextColumn();
   ImGui::SetNextItemWidth(-1);
-  const std::string& chosen = context.session.quantity();
+  const std::string& chosen = context.session.view().quantity;
   const std::string shown = chosen.empty() ? scenario.output.quantities.front() : chosen;
   if (beginComboOfName("##quantity", shown)) {
     for (const std::string& name : quantitiesOf(scenario)) {

@@ -149,9 +149,7 @@ void drawIso(PanelContext& context) {
   const float width = 0.38F * ImGui::GetContentRegionAvail().x;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - width - 8 * context.scale);
   if (ImGui::SliderScalar("##iso", ImGuiDataType_Double, &value, &lowest, &highest, "surface at %.4g")) {
-    render::RenderSettings settings = session.settings();
-    settings.iso_value = value;
-    session.setSettings(settings);
+    session.change([&](playback::ViewState& view) { view.settings.iso_value = value; });
   }
   ImGui::SameLine();
   if (typed("##iso value", value, formatOf("", function.unit).c_str(), width)) {

@@ -13,8 +13,8 @@ struct Action {
   const char* menu;  ///< File, Edit, Time, Camera, View or Panels
   const char* name;
   const char* keys;          ///< chords separated by blanks: "Right .", "Ctrl+Shift+Z"
-  const char* command;       ///< the same as a script line
-  const char* command_line;  ///< the same on the command line
+  std::string command;       ///< the same as a script line
+  std::string command_line;  ///< the same on the command line
 };
 
 const std::vector<Action>& actions();

@@ -8,8 +8,8 @@
 
 #include "apps/view/session/file_browser.h"
 #include "apps/view/session/recorder.h"
+#include "emscape/playback/view/view_state.h"
 #include "playback/editing/autosave.h"
-#include "playback/editing/view_state.h"
 
 namespace emscape::view {
 

@@ -3,6 +3,7 @@
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/inputs.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "playback/view/view_file.h"
 
 namespace emscape::view {
 namespace {
@@ -29,24 +30,24 @@ void checkScenario(const std::string& file, std::vector<Edit>& edits, std::strin
 }
 
 void checkInput(const ViewOptions& options, Opening& opening) {
-  switch (playback::inputKindOf(options.input)) {
+  switch (playback::inputKindOf(options.view.input)) {
     case playback::InputKind::scenario:
-      checkScenario(options.input, opening.options.view.edits, opening.left_out);
+      checkScenario(options.view.input, opening.options.view.edits, opening.left_out);
       break;
     case playback::InputKind::volume:
-      if (!options.scenario.empty()) {
-        checkScenario(options.scenario, opening.options.view.edits, opening.left_out);
+      if (!options.view.scenario.empty()) {
+        checkScenario(options.view.scenario, opening.options.view.edits, opening.left_out);
       }
       break;
     case playback::InputKind::mesh:
       render::checkCellSettings(options.view.settings);
-      if (!options.scenario.empty()) {
-        checkScenario(options.scenario, opening.options.view.edits, opening.left_out);
+      if (!options.view.scenario.empty()) {
+        checkScenario(options.view.scenario, opening.options.view.edits, opening.left_out);
       }
       break;
     case playback::InputKind::elevation:
     case playback::InputKind::antenna:
-      throw Error(ErrorCode::bad_input, {options.input, 0, 0},
+      throw Error(ErrorCode::bad_input, {options.view.input, 0, 0},
                   "neither a scenario nor a volume: open the scenario that names it");
   }
 }
@@ -61,18 +62,19 @@ Opening prepareOpening(const OpenRequest& request, const ViewOptions& present) {
   using playback::JsonContent;
   switch (playback::jsonContentOf(request.file)) {
     case JsonContent::transfer:
-      if (present.input.empty()) {
+      if (present.view.input.empty()) {
         throw Error(ErrorCode::bad_input, {request.file, 0, 0},
                     "colours, which need a volume: open a scenario or volumes first");
       }
       opening.colors = request.file;
       return opening;
     case JsonContent::view:
-      if (present.input.empty()) {
+      if (present.view.input.empty()) {
         throw Error(ErrorCode::bad_input, {request.file, 0, 0},
                     "a view of some input: open the scenario or the volumes first");
       }
       options.view = playback::readViewState(request.file);
+      playback::setInput(options.view, present.view);
       if (options.view.open_panels.empty()) options.view.open_panels = present.view.open_panels;
       options.state = request.file;
       options.offers_kept_view = false;
@@ -80,15 +82,16 @@ Opening prepareOpening(const OpenRequest& request, const ViewOptions& present) {
     case JsonContent::other:
     case JsonContent::header:  // checkInput() refuses these two
     case JsonContent::series:
-      if (request.file != present.input) options.mesh.clear();  // chosen for that scenario
-      options.input = request.file;
-      options.scenario = request.scenario;
-      options.state.clear();
       if (request.view) options.view = *request.view;
+      playback::setInput(options.view, present.view);
+      if (request.file != present.view.input) options.view.mesh.clear();  // chosen for that scenario
+      options.view.input = request.file;
+      options.view.scenario = request.scenario;
+      options.state.clear();
       options.offers_kept_view = !request.view;
       break;
   }
-  options.transfer.clear();
+  options.view.transfer_file.clear();
   options.unsaved_edits = request.unsaved_edits;
   checkInput(options, opening);
   if (!opening.left_out.empty()) options.state.clear();

@@ -19,12 +19,15 @@ namespace {
 
 /// Draws all pictures. @param done  called with the number of pictures so far and the total number
 void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(int, int)>& done) {
-  const auto source = playback::openFrameSource(job.selection, job.target, {}, &stop);
+  playback::FrameSelection selection(job.view);
+  selection.times = job.times;
+  selection.independent = true;  // each picture equals the window's at its time
+  const auto source = playback::openFrameSource(selection, job.target, {}, &stop);
   std::vector<std::unique_ptr<playback::PictureSink>> sinks;
-  sinks.push_back(playback::makePictureSink(job.output, source->name(), source->count(), job.style.size,
+  sinks.push_back(playback::makePictureSink(job.output, source->name(), source->count(), job.view.size,
                                             job.frames_per_s));
   done(0, source->count());
-  playback::Painter painter(job.style, *source, job.target);
+  playback::Painter painter(job.view, *source, job.target, /*must_show_isosurface=*/false);
   painter.setFrame(source->frame(0));
   const render::FramePlan plan{render::Pattern::full, {}};
   playback::drawPictures(

@@ -23,8 +23,8 @@ struct RecordRange {
 
 /// The view to draw, and the output.
 struct RecordJob {
-  playback::FrameSelection selection;
-  playback::PictureStyle style;
+  playback::ViewState view;
+  std::string times;  ///< as FrameSelection::times
   playback::ComputeTarget target;
   double frames_per_s = 10;
   std::string output;  ///< NAME.mp4, NAME.png (one time) or a folder

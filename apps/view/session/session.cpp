@@ -8,6 +8,7 @@
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/cells/cell_renderer.h"
+#include "playback/view/view_settings.h"
 
 namespace emscape::view {
 namespace {
@@ -19,25 +20,13 @@ playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::
   live.target = target;
   live.controller = options.controller;
   live.cache_bytes = kCacheBytes;
-  live.allow_missing_terrain = options.allow_missing_terrain;
-  live.quantity = options.view.quantity;
-  live.edits = options.view.edits;
-  live.mesh = options.mesh;
-  live.compare = options.view.compare;
-  live.time_s = options.view.time_s;
   live.niceness = kNiceness;
   return live;
 }
 
-/// Nothing is drawn before the window has set the picture's size.
-playback::PictureStyle styleOf(const ViewOptions& options) {
-  playback::PictureStyle style = playback::pictureStyleOf(options.view);
-  style.transfer = options.transfer;
-  style.cells = options.cells;
-  style.size = {};
-  // Such a view must open: its edits may have moved all values away from the surface.
-  style.must_show_isosurface = false;
-  return style;
+playback::ViewState withoutSize(playback::ViewState view) {
+  view.size = {};
+  return view;
 }
 
 }  // namespace
@@ -49,8 +38,8 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       log_(log),
       target_(target),
       wake_(std::move(wake)),
-      live_(options.input, options.scenario, styleOf(options), liveOptionsOf(options, target), wake_),
-      pattern_(options.controller.pattern),
+      view_(withoutSize(options.view)),
+      live_(view_, liveOptionsOf(options, target), wake_),
       edit_queue_(wake_),
       prober_(wake_),
       files_(files ? std::move(files) : std::make_shared<Files>()),
@@ -60,9 +49,6 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       jobs_(wake_) {
   watchFiles();
   showView(options.view);
-  if (options.view.range && !options.view.transfer && options.transfer.empty()) {
-    live_.setRange(*options.view.range);
-  }
 }
 
 std::vector<Verb> Session::verbs() {
@@ -99,9 +85,9 @@ void Session::tell(const std::string& text, bool is_error) {
 // --- time, pictures, scenario ---
 
 void Session::askTime() {
-  if (timeline_.times_s().empty() || asked_s_ == timeline_.step_s()) return;
-  asked_s_ = timeline_.step_s();
-  live_.seek(*asked_s_);
+  if (timeline_.times_s().empty() || view_.time_s == timeline_.step_s()) return;
+  view_.time_s = timeline_.step_s();
+  live_.show(view_);
 }
 
 void Session::takeScenario() {
@@ -113,12 +99,12 @@ void Session::takeScenario() {
     timeline_.seek(options_.view.time_s);
     if (const auto& part = options_.view.play_range) timeline_.setPlayRange(part->begin_s, part->end_s);
     if (const auto& part = options_.view.visible_time) timeline_.setVisible(part->begin_s, part->end_s);
-    asked_s_ = timeline_.step_s();
+    view_.time_s = timeline_.step_s();
     if (live_.scenario()) {
       edits_.emplace(live_.scenario());
+      view_.edits = edits_->edits();
       shown_scenario_ = edits_->scenario();
       watchFiles();
-      shown_quantity_ = quantity_.empty() ? shown_scenario_->output.quantities.front() : quantity_;
     }
   }
   if (edits_) timeline_.setScenario(*edits_->scenario());
@@ -192,9 +178,9 @@ std::optional<double> Session::nextUpdate_s() const {
 }
 
 void Session::setPictureSize(render::ImageSize size) {
-  if (size == picture_size_ || size.width < 1 || size.height < 1) return;
-  picture_size_ = size;
-  live_.resize(size);
+  if (size == view_.size || size.width < 1 || size.height < 1) return;
+  view_.size = size;
+  live_.show(view_);
 }
 
 bool Session::exact() const {
@@ -207,7 +193,7 @@ bool Session::settled() const {
 
 bool Session::isPictureSettled() const {
   return picture_ && !edit_queue_.isBusy() && status_.isSettled() && !fit_ &&
-         picture_->status.frame == status_.frame && picture_->size == picture_size_;
+         picture_->status.frame == status_.frame && picture_->size == view_.size;
 }
 
 std::optional<Viewport> Session::viewport() const {
@@ -219,20 +205,23 @@ std::optional<Viewport> Session::viewport() const {
 // --- requests ---
 
 void Session::cameraMoved() {
-  live_.setCamera(camera_.spec());
+  view_.camera = camera_.spec();
+  live_.show(view_);
 }
 
-void Session::setSettings(const render::RenderSettings& settings) {
-  if (picture_ && picture_->cells) {
+void Session::change(const std::function<void(playback::ViewState&)>& change) {
+  playback::ViewState view = view_;
+  change(view);
+  if (picture_ && picture_->cells && playback::changeOf(view_, view).settings) {
     try {
-      render::checkCellSettings(settings);
+      render::checkCellSettings(view.settings);
     } catch (const Error& error) {
       return tell(error.what(), true);
     }
   }
-  settings_ = settings;
-  if (settings.mode != render::CompositingMode::iso) fog_mode_ = settings.mode;
-  live_.setSettings(settings);
+  view_ = std::move(view);
+  if (view_.settings.mode != render::CompositingMode::iso) fog_mode_ = view_.settings.mode;
+  live_.show(view_);
 }
 
 }  // namespace emscape::view

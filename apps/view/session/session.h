@@ -79,7 +79,7 @@ class Session {
   std::optional<double> nextUpdate_s() const;
   /// The part of the window that the picture fills.
   void setPictureSize(render::ImageSize size);
-  render::ImageSize pictureSize() const { return picture_size_; }
+  render::ImageSize pictureSize() const { return view_.size; }
   /// Sets whether busy pictures cast on a GPU are kept in its memory; see LivePicture::on_device.
   void keepOnDevice(bool keep) { live_.keepOnDevice(keep); }
 
@@ -104,11 +104,15 @@ class Session {
   // --- files: session_state.cpp, session_files.cpp ---
   const ViewOptions& options() const { return options_; }
   /// True if an input is open or is being opened; else the window offers the start panel.
-  bool hasInput() const { return !options_.input.empty(); }
+  bool hasInput() const { return !options_.view.input.empty(); }
   Files& files() { return *files_; }
   const Files& files() const { return *files_; }
+  /// The requested view. Time line, bookmarks and panels, which have their own state, are in viewState().
+  const playback::ViewState& view() const { return view_; }
   /// The requested state, as a view that can be saved.
   playback::ViewState viewState() const;
+  /// Changes the view; a notice reports settings that do not apply to the field on screen.
+  void change(const std::function<void(playback::ViewState&)>& change);
   bool hasUnsavedEdits() const;
   /// The autosave of an earlier run that did not end regularly.
   const std::optional<playback::AutosavedView>& keptView() const { return kept_view_; }
@@ -123,25 +127,19 @@ class Session {
   CameraControl& camera() { return camera_; }
   void cameraMoved();
   const playback::Timeline& timeline() const { return timeline_; }
-  const render::RenderSettings& settings() const { return settings_; }
-  /// Sets the settings; a notice reports those that do not apply to the field on screen.
-  void setSettings(const render::RenderSettings& settings);
+  const render::RenderSettings& settings() const { return view_.settings; }
   /// A plane through the middle of the box; a vertical one faces the viewer.
   render::CutPlane newPlane(render::CutPlane::Kind kind) const;
   /// @throws Error (bad_input) for too many, or values out of their range
   void setPlanes(const std::vector<render::CutPlane>& planes);
   /// True if the difference to the reference is requested instead of the field.
-  bool compares() const { return compares_; }
+  bool compares() const { return !view_.compare.empty(); }
   /// Colours and opacities; null before the first picture, and for categories, which have fixed colours.
   const playback::TransferEditor* transfer() const { return transfer_ ? &*transfer_ : nullptr; }
   /// Statistics of the values of the picture's volume, or of the previous one while they are computed; null
   /// before the first. Computed while the colour panel is open.
   const ValueSummary* values() const { return values_.get(); }
-  render::Theme theme() const { return theme_; }
-  const std::string& quantity() const { return quantity_; }
-  std::optional<render::Pattern> pattern() const { return pattern_; }
-  bool showsTerrain() const { return show_terrain_; }
-  bool showsEmitters() const { return show_emitters_; }
+  render::Theme theme() const { return view_.theme; }
   /// The edited scenario; null for volumes without one, and before the input is open.
   playback::ScenarioPtr scenario() const { return edits_ ? edits_->scenario() : nullptr; }
   /// The last edits if they were refused.
@@ -174,17 +172,17 @@ class Session {
 
   void switchPlanes(const Command& command);
   void changePlane(const Command& command);
+  void changeSetting(const Command& command);
   void showQuantity(const std::string& name);
   void revertRejected();
   /// The scenario that the field is computed from; null for volumes.
-  playback::ScenarioPtr computedScenario() const { return options_.scenario.empty() ? scenario() : nullptr; }
+  playback::ScenarioPtr computedScenario() const { return view_.scenario.empty() ? scenario() : nullptr; }
   void browse(FileBrowser::Purpose purpose);
   void ask(OpenRequest request);
   /// @throws Error (bad_input) if nothing is open
   void requireInput() const;
   void showView(const playback::ViewState& view);
   void noteSavedView(const std::string& file);
-  std::optional<render::TransferFunction> colorsInUse() const;
   void saveScenario(const std::string& file, bool then_quits);
   void saveView(const std::string& file);
   void copyCommand();
@@ -232,6 +230,7 @@ class Session {
   EventLog& log_;
   const playback::ComputeTarget target_;
   const std::function<void()> wake_;
+  playback::ViewState view_;  // requested; without a size nothing is drawn before the window has set it
   playback::LiveView live_;
 
   std::shared_ptr<const playback::LivePicture> picture_;
@@ -240,32 +239,23 @@ class Session {
   render::ControllerState logged_state_ = render::ControllerState::idle;
   CameraControl camera_;
   playback::Timeline timeline_;
-  std::optional<double> asked_s_;
   double advanced_at_s_ = 0;
-  render::ImageSize picture_size_;
-  render::RenderSettings settings_;
   render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // mode to which the key I returns
   std::optional<playback::TransferEditor> transfer_;
   bool takes_colors_ = true;  // true: takes the colours of the next pictures, which are fitted again
   std::shared_ptr<const ValueSummary> values_;
   bool counting_ = false;
   std::optional<Fit> fit_;  // requested, but its data are not yet available
-  render::Theme theme_;
-  std::string quantity_;
-  std::optional<render::Pattern> pattern_;
-  bool show_terrain_, show_emitters_;
-  bool compares_;
   std::size_t focused_ = 0;
   std::vector<std::optional<playback::Bookmark>> bookmarks_{9};
 
   std::optional<playback::EditHistory> edits_;
   playback::EditQueue edit_queue_;
   playback::ScenarioPtr shown_scenario_;  // the scenario of the live view
-  std::string shown_quantity_;            // the same
   struct {
-    std::string quantity;
-    bool compares = false;
-  } last_shown_;  // requests of the last computed field
+    std::string quantity, compare;
+    double iso_value = 0;
+  } last_shown_;  // of the view of the last computed field
   std::optional<Rejection> rejection_;
   Prober prober_;
   UndoOrder undo_order_;

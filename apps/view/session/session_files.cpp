@@ -32,7 +32,7 @@ void Session::requireInput() const {
 }
 
 void Session::browse(FileBrowser::Purpose purpose) {
-  files_->browser.open(purpose, std::filesystem::path(options_.input).parent_path());
+  files_->browser.open(purpose, std::filesystem::path(options_.view.input).parent_path());
   panels.open = true;
 }
 
@@ -44,7 +44,7 @@ void Session::ask(OpenRequest request) {
 
 void Session::shown(const std::string& left_out) {
   if (!left_out.empty()) tell("these edits do not apply any more: " + left_out, true);
-  jobs_.run([this, input = options_.input]() -> BackgroundJobs::Finish {
+  jobs_.run([this, input = options_.view.input]() -> BackgroundJobs::Finish {
     return [this, recent = input.empty() ? readRecentFiles() : addRecentFile(input)] {
       files_->recent = recent;
     };
@@ -56,7 +56,7 @@ void Session::shown(const std::string& left_out) {
 
 void Session::watchFiles() {
   std::vector<std::string> files;
-  for (const std::string& file : {options_.input, options_.scenario}) {
+  for (const std::string& file : {options_.view.input, options_.view.scenario}) {
     if (!file.empty()) files.push_back(file);
   }
   if (edits_) {
@@ -110,7 +110,7 @@ void Session::saveScenario(const std::string& given_file, bool then_quits) {
 }
 
 void Session::lookForKeptView() {
-  jobs_.run([this, autosaves = files_->autosaves, input = options_.input]() -> BackgroundJobs::Finish {
+  jobs_.run([this, autosaves = files_->autosaves, input = options_.view.input]() -> BackgroundJobs::Finish {
     std::optional<playback::AutosavedView> found = autosaves->find(input);
     return [this, found = std::move(found)] {
       kept_view_ = found;
@@ -139,7 +139,7 @@ void Session::keepEdits(double now_s) {
 void Session::keepView() {
   has_kept_ = true;
   kept_view_.reset();  // replaced
-  jobs_.run([this, autosaves = files_->autosaves, input = options_.input,
+  jobs_.run([this, autosaves = files_->autosaves, input = options_.view.input,
              view = viewState()]() -> BackgroundJobs::Finish {
     autosaves->keep(input, view);
     return [this] { log_.write("autosave"); };
@@ -149,7 +149,7 @@ void Session::keepView() {
 void Session::dropKeptView() {
   if (!has_kept_) return;
   has_kept_ = false;
-  jobs_.run([autosaves = files_->autosaves, input = options_.input]() -> BackgroundJobs::Finish {
+  jobs_.run([autosaves = files_->autosaves, input = options_.view.input]() -> BackgroundJobs::Finish {
     autosaves->remove(input);
     return {};
   });
@@ -193,7 +193,7 @@ std::vector<Verb> Session::fileVerbs() {
        "Reads the input again; edits that still apply are kept",
        [](Session& session, const Command&) {
          session.requireInput();
-         session.ask({session.options_.input, session.options_.scenario, session.viewState(),
+         session.ask({session.options_.view.input, session.options_.view.scenario, session.viewState(),
                       session.hasUnsavedEdits()});
        }},
       {"save",
@@ -205,7 +205,8 @@ std::vector<Verb> Session::fileVerbs() {
        "Shows the view with its edits that was kept when the program did not exit normally",
        [](Session& session, const Command&) {
          if (!session.kept_view_) throw Error(ErrorCode::bad_input, "no edits were kept for this input");
-         session.ask({session.options_.input, session.options_.scenario, session.kept_view_->state, true});
+         session.ask(
+             {session.options_.view.input, session.options_.view.scenario, session.kept_view_->state, true});
        }},
       {"discard",
        {},

@@ -12,11 +12,11 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
     OpenRequest request = *std::exchange(files_->request, std::nullopt);
     endBeside(std::move(next_));  // there is a newer request
     ViewOptions present = session->options();
-    present.view = session->viewState();
     // A new input is shown with the options of the start, but with the present window.
     playback::ViewState fresh;
-    fresh.theme = present.view.theme;
-    fresh.open_panels = present.view.open_panels;
+    playback::setInput(fresh, present.view);
+    fresh.theme = session->theme();
+    fresh.open_panels = session->viewState().open_panels;
     present.view = fresh;
     task_.start([request = std::move(request), present] { return prepareOpening(request, present); });
   }
@@ -52,7 +52,7 @@ void SessionOpener::take(Session& session) {
 
 void SessionOpener::replace(std::unique_ptr<Session>& session) {
   const bool takes_edits_along =
-      opening_.options.unsaved_edits && session->options().input == opening_.options.input;
+      opening_.options.unsaved_edits && session->view().input == opening_.options.view.input;
   session->leave(!takes_edits_along);
   endBeside(std::move(session));
   session = std::move(next_);

@@ -8,13 +8,10 @@
 #include "apps/view/session/session.h"
 #include "apps/view/session/shown_quantity.h"
 #include "emscape/base/error.h"
+#include "playback/view/view_settings.h"
 
 namespace emscape::view {
 namespace {
-
-constexpr NumberLimits limitsOf(const render::SettingLimits& limits) {
-  return {limits.min, limits.max};
-}
 
 /// @param name  "auto": empty. @throws Error (usage) that lists the names
 std::optional<render::Pattern> patternNamed(const std::string& name) {
@@ -22,85 +19,79 @@ std::optional<render::Pattern> patternNamed(const std::string& name) {
   return render::parsePattern(name);
 }
 
+Argument argumentOf(const playback::ViewSetting& setting) {
+  Argument argument{setting.argument.c_str(), kText, false};
+  if (setting.isSwitch()) {
+    argument.type = kBoolean;
+  } else if (setting.isNumber()) {
+    argument = {setting.argument.c_str(), kNumber, true, {setting.spec.minimum, setting.spec.maximum}};
+  }
+  for (const std::string& name : setting.spec.choices) argument.choices.push_back(name.c_str());
+  return argument;
+}
+
 }  // namespace
+
+/// Executes the verb of a setting: sets its value, or without one the next of its values.
+void Session::changeSetting(const Command& command) {
+  const playback::ViewSetting& setting = *playback::settingOfVerb(command.verb);
+  const char* const name = setting.argument.c_str();
+  change([&](playback::ViewState& view) {
+    if (!command.has(name)) return setting.changeToNext(view);
+    if (setting.isSwitch()) return setting.change(view, command.boolean(name, false));
+    if (setting.isNumber()) return setting.change(view, command.number(name));
+    setting.change(view, command.text(name));
+  });
+}
 
 /// @throws Error (bad_input) for a quantity that the scenario does not have
 void Session::showQuantity(const std::string& name) {
   if (const playback::ScenarioPtr computed = computedScenario()) {
     const std::string missing = missingQuantity(*computed, name);
     if (!missing.empty()) throw Error(ErrorCode::bad_input, missing);
-    shown_quantity_ = name.empty() ? computed->output.quantities.front() : name;
   }
-  quantity_ = name;
+  if (name == view_.quantity) return;
   takes_colors_ = true;
-  live_.setQuantity(name);
+  change([&](playback::ViewState& view) { playback::changeQuantity(view, name); });
 }
 
 /// Returns from a quantity or comparison that cannot be shown to those of the last field.
 void Session::revertRejected() {
   if (!status_.failed) {
-    if (picture_ && !status_.computing) last_shown_ = {quantity_, compares_};
+    if (picture_ && !status_.computing)
+      last_shown_ = {view_.quantity, view_.compare, view_.settings.iso_value};
     return;
   }
-  if (last_shown_.quantity == quantity_ && last_shown_.compares == compares_) return;
-  if (quantity_ != last_shown_.quantity) live_.setQuantity(last_shown_.quantity);
-  if (compares_ != last_shown_.compares) live_.setComparison(last_shown_.compares);
-  quantity_ = last_shown_.quantity;
-  compares_ = last_shown_.compares;
-  if (const playback::ScenarioPtr computed = computedScenario()) {
-    shown_quantity_ = quantity_.empty() ? computed->output.quantities.front() : quantity_;
-  }
+  if (last_shown_.quantity == view_.quantity && last_shown_.compare == view_.compare) return;
   takes_colors_ = true;
+  change([this](playback::ViewState& view) {
+    view.quantity = last_shown_.quantity;
+    view.compare = last_shown_.compare;
+    view.settings.iso_value = last_shown_.iso_value;
+  });
   status_ = live_.status();
 }
 
 std::vector<Verb> Session::pictureVerbs() {
-  return {
-      {"mode",
-       {{"mode", kText, false, {}, {}, [](const std::string& text) { render::parseCompositingMode(text); }}},
-       "dvr, mida, mip or iso; without a name the next one",
-       [](Session& session, const Command& command) {
-         constexpr render::CompositingMode kModes[] = {
-             render::CompositingMode::dvr, render::CompositingMode::mida, render::CompositingMode::mip,
-             render::CompositingMode::iso};
-         render::RenderSettings settings = session.settings_;
-         settings.mode = command.has("mode") ? render::parseCompositingMode(command.text("mode"))
-                                             : kModes[(static_cast<int>(session.settings_.mode) + 1) % 4];
-         session.setSettings(settings);
-       }},
+  std::vector<Verb> verbs;
+  for (const playback::ViewSetting& setting : playback::viewSettings()) {
+    if (setting.verb.empty()) continue;
+    verbs.push_back({setting.verb.c_str(),
+                     {argumentOf(setting)},
+                     setting.verb_help.c_str(),
+                     [](Session& session, const Command& command) { session.changeSetting(command); }});
+  }
+  const std::vector<Verb> others{
       {"iso",
        {{"value", kNumber, false}},
        "Value of the isosurface; without one: shows it, or returns to the mode before",
        [](Session& session, const Command& command) {
-         render::RenderSettings settings = session.settings_;
-         const bool shown = settings.mode == render::CompositingMode::iso;
-         settings.mode = shown && !command.has("value") ? session.fog_mode_ : render::CompositingMode::iso;
-         if (command.has("value")) settings.iso_value = command.number("value");
-         session.setSettings(settings);
-       }},
-      {"shading",
-       {{"on", kBoolean, false}},
-       "Shading of dvr and mida; iso is always shaded",
-       [](Session& session, const Command& command) {
-         render::RenderSettings settings = session.settings_;
-         settings.shading = command.boolean("on", !settings.shading);
-         session.setSettings(settings);
-       }},
-      {"exaggeration",
-       {{"factor", kNumber, true, limitsOf(render::kExaggerationLimits)}},
-       "Vertical exaggeration; 0: chosen from the box",
-       [](Session& session, const Command& command) {
-         render::RenderSettings settings = session.settings_;
-         settings.vertical_exaggeration = command.number("factor");
-         session.setSettings(settings);
-       }},
-      {"step_voxels",
-       {{"value", kNumber, true, limitsOf(render::kStepLimits)}},
-       "Distance between samples, in voxels",
-       [](Session& session, const Command& command) {
-         render::RenderSettings settings = session.settings_;
-         settings.step_voxels = command.number("value");
-         session.setSettings(settings);
+         session.change([&](playback::ViewState& view) {
+           render::RenderSettings& settings = view.settings;
+           const bool shown = settings.mode == render::CompositingMode::iso;
+           settings.mode = shown && !command.has("value") ? session.fog_mode_ : render::CompositingMode::iso;
+           if (command.has("value")) settings.iso_value = command.number("value");
+         });
        }},
       {"quantity",
        {{"name", kText}},
@@ -111,45 +102,21 @@ std::vector<Verb> Session::pictureVerbs() {
        "auto or a pattern of rays; without a name the next one",
        [](Session& session, const Command& command) {
          const std::vector<render::Pattern>& all = render::allPatterns();
+         std::optional<render::Pattern> pattern;
          if (command.has("pattern")) {
-           session.pattern_ = patternNamed(command.text("pattern"));
-         } else if (!session.pattern_) {
-           session.pattern_ = all.front();
+           pattern = patternNamed(command.text("pattern"));
+         } else if (!session.view_.pattern) {
+           pattern = all.front();
          } else {
-           const auto next = std::next(std::find(all.begin(), all.end(), *session.pattern_));
-           session.pattern_ = next == all.end() ? std::optional<render::Pattern>() : *next;
+           const auto next = std::next(std::find(all.begin(), all.end(), *session.view_.pattern));
+           if (next != all.end()) pattern = *next;
          }
-         session.live_.setPattern(session.pattern_);
-         session.tell(
-             fmt::format("rays: {}", session.pattern_ ? render::toString(*session.pattern_) : "auto"));
-       }},
-      {"terrain",
-       {{"on", kBoolean, false}},
-       "Draws the ground",
-       [](Session& session, const Command& command) {
-         session.show_terrain_ = command.boolean("on", !session.show_terrain_);
-         session.live_.showTerrain(session.show_terrain_);
-       }},
-      {"emitters",
-       {{"on", kBoolean, false}},
-       "Draws the emitters",
-       [](Session& session, const Command& command) {
-         session.show_emitters_ = command.boolean("on", !session.show_emitters_);
-         session.live_.showEmitters(session.show_emitters_);
-       }},
-      {"theme",
-       {{"theme", kText, false, {}, {}, [](const std::string& text) { render::parseTheme(text); }}},
-       "dark or light; without a name the other one",
-       [](Session& session, const Command& command) {
-         if (command.has("theme")) {
-           session.theme_ = render::parseTheme(command.text("theme"));
-         } else {
-           session.theme_ =
-               session.theme_ == render::Theme::dark ? render::Theme::light : render::Theme::dark;
-         }
-         session.live_.setTheme(session.theme_);
+         session.change([&](playback::ViewState& view) { view.pattern = pattern; });
+         session.tell(fmt::format("rays: {}", pattern ? render::toString(*pattern) : "auto"));
        }},
   };
+  verbs.insert(verbs.end(), others.begin(), others.end());
+  return verbs;
 }
 
 }  // namespace emscape::view

@@ -33,7 +33,7 @@ std::size_t indexOf(const Command& command, const std::vector<CutPlane>& planes)
 }
 
 /// Applies the values of a command to a plane.
-void change(CutPlane& plane, const Command& command) {
+void changeValues(CutPlane& plane, const Command& command) {
   const bool horizontal = plane.kind == CutPlane::Kind::horizontal;
   const std::vector<const char*> of_the_other = horizontal
                                                     ? std::vector<const char*>{"bearing_deg", "offset_m"}
@@ -67,13 +67,11 @@ CutPlane Session::newPlane(CutPlane::Kind kind) const {
 
 void Session::setPlanes(const std::vector<CutPlane>& planes) {
   render::checkCutPlanes(planes);
-  render::RenderSettings settings = settings_;
-  settings.planes = planes;
-  setSettings(settings);
+  change([&](playback::ViewState& view) { view.settings.planes = planes; });
 }
 
 void Session::switchPlanes(const Command& command) {
-  std::vector<CutPlane> planes = settings_.planes;
+  std::vector<CutPlane> planes = view_.settings.planes;
   const auto isOn = [](const CutPlane& plane) { return plane.on; };
   if (command.has("kind")) {
     const CutPlane::Kind kind = kindOf(command.text("kind"));
@@ -93,7 +91,7 @@ void Session::switchPlanes(const Command& command) {
 }
 
 void Session::changePlane(const Command& command) {
-  std::vector<CutPlane> planes = settings_.planes;
+  std::vector<CutPlane> planes = view_.settings.planes;
   if (command.has("spec")) {
     const CutPlane plane = render::parseCutPlane(command.text("spec"));
     if (command.has("index")) {
@@ -107,7 +105,7 @@ void Session::changePlane(const Command& command) {
     if (command.boolean("remove", false)) {
       planes.erase(planes.begin() + static_cast<std::ptrdiff_t>(index));
     } else {
-      change(planes[index], command);
+      changeValues(planes[index], command);
     }
   }
   setPlanes(planes);
@@ -137,14 +135,14 @@ std::vector<Verb> Session::planeVerbs() {
        {{"on", kBoolean, false}},
        "Shows the difference to the scenario as it was opened (or to that of --compare), or the field again",
        [](Session& session, const Command& command) {
-         const bool compares = command.boolean("on", !session.compares_);
-         if (compares == session.compares_) return;
-         session.compares_ = compares;
+         const bool compares = command.boolean("on", !session.compares());
+         if (compares == session.compares()) return;
          session.takes_colors_ = true;
-         render::RenderSettings settings = session.settings_;
-         settings.iso_value = render::RenderSettings{}.iso_value;  // the old one has another unit
-         session.setSettings(settings);
-         session.live_.setComparison(compares);
+         const std::string& first = session.options_.view.compare;
+         const std::string reference = first.empty() ? playback::kOriginal : first;
+         session.change([&](playback::ViewState& view) {
+           playback::changeComparison(view, compares ? reference : std::string());
+         });
        }},
   };
 }

@@ -11,21 +11,9 @@ namespace emscape::view {
 void Session::record(const RecordRange& range, const std::string& output) {
   if (timeline_.times_s().empty()) throw Error(ErrorCode::bad_input, "record: there is nothing to see yet");
   if (output.empty()) throw Error(ErrorCode::bad_input, "record: name a folder, a .mp4 or a .png");
-  const playback::ViewState view = viewState();
   RecordJob job;
-  job.selection.input = options_.input;
-  job.selection.scenario = options_.scenario;
-  job.selection.mesh = options_.mesh;
-  job.selection.quantity = view.quantity;
-  job.selection.edits = view.edits;
-  job.selection.range = view.range;
-  job.selection.compare = view.compare;
-  job.selection.allow_missing_terrain = options_.allow_missing_terrain;
-  job.selection.independent = true;  // each picture equals the window's at its time
-  job.selection.times = recordTimes(range);
-  job.style = playback::pictureStyleOf(view);
-  job.style.cells = options_.cells;
-  job.style.must_show_isosurface = false;
+  job.view = viewState();
+  job.times = recordTimes(range);
   job.target = target_;
   job.frames_per_s = range.frames_per_s;
   job.output = output;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "apps/view/session/session.h"
+#include "playback/view/view_settings.h"
 
 namespace emscape::view {
 namespace {
@@ -15,6 +16,7 @@ double rounded(double value, double unit) {
 
 Json Session::report() const {
   const render::CameraSpec& camera = camera_.spec();
+  const render::RenderSettings& settings = view_.settings;
   Json report{{"frame", status_.frame},
               {"state", render::toString(status_.state)},
               {"pattern", render::toString(status_.pattern)},
@@ -44,17 +46,13 @@ Json Session::report() const {
               {"azimuth_deg", rounded(camera.azimuth_deg, 1e-6)},
               {"elevation_deg", rounded(camera.elevation_deg, 1e-6)},
               {"distance", camera.distance.value_or(0)},
-              {"mode", render::toString(settings_.mode)},
-              {"iso_value", std::isnan(settings_.iso_value) ? Json() : Json(settings_.iso_value)},
-              {"theme", theme_ == render::Theme::dark ? "dark" : "light"},
-              {"terrain", show_terrain_},
-              {"emitters", show_emitters_},
-              {"planes", std::count_if(settings_.planes.begin(), settings_.planes.end(),
+              {"iso_value", std::isnan(settings.iso_value) ? Json() : Json(settings.iso_value)},
+              {"planes", std::count_if(settings.planes.begin(), settings.planes.end(),
                                        [](const render::CutPlane& plane) { return plane.on; })},
-              {"compare", compares_},
+              {"compare", compares()},
               {"edits", edits_ ? edits_->edits().size() : 0},
               {"unsaved", hasUnsavedEdits()},
-              {"input", options_.input},
+              {"input", options_.view.input},
               {"working", working()},
               {"kept", kept_view_.has_value()},
               {"changed_on_disk", changed_files_.size()},
@@ -65,6 +63,10 @@ Json Session::report() const {
               {"picture_width", picture_ ? picture_->size.width : 0},
               {"picture_height", picture_ ? picture_->size.height : 0},
               {"scale", window_.scale()}};
+  for (const playback::ViewSetting& setting : playback::viewSettings()) {
+    if (setting.verb.empty()) continue;
+    report[setting.verb] = std::visit([](const auto& value) { return Json(value); }, setting.get(view_));
+  }
   if (picture_) {
     report["range_min"] = picture_->transfer.lowest();
     report["quantity"] = picture_->info().quantity;

@@ -12,6 +12,11 @@
 namespace emscape::view {
 namespace {
 
+/// The name of the shown quantity of a computed scenario.
+std::string quantityOf(const playback::ViewState& view, const scenario::Scenario& scenario) {
+  return view.quantity.empty() ? scenario.output.quantities.front() : view.quantity;
+}
+
 /// {"edits": ["PATH=VALUE", ..]}
 std::vector<scenario::Edit> editsOf(const Json& list) {
   std::vector<scenario::Edit> edits;
@@ -99,21 +104,23 @@ void Session::undoOrRedo(bool undo) {
 
 void Session::showScenario() {
   touched_ = true;
-  shown_scenario_ = edits_->scenario();
+  const playback::ScenarioPtr before = std::exchange(shown_scenario_, edits_->scenario());
+  view_.edits = edits_->edits();
   watchFiles();
   timeline_.setScenario(*shown_scenario_);
-  if (!computedScenario()) return live_.setScenario(shown_scenario_);
-  // Without a choice by the user the scenario's first quantity is shown, as in `render`.
-  const std::string& first = shown_scenario_->output.quantities.front();
-  const std::string missing = missingQuantity(*shown_scenario_, quantity_);
-  if (!missing.empty()) {
-    tell(fmt::format("{}; {} is shown instead", missing, first), true);
-    quantity_.clear();
+  if (computedScenario()) {
+    // Without a choice by the user the scenario's first quantity is shown, as in `render`.
+    const std::string quantity = quantityOf(view_, *before);
+    const std::string missing = missingQuantity(*shown_scenario_, view_.quantity);
+    if (!missing.empty()) view_.quantity.clear();
+    const std::string now = quantityOf(view_, *shown_scenario_);
+    if (!missing.empty()) tell(fmt::format("{}; {} is shown instead", missing, now), true);
+    if (now != quantity) {
+      takes_colors_ = true;
+      playback::dropColors(view_);
+    }
   }
-  const std::string quantity = quantity_.empty() ? first : quantity_;
-  if (std::exchange(shown_quantity_, quantity) == quantity) return live_.setScenario(shown_scenario_);
-  takes_colors_ = true;
-  live_.setScenario(shown_scenario_, quantity);
+  live_.show(view_, shown_scenario_);
 }
 
 std::vector<Verb> Session::scenarioVerbs() {

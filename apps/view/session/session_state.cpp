@@ -6,6 +6,7 @@
 #include "apps/view/session/render_command.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
+#include "playback/view/view_file.h"
 
 namespace emscape::view {
 namespace {
@@ -29,35 +30,20 @@ std::string besideInput(const std::string& input, const std::string& ending) {
 
 }  // namespace
 
-/// Empty for categories, and if the colours will be fitted to a quantity that is not yet on screen.
-std::optional<render::TransferFunction> Session::colorsInUse() const {
-  if (!picture_) return options_.view.transfer;
-  if (!transfer_ || takes_colors_) return std::nullopt;
-  return transfer_->function();
-}
-
 playback::ViewState Session::viewState() const {
-  playback::ViewState view;
-  view.camera = camera_.spec();
+  playback::ViewState view = view_;
+  view.bookmarks.clear();
   for (const auto& bookmark : bookmarks_) {
     if (bookmark) view.bookmarks.push_back(*bookmark);
   }
-  const bool is_open = !timeline_.times_s().empty();
-  view.time_s = is_open ? timeline_.step_s() : options_.view.time_s;
   view.rate = timeline_.rate();
   view.loop = timeline_.loop();
-  view.play_range = is_open ? timeline_.playPart() : options_.view.play_range;
-  view.visible_time = is_open ? timeline_.visiblePart() : options_.view.visible_time;
-  view.quantity = quantity_;
-  view.transfer = colorsInUse();
-  view.range = picture_ ? picture_->range : options_.view.range;
-  view.settings = settings_;
-  view.theme = theme_;
-  view.show_terrain = show_terrain_;
-  view.show_emitters = show_emitters_;
-  view.size = picture_size_.count() > 0 ? picture_size_ : options_.view.size;
-  view.edits = edits_ ? edits_->edits() : options_.view.edits;
-  if (compares_) view.compare = options_.view.compare.empty() ? playback::kOriginal : options_.view.compare;
+  if (!timeline_.times_s().empty()) {
+    view.play_range = timeline_.playPart();
+    view.visible_time = timeline_.visiblePart();
+  }
+  if (view.size.count() == 0) view.size = options_.view.size;
+  view.open_panels.clear();
   if (panels.hidden) view.open_panels.emplace_back("hidden");
   for (const PanelName& panel : panelNames()) {
     if (panel.stays && panels.*panel.open) view.open_panels.emplace_back(panel.name);
@@ -65,7 +51,7 @@ playback::ViewState Session::viewState() const {
   return view;
 }
 
-/// Applies the parts of a view that are kept in the session; the live view takes the others from the options.
+/// Applies the parts of a view that have their own state.
 void Session::showView(const playback::ViewState& view) {
   camera_.set(view.camera);
   std::size_t next = 0;
@@ -80,13 +66,7 @@ void Session::showView(const playback::ViewState& view) {
   }
   timeline_.setRate(view.rate);
   timeline_.setLoop(view.loop);
-  quantity_ = view.quantity;
-  settings_ = view.settings;
-  if (settings_.mode != render::CompositingMode::iso) fog_mode_ = settings_.mode;
-  theme_ = view.theme;
-  show_terrain_ = view.show_terrain;
-  show_emitters_ = view.show_emitters;
-  compares_ = !view.compare.empty();
+  if (view.settings.mode != render::CompositingMode::iso) fog_mode_ = view.settings.mode;
   if (view.open_panels.empty()) return;  // a picture's view has no panels
   panels = Panels{};
   for (const PanelName& panel : panelNames()) panels.*panel.open = false;
@@ -107,7 +87,7 @@ void Session::noteSavedView(const std::string& file) {
 
 void Session::saveView(const std::string& given_file) {
   requireInput();
-  const std::string file = given_file.empty() ? besideInput(options_.input, ".view.json") : given_file;
+  const std::string file = given_file.empty() ? besideInput(view_.input, ".view.json") : given_file;
   jobs_.run([this, file, view = viewState()]() -> BackgroundJobs::Finish {
     playback::writeViewState(file, view);
     return [this, file, text = pictureText(view)] {
@@ -127,10 +107,10 @@ void Session::copyCommand() {
   };
   const playback::ViewState view = viewState();
   if (!saved_file_.empty() && pictureText(view) == saved_text_) {
-    return copy(renderCommand(options_, saved_file_));
+    return copy(renderCommand(view, saved_file_));
   }
-  jobs_.run([copy, view, options = options_, picture = picture_]() -> BackgroundJobs::Finish {
-    const std::string text = renderCommand(options, view, *picture);
+  jobs_.run([copy, view, picture = picture_]() -> BackgroundJobs::Finish {
+    const std::string text = renderCommand(view, *picture);
     return [copy, text] { copy(text); };
   });
 }

@@ -50,9 +50,13 @@ void Session::takeColors() {
   const playback::OpacityAxis axis = transfer_ ? transfer_->axis : playback::OpacityAxis{};
   undo_order_.forget(History::transfer);
   transfer_.reset();
+  view_.transfer.reset();
   if (picture_->transfer.categorical) return;
   transfer_.emplace(picture_->transfer);
   transfer_->axis = axis;
+  if (takes_colors_) return;
+  view_.transfer_file.clear();
+  view_.transfer = picture_->transfer;
 }
 
 playback::TransferEditor& Session::requireTransfer() {
@@ -68,7 +72,9 @@ void Session::changeTransfer(const std::function<void(playback::TransferEditor&)
   touched_ = true;
   if (editor.changes() == before) return;
   takes_colors_ = false;
-  live_.setTransferFunction(editor.function());
+  view_.transfer = editor.function();
+  view_.range.reset();
+  live_.show(view_);
 }
 
 void Session::dragTransfer(const std::function<void(playback::TransferEditor&)>& change) {
@@ -139,7 +145,7 @@ void Session::readTransfer(const std::string& file) {
 }
 
 void Session::saveTransfer(std::string file) {
-  if (file.empty()) file = std::filesystem::path(options_.input).stem().string() + ".transfer.json";
+  if (file.empty()) file = std::filesystem::path(view_.input).stem().string() + ".transfer.json";
   jobs_.run([this, file, function = requireTransfer().function()]() -> BackgroundJobs::Finish {
     render::writeTransferFunction(file, function);
     return [this, file] { tell("written: " + file); };

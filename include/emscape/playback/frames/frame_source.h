@@ -11,6 +11,7 @@
 #include "emscape/playback/frames/field_series.h"
 #include "emscape/playback/frames/shown_field.h"
 #include "emscape/render/annotate/overlay.h"
+#include "emscape/scenario/model/edit.h"
 
 namespace emscape::playback {
 
@@ -22,24 +23,31 @@ struct Frame : ShownField {
   render::ColorRange color_range;     ///< of the series; none: that of the field's values
 };
 
-/// The selection of an input to draw.
-struct FrameSelection {
-  std::string input;  ///< scenario, volume, field on tetrahedra, .pvd, folder of them
+/// The field to show.
+struct FieldChoice {
+  std::string input;     ///< scenario, volume, field on tetrahedra, .pvd, folder of them
+  std::string scenario;  ///< for volumes: the scenario of the ground and emitters; may be empty
   /// For a scenario: the mesh on which its field is computed (emfield::parseTerrainMesh()); empty: the grid.
   std::string mesh;
-  std::string quantity;      ///< empty: the first
-  std::string times;         ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
-  bool first_only = false;   ///< without times: only the first
-  render::ColorRange range;  ///< of the colours; none: that of the series
-  std::string scenario;      ///< for volumes: the scenario of the ground and emitters; may be empty
   bool allow_missing_terrain = false;
-  std::vector<scenario::Edit> edits;  ///< to the scenario
+  std::string quantity;               ///< quantity or channel; empty: the first
+  render::ColorRange range;           ///< of the colours; none: that of the series
+  std::vector<scenario::Edit> edits;  ///< to the scenario, in order
   /// Frames are differences to this reference: kOriginal (the scenario without the edits), or a scenario or
   /// volumes on the same grid. Empty: no comparison, but setComparison() can start one with the original.
   std::string compare;
+};
+
+/// The frames of a field to draw.
+struct FrameSelection : FieldChoice {
+  std::string times;        ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
+  bool first_only = false;  ///< without times: only the first
   /// Frames of a scenario are independent of each other and of their order: each has the range of its own
   /// values, and there is no tolerance for the movement of emitters.
   bool independent = false;
+
+  FrameSelection() = default;
+  explicit FrameSelection(const FieldChoice& choice) : FieldChoice(choice) {}
 };
 
 constexpr const char* kOriginal = "original";
@@ -77,7 +85,7 @@ class FrameSource : public VolumeSeries {
   /// @throws Error (bad_input, usage, device); nothing is changed then
   virtual void setQuantity(const std::string& quantity);
 
-  /// Shows the difference to the reference (FrameSelection::compare) instead of the field; for independent
+  /// Shows the difference to the reference (FieldChoice::compare) instead of the field; for independent
   /// frames. As setScenario(); frame() throws if the two cannot be compared. @throws Error (usage) if there
   /// is no reference
   virtual void setComparison(bool on);

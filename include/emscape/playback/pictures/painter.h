@@ -7,6 +7,7 @@
 
 #include "emscape/base/progress.h"
 #include "emscape/playback/frames/frame_source.h"
+#include "emscape/playback/view/view_state.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/cells/cell_renderer.h"
 #include "emscape/render/picture/image.h"
@@ -15,21 +16,6 @@
 #include "emscape/render/scene/renderer.h"
 
 namespace emscape::playback {
-
-/// How fields on tetrahedra are drawn.
-enum class CellMethod {
-  automatic,  ///< complete pictures are marched; others are projected if the CPU marches and OpenGL has a
-              ///< GPU
-  march,      ///< CellRenderer::render()
-  project     ///< CellRenderer::project(); pictures that are not complete by centroids
-};
-/// "auto", "march" or "project". @throws Error (usage)
-CellMethod parseCellMethod(const std::string& name);
-
-struct CellStyle {
-  CellMethod method = CellMethod::automatic;
-  render::ProjectionOptions projection;
-};
 
 /// Method and cost of the last picture of a field on tetrahedra.
 struct CellPicture {
@@ -44,39 +30,28 @@ struct CellPicture {
   std::string text() const;
 };
 
-/// Style of pictures.
-struct PictureStyle {
-  render::ImageSize size;
-  render::CameraSpec camera;
-  render::Theme theme = render::Theme::dark;
-  render::RenderSettings settings;
-  std::string transfer;  ///< file of the transfer function; empty: fitted to the first volume
-  std::optional<render::TransferFunction> function;  ///< if there is no such file; not used for categories
-  bool colors_span_range = false;  ///< fitted to the range of its values, not to their histogram
-  bool show_terrain = true;
-  bool show_emitters = true;
-  CellStyle cells;
-  /// True: an isosurface that shows nothing of the first volume is an error; false: a warning.
-  bool must_show_isosurface = true;
-};
-
 /// Draws frames. Colours are fitted to the first frame; the camera is kept as long as frames have the same
 /// grid. Fields on tetrahedra have two kinds of picture: the complete one (Pattern::full and restore()), and
 /// a quick one for every other pattern (CellMethod). Casting and labelling are separate: a program with its
 /// own labels uses image() or fetch(), annotations() and renderer(). One thread at a time may use it.
 class Painter {
  public:
-  /// Draws frames of one source. @throws Error (device)
-  Painter(const PictureStyle& style, const FrameSource& source, const ComputeTarget& target);
-  /// The same without title and scene, until setScene(). @throws Error (bad_input) for settings, (device)
-  Painter(const PictureStyle& style, const ComputeTarget& target);
+  /// Draws frames of one source.
+  /// @param view  its style; which field the frames show is up to the source
+  /// @param must_show_isosurface  true: an isosurface that shows nothing of the first volume is an error;
+  /// false: a warning
+  /// @throws Error (bad_input) for settings, (device)
+  Painter(const ViewState& view, const FrameSource& source, const ComputeTarget& target,
+          bool must_show_isosurface = true);
+  /// A painter without title and scene, until setScene(). @throws Error (bad_input, device) as above
+  Painter(const ViewState& view, const ComputeTarget& target, bool must_show_isosurface = true);
 
   /// Sets the scene of the next frames. A different terrain object is treated as a different ground.
   /// @param scene  null: volumes without a scenario
   void setScene(const std::string& title, const LoadedScenario* scene);
   /// Sets the frame of the next pictures.
   /// @throws Error (bad_input) for the transfer file, after which nothing is changed; or if the isosurface
-  /// shows nothing of the first frame (PictureStyle::must_show_isosurface), which is set all the same. Error
+  /// shows nothing of the first frame (must_show_isosurface), which is set all the same. Error
   /// (usage) for settings that tetrahedra do not have (render::checkCellSettings()), after which nothing is
   /// changed. Error (device)
   void setFrame(const Frame& frame);
@@ -87,25 +62,23 @@ class Painter {
   /// @throws Error (usage) if eye and target coincide; the camera is then unchanged
   void setCamera(const render::CameraSpec& spec);
 
-  /// Sets the size. This and the following functions change the style of the next pictures, before or after
+  /// Sets the size. This and the following functions change the view of the next pictures, before or after
   /// the first frame.
   /// @param size  both sides at least 1
   void setSize(render::ImageSize size);
-  render::ImageSize size() const { return style_.size; }
+  render::ImageSize size() const { return view_.size; }
   /// Sets the render settings. An isosurface is not checked against the volume. @throws Error (bad_input) for
   /// a value out of its range, (usage) as setFrame(); the settings are then unchanged
   void setSettings(const render::RenderSettings& settings);
-  /// Sets the transfer function, which replaces one from a file or a fitted one.
-  void setTransferFunction(const render::TransferFunction& function);
-  /// Fits the function to the histogram of the frame, or of the next one if there is none yet.
-  void fitColors();
-  /// Fits the function to a range of values. A frame must be set.
-  void fitColors(const volume::ValueRange& range);
+  /// Takes over the colours of a view: its transfer function, else fitted to its range, else to the
+  /// histogram of the frame, or of the next one if there is none yet.
+  /// @return true if the picture has other colours now
+  /// @throws Error (bad_input) for a function in another unit than the frame's; nothing is changed on screen
+  bool setColors(const ViewState& view);
   /// True if colours have been fitted, read or set.
   bool hasColors() const { return has_colors_; }
-  void showTerrain(bool show);
-  void showEmitters(bool show);
-  void setTheme(render::Theme theme) { annotations_.theme = theme; }
+  /// Takes over what a view shows besides the field: ground, emitters, labels, theme.
+  void setScenery(const ViewState& view);
 
   render::FrameReport draw(const render::FramePlan& plan, const StopFlag* stop = nullptr);
   /// Casts the pixels that the last draw() interpolated.
@@ -122,7 +95,7 @@ class Painter {
   /// The annotations of a picture of the frame.
   const render::Annotations& annotations() const { return annotations_; }
   // Of the picture.
-  const render::RenderSettings& settings() const { return style_.settings; }
+  const render::RenderSettings& settings() const { return view_.settings; }
   const render::TransferFunction& transferFunction() const;
   const render::Camera& camera() const;
   render::SceneBox sceneBox() const;
@@ -162,13 +135,15 @@ class Painter {
   void setGround();
   void setGround(const scenario::TerrainPtr& ground);
   void setMarkers();
+  void setTransferFunction(const render::TransferFunction& function);
   /// Fits the camera again if the width of the legend has changed.
   void setLegend();
   render::Camera cameraOf(const render::CameraSpec& spec) const;
   void fitCamera();
   render::TransferFunction functionFor(const Frame& frame) const;
 
-  PictureStyle style_;
+  ViewState view_;
+  const bool must_show_isosurface_;
   std::optional<LoadedScenario> scene_;
   std::optional<Frame> frame_;
   scenario::TerrainPtr ground_;  // whose height field the renderer has

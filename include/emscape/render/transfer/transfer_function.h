@@ -63,6 +63,7 @@ struct TransferFunction {
   double lowest() const;
   double highest() const;
 };
+bool operator==(const TransferFunction& a, const TransferFunction& b);
 
 /// The range that colours are fitted to; none: that of the volume's values.
 using ColorRange = std::optional<volume::ValueRange>;

@@ -1,0 +1,25 @@
+/// Options of the command line that change a view.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "playback/view/view_settings.h"
+
+namespace emscape::app {
+
+/// The options of the table of settings. They have an effect only if they are given.
+class ViewArguments {
+ public:
+  /// Adds the options to a command, which refers to this object. @param but  name of an option to leave out
+  void addTo(CLI::App& command, const std::string& but);
+  /// Changes a view by the options that were given. @throws Error (usage) for a value that is not allowed
+  void apply(playback::ViewState& view) const;
+
+ private:
+  std::vector<std::pair<const playback::ViewSetting*, playback::SettingValue>> given_;
+};
+
+}  // namespace emscape::app

@@ -1,0 +1,94 @@
+/// The record of a picture: what is shown, and how. Command line, window, view files and bindings use it.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/playback/frames/frame_source.h"
+#include "emscape/render/annotate/overlay.h"
+#include "emscape/render/cells/cell_renderer.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/render/scene/camera.h"
+#include "emscape/render/scene/pattern.h"
+#include "emscape/render/scene/render_settings.h"
+#include "emscape/render/transfer/transfer_function.h"
+#include "emscape/scenario/model/emitter.h"
+
+namespace emscape::playback {
+
+/// How fields on tetrahedra are drawn.
+enum class CellMethod {
+  automatic,  ///< complete pictures are marched; others are projected if the CPU marches and OpenGL has a
+              ///< GPU
+  march,      ///< CellRenderer::render()
+  project     ///< CellRenderer::project(); pictures that are not complete by centroids
+};
+constexpr auto namesOf(CellMethod) {
+  return std::array{"auto", "march", "project"};
+}
+/// @throws Error (usage) that lists the names
+CellMethod parseCellMethod(const std::string& name);
+
+struct CellStyle {
+  CellMethod method = CellMethod::automatic;
+  render::ProjectionOptions projection;
+};
+
+/// What is drawn of an emitter beside its symbol.
+enum class Labels {
+  off,
+  names,
+  all  ///< name, beam, stem to the ground, and track
+};
+constexpr auto namesOf(Labels) {
+  return std::array{"off", "names", "all"};
+}
+
+/// A stored camera, and a time if that is stored too.
+struct Bookmark {
+  std::string name;
+  render::CameraSpec camera;
+  std::optional<double> time_s;
+};
+
+/// A view of a field, and the settings of playback. playback/view/view_settings.h has a row for each setting.
+struct ViewState : FieldChoice {
+  render::CameraSpec camera;
+  /// Fitted, if there is none: to `range` if that is given, else to the first volume. Categories have their
+  /// own colours.
+  std::optional<render::TransferFunction> transfer;
+  /// File of the transfer function, instead of `transfer`; may be empty.
+  std::string transfer_file;
+  render::RenderSettings settings;  ///< without skip_empty and plain, which are not stored
+  CellStyle cells;
+  render::Theme theme = render::Theme::dark;
+  bool show_terrain = true;
+  bool show_emitters = true;
+  Labels labels = Labels::all;
+  render::ImageSize size{1280, 720};
+  /// Pixels that are cast while the picture changes; none: as many as time allows.
+  std::optional<render::Pattern> pattern;
+
+  double time_s = 0;  ///< since the scenario's epoch
+  double rate = 1;    ///< scenario seconds per second; negative: backwards
+  bool loop = false;
+  std::optional<scenario::TimeInterval> play_range;    ///< range of playing; none: all steps
+  std::optional<scenario::TimeInterval> visible_time;  ///< range of the time line; none: all steps
+  std::vector<Bookmark> bookmarks;
+  std::vector<std::string> open_panels;  ///< of the window
+};
+
+/// Removes the values in the unit of the quantity: colours, range and isosurface.
+void dropColors(ViewState& view);
+/// Changes the quantity or channel of a view, with dropColors() if it is another one.
+void changeQuantity(ViewState& view, const std::string& quantity);
+/// Changes between the field and a difference (FieldChoice::compare), with dropColors() if this is a change.
+void changeComparison(ViewState& view, const std::string& compare);
+/// Fits the colours to a range; this replaces a transfer function.
+void changeRange(ViewState& view, const ValueRange& range);
+/// Sets what view files do not contain to that of another view: its input and how that is drawn.
+void setInput(ViewState& view, const ViewState& opened);
+
+}  // namespace emscape::playback

@@ -1,0 +1,512 @@
+#include "playback/view/view_settings.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <type_traits>
+
+#include "emscape/base/error.h"
+#include "emscape/render/picture/image.h"
+#include "emscape/volume/dense_volume.h"
+
+namespace emscape::playback {
+namespace {
+
+using document::ValueSpec;
+using document::ValueType;
+using Texts = std::vector<std::string>;
+namespace spec = document::spec;
+
+constexpr double kMaxRate = 1e4;
+constexpr double kMaxValue = 1e30;
+constexpr int kMaxItems = 10000;
+constexpr int kMaxText = 1 << 20;
+
+/// The table while it is made. Functions that begin with `with` complete the last setting.
+class Table {
+ public:
+  std::vector<ViewSetting> rows;
+
+  /// A setting that is a member. @param member  returns it for a view: bool, number, text, list of texts, or
+  /// an enumeration in the order of the choices
+  template <class Member>
+  Table& member(const char* key, const ValueSpec& of, Member member, const char* meaning) {
+    using Value = std::decay_t<decltype(member(std::declval<ViewState&>()))>;
+    if constexpr (std::is_enum_v<Value>) {
+      return add(
+          key, of, meaning,
+          [member, names = of.choices](const ViewState& view) {
+            return names[static_cast<std::size_t>(member(view))];
+          },
+          [member, names = of.choices](ViewState& view, const SettingValue& value) {
+            const auto found = std::find(names.begin(), names.end(), std::get<std::string>(value));
+            member(view) = static_cast<Value>(found - names.begin());
+          });
+    } else {
+      return add(key, of, meaning, member, [member](ViewState& view, const SettingValue& value) {
+        member(view) = std::get<Value>(value);
+      });
+    }
+  }
+  /// A member that has a text.
+  template <class Member, class Parse, class Write>
+  Table& parsed(const char* key, const ValueSpec& of, Member member, Parse parse, Write write,
+                const char* meaning) {
+    return add(
+        key, of, meaning, [member, write](const ViewState& view) { return write(member(view)); },
+        [member, parse](ViewState& view, const SettingValue& value) {
+          member(view) = parse(std::get<std::string>(value));
+        });
+  }
+  /// A list whose items have texts.
+  template <class Member, class Parse>
+  Table& parsedList(const char* key, int max_items, Member member, Parse parse, const char* meaning) {
+    return add(
+        key, spec::listOf(textSpec(1), 0, max_items), meaning,
+        [member](const ViewState& view) {
+          Texts texts;
+          for (const auto& item : member(view)) texts.push_back(toString(item));
+          return texts;
+        },
+        [member, parse, max_items](ViewState& view, const SettingValue& value) {
+          const std::size_t count = std::get<Texts>(value).size();
+          if (count > static_cast<std::size_t>(max_items)) {
+            throw Error(ErrorCode::bad_input,
+                        fmt::format("{} values: expected at most {}", count, max_items));
+          }
+          std::decay_t<decltype(member(view))> items;
+          for (const std::string& text : std::get<Texts>(value)) items.push_back(parse(text));
+          member(view) = std::move(items);
+        });
+  }
+  /// A setting of view files alone, which view_file.cpp reads and writes.
+  Table& stored(const char* key, const char* meaning) {
+    return add(key, spec::simple(ValueType::object), meaning, {}, {});
+  }
+
+  Table& withEffect(bool ViewChange::*affects) {
+    rows.back().affects = affects;
+    return *this;
+  }
+  /// The texts of the documentation, if they do not follow from type and default.
+  Table& withTexts(const char* value, const char* of_default) {
+    rows.back().value_text = value;
+    rows.back().default_text = of_default;
+    return *this;
+  }
+  Table& withOption(const char* name, const char* help) {
+    rows.back().option = name;
+    rows.back().option_help = help;
+    return *this;
+  }
+  Table& withVerb(const char* verb, const char* argument, const char* help) {
+    rows.back().verb = verb;
+    rows.back().argument = argument;
+    rows.back().verb_help = help;
+    return *this;
+  }
+  Table& withAction(const char* name, const char* keys) {
+    rows.back().action = name;
+    rows.back().keys = keys;
+    return *this;
+  }
+  Table& withChange(void (*change)(ViewState& view, const std::string& text)) {
+    rows.back().change = [change](ViewState& view, const SettingValue& value) {
+      change(view, std::get<std::string>(value));
+    };
+    return *this;
+  }
+
+  static ValueSpec textSpec(int min_characters = 0) {
+    ValueSpec value = spec::textOf(ValueType::text, kMaxText);
+    value.min_items = min_characters;
+    return value;
+  }
+
+ private:
+  Table& add(const char* key, const ValueSpec& of, const char* meaning,
+             std::function<SettingValue(const ViewState&)> get,
+             std::function<void(ViewState&, const SettingValue&)> set) {
+    ViewSetting& row = rows.emplace_back();
+    row.key = key;
+    row.spec = of;
+    row.meaning = meaning;
+    row.get = std::move(get);
+    row.set = row.change = std::move(set);
+    return *this;
+  }
+};
+
+ValueSpec switchSpec() {
+  return spec::simple(ValueType::boolean);
+}
+template <class Enum>
+ValueSpec choiceOf() {
+  const auto names = namesOf(Enum());
+  return spec::choice({names.begin(), names.end()});
+}
+ValueSpec valueSpec() {
+  return spec::number().from(-kMaxValue).to(kMaxValue);
+}
+ValueSpec within(const render::SettingLimits& limits) {
+  return spec::number().from(limits.min).to(limits.max);
+}
+
+std::string sizeText(const render::ImageSize& size) {
+  return fmt::format("{}x{}", size.width, size.height);
+}
+
+std::string rangeText(const std::optional<ValueRange>& range) {
+  return range ? fmt::format("{}:{}", range->min, range->max) : "";
+}
+
+std::optional<render::Pattern> parsePattern(const std::string& name) {
+  return name == "auto" ? std::nullopt : std::optional(render::parsePattern(name));
+}
+
+std::string patternText(const std::optional<render::Pattern>& pattern) {
+  return pattern ? render::toString(*pattern) : "auto";
+}
+
+render::CutPlane parsePlane(const std::string& text) {
+  return render::parseCutPlane(text);
+}
+
+// In the order of view files.
+void addCameraAndTime(Table& table) {
+  const ValueSpec time = spec::number("s").from(-volume::kMaxTime_s).to(volume::kMaxTime_s);
+  table
+      .parsed(
+          "camera", Table::textSpec(1), [](auto& view) -> auto& { return view.camera; }, render::parseCamera,
+          [](const render::CameraSpec& camera) { return toString(camera); },
+          "as for `--camera`: `orbit:azimuth_deg=155,elevation_deg=28,distance=1.2,...` or "
+          "`lookat:eye_x_m=..,...`")
+      .withTexts("text", "`orbit`")
+      .withEffect(&ViewChange::camera)
+      .withOption("--camera",
+                  "orbit:azimuth_deg=..,elevation_deg=..,distance=..,fov_deg=.. or "
+                  "lookat:eye_x_m=..,..,target_x_m=..,..");
+  table.stored("bookmarks", "stored cameras: `name`, `camera`, and optionally `time_s`")
+      .withTexts("list", "none");
+  table
+      .member(
+          "time_s", time, [](auto& view) -> auto& { return view.time_s; }, "since the scenario's epoch")
+      .withEffect(&ViewChange::time)
+      .withOption("--time", "First instant, in seconds");
+  table.member(
+      "rate", spec::number().from(-kMaxRate).to(kMaxRate), [](auto& view) -> auto& { return view.rate; },
+      "scenario seconds per second; negative: backwards. For a window");
+  table.member(
+      "loop", switchSpec(), [](auto& view) -> auto& { return view.loop; },
+      "playback continues from the other end. For a window");
+  table.stored("play_range", "range of playback, moved to the nearest steps. For a window")
+      .withTexts("`{\"begin_s\": .., \"end_s\": ..}`", "all steps");
+  table.stored("visible_time", "visible part of the time line. For a window")
+      .withTexts("`{\"begin_s\": .., \"end_s\": ..}`", "all steps");
+}
+
+void addColors(Table& table) {
+  table
+      .member(
+          "quantity", Table::textSpec(), [](auto& view) -> auto& { return view.quantity; },
+          "quantity, or channel such as `snr_db:search radar`")
+      .withTexts("text", "the first")
+      .withEffect(&ViewChange::field)
+      .withOption("--quantity", "Quantity or channel to draw; default: the first")
+      .withChange(changeQuantity);
+  table
+      .parsed(
+          "range", spec::simple(ValueType::object), [](auto& view) -> auto& { return view.range; },
+          parseRange, rangeText, "range of the colours, in the quantity's unit")
+      .withTexts("`{\"min\": .., \"max\": ..}`", "that of the series")
+      .withEffect(&ViewChange::colors)
+      .withOption("--range", "MIN:MAX of the colours; default: fitted to the values of the first picture")
+      .withChange([](ViewState& view, const std::string& text) { changeRange(view, parseRange(text)); });
+  table
+      .stored("transfer",
+              "colours and opacities, as in a [transfer file](#transfer-functions), with `\"domain\": "
+              "\"value\"`")
+      .withTexts("object", "fitted")
+      .withEffect(&ViewChange::colors)
+      .withOption("--transfer",
+                  "Colours and opacities (JSON); default: fitted to the values of the first picture")
+      .withChange([](ViewState& view, const std::string& file) {
+        view.transfer_file = file;
+        view.transfer.reset();
+      });
+  table.rows.back().get = [](const ViewState& view) {
+    return view.transfer && !view.transfer->categorical ? render::transferFunctionText(*view.transfer) : "";
+  };
+}
+
+void addRenderSettings(Table& table) {
+  const std::size_t first = table.rows.size();
+  table
+      .member(
+          "mode", choiceOf<render::CompositingMode>(), [](auto& view) -> auto& { return view.settings.mode; },
+          "compositing of the samples")
+      .withOption("--mode", "Compositing mode; default: dvr")
+      .withVerb("mode", "mode", "dvr, mida, mip or iso; without a name the next one")
+      .withAction("Next mode", "M");
+  table
+      .member(
+          "step_voxels", within(render::kStepLimits),
+          [](auto& view) -> auto& { return view.settings.step_voxels; }, "distance of samples")
+      .withOption("--step", "Distance between samples, in voxels")
+      .withVerb("step_voxels", "value", "Distance between samples, in voxels");
+  table
+      .member(
+          "mida_gamma", within(render::kMidaGammaLimits),
+          [](auto& view) -> auto& { return view.settings.mida_gamma; }, "-1 is dvr, 1 is mip")
+      .withOption("--mida-gamma", "-1 (dvr) .. 0 (mida) .. 1 (mip)");
+  table
+      .member(
+          "exact", switchSpec(), [](auto& view) -> auto& { return view.settings.exact; },
+          "no early termination of rays")
+      .withOption("--exact", "No early termination of rays");
+  table
+      .member(
+          "shading", switchSpec(), [](auto& view) -> auto& { return view.settings.shading; },
+          "shading of dvr and mida")
+      .withOption("--shading", "Shading of dvr and mida; iso is always shaded")
+      .withVerb("shading", "on", "Shading of dvr and mida; iso is always shaded")
+      .withAction("Shading", "S");
+  table
+      .member(
+          "iso_value", valueSpec(), [](auto& view) -> auto& { return view.settings.iso_value; },
+          "value of the isosurface, in the quantity's unit")
+      .withTexts("number", "the middle of the colours")
+      .withOption("--iso-value",
+                  "Value of the isosurface, in the quantity's unit; default: the middle of the colours");
+  table
+      .member(
+          "iso_opacity", within(render::kIsoOpacityLimits),
+          [](auto& view) -> auto& { return view.settings.iso_opacity; }, "opacity of the isosurface")
+      .withOption("--iso-opacity", "Opacity of the isosurface");
+  table
+      .member(
+          "vertical_exaggeration", within(render::kExaggerationLimits),
+          [](auto& view) -> auto& { return view.settings.vertical_exaggeration; }, "0: chosen from the box")
+      .withOption("--exaggeration", "Vertical exaggeration; 0: chosen from the box")
+      .withVerb("exaggeration", "factor", "Vertical exaggeration; 0: chosen from the box");
+  table
+      .parsedList(
+          "planes", render::kMaxCutPlanes, [](auto& view) -> auto& { return view.settings.planes; },
+          parsePlane, "[cutting planes](#cutting-planes), as for `--plane`")
+      .withTexts("list of texts, at most 3", "none")
+      .withOption("--plane",
+                  "Cuts the volume open: horizontal:altitude_m=..[,keep=below|above] or "
+                  "vertical:bearing_deg=..[,x_m=..,y_m=..,offset_m=..,keep=left|right] "
+                  "(docs/view-state.md); may be given 3 times");
+  for (std::size_t row = first; row < table.rows.size(); ++row) {
+    table.rows[row].affects = &ViewChange::settings;
+  }
+}
+
+void addScenery(Table& table) {
+  table
+      .member(
+          "theme", choiceOf<render::Theme>(), [](auto& view) -> auto& { return view.theme; },
+          "background and labels")
+      .withEffect(&ViewChange::labels)
+      .withOption("--theme", "Background and labels; default: dark")
+      .withVerb("theme", "theme", "dark or light; without a name the other one")
+      .withAction("Dark or light", "D");
+  table
+      .member(
+          "show_terrain", switchSpec(), [](auto& view) -> auto& { return view.show_terrain; },
+          "draw the ground")
+      .withEffect(&ViewChange::ground)
+      .withOption("--terrain", "Draw the ground: on or off")
+      .withVerb("terrain", "on", "Draws the ground")
+      .withAction("Ground", "B");
+  table
+      .member(
+          "show_emitters", switchSpec(), [](auto& view) -> auto& { return view.show_emitters; },
+          "draw and label the emitters")
+      .withEffect(&ViewChange::labels)
+      .withOption("--emitters", "Draw and name the emitters: on or off")
+      .withVerb("emitters", "on", "Draws the emitters")
+      .withAction("Emitters", "E");
+  table
+      .member(
+          "labels", choiceOf<Labels>(), [](auto& view) -> auto& { return view.labels; },
+          "labels of the emitters: none; names; or names, beams, stems and tracks")
+      .withEffect(&ViewChange::labels)
+      .withOption("--labels", "Labels of the emitters; default: all")
+      .withVerb("labels", "labels", "Labels of the emitters: off, names or all; without a name the next one")
+      .withAction("Labels", "N");
+  table
+      .parsed(
+          "size", spec::listOf(spec::simple(ValueType::integer).from(1).to(render::kMaxImageSide), 2, 2),
+          [](auto& view) -> auto& { return view.size; }, render::parseImageSize, sizeText, "pixels")
+      .withTexts("[width, height], 1..32767", "[1280, 720]")
+      .withEffect(&ViewChange::size)
+      .withOption("--size", "Picture size in pixels, WxH; default: 1280x720");
+}
+
+void addFieldAndWindow(Table& table) {
+  table
+      .parsedList(
+          "edits", kMaxItems, [](auto& view) -> auto& { return view.edits; }, scenario::parseEdit,
+          "changes to the scenario, in order, each as `--set` takes it: "
+          "[PATH=VALUE](scenario-format.md#editing)")
+      .withTexts("list of texts", "none");
+  table
+      .member(
+          "compare", Table::textSpec(), [](auto& view) -> auto& { return view.compare; },
+          "`original` or a file (relative to the folder of the view file; if there is none, to the working "
+          "folder): the difference to it is drawn, as with `--compare`; `transfer`, `range` and `iso_value` "
+          "are then in the unit of differences")
+      .withTexts("text", "none")
+      .withEffect(&ViewChange::field)
+      .withOption("--compare",
+                  "Draw what differs from the scenario without the --set edits (original), or from another "
+                  "scenario on the same grid (FILE)")
+      .withChange(changeComparison);
+  table
+      .member(
+          "open_panels", spec::listOf(Table::textSpec(1), 0, kMaxItems),
+          [](auto& view) -> auto& { return view.open_panels; },
+          "open panels of the window; `hidden`: all are temporarily hidden. Empty: the panels are not "
+          "changed")
+      .withTexts("list of texts", "none");
+}
+
+/// Settings that belong to the input or to the program, not to a view file.
+void addUnstored(Table& table) {
+  table
+      .member(
+          "", Table::textSpec(), [](auto& view) -> auto& { return view.scenario; }, "")
+      .withOption("--scenario", "Scenario of the ground and emitters to draw with volumes");
+  table
+      .member(
+          "", switchSpec(), [](auto& view) -> auto& { return view.allow_missing_terrain; }, "")
+      .withOption("--allow-missing-terrain",
+                  "Compute although elevation data is missing; voxels over holes are masked");
+  std::vector<std::string> patterns{"auto"};
+  for (const render::Pattern pattern : render::allPatterns())
+    patterns.emplace_back(render::toString(pattern));
+  table
+      .parsed(
+          "", spec::choice(patterns), [](auto& view) -> auto& { return view.pattern; }, parsePattern,
+          patternText, "")
+      .withEffect(&ViewChange::pattern)
+      .withOption(
+          "--rays",
+          "Pixels to cast while the picture changes, the others are interpolated; auto: all, or as many "
+          "as the time between two pictures allows");
+}
+
+std::string rangeOf(const ValueSpec& of) {
+  return fmt::format("{:g}..{:g}{}{}", of.minimum, of.maximum, of.unit.empty() ? "" : " ", of.unit);
+}
+
+}  // namespace
+
+bool ViewSetting::isListOfTexts() const {
+  return spec.type == ValueType::list && spec.item->type == ValueType::text;
+}
+
+bool ViewSetting::isSame(const ViewState& a, const ViewState& b) const {
+  const SettingValue of_a = get(a), of_b = get(b);
+  const double* const number = std::get_if<double>(&of_a);
+  return (number && std::isnan(*number) && std::isnan(std::get<double>(of_b))) || of_a == of_b;
+}
+
+std::string ViewSetting::text(const ViewState& view) const {
+  const SettingValue value = get(view);
+  if (const bool* on = std::get_if<bool>(&value)) return *on ? "on" : "off";
+  if (const double* number = std::get_if<double>(&value)) return fmt::format("{}", *number);
+  return std::get<std::string>(value);
+}
+
+std::string ViewSetting::optionText() const {
+  if (isChoice()) return fmt::format("{} {}", option, fmt::join(spec.choices, "|"));
+  const bool is_flag = isSwitch() && !std::get<bool>(get(ViewState{}));
+  return isSwitch() && !is_flag ? option + " on|off" : option;
+}
+
+void ViewSetting::changeToNext(ViewState& view) const {
+  const SettingValue value = get(view);
+  if (const bool* on = std::get_if<bool>(&value)) return change(view, !*on);
+  const std::vector<std::string>& names = spec.choices;
+  const auto found = std::find(names.begin(), names.end(), std::get<std::string>(value));
+  change(view, names[static_cast<std::size_t>(found - names.begin() + 1) % names.size()]);
+}
+
+const std::vector<ViewSetting>& viewSettings() {
+  static const std::vector<ViewSetting> all = [] {
+    Table table;
+    addCameraAndTime(table);
+    addColors(table);
+    addRenderSettings(table);
+    addScenery(table);
+    addFieldAndWindow(table);
+    addUnstored(table);
+    return std::move(table.rows);
+  }();
+  return all;
+}
+
+const ViewSetting& settingOfKey(const std::string& key) {
+  const std::vector<ViewSetting>& all = viewSettings();
+  return *std::find_if(all.begin(), all.end(),
+                       [&](const ViewSetting& setting) { return setting.key == key; });
+}
+
+const ViewSetting* settingOfVerb(const std::string& verb) {
+  for (const ViewSetting& setting : viewSettings()) {
+    if (setting.verb == verb) return &setting;
+  }
+  return nullptr;
+}
+
+ViewChange changeOf(const ViewState& before, const ViewState& after) {
+  ViewChange change;
+  for (const ViewSetting& setting : viewSettings()) {
+    if (!setting.affects || change.*setting.affects) continue;
+    change.*setting.affects = !setting.isSame(before, after);
+  }
+  return change;
+}
+
+std::string viewStateTable() {
+  std::string table = "| key | value | default | option | meaning |\n|---|---|---|---|---|\n";
+  for (const ViewSetting& setting : viewSettings()) {
+    if (setting.key.empty()) continue;
+    std::string value = setting.value_text, of_default = setting.default_text;
+    if (value.empty()) {
+      value = setting.isSwitch()   ? "true, false"
+              : setting.isChoice() ? fmt::format("{}", fmt::join(setting.spec.choices, ", "))
+                                   : rangeOf(setting.spec);
+    }
+    if (of_default.empty()) {
+      of_default = setting.text(ViewState{});
+      if (setting.isSwitch()) of_default = of_default == "on" ? "true" : "false";
+    }
+    table += fmt::format("| `{}` | {} | {} | {} | {} |\n", setting.key, value, of_default,
+                         setting.option.empty() ? "" : "`" + setting.option + "`", setting.meaning);
+  }
+  return table;
+}
+
+ValueRange parseRange(const std::string& text) {
+  const std::size_t colon = text.find(':');
+  const auto number = [](const std::string& part, float& value) {
+    char* end = nullptr;
+    value = static_cast<float>(std::strtold(part.c_str(), &end));
+    return !part.empty() && *end == '\0' && std::isfinite(value);
+  };
+  ValueRange range;
+  if (colon == std::string::npos || !number(text.substr(0, colon), range.min) ||
+      !number(text.substr(colon + 1), range.max) || range.min >= range.max) {
+    throw Error(ErrorCode::usage, "range '" + text + "' must be MIN:MAX, two numbers with MIN < MAX");
+  }
+  return range;
+}
+
+}  // namespace emscape::playback

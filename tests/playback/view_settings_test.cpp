@@ -1,0 +1,67 @@
+#include "playback/view/view_settings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/files.h"
+
+namespace emscape::playback::test {
+namespace {
+
+TEST(ViewSettings, DocumentationHoldsTheTable) {
+  const std::string manual = emscape::test::readFile(emscape::test::sourceFile("docs/view-state.md"));
+  EXPECT_NE(manual.find(viewStateTable()), std::string::npos) << "docs/view-state.md: put this there\n"
+                                                              << viewStateTable();
+}
+
+/// Another value that the setting allows.
+SettingValue otherValue(const ViewSetting& setting) {
+  if (setting.isNumber()) return setting.spec.maximum / 2;
+  if (setting.key == "camera") return std::string("orbit:azimuth_deg=1");
+  if (setting.key == "size") return std::string("3x4");
+  if (setting.key == "range") return std::string("-1:2.5");
+  if (setting.key == "planes") return std::vector<std::string>{"horizontal:altitude_m=5,keep=above"};
+  if (setting.isListOfTexts()) return std::vector<std::string>{"a.b=1"};
+  return std::string("other");
+}
+
+TEST(ViewSettings, ChangedSettingIsFoundWithWhatItAffects) {
+  for (const ViewSetting& setting : viewSettings()) {
+    if (!setting.set) continue;
+    SCOPED_TRACE(setting.key + setting.option);
+    ViewState view;
+    if (setting.isSwitch() || setting.isChoice()) {
+      setting.changeToNext(view);
+    } else {
+      setting.set(view, otherValue(setting));
+    }
+    ViewState again;
+    setting.set(again, setting.get(view));
+    EXPECT_TRUE(setting.isSame(view, again));
+    EXPECT_FALSE(setting.isSame(view, {}));
+    for (const ViewSetting& other : viewSettings()) {
+      EXPECT_EQ(other.isSame(view, {}), &other != &setting) << other.key;
+    }
+    const ViewChange change = changeOf({}, view);
+    if (setting.affects) EXPECT_TRUE(change.*setting.affects);
+  }
+}
+
+TEST(ViewSettings, ValuesOfAChoiceFollowEachOtherInACircle) {
+  const ViewSetting& mode = settingOfKey("mode");
+  ViewState view;
+  for (const char* name : {"mida", "mip", "iso", "dvr"}) {
+    mode.changeToNext(view);
+    EXPECT_EQ(mode.text(view), name);
+  }
+}
+
+TEST(ViewSettings, RangeIsTwoNumbersInTheirOrder) {
+  EXPECT_EQ(parseRange("-90:-20.5"), (ValueRange{-90, -20.5F}));
+  for (const char* text : {"", "1", "2:1", "1:1", "a:2", "1:", "1:2x", "nan:1", "1:inf"}) {
+    EXPECT_THROW(parseRange(text), Error) << text;
+  }
+}
+
+}  // namespace
+}  // namespace emscape::playback::test
