@@ -56,7 +56,8 @@ std::string optionsOf(const ViewSetting& setting, const ViewState& view) {
   const std::string begin = " " + setting.option;
   if (setting.isListOfTexts()) {
     std::string text;
-    for (const std::string& item : std::get<std::vector<std::string>>(setting.get(view))) {
+    const auto items = std::get<std::vector<std::string>>(setting.get(view));
+    for (const std::string& item : items) {
       text += begin + " " + shellWord(item);
     }
     return text;
