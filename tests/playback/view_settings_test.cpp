@@ -43,7 +43,9 @@ TEST(ViewSettings, ChangedSettingIsFoundWithWhatItAffects) {
       EXPECT_EQ(other.isSame(view, {}), &other != &setting) << other.key;
     }
     const ViewChange change = changeOf({}, view);
-    if (setting.affects) EXPECT_TRUE(change.*setting.affects);
+    if (setting.affects) {
+      EXPECT_TRUE(change.*setting.affects);
+    }
   }
 }
 

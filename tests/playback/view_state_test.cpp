@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <random>
 
+#include "emscape/playback/pictures/painter.h"
 #include "playback/view/view_file.h"
 #include "tests/playback/playback_samples.h"
 #include "tests/support/working_folder.h"

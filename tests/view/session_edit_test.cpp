@@ -87,7 +87,7 @@ TEST(SessionEdits, AQuantityThatTheScenarioDoesNotHaveIsRefused) {
   SessionSample sample("quick.yaml");
   EXPECT_EQ(sample.perform(R"({"do":"quantity","name":"sinr_db"})"),
             "quantity 'sinr_db' needs an entry under 'receivers' without a platform");
-  EXPECT_EQ(sample->quantity(), "");
+  EXPECT_EQ(sample->view().quantity, "");
   EXPECT_THAT(sample.perform(R"({"do":"quantity","name":"foo"})"), HasSubstr("unknown quantity 'foo'"));
   EXPECT_EQ(sample.perform(R"({"do":"quantity","name":"snr_db:mast"})"),
             "quantity 'snr_db:mast': there is no such channel; there are snr_db");
