@@ -45,7 +45,7 @@ TEST(Script, ArgumentsThatAreNotAllowedNameTheLine) {
 
 TEST(Script, TextsThatCannotBeReadNameTheLine) {
   EXPECT_EQ(faultOf("\n{\"do\":\"mode\",\"mode\":\"nothing\"}\n"),
-            ":2: unknown mode 'nothing': expected dvr, mida, mip, iso");
+            ":2: mode: mode 'nothing': expected dvr, mida, mip, iso");
   EXPECT_EQ(faultOf("{\"do\":\"picture\",\"file\":\"x.txt\"}\n"), ":1: x.txt: must end in .png");
 }
 
