@@ -56,16 +56,14 @@ __global__ void __launch_bounds__(Shape::kThreads, kBlocks<Shape>)
   BlockMarch<Shape, kKind, BlockTeam<Shape>>(task, int(blockIdx.x), team, memory).run();
 }
 
-template <class Shape>
 __global__ void tablesKernel(const __grid_constant__ MarchBlockTask task,
-                             const __grid_constant__ BlockTables tables) {
-  fillTables<Shape>(task, tables, int(blockIdx.x * blockDim.x + threadIdx.x));
+                             const __grid_constant__ BlockTables tables, int intervals) {
+  fillTables(task, tables, intervals, int(blockIdx.x * blockDim.x + threadIdx.x));
 }
 
-template <class Shape>
-__global__ void planKernel(const __grid_constant__ MarchBlockTask task, PlannedStep* planned) {
+__global__ void planKernel(const __grid_constant__ MarchBlockTask task, int intervals, PlannedStep* planned) {
   const int azimuth = int(blockIdx.x * blockDim.x + threadIdx.x);
-  if (azimuth < task.azimuths) planSteps<Shape>(task, planned, azimuth);
+  if (azimuth < task.azimuths) planSteps(task, intervals, planned, azimuth);
 }
 
 /// Run by one block of kTableThreads threads.
@@ -109,13 +107,12 @@ void AzimuthMarchCuda::launch(MarchBlockTask task, cudaStream_t stream) {
     task.whole_in_runs = tables.whole_in_runs = take(N);
   }
   if (task.mixed) task.weights = tables.weights = take(N);
-  tablesKernel<Shape>
-      <<<(kEntries + kTableThreads - 1) / kTableThreads, kTableThreads, 0, stream>>>(task, tables);
+  tablesKernel<<<(kEntries + kTableThreads - 1) / kTableThreads, kTableThreads, 0, stream>>>(task, tables, N);
   checkLaunch("marchTables");
   if (!input_.flat) {
     constexpr int kRowsOfBlock = 32;
-    planKernel<Shape><<<(task.azimuths + kRowsOfBlock - 1) / kRowsOfBlock, kRowsOfBlock, 0, stream>>>(
-        task, planned_.data());
+    planKernel<<<(task.azimuths + kRowsOfBlock - 1) / kRowsOfBlock, kRowsOfBlock, 0, stream>>>(
+        task, N, planned_.data());
     checkLaunch("planSteps");
     task.planned = planned_.data();
   }

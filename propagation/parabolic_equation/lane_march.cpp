@@ -88,9 +88,7 @@ void LaneMarch::planGround() {
   here.ground_msl_m = plan_.march->ground_msl_m.data() + std::size_t(first_) * here.ground_steps;
   here.states = states_.data();
   planned_.resize(std::size_t(count_) * std::size_t(here.end_step));
-  withBlockShape<kMaxLaneIntervals>(intervals(), [&](auto shape) {
-    for (int l = 0; l < count_; ++l) planSteps<decltype(shape)>(here, planned_.data(), l);
-  });
+  for (int l = 0; l < count_; ++l) planSteps(here, intervals(), planned_.data(), l);
 }
 
 const PlannedStep& LaneMarch::planned(int l) const {

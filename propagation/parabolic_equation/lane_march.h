@@ -26,7 +26,7 @@ struct LaneMarchPlan {
   std::vector<LaneMarchTables> tables;  ///< of each N of the input
 };
 /// @param march  must outlive the plan
-/// @throws Error as blockInput(), for N outside kMinLaneIntervals .. kMaxLaneIntervals
+/// @throws Error as blockInput(), for N outside kMinBlockIntervals .. kMaxLaneIntervals
 LaneMarchPlan laneMarchPlan(const AzimuthMarch& march);
 
 /// Not for several threads at once.

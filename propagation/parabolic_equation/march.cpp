@@ -253,8 +253,6 @@ void RadialMarch<Real, kLanes>::halveIfEmpty() {
 }
 
 template class RadialMarch<double, 1>;
-template class RadialMarch<double, 4>;
 template class RadialMarch<float, 1>;
-template class RadialMarch<float, 8>;
 
 }  // namespace emscape::propagation

@@ -29,7 +29,8 @@ struct RadialPath {
   std::vector<double> ground_msl_m;
 };
 
-/// Not thread-safe. Compiled for double with 1 and 4 lanes, float with 1 and 8.
+/// The reference of LaneMarch and of the march on a GPU. Not thread-safe. Compiled for double and float with
+/// one lane.
 template <class Real, int kLanes>
 class RadialMarch {
  public:

@@ -25,9 +25,6 @@ struct AzimuthMarch {
   std::vector<float> ground_msl_m;
   std::size_t ground_steps = 0;
 
-  const RefractivityAlongPath& airOf(int azimuth) const {
-    return air.size() == 1 ? air.front() : air[std::size_t(azimuth)];
-  }
   int rangesOf(int azimuth) const { return ranges.empty() ? cells.ranges : ranges[std::size_t(azimuth)]; }
   /// Max number of range cells over the group of kStepLanes azimuths marched together on a CPU.
   int rangesOfGroup(int azimuth) const;
@@ -53,10 +50,11 @@ struct MarchNotes {
 /// Marches all azimuths in float, in parallel.
 /// @param excess_db  cellCount() elements: losses over free space (dB) as of marchCells(), azimuth slowest,
 /// then range, then height; those beyond rangesOf() an azimuth are not written
-/// @throws Error (bad_input) as RadialMarch() and marchCells(), or if the sizes do not fit
+/// @throws Error (bad_input) as RadialMarch() and marchCells(), for N below kMinBlockIntervals, or if the
+/// sizes do not fit
 MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db);
 
-/// Limits of N on the GPU.
+/// Limits of N on the GPU; the smaller one also on the CPU. automaticGrid() gives at least 256.
 constexpr int kMinBlockIntervals = 128, kMaxBlockIntervals = 8192;
 
 /// marchAzimuths() on the GPU, without halving within 0.05 dB of it where F > -60 dB.

@@ -29,6 +29,16 @@ struct alignas(8) StoredComplex {
   EMSCAPE_HD operator Complex<float>() const { return {re, im}; }
 };
 
+/// Wavenumber n = 0..N of element e of a thread of the spectrum.
+EMSCAPE_HD constexpr int wavenumberOf(int intervals, int row, int lane, int e) {
+  const int lanes = intervals / 128, second = lanes < 16 ? lanes : 16, third = lanes / second;
+  const int b = lane + lanes * (e / third);
+  const int m = third > 1 ? b / 16 + 16 * (b % 16) + 256 * (e % third)
+                          : lane + lanes * (e / second) + 16 * (e % second);
+  const int n = 16 * (lanes == 1 ? e : m) + row;
+  return n <= intervals ? n : 2 * intervals - n;
+}
+
 /// Sizes and indices of a block for N intervals of height.
 template <int kHeights>
 struct BlockShape {
@@ -58,14 +68,8 @@ struct BlockShape {
   }
   /// Wavenumber n = 0..N of element e of a thread of the spectrum.
   static EMSCAPE_HD constexpr int wavenumber(int row, int lane, int e) {
-    const int m = kThird > 1 ? thirdOrder(lane + kLanes * (e / kThird), e % kThird)
-                             : lane + kLanes * (e / kSecond) + 16 * (e % kSecond);
-    const int n = 16 * (kLanes == 1 ? e : m) + row;
-    return n <= kIntervals ? n : 2 * kIntervals - n;
+    return wavenumberOf(kIntervals, row, lane, e);
   }
-
- private:
-  static EMSCAPE_HD constexpr int thirdOrder(int b, int p) { return b / 16 + 16 * (b % 16) + 256 * p; }
 };
 
 /// Calls function(BlockShape<N>()) for an N of 128 .. kMax. @return false for another N

@@ -133,9 +133,8 @@ BlockInput blockInput(const AzimuthMarch& march, int max_intervals, const std::v
   checkSource(grid, march.source, march.surface);
   checkGround(grid, march.ground_msl_m.data(), march.ground_msl_m.size());
   if (grid.intervals < kMinBlockIntervals || grid.intervals > max_intervals) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("parabolic_equation: {} height steps; a GPU marches {} .. {}", grid.intervals,
-                            kMinBlockIntervals, kMaxBlockIntervals));
+    throw Error(ErrorCode::bad_input, fmt::format("parabolic_equation: {} height steps; expected {} .. {}",
+                                                  grid.intervals, kMinBlockIntervals, max_intervals));
   }
   BlockInput input;
   input.flat = march.ground_msl_m.empty();

@@ -70,12 +70,12 @@ EMSCAPE_HD inline Complex<double> surfaceWeight(const MarchBlockTask& task, int 
 }
 
 /// Entry i of the propagator (0 .. 16 kSpectral - 1), of the screens and of the weights (0 .. N - 1).
-template <class Shape>
-EMSCAPE_HD void fillTables(const MarchBlockTask& task, const BlockTables& tables, int i) {
-  constexpr int N = Shape::kIntervals;
-  if (i < 16 * Shape::kSpectral) {
-    const int t = i % Shape::kSpectral, e = i / Shape::kSpectral;
-    const int n = Shape::wavenumber(t / Shape::kLanes, t % Shape::kLanes, e);
+EMSCAPE_HD inline void fillTables(const MarchBlockTask& task, const BlockTables& tables, int intervals,
+                                  int i) {
+  const int N = intervals, lanes = N / 128, spectral = 9 * lanes, runs = 8 * lanes;
+  if (i < 16 * spectral) {
+    const int t = i % spectral, e = i / spectral;
+    const int n = wavenumberOf(N, t / lanes, t % lanes, e);
     const Complex<double> exponent = propagatorExponent(task, N, n);
     const bool inside = n > 0 && n < N;
     if (tables.propagator != nullptr) {
@@ -92,7 +92,7 @@ EMSCAPE_HD void fillTables(const MarchBlockTask& task, const BlockTables& tables
     const Complex<double> exponent = screenExponent(task, i);
     const StoredComplex half = block_tables::stored(exponential(exponent));
     const StoredComplex whole = block_tables::stored(exponential(exponent * 2.0));
-    const int in_runs = i % 16 * Shape::kRuns + i / 16;
+    const int in_runs = i % 16 * runs + i / 16;
     tables.half_screen[i] = tables.half_in_runs[in_runs] = half;
     tables.whole_screen[i] = tables.whole_in_runs[in_runs] = whole;
     if (i == 0) tables.half_screen[N] = tables.whole_screen[N] = StoredComplex();
@@ -108,11 +108,11 @@ EMSCAPE_HD inline StoredComplex surfaceWave(const MarchBlockTask& task, double c
       task.wide, 2 * kPi / task.wavelength_m, task.range_step_m / cosine, {-squared.re, -squared.im})));
 }
 
-/// Plans all steps of an azimuth from its state on.
-template <class Shape>
-EMSCAPE_HD void planSteps(const MarchBlockTask& task, PlannedStep* planned, int azimuth) {
+/// Plans all steps of an azimuth from its state on, if it has N intervals.
+EMSCAPE_HD inline void planSteps(const MarchBlockTask& task, int intervals, PlannedStep* planned,
+                                 int azimuth) {
   const MarchState& state = task.states[azimuth];
-  if (state.intervals != Shape::kIntervals) return;
+  if (state.intervals != intervals) return;
   const float* const ground_m = task.ground_msl_m + std::size_t(azimuth) * task.ground_steps;
   const double max_sine = task.wavelength_m / (2 * task.height_step_m);
   double here_m = state.ground_m, sine = state.sine;

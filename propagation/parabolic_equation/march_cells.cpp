@@ -64,9 +64,7 @@ std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const
 }
 
 template std::array<std::vector<float>, 1> marchCells(RadialMarch<double, 1>&, const RadialCells&);
-template std::array<std::vector<float>, 4> marchCells(RadialMarch<double, 4>&, const RadialCells&);
 template std::array<std::vector<float>, 1> marchCells(RadialMarch<float, 1>&, const RadialCells&);
-template std::array<std::vector<float>, 8> marchCells(RadialMarch<float, 8>&, const RadialCells&);
 template std::array<std::vector<float>, 8> marchCells(LaneMarch&, const RadialCells&);
 
 }  // namespace emscape::propagation

@@ -80,8 +80,6 @@ bool RadialMarch<Real, kLanes>::pointwiseAir() const {
 }
 
 template class RadialMarch<double, 1>;
-template class RadialMarch<double, 4>;
 template class RadialMarch<float, 1>;
-template class RadialMarch<float, 8>;
 
 }  // namespace emscape::propagation

@@ -13,8 +13,8 @@ namespace emscape::propagation {
 constexpr int kStepLanes = 8;
 using StepLanes = LaneComplex<float, kStepLanes>;
 
-/// N of these steps.
-constexpr int kMinLaneIntervals = 128, kMaxLaneIntervals = 32768;
+/// Largest N of these steps.
+constexpr int kMaxLaneIntervals = 32768;
 
 /// A wavenumber over flat ground.
 struct FlatExponent {
