@@ -83,10 +83,6 @@ EMSCAPE_HD inline double noisePower_w(double bandwidth_hz, double noise_temperat
 EMSCAPE_HD inline double noiseTemperature_k(double noise_figure_db) {
   return kReferenceTemperature_K * (std::pow(10.0, noise_figure_db / 10) - 1);
 }
-/// Noise figure (dB) of a receiver of a noise temperature (K, >= 0).
-EMSCAPE_HD inline double noiseFigureDb(double noise_temperature_k) {
-  return 10 * std::log10(1 + noise_temperature_k / kReferenceTemperature_K);
-}
 /// Noise temperature (K) of antenna, line and receiver, referred to the antenna's terminals:
 ///   Ts = Ta + Tl (L - 1) + L T0 (F - 1)
 /// @param line_loss_db  between antenna and receiver, >= 0
@@ -107,33 +103,6 @@ EMSCAPE_HD inline double radarSnrDb(const RadarLink& radar, double rcs_m2, doubl
 /// Range (m) at which the signal-to-noise ratio of one pulse has fallen to a value, in free space.
 EMSCAPE_HD inline double radarRange_m(const RadarLink& radar, double rcs_m2, double snr_db) {
   return std::pow(10.0, (radarSnrDb(radar, rcs_m2, 1) - snr_db) / 40);
-}
-
-/// Jammer-to-signal ratio (dB) at the radar's receiver.
-/// @param range_m         to the target
-/// @param jammer_range_m  to the jammer; for self-screening the target's
-EMSCAPE_HD inline double jammerToSignalDb(const RadarLink& radar, double rcs_m2, double range_m,
-                                          const JammerLink& jammer, double jammer_range_m,
-                                          double excess_db = 0, double jammer_excess_db = 0) {
-  return 10 * std::log10(jammingPower_w(radar, jammer, jammer_range_m, jammer_excess_db) /
-                         echoPower_w(radar, rcs_m2, range_m, excess_db));
-}
-
-/// Burn-through range (m) in free space for a self-screening jammer: the range at which J/S reaches the value
-/// at which the radar still detects. J/S grows with R^2.
-/// @param max_jammer_to_signal_db  J/S at which the radar still detects
-EMSCAPE_HD inline double selfScreeningBurnThrough_m(const RadarLink& radar, double rcs_m2,
-                                                    const JammerLink& jammer,
-                                                    double max_jammer_to_signal_db) {
-  return std::pow(10.0, (max_jammer_to_signal_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, 1)) / 20);
-}
-
-/// The same for a stand-off jammer at its own range: J/S grows with R^4.
-EMSCAPE_HD inline double standOffBurnThrough_m(const RadarLink& radar, double rcs_m2,
-                                               const JammerLink& jammer, double jammer_range_m,
-                                               double max_jammer_to_signal_db) {
-  return std::pow(
-      10.0, (max_jammer_to_signal_db - jammerToSignalDb(radar, rcs_m2, 1, jammer, jammer_range_m)) / 40);
 }
 
 }  // namespace emscape::emfield

@@ -62,38 +62,4 @@ EMSCAPE_HD Real deygoutLossDb(const DiffractionModel<Real>& model, const Terrain
   return main_db + (1 - std::exp(-main_db / 6)) * (side_db + empirical_db);
 }
 
-/// Loss (dB) of all edges of Deygout's construction down to a depth, as published: the sum of their losses.
-/// @param depth  1 only the main edge, 2 three edges, 3 seven, ...; 1..kDeepestDeygout
-/// @see J. Deygout, IEEE Trans. AP-14 (1966), p. 480
-constexpr int kDeepestDeygout = 6;
-template <class Real>
-EMSCAPE_HD Real recursiveDeygoutLossDb(const DiffractionModel<Real>& model, const TerrainProfile& profile,
-                                       Real tx_msl_m, Real rx_msl_m, int depth) {
-  struct Section {
-    int first, last;
-    Real first_msl_m, last_msl_m;
-    int depth;
-  };
-  // Depth first: at most one section per level is pending.
-  Section waiting[kDeepestDeygout + 1];
-  int count = 0;
-  waiting[count++] = {0, profile.count - 1, tx_msl_m, rx_msl_m,
-                      depth < kDeepestDeygout ? depth : kDeepestDeygout};
-  Real loss_db = 0;
-  while (count > 0) {
-    const Section section = waiting[--count];
-    const MainEdge<Real> edge =
-        mainEdge(model, profile, section.first, section.first_msl_m, section.last, section.last_msl_m);
-    const Real edge_db = knifeEdgeDb(edge.nu);
-    if (std::isnan(edge_db)) return edge_db;
-    if (edge_db == 0) continue;
-    loss_db += edge_db;
-    if (section.depth == 1) continue;
-    const Real top_msl_m = Real(profile.height_msl_m[edge.post]);
-    waiting[count++] = {section.first, edge.post, section.first_msl_m, top_msl_m, section.depth - 1};
-    waiting[count++] = {edge.post, section.last, top_msl_m, section.last_msl_m, section.depth - 1};
-  }
-  return loss_db;
-}
-
 }  // namespace emscape::propagation

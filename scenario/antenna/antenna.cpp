@@ -12,13 +12,6 @@ double Antenna::amplitudeTowards(const Vec3d& direction, double steer_u, double 
   return std::abs(signedAmplitudeTowards(direction, steer_u, steer_v));
 }
 
-double Antenna::gainTowards_dbi(const Vec3d& direction, double steer_azimuth_rad,
-                                double steer_elevation_rad) const {
-  const double steer_u = std::cos(steer_elevation_rad) * std::sin(steer_azimuth_rad);
-  const double steer_v = std::sin(steer_elevation_rad);
-  return gain_dbi + 2 * ratioToDb(amplitudeTowards(direction, steer_u, steer_v));
-}
-
 double Antenna::apertureDimension_m(double wavelength_m) const {
   const double narrower_deg = std::min(beamwidth_az_deg, beamwidth_el_deg);
   return narrower_deg < 180 ? aperture_factor * wavelength_m / degToRad(narrower_deg) : 0;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/emfield/jamming_forms.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/radar_duel.h"
 

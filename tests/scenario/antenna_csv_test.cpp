@@ -16,7 +16,7 @@ const std::string kAzimuthCut = "azimuth_deg,attenuation_db\n0,0\n45,3\n90,12\n1
 const std::string kElevationCut = "elevation_deg,attenuation_db\n-90,40\n-10,3\n0,0\n10,3.5\n90,35\n";
 
 double lossAt_db(const AntennaPtr& antenna, double azimuth_deg, double elevation_deg) {
-  return antenna->gain_dbi - antenna->gainTowards_dbi(towards(azimuth_deg, elevation_deg));
+  return antenna->gain_dbi - gainTowards_dbi(*antenna, towards(azimuth_deg, elevation_deg));
 }
 
 /// Attenuation (dB) of the test's grid: different in every cell.

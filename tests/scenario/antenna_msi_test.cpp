@@ -47,7 +47,7 @@ AntennaPtr readText(const std::string& content) {
 }
 
 double lossAt_db(const AntennaPtr& antenna, double azimuth_deg, double elevation_deg) {
-  return antenna->gain_dbi - antenna->gainTowards_dbi(towards(azimuth_deg, elevation_deg));
+  return antenna->gain_dbi - gainTowards_dbi(*antenna, towards(azimuth_deg, elevation_deg));
 }
 
 /// Four rows a cut: enough for a pattern, small enough to break byte by byte.
@@ -119,8 +119,8 @@ TEST(MsiAntenna, CountsAzimuthClockwise) {
   std::string content =
       "GAIN 10 dBi\nHORIZONTAL 4\n0 0\n90 5\n180 20\n270 15\nVERTICAL 4\n0 0\n90 20\n180 20\n270 20\n";
   const AntennaPtr antenna = readText(content);
-  const double to_right_dbi = antenna->gainTowards_dbi({0, 1, 0});
-  const double to_left_dbi = antenna->gainTowards_dbi({0, -1, 0});
+  const double to_right_dbi = gainTowards_dbi(*antenna, {0, 1, 0});
+  const double to_left_dbi = gainTowards_dbi(*antenna, {0, -1, 0});
   EXPECT_NEAR(to_right_dbi, 5, 1e-5);
   EXPECT_NEAR(to_left_dbi, -5, 1e-5);
 }

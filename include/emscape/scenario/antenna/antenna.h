@@ -72,11 +72,6 @@ class Antenna {
   bool is_array = false;    ///< steered electronically; other antennas turn
   std::string description;  ///< one line for `emscape info`
 
-  /// Gain (dBi) towards a direction (forward, right, up; unit), in double; -infinity in a null. For tests,
-  /// tables and reports, not for loops.
-  /// @param steer_azimuth_rad, steer_elevation_rad phased_array: steering direction of the beam; else ignored
-  double gainTowards_dbi(const Vec3d& direction, double steer_azimuth_rad = 0,
-                         double steer_elevation_rad = 0) const;
   /// Largest dimension D (m) of the aperture, D = aperture_factor * lambda / beamwidth with the narrower of
   /// the two beamwidths; for the far-field distance 2 D^2 / lambda. 0 (no near field) without a beam.
   double apertureDimension_m(double wavelength_m) const;
