@@ -23,7 +23,7 @@ struct Site {
   double height_msl_m = 0;
   double earth_radius_m = 0;            ///< Gaussian radius of curvature below it
   double effective_earth_radius_m = 0;  ///< k times that
-  double effective_height_msl_m = 0;    ///< for models with ModelInfo::on_effective_earth
+  double effective_height_msl_m = 0;    ///< on the effective earth; for ModelInfo::on_effective_earth
 };
 
 /// Extent of the paths from an emitter.

@@ -32,6 +32,8 @@ Refraction exponentialRefraction(const Station& station, double sea_level_refrac
 
 Station makeStation(const GeodeticPosition& position, double height_msl_m, double k_factor) {
   Station station;
+  station.latitude_deg = position.latitude_deg;
+  station.longitude_deg = position.longitude_deg;
   station.geodesy = fastGeodesy(position.latitude_deg, position.longitude_deg);
   station.ecef_m = toEcef(position);
   station.height_msl_m = station.effective_height_msl_m = height_msl_m;

@@ -1,11 +1,11 @@
-/// An emitter's position, with the derived quantities for the geometry.
+/// An emitter's site, with the derived quantities for the geometry of its paths.
 #pragma once
 
 #include "base/geodesy/fast_geodesy.h"
 #include "emfield/columns/refraction.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/host_device.h"
-#include "emscape/propagation/settings.h"
+#include "propagation/inputs.h"
 
 namespace emscape::emfield {
 
@@ -13,14 +13,10 @@ namespace emscape::emfield {
 constexpr double kMinPath_m = 1;
 
 /// Immutable once made.
-struct Station {
+struct Station : propagation::Site {
   FastGeodesy geodesy;
   Vec3d ecef_m;
-  double height_msl_m = 0;
-  double earth_radius_m = 0;            ///< Gaussian radius of curvature below the station
-  double effective_earth_radius_m = 0;  ///< k times that
   Refraction refraction;
-  double effective_height_msl_m = 0;  ///< on the effective earth: Refraction::grazingHeight_m()
 };
 
 /// For refractivity that is linear in height.

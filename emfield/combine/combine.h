@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "emfield/geometry/emitter_geometry.h"
+#include "emfield/columns/column_geometry.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "emscape/scenario/antenna/antenna.h"

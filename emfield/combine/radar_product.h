@@ -169,7 +169,9 @@ EMSCAPE_HD inline float withRadar(const RadarTask& task, float echo_to_noise_roo
     case RadarMeasure::root_of_signal_to_clutter_and_noise:
       return withEcho<RadarMeasure::root_of_signal_to_clutter_and_noise>(
           task, echo_to_noise_root, jamming_to_noise, looks, accumulated);
-    case RadarMeasure::detection_age:  // addEcho() has it as a template parameter
+    case RadarMeasure::detection_age:
+      return withEcho<RadarMeasure::detection_age>(task, echo_to_noise_root, jamming_to_noise, looks,
+                                                   accumulated);
     case RadarMeasure::root_of_signal_to_noise:
       break;
   }
@@ -191,18 +193,22 @@ struct RadarPass {
   ClutterMapView clutter_map;        ///< without cells: no surface clutter
 };
 
+/// True if a pass has no reflected rays, no clutter and no ages.
+inline bool isPlain(const RadarPass& pass) {
+  return !pass.has_reflected_rays && pass.task.clutter.isNone() &&
+         pass.task.measure != RadarMeasure::detection_age;
+}
+
 /// One voxel of a pass. The CPU does the same row by row if the look has no arcs.
-/// @tparam kReflected  false: for passes without reflected rays
-/// @tparam kClutter    false: for passes without clutter
-/// @tparam kAge        true: for RadarMeasure::detection_age
-template <scenario::PatternKind kind, bool kReflected = true, bool kClutter = true, bool kAge = false>
+/// @tparam kAny  false: for passes that are plain (isPlain())
+template <scenario::PatternKind kind, bool kAny = true>
 EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k) {
   const RadarTask& task = pass.task;
   const ArcLook look{task.look, task.look_arcs, task.look_arc_count};
   const std::size_t voxel = static_cast<std::size_t>(k) * pass.dims.x * pass.dims.y + column;
   const float t_m = pass.t_m[k];
   float weight;
-  if (kReflected && weighsReflectedRays(pass.beam)) {
+  if (kAny && weighsReflectedRays(pass.beam)) {
     weight = echoWeight<kind>(look, pass.beam, pass.beam.geometry.reflected[voxel], column, t_m);
   } else {
     weight = echoWeight<kind>(look, pass.beam, column, t_m);
@@ -213,24 +219,21 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
   for (int n = 0; n < task.jammer_count; ++n) {
     const JammerAtRadar& jammer = task.jammers[n];
     jamming +=
-        jammer.boresight_to_noise * (kReflected && jammer.has_reflected_ray
+        jammer.boresight_to_noise * (kAny && jammer.has_reflected_ray
                                          ? jammingWeightOfBothRays<kind>(look, pass.beam, jammer, column, t_m)
                                          : jammingWeight<kind>(look, pass.beam, jammer, column, t_m));
   }
-  if constexpr (kClutter) {
+  if constexpr (kAny) {
     if (!task.clutter.isNone()) {
       const AimedVoxel aimed = aimedVoxel(look, pass.beam, column, t_m);
       jamming += clutterToNoise<kind>(task.clutter, pass.clutter_map, pass.beam, aimed.aim, aimed.range_m);
     }
   }
-  if constexpr (kAge) {
-    const float age_s = ageAt(task, pass.beam, column, t_m);
-    pass.accumulator[voxel] =
-        withEcho<RadarMeasure::detection_age>(task, root, jamming, age_s, pass.accumulator[voxel]);
-  } else {
-    const float looks = task.is_cumulative ? looksAt(task, pass.beam, column, t_m) : 1.0f;
-    pass.accumulator[voxel] = withRadar(task, root, jamming, looks, pass.accumulator[voxel]);
-  }
+  const bool is_age = kAny && task.measure == RadarMeasure::detection_age;
+  const float looks = is_age               ? ageAt(task, pass.beam, column, t_m)
+                      : task.is_cumulative ? looksAt(task, pass.beam, column, t_m)
+                                           : 1.0f;
+  pass.accumulator[voxel] = withRadar(task, root, jamming, looks, pass.accumulator[voxel]);
 }
 
 /// Runs a pass on the CPU. Voxels below first_row_k are not changed.

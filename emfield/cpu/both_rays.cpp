@@ -20,38 +20,16 @@ __attribute__((always_inline)) inline void fillBothRays(const EmitterBeam& emitt
   }
 }
 
-EMSCAPE_SIMD_CLONES void gaussianRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
-                                     const Row& row, float* out) {
-  fillBothRays<PatternKind::gaussian>(emitter, reflected, row, out);
-}
-EMSCAPE_SIMD_CLONES void separableRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
-                                      const Row& row, float* out) {
-  fillBothRays<PatternKind::separable>(emitter, reflected, row, out);
-}
-EMSCAPE_SIMD_CLONES void phasedArrayRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
-                                        const Row& row, float* out) {
-  fillBothRays<PatternKind::phased_array>(emitter, reflected, row, out);
-}
-EMSCAPE_SIMD_CLONES void gridRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
-                                 const Row& row, float* out) {
-  fillBothRays<PatternKind::grid>(emitter, reflected, row, out);
+template <PatternKind kind>
+EMSCAPE_SIMD_CLONES void rowOfKind(const EmitterBeam& emitter, const ReflectedRayCode* reflected,
+                                   const Row& row, float* out) {
+  fillBothRays<kind>(emitter, reflected, row, out);
 }
 
 }  // namespace
 
 void bothRaysRow(const EmitterBeam& emitter, const ReflectedRayCode* reflected, const Row& row, float* out) {
-  switch (emitter.pattern.kind) {
-    case PatternKind::isotropic:
-      return;  // weighsReflectedRays() is false
-    case PatternKind::gaussian:
-      return gaussianRow(emitter, reflected, row, out);
-    case PatternKind::separable:
-      return separableRow(emitter, reflected, row, out);
-    case PatternKind::phased_array:
-      return phasedArrayRow(emitter, reflected, row, out);
-    case PatternKind::grid:
-      return gridRow(emitter, reflected, row, out);
-  }
+  onPattern(emitter.pattern, [&](auto kind) { rowOfKind<kind>(emitter, reflected, row, out); });
 }
 
 }  // namespace emscape::emfield

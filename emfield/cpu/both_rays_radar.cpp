@@ -30,25 +30,10 @@ __attribute__((always_inline)) inline void fillWeightsOfBothRays(const RadarPass
   }
 }
 
-EMSCAPE_SIMD_CLONES void isotropicWeights(const RadarPass& pass, const JammerAtRadar* jammer,
-                                          const ReflectedRayCode* reflected, const Row& row, float* out) {
-  fillWeightsOfBothRays<PatternKind::isotropic>(pass, jammer, reflected, row, out);
-}
-EMSCAPE_SIMD_CLONES void gaussianWeights(const RadarPass& pass, const JammerAtRadar* jammer,
-                                         const ReflectedRayCode* reflected, const Row& row, float* out) {
-  fillWeightsOfBothRays<PatternKind::gaussian>(pass, jammer, reflected, row, out);
-}
-EMSCAPE_SIMD_CLONES void separableWeights(const RadarPass& pass, const JammerAtRadar* jammer,
-                                          const ReflectedRayCode* reflected, const Row& row, float* out) {
-  fillWeightsOfBothRays<PatternKind::separable>(pass, jammer, reflected, row, out);
-}
-EMSCAPE_SIMD_CLONES void phasedArrayWeights(const RadarPass& pass, const JammerAtRadar* jammer,
-                                            const ReflectedRayCode* reflected, const Row& row, float* out) {
-  fillWeightsOfBothRays<PatternKind::phased_array>(pass, jammer, reflected, row, out);
-}
-EMSCAPE_SIMD_CLONES void gridWeights(const RadarPass& pass, const JammerAtRadar* jammer,
-                                     const ReflectedRayCode* reflected, const Row& row, float* out) {
-  fillWeightsOfBothRays<PatternKind::grid>(pass, jammer, reflected, row, out);
+template <PatternKind kind>
+EMSCAPE_SIMD_CLONES void weightsOfKind(const RadarPass& pass, const JammerAtRadar* jammer,
+                                       const ReflectedRayCode* reflected, const Row& row, float* out) {
+  fillWeightsOfBothRays<kind>(pass, jammer, reflected, row, out);
 }
 
 }  // namespace
@@ -57,18 +42,7 @@ void weightsOfBothRays(const RadarPass& pass, const JammerAtRadar* jammer, std::
                        float* out) {
   const ReflectedRayCode* const reflected =
       weighsReflectedRays(pass.beam) ? pass.beam.geometry.reflected + voxel : nullptr;
-  switch (pass.beam.pattern.kind) {
-    case PatternKind::isotropic:
-      return isotropicWeights(pass, jammer, reflected, row, out);
-    case PatternKind::gaussian:
-      return gaussianWeights(pass, jammer, reflected, row, out);
-    case PatternKind::separable:
-      return separableWeights(pass, jammer, reflected, row, out);
-    case PatternKind::phased_array:
-      return phasedArrayWeights(pass, jammer, reflected, row, out);
-    case PatternKind::grid:
-      return gridWeights(pass, jammer, reflected, row, out);
-  }
+  onPattern(pass.beam.pattern, [&](auto kind) { weightsOfKind<kind>(pass, jammer, reflected, row, out); });
 }
 
 }  // namespace emscape::emfield

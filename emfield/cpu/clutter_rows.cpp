@@ -8,7 +8,8 @@ namespace {
 using scenario::PatternKind;
 
 template <PatternKind kind>
-__attribute__((always_inline)) inline void addOfKind(const RadarPass& pass, const Row& row, float* jamming) {
+__attribute__((always_inline)) inline void fillSurface(const RadarPass& pass, const Row& row,
+                                                       float* jamming) {
   const ClutterTask task = pass.task.clutter;
   const RadarLook look = pass.task.look;
   const ClutterMapView map = pass.clutter_map;
@@ -18,6 +19,11 @@ __attribute__((always_inline)) inline void addOfKind(const RadarPass& pass, cons
     const AimedVoxel aimed = aimedVoxel(look, beam, row.column + i, row.t_m);
     jamming[i] += surfaceToNoise<kind>(task, map, beam, aimed.aim, aimed.range_m);
   }
+}
+
+template <PatternKind kind>
+EMSCAPE_SIMD_CLONES void addSurfaceOfKind(const RadarPass& pass, const Row& row, float* jamming) {
+  fillSurface<kind>(pass, row, jamming);
 }
 
 EMSCAPE_SIMD_CLONES void addRain(const RadarPass& pass, const Row& row, float* jamming) {
@@ -31,41 +37,11 @@ EMSCAPE_SIMD_CLONES void addRain(const RadarPass& pass, const Row& row, float* j
   }
 }
 
-EMSCAPE_SIMD_CLONES void addIsotropic(const RadarPass& pass, const Row& row, float* jamming) {
-  addOfKind<PatternKind::isotropic>(pass, row, jamming);
-}
-EMSCAPE_SIMD_CLONES void addGaussian(const RadarPass& pass, const Row& row, float* jamming) {
-  addOfKind<PatternKind::gaussian>(pass, row, jamming);
-}
-EMSCAPE_SIMD_CLONES void addSeparable(const RadarPass& pass, const Row& row, float* jamming) {
-  addOfKind<PatternKind::separable>(pass, row, jamming);
-}
-EMSCAPE_SIMD_CLONES void addPhasedArray(const RadarPass& pass, const Row& row, float* jamming) {
-  addOfKind<PatternKind::phased_array>(pass, row, jamming);
-}
-EMSCAPE_SIMD_CLONES void addGrid(const RadarPass& pass, const Row& row, float* jamming) {
-  addOfKind<PatternKind::grid>(pass, row, jamming);
-}
-
-void addSurface(const RadarPass& pass, const Row& row, float* jamming) {
-  switch (pass.beam.pattern.kind) {
-    case PatternKind::isotropic:
-      return addIsotropic(pass, row, jamming);
-    case PatternKind::gaussian:
-      return addGaussian(pass, row, jamming);
-    case PatternKind::separable:
-      return addSeparable(pass, row, jamming);
-    case PatternKind::phased_array:
-      return addPhasedArray(pass, row, jamming);
-    case PatternKind::grid:
-      return addGrid(pass, row, jamming);
-  }
-}
-
 }  // namespace
 
 void addClutter(const RadarPass& pass, const Row& row, float* jamming) {
-  if (pass.task.clutter.surface > 0) addSurface(pass, row, jamming);
+  if (pass.task.clutter.surface > 0)
+    onPattern(pass.beam.pattern, [&](auto kind) { addSurfaceOfKind<kind>(pass, row, jamming); });
   if (pass.task.clutter.rain > 0) addRain(pass, row, jamming);
 }
 

@@ -49,37 +49,15 @@ __attribute__((always_inline)) inline void fillRow(const EmitterBeam& emitter, c
   }
 }
 
-EMSCAPE_SIMD_CLONES void isotropicRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::isotropic>(emitter, row, out);
-}
-EMSCAPE_SIMD_CLONES void gaussianRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::gaussian>(emitter, row, out);
-}
-EMSCAPE_SIMD_CLONES void separableRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::separable>(emitter, row, out);
-}
-EMSCAPE_SIMD_CLONES void phasedArrayRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::phased_array>(emitter, row, out);
-}
-EMSCAPE_SIMD_CLONES void gridRow(const EmitterBeam& emitter, const Row& row, float* out) {
-  fillRow<PatternKind::grid>(emitter, row, out);
+template <PatternKind kind>
+EMSCAPE_SIMD_CLONES void rowOfKind(const EmitterBeam& emitter, const Row& row, float* out) {
+  fillRow<kind>(emitter, row, out);
 }
 
 /// @param first  index of the row's first voxel
 void powerDensityRow(const EmitterBeam& emitter, const Row& row, std::size_t first, float* out) {
   if (weighsReflectedRays(emitter)) return bothRaysRow(emitter, emitter.geometry.reflected + first, row, out);
-  switch (emitter.pattern.kind) {
-    case PatternKind::isotropic:
-      return isotropicRow(emitter, row, out);
-    case PatternKind::gaussian:
-      return gaussianRow(emitter, row, out);
-    case PatternKind::separable:
-      return separableRow(emitter, row, out);
-    case PatternKind::phased_array:
-      return phasedArrayRow(emitter, row, out);
-    case PatternKind::grid:
-      return gridRow(emitter, row, out);
-  }
+  onPattern(emitter.pattern, [&](auto kind) { rowOfKind<kind>(emitter, row, out); });
 }
 
 EMSCAPE_SIMD_CLONES void reduceRow(Reduction reduction, float weight, const float* power_density_wm2,

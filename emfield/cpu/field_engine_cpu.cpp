@@ -148,16 +148,15 @@ void CpuEngine::combine(const CombinePass& pass) {
     task.emitters.push_back(member.emitter);
     EmitterBeam& beam = task.emitters.back().beam;
     beam.geometry = slots_[member.slot].view();
-    beam.pattern = member.antenna->view();
+    beam.pattern = member.beam_antenna->view();
     if (isIncluded(task, task.emitters.back()))
-      kept_power_.choose(static_cast<std::size_t>(member.slot), member.antenna, task.emitters.back());
+      kept_power_.choose(static_cast<std::size_t>(member.slot), member.beam_antenna, task.emitters.back());
   }
   Stopwatch watch;
   combineCpu(task);
   for (std::size_t m = 0; m < pass.members.size(); ++m) {
     const int slot = pass.members[m].slot;
-    const scenario::AntennaPtr& antenna =
-        setup_.scenario->emitters[pass.members[m].emitter.emitter_index].antenna;
+    const scenario::AntennaPtr& antenna = pass.members[m].antenna;
     EmitterBeam beam = task.emitters[m].beam;
     beam.pattern = antenna->view();
     for (const RadarShare& share : pass.members[m].radars) {

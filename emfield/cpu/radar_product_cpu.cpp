@@ -16,47 +16,21 @@ namespace {
 
 using scenario::PatternKind;
 
-EMSCAPE_SIMD_CLONES void isotropicWeights(const RadarPass& pass, const JammerAtRadar* jammer, const Row& row,
-                                          float* out) {
-  fillWeights<PatternKind::isotropic>(pass, jammer, row, out);
-}
-EMSCAPE_SIMD_CLONES void gaussianWeights(const RadarPass& pass, const JammerAtRadar* jammer, const Row& row,
-                                         float* out) {
-  fillWeights<PatternKind::gaussian>(pass, jammer, row, out);
-}
-EMSCAPE_SIMD_CLONES void separableWeights(const RadarPass& pass, const JammerAtRadar* jammer, const Row& row,
-                                          float* out) {
-  fillWeights<PatternKind::separable>(pass, jammer, row, out);
-}
-EMSCAPE_SIMD_CLONES void phasedArrayWeights(const RadarPass& pass, const JammerAtRadar* jammer,
-                                            const Row& row, float* out) {
-  fillWeights<PatternKind::phased_array>(pass, jammer, row, out);
-}
-EMSCAPE_SIMD_CLONES void gridWeights(const RadarPass& pass, const JammerAtRadar* jammer, const Row& row,
-                                     float* out) {
-  fillWeights<PatternKind::grid>(pass, jammer, row, out);
+template <PatternKind kind>
+EMSCAPE_SIMD_CLONES void weightsOfKind(const RadarPass& pass, const JammerAtRadar* jammer, const Row& row,
+                                       float* out) {
+  fillWeights<kind>(pass, jammer, row, out);
 }
 
 /// @param jammer  of which the weights are; null: of the echo, with the excess
 /// @param voxel   index of the row's first voxel
 void weightsOf(const RadarPass& pass, const JammerAtRadar* jammer, std::size_t voxel, const Row& row,
                float* out) {
-  const auto fill = [&] {
-    if (pass.has_reflected_rays) return weightsOfBothRays(pass, jammer, voxel, row, out);
-    switch (pass.beam.pattern.kind) {
-      case PatternKind::isotropic:
-        return isotropicWeights(pass, jammer, row, out);
-      case PatternKind::gaussian:
-        return gaussianWeights(pass, jammer, row, out);
-      case PatternKind::separable:
-        return separableWeights(pass, jammer, row, out);
-      case PatternKind::phased_array:
-        return phasedArrayWeights(pass, jammer, row, out);
-      case PatternKind::grid:
-        return gridWeights(pass, jammer, row, out);
-    }
-  };
-  fill();
+  if (pass.has_reflected_rays) {
+    weightsOfBothRays(pass, jammer, voxel, row, out);
+  } else {
+    onPattern(pass.beam.pattern, [&](auto kind) { weightsOfKind<kind>(pass, jammer, row, out); });
+  }
   if (jammer == nullptr) applyExcess(pass.beam.geometry.excess, voxel, row.count, out);
 }
 

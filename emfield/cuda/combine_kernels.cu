@@ -56,31 +56,28 @@ __device__ void fillLayers(const EmitterBeam& beam, std::size_t column, const fl
   }
 }
 
-/// The same for both rays.
+/// Power density of both rays of a voxel. A separate call, so that it is compiled once per kernel.
+__device__ __noinline__ float powerOfBothRays_wm2(const EmitterBeam& beam, long long voxel,
+                                                  std::size_t column, float t_m) {
+  return onPattern(beam.pattern, [&](auto kind) {
+    return powerDensity_wm2<kind>(beam, beam.geometry.reflected[voxel], column, t_m);
+  });
+}
+
 /// @param first   index of the lowest voxel of the column's layers
 /// @param stride  from one layer to the next
 /// @param count   layers that are in the grid
-template <PatternKind kind, int kLayers>
-__device__ void fillBothRays(const EmitterBeam& beam, std::size_t column, long long first, long long stride,
-                             int count, const float (&t_m)[kLayers], float (&power_density_wm2)[kLayers]) {
-#pragma unroll
-  for (int l = 0; l < kLayers; ++l) {
-    if (l >= count) break;
-    power_density_wm2[l] =
-        powerDensity_wm2<kind>(beam, beam.geometry.reflected[first + l * stride], column, t_m[l]);
-  }
-}
-
-template <bool kReflected, PatternKind kind, int kLayers>
+template <bool kReflected, int kLayers>
 __device__ void fill(const EmitterBeam& beam, std::size_t column, long long first, long long stride,
                      int count, const float (&t_m)[kLayers], float (&power_density_wm2)[kLayers]) {
-  if constexpr (kReflected && kind != PatternKind::isotropic) {
-    if (weighsReflectedRays(beam)) {
-      fillBothRays<kind>(beam, column, first, stride, count, t_m, power_density_wm2);
-      return;
+  if (kReflected && weighsReflectedRays(beam)) {
+#pragma unroll
+    for (int l = 0; l < kLayers; ++l) {
+      if (l < count) power_density_wm2[l] = powerOfBothRays_wm2(beam, first + l * stride, column, t_m[l]);
     }
+    return;
   }
-  fillLayers<kind>(beam, column, t_m, power_density_wm2);
+  onPattern(beam.pattern, [&](auto kind) { fillLayers<kind>(beam, column, t_m, power_density_wm2); });
 }
 
 /// A warp of a block processes neighbouring columns, the next warp the layers above, so that they share the
@@ -89,10 +86,10 @@ constexpr int kWarp = 32;
 constexpr int kWarps = 8;
 
 /// A thread processes kLayers layers of a column.
-/// @tparam kReduction  that of the channel if it has a second accumulator; else any other, and each channel
-/// has its own
-/// @tparam kReflected  some members have weighted reflected rays; a separate kernel, because of its registers
-template <int kChannels, int kLayers, Reduction kReduction, bool kReflected>
+/// @tparam kSecond     the channel has a second accumulator
+/// @tparam kReflected  some members have weighted reflected rays, and some of the channels may be missing; a
+/// separate kernel, because of its registers
+template <int kChannels, int kLayers, bool kSecond, bool kReflected>
 __global__ void __launch_bounds__(kWarp* kWarps)
     combineKernel(const __grid_constant__ Launch<kChannels> launch) {
   const int columns = launch.dims.x * launch.dims.y;
@@ -103,7 +100,6 @@ __global__ void __launch_bounds__(kWarp* kWarps)
   if (launch.first_valid_k != nullptr && launch.first_valid_k[column] >= begin + kLayers) return;
 
   float t_m[kLayers], power_density_wm2[kLayers], value[kChannels][kLayers];
-  constexpr bool kSecond = hasSecond(kReduction);
   float second[kSecond ? kLayers : 1];
 #pragma unroll
   for (int l = 0; l < kLayers; ++l) {
@@ -113,7 +109,7 @@ __global__ void __launch_bounds__(kWarp* kWarps)
 #pragma unroll
     for (int c = 0; c < kChannels; ++c) {
       const float* from = launch.keep ? launch.accumulators[c].value : launch.initial[c].value;
-      value[c][l] = from != nullptr ? from[voxel] : initialValue(kReduction);
+      value[c][l] = from != nullptr ? from[voxel] : initialValue(launch.reductions[c]);
     }
     if (kSecond) {
       const float* from = launch.keep ? launch.accumulators[0].second : launch.initial[0].second;
@@ -131,28 +127,7 @@ __global__ void __launch_bounds__(kWarp* kWarps)
           power_density_wm2[l] = member.power_wm2[first + static_cast<long long>(l) * columns];
       }
     } else {
-      switch (member.beam.pattern.kind) {
-        case PatternKind::isotropic:
-          fill<kReflected, PatternKind::isotropic>(member.beam, column, first, columns, launch.dims.z - begin,
-                                                   t_m, power_density_wm2);
-          break;
-        case PatternKind::gaussian:
-          fill<kReflected, PatternKind::gaussian>(member.beam, column, first, columns, launch.dims.z - begin,
-                                                  t_m, power_density_wm2);
-          break;
-        case PatternKind::separable:
-          fill<kReflected, PatternKind::separable>(member.beam, column, first, columns, launch.dims.z - begin,
-                                                   t_m, power_density_wm2);
-          break;
-        case PatternKind::phased_array:
-          fill<kReflected, PatternKind::phased_array>(member.beam, column, first, columns,
-                                                      launch.dims.z - begin, t_m, power_density_wm2);
-          break;
-        case PatternKind::grid:
-          fill<kReflected, PatternKind::grid>(member.beam, column, first, columns, launch.dims.z - begin, t_m,
-                                              power_density_wm2);
-          break;
-      }
+      fill<kReflected>(member.beam, column, first, columns, launch.dims.z - begin, t_m, power_density_wm2);
       if (!member.beam.geometry.excess.isEmpty()) {
         const ExcessView& excess = member.beam.geometry.excess;
 #pragma unroll
@@ -177,12 +152,12 @@ __global__ void __launch_bounds__(kWarp* kWarps)
       for (int l = 0; l < kLayers; ++l) {
         if constexpr (kSecond) {
           float weight = member.weights[c];
-          if constexpr (kReduction == Reduction::dominant_mechanism) {
+          if (launch.reductions[c] == Reduction::dominant_mechanism) {
             if (begin + l < launch.dims.z)
               weight =
                   mechanismWeight(member.beam.geometry, weight, first + static_cast<long long>(l) * columns);
           }
-          reduce(kReduction, weight, power_density_wm2[l], value[c][l], second[l]);
+          reduce(launch.reductions[c], weight, power_density_wm2[l], value[c][l], second[l]);
         } else {
           reduce(launch.reductions[c], member.weights[c], power_density_wm2[l], value[c][l]);
         }
@@ -195,15 +170,20 @@ __global__ void __launch_bounds__(kWarp* kWarps)
     if (begin + l >= launch.dims.z) break;
     const long long voxel = static_cast<long long>(begin + l) * columns + column;
 #pragma unroll
-    for (int c = 0; c < kChannels; ++c) launch.accumulators[c].value[voxel] = value[c][l];
+    for (int c = 0; c < kChannels; ++c) {
+      if (!kReflected || launch.accumulators[c].value != nullptr)
+        launch.accumulators[c].value[voxel] = value[c][l];
+    }
     if (kSecond) launch.accumulators[0].second[voxel] = second[l];
   }
 }
 
 /// Runs a pass for some channels of one kind, with as many launches as their members need.
-template <int kChannels, int kLayers, Reduction kReduction>
+/// @param count  channels; without reflected rays kChannels
+template <int kChannels, bool kSecond, bool kReflected>
 void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k, const int* channels,
-                     cudaStream_t stream) {
+                     int count, cudaStream_t stream) {
+  constexpr int kLayers = 2;
   Launch<kChannels> launch;
   static_assert(sizeof launch <= kParameterBytes);
   launch.dims = task.dims;
@@ -212,28 +192,25 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
   launch.keep = task.keep;
   launch.member_count = 0;
   for (int c = 0; c < kChannels; ++c) {
-    launch.reductions[c] = task.reductions[channels[c]];
-    launch.accumulators[c] = task.accumulators[channels[c]];
-    launch.initial[c] = task.initial[channels[c]];
+    launch.reductions[c] = c < count ? task.reductions[channels[c]] : Reduction::sum;
+    launch.accumulators[c] = c < count ? task.accumulators[channels[c]] : Accumulator{};
+    launch.initial[c] = c < count ? task.initial[channels[c]] : ConstAccumulator{};
   }
   constexpr int kBlockLayers = kLayers * kWarps;
   const dim3 blocks(static_cast<unsigned>((task.dims.x * task.dims.y + kWarp - 1) / kWarp),
                     static_cast<unsigned>((task.dims.z + kBlockLayers - 1) / kBlockLayers));
-  bool has_reflected = false;
   const auto run = [&] {
-    const auto kernel = has_reflected ? combineKernel<kChannels, kLayers, kReduction, true>
-                                      : combineKernel<kChannels, kLayers, kReduction, false>;
-    kernel<<<blocks, dim3(kWarp, kWarps), 0, stream>>>(launch);
+    combineKernel<kChannels, kLayers, kSecond, kReflected>
+        <<<blocks, dim3(kWarp, kWarps), 0, stream>>>(launch);
     checkLaunch("combine");
     launch.keep = true;
     launch.member_count = 0;
-    has_reflected = false;
   };
   for (const CombineEmitter& emitter : task.emitters) {
     Member<kChannels> member{emitter.beam, emitter.power_wm2, emitter.power_is_known, {}, {}};
     bool takes_part = false;
     for (const ChannelWeight& share : emitter.shares) {
-      for (int c = 0; c < kChannels; ++c) {
+      for (int c = 0; c < count; ++c) {
         if (channels[c] != share.channel) continue;
         member.weights[c] = share.weight;
         takes_part = member.takes_part[c] = true;
@@ -241,7 +218,6 @@ void combineChannels(const CombineTask& task, const std::uint16_t* first_valid_k
     }
     if (!takes_part) continue;
     launch.members[launch.member_count++] = member;
-    has_reflected = has_reflected || weighsReflectedRays(emitter.beam);
     if (launch.member_count == Launch<kChannels>::kMembers) run();
   }
   if (launch.member_count > 0 || !launch.keep) run();
@@ -296,34 +272,28 @@ __global__ void __launch_bounds__(kThreads) productKernel(DeviceProductTask task
 }  // namespace
 
 void combine(const CombineTask& task, const std::uint16_t* first_valid_k, cudaStream_t stream) {
+  const bool has_reflected =
+      std::any_of(task.emitters.begin(), task.emitters.end(),
+                  [](const CombineEmitter& emitter) { return weighsReflectedRays(emitter.beam); });
   std::vector<int> channels;
   for (int c = 0; c < static_cast<int>(task.accumulators.size()); ++c) {
     if (task.accumulators[c].value == nullptr) continue;
-    if (task.reductions[c] == Reduction::dominant) {
-      combineChannels<1, 2, Reduction::dominant>(task, first_valid_k, &c, stream);
-    } else if (task.reductions[c] == Reduction::dominant_mechanism) {
-      combineChannels<1, 2, Reduction::dominant_mechanism>(task, first_valid_k, &c, stream);
-    } else if (task.reductions[c] == Reduction::signal) {
-      combineChannels<1, 2, Reduction::signal>(task, first_valid_k, &c, stream);
+    if (hasSecond(task.reductions[c])) {
+      const auto combineOne =
+          has_reflected ? combineChannels<1, true, true> : combineChannels<1, true, false>;
+      combineOne(task, first_valid_k, &c, 1, stream);
     } else {
       channels.push_back(c);
     }
   }
   for (std::size_t begin = 0; begin < channels.size(); begin += kMaxChannels) {
-    const int* first = channels.data() + begin;
-    switch (std::min<std::size_t>(kMaxChannels, channels.size() - begin)) {
-      case 1:
-        combineChannels<1, 2, Reduction::sum>(task, first_valid_k, first, stream);
-        break;
-      case 2:
-        combineChannels<2, 2, Reduction::sum>(task, first_valid_k, first, stream);
-        break;
-      case 3:
-        combineChannels<3, 2, Reduction::sum>(task, first_valid_k, first, stream);
-        break;
-      default:
-        combineChannels<4, 2, Reduction::sum>(task, first_valid_k, first, stream);
-    }
+    const int count = static_cast<int>(std::min<std::size_t>(kMaxChannels, channels.size() - begin));
+    const auto combineSome = has_reflected ? combineChannels<kMaxChannels, false, true>
+                             : count == 1  ? combineChannels<1, false, false>
+                             : count == 2  ? combineChannels<2, false, false>
+                             : count == 3  ? combineChannels<3, false, false>
+                                           : combineChannels<kMaxChannels, false, false>;
+    combineSome(task, first_valid_k, channels.data() + begin, count, stream);
   }
 }
 

@@ -269,16 +269,13 @@ __global__ void __launch_bounds__(kColumnThreads, 5)
   });
 }
 
-template <int kReceivers>
-using Receivers = std::integral_constant<int, kReceivers>;
-
-/// Calls f(Receivers<n>) with a number from 1 to kMost.
-template <int kMost, class Function>
+/// Calls f with the first of some numbers, as a std::integral_constant, that is not below `receivers`.
+template <int kFirst, int... kOthers, class Function>
 void withReceivers(int receivers, const Function& f) {
-  if constexpr (kMost > 1) {
-    if (receivers < kMost) return withReceivers<kMost - 1>(receivers, f);
+  if constexpr (sizeof...(kOthers) > 0) {
+    if (receivers > kFirst) return withReceivers<kOthers...>(receivers, f);
   }
-  f(Receivers<kMost>());
+  f(std::integral_constant<int, kFirst>());
 }
 
 }  // namespace
@@ -305,7 +302,7 @@ void fillClear(const DiffractionTask* tasks, int count, const ExcessGrid& grid, 
   const auto blocks = static_cast<unsigned>(tiles.count());
   constexpr int kMost = 8;
   const int passes = (grid.layers + kMost - 1) / kMost;
-  withReceivers<kMost>((grid.layers + passes - 1) / passes, [&](auto receivers) {
+  withReceivers<1, 2, 4, 6, kMost>((grid.layers + passes - 1) / passes, [&](auto receivers) {
     clearColumnsKernel<receivers()>
         <<<blocks, kColumnThreads, 0, stream>>>(tasks, grid, tiles, left, left_count);
   });

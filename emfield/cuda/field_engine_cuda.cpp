@@ -160,16 +160,16 @@ void CudaEngine::combine(const CombinePass& pass) {
     task.emitters.push_back(member.emitter);
     EmitterBeam& beam = task.emitters.back().beam;
     beam.geometry = geometry_.view(member.slot);
-    beam.pattern = patternOf(member.antenna);
+    beam.pattern = patternOf(member.beam_antenna);
     if (isIncluded(task, task.emitters.back()))
-      kept_power_.choose(static_cast<std::size_t>(member.slot), member.antenna, task.emitters.back());
+      kept_power_.choose(static_cast<std::size_t>(member.slot), member.beam_antenna, task.emitters.back());
   }
   clock_.begin(stream_);
   cuda::combine(task, geometry_.firstValidK(), stream_);
   for (std::size_t m = 0; m < pass.members.size(); ++m) {
     if (pass.members[m].radars.empty() && pass.members[m].occupancies.empty()) continue;
     EmitterBeam beam = task.emitters[m].beam;
-    beam.pattern = patternOf(setup_.scenario->emitters[pass.members[m].emitter.emitter_index].antenna);
+    beam.pattern = patternOf(pass.members[m].antenna);
     for (const RadarShare& share : pass.members[m].radars) {
       float* const accumulator = task.accumulators[share.channel].value;
       if (accumulator == nullptr) continue;

@@ -8,6 +8,7 @@
 
 #include "emfield/combine/combine.h"
 #include "emfield/excess/shadow_edge.h"
+#include "emfield/geometry/clutter_map.h"
 
 namespace emscape::emfield::cuda {
 

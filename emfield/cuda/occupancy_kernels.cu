@@ -20,29 +20,14 @@ __global__ void __launch_bounds__(kThreads)
   pass.accumulator[voxel] = withOccupancy(share, pass.accumulator[voxel]);
 }
 
-template <PatternKind kind>
-void launch(const OccupancyPass& pass, const std::uint16_t* first_valid_k, cudaStream_t stream) {
-  const dim3 blocks(static_cast<unsigned>((pass.dims.x * pass.dims.y + kThreads - 1) / kThreads),
-                    static_cast<unsigned>(pass.dims.z));
-  occupancyKernel<kind><<<blocks, kThreads, 0, stream>>>(pass, first_valid_k);
-  emscape::cuda::checkLaunch("occupancy");
-}
-
 }  // namespace
 
 void addOccupancy(const OccupancyPass& pass, const std::uint16_t* first_valid_k, cudaStream_t stream) {
-  switch (pass.beam.pattern.kind) {
-    case PatternKind::isotropic:
-      return launch<PatternKind::isotropic>(pass, first_valid_k, stream);
-    case PatternKind::gaussian:
-      return launch<PatternKind::gaussian>(pass, first_valid_k, stream);
-    case PatternKind::separable:
-      return launch<PatternKind::separable>(pass, first_valid_k, stream);
-    case PatternKind::phased_array:
-      return launch<PatternKind::phased_array>(pass, first_valid_k, stream);
-    case PatternKind::grid:
-      return launch<PatternKind::grid>(pass, first_valid_k, stream);
-  }
+  const dim3 blocks(static_cast<unsigned>((pass.dims.x * pass.dims.y + kThreads - 1) / kThreads),
+                    static_cast<unsigned>(pass.dims.z));
+  onPattern(pass.beam.pattern,
+            [&](auto kind) { occupancyKernel<kind><<<blocks, kThreads, 0, stream>>>(pass, first_valid_k); });
+  emscape::cuda::checkLaunch("occupancy");
 }
 
 }  // namespace emscape::emfield::cuda

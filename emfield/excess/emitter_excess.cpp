@@ -13,7 +13,6 @@
 #include "emfield/ground/ground_posts.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
-#include "emscape/base/units.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
@@ -37,8 +36,7 @@ double smoothSurface_msl_m(const Scenario& scenario, const Emitter& emitter, con
                            const Station& station, const scenario::Terrain* terrain) {
   if (scenario.ground.surface_msl_m) return *scenario.ground.surface_msl_m;
   if (terrain == nullptr) return 0;
-  const double ground_m =
-      terrain->heightMsl_m(radToDeg(station.geodesy.latitude_rad), radToDeg(station.geodesy.longitude_rad));
+  const double ground_m = terrain->heightMsl_m(station.latitude_deg, station.longitude_deg);
   if (std::isnan(ground_m)) {
     throw Error(ErrorCode::bad_input, emitter.location,
                 fmt::format("emitter '{}': '{}' stands on a smooth surface at the height of the ground below "
@@ -94,12 +92,7 @@ PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const sc
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   PathInputs inputs;
   inputs.emitter = emitterInputs(scenario, emitter);
-  inputs.site = {radToDeg(station.geodesy.latitude_rad),
-                 radToDeg(station.geodesy.longitude_rad),
-                 station.height_msl_m,
-                 station.earth_radius_m,
-                 station.effective_earth_radius_m,
-                 model.on_effective_earth ? station.effective_height_msl_m : station.height_msl_m};
+  inputs.site = station;
   if (model.on_smooth_surface) {
     inputs.surface_msl_m = smoothSurface_msl_m(scenario, emitter, model, station, terrain);
   }

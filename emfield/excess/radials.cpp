@@ -175,8 +175,7 @@ RadialInputs radialInputs(const Station& station, const GridColumns& columns,
   radials.has_terrain = terrain != nullptr;
   if (terrain == nullptr) return radials;
 
-  radials.site_ground_msl_m =
-      terrain->heightMsl_m(radToDeg(station.geodesy.latitude_rad), radToDeg(station.geodesy.longitude_rad));
+  radials.site_ground_msl_m = terrain->heightMsl_m(station.latitude_deg, station.longitude_deg);
   if (std::isnan(radials.site_ground_msl_m)) {
     throw Error(ErrorCode::bad_input, "the ground below the emitter is missing");
   }

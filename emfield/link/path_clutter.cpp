@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "emfield/columns/station.h"
 
 namespace emscape::emfield {
-
-using scenario::PatternKind;
 
 PathClutter::PathClutter(const scenario::Snapshot& snapshot, int radar, double range_m,
                          const scenario::Terrain* terrain)
@@ -47,22 +44,9 @@ ClutterCell PathClutter::cellAt(float azimuth_rad, float range_m) const {
 }
 
 float PathClutter::toNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim) const {
-  const auto of = [&](auto kind) {
-    return clutterToNoise<decltype(kind)::value>(task, *this, beam, aim, static_cast<float>(range_m_));
-  };
-  switch (beam.pattern.kind) {
-    case PatternKind::gaussian:
-      return of(std::integral_constant<PatternKind, PatternKind::gaussian>{});
-    case PatternKind::separable:
-      return of(std::integral_constant<PatternKind, PatternKind::separable>{});
-    case PatternKind::phased_array:
-      return of(std::integral_constant<PatternKind, PatternKind::phased_array>{});
-    case PatternKind::grid:
-      return of(std::integral_constant<PatternKind, PatternKind::grid>{});
-    case PatternKind::isotropic:
-      break;
-  }
-  return of(std::integral_constant<PatternKind, PatternKind::isotropic>{});
+  return onPattern(beam.pattern, [&](auto kind) {
+    return clutterToNoise<kind>(task, *this, beam, aim, static_cast<float>(range_m_));
+  });
 }
 
 }  // namespace emscape::emfield

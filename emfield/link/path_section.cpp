@@ -36,9 +36,8 @@ PathSection pathSection(const scenario::Snapshot& snapshot, int emitter, propaga
   by_model.propagation.parabolic_equation.source = propagation::PeRadiator::isotropic;
   const scenario::EmitterState& state = snapshot.emitters[static_cast<std::size_t>(emitter)];
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
-  const propagation::Site site = pathInputs(scenario, by_model, state.beam, station, terrain, {}).site;
   const propagation::RefractivityAlongPath air =
-      propagation::pathAir(scenario.atmosphere, site, profile.azimuth_rad);
+      propagation::pathAir(scenario.atmosphere, station, profile.azimuth_rad);
   const auto [lowest, highest] =
       std::minmax_element(profile.ground_msl_m.begin(), profile.ground_msl_m.end());
   const auto lowest_m = static_cast<double>(*lowest);

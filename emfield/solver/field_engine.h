@@ -45,9 +45,8 @@ struct GeometryResult {
 struct CombinePass {
   struct Member {
     int slot = 0;
-    /// Of the beam's pattern, which may be that of an interval; radars' echoes and occupancy have the
-    /// emitter's own.
-    scenario::AntennaPtr antenna;
+    scenario::AntennaPtr antenna;       ///< the emitter's own: of radars' echoes and of occupancy
+    scenario::AntennaPtr beam_antenna;  ///< of the beam's pattern, which may be that of an interval
     /// Without the views of geometry and pattern, which belong to the engine. Channels are those of the
     /// setup.
     CombineEmitter emitter;

@@ -223,39 +223,38 @@ bool areSame(const ProductScale& a, const ProductScale& b) {
   return form == b.form && scale == b.scale && offset == b.offset && floor == b.floor;
 }
 
-bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, std::vector<bool>& channels) {
-  const auto markAll = [&channels](const CombineInputs& inputs) {
-    for (const ChannelWeight& share : inputs.member.emitter.shares) channels[share.channel] = true;
-    for (const RadarShare& share : inputs.member.radars) channels[share.channel] = true;
-    for (const OccupancyShare& share : inputs.member.occupancies) channels[share.channel] = true;
-    return !inputs.member.emitter.shares.empty() || !inputs.member.radars.empty() ||
-           !inputs.member.occupancies.empty();
+bool markChangedChannels(const CombinePass::Member* before, const CombinePass::Member* now,
+                         std::vector<bool>& channels) {
+  const auto markAll = [&channels](const CombinePass::Member& inputs) {
+    for (const ChannelWeight& share : inputs.emitter.shares) channels[share.channel] = true;
+    for (const RadarShare& share : inputs.radars) channels[share.channel] = true;
+    for (const OccupancyShare& share : inputs.occupancies) channels[share.channel] = true;
+    return !inputs.emitter.shares.empty() || !inputs.radars.empty() || !inputs.occupancies.empty();
   };
   if (before == nullptr || now == nullptr) {
-    const CombineInputs* const either = before != nullptr ? before : now;
+    const CombinePass::Member* const either = before != nullptr ? before : now;
     return either != nullptr && markAll(*either);
   }
-  const EmitterBeam& old_beam = before->member.emitter.beam;
-  const EmitterBeam& beam = now->member.emitter.beam;
-  if (!samePattern(before->antenna, now->antenna) ||
-      !samePattern(before->member.antenna, now->member.antenna) ||
+  const EmitterBeam& old_beam = before->emitter.beam;
+  const EmitterBeam& beam = now->emitter.beam;
+  if (!samePattern(before->antenna, now->antenna) || !samePattern(before->beam_antenna, now->beam_antenna) ||
       old_beam.eirp_over_4pi_w != beam.eirp_over_4pi_w) {
     return markAll(*now);
   }
   bool is_any = false;
   const auto mark = [&](int channel) { is_any = channels[channel] = true; };
   const bool has_beam = sameBeam(old_beam, beam);
-  for (const ChannelWeight& share : now->member.emitter.shares) {
-    const ChannelWeight* const old = shareIn(before->member.emitter.shares, share.channel);
+  for (const ChannelWeight& share : now->emitter.shares) {
+    const ChannelWeight* const old = shareIn(before->emitter.shares, share.channel);
     if (!has_beam || old == nullptr || !sameChannelWeight(*old, share)) mark(share.channel);
   }
   // If a radar looks at targets, its share does not contain the beam's direction in the scan.
-  for (const RadarShare& share : now->member.radars) {
-    const RadarShare* const old = shareIn(before->member.radars, share.channel);
+  for (const RadarShare& share : now->radars) {
+    const RadarShare* const old = shareIn(before->radars, share.channel);
     if (old == nullptr || !sameShare(*old, share)) mark(share.channel);
   }
-  for (const OccupancyShare& share : now->member.occupancies) {
-    const OccupancyShare* const old = shareIn(before->member.occupancies, share.channel);
+  for (const OccupancyShare& share : now->occupancies) {
+    const OccupancyShare* const old = shareIn(before->occupancies, share.channel);
     if (old == nullptr || !sameShare(*old, share)) mark(share.channel);
   }
   return is_any;

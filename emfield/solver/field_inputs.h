@@ -2,7 +2,7 @@
 ///
 /// The inputs of stages 1 and 2 (columns and excess) are read in many places; they are collected here by
 /// structured bindings of every member: a new member does not compile until it is added here. The inputs of
-/// stage 3 (combine) are those of the engine.
+/// stage 3 (combine) are those of the engine: CombinePass::Member.
 #pragma once
 
 #include <optional>
@@ -33,12 +33,6 @@ bool haveSameSettings(const GeometryInputs& computed, const GeometryInputs& need
 /// True if the position is also equal, to the last bit.
 bool areSame(const GeometryInputs& computed, const GeometryInputs& needed);
 
-/// Inputs of an emitter's contribution to the channels (stage 3), without its geometry.
-struct CombineInputs {
-  CombinePass::Member member;
-  scenario::AntennaPtr antenna;  ///< the emitter's own
-};
-
 /// True if two antennas, not null, have the same pattern; their gains may differ.
 bool samePattern(const scenario::AntennaPtr& a, const scenario::AntennaPtr& b);
 /// True if two cuts, or none, are the same; the antennas' gains may differ.
@@ -56,7 +50,8 @@ bool sameRays(const JammerAtRadar& a, const JammerAtRadar& b);
 /// @param now       null: it is not active
 /// @param channels  one per channel; those that differ are set
 /// @return true if any channel was marked
-bool markChangedChannels(const CombineInputs* before, const CombineInputs* now, std::vector<bool>& channels);
+bool markChangedChannels(const CombinePass::Member* before, const CombinePass::Member* now,
+                         std::vector<bool>& channels);
 
 /// True if two channels compute their products (stage 4) from their sums in the same way.
 bool areSame(const ProductScale& a, const ProductScale& b);

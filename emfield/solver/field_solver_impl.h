@@ -23,9 +23,9 @@ using WarningCounts = std::map<std::string, long long>;
 struct EmitterCache {
   scenario::EmitterState state;            ///< at the last update
   std::optional<GeometryInputs> geometry;  ///< of geometry_result, and of the slot if the emitter is cached
-  std::optional<CombineInputs> combined;   ///< its contribution to the sums; none: not active
-  std::optional<IntervalBeam> interval;    ///< none: not active, or the output is of an instant
-  bool is_cached = true;                   ///< false: its geometry is discarded after each use
+  std::optional<CombinePass::Member> combined;  ///< its contribution to the sums; none: not active
+  std::optional<IntervalBeam> interval;         ///< none: not active, or the output is of an instant
+  bool is_cached = true;                        ///< false: its geometry is discarded after each use
   GeometryResult geometry_result;
   bool mount_changed = true;        ///< since the previous update: moved, switched or turned as a whole
   std::vector<JammerPath> jammers;  ///< of radars, for quantities with jamming
@@ -88,7 +88,7 @@ struct FieldSolver::Impl {
   void takeGeometry(int e, GeometryResult found);
   void chooseResting(const std::vector<bool>& changed);
   void combine(int begin, int end, const std::vector<bool>& channel_chosen, bool into_static_sums);
-  CombineInputs combineInputs(int e, double t_s);
+  CombinePass::Member combineMember(int e, double t_s);
   std::vector<RadarShare> radarShares(int e) const;
   std::vector<OccupancyShare> occupancyShares(int e, double t_s);
   void makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes);

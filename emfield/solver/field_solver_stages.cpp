@@ -98,18 +98,18 @@ void FieldSolver::Impl::chooseResting(const std::vector<bool>& changed) {
 }
 
 /// An emitter's contributions to the channels.
-CombineInputs FieldSolver::Impl::combineInputs(int e, double t_s) {
+CombinePass::Member FieldSolver::Impl::combineMember(int e, double t_s) {
   const Emitter& emitter = setup.scenario->emitters[e];
   const EmitterState& state = emitters[e].state;
-  CombineInputs inputs;
+  CombinePass::Member member;
   const std::optional<IntervalBeam>& interval = emitters[e].interval;
   const scenario::BeamPose& pose = interval ? interval->pose : state.beam;
-  inputs.antenna = emitter.antenna;
-  inputs.member.antenna = interval ? interval->antenna : emitter.antenna;
-  inputs.member.slot = e;
-  inputs.member.radars = radarShares(e);
-  inputs.member.occupancies = occupancyShares(e, t_s);
-  CombineEmitter& part = inputs.member.emitter;
+  member.antenna = emitter.antenna;
+  member.beam_antenna = interval ? interval->antenna : emitter.antenna;
+  member.slot = e;
+  member.radars = radarShares(e);
+  member.occupancies = occupancyShares(e, t_s);
+  CombineEmitter& part = member.emitter;
   part.emitter_index = e;
   part.beam.forward = vecCast<float>(pose.forward);
   part.beam.right = vecCast<float>(pose.right);
@@ -124,7 +124,7 @@ CombineInputs FieldSolver::Impl::combineInputs(int e, double t_s) {
     if (found == members.end() || !setup.channel_plans[c].reducesPower()) continue;
     part.shares.push_back({static_cast<int>(c), setup.channel_plans[c].weights[found - members.begin()]});
   }
-  return inputs;
+  return member;
 }
 
 /// An emitter's contributions to channels of occupancy.
@@ -165,12 +165,12 @@ void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& cha
   };
   for (int e = begin; e < end; ++e) {
     const EmitterCache& cache = emitters[e];
-    if (!cache.combined || !enters(cache.combined->member)) continue;
+    if (!cache.combined || !enters(*cache.combined)) continue;
     if (!cache.is_cached) {
       if (!pass.members.empty()) run();
       computeGeometry({e}, true);
     }
-    pass.members.push_back(cache.combined->member);
+    pass.members.push_back(*cache.combined);
     if (!cache.is_cached) {
       pass.members.back().slot = static_cast<int>(emitters.size());
       run();

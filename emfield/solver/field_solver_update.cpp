@@ -164,10 +164,10 @@ void FieldSolver::Impl::findCombined(const scenario::Snapshot& snapshot, Changes
   std::vector<bool> moved(emitters.size());
   for (int e : report.moved) moved[e] = true;
   for (std::size_t e = 0; e < emitters.size(); ++e) {
-    std::optional<CombineInputs> before = std::exchange(emitters[e].combined, std::nullopt);
-    if (emitters[e].state.active) emitters[e].combined = combineInputs(static_cast<int>(e), snapshot.time_s);
-    const auto orNull = [](const std::optional<CombineInputs>& inputs) {
-      return inputs ? &*inputs : nullptr;
+    std::optional<CombinePass::Member> before = std::exchange(emitters[e].combined, std::nullopt);
+    if (emitters[e].state.active) emitters[e].combined = combineMember(static_cast<int>(e), snapshot.time_s);
+    const auto orNull = [](const std::optional<CombinePass::Member>& member) {
+      return member ? &*member : nullptr;
     };
     const bool has_changed =
         markChangedChannels(moved[e] ? nullptr : orNull(before), orNull(emitters[e].combined), changes.sums);

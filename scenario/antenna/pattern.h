@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <type_traits>
 
 #include "base/math/device_math.h"
 #include "base/math/fast_math.h"
@@ -124,6 +125,28 @@ EMSCAPE_HD inline float amplitudeOf(const PatternView& pattern, const Vec3f& dir
   }
 }
 
+/// Calls f(kind) with a pattern's kind as a std::integral_constant, so that f may use it as a template
+/// argument.
+#if defined(__CUDACC__)
+#pragma nv_exec_check_disable
+#endif
+template <class Function>
+EMSCAPE_HD inline auto onPattern(const PatternView& pattern, const Function& f) {
+  switch (pattern.kind) {
+    case PatternKind::gaussian:
+      return f(std::integral_constant<PatternKind, PatternKind::gaussian>{});
+    case PatternKind::separable:
+      return f(std::integral_constant<PatternKind, PatternKind::separable>{});
+    case PatternKind::phased_array:
+      return f(std::integral_constant<PatternKind, PatternKind::phased_array>{});
+    case PatternKind::grid:
+      return f(std::integral_constant<PatternKind, PatternKind::grid>{});
+    case PatternKind::isotropic:
+      break;
+  }
+  return f(std::integral_constant<PatternKind, PatternKind::isotropic>{});
+}
+
 /// Amplitude (relative voltage, 0..1) towards a direction of the antenna's frame.
 /// @param direction  (forward, right, up), a unit vector for phased_array, of any length above 0 for the
 /// other kinds; a
@@ -135,19 +158,8 @@ EMSCAPE_HD inline float amplitudeOf(const PatternView& pattern, const Vec3f& dir
 /// cosecant-squared pattern)
 EMSCAPE_HD inline float patternAmplitude(const PatternView& pattern, const Vec3f& direction, float steer_u,
                                          float steer_v) {
-  switch (pattern.kind) {
-    case PatternKind::gaussian:
-      return amplitudeOf<PatternKind::gaussian>(pattern, direction, steer_u, steer_v);
-    case PatternKind::separable:
-      return amplitudeOf<PatternKind::separable>(pattern, direction, steer_u, steer_v);
-    case PatternKind::phased_array:
-      return amplitudeOf<PatternKind::phased_array>(pattern, direction, steer_u, steer_v);
-    case PatternKind::grid:
-      return amplitudeOf<PatternKind::grid>(pattern, direction, steer_u, steer_v);
-    case PatternKind::isotropic:
-      break;
-  }
-  return 1.0f;
+  return onPattern(pattern,
+                   [&](auto kind) { return amplitudeOf<kind>(pattern, direction, steer_u, steer_v); });
 }
 
 }  // namespace emscape::scenario

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "emfield/geometry/emitter_geometry.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "tests/emfield/test_scenario.h"
 #include "tests/support/files.h"
@@ -17,19 +18,7 @@ using namespace emscape::emfield::testing;
 using scenario::PatternKind;
 
 float plainPowerDensity(const EmitterBeam& beam, std::size_t column, float t_m) {
-  switch (beam.pattern.kind) {
-    case PatternKind::isotropic:
-      return powerDensity_wm2<PatternKind::isotropic>(beam, column, t_m);
-    case PatternKind::gaussian:
-      return powerDensity_wm2<PatternKind::gaussian>(beam, column, t_m);
-    case PatternKind::separable:
-      return powerDensity_wm2<PatternKind::separable>(beam, column, t_m);
-    case PatternKind::phased_array:
-      return powerDensity_wm2<PatternKind::phased_array>(beam, column, t_m);
-    case PatternKind::grid:
-      return powerDensity_wm2<PatternKind::grid>(beam, column, t_m);
-  }
-  return NAN;
+  return onPattern(beam.pattern, [&](auto kind) { return powerDensity_wm2<kind>(beam, column, t_m); });
 }
 
 struct NamedAntenna {

@@ -117,19 +117,7 @@ TEST(Look, ScanFollowsTheBeam) {
 }
 
 void addEchoOfAnyPattern(const RadarPass& pass, std::size_t column, int k) {
-  using scenario::PatternKind;
-  switch (pass.beam.pattern.kind) {
-    case PatternKind::isotropic:
-      return addEcho<PatternKind::isotropic>(pass, column, k);
-    case PatternKind::gaussian:
-      return addEcho<PatternKind::gaussian>(pass, column, k);
-    case PatternKind::separable:
-      return addEcho<PatternKind::separable>(pass, column, k);
-    case PatternKind::phased_array:
-      return addEcho<PatternKind::phased_array>(pass, column, k);
-    case PatternKind::grid:
-      return addEcho<PatternKind::grid>(pass, column, k);
-  }
+  onPattern(pass.beam.pattern, [&](auto kind) { addEcho<kind>(pass, column, k); });
 }
 
 TEST(RadarRows, EqualVoxelFunction) {
