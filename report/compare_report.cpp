@@ -175,9 +175,8 @@ void addSections(study::HtmlReport& report, const study::Comparison& comparison,
 }  // namespace
 
 ScenarioComparison::ScenarioComparison(std::shared_ptr<const scenario::Scenario> a,
-                                       std::shared_ptr<const scenario::Scenario> b,
-                                       const MapOptions& maps, int areas, const std::string& folder,
-                                       const std::string& name_b)
+                                       std::shared_ptr<const scenario::Scenario> b, const MapOptions& maps,
+                                       int areas, const std::string& folder, const std::string& name_b)
     : a_{std::move(a), nullptr}, b_{std::move(b), nullptr} {
   checkMapFolder(folder, {a_.scenario, b_.scenario}, maps.prefix + "output");
   request_.coverage = report::requestOf(maps, a_.scenario->clock);

@@ -4,10 +4,10 @@
 #include <memory>
 #include <string>
 
-#include "emscape/study/compare/compare.h"
-#include "emscape/study/report/map_folder.h"
 #include "report/json.h"
 #include "report/map_options.h"
+#include "study/compare/compare.h"
+#include "study/report/map_folder.h"
 
 namespace emscape::report {
 
@@ -20,8 +20,7 @@ class ScenarioComparison {
   /// @param name_b  of B in the report's title
   /// @throws Error (usage, bad_input)
   ScenarioComparison(std::shared_ptr<const scenario::Scenario> a, std::shared_ptr<const scenario::Scenario> b,
-                     const MapOptions& maps, int areas, const std::string& folder,
-                     const std::string& name_b);
+                     const MapOptions& maps, int areas, const std::string& folder, const std::string& name_b);
 
   const study::ComparedScenario& a() const { return a_; }
   const study::ComparedScenario& b() const { return b_; }

@@ -5,9 +5,9 @@
 
 #include "base/stopwatch.h"
 #include "emscape/study/maps/map.h"
+#include "playback/frames/open_on_target.h"
 #include "report/text.h"
 #include "report/warnings.h"
-#include "playback/frames/open_on_target.h"
 
 namespace emscape::report {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "emscape/base/progress.h"
 #include "report/json.h"
-#include "study/sweep/part_computer.h"
-#include "study/sweep/study_report.h"
+#include "study/sweep/results/part_computer.h"
+#include "study/sweep/results/study_report.h"
 
 namespace emscape::report {
 

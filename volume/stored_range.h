@@ -1,7 +1,7 @@
 /// setStoredRange() of each format. Internal to the module.
 #pragma once
 
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 
 namespace emscape::volume {
 

@@ -1,5 +1,5 @@
 /// emscape compare: gains and losses of one scenario against another.
-#include "emscape/study/compare/compare.h"
+#include "study/compare/compare.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,10 +20,10 @@
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
-#include "emscape/study/report/map_folder.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "report/compare_report.h"
 #include "report/output_files.h"
+#include "study/report/map_folder.h"
 #include "volume/difference.h"
 
 namespace emscape::app {

@@ -15,9 +15,9 @@
 #include "base/text/quantity_text.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "emscape/study/report/map_folder.h"
 #include "report/output_files.h"
 #include "report/warnings.h"
+#include "study/report/map_folder.h"
 
 namespace emscape::app {
 namespace {

@@ -16,12 +16,11 @@
 #include "emscape/base/log.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/playback/frames/inputs.h"
-#include "emscape/playback/frames/volume_input.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
-#include "emscape/volume/file.h"
-#include "emscape/volume/mesh_file.h"
+#include "emscape/volume/format/file.h"
 #include "emscape/volume/statistics.h"
+#include "playback/frames/volume_input.h"
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
 #include "report/choices_report.h"
@@ -32,6 +31,7 @@
 #include "scenario/antenna/shapes.h"
 #include "scenario/file/csv_columns.h"
 #include "scenario/file/refractivity_file.h"
+#include "volume/mesh_file.h"
 
 namespace emscape::app {
 namespace {

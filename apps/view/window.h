@@ -59,8 +59,6 @@ class Window {
   /// Name of the OpenGL renderer.
   std::string renderer() const;
 
-  double cursorX() const { return cursor_x_; }
-  double cursorY() const { return cursor_y_; }
   bool buttonDown(int button) const { return buttons_[button]; }
   bool keyDown(int key) const;
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/cuda/staged_copy.h"
-#include "emfield/cuda/place_kernels.h"
+#include "emfield/cuda/position_kernels.h"
 #include "emfield/solver/field_engine.h"
 
 namespace emscape::emfield {

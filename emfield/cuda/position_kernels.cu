@@ -1,5 +1,5 @@
 #include "base/cuda/cuda_memory.h"
-#include "emfield/cuda/place_kernels.h"
+#include "emfield/cuda/position_kernels.h"
 
 namespace emscape::emfield::cuda {
 namespace {
@@ -69,7 +69,7 @@ void computePositions(const PositionTask& task, int positions, const GeoidView& 
 void spanPositions(const PositionTask& task, int positions, const PositionColumn& middle,
                    const FastGeodesy& geodesy, double* beyond_m, cudaStream_t stream) {
   spanKernel<<<kPositionsParts, kThreads, 0, stream>>>(task, positions, middle, geodesy, beyond_m);
-  checkLaunch("spanOfPlaces");
+  checkLaunch("spanOfPositions");
 }
 
 }  // namespace emscape::emfield::cuda

@@ -78,10 +78,6 @@ EmitterExcess EmitterExcess::withTablesAt(const float* model_tables_copy,
   return moved;
 }
 
-bool EmitterExcess::needsTerrain() const {
-  return std::visit([](const auto& m) { return std::decay_t<decltype(m)>::kNeedsTerrain; }, model);
-}
-
 propagation::EmitterInputs emitterInputs(const Scenario& scenario, const Emitter& emitter) {
   return {emitter.frequency_hz, emitter.polarization, emitter.propagation, scenario.ground,
           scenario.atmosphere};

@@ -32,9 +32,6 @@ struct EmitterExcess {
   std::shared_ptr<const std::vector<float>> model_tables, air_tables;
   /// The same, pointing to copies of the tables elsewhere.
   EmitterExcess withTablesAt(const float* model_tables_copy, const float* air_tables_copy) const;
-
-  /// True if profiles are read.
-  bool needsTerrain() const;
 };
 
 /// The models' inputs for an emitter of a scenario.

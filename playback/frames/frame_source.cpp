@@ -9,14 +9,14 @@
 #include "emscape/base/error.h"
 #include "emscape/emfield/columns/terrain_mesh.h"
 #include "emscape/playback/frames/scene.h"
-#include "emscape/playback/frames/volume_input.h"
 #include "emscape/playback/stop.h"
-#include "emscape/volume/file.h"
-#include "emscape/volume/mesh_file.h"
+#include "emscape/volume/format/file.h"
 #include "playback/frames/difference_source.h"
 #include "playback/frames/platform_tracks.h"
 #include "playback/frames/range_search.h"
+#include "playback/frames/volume_input.h"
 #include "volume/difference.h"
+#include "volume/mesh_file.h"
 
 namespace emscape::playback {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "base/files/file_reading.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/frames/volume_input.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
+#include "playback/frames/volume_input.h"
 
 namespace emscape::playback {
 namespace {

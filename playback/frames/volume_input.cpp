@@ -1,4 +1,4 @@
-#include "emscape/playback/frames/volume_input.h"
+#include "playback/frames/volume_input.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -8,8 +8,8 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/clock.h"
-#include "emscape/volume/file.h"
-#include "emscape/volume/mesh_file.h"
+#include "emscape/volume/format/file.h"
+#include "volume/mesh_file.h"
 
 namespace emscape::playback {
 namespace {

@@ -7,8 +7,8 @@
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
-#include "emscape/playback/pictures/picture_series.h"
 #include "playback/live/first_line.h"
+#include "playback/pictures/picture_series.h"
 #include "playback/view/view_settings.h"
 
 namespace emscape::playback {

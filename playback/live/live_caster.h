@@ -12,10 +12,10 @@
 #include "base/thread_arena.h"
 #include "base/worker.h"
 #include "emscape/playback/pictures/painter.h"
-#include "emscape/render/patterns/frame_controller.h"
 #include "playback/live/live_fields.h"
 #include "playback/live/live_view.h"
 #include "playback/live/mailbox.h"
+#include "render/patterns/frame_controller.h"
 
 namespace emscape::playback {
 

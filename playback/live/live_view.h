@@ -14,7 +14,6 @@
 #include "emscape/playback/frames/shown_field.h"
 #include "emscape/playback/pictures/painter.h"
 #include "emscape/render/annotate/overlay.h"
-#include "emscape/render/patterns/frame_controller.h"
 #include "emscape/render/picture/device_picture.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/render/scene/camera.h"
@@ -25,6 +24,7 @@
 #include "emscape/scenario/model/scenario.h"
 #include "emscape/scenario/terrain/terrain.h"
 #include "emscape/volume/value_range.h"
+#include "render/patterns/frame_controller.h"
 
 namespace emscape::playback {
 

@@ -1,4 +1,4 @@
-#include "emscape/playback/pictures/clock.h"
+#include "playback/pictures/clock.h"
 
 #include <algorithm>
 

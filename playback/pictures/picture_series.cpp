@@ -1,4 +1,4 @@
-#include "emscape/playback/pictures/picture_series.h"
+#include "playback/pictures/picture_series.h"
 
 #include "base/worker.h"
 #include "emscape/playback/stop.h"

@@ -1,11 +1,11 @@
-#include "emscape/playback/pictures/picture_sink.h"
+#include "playback/pictures/picture_sink.h"
 
 #include <fmt/core.h>
 
 #include "base/files/folder.h"
 #include "base/files/unfinished_file.h"
 #include "emscape/base/error.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "playback/pictures/video.h"
 #include "playback/series/file_names.h"
 

@@ -9,10 +9,10 @@
 #include "base/worker.h"
 #include "emscape/base/progress.h"
 #include "emscape/playback/frames/frame_source.h"
-#include "emscape/playback/pictures/clock.h"
 #include "emscape/playback/pictures/painter.h"
-#include "emscape/render/patterns/frame_controller.h"
+#include "playback/pictures/clock.h"
 #include "playback/pictures/real_time_report.h"
+#include "render/patterns/frame_controller.h"
 
 namespace emscape::playback {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/render/patterns/frame_controller.h"
+#include "render/patterns/frame_controller.h"
 
 namespace emscape::playback {
 

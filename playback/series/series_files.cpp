@@ -5,11 +5,11 @@
 
 #include "emscape/base/error.h"
 #include "emscape/playback/series/series_writer.h"
-#include "emscape/volume/file.h"
-#include "emscape/volume/mesh_file.h"
+#include "emscape/volume/format/file.h"
 #include "playback/series/file_names.h"
 #include "playback/series/series_state.h"
-#include "volume/vti.h"
+#include "volume/mesh_file.h"
+#include "volume/vtk/vti.h"
 
 namespace emscape::playback {
 namespace {

@@ -12,7 +12,7 @@
 #include "emscape/base/log.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/model/snapshot.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "emscape/volume/statistics.h"
 #include "python/extension/module.h"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <iostream>
 
-#include "base/files/json_writing.h"
 #include "base/files/folder_lock.h"
+#include "base/files/json_writing.h"
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
@@ -29,7 +29,7 @@
 #include "report/vertical_report.h"
 #include "report/warnings.h"
 #include "scenario/file/named_index.h"
-#include "study/sweep/part_processes.h"
+#include "study/sweep/results/part_processes.h"
 
 namespace emscape::python {
 namespace {

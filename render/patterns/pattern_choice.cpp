@@ -1,4 +1,4 @@
-#include "emscape/render/patterns/pattern_choice.h"
+#include "render/patterns/pattern_choice.h"
 
 #include <fmt/format.h>
 

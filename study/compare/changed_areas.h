@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "emscape/study/compare/compare.h"
+#include "study/compare/compare.h"
 
 namespace emscape::study {
 

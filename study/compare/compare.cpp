@@ -1,4 +1,4 @@
-#include "emscape/study/compare/compare.h"
+#include "study/compare/compare.h"
 
 #include <fmt/format.h>
 

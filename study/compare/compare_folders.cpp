@@ -5,8 +5,8 @@
 #include <set>
 
 #include "emscape/base/error.h"
-#include "emscape/study/compare/compare.h"
 #include "study/compare/changed_areas.h"
+#include "study/compare/compare.h"
 #include "study/compare/map_comparer.h"
 
 namespace emscape::study {

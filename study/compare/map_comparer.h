@@ -4,7 +4,7 @@
 #include <functional>
 #include <vector>
 
-#include "emscape/study/compare/compare.h"
+#include "study/compare/compare.h"
 
 namespace emscape::study {
 

@@ -6,12 +6,12 @@
 
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
+#include "base/text/xml_text.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/playback/frames/scene.h"
 #include "render/annotate/overlay_parts.h"
 #include "study/files/map_objects.h"
 #include "study/files/map_shapes.h"
-#include "study/files/xml_text.h"
 #include "study/maps/gdal_support.h"
 
 namespace emscape::study {

@@ -7,13 +7,13 @@
 #include <cmath>
 
 #include "base/files/unfinished_file.h"
+#include "base/text/xml_text.h"
 #include "emscape/base/units.h"
 #include "emscape/playback/frames/scene.h"
 #include "emscape/render/picture/image.h"
 #include "render/annotate/overlay_parts.h"
 #include "study/files/map_colors.h"
 #include "study/files/map_objects.h"
-#include "study/files/xml_text.h"
 #include "study/maps/gdal_support.h"
 
 namespace emscape::study {

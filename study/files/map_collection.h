@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "emscape/study/report/map_folder.h"
+#include "study/files/map_study.h"
 
 namespace emscape::study {
 

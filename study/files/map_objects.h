@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/study/report/map_folder.h"
+#include "study/files/map_study.h"
 
 namespace emscape::study {
 

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "study/files/xml_text.h"
+#include "base/text/xml_text.h"
 
 namespace emscape::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "emscape/study/report/coverage_folder.h"
+#include "study/report/coverage_folder.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "emscape/study/report/html_report.h"
+#include "study/report/html_report.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "base/files/whole_file.h"
-#include "study/files/xml_text.h"
+#include "base/text/xml_text.h"
 
 namespace emscape::study {
 namespace {

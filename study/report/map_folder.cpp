@@ -1,4 +1,4 @@
-#include "emscape/study/report/map_folder.h"
+#include "study/report/map_folder.h"
 
 #include <fmt/format.h>
 

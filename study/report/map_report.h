@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "emscape/study/report/html_report.h"
-#include "emscape/study/report/map_folder.h"
+#include "study/report/html_report.h"
+#include "study/report/map_folder.h"
 
 namespace emscape::study {
 

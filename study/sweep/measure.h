@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "emscape/study/maps/map_grid.h"
-#include "study/sweep/study_file.h"
+#include "study/sweep/definition/study_file.h"
 
 namespace emscape::study {
 

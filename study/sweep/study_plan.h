@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "emscape/base/enum_names.h"
-#include "study/sweep/study_file.h"
+#include "study/sweep/definition/study_file.h"
 
 namespace emscape::study {
 

@@ -8,8 +8,8 @@
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "study/maps/terrain_cache.h"
+#include "study/sweep/definition/polygon_mask.h"
 #include "study/sweep/measure.h"
-#include "study/sweep/polygon_mask.h"
 
 namespace emscape::study {
 namespace {

@@ -12,7 +12,7 @@
 #include "base/files/unfinished_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/snapshot.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "study/files/geotiff.h"
 #include "study/files/map_metadata.h"
 #include "study/maps/terrain_cache.h"

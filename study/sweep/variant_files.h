@@ -9,7 +9,7 @@
 #include "emscape/base/enum_names.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/study/maps/coverage.h"
-#include "study/sweep/study_file.h"
+#include "study/sweep/definition/study_file.h"
 
 namespace emscape::study {
 

@@ -1,14 +1,14 @@
 // Readers of volumes and of fields on meshes.
 #include "emscape/base/error.h"
-#include "emscape/volume/file.h"
-#include "emscape/volume/mesh_file.h"
+#include "emscape/volume/format/file.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/volume/sample_volumes.h"
-#include "volume/raw.h"
-#include "volume/vti.h"
+#include "volume/format/raw.h"
+#include "volume/mesh_file.h"
+#include "volume/vtk/vti.h"
 
 namespace emscape::test {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "emscape/playback/frames/volume_input.h"
 #include "emscape/playback/stop.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "playback/frames/range_search.h"
+#include "playback/frames/volume_input.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

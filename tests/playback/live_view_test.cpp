@@ -5,7 +5,7 @@
 #include <thread>
 
 #include "emscape/scenario/file/scenario_file.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "tests/playback/playback_samples.h"
 #include "tests/support/gpu.h"
 

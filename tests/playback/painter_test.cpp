@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "emscape/base/log.h"
-#include "emscape/playback/pictures/picture_sink.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
+#include "playback/pictures/picture_sink.h"
 #include "tests/playback/playback_samples.h"
 #include "volume/labels.h"
 

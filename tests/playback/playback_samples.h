@@ -15,7 +15,7 @@
 
 #include "base/event.h"
 #include "emscape/playback/frames/frame_source.h"
-#include "emscape/playback/pictures/clock.h"
+#include "playback/pictures/clock.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

@@ -7,9 +7,9 @@
 
 #include "emscape/base/log.h"
 #include "emscape/playback/stop.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "tests/playback/playback_samples.h"
-#include "volume/vti.h"
+#include "volume/vtk/vti.h"
 
 namespace emscape::playback::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "emscape/render/patterns/frame_controller.h"
+#include "render/patterns/frame_controller.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

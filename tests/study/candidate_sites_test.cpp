@@ -1,5 +1,5 @@
 // Files from which a study's points and polygons are read.
-#include "study/sweep/candidate_sites.h"
+#include "study/sweep/definition/candidate_sites.h"
 
 #include <cpl_conv.h>
 #include <gmock/gmock.h>

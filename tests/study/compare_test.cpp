@@ -1,4 +1,4 @@
-#include "emscape/study/compare/compare.h"
+#include "study/compare/compare.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "emscape/study/report/html_report.h"
+#include "study/report/html_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

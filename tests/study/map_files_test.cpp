@@ -13,11 +13,11 @@
 #include <set>
 
 #include "emscape/scenario/file/scenario_file.h"
-#include "emscape/study/report/map_folder.h"
 #include "study/files/geotiff.h"
 #include "study/files/map_colors.h"
 #include "study/files/map_objects.h"
 #include "study/files/map_shapes.h"
+#include "study/report/map_folder.h"
 #include "study/report/map_report.h"
 #include "tests/support/errors.h"
 #include "tests/support/file_size_limit.h"

@@ -1,5 +1,5 @@
 // Finished variants of a part that is not complete.
-#include "study/sweep/part_journal.h"
+#include "study/sweep/results/part_journal.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Pixels within the polygons of a file.
-#include "study/sweep/polygon_mask.h"
+#include "study/sweep/definition/polygon_mask.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

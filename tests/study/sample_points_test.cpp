@@ -1,4 +1,4 @@
-#include "study/sweep/sample_points.h"
+#include "study/sweep/definition/sample_points.h"
 
 #include <gtest/gtest.h>
 

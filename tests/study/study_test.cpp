@@ -11,8 +11,8 @@
 #include <set>
 
 #include "emscape/scenario/file/scenario_file.h"
-#include "study/sweep/study_folder.h"
-#include "study/sweep/study_report.h"
+#include "study/sweep/results/study_folder.h"
+#include "study/sweep/results/study_report.h"
 #include "study/sweep/study_runner.h"
 #include "tests/study/converted_vectors.h"
 #include "tests/support/errors.h"

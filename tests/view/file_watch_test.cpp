@@ -1,4 +1,4 @@
-#include "apps/view/session/file_watch.h"
+#include "apps/view/files/file_watch.h"
 
 #include <atomic>
 #include <filesystem>

@@ -5,12 +5,12 @@
 #include <filesystem>
 #include <thread>
 
+#include "apps/view/files/recent_files.h"
 #include "apps/view/session/opening.h"
-#include "apps/view/session/recent_files.h"
 #include "apps/view/session/session_opener.h"
 #include "emscape/base/error.h"
 #include "emscape/render/picture/image.h"
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {

@@ -4,9 +4,9 @@
 #include <random>
 
 #include "base/text/shell_word.h"
-#include "emscape/playback/pictures/picture_series.h"
 #include "emscape/render/picture/image.h"
 #include "playback/editing/edit_history.h"
+#include "playback/pictures/picture_series.h"
 #include "playback/view/view_file.h"
 #include "tests/view/session_sample.h"
 

@@ -485,6 +485,9 @@ TEST(WindowWithoutADisplay, IsReportedWithStatusFour) {
 }
 
 TEST(WindowWithoutProc, StartsNoProgramOfTheCurrentFolder) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers need /proc";
+#endif
   const std::string hide = "unshare --mount sh -c 'mount -t tmpfs none /proc && ";
   if (std::system((hide + "true' 2>/dev/null").c_str()) != 0) GTEST_SKIP() << "/proc cannot be hidden";
   const TemporaryFolder folder;

@@ -1,8 +1,8 @@
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 
 #include "tests/support/file_size_limit.h"
 #include "tests/volume/sample_volumes.h"
-#include "volume/vti.h"
+#include "volume/vtk/vti.h"
 
 namespace emscape::volume {
 namespace {

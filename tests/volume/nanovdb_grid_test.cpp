@@ -1,4 +1,4 @@
-#include "volume/nanovdb_grid.h"
+#include "volume/nvdb/nanovdb_grid.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "volume/nvdb.h"
+#include "volume/nvdb/nvdb.h"
 
 #include <nanovdb/util/OpenToNanoVDB.h>
 #include <openvdb/openvdb.h>

@@ -1,4 +1,4 @@
-#include "volume/raw.h"
+#include "volume/format/raw.h"
 
 #include <sys/stat.h>
 

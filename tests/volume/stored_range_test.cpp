@@ -1,7 +1,7 @@
 // setStoredRange(): the range of a finished file, changed without its values.
 #include <algorithm>
 
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "tests/volume/sample_volumes.h"
 
 namespace emscape::volume::test {

@@ -4,7 +4,7 @@
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/LevelSetSphere.h>
 
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "tests/volume/sample_volumes.h"
 
 namespace emscape::volume {

@@ -1,8 +1,8 @@
-#include "volume/vti.h"
+#include "volume/vtk/vti.h"
 
 #include <cmath>
 
-#include "emscape/volume/file.h"
+#include "emscape/volume/format/file.h"
 #include "emscape/volume/statistics.h"
 #include "tests/volume/sample_volumes.h"
 

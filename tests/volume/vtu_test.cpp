@@ -6,11 +6,11 @@
 #include <limits>
 
 #include "base/files/file_reading.h"
-#include "emscape/volume/mesh_file.h"
 #include "tests/support/errors.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temporary_folder.h"
-#include "volume/vti.h"
+#include "volume/mesh_file.h"
+#include "volume/vtk/vti.h"
 
 namespace emscape::volume {
 namespace {

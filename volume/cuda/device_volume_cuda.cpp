@@ -3,7 +3,7 @@
 
 #include "emscape/volume/device_volume.h"
 #include "volume/cuda/device_storage.h"
-#include "volume/nanovdb_grid.h"
+#include "volume/nvdb/nanovdb_grid.h"
 
 namespace emscape::volume {
 

@@ -4,8 +4,8 @@
 
 #include "base/files/whole_file.h"
 #include "emscape/base/log.h"
-#include "emscape/study/report/map_folder.h"
 #include "render/annotate/plot.h"
+#include "study/report/map_folder.h"
 
 namespace emscape::app {
 

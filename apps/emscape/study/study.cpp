@@ -18,7 +18,7 @@
 #include "emscape/base/parallel.h"
 #include "report/output_files.h"
 #include "report/study_results.h"
-#include "study/sweep/part_processes.h"
+#include "study/sweep/results/part_processes.h"
 
 namespace emscape::app {
 namespace {

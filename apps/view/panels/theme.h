@@ -4,9 +4,9 @@
 #include <imgui.h>
 
 #include "emscape/render/annotate/overlay.h"
-#include "emscape/render/patterns/frame_controller.h"
 #include "emscape/render/scene/camera.h"
 #include "emscape/scenario/model/emitter.h"
+#include "render/patterns/frame_controller.h"
 
 namespace emscape::view {
 

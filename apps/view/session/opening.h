@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "apps/view/session/files.h"
+#include "apps/view/files/files.h"
 #include "apps/view/session/view_options.h"
 
 namespace emscape::view {

@@ -22,6 +22,14 @@ std::string beginOf(const ViewState& view) {
   if (!view.scenario.empty()) text += " --scenario " + shellWord(view.scenario);
   if (!view.mesh.empty()) text += " --mesh " + view.mesh;
   if (view.cells.method == playback::CellMethod::project) text += " --cells project";
+  const auto& projection = view.cells.projection;
+  const decltype(view.cells.projection) usual;
+  if (projection.rasterizer != usual.rasterizer)
+    text += std::string(" --cell-rasterizer ") + toString(projection.rasterizer);
+  if (projection.sorting != usual.sorting)
+    text += std::string(" --cell-order ") + toString(projection.sorting);
+  if (projection.projection != usual.projection)
+    text += std::string(" --cell-perspective ") + toString(projection.projection);
   if (view.allow_missing_terrain) text += " --allow-missing-terrain";
   return text;
 }

@@ -7,12 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/files/file_watch.h"
+#include "apps/view/files/files.h"
 #include "apps/view/session/background_jobs.h"
 #include "apps/view/session/camera_control.h"
 #include "apps/view/session/command.h"
 #include "apps/view/session/event_log.h"
-#include "apps/view/session/file_watch.h"
-#include "apps/view/session/files.h"
 #include "apps/view/session/open_panels.h"
 #include "apps/view/session/prober.h"
 #include "apps/view/session/undo_order.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/view/session/file_endings.h"
-#include "apps/view/session/recent_files.h"
+#include "apps/view/files/file_endings.h"
+#include "apps/view/files/recent_files.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"

@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "apps/view/session/file_endings.h"
+#include "apps/view/files/file_endings.h"
 #include "apps/view/session/render_command.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "apps/view/session/file_endings.h"
+#include "apps/view/files/file_endings.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 #include "playback/editing/opacity_preset.h"

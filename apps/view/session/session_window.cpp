@@ -1,7 +1,7 @@
 /// Verbs of the window.
 #include <fmt/format.h>
 
-#include "apps/view/session/file_endings.h"
+#include "apps/view/files/file_endings.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "emscape/playback/view/view_state.h"
-#include "emscape/render/patterns/frame_controller.h"
+#include "render/patterns/frame_controller.h"
 
 namespace emscape::view {
 

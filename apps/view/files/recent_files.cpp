@@ -1,0 +1,50 @@
+#include "apps/view/files/recent_files.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "base/files/file_reading.h"
+#include "base/files/folder.h"
+#include "base/files/whole_file.h"
+#include "emscape/base/error.h"
+#include "playback/editing/autosave.h"
+
+namespace emscape::view {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxBytes = 1 << 20;
+
+}  // namespace
+
+fs::path recentFilesFile() {
+  return playback::stateFolder() / "recent";
+}
+
+std::vector<std::string> readRecentFiles() {
+  std::vector<std::string> files;
+  try {
+    std::istringstream text(readWholeText(recentFilesFile(), kMaxBytes));
+    for (std::string line; std::getline(text, line) && files.size() < kMaxRecentFiles;) {
+      if (!line.empty()) files.push_back(line);
+    }
+  } catch (const Error&) {  // none yet
+  }
+  return files;
+}
+
+std::vector<std::string> addRecentFile(const std::string& input) {
+  const std::string path = fs::weakly_canonical(fs::absolute(input)).string();
+  std::vector<std::string> files = readRecentFiles();
+  files.erase(std::remove(files.begin(), files.end(), path), files.end());
+  if (path.find('\n') == std::string::npos) files.insert(files.begin(), path);
+  files.resize(std::min(files.size(), kMaxRecentFiles));
+  makeFolder(recentFilesFile().parent_path());
+  writeWhole(recentFilesFile(), [&files](std::ostream& out) {
+    for (const std::string& file : files) out << file << '\n';
+  });
+  return files;
+}
+
+}  // namespace emscape::view

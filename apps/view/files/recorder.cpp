@@ -1,0 +1,91 @@
+#include "apps/view/files/recorder.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "base/text/failure_text.h"
+#include "base/thread_arena.h"
+#include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
+#include "emscape/playback/stop.h"
+#include "playback/pictures/picture_series.h"
+#include "playback/pictures/picture_sink.h"
+
+namespace emscape::view {
+namespace {
+
+/// Draws all pictures. @param done  called with the number of pictures so far and the total number
+void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(int, int)>& done) {
+  playback::FrameSelection selection(job.view);
+  selection.times = job.times;
+  selection.independent = true;  // each picture equals the window's at its time
+  const auto source = playback::openFrameSource(selection, job.target, {}, &stop);
+  std::vector<std::unique_ptr<playback::PictureSink>> sinks;
+  sinks.push_back(playback::makePictureSink(job.output, source->name(), source->count(), job.view.size,
+                                            job.frames_per_s));
+  done(0, source->count());
+  playback::Painter painter(job.view, *source, job.target, /*must_show_isosurface=*/false);
+  painter.setFrame(source->frame(0));
+  const render::FramePlan plan{render::Pattern::full, {}};
+  playback::drawPictures(
+      *source, painter, plan, sinks, [&](int pictures) { done(pictures, source->count()); }, &stop);
+}
+
+bool isVideo(const std::string& output) {
+  return std::filesystem::path(output).extension() == ".mp4";
+}
+
+}  // namespace
+
+Recorder::~Recorder() {
+  cancel();
+}
+
+void Recorder::start(const RecordJob& job, std::function<void()> wake) {
+  if (running()) {
+    throw Error(ErrorCode::usage, fmt::format("{} is being recorded: cancel it first, or wait", output_));
+  }
+  stop_ = false;
+  output_ = job.output;
+  counter_ = std::make_shared<Counter>();
+  task_.start([this, job, wake = std::move(wake), counter = counter_]() -> Outcome {
+    Outcome outcome;
+    try {
+      // Leaves one core to the window.
+      ThreadArena arena(threadCount() - 1);
+      arena.run([&] {
+        draw(job, stop_, [&](int pictures, int total) {
+          counter->pictures = pictures;
+          counter->total = total;
+          if (wake) wake();
+        });
+      });
+      outcome.text = fmt::format("recorded {} picture{}: {}", counter->total.load(),
+                                 counter->total == 1 ? "" : "s", job.output);
+    } catch (const playback::Stopped&) {
+      outcome.text = "recording cancelled: ";
+      outcome.text += isVideo(job.output)
+                          ? fmt::format("{} is not written", job.output)
+                          : fmt::format("{} of {} pictures are in {}", counter->pictures.load(),
+                                        counter->total.load(), job.output);
+    } catch (const std::exception& error) {
+      outcome = {failureText(error), true};
+    }
+    if (wake) wake();
+    return outcome;
+  });
+}
+
+Recorder::Progress Recorder::progress() const {
+  return {output_, counter_->pictures, counter_->total};
+}
+
+std::optional<Recorder::Outcome> Recorder::takeOutcome() {
+  if (!task_.done()) return std::nullopt;
+  return task_.take();
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,123 @@
+#include "study/sweep/definition/candidate_sites.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "emscape/base/error.h"
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/units.h"
+#include "study/maps/gdal_support.h"
+#include "study/sweep/definition/study_reading.h"
+#include "study/sweep/definition/vector_file.h"
+
+namespace emscape::study {
+namespace {
+
+constexpr std::size_t kMaxCandidates = 10000;
+
+/// To a centimetre, so that values are short.
+double rounded(double degrees) {
+  return std::round(degrees * 1e7) / 1e7;
+}
+
+void addLayer(const VectorFile& points, OGRLayerH layer, const std::string& file,
+              std::vector<CandidateSite>& sites) {
+  const gdal::SpatialReference wgs84 = wgs84Reference();
+  gdal::Transformation transformation;
+  if (OGR_L_GetSpatialRef(layer) != nullptr) {
+    const gdal::SpatialReference own(OSRClone(OGR_L_GetSpatialRef(layer)));
+    OSRSetAxisMappingStrategy(own.get(), OAMS_TRADITIONAL_GIS_ORDER);
+    transformation = transformationBetween(own, wgs84);
+  }
+  const int name_field = OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer), "name");
+  points.eachFeature(layer, [&](OGRFeatureH feature) {
+    OGRGeometryH geometry = OGR_F_GetGeometryRef(feature);
+    const OGRwkbGeometryType type =
+        geometry == nullptr ? wkbNone : wkbFlatten(OGR_G_GetGeometryType(geometry));
+    const auto fail = [&](const std::string& problem) {
+      throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("point {} {}", sites.size() + 1, problem));
+    };
+    if (type == wkbMultiPoint) {
+      if (OGR_G_GetGeometryCount(geometry) != 1)
+        fail(fmt::format("is a multipoint of {} places; a candidate is one",
+                         OGR_G_GetGeometryCount(geometry)));
+      geometry = OGR_G_GetGeometryRef(geometry, 0);
+    } else if (type != wkbPoint) {
+      return;
+    }
+    if (OGR_G_IsEmpty(geometry) != 0) fail("is empty: it has no coordinates");
+    const double own_x = OGR_G_GetX(geometry, 0), own_y = OGR_G_GetY(geometry, 0);
+    double x = own_x, y = own_y;
+    if (transformation != nullptr && OCTTransform(transformation.get(), 1, &x, &y, nullptr) == 0)
+      fail(fmt::format("at ({}, {}) has no longitude and latitude", own_x, own_y));
+    if (!(std::abs(y) <= 90 && std::abs(x) <= 180))
+      fail(fmt::format("is at longitude {}, latitude {}, outside the allowed range -180 to 180, -90 to 90", x,
+                       y));
+    std::string name = name_field < 0 ? "" : OGR_F_GetFieldAsString(feature, name_field);
+    if (name.empty()) name = fmt::format("site {}", sites.size() + 1);
+    sites.push_back({std::move(name), y, x});
+  });
+}
+
+}  // namespace
+
+std::vector<CandidateSite> readCandidates(const std::string& file) {
+  const VectorFile points(file);
+  const scenario::GdalMessages messages;
+  std::vector<CandidateSite> sites;
+  for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites);
+  if (sites.empty() || sites.size() > kMaxCandidates) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0},
+                fmt::format("{} points, outside the allowed range 1 to {}{}", sites.size(), kMaxCandidates,
+                            sites.empty() ? "; a CSV file needs a column WKT" : ""));
+  }
+  std::set<std::string> names;
+  for (const CandidateSite& site : sites) {
+    if (hasControlCharacter(site.name)) {
+      throw Error(ErrorCode::bad_input, {file, 0, 0},
+                  "the name of a point has a line break or another control character");
+    }
+    if (!names.insert(site.name).second) {
+      throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("two points are named '{}'", site.name));
+    }
+  }
+  return sites;
+}
+
+std::vector<CandidateSite> candidatesOver(const MapArea& area, double distance_m) {
+  const double middle_lat_deg = (area.box.south_deg + area.box.north_deg) / 2;
+  const double middle_lon_deg = (area.box.west_deg + area.box.east_deg) / 2;
+  const auto step_deg = [&](double azimuth_rad, double GeodeticPosition::*coordinate, double middle_deg) {
+    return std::abs(
+        geodesicDirect(middle_lat_deg, wrapLongitude_deg(middle_lon_deg), azimuth_rad, distance_m).*
+            coordinate -
+        middle_deg);
+  };
+  const double lat_step_deg = step_deg(0, &GeodeticPosition::latitude_deg, middle_lat_deg);
+  const double lon_step_deg =
+      step_deg(degToRad(90.0), &GeodeticPosition::longitude_deg, wrapLongitude_deg(middle_lon_deg));
+  const int rows = static_cast<int>((area.box.north_deg - middle_lat_deg) / lat_step_deg);
+  const int columns = static_cast<int>((area.box.east_deg - middle_lon_deg) / lon_step_deg);
+  std::vector<CandidateSite> sites;
+  for (int row = rows; row >= -rows; --row) {
+    for (int column = -columns; column <= columns; ++column) {
+      const double latitude_deg = rounded(middle_lat_deg + row * lat_step_deg);
+      const double longitude_deg = rounded(wrapLongitude_deg(middle_lon_deg + column * lon_step_deg));
+      if (area.circle &&
+          geodesicInverse(area.circle->latitude_deg, area.circle->longitude_deg, latitude_deg, longitude_deg)
+                  .distance_m > area.circle->radius_m) {
+        continue;
+      }
+      sites.push_back({fmt::format("site {}", sites.size() + 1), latitude_deg, longitude_deg});
+      if (sites.size() > kMaxCandidates) {
+        throw Error(ErrorCode::bad_input, fmt::format("candidates every {} m are more than the allowed {}",
+                                                      distance_m, kMaxCandidates));
+      }
+    }
+  }
+  return sites;
+}
+
+}  // namespace emscape::study

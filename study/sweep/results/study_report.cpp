@@ -1,0 +1,247 @@
+#include "study/sweep/results/study_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "base/text/quantity_text.h"
+#include "document/schema_check.h"
+#include "emscape/study/maps/map.h"
+#include "emscape/study/maps/map_grid.h"
+#include "study/report/html_report.h"
+#include "study/report/map_report.h"
+#include "study/sweep/choose_sites.h"
+#include "study/sweep/results/measure_plot.h"
+
+namespace emscape::study {
+namespace {
+
+constexpr std::size_t kBest = 5, kMaxRows = 500, kMaxPlots = 60;
+
+std::string titleOf(const StudyMeasure& measure) {
+  const std::string unit = unitOf(measure);
+  return measure.name + (unit.empty() ? "" : " (" + unit + ")");
+}
+
+class ReportWriter {
+ public:
+  ReportWriter(const StudySpec& study, const StudyPlan& plan, const StudyResults& results)
+      : study_(study),
+        plan_(plan),
+        results_(results),
+        report_("Study: " + study.name,
+                fmt::format("{} variants of {}", study.variants.count(), study.base->name)) {
+    for (std::size_t v = 0; v < study.variants.count(); ++v) {
+      if (results.is_computed[v]) computed_.push_back(v);
+    }
+  }
+
+  StudySummary write(const std::filesystem::path& file) {
+    addInputs();
+    if (study_.sites) addSites();
+    for (std::size_t m = 0; m < study_.measures.size(); ++m) addMeasure(m);
+    addTable();
+    addModels(report_, *study_.base);
+    report_.write(file);
+    return std::move(summary_);
+  }
+
+ private:
+  double value(std::size_t variant, std::size_t m) const {
+    return results_.value(variant, m, study_.measures.size());
+  }
+
+  std::string text(std::size_t variant, std::size_t m) const {
+    return figureText(value(variant, m), unitOf(study_.measures[m]));
+  }
+
+  void addInputs() {
+    report_.section("Study");
+    const std::vector<double>& times_s = study_.times_s;
+    report_.facts({{"Scenario", study_.base->name},
+                   {"Hash of study, scenario and files", study_.hash},
+                   {"Variants computed", fmt::format("{} of {}", computed_.size(), study_.variants.count())},
+                   {"Times", times_s.size() == 1 ? fmt::format("{} s", times_s.front())
+                                                 : fmt::format("{} from {} to {} s", times_s.size(),
+                                                               times_s.front(), times_s.back())},
+                   {"Pixels", fmt::format("{} m, {}", study_.cell_m, study_.crs)},
+                   {"Emscape", EMSCAPE_VERSION}});
+    ReportTable measures{{"Measure", "Product", "Quantity", "Threshold", "Over", "Unit"}, {}, ""};
+    for (const StudyMeasure& measure : study_.measures) {
+      const std::string over =
+          measure.over.empty() ? "the whole map" : std::filesystem::path(measure.over).filename().string();
+      measures.rows.push_back(
+          {measure.name,
+           study::titleOf(measure.product, measure.quantity) +
+               (info(measure.product).at_heights ? " at " + describe(measure.height) : std::string()),
+           study::titleOf(measure.quantity),
+           quantityText(measure.threshold, scenario::info(measure.quantity).unit), over, unitOf(measure)});
+    }
+    report_.table(measures);
+    ReportTable parameters{{"Parameter", "Settings", "A change computes again"}, {}, ""};
+    for (std::size_t path = 0; path < plan_.classes.size(); ++path) {
+      const VariantFactor& factor = study_.variants.factors()[study_.variants.factorOf(path)];
+      parameters.rows.push_back(
+          {study_.variants.paths()[path], fmt::format("{}", factor.count), toString(plan_.classes[path])});
+    }
+    report_.table(parameters);
+    if (!results_.warnings.empty()) {
+      report_.section("Warnings");
+      for (const std::string& warning : results_.warnings) report_.paragraph(warning);
+    }
+  }
+
+  void addSites() {
+    const std::size_t m = study_.sites->measure;
+    const MapGrid grid = mapGridOf(study_);
+    std::vector<std::vector<std::uint8_t>> pixels;
+    for (const std::size_t v : computed_) pixels.push_back(results_.pixels[v]);
+    const std::vector<std::size_t> chosen =
+        chooseSites(pixels, grid.areas_m2, static_cast<std::size_t>(study_.sites->choose));
+    const StudyMeasure& measure = study_.measures[m];
+    const auto together = [&](const std::vector<std::size_t>& sites) {
+      const double km2 = coveredWeight(pixels, grid.areas_m2, sites) / 1e6;
+      // A percentage refers to the area with values, which is the same for every site.
+      const std::size_t first = sites.front();
+      const double own_km2 = coveredWeight(pixels, grid.areas_m2, {first}) / 1e6;
+      return measure.figure == StudyMeasure::Figure::percent
+                 ? (own_km2 > 0 ? value(computed_[first], m) * km2 / own_km2 : 0)
+                 : km2;
+    };
+    report_.section("Sites");
+    report_.paragraph(fmt::format(
+        "{} of {} candidates, chosen by '{}': each place counts where at least one of them alone reaches the "
+        "threshold, with the scenario's other emitters as they are.",
+        chosen.size(), pixels.size(), measure.name));
+    ReportTable table{
+        {"Site", "Latitude (deg)", "Longitude (deg)", titleOf(measure) + " alone", "Together so far"},
+        {},
+        ""};
+    std::vector<std::size_t> so_far;
+    for (const std::size_t site : chosen) {
+      so_far.push_back(site);
+      const std::size_t v = computed_[site];
+      const VariantFactor& factor = study_.variants.factors().front();
+      summary_.sites.push_back(factor.names[v]);
+      table.rows.push_back({factor.names[v], factor.value(v, 0), factor.value(v, 1), text(v, m),
+                            figureText(together(so_far), unitOf(measure))});
+    }
+    if (!chosen.empty()) summary_.sites_value = together(chosen);
+    report_.table(table);
+  }
+
+  void addMeasure(std::size_t m) {
+    const StudyMeasure& measure = study_.measures[m];
+    MeasureSummary summary{measure.name, unitOf(measure), NAN, NAN, NAN, 0, 0};
+    std::vector<std::size_t> ranked;
+    for (const std::size_t v : computed_) {
+      if (!std::isnan(value(v, m))) ranked.push_back(v);
+    }
+    std::stable_sort(ranked.begin(), ranked.end(),
+                     [&](std::size_t a, std::size_t b) { return value(a, m) > value(b, m); });
+    report_.section(titleOf(measure));
+    if (ranked.empty()) {
+      report_.paragraph("No variant has a value.");
+      summary_.measures.push_back(summary);
+      return;
+    }
+    double sum = 0;
+    for (const std::size_t v : ranked) sum += value(v, m);
+    summary.mean = sum / static_cast<double>(ranked.size());
+    summary.max_variant = ranked.front();
+    summary.max = value(ranked.front(), m);
+    summary.min_variant = ranked.back();
+    summary.min = value(ranked.back(), m);
+    summary_.measures.push_back(summary);
+    report_.paragraph(fmt::format("From {} to {}, mean {}.", figureText(summary.min, summary.unit),
+                                  figureText(summary.max, summary.unit),
+                                  figureText(summary.mean, summary.unit)));
+    const std::size_t count = std::min(kBest, ranked.size());
+    report_.table(
+        ranking(m, {ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count)}, "Largest"));
+    if (ranked.size() > count) {
+      report_.table(
+          ranking(m, {ranked.rbegin(), ranked.rbegin() + static_cast<std::ptrdiff_t>(count)}, "Smallest"));
+    }
+    for (std::size_t path = 0; path < plan_.classes.size() && plots_ < kMaxPlots; ++path) addPlot(m, path);
+  }
+
+  ReportTable ranking(std::size_t m, const std::vector<std::size_t>& variants,
+                      const std::string& caption) const {
+    ReportTable table{{"Variant", titleOf(study_.measures[m]), "What it sets"}, {}, caption};
+    for (const std::size_t v : variants) {
+      table.rows.push_back({fmt::format("{}", v), text(v, m), describeVariant(study_, v)});
+    }
+    return table;
+  }
+
+  /// A measure over a parameter that has two values or more.
+  void addPlot(std::size_t m, std::size_t path) {
+    MeasurePlot plot;
+    plot.parameter = study_.variants.paths()[path];
+    plot.measure = titleOf(study_.measures[m]);
+    std::map<std::string, double> positions;
+    bool is_number = true;
+    for (const std::size_t v : computed_) {
+      const std::string& text = study_.variants.value(v, path);
+      positions.emplace(text, 0);
+      is_number = is_number && (text.empty() || document::numberOf(text).has_value());
+    }
+    if (positions.size() < 2 || (positions.size() == 2 && positions.count("") != 0)) return;
+    if (!is_number) {
+      for (auto& [text, position] : positions) {
+        position = static_cast<double>(plot.labels.size());
+        plot.labels.push_back(text.empty() ? "(unchanged)" : text);
+      }
+    }
+    double smallest = HUGE_VAL, largest = -HUGE_VAL;
+    for (const std::size_t v : computed_) {
+      const std::string& text = study_.variants.value(v, path);
+      plot.x.push_back(is_number ? document::numberOf(text).value_or(NAN) : positions[text]);
+      plot.y.push_back(value(v, m));
+      if (std::isnan(plot.x.back())) continue;
+      smallest = std::min(smallest, plot.x.back());
+      largest = std::max(largest, plot.x.back());
+    }
+    constexpr double kWide = 20;
+    plot.is_logarithmic = is_number && smallest > 0 && largest > kWide * smallest;
+    report_.drawing(drawMeasure(plot),
+                    plot.measure + " over " + plot.parameter + "; blue: the variants, orange: their mean");
+    ++plots_;
+  }
+
+  void addTable() {
+    report_.section("Variants");
+    if (computed_.size() > kMaxRows) {
+      report_.paragraph(fmt::format("The first {} of {}; results.csv has all.", kMaxRows, computed_.size()));
+    }
+    ReportTable table{{"Variant", "What it sets"}, {}, ""};
+    for (const StudyMeasure& measure : study_.measures) table.columns.push_back(titleOf(measure));
+    for (std::size_t i = 0; i < std::min(kMaxRows, computed_.size()); ++i) {
+      const std::size_t v = computed_[i];
+      table.rows.push_back({fmt::format("{}", v), describeVariant(study_, v)});
+      for (std::size_t m = 0; m < study_.measures.size(); ++m) table.rows.back().push_back(text(v, m));
+    }
+    report_.table(table);
+  }
+
+  const StudySpec& study_;
+  const StudyPlan& plan_;
+  const StudyResults& results_;
+  HtmlReport report_;
+  std::vector<std::size_t> computed_;
+  StudySummary summary_;
+  std::size_t plots_ = 0;
+};
+
+}  // namespace
+
+StudySummary writeStudyReport(const std::filesystem::path& file, const StudySpec& study,
+                              const StudyPlan& plan, const StudyResults& results) {
+  return ReportWriter(study, plan, results).write(file);
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,54 @@
+// Reading, writing and conversion by OpenVDB, whose library is loaded at the first use.
+#include "base/loaded_library.h"
+#include "volume/nvdb/nanovdb_grid.h"
+#include "volume/vdb.h"
+#include "volume/vdb_functions.h"
+
+#define EMSCAPE_TEXT_OF(name) #name
+#define EMSCAPE_TEXT(name) EMSCAPE_TEXT_OF(name)
+
+namespace emscape::volume {
+namespace {
+
+void forwardLog(LogLevel level, const std::string& message) {
+  switch (level) {
+    case LogLevel::debug:
+      return logDebug(message);
+    case LogLevel::info:
+      return logInfo(message);
+    case LogLevel::warning:
+      return logWarning(message);
+  }
+}
+
+const VdbFunctions& vdbFunctions() {
+  static const VdbFunctions kFunctions = [] {
+    const LoadedLibrary library({"emscape_vdb.so"}, "emscape_vdb.so, which .vdb and .nvdb files need",
+                                "it is in ../lib/emscape beside the program's folder and needs the package "
+                                "libopenvdb10.0 (Debian 12)");
+    VdbFunctions functions{};
+    reinterpret_cast<VdbEntry*>(library.function(EMSCAPE_TEXT(EMSCAPE_VDB_ENTRY)))(functions, forwardLog);
+    return functions;
+  }();
+  return kFunctions;
+}
+
+}  // namespace
+
+DenseVolume readVdb(const std::filesystem::path& path, const std::string& grid_name) {
+  return vdbFunctions().read(path, grid_name);
+}
+
+std::vector<DenseVolume> describeVdb(const std::filesystem::path& path) {
+  return vdbFunctions().describe(path);
+}
+
+void writeVdb(const std::filesystem::path& path, const std::vector<const DenseVolume*>& volumes) {
+  vdbFunctions().write(path, volumes);
+}
+
+nano::Handle toNano(const DenseVolume& volume, const SourceLocation& location) {
+  return vdbFunctions().toNano(volume, location);
+}
+
+}  // namespace emscape::volume
