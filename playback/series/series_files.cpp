@@ -1,5 +1,6 @@
 #include "playback/series/series_files.h"
 
+#include <algorithm>
 #include <optional>
 #include <regex>
 
@@ -7,6 +8,7 @@
 #include "emscape/playback/series/series_writer.h"
 #include "emscape/volume/format/file.h"
 #include "playback/series/file_names.h"
+#include "playback/series/series_journal.h"
 #include "playback/series/series_state.h"
 #include "volume/mesh_file.h"
 #include "volume/vtk/vti.h"
@@ -179,13 +181,21 @@ void SeriesFiles::requireNone(const std::vector<fs::path>& inputs) const {
 }
 
 void SeriesFiles::removeOld() const {
-  const std::regex ours = names();
-  std::vector<fs::path> files;
+  std::set<std::string> ours = SeriesJournal(folder_).fileNames(), replaced;
+  const bool had_index = std::any_of(ours.begin(), ours.end(), [](const std::string& name) {
+    return fs::path(name).extension() == ".vti" || fs::path(name).extension() == ".vtu";
+  });
+  if (had_index) ours.insert(nameOfOld(folder_).value_or(name_) + ".pvd");
+  for (int step = 0; step < static_cast<int>(times_s_.size()); ++step) {
+    for (const std::string& name : namesOf(step)) replaced.insert(name);
+  }
+  std::vector<fs::path> files{folder_ / "series.json", folder_ / "series.steps"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
     if (!entry.is_regular_file()) continue;
-    if (std::regex_match(entry.path().filename().string(), ours)) {
+    const std::string name = entry.path().filename().string();
+    if (ours.count(name) != 0) {
       files.push_back(entry);
-    } else if (isReadWithSeries(entry)) {
+    } else if (isReadWithSeries(entry) && replaced.count(name) == 0) {
       throw Error(
           ErrorCode::usage, {entry.path().string()},
           "is not a file of the present series, and would be read with the new one; remove it, or use "

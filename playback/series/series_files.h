@@ -46,8 +46,8 @@ class SeriesFiles {
   /// present series may have: it would be replaced or removed
   void requireNone(const std::vector<std::filesystem::path>& inputs) const;
 
-  /// Removes the present series from the folder: its description, and the files with its name or the name of
-  /// this one.
+  /// Removes the present series from the folder: its description, and the files that its journal lists. Files
+  /// that this series writes may be there: they are replaced.
   /// @throws Error (usage) if a reader of the folder would take another volume as part of this series; then
   /// nothing is removed
   void removeOld() const;

@@ -107,6 +107,23 @@ std::vector<std::optional<StepRecord>> SeriesJournal::read(int steps, std::size_
   return records;
 }
 
+std::set<std::string> SeriesJournal::fileNames() const {
+  std::set<std::string> names;
+  if (!std::filesystem::exists(file_)) return names;
+  const auto bytes = readWhole(file_);
+  for (auto begin = bytes.begin(); begin != bytes.end();) {
+    const auto end = std::find(begin, bytes.end(), '\n');
+    const Json line = Json::parse(begin, end, nullptr, /*allow_exceptions=*/false);
+    const Json files = line.is_object() ? line.value("files", Json()) : Json();
+    for (const Json& file : files.is_array() ? files : Json::array()) {
+      const Json name = file.is_object() ? file.value("name", Json()) : Json();
+      if (name.is_string()) names.insert(name.get<std::string>());
+    }
+    begin = end == bytes.end() ? end : end + 1;
+  }
+  return names;
+}
+
 void SeriesJournal::append(const StepRecord& record) {
   if (!open_) {
     open_.emplace(file_);

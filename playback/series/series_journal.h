@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ class SeriesJournal {
   /// @param channels  number of ranges in each record
   /// @throws Error (bad_input) that names file and line for any other invalid line
   std::vector<std::optional<StepRecord>> read(int steps, std::size_t channels) const;
+
+  /// Names of the files that the readable lines of the journal list, for a series of any description.
+  std::set<std::string> fileNames() const;
 
   /// Adds a record. @throws Error (other)
   void append(const StepRecord& record);

@@ -163,17 +163,20 @@ TEST(RealTimeLoop, EventDuringRestorationStartsNextFrameAtOnce) {
   options.controller.epsilon_ms = 0;  // a restoration begins as soon as a frame is drawn
   options.orbit_rate_deg_s = 30;
   options.duration_s = 1;
-  ManualClock clock(/*work_takes_no_time=*/false);
-  const Played played = play(options, source, clock);
-  EXPECT_EQ(played.count(ControllerState::busy), 10);
-  // A restoration may be done before the event of the next slot reaches it.
+  // On a busy machine every restoration may be done before the event of the next slot reaches it.
   int aborted = 0, begun_after_abort = 0;
-  for (const RealTimeEvent& event : played.report.events) {
-    if (event.state == ControllerState::restore && !event.restored) ++aborted;
-    if (!event.abort_latency_ms) continue;
-    ++begun_after_abort;
-    EXPECT_EQ(event.state, ControllerState::busy);
-    EXPECT_EQ(*event.abort_latency_ms, 0);
+  for (int trial = 0; trial < 20 && begun_after_abort == 0; ++trial) {
+    ManualClock clock(/*work_takes_no_time=*/false);
+    const Played played = play(options, source, clock);
+    EXPECT_EQ(played.count(ControllerState::busy), 10);
+    aborted = 0;
+    for (const RealTimeEvent& event : played.report.events) {
+      if (event.state == ControllerState::restore && !event.restored) ++aborted;
+      if (!event.abort_latency_ms) continue;
+      ++begun_after_abort;
+      EXPECT_EQ(event.state, ControllerState::busy);
+      EXPECT_EQ(*event.abort_latency_ms, 0);
+    }
   }
   EXPECT_GT(begun_after_abort, 0);
   EXPECT_LE(begun_after_abort, aborted);

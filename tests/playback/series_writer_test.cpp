@@ -292,6 +292,21 @@ TEST_F(SeriesWriter, ReplacingRemovesASeriesOfAnotherName) {
                                  "series.steps"));
 }
 
+TEST_F(SeriesWriter, ReplacingKeepsFilesThatTheSeriesDidNotWrite) {
+  write(2, into("s", {"raw"}));
+  for (const char* name : {"quick_0003_notes.raw.json", "quick.pvd", "quick_0001_notes.nvdb.json"})
+    writeFile(*this / "s/" + name, "mine");
+  write(1, into("s", {"raw"}, Existing::replace));
+  const std::map<std::string, std::string> after = contents("s");
+  for (const char* name : {"quick_0003_notes.raw.json", "quick.pvd", "quick_0001_notes.nvdb.json"})
+    EXPECT_THAT(after, testing::Contains(testing::Pair(name, "mine")));
+  EXPECT_EQ(after.count("quick_0002.raw"), 0u);
+  writeFile(*this / "s/quick_0001_before.raw", "mine");
+  EXPECT_THAT(errorOf([&] { write(1, into("s", {"raw"}, Existing::replace)); }),
+              HasSubstr("quick_0001_before.raw"));
+  EXPECT_THAT(contents("s"), testing::Contains(testing::Pair("quick_0001_before.raw", "mine")));
+}
+
 TEST_F(SeriesWriter, ReplacingRefusesVolumesThatWouldBeReadWithTheSeries) {
   write(2, into("s", {"vti"}));
   const std::map<std::string, std::string> before = contents("s");
