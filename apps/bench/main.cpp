@@ -4,5 +4,5 @@
 int main(int argc, char** argv) {
   std::vector<std::string> words{"bench"};
   words.insert(words.end(), argv + 1, argv + argc);
-  emscape::app::runProgram(words, emscape::app::addBench);
+  return emscape::app::runProgram(words, emscape::app::addBench);
 }

@@ -161,9 +161,9 @@ int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& 
   });
 }
 
-void runProgram(const std::vector<std::string>& words, const AddSubcommands& addSubcommands) {
+int runProgram(const std::vector<std::string>& words, const AddSubcommands& addSubcommands) {
   const int status = runCommandLine(words, addSubcommands);
-  if (status == 0) std::exit(0);
+  if (status == 0) return 0;
   // After a netCDF file could not be written to a full disk, HDF5 crashes in its exit handler. Nothing else
   // is left to do here.
   std::fflush(nullptr);

@@ -43,8 +43,9 @@ class CommandLine {
 /// @return the exit status
 int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& addSubcommands);
 
-/// The main function of a program with these subcommands: runs its command line and ends the process.
+/// The main function of a program with these subcommands: runs its command line; a failure ends the process.
 /// @param words  arguments without the program's name
-[[noreturn]] void runProgram(const std::vector<std::string>& words, const AddSubcommands& addSubcommands);
+/// @return the exit status 0
+int runProgram(const std::vector<std::string>& words, const AddSubcommands& addSubcommands);
 
 }  // namespace emscape::app

@@ -2,5 +2,5 @@
 #include "apps/emscape/subcommands.h"
 
 int main(int argc, char** argv) {
-  emscape::app::runProgram({argv + 1, argv + argc}, emscape::app::addSubcommands);
+  return emscape::app::runProgram({argv + 1, argv + argc}, emscape::app::addSubcommands);
 }

@@ -156,6 +156,7 @@ if "--build" in arguments:
     targets = [word for word in arguments[arguments.index("--target") + 1:] if not word.startswith("-")]
     for target in targets:
         shutil.copy2(os.path.join({programs!r}, target.replace("_", "-")), folder)
+    shutil.copytree(os.path.join(os.path.dirname({programs!r}), "lib"), os.path.join(os.path.dirname(folder), "lib"), dirs_exist_ok=True)
 """
 
 
@@ -271,6 +272,7 @@ def main():
     runner = Runner(options.source, options.programs, folder)
     if options.only:  # without scripts/demo, which places them
         shutil.copytree(options.programs, os.path.join(runner.clone, "build/release/bin"))
+        shutil.copytree(os.path.join(os.path.dirname(options.programs), "lib"), os.path.join(runner.clone, "build/release/lib"))
     try:
         for command in commands:
             is_wanted = command.text.startswith("export ") or not options.only or options.only == command.file
