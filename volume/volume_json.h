@@ -8,7 +8,7 @@
 
 #include "base/files/json_reading.h"
 #include "emscape/volume/dense_volume.h"
-#include "emscape/volume/mesh.h"
+#include "emscape/volume/mesh/mesh.h"
 
 namespace emscape::volume {
 

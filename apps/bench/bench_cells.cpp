@@ -16,7 +16,7 @@
 #include "emscape/base/parallel.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "emscape/render/cells/cell_renderer.h"
-#include "report/output_files.h"
+#include "report/maps/output_files.h"
 
 namespace emscape::app {
 namespace {

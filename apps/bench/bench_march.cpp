@@ -16,7 +16,7 @@
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
-#include "propagation/parabolic_equation/march_timing.h"
+#include "propagation/parabolic_equation/march/march_timing.h"
 
 namespace emscape::app {
 namespace {

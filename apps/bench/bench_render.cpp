@@ -8,7 +8,7 @@
 #include "apps/bench/bench_scene.h"
 #include "apps/bench/bench_statistics.h"
 #include "apps/common/interrupt.h"
-#include "report/output_files.h"
+#include "report/maps/output_files.h"
 
 namespace emscape::app {
 namespace {

@@ -5,7 +5,7 @@
 #include "apps/common/interrupt.h"
 #include "apps/emscape/subcommands.h"
 #include "emscape/base/error.h"
-#include "report/check_report.h"
+#include "report/runs/check_report.h"
 
 namespace emscape::app {
 namespace {

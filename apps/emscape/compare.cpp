@@ -21,8 +21,8 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/format/file.h"
-#include "report/compare_report.h"
-#include "report/output_files.h"
+#include "report/maps/compare_report.h"
+#include "report/maps/output_files.h"
 #include "study/report/map_folder.h"
 #include "volume/difference.h"
 

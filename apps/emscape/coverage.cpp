@@ -15,7 +15,7 @@
 #include "base/text/quantity_text.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "report/output_files.h"
+#include "report/maps/output_files.h"
 #include "report/warnings.h"
 #include "study/report/map_folder.h"
 

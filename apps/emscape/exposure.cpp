@@ -14,8 +14,8 @@
 #include "base/files/json_writing.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "report/exposure_report.h"
-#include "report/output_files.h"
+#include "report/maps/exposure_report.h"
+#include "report/maps/output_files.h"
 #include "report/warnings.h"
 #include "scenario/file/named_index.h"
 

@@ -23,15 +23,15 @@
 #include "playback/frames/volume_input.h"
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
-#include "report/choices_report.h"
-#include "report/output_files.h"
-#include "report/refractivity_report.h"
-#include "report/waveform_report.h"
-#include "report/work_report.h"
+#include "report/maps/output_files.h"
+#include "report/paths/choices_report.h"
+#include "report/paths/refractivity_report.h"
+#include "report/paths/waveform_report.h"
+#include "report/runs/work_report.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/file/csv_columns.h"
 #include "scenario/file/refractivity_file.h"
-#include "volume/mesh_file.h"
+#include "volume/mesh/mesh_file.h"
 
 namespace emscape::app {
 namespace {

@@ -11,9 +11,9 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
-#include "report/link_plot.h"
-#include "report/link_report.h"
-#include "report/output_files.h"
+#include "report/maps/output_files.h"
+#include "report/paths/link_plot.h"
+#include "report/paths/link_report.h"
 #include "report/warnings.h"
 
 namespace emscape::app {

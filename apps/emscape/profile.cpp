@@ -14,8 +14,8 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
-#include "report/output_files.h"
-#include "report/profile_report.h"
+#include "report/maps/output_files.h"
+#include "report/paths/profile_report.h"
 #include "scenario/file/named_index.h"
 
 namespace emscape::app {

@@ -27,8 +27,8 @@
 #include "playback/pictures/real_time_loop.h"
 #include "playback/view/view_file.h"
 #include "render/patterns/reconstruction.h"
-#include "report/output_files.h"
-#include "report/real_time_report.h"
+#include "report/maps/output_files.h"
+#include "report/runs/real_time_report.h"
 #include "report/warnings.h"
 
 namespace emscape::app {

@@ -17,7 +17,7 @@
 #include "emscape/playback/series/series_writer.h"
 #include "emscape/scenario/model/quantities.h"
 #include "playback/view/view_settings.h"
-#include "report/series_report.h"
+#include "report/runs/series_report.h"
 #include "report/warnings.h"
 
 namespace emscape::app {

@@ -14,8 +14,8 @@
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
-#include "report/choices_report.h"
-#include "report/work_report.h"
+#include "report/paths/choices_report.h"
+#include "report/runs/work_report.h"
 
 namespace emscape::app {
 namespace {

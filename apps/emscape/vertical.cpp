@@ -16,8 +16,8 @@
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "render/annotate/plot.h"
-#include "report/output_files.h"
-#include "report/vertical_report.h"
+#include "report/maps/output_files.h"
+#include "report/maps/vertical_report.h"
 #include "report/warnings.h"
 #include "scenario/file/named_index.h"
 

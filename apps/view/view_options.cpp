@@ -1,4 +1,4 @@
-#include "apps/view/session/view_options.h"
+#include "apps/view/parts/view_options.h"
 
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -6,7 +6,7 @@
 #include "apps/common/arguments.h"
 #include "apps/common/command.h"
 #include "apps/common/view_arguments.h"
-#include "apps/view/session/action.h"
+#include "apps/view/commands/action.h"
 #include "apps/view/view_parser.h"
 #include "emscape/base/error.h"
 #include "playback/view/view_file.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/view/session/input_queue.h"
+#include "apps/view/commands/input_queue.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/picture/image.h"
 

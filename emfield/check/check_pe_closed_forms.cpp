@@ -7,7 +7,7 @@
 #include "emfield/check/pe_figures.h"
 #include "emfield/check/reference_table.h"
 #include "emscape/base/cuda/device.h"
-#include "propagation/parabolic_equation/march_step.h"
+#include "propagation/parabolic_equation/march/march_step.h"
 
 namespace emscape::emfield {
 

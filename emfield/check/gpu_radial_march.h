@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "emscape/base/units.h"
-#include "propagation/parabolic_equation/march.h"
-#include "propagation/parabolic_equation/march_azimuths.h"
+#include "propagation/parabolic_equation/march/march.h"
+#include "propagation/parabolic_equation/march/march_azimuths.h"
 
 namespace emscape::emfield {
 

@@ -10,8 +10,8 @@
 
 #include "emfield/check/gpu_radial_march.h"
 #include "emfield/check/reference_check.h"
-#include "propagation/parabolic_equation/march.h"
-#include "propagation/parabolic_equation/march_azimuths.h"
+#include "propagation/parabolic_equation/march/march.h"
+#include "propagation/parabolic_equation/march/march_azimuths.h"
 
 namespace emscape::emfield {
 

@@ -7,7 +7,7 @@
 #include "emfield/excess/emitter_excess.h"
 #include "emfield/geometry/emitter_geometry.h"
 #include "emscape/base/units.h"
-#include "propagation/parabolic_equation/path_air.h"
+#include "propagation/parabolic_equation/air/path_air.h"
 #include "propagation/parabolic_equation/plan.h"
 
 namespace emscape::emfield {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "propagation/parabolic_equation/refractivity_field.h"
+#include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {

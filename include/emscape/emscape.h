@@ -76,7 +76,7 @@
 #include "emscape/volume/device_volume.h"
 #include "emscape/volume/format/file.h"
 #include "emscape/volume/grid.h"
-#include "emscape/volume/mesh.h"
+#include "emscape/volume/mesh/mesh.h"
 #include "emscape/volume/statistics.h"
 #include "emscape/volume/value_range.h"
 #include "emscape/volume/volume.h"

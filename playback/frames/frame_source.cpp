@@ -16,7 +16,7 @@
 #include "playback/frames/range_search.h"
 #include "playback/frames/volume_input.h"
 #include "volume/difference.h"
-#include "volume/mesh_file.h"
+#include "volume/mesh/mesh_file.h"
 
 namespace emscape::playback {
 namespace {

@@ -9,7 +9,7 @@
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/clock.h"
 #include "emscape/volume/format/file.h"
-#include "volume/mesh_file.h"
+#include "volume/mesh/mesh_file.h"
 
 namespace emscape::playback {
 namespace {

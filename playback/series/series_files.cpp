@@ -10,7 +10,7 @@
 #include "playback/series/file_names.h"
 #include "playback/series/series_journal.h"
 #include "playback/series/series_state.h"
-#include "volume/mesh_file.h"
+#include "volume/mesh/mesh_file.h"
 #include "volume/vtk/vti.h"
 
 namespace emscape::playback {

@@ -2,8 +2,8 @@
 
 #include "propagation/cuda/march_cuda.h"
 #include "propagation/parabolic_equation/excess.h"
-#include "propagation/parabolic_equation/march_block_run.h"
-#include "propagation/parabolic_equation/march_block_tables.h"
+#include "propagation/parabolic_equation/march/march_block_run.h"
+#include "propagation/parabolic_equation/march/march_block_tables.h"
 
 namespace emscape::propagation {
 namespace {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/cuda/cuda_memory.h"
-#include "propagation/parabolic_equation/march_block_input.h"
+#include "propagation/parabolic_equation/march/march_block_input.h"
 
 namespace emscape::propagation {
 

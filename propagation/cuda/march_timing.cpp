@@ -1,4 +1,4 @@
-#include "propagation/parabolic_equation/march_timing.h"
+#include "propagation/parabolic_equation/march/march_timing.h"
 
 #include <dlfcn.h>
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "propagation/parabolic_equation/march_azimuths.h"
+#include "propagation/parabolic_equation/march/march_azimuths.h"
 
 namespace emscape::propagation {
 

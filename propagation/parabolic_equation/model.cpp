@@ -10,10 +10,10 @@
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "propagation/diffraction/model.h"
-#include "propagation/parabolic_equation/ducts.h"
-#include "propagation/parabolic_equation/path_air.h"
+#include "propagation/parabolic_equation/air/ducts.h"
+#include "propagation/parabolic_equation/air/path_air.h"
+#include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "propagation/parabolic_equation/plan.h"
-#include "propagation/parabolic_equation/refractivity_field.h"
 #include "propagation/two_ray/model.h"
 
 namespace emscape::propagation {

@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "emscape/base/error.h"
+#include "propagation/parabolic_equation/air/path_air.h"
 #include "propagation/parabolic_equation/direct_ray.h"
-#include "propagation/parabolic_equation/march_lanes.h"
-#include "propagation/parabolic_equation/march_start.h"
+#include "propagation/parabolic_equation/march/march_lanes.h"
+#include "propagation/parabolic_equation/march/march_start.h"
 #include "propagation/parabolic_equation/others.h"
-#include "propagation/parabolic_equation/path_air.h"
 
 namespace emscape::propagation {
 namespace {

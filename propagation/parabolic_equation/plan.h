@@ -6,7 +6,7 @@
 
 #include "propagation/choice.h"
 #include "propagation/inputs.h"
-#include "propagation/parabolic_equation/march_azimuths.h"
+#include "propagation/parabolic_equation/march/march_azimuths.h"
 #include "propagation/radial.h"
 
 namespace emscape::propagation {

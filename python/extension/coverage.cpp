@@ -5,7 +5,7 @@
 
 #include "playback/frames/open_on_target.h"
 #include "python/extension/module.h"
-#include "report/map_options.h"
+#include "report/maps/map_options.h"
 
 namespace emscape::python {
 namespace {

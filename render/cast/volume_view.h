@@ -8,7 +8,7 @@
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
 #include "volume/bricks.h"
-#include "volume/sparse_block.h"
+#include "volume/sparse/sparse_block.h"
 
 namespace emscape::render {
 

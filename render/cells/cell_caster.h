@@ -7,7 +7,7 @@
 #include "emscape/render/picture/image.h"
 #include "render/cells/cell_walk.h"
 #include "render/cells/face_tiles.h"
-#include "render/cells/linear_transfer.h"
+#include "render/cells/integral/linear_transfer.h"
 #include "render/cells/tile_cells.h"
 
 namespace emscape::render {

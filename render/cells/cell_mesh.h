@@ -8,7 +8,7 @@
 
 #include "emscape/base/host_device.h"
 #include "emscape/base/vec.h"
-#include "emscape/volume/mesh.h"
+#include "emscape/volume/mesh/mesh.h"
 
 namespace emscape::render {
 

@@ -6,7 +6,7 @@
 #include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register
 #include <hwy/highway.h>
 //
-#include "render/cells/integral_lanes-inl.h"
+#include "render/cells/integral/integral_lanes-inl.h"
 
 #ifndef EMSCAPE_RENDER_CELLS_CELL_PACKETS_ONCE
 #define EMSCAPE_RENDER_CELLS_CELL_PACKETS_ONCE

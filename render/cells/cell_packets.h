@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/cells/cell_march.h"
-#include "render/cells/lane_transfer.h"
+#include "render/cells/integral/lane_transfer.h"
 
 namespace emscape::render {
 

@@ -8,7 +8,7 @@
 
 #include "emscape/render/picture/image.h"
 #include "render/cast/raycast.h"
-#include "render/cells/linear_transfer.h"
+#include "render/cells/integral/linear_transfer.h"
 #include "render/cells/projected_cells.h"
 
 namespace emscape::render::gl {

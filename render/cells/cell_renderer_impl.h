@@ -11,7 +11,7 @@
 #include "render/cells/cell_packets.h"
 #include "render/cells/cell_rasterizer.h"
 #include "render/cells/face_tiles.h"
-#include "render/cells/linear_transfer.h"
+#include "render/cells/integral/linear_transfer.h"
 #include "render/scene/scene.h"
 
 namespace emscape::render {

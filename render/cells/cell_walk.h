@@ -7,7 +7,7 @@
 #include "emscape/base/host_device.h"
 #include "render/cast/raycast.h"
 #include "render/cells/cell_mesh.h"
-#include "render/cells/ray_integral.h"
+#include "render/cells/integral/ray_integral.h"
 
 namespace emscape::render {
 

@@ -6,7 +6,7 @@
 #include <hwy/foreach_target.h>  // compiles the rest once for each kind of vector register
 #include <hwy/highway.h>
 //
-#include "render/cells/integral_lanes-inl.h"
+#include "render/cells/integral/integral_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace emscape::render {

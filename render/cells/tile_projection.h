@@ -5,7 +5,7 @@
 
 #include "emscape/render/picture/image.h"
 #include "render/cells/cell_mesh.h"
-#include "render/cells/lane_transfer.h"
+#include "render/cells/integral/lane_transfer.h"
 #include "render/cells/tile_cells.h"
 
 namespace emscape::render {

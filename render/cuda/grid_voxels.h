@@ -2,7 +2,7 @@
 #pragma once
 
 #include "render/cast/volume_view.h"
-#include "volume/sparse_block.h"
+#include "volume/sparse/sparse_block.h"
 
 namespace emscape::render::cuda {
 

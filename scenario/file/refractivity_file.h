@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "propagation/parabolic_equation/refractivity_field.h"
+#include "propagation/parabolic_equation/air/refractivity_field.h"
 
 namespace emscape::scenario {
 

@@ -1,7 +1,7 @@
 // The keys of atmosphere.refractivity.
-#include "propagation/parabolic_equation/refractivity.h"
+#include "propagation/parabolic_equation/air/refractivity.h"
 
-#include "propagation/parabolic_equation/bulk_duct.h"
+#include "propagation/parabolic_equation/air/bulk_duct.h"
 #include "scenario/file/schema.h"
 
 namespace emscape::scenario {

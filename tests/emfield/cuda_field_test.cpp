@@ -10,7 +10,7 @@
 
 #include "emscape/base/cuda/device.h"
 #include "emscape/emfield/solver/field_solver.h"
-#include "propagation/parabolic_equation/refractivity_field.h"
+#include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "tests/emfield/made_terrain.h"
 #include "tests/emfield/random_profile.h"
 #include "tests/emfield/test_scenario.h"

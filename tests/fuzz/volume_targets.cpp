@@ -7,7 +7,7 @@
 #include "tests/support/temporary_folder.h"
 #include "tests/volume/sample_volumes.h"
 #include "volume/format/raw.h"
-#include "volume/mesh_file.h"
+#include "volume/mesh/mesh_file.h"
 #include "volume/vtk/vti.h"
 
 namespace emscape::test {

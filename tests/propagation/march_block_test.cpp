@@ -6,10 +6,10 @@
 #include <cmath>
 #include <vector>
 
-#include "propagation/parabolic_equation/march_azimuths.h"
-#include "propagation/parabolic_equation/march_block_input.h"
-#include "propagation/parabolic_equation/march_block_run.h"
-#include "propagation/parabolic_equation/march_block_tables.h"
+#include "propagation/parabolic_equation/march/march_azimuths.h"
+#include "propagation/parabolic_equation/march/march_block_input.h"
+#include "propagation/parabolic_equation/march/march_block_run.h"
+#include "propagation/parabolic_equation/march/march_block_tables.h"
 #include "tests/support/errors.h"
 #include "tests/support/gpu.h"
 

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "emscape/base/units.h"
-#include "propagation/parabolic_equation/march.h"
-#include "propagation/parabolic_equation/sine_transform.h"
-#include "propagation/parabolic_equation/source.h"
+#include "propagation/parabolic_equation/march/march.h"
+#include "propagation/parabolic_equation/march/sine_transform.h"
+#include "propagation/parabolic_equation/march/source.h"
 #include "tests/support/errors.h"
 
 namespace emscape::propagation {

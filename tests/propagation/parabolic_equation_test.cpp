@@ -7,13 +7,13 @@
 #include <complex>
 #include <vector>
 
-#include "propagation/parabolic_equation/march.h"
-#include "propagation/parabolic_equation/march_azimuths.h"
-#include "propagation/parabolic_equation/march_cells.h"
-#include "propagation/parabolic_equation/march_grid.h"
-#include "propagation/parabolic_equation/path_air.h"
-#include "propagation/parabolic_equation/refractivity.h"
-#include "propagation/parabolic_equation/sine_transform.h"
+#include "propagation/parabolic_equation/air/path_air.h"
+#include "propagation/parabolic_equation/air/refractivity.h"
+#include "propagation/parabolic_equation/march/march.h"
+#include "propagation/parabolic_equation/march/march_azimuths.h"
+#include "propagation/parabolic_equation/march/march_cells.h"
+#include "propagation/parabolic_equation/march/march_grid.h"
+#include "propagation/parabolic_equation/march/sine_transform.h"
 #include "tests/support/errors.h"
 
 namespace emscape::propagation {

@@ -1,5 +1,5 @@
 // Profiles of refractivity: sums, means, ducts, bulk inputs, and the air along a path.
-#include "propagation/parabolic_equation/refractivity.h"
+#include "propagation/parabolic_equation/air/refractivity.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,11 +9,11 @@
 
 #include "emscape/base/units.h"
 #include "propagation/air/moist_air.h"
-#include "propagation/parabolic_equation/bulk_duct.h"
-#include "propagation/parabolic_equation/ducts.h"
-#include "propagation/parabolic_equation/march.h"
-#include "propagation/parabolic_equation/path_air.h"
-#include "propagation/parabolic_equation/refractivity_field.h"
+#include "propagation/parabolic_equation/air/bulk_duct.h"
+#include "propagation/parabolic_equation/air/ducts.h"
+#include "propagation/parabolic_equation/air/path_air.h"
+#include "propagation/parabolic_equation/air/refractivity_field.h"
+#include "propagation/parabolic_equation/march/march.h"
 #include "tests/support/errors.h"
 
 namespace emscape::propagation {

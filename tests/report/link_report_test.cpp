@@ -1,5 +1,5 @@
 // Links by the names of their ends.
-#include "report/link_report.h"
+#include "report/paths/link_report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // Options of maps by their names.
-#include "report/map_options.h"
+#include "report/maps/map_options.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

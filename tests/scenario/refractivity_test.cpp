@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "emscape/scenario/file/scenario_file.h"
-#include "propagation/parabolic_equation/bulk_duct.h"
-#include "propagation/parabolic_equation/refractivity_field.h"
+#include "propagation/parabolic_equation/air/bulk_duct.h"
+#include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "scenario/file/parameters.h"
 #include "tests/scenario/scenario_files.h"
 

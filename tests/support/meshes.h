@@ -4,7 +4,7 @@
 #include <functional>
 #include <random>
 
-#include "emscape/volume/mesh.h"
+#include "emscape/volume/mesh/mesh.h"
 
 namespace emscape::test {
 

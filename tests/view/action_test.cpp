@@ -1,4 +1,4 @@
-#include "apps/view/session/action.h"
+#include "apps/view/commands/action.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "apps/view/session/input_queue.h"
+#include "apps/view/commands/input_queue.h"
 #include "emscape/base/error.h"
 #include "tests/support/files.h"
 

@@ -1,4 +1,4 @@
-#include "apps/view/session/background_jobs.h"
+#include "apps/view/parts/background_jobs.h"
 
 #include <gtest/gtest.h>
 

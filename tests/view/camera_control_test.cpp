@@ -1,4 +1,4 @@
-#include "apps/view/session/camera_control.h"
+#include "apps/view/parts/camera_control.h"
 
 #include <gtest/gtest.h>
 

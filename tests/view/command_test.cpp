@@ -1,4 +1,4 @@
-#include "apps/view/session/command.h"
+#include "apps/view/commands/command.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

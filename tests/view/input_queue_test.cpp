@@ -1,4 +1,4 @@
-#include "apps/view/session/input_queue.h"
+#include "apps/view/commands/input_queue.h"
 
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>

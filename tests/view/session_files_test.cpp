@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "apps/view/files/recent_files.h"
-#include "apps/view/session/opening.h"
+#include "apps/view/parts/opening.h"
 #include "apps/view/session/session_opener.h"
 #include "emscape/base/error.h"
 #include "emscape/render/picture/image.h"

@@ -1,4 +1,4 @@
-#include "apps/view/session/undo_order.h"
+#include "apps/view/parts/undo_order.h"
 
 #include <gtest/gtest.h>
 

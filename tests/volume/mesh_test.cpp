@@ -1,4 +1,4 @@
-#include "emscape/volume/mesh.h"
+#include "emscape/volume/mesh/mesh.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

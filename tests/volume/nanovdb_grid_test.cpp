@@ -5,7 +5,7 @@
 #include "emscape/volume/device_volume.h"
 #include "tests/support/gpu.h"
 #include "tests/volume/sample_volumes.h"
-#include "volume/sparse_grid.h"
+#include "volume/sparse/sparse_grid.h"
 
 namespace emscape::volume {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "tests/support/files.h"
 #include "tests/volume/sample_volumes.h"
-#include "volume/nanovdb_wrapper.h"
+#include "volume/sparse/nanovdb_wrapper.h"
 
 namespace emscape::volume {
 namespace {

@@ -1,4 +1,4 @@
-#include "volume/vdb.h"
+#include "volume/sparse/vdb.h"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>

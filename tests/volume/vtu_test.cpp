@@ -9,7 +9,7 @@
 #include "tests/support/errors.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temporary_folder.h"
-#include "volume/mesh_file.h"
+#include "volume/mesh/mesh_file.h"
 #include "volume/vtk/vti.h"
 
 namespace emscape::volume {

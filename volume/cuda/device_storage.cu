@@ -4,7 +4,7 @@
 
 #include "base/cuda/staged_copy.h"
 #include "volume/cuda/device_storage.h"
-#include "volume/sparse_grid.h"
+#include "volume/sparse/sparse_grid.h"
 
 namespace emscape::volume {
 namespace {

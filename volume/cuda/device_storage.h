@@ -10,7 +10,7 @@
 #include "base/cuda/cuda_memory.h"
 #include "emscape/volume/device_volume.h"
 #include "volume/bricks.h"
-#include "volume/sparse_block.h"
+#include "volume/sparse/sparse_block.h"
 
 #if defined(__CUDACC__)
 #include <surface_indirect_functions.h>

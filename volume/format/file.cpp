@@ -8,8 +8,8 @@
 
 #include "volume/format/raw.h"
 #include "volume/nvdb/nvdb.h"
+#include "volume/sparse/vdb.h"
 #include "volume/stored_range.h"
-#include "volume/vdb.h"
 #include "volume/vtk/vti.h"
 
 namespace emscape::volume {

@@ -1,8 +1,8 @@
 // Reading, writing and conversion by OpenVDB, whose library is loaded at the first use.
 #include "base/loaded_library.h"
 #include "volume/nvdb/nanovdb_grid.h"
-#include "volume/vdb.h"
-#include "volume/vdb_functions.h"
+#include "volume/sparse/vdb.h"
+#include "volume/sparse/vdb_functions.h"
 
 #define EMSCAPE_TEXT_OF(name) #name
 #define EMSCAPE_TEXT(name) EMSCAPE_TEXT_OF(name)

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "emscape/volume/dense_volume.h"
-#include "volume/nanovdb_wrapper.h"
+#include "volume/sparse/nanovdb_wrapper.h"
 
 namespace emscape::volume {
 

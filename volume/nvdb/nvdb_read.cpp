@@ -6,9 +6,9 @@
 #include "volume/byte_reader.h"
 #include "volume/description_check.h"
 #include "volume/foreign.h"
-#include "volume/nanovdb_wrapper.h"
 #include "volume/nvdb/nvdb.h"
-#include "volume/sparse.h"
+#include "volume/sparse/nanovdb_wrapper.h"
+#include "volume/sparse/sparse.h"
 #include "volume/volume_json.h"
 
 namespace emscape::volume {

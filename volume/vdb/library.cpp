@@ -1,4 +1,4 @@
-#include "volume/vdb_functions.h"
+#include "volume/sparse/vdb_functions.h"
 
 using namespace emscape;
 

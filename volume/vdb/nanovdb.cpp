@@ -1,8 +1,8 @@
 // The only unit that converts OpenVDB grids to NanoVDB: it takes long to compile.
 #include <nanovdb/util/OpenToNanoVDB.h>
 
+#include "volume/sparse/vdb_functions.h"
 #include "volume/vdb/grid.h"
-#include "volume/vdb_functions.h"
 
 namespace emscape::volume::vdb {
 

@@ -4,7 +4,7 @@
 
 #include "volume/description_check.h"
 #include "volume/foreign.h"
-#include "volume/mesh_file.h"
+#include "volume/mesh/mesh_file.h"
 #include "volume/volume_json.h"
 #include "volume/voxel_type.h"
 #include "volume/vtk/vtk_xml.h"

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "base/text/utf8.h"
-#include "volume/mesh_file.h"
+#include "volume/mesh/mesh_file.h"
 #include "volume/volume_json.h"
 #include "volume/vtk/vtk_xml.h"
 #include "volume/vtk/vtk_xml_write.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/common/command.h"
-#include "report/map_options.h"
+#include "report/maps/map_options.h"
 
 namespace emscape::app {
 

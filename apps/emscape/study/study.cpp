@@ -16,8 +16,8 @@
 #include "base/stopwatch.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
-#include "report/output_files.h"
-#include "report/study_results.h"
+#include "report/maps/output_files.h"
+#include "report/maps/study_results.h"
 #include "study/sweep/results/part_processes.h"
 
 namespace emscape::app {

@@ -9,7 +9,7 @@
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/parameter_rows.h"
 #include "apps/view/panels/theme.h"
-#include "apps/view/session/shown_quantity.h"
+#include "apps/view/parts/shown_quantity.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {

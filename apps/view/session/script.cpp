@@ -7,7 +7,7 @@
 #include <set>
 #include <sstream>
 
-#include "apps/view/session/input_queue.h"
+#include "apps/view/commands/input_queue.h"
 #include "base/files/file_reading.h"
 #include "base/files/json_writing.h"
 #include "emscape/base/error.h"

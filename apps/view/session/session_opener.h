@@ -4,7 +4,7 @@
 #include <functional>
 #include <memory>
 
-#include "apps/view/session/opening.h"
+#include "apps/view/parts/opening.h"
 #include "apps/view/session/session.h"
 #include "base/worker.h"
 

@@ -3,8 +3,8 @@
 
 #include <utility>
 
+#include "apps/view/parts/shown_quantity.h"
 #include "apps/view/session/session.h"
-#include "apps/view/session/shown_quantity.h"
 #include "emscape/base/error.h"
 #include "scenario/file/named_items.h"
 #include "scenario/file/parameters.h"

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "apps/view/files/file_endings.h"
-#include "apps/view/session/render_command.h"
+#include "apps/view/parts/render_command.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 #include "playback/view/view_file.h"

@@ -232,7 +232,7 @@ constexpr auto namesOf(RefractionProfile) {
   return std::array{"linear", "exponential"};
 }
 
-struct Refractivity;  // propagation/parabolic_equation/refractivity_field.h
+struct Refractivity;  // propagation/parabolic_equation/air/refractivity_field.h
 
 /// The atmosphere.
 struct Atmosphere {

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "render/cells/linear_transfer.h"
+#include "render/cells/integral/linear_transfer.h"
 #include "tests/render/instruction_sets.h"
 #include "tests/support/meshes.h"
 

@@ -10,7 +10,7 @@
 
 #include "emscape/base/error.h"
 #include "render/cells/cell_march.h"
-#include "render/cells/linear_transfer.h"
+#include "render/cells/integral/linear_transfer.h"
 #include "render/scene/scene.h"
 #include "tests/support/errors.h"
 #include "tests/support/meshes.h"

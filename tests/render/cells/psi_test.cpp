@@ -1,4 +1,4 @@
-#include "render/cells/psi.h"
+#include "render/cells/integral/psi.h"
 
 #include <gtest/gtest.h>
 

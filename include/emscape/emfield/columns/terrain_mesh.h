@@ -9,7 +9,7 @@
 #include "emscape/emfield/columns/surface.h"
 #include "emscape/scenario/model/scenario.h"
 #include "emscape/scenario/terrain/terrain.h"
-#include "emscape/volume/mesh.h"
+#include "emscape/volume/mesh/mesh.h"
 
 namespace emscape::emfield {
 

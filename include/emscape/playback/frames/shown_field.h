@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "emscape/render/transfer/transfer_function.h"
-#include "emscape/volume/mesh.h"
+#include "emscape/volume/mesh/mesh.h"
 #include "emscape/volume/volume.h"
 
 namespace emscape::playback {

@@ -14,7 +14,7 @@
 #include "emscape/render/scene/height_field.h"
 #include "emscape/render/scene/render_settings.h"
 #include "emscape/render/transfer/transfer_function.h"
-#include "emscape/volume/mesh.h"
+#include "emscape/volume/mesh/mesh.h"
 
 namespace emscape::render {
 

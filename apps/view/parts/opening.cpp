@@ -1,0 +1,101 @@
+#include "apps/view/parts/opening.h"
+
+#include "emscape/base/error.h"
+#include "emscape/playback/frames/inputs.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "playback/view/view_file.h"
+
+namespace emscape::view {
+namespace {
+
+using scenario::Edit;
+
+bool applies(const std::string& file, const std::vector<Edit>& edits) {
+  return scenario::parseScenario(file, edits).scenario != nullptr;
+}
+
+/// Removes edits that no longer apply to the scenario.
+void checkScenario(const std::string& file, std::vector<Edit>& edits, std::string& left_out) {
+  playback::requireScenarioFile(file);
+  if (applies(file, edits)) return;
+  scenario::loadScenario(file);  // throws its errors
+  std::vector<Edit> kept;
+  for (const Edit& edit : edits) {
+    kept.push_back(edit);
+    if (applies(file, kept)) continue;
+    kept.pop_back();
+    left_out += (left_out.empty() ? "" : ", ") + scenario::toString(edit);
+  }
+  edits = kept;
+}
+
+void checkInput(const ViewOptions& options, Opening& opening) {
+  switch (playback::inputKindOf(options.view.input)) {
+    case playback::InputKind::scenario:
+      checkScenario(options.view.input, opening.options.view.edits, opening.left_out);
+      break;
+    case playback::InputKind::volume:
+      if (!options.view.scenario.empty()) {
+        checkScenario(options.view.scenario, opening.options.view.edits, opening.left_out);
+      }
+      break;
+    case playback::InputKind::mesh:
+      render::checkCellSettings(options.view.settings);
+      if (!options.view.scenario.empty()) {
+        checkScenario(options.view.scenario, opening.options.view.edits, opening.left_out);
+      }
+      break;
+    case playback::InputKind::elevation:
+    case playback::InputKind::antenna:
+      throw Error(ErrorCode::bad_input, {options.view.input, 0, 0},
+                  "neither a scenario nor a volume: open the scenario that names it");
+  }
+}
+
+}  // namespace
+
+Opening prepareOpening(const OpenRequest& request, const ViewOptions& present) {
+  playback::inputKindOf(request.file);  // throws if there is no such file
+  Opening opening;
+  opening.options = present;
+  ViewOptions& options = opening.options;
+  using playback::JsonContent;
+  switch (playback::jsonContentOf(request.file)) {
+    case JsonContent::transfer:
+      if (present.view.input.empty()) {
+        throw Error(ErrorCode::bad_input, {request.file, 0, 0},
+                    "colours, which need a volume: open a scenario or volumes first");
+      }
+      opening.colors = request.file;
+      return opening;
+    case JsonContent::view:
+      if (present.view.input.empty()) {
+        throw Error(ErrorCode::bad_input, {request.file, 0, 0},
+                    "a view of some input: open the scenario or the volumes first");
+      }
+      options.view = playback::readViewState(request.file);
+      playback::setInput(options.view, present.view);
+      if (options.view.open_panels.empty()) options.view.open_panels = present.view.open_panels;
+      options.state = request.file;
+      options.offers_kept_view = false;
+      break;
+    case JsonContent::other:
+    case JsonContent::header:  // checkInput() refuses these two
+    case JsonContent::series:
+      if (request.view) options.view = *request.view;
+      playback::setInput(options.view, present.view);
+      if (request.file != present.view.input) options.view.mesh.clear();  // chosen for that scenario
+      options.view.input = request.file;
+      options.view.scenario = request.scenario;
+      options.state.clear();
+      options.offers_kept_view = !request.view;
+      break;
+  }
+  options.view.transfer_file.clear();
+  options.unsaved_edits = request.unsaved_edits;
+  checkInput(options, opening);
+  if (!opening.left_out.empty()) options.state.clear();
+  return opening;
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,118 @@
+#include "report/maps/output_files.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <system_error>
+
+#include "base/files/file_reading.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/study/maps/products.h"
+
+namespace emscape::report {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool isSame(const fs::path& a, const fs::path& b) {
+  std::error_code failed;
+  if (fs::exists(a, failed) && fs::exists(b, failed)) return fs::equivalent(a, b, failed);
+  // An absolute path, because weakly_canonical() leaves a name in the working folder relative.
+  return fs::weakly_canonical(fs::absolute(a, failed), failed) ==
+         fs::weakly_canonical(fs::absolute(b, failed), failed);
+}
+
+/// True for a name that `coverage` and `compare` give: PRODUCT_..., or their own.
+bool isNameOfMap(const std::string& name) {
+  const auto begins = [&](const std::string& word) { return name.rfind(word, 0) == 0; };
+  const auto& products = study::productTable();
+  return begins("coverage.") || begins("compare.") ||
+         std::any_of(products.begin(), products.end(),
+                     [&](const auto& product) { return begins(product.name + std::string("_")); });
+}
+
+/// True for a file in the folder maps, or a symbolic link to one, that has the name of a map.
+bool mayBeMapIn(const fs::path& maps, const fs::path& file) {
+  std::error_code failed;
+  const fs::path named = fs::absolute(file, failed), target = fs::weakly_canonical(named, failed);
+  return (isSame(named.parent_path(), maps) && isNameOfMap(named.filename())) ||
+         (isSame(target.parent_path(), maps) && isNameOfMap(target.filename()));
+}
+
+/// @param file  of scenario::filesOf()
+std::string whatIs(const std::string& file, const scenario::Scenario& scenario) {
+  return file == scenario.file ? "the scenario" : "a file that the scenario names";
+}
+
+[[noreturn]] void refuse(const NamedFile& output, const std::string& what) {
+  throw Error(ErrorCode::usage, fmt::format("{}: {} is {}", output.name, output.file, what));
+}
+
+/// True for a report that this program wrote.
+bool isOwnReport(const fs::path& file) {
+  const std::string text = readWholeText(file);
+  if (file.extension() == ".html") return text.find("<p class=\"subtitle\">") != std::string::npos;
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  return json.is_object() && json.contains("emscape");
+}
+
+}  // namespace
+
+std::vector<NamedFile> outputsOf(const std::string& option, const std::vector<std::string>& files) {
+  std::vector<NamedFile> outputs;
+  for (const std::string& file : files) outputs.push_back({option, file});
+  return outputs;
+}
+
+void checkOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs,
+                  const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios) {
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const NamedFile& output = outputs[i];
+    if (output.file.empty()) continue;
+    for (std::size_t other = 0; other < i; ++other) {
+      if (!outputs[other].file.empty() && isSame(output.file, outputs[other].file))
+        refuse(output, "also the output of " + outputs[other].name);
+    }
+    if (!fs::is_regular_file(output.file)) continue;
+    for (const NamedFile& input : inputs) {
+      if (!input.file.empty() && isSame(output.file, input.file)) refuse(output, input.name);
+    }
+    for (const auto& scenario : scenarios) {
+      for (const std::string& file : scenario::filesOf(*scenario)) {
+        if (!file.empty() && isSame(output.file, file)) refuse(output, whatIs(file, *scenario));
+      }
+    }
+  }
+}
+
+void checkReports(const fs::path& folder, const std::vector<std::string>& names, const std::string& option) {
+  for (const std::string& name : names) {
+    const fs::path file = folder / name;
+    if (fs::exists(file) && !isOwnReport(file)) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("{}: {} would be replaced, which is no report of emscape; use another folder",
+                              option, file.string()));
+    }
+  }
+}
+
+void checkMapFolder(const fs::path& folder,
+                    const std::vector<std::shared_ptr<const scenario::Scenario>>& scenarios,
+                    const std::string& option) {
+  checkReports(folder, {"study.json", "report.json", "report.html"}, option);
+  const fs::path maps = folder / "maps";
+  if (!fs::is_directory(maps)) return;
+  for (const auto& scenario : scenarios) {
+    for (const std::string& file : scenario::filesOf(*scenario)) {
+      if (!file.empty() && mayBeMapIn(maps, file)) {
+        throw Error(ErrorCode::usage,
+                    fmt::format("{}: {} is {}, which a map could replace; use another folder", option, file,
+                                whatIs(file, *scenario)));
+      }
+    }
+  }
+}
+
+}  // namespace emscape::report
