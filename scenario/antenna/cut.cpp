@@ -78,7 +78,7 @@ std::vector<CutRow> normalizedRows(AxisKind kind, std::vector<CutRow> rows) {
 
 MeasuredCut::MeasuredCut(AxisKind kind, std::vector<CutRow> rows, const SourceLocation& file,
                          const char* what)
-    : axis_(kind, anglesOf(rows = normalizedRows(kind, std::move(rows))), file, what),
+    : axis_(kind, anglesOf(rows = normalizedRows(kind, rows)), file, what),
       amplitudes_(axis_.angles_deg().size(), -1.0) {
   for (const CutRow& row : rows) {
     double& amplitude = amplitudes_[axis_.indexOf(row.angle_deg)];
