@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "emscape/base/error.h"
+#include "emscape/render/transfer/transfer_function.h"
 #include "emscape/volume/statistics.h"
 
 namespace emscape::render {
