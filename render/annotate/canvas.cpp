@@ -128,6 +128,19 @@ void Canvas::polygon(const std::vector<Point2>& points, const Ink& ink) {
   cairo_fill(cairo_.get());
 }
 
+void Canvas::outside(const std::vector<Point2>& polygon, const Rect& rect, const Ink& ink) {
+  cairo_save(cairo_.get());
+  cairo_new_path(cairo_.get());
+  cairo_rectangle(cairo_.get(), rect.x, rect.y, rect.width, rect.height);
+  cairo_clip(cairo_.get());
+  setInk(ink);
+  path(polygon, true);
+  cairo_rectangle(cairo_.get(), rect.x, rect.y, rect.width, rect.height);
+  cairo_set_fill_rule(cairo_.get(), CAIRO_FILL_RULE_EVEN_ODD);
+  cairo_fill(cairo_.get());
+  cairo_restore(cairo_.get());
+}
+
 void Canvas::outline(const std::vector<Point2>& points, const Ink& ink, double width, bool closed,
                      bool dashed) {
   setInk(ink);

@@ -68,6 +68,8 @@ class Canvas {
 
   void line(const Point2& from, const Point2& to, const Ink& ink, double width, bool dashed = false);
   void polygon(const std::vector<Point2>& points, const Ink& ink);
+  /// Fills a rectangle without the polygon in it.
+  void outside(const std::vector<Point2>& polygon, const Rect& rect, const Ink& ink);
   void outline(const std::vector<Point2>& points, const Ink& ink, double width, bool closed,
                bool dashed = false);
   void disc(const Point2& center, double radius, const Ink& ink);

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "emscape/base/error.h"
 #include "render/annotate/overlay_parts.h"
@@ -258,6 +259,13 @@ std::string unitText(const std::string& unit) {
   replaceAll(text, "m3", "m³");
   replaceAll(text, "dBu", "dBµ");
   return text;
+}
+
+std::string displayText(const std::string& text) {
+  std::string shown = text;
+  for (const auto& [from, to] : {std::pair{">= ", "≥ "}, {"/m2", "/m²"}, {" m2", " m²"}, {"km2", "km²"}})
+    replaceAll(shown, from, to);
+  return shown;
 }
 
 std::string quantityTitle(const std::string& quantity, const std::string& unit) {

@@ -13,47 +13,6 @@ constexpr double kRadius = 8;         // of a symbol, at 1200 x 900
 constexpr double kBeamLength = 0.14;  // in diagonals of the drawn box
 constexpr double kHiddenAlpha = 0.5;
 
-std::vector<Point2> turned(const std::vector<Point2>& shape, const Point2& center, double radius) {
-  std::vector<Point2> points;
-  for (const Point2& p : shape) points.push_back(center + p * radius);
-  return points;
-}
-
-/// Radar: disc with a dish's arc; transmitter: triangle; jammer: diamond; receiver: square; platform: small
-/// disc.
-void drawSymbol(Canvas& canvas, const Style& style, const Marker& marker, const Point2& at, double alpha) {
-  const double radius = kRadius * style.unit;
-  const Ink fill{colorOf(marker.kind), marker.active ? alpha : 0.15 * alpha};
-  const Ink line{marker.active ? parseColor("#10141b") : colorOf(marker.kind), alpha};
-  const double width = 1.6 * style.unit;
-  std::vector<Point2> shape;
-  switch (marker.kind) {
-    case MarkerKind::transmitter:
-      shape = {{0, -1.15}, {1.05, 0.75}, {-1.05, 0.75}};
-      break;
-    case MarkerKind::jammer:
-      shape = {{0, -1.2}, {1.2, 0}, {0, 1.2}, {-1.2, 0}};
-      break;
-    case MarkerKind::receiver:
-      shape = {{-0.85, -0.85}, {0.85, -0.85}, {0.85, 0.85}, {-0.85, 0.85}};
-      break;
-    case MarkerKind::radar:
-    case MarkerKind::platform: {
-      const double part = marker.kind == MarkerKind::radar ? 1.0 : 0.6;
-      canvas.disc(at, part * radius, fill);
-      canvas.circle(at, part * radius, line, width);
-      if (marker.kind == MarkerKind::radar) {
-        canvas.arc(at, 0.45 * radius, -kPi, 0, line, width);
-        canvas.line(at, at + Point2{0, 0.55 * radius}, line, width);
-      }
-      return;
-    }
-  }
-  const std::vector<Point2> points = turned(shape, at, radius);
-  canvas.polygon(points, fill);
-  canvas.outline(points, line, width, true);
-}
-
 void drawStem(Canvas& canvas, const Style& style, const Projector& p, const Marker& marker, const Point2& at,
               double alpha) {
   if (!marker.ground_m) return;
@@ -137,22 +96,6 @@ void drawLabel(Canvas& canvas, const Style& style, const PlacedMarker& placed, s
 
 }  // namespace
 
-Rgb colorOf(MarkerKind kind) {
-  switch (kind) {
-    case MarkerKind::radar:
-      return parseColor("#ffffff");
-    case MarkerKind::transmitter:
-      return parseColor("#9fe0ff");
-    case MarkerKind::jammer:
-      return parseColor("#ff6b6b");
-    case MarkerKind::receiver:
-      return parseColor("#ffd166");
-    case MarkerKind::platform:
-      break;
-  }
-  return parseColor("#d0d7de");
-}
-
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
                  const std::vector<Marker>& markers, const HiddenTest& hidden, std::vector<Rect>& taken) {
   std::vector<PlacedMarker> placed;
@@ -166,7 +109,9 @@ void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
   }
   for (const PlacedMarker& p : placed) drawStem(canvas, style, projector, *p.marker, p.at, p.alpha);
   for (const PlacedMarker& p : placed) drawBeam(canvas, style, projector, *p.marker, p.at, p.alpha, taken);
-  for (const PlacedMarker& p : placed) drawSymbol(canvas, style, *p.marker, p.at, p.alpha);
+  for (const PlacedMarker& p : placed) {
+    drawSymbol(canvas, p.marker->kind, p.marker->active, p.at, kRadius * style.unit, p.alpha);
+  }
   for (const PlacedMarker& p : placed) drawLabel(canvas, style, p, taken);
 }
 

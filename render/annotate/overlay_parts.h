@@ -53,6 +53,11 @@ void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
                  const std::vector<Marker>& markers, const HiddenTest& hidden, std::vector<Rect>& taken);
 /// Colour of a symbol and of its parts.
 Rgb colorOf(MarkerKind kind);
+/// Radar: disc with a dish's arc; transmitter: triangle; jammer: diamond; receiver: square; platform: small
+/// disc.
+/// @param is_active  false: hollow  @param radius  pixels
+void drawSymbol(Canvas& canvas, MarkerKind kind, bool is_active, const Point2& at, double radius,
+                double alpha = 1);
 /// A compass rose on the ground in the camera's perspective, centred at a point.
 void drawCompass(Canvas& canvas, const Style& style, const Camera& camera, const Point2& center,
                  double radius);

@@ -399,6 +399,7 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   }
   MapGrid grid;
   grid.cell_m = cell_m;
+  grid.area = area;
   const gdal::SpatialReference earth = wgs84Reference();
   const gdal::SpatialReference reference = referenceOf(crs, middleOf(area), grid.crs);
   grid.wkt = wkt2Of(reference.get());

@@ -6,11 +6,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <random>
 #include <string>
 
 #include "emscape/study/maps/area.h"
 #include "emscape/study/maps/map_grid.h"
+#include "render/transfer/oklab.h"
 #include "study/files/map_colors.h"
+#include "study/files/map_frame.h"
+#include "study/files/map_labels.h"
+#include "study/files/map_relief.h"
 
 namespace emscape::study {
 namespace {
@@ -131,6 +136,142 @@ TEST(MapPicture, ManyCountsHaveABarWithWholeNumbers) {
   EXPECT_EQ(legend.function.lowest(), 0);
   EXPECT_EQ(legend.function.highest(), 150);
   EXPECT_TRUE(colorOf(map, legend, 0));
+}
+
+double distance(const render::Oklab& a, const render::Oklab& b) {
+  return std::hypot(a.lightness - b.lightness, a.a - b.a, a.b - b.b);
+}
+
+TEST(MapPicture, ReliefChangesOnlyTheLightnessOfColors) {
+  std::vector<render::Rgb> colors;
+  for (int n = 0; n < 21; ++n) colors.push_back(render::categoryColor(n));
+  for (const char* name : {"viridis", "diverging"})
+    for (double at = 0; at <= 1; at += 0.05) colors.push_back(render::colorMap(name).at(at));
+  for (const render::Rgb& color : colors) {
+    const render::Oklab legend = render::oklabOf(color);
+    for (float shade = -1.7F; shade <= 0.3F; shade += 0.05F) {
+      const render::Oklab shown = render::oklabOf(shadedColor(color, shade));
+      EXPECT_LE(std::abs(shown.lightness - legend.lightness), kMaxRelief + 1e-3);
+      EXPECT_LE(std::hypot(shown.a - legend.a, shown.b - legend.b), 3e-3) << "hue and chroma";
+    }
+    const render::Rgb level = shadedColor(color, 0);
+    EXPECT_TRUE(level.r == color.r && level.g == color.g && level.b == color.b) << "level ground";
+  }
+}
+
+/// Steep waves, with slopes in all directions.
+std::vector<float> hills(const MapGrid& grid) {
+  std::vector<float> ground_m;
+  for (int p = 0; p < static_cast<int>(grid.pixels()); ++p) {
+    const double i = p % grid.width, j = p / grid.width;
+    ground_m.push_back(static_cast<float>(grid.cell_m * (std::sin(i) + std::cos(1.3 * j))));
+  }
+  return ground_m;
+}
+
+TEST(MapPicture, EachClassIsNearestToItsOwnColorInTheLegend) {
+  const MapGrid grid = makeMapGrid(circularArea({10, 20, 8000}), 400, "local");
+  Map map;
+  map.name = map.title = "best";
+  map.kind = MapKind::category;
+  constexpr int kClasses = 7;
+  for (int n = 0; n < kClasses; ++n) map.labels.push_back("radar " + std::to_string(n));
+  for (std::size_t p = 0; p < grid.pixels(); ++p) map.values.push_back(static_cast<float>(p % kClasses));
+  MapPictureOptions options;
+  options.ground_msl_m = hills(grid);
+  const render::Image8 image = drawMap(grid, map, options);
+  const render::Style style({options.width, options.width * 3 / 4}, render::Theme::light);
+  const double left = 84 * style.unit, top = 96 * style.unit;
+  const double scale = (options.width - left - 190 * style.unit) / grid.width;
+  int right = 0, all = 0;
+  for (std::size_t p = 0; p < grid.pixels(); ++p) {
+    if (std::isnan(grid.positions[p].latitude_deg)) continue;
+    const std::uint8_t* const rgba =
+        image.at(static_cast<int>(left + (static_cast<double>(p % grid.width) + 0.5) * scale),
+                 static_cast<int>(top + (static_cast<double>(p / grid.width) + 0.5) * scale));
+    const render::Oklab shown =
+        render::oklabOf({static_cast<float>(rgba[0]) / 255, static_cast<float>(rgba[1]) / 255,
+                         static_cast<float>(rgba[2]) / 255});
+    int nearest = 0;
+    for (int n = 1; n < kClasses; ++n) {
+      if (distance(shown, render::oklabOf(render::categoryColor(n))) <
+          distance(shown, render::oklabOf(render::categoryColor(nearest))))
+        nearest = n;
+    }
+    ++all;
+    right += nearest == static_cast<int>(p % kClasses) ? 1 : 0;
+  }
+  EXPECT_GT(right, 0.97 * all) << "the others are below the lines of the graticule";
+}
+
+TEST(MapPicture, TheAreaEndsAtItsBorderNotAtPixels) {
+  const MapGrid grid = makeMapGrid(parseArea("bbox:-84.4,36,-84,36.3"), 1000, "utm");
+  Map map = jamLoss(grid);
+  std::fill(map.values.begin(), map.values.end(), 1.0F);
+  const render::Image8 image = drawMap(grid, map, {});
+  const render::Style style({1200, 900}, render::Theme::light);
+  const double width = 1200 - (84 + 190) * style.unit;
+  const MapFrame frame(grid, {84 * style.unit, 96 * style.unit, width, width * grid.height / grid.width},
+                       style);
+  const auto isWhite = [&](const render::Point2& at) {
+    const std::uint8_t* const rgba = image.at(static_cast<int>(at.x), static_cast<int>(at.y));
+    return rgba[0] == 255 && rgba[1] == 255 && rgba[2] == 255;
+  };
+  for (double latitude_deg = 36.02; latitude_deg < 36.28; latitude_deg += 0.005) {
+    for (const auto& [longitude_deg, out] : {std::pair{-84.4, -1.0}, std::pair{-84.0, 1.0}}) {
+      const render::Point2 at = frame.at({GeoPoint{latitude_deg, longitude_deg}}).front();
+      EXPECT_FALSE(isWhite({at.x - 3 * out, at.y})) << latitude_deg << " " << longitude_deg;
+      const double outside = at.x + 3 * out;
+      if (outside < frame.rect().x || outside > frame.rect().x + frame.rect().width) continue;
+      EXPECT_TRUE(isWhite({outside, at.y})) << latitude_deg << " " << longitude_deg;
+    }
+  }
+}
+
+TEST(MapPicture, SeaIsLevelGroundAtMeanSeaLevel) {
+  const MapGrid grid = smallGrid();
+  std::vector<float> ground_m(grid.pixels(), 0.0F);
+  for (std::size_t p = 0; p < grid.pixels(); ++p)
+    if (p % grid.width >= 10) ground_m[p] = 5.0F + static_cast<float>(p % 7);
+  ground_m[3 * 20 + 15] = 0;  // a well, no sea
+  const std::vector<std::uint8_t> sea = seaOf(grid, ground_m);
+  for (std::size_t p = 0; p < grid.pixels(); ++p) EXPECT_EQ(sea[p], p % grid.width < 10 ? 1 : 0) << p;
+  EXPECT_EQ(seaOf(grid, {}), std::vector<std::uint8_t>(grid.pixels(), 0)) << "unknown ground is no sea";
+}
+
+TEST(MapPicture, DegreesGoOnAcrossTheAntimeridian) {
+  std::vector<std::string> texts;
+  for (const DegreeTick& tick : degreeTicks(179.3, 180.8, 3, true)) texts.push_back(tick.text);
+  EXPECT_EQ(texts, (std::vector<std::string>{"179.5°E", "180.0°", "179.5°W"}));
+  texts.clear();
+  for (const DegreeTick& tick : degreeTicks(-1, 1, 2, false)) texts.push_back(tick.text);
+  EXPECT_EQ(texts, (std::vector<std::string>{"1°S", "0°", "1°N"}));
+}
+
+TEST(MapPicture, LabelsNeitherOverlapNorLeaveTheMap) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> x(0, 900), y(0, 700), width(30, 160);
+  std::vector<render::Point2> at;
+  std::vector<render::Rect> extents;
+  for (int n = 0; n < 300; ++n) {
+    at.push_back({x(random), y(random)});
+    extents.push_back({0, 0, width(random), 15});
+  }
+  const render::Rect bounds{0, 0, 900, 700};
+  constexpr double kRadius = 7;
+  const auto places = placeLabels(at, kRadius, extents, bounds);
+  int placed = 0;
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    if (!places[n]) continue;
+    ++placed;
+    const render::Rect& box = *places[n];
+    EXPECT_TRUE(box.x >= 0 && box.y >= 0 && box.x + box.width <= 900 && box.y + box.height <= 700);
+    for (std::size_t m = 0; m < places.size(); ++m) {
+      EXPECT_FALSE(m != n && places[m] && overlap(box, *places[m]));
+      EXPECT_FALSE(overlap(box, {at[m].x - kRadius, at[m].y - kRadius, 2 * kRadius, 2 * kRadius}));
+    }
+  }
+  EXPECT_GT(placed, 50);
 }
 
 TEST(MapPicture, LabelsStayOnTheMap) {

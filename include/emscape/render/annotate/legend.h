@@ -38,5 +38,7 @@ Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function
 std::string quantityTitle(const std::string& quantity, const std::string& unit);
 /// "dBW/m2" -> "dBW/m²", "dBuV/m" -> "dBµV/m".
 std::string unitText(const std::string& unit);
+/// The same within a sentence, and "SNR >= 10 dB" -> "SNR ≥ 10 dB", "12 km2" -> "12 km²".
+std::string displayText(const std::string& text);
 
 }  // namespace emscape::render

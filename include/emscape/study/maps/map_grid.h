@@ -1,6 +1,7 @@
 /// The pixels of a map: squares of a projection, and their positions on the earth.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct MapGrid {
   double left_m = 0, top_m = 0;                       ///< outer corner of the first pixel
   std::string crs;                                    ///< "EPSG:32616", or "local"
   std::string wkt;                                    ///< WKT2
+  std::optional<MapArea> area;                        ///< that the pixels cover; none: unknown
   UnsetVector<emfield::Surface::Position> positions;  ///< the pixels' centres; latitude NaN: left out
   std::vector<float> areas_m2;                        ///< of the pixels, on the ellipsoid
 
