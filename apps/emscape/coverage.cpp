@@ -35,9 +35,9 @@ void printRow(const study::MapRecord& record) {
   const std::string time = map.time_s ? fmt::format("{} s", *map.time_s) : "all";
   const std::string area =
       map.area_class < 0 ? ""
-                         : fmt::format("{:.1f} km2, {:.1f} %", summary.class_area_m2 / 1e6,
+                         : fmt::format("{:.1f} km2, {:.1f} % of known", summary.class_area_m2 / 1e6,
                                        100 * summary.class_area_m2 / std::max(summary.known_area_m2, 1.0));
-  print("  {:<16} {:<26} {:>8}  {:<24} {}\n", map.name, map.height ? study::describe(*map.height) : "", time,
+  print("  {:<16} {:<26} {:>8}  {:<28} {}\n", map.name, map.height ? study::describe(*map.height) : "", time,
         area, record.files.empty() ? "" : record.files.front());
 }
 

@@ -1,9 +1,11 @@
 #include "report/maps/compare_report.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "base/files/json_writing.h"
+#include "emscape/render/annotate/legend.h"
 #include "emscape/study/maps/area.h"
 #include "report/json.h"
 #include "report/maps/output_files.h"
@@ -149,12 +151,32 @@ Json comparisonJson(const study::Comparison& comparison, const study::ComparedSc
   return json;
 }
 
+/// "Coverage at 150 m above ground, t = 80 s: B gains 12.30 km² (1.4 %) and loses nothing."
+std::string summaryOf(const study::ComparisonRow& row, std::string product) {
+  product.front() = static_cast<char>(std::toupper(static_cast<unsigned char>(product.front())));
+  const auto part = [&](const char* verb, double area_m2) {
+    return area_m2 > 0
+               ? fmt::format("{} {} km² ({} %)", verb, km2(area_m2), percent(area_m2, row.known_area_m2))
+               : fmt::format("{} nothing", verb);
+  };
+  return fmt::format("{}{}{}: B {} and {}.", product, row.height ? " at " + heightText(row) : "",
+                     row.time_s ? fmt::format(", t = {} s", timeText(row)) : "", part("gains", row.gained_m2),
+                     part("loses", row.lost_m2));
+}
+
 /// Adds the sections "Gained and lost" and "Why". @param quantity  its name
 void addSections(study::HtmlReport& report, const study::Comparison& comparison,
                  const std::string& quantity) {
   const scenario::Quantity of = scenario::quantityFromName(quantity);
   const auto titleOfProduct = [&](study::Product product) { return study::titleOf(product, of); };
-  const auto [areas, differences] = tablesOf(comparison, titleOfProduct);
+  auto [areas, differences] = tablesOf(comparison, titleOfProduct);
+  for (std::string& column : areas.columns) column = render::displayText(column);
+  constexpr std::size_t kMaxSentences = 8;
+  std::size_t sentences = 0;
+  for (const study::ComparisonRow& row : comparison.rows) {
+    if (row.is_area && sentences++ < kMaxSentences)
+      report.summary(summaryOf(row, titleOfProduct(row.product)));
+  }
   report.section("Gained and lost");
   if (!areas.rows.empty()) report.table(areas);
   if (!differences.rows.empty()) report.table(differences);
@@ -166,7 +188,7 @@ void addSections(study::HtmlReport& report, const study::Comparison& comparison,
         "emitter with the largest value there, as emscape profile explains it.");
   }
   for (const study::ChangedArea& area : comparison.changed_areas) {
-    report.paragraph(titleOf(area) +
+    report.paragraph(render::displayText(titleOf(area)) +
                      (comparison.has_paths ? ". " + valuesText(area, study::titleOf(of)) : "."));
     if (!area.emitter.empty()) report.facts({{"A", area.a.verdict}, {"B", area.b.verdict}});
   }

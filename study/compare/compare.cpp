@@ -2,15 +2,26 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "study/compare/changed_areas.h"
 #include "study/compare/map_comparer.h"
 
 namespace emscape::study {
 namespace {
 
-void addWarnings(Comparison& comparison, const std::vector<std::string>& warnings, const char* of) {
-  for (const std::string& warning : warnings)
-    comparison.warnings.push_back(fmt::format("{}: {}", of, warning));
+/// Warnings of both scenarios are said once.
+std::vector<std::string> warningsOf(const std::vector<std::string>& of_a,
+                                    const std::vector<std::string>& of_b) {
+  const auto has = [](const std::vector<std::string>& all, const std::string& warning) {
+    return std::find(all.begin(), all.end(), warning) != all.end();
+  };
+  std::vector<std::string> warnings;
+  for (const std::string& warning : of_a)
+    warnings.push_back((has(of_b, warning) ? "A and B: " : "A: ") + warning);
+  for (const std::string& warning : of_b)
+    if (!has(of_a, warning)) warnings.push_back("B: " + warning);
+  return warnings;
 }
 
 }  // namespace
@@ -50,8 +61,7 @@ Comparison computeComparison(const ComparedScenario& a, const ComparedScenario& 
   Comparison comparison = comparer.finish();
   comparison.has_paths = true;
   for (ChangedArea& area : comparison.changed_areas) explain(area, request.coverage.quantity, a, b);
-  addWarnings(comparison, warnings_a, "A");
-  addWarnings(comparison, warnings_b, "B");
+  comparison.warnings = warningsOf(warnings_a, warnings_b);
   return comparison;
 }
 

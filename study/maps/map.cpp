@@ -26,7 +26,8 @@ std::string figureText(double value, const std::string& unit) {
 MapSummary summaryOf(const MapGrid& grid, const Map& map) {
   MapSummary summary;
   summary.min = summary.max = NAN;
-  if (map.kind == MapKind::category) summary.label_areas_m2.assign(map.labels.size(), 0);
+  if (map.kind == MapKind::category || map.kind == MapKind::classes)
+    summary.label_areas_m2.assign(map.labels.size(), 0);
   for (std::size_t p = 0; p < grid.pixels(); ++p) {
     const auto value = static_cast<double>(map.values[p]);
     if (std::isnan(value)) continue;

@@ -17,7 +17,12 @@ constexpr const char* kStyle = R"(
 body { font: 16px/1.5 sans-serif; color: #21262d; max-width: 1100px; margin: 2em auto; padding: 0 1em; }
 h1 { margin-bottom: 0; } h2 { margin-top: 2em; border-bottom: 1px solid #c9d1d9; }
 .subtitle { color: #57606a; margin-top: 0; }
+.summary, .warnings { border-left: 5px solid #0072b2; background: #f0f6fb; padding: 0.5em 1em; margin: 1em 0; }
+.summary p { margin: 0.4em 0; font-size: 1.1em; }
+.warnings { border-color: #d55e00; background: #fdf3ea; } .warnings p { margin: 0.2em 0; font-weight: bold; }
+.warnings ul { margin: 0.2em 0; padding-left: 1.2em; }
 table { border-collapse: collapse; margin: 1em 0; } caption { text-align: left; color: #57606a; }
+thead th { background: #f3f5f8; border-bottom: 2px solid #c9d1d9; }
 th, td { padding: 0.25em 0.8em; border-bottom: 1px solid #d8dee4; text-align: left; vertical-align: top; }
 .number { text-align: right; white-space: nowrap; font-variant-numeric: tabular-nums; }
 figure { margin: 1.5em 0; } figure img { max-width: 100%; height: auto; }
@@ -62,6 +67,18 @@ std::vector<bool> numberColumns(const ReportTable& table) {
 HtmlReport::HtmlReport(const std::string& title, const std::string& subtitle)
     : title_(title), subtitle_(subtitle) {}
 
+void HtmlReport::summary(const std::string& sentence) {
+  summary_ += "<p>" + escapedXml(sentence) + "</p>\n";
+}
+
+void HtmlReport::warnings(const std::vector<std::string>& texts) {
+  if (texts.empty()) return;
+  warnings_ += fmt::format("<p>⚠ {}</p>\n<ul>\n",
+                           texts.size() == 1 ? "1 warning" : fmt::format("{} warnings", texts.size()));
+  for (const std::string& text : texts) warnings_ += "<li>" + escapedXml(text) + "</li>\n";
+  warnings_ += "</ul>\n";
+}
+
 void HtmlReport::section(const std::string& title) {
   sections_.push_back(title);
   body_ += fmt::format("<h2 id=\"section{}\">{}</h2>\n", sections_.size(), escapedXml(title));
@@ -98,11 +115,9 @@ void HtmlReport::table(const ReportTable& table) {
   body_ += "</tbody></table>\n";
 }
 
-void HtmlReport::picture(const render::Image8& image, const std::string& caption) {
-  body_ += fmt::format(
-      "<figure><img alt=\"{0}\" width=\"{1}\" "
-      "src=\"data:image/png;base64,{2}\"><figcaption>{0}</figcaption></figure>\n",
-      escapedXml(caption), image.size.width, base64(render::encodePng(image)));
+void HtmlReport::picture(const render::Image8& image, const std::string& text) {
+  body_ += fmt::format("<figure><img alt=\"{}\" width=\"{}\" src=\"data:image/png;base64,{}\"></figure>\n",
+                       escapedXml(text), image.size.width, base64(render::encodePng(image)));
 }
 
 void HtmlReport::drawing(const std::string& svg, const std::string& caption) {
@@ -120,11 +135,15 @@ std::string HtmlReport::html() const {
   for (std::size_t s = 0; s < sections_.size(); ++s) {
     contents += fmt::format("<li><a href=\"#section{}\">{}</a></li>\n", s + 1, escapedXml(sections_[s]));
   }
+  const auto box = [](const char* name, const std::string& inner) {
+    return inner.empty() ? std::string() : fmt::format("<div class=\"{}\">\n{}</div>\n", name, inner);
+  };
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>{0}</title>\n"
       "<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n<p class=\"subtitle\">{2}</p>\n"
-      "<ul>\n{3}</ul>\n{4}</body>\n</html>\n",
-      escapedXml(title_), kStyle, escapedXml(subtitle_), contents, body_);
+      "{3}{4}<ul>\n{5}</ul>\n{6}</body>\n</html>\n",
+      escapedXml(title_), kStyle, escapedXml(subtitle_), box("summary", summary_), box("warnings", warnings_),
+      contents, body_);
 }
 
 void HtmlReport::write(const std::filesystem::path& file) const {

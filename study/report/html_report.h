@@ -23,6 +23,10 @@ class HtmlReport {
   /// @param subtitle  may be empty
   HtmlReport(const std::string& title, const std::string& subtitle);
 
+  /// A sentence of the summary, which stands above all sections.
+  void summary(const std::string& sentence);
+  /// Messages that a reader must not miss, below the summary.
+  void warnings(const std::vector<std::string>& texts);
   /// Begins a section. The table of contents at the top lists it.
   void section(const std::string& title);
   void paragraph(const std::string& text);
@@ -30,7 +34,8 @@ class HtmlReport {
   void facts(const std::vector<std::pair<std::string, std::string>>& facts);
   /// Adds a table. Cells with a number are right-aligned.
   void table(const ReportTable& table);
-  void picture(const render::Image8& image, const std::string& caption);
+  /// @param text  the picture in words; not shown, since pictures have a title
+  void picture(const render::Image8& image, const std::string& text);
   /// A drawing as an SVG document (Canvas::svg).
   void drawing(const std::string& svg, const std::string& caption);
 
@@ -40,7 +45,7 @@ class HtmlReport {
   void write(const std::filesystem::path& file) const;
 
  private:
-  std::string title_, subtitle_, body_;
+  std::string title_, subtitle_, summary_, warnings_, body_;
   std::vector<std::string> sections_;
 };
 

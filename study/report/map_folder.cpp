@@ -10,6 +10,7 @@
 #include "base/files/whole_file.h"
 #include "base/text/quantity_text.h"
 #include "emscape/base/error.h"
+#include "emscape/render/annotate/legend.h"
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "study/files/czml.h"
@@ -20,6 +21,7 @@
 #include "study/files/map_metadata.h"
 #include "study/files/map_picture.h"
 #include "study/files/netcdf.h"
+#include "study/report/coverage_summary.h"
 #include "study/report/earlier_outputs.h"
 #include "study/report/map_report.h"
 
@@ -149,7 +151,7 @@ struct MapFolder::State {
     const scenario::Scenario& scenario = *study.scenarios.front();
     const double time_s = map.time_s.value_or(study.times_s.front());
     MapPictureOptions options;
-    options.title = fmt::format("{}: {}", scenario.name, map.description);
+    options.title = fmt::format("{}: {}", scenario.name, render::displayText(map.description));
     options.subtitle = timesText(map);
     options.markers = markersOf(scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), time_s));
     options.ground_msl_m = ground_msl_m;
@@ -161,13 +163,16 @@ struct MapFolder::State {
     const MapGrid& grid = *study.grid;
     const scenario::QuantityInfo& quantity = scenario::info(study.quantity);
     const std::string threshold =
-        quantity.categorical ? "" : " >= " + quantityText(study.threshold, quantity.unit);
-    HtmlReport report(study.title, fmt::format("{} x {} pixels of {} m in {}; {}{}", grid.width, grid.height,
+        quantity.categorical ? ""
+                             : render::displayText(" >= " + quantityText(study.threshold, quantity.unit));
+    HtmlReport report(study.title, fmt::format("{} × {} pixels of {} m in {}; {}{}", grid.width, grid.height,
                                                grid.cell_m, grid.crs, titleOf(study.quantity), threshold));
+    if (study.scenarios.size() == 1) {
+      for (const std::string& sentence : coverageSummary(study, records)) report.summary(sentence);
+    }
+    report.warnings(warnings);
     report.section("Areas and ranges");
     report.table(tableOf(records));
-    if (!warnings.empty()) report.section("Warnings");
-    for (const std::string& warning : warnings) report.paragraph(warning);
     if (addSections) addSections(report);
     report.section("Maps");
     for (const Picture& picture : pictures) report.picture(picture.image, picture.caption);
@@ -208,7 +213,8 @@ const MapRecord& MapFolder::add(const Map& map) {
       render::writePng(state.folder / record.files.back(), picture);
     }
     if (is_in_report) {
-      state.pictures.push_back({map.description + ", " + state.timesText(map), std::move(picture)});
+      state.pictures.push_back(
+          {render::displayText(map.description) + ", " + state.timesText(map), std::move(picture)});
     }
   }
   for (const State::Collection& collection : state.collections) collection.content->add(map);

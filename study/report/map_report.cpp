@@ -11,6 +11,7 @@
 #include "base/files/json_writing.h"
 #include "base/geodesy/fast_geodesy.h"
 #include "base/text/quantity_text.h"
+#include "emscape/render/annotate/legend.h"
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "propagation/registry/model_info.h"
@@ -28,6 +29,11 @@ bool isAboveGround(const MapHeight& height) {
   return height.reference == emfield::HeightReference::ground;
 }
 
+/// Whether a map's areas are listed by label: categories, and classes that say more than yes and no.
+bool hasRowPerLabel(const Map& map) {
+  return map.kind == MapKind::category || (map.kind == MapKind::classes && map.labels.size() > 2);
+}
+
 Json toJson(const MapRecord& record) {
   const Map& map = record.map;
   Json json{
@@ -37,9 +43,14 @@ Json toJson(const MapRecord& record) {
   json["min"] = number(record.summary.min);
   json["max"] = number(record.summary.max);
   json["known_area_km2"] = record.summary.known_area_m2 / 1e6;
-  if (map.area_class >= 0) json["area_km2"] = record.summary.class_area_m2 / 1e6;
-  const std::vector<double>& areas_m2 = record.summary.label_areas_m2;
-  for (std::size_t n = 0; n < areas_m2.size(); ++n) json["areas_km2"][map.labels[n]] = areas_m2[n] / 1e6;
+  if (map.area_class >= 0) {
+    json["area_km2"] = record.summary.class_area_m2 / 1e6;
+    json["share_of_known"] = number(record.summary.class_area_m2 / record.summary.known_area_m2);
+  }
+  if (hasRowPerLabel(map)) {
+    const std::vector<double>& areas_m2 = record.summary.label_areas_m2;
+    for (std::size_t n = 0; n < areas_m2.size(); ++n) json["areas_km2"][map.labels[n]] = areas_m2[n] / 1e6;
+  }
   return json;
 }
 
@@ -184,10 +195,17 @@ std::string studyJsonOf(const MapStudy& study, const std::filesystem::path& fold
 
 ReportTable tableOf(const std::vector<MapRecord>& records) {
   ReportTable table;
-  table.columns = {"product", "height", "time (s)", "area (km2)", "share (%)", "min", "max", "unit"};
+  table.columns = {"product", "height", "time (s)", "area (km²)", "share of the known (%)",
+                   "min",     "max",    "unit"};
   table.caption =
-      "Areas are those of the ellipsoid; the share is of the area whose values are known. Min and max "
-      "are over the pixels.";
+      "Areas are those of the ellipsoid; the share is of the pixels with a known answer. Min and max are "
+      "over "
+      "the pixels.";
+  const bool has_burn_through = std::any_of(records.begin(), records.end(), [](const MapRecord& record) {
+    return record.map.name == info(Product::burn_through).name;
+  });
+  if (has_burn_through)
+    table.caption += " Burn-through: covered is the coverage, jammed what jamming takes away from it.";
   for (const MapRecord& record : records) {
     const Map& map = record.map;
     const MapSummary& summary = record.summary;
@@ -201,11 +219,13 @@ ReportTable tableOf(const std::vector<MapRecord>& records) {
       table.rows.push_back(
           {name, map.height ? describe(*map.height) : "", map.time_s ? fmt::format("{}", *map.time_s) : "all",
            area_m2 ? figureText(*area_m2 / 1e6, "km2") : "", area_m2 ? figureText(share, "percent") : "",
-           text(summary.min), text(summary.max), map.unit});
+           text(summary.min), text(summary.max), render::unitText(map.unit)});
     };
-    if (map.kind == MapKind::category) {
-      for (std::size_t n = 0; n < map.labels.size(); ++n)
-        if (summary.label_areas_m2[n] > 0)
+    if (hasRowPerLabel(map)) {
+      // Of categories those that occur; of classes all but the first, which is nothing.
+      const bool is_category = map.kind == MapKind::category;
+      for (std::size_t n = is_category ? 0 : 1; n < map.labels.size(); ++n)
+        if (!is_category || summary.label_areas_m2[n] > 0)
           addRow(map.title + ": " + map.labels[n], summary.label_areas_m2[n], false);
       continue;
     }
@@ -256,7 +276,7 @@ void addInputs(HtmlReport& report, const MapStudy& study, const std::vector<MapR
                                   : study.scenarios.front()->clock.epoch_utc);
   facts.emplace_back("radars", "look at the target, wherever their scan points");
   facts.emplace_back("projection", grid.crs);
-  facts.emplace_back("pixels", fmt::format("{} x {} of {} m", grid.width, grid.height, grid.cell_m));
+  facts.emplace_back("pixels", fmt::format("{} × {} of {} m", grid.width, grid.height, grid.cell_m));
   facts.emplace_back("heights refer to", "mean sea level by EGM96 (EPSG:5773), or the ground");
   facts.emplace_back("emscape", EMSCAPE_VERSION);
   report.facts(facts);

@@ -26,6 +26,20 @@ TEST(HtmlReport, HoldsItsPartsEscapedAndInOrder) {
   EXPECT_LT(html.find("<h2 id=\"section1\">Areas"), html.find("<h2 id=\"section2\">Inputs"));
 }
 
+TEST(HtmlReport, SummaryAndWarningsAreAboveTheContents) {
+  HtmlReport report("maps", "");
+  report.section("Areas");
+  report.summary("The radar detects a target on 62 % of the area.");
+  report.warnings({"first < second", "third"});
+  const std::string html = report.html();
+  EXPECT_THAT(html, HasSubstr("<div class=\"summary\">\n<p>The radar detects"));
+  EXPECT_THAT(html, HasSubstr("<div class=\"warnings\">\n<p>⚠ 2 warnings</p>"));
+  EXPECT_THAT(html, HasSubstr("<li>first &lt; second</li>"));
+  EXPECT_LT(html.find("class=\"summary\""), html.find("class=\"warnings\""));
+  EXPECT_LT(html.find("class=\"warnings\""), html.find("<a href=\"#section1\">"));
+  EXPECT_THAT(HtmlReport("maps", "").html(), Not(HasSubstr("<div"))) << "no empty boxes";
+}
+
 TEST(HtmlReport, InlinesPicturesAndHasNoExternalReferences) {
   HtmlReport report("maps", "");
   render::Image8 image;

@@ -78,7 +78,8 @@ StudySpec loadStudy(const std::string& file, const std::vector<scenario::Edit>& 
   reading.tries_values = tries_values;
   reading.file = file;
   const std::string bytes = readWholeText(file, kMaxStudyBytes);
-  reading.original = document::readDocument(file, document::checkedUtf8(file, bytes), reading.problems);
+  reading.original =
+      document::readDocument(file, document::checkedUtf8(file, bytes, "a study"), reading.problems);
   if (!reading.original) {
     document::requireNoProblem(reading.problems);
     throw Error(ErrorCode::bad_input, {file, 0, 0}, "the file is empty");

@@ -88,10 +88,7 @@ class ReportWriter {
           {study_.variants.paths()[path], fmt::format("{}", factor.count), toString(plan_.classes[path])});
     }
     report_.table(parameters);
-    if (!results_.warnings.empty()) {
-      report_.section("Warnings");
-      for (const std::string& warning : results_.warnings) report_.paragraph(warning);
-    }
+    report_.warnings({results_.warnings.begin(), results_.warnings.end()});
   }
 
   void addSites() {

@@ -53,11 +53,12 @@ std::string figureText(double value, const std::string& unit);
 
 /// Statistics of a map.
 struct MapSummary {
-  double min = 0, max = 0;             ///< of the values; NaN if there are none
-  double known_area_m2 = 0;            ///< of the pixels with a value, on the ellipsoid
-  double class_area_m2 = 0;            ///< of the pixels in Map::area_class
-  long long largest_pixel = -1;        ///< with the largest value; -1: there is none
-  std::vector<double> label_areas_m2;  ///< of categories: of the pixels of each of Map::labels; else empty
+  double min = 0, max = 0;       ///< of the values; NaN if there are none
+  double known_area_m2 = 0;      ///< of the pixels with a value, on the ellipsoid
+  double class_area_m2 = 0;      ///< of the pixels in Map::area_class
+  long long largest_pixel = -1;  ///< with the largest value; -1: there is none
+  /// Of categories and classes: of the pixels of each of Map::labels; else empty.
+  std::vector<double> label_areas_m2;
 };
 MapSummary summaryOf(const MapGrid& grid, const Map& map);
 
