@@ -33,21 +33,24 @@ Json toJson(const std::vector<VerticalCut::Line>& lines) {
 
 VerticalReach reachOf(const VerticalDiagram& diagram, const VerticalCut& cut) {
   VerticalReach reach;
-  std::size_t covered = 0, known = 0;
+  std::size_t covered = 0, known = 0, last_known = 0, last_covered = 0;
   const std::size_t width = diagram.ranges_m.size();
   for (std::size_t i = 0; i < width; ++i) {
     for (std::size_t k = 0; k < diagram.heights_m.size(); ++k) {
       const float value = cut.values[k * width + i];
       if (std::isnan(value)) continue;
       ++known;
+      last_known = i;
       if (!(static_cast<double>(value) >= diagram.request.threshold)) continue;
       ++covered;
+      last_covered = i;
       if (reach.is_any && reach.range_m == diagram.ranges_m[i]) continue;
       reach.is_any = true;
       reach.range_m = diagram.ranges_m[i];
       reach.height_m = diagram.heights_m[k];
     }
   }
+  reach.is_at_edge = reach.is_any && last_covered == last_known;
   if (known > 0) reach.covered_part = static_cast<double>(covered) / static_cast<double>(known);
   return reach;
 }
@@ -78,6 +81,7 @@ Json verticalJson(const VerticalDiagram& diagram, bool with_grid) {
     Json of_cut{{"azimuth_deg", cut.azimuth_deg},
                 {"max_range_m", reach.is_any ? Json(reach.range_m) : Json(nullptr)},
                 {"max_range_" + height, reach.is_any ? Json(reach.height_m) : Json(nullptr)},
+                {"max_range_is_edge", reach.is_at_edge},
                 {"covered_part", reach.covered_part},
                 {"contours", toJson(cut.contours)}};
     if (request.smooth_earth) of_cut["free_space"] = toJson(cut.free_space);
@@ -111,12 +115,19 @@ std::string verticalText(const VerticalDiagram& diagram) {
   }
   out.add("  {:>11} {:>12} {:>14} {:>9}   {}\n", "azimuth deg", "farthest km", "from height m", "covered",
           "contours");
+  bool has_edge = false;
   for (const VerticalCut& cut : diagram.cuts) {
     const VerticalReach reach = reachOf(diagram, cut);
     out.add("  {:>11g} {:>12} {:>14} {:>8.1f}%   {}\n", cut.azimuth_deg,
-            reach.is_any ? fmt::format("{:.1f}", reach.range_m / 1000) : "-",
+            reach.is_any ? fmt::format("{}{:.1f}", reach.is_at_edge ? "> " : "", reach.range_m / 1000) : "-",
             reach.is_any ? fmt::format("{:.0f}", reach.height_m) : "-", 100 * reach.covered_part,
             cut.contours.size());
+    has_edge = has_edge || reach.is_at_edge;
+  }
+  if (has_edge) {
+    out.add(
+        "  >: the diagram ends there, or the elevation data; the threshold is still reached (--range M goes "
+        "farther)\n");
   }
   return out.take();
 }

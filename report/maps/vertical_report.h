@@ -12,6 +12,7 @@ namespace emscape::report {
 /// fraction of points at which it is reached.
 struct VerticalReach {
   bool is_any = false;
+  bool is_at_edge = false;  ///< of the diagram or of what is known: the threshold may be reached beyond it
   double range_m = 0, height_m = 0;
   double covered_part = 0;  ///< fraction of the points with a value
 };

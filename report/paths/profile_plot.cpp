@@ -183,9 +183,25 @@ class ProfilePlot {
     const Point2 ground = at(post, groundAt(post)), top = at(post, end.height_msl_m);
     canvas_.line(ground, top, kMast, 2.5 * unit_, align == Align::right);
     canvas_.disc(top, 6 * unit_, kMast);
-    label(top.x, align, kMast,
-          {name, fmt::format("{:.0f} m, {:.0f} m above ground", end.height_msl_m,
-                             end.height_msl_m - groundAt(post))});
+    labelEnd(top, align,
+             {name, fmt::format("{:.0f} m, {:.0f} m above ground", end.height_msl_m,
+                                end.height_msl_m - groundAt(post))});
+  }
+
+  /// The label of an end beside its point: above it, or below it if the ray goes up from there.
+  void labelEnd(const Point2& top, Align align, const std::array<std::string, 2>& words) {
+    const double row = 20 * unit_, gap = 12 * unit_;
+    const double width = std::max(canvas_.textBox(words[0], 15 * unit_, Weight::bold).width,
+                                  canvas_.textBox(words[1], 14 * unit_).width);
+    const Point2 other = align == Align::left ? at(profile_.range_m, profile_.end.height_msl_m)
+                                              : at(0.0, profile_.begin.height_msl_m);
+    // The ray's height over the label's far side.
+    const double lift = (top.y - other.y) * (width + 2 * gap) / std::max(frame_.width, 1.0);
+    const bool is_below = lift > 0.5 * gap && top.y + gap + 2 * row < frame_.y + frame_.height;
+    Rect box{align == Align::left ? top.x + gap : top.x - gap - width,
+             is_below ? top.y + 0.4 * gap : top.y - gap - 2 * row, width, 2 * row};
+    box.y = std::max(box.y, frame_.y + 0.3 * gap);
+    drawLabel(box, align, kMast, words);
   }
 
   /// A title and a remark over the plot.
@@ -202,10 +218,15 @@ class ProfilePlot {
     const auto isTaken = [&](const Rect& other) { return overlap(box, other); };
     while (std::any_of(labels_.begin(), labels_.end(), isTaken)) box.y -= row;
     box.y = std::max(box.y, frame_.y);
+    drawLabel(box, align, ink, words);
+  }
+
+  void drawLabel(const Rect& box, Align align, const Ink& ink, const std::array<std::string, 2>& words) {
+    const double row = 20 * unit_;
     labels_.push_back(box);
     const double anchor = align == Align::left    ? box.x
-                          : align == Align::right ? box.x + width
-                                                  : box.x + width / 2;
+                          : align == Align::right ? box.x + box.width
+                                                  : box.x + box.width / 2;
     canvas_.textWithRim(words[0], {anchor, box.y + row / 2}, 15 * unit_, ink, render::kPlotPaper, align,
                         Weight::bold);
     canvas_.textWithRim(words[1], {anchor, box.y + 1.5 * row}, 14 * unit_, ink, render::kPlotPaper, align);

@@ -268,7 +268,10 @@ VerticalRequest withDefaults(VerticalRequest request, const scenario::Scenario& 
   const scenario::Region& region = scenario.region;
   const bool is_above_ground = request.axis == emfield::HeightReference::ground || request.smooth_earth;
   const double bottom_m = is_above_ground ? 0 : region.origin.height_msl_m;
-  if (std::isnan(request.max_height_m)) request.max_height_m = bottom_m + region.size_m.z;
+  if (std::isnan(request.max_height_m)) {
+    request.max_height_m = bottom_m + region.size_m.z;
+    request.fits_height = true;
+  }
   return request;
 }
 
@@ -332,6 +335,9 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
   const Solver solver(request, index, diagram, std::move(options));
   Solved solved = solver.solve(snapshot, below);
   diagram.warnings = std::move(solved.warnings);
+  if (const std::string outside = scenario::outsideClockText({request.time_s}, scenario->clock);
+      !outside.empty())
+    diagram.warnings.push_back(outside);
   for (std::size_t cut = 0; cut < request.azimuths_deg.size(); ++cut) {
     diagram.cuts.push_back({request.azimuths_deg[cut],
                             std::move(solved.values[cut]),

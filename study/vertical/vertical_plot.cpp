@@ -53,6 +53,7 @@ class VerticalPlot {
     legend_.unit = render::unitText(diagram.unit);
     legend_.function = colors_.function();
     legend_.iso_value = request_.threshold;
+    top_m_ = request_.fits_height ? fittedTop_m() : diagram.heights_m.back();
   }
 
   void draw() {
@@ -74,6 +75,31 @@ class VerticalPlot {
  private:
   bool isChart() const { return request_.smooth_earth; }
 
+  /// The upper edge for a picture that is not half empty: a little above the highest point with a field, the
+  /// station and the lines.
+  double fittedTop_m() const {
+    constexpr double kRoom = 0.08, kWorthFitting = 0.95;
+    const std::vector<double>& heights_m = diagram_.heights_m;
+    const double bottom_m = heights_m.front(), end_m = heights_m.back();
+    double top_m = request_.axis == HeightReference::ground ? diagram_.station_agl_m : diagram_.station_msl_m;
+    const std::size_t width = diagram_.ranges_m.size();
+    for (const VerticalCut& cut : diagram_.cuts) {
+      for (std::size_t n = cut.values.size(); n-- > 0;) {
+        if (colors_.shadeOf(cut.values[n]) < 0) continue;
+        top_m = std::max(top_m, heights_m[n / width]);
+        break;
+      }
+      for (const VerticalCut::Line& line : cut.free_space)
+        for (const VerticalCut::Point& point : line) top_m = std::max(top_m, point.height_m);
+      for (const float ground_m : cut.ground_msl_m) {
+        if (request_.axis == HeightReference::mean_sea_level && std::isfinite(ground_m))
+          top_m = std::max(top_m, static_cast<double>(ground_m));
+      }
+    }
+    top_m += kRoom * (top_m - bottom_m);
+    return top_m < bottom_m + kWorthFitting * (end_m - bottom_m) ? std::max(top_m, bottom_m + 10) : end_m;
+  }
+
   std::string heightTitle() const {
     return isChart()                                  ? "height above the surface (m)"
            : request_.axis == HeightReference::ground ? "height above ground (m)"
@@ -89,10 +115,10 @@ class VerticalPlot {
     const double end_m =
         isChart() ? diagram_.slantRange_m(request_.range_m, diagram_.station_msl_m) : request_.range_m;
     const int ticks = std::clamp(static_cast<int>(frame.height / (16 * unit_)), 2, 8);
-    PlotPanel panel(canvas_, frame, unit_,
-                    {0, end_m / 1000, 10, isChart() ? "slant range (km)" : "distance over the ground (km)"},
-                    {diagram_.heights_m.front(), diagram_.heights_m.back(), ticks,
-                     hasRoomForTitle(frame) ? heightTitle() : "height (m)"});
+    PlotPanel panel(
+        canvas_, frame, unit_,
+        {0, end_m / 1000, 10, isChart() ? "slant range (km)" : "distance over the ground (km)"},
+        {diagram_.heights_m.front(), top_m_, ticks, hasRoomForTitle(frame) ? heightTitle() : "height (m)"});
     canvas_.rectangle(frame, kSky);
     drawValues(cut, panel, end_m);
     if (!isChart()) drawGround(cut, panel);
@@ -101,6 +127,7 @@ class VerticalPlot {
     drawLines(cut.free_space, panel, kFreeSpace, 1.6, true);
     drawLines(cut.contours, panel, kContour, 2.2, false);
     drawStation(panel);
+    if (!isChart()) drawUnknown(cut, panel);
     canvas_.outline({{frame.x, frame.y},
                      {frame.x + frame.width, frame.y},
                      {frame.x + frame.width, frame.y + frame.height},
@@ -112,7 +139,7 @@ class VerticalPlot {
   /// Squares of equal colour in a row are one rectangle.
   void drawValues(const VerticalCut& cut, const PlotPanel& panel, double end_m) {
     const Rect& frame = panel.frame();
-    const double low_m = diagram_.heights_m.front(), high_m = diagram_.heights_m.back();
+    const double low_m = diagram_.heights_m.front(), high_m = top_m_;
     const double bottom = frame.y + frame.height, right = frame.x + frame.width;
     for (double y = std::floor(frame.y); y < bottom; y += kBlock_px) {
       const double middle = std::clamp(y + kBlock_px / 2.0, frame.y, bottom);
@@ -171,7 +198,7 @@ class VerticalPlot {
   /// Lines of constant elevation from the station.
   void drawRays(const PlotPanel& panel, double end_m) {
     constexpr int kPieces = 200;
-    const double top_m = diagram_.heights_m.back();
+    const double top_m = top_m_;
     const Rect& frame = panel.frame();
     double last_x = -HUGE_VAL, last_y = HUGE_VAL;
     for (const double elevation_deg :
@@ -253,11 +280,27 @@ class VerticalPlot {
   void drawStation(const PlotPanel& panel) {
     const double height_m =
         request_.axis == HeightReference::ground ? diagram_.station_agl_m : diagram_.station_msl_m;
-    if (height_m > diagram_.heights_m.back()) return;
+    if (height_m > top_m_) return;
     const Point2 at = panel.at(0, height_m);
     canvas_.disc(at, 5.5 * unit_, {{0.10F, 0.16F, 0.30F}});
     canvas_.textWithRim(diagram_.emitter, {at.x + 10 * unit_, at.y - 12 * unit_}, 13 * unit_,
                         render::kPlotText, render::kPlotPaper);
+  }
+
+  /// Says where the elevation data end, beyond which nothing is known.
+  void drawUnknown(const VerticalCut& cut, const PlotPanel& panel) {
+    const std::size_t width = diagram_.ranges_m.size();
+    std::size_t known = 0;  // ranges with a value
+    for (std::size_t n = 0; n < cut.values.size(); ++n)
+      if (!std::isnan(cut.values[n])) known = std::max(known, n % width + 1);
+    if (known == 0 || known == width) return;
+    const double from_km = diagram_.ranges_m[known - 1] / 1000;
+    const Rect& frame = panel.frame();
+    const double left = panel.at(from_km, 0).x, right = frame.x + frame.width;
+    const std::string text = fmt::format("unknown beyond {:.1f} km: no elevation data", from_km);
+    if (canvas_.textBox(text, 14 * unit_).width > right - left - 8 * unit_) return;
+    canvas_.text(text, {(left + right) / 2, frame.y + frame.height / 2}, 14 * unit_, render::kPlotFaintText,
+                 Align::center);
   }
 
   void drawHeader(const Rect& frame) {
@@ -271,7 +314,9 @@ class VerticalPlot {
     canvas_.text(title, {frame.x, 26 * unit_},
                  render::fittedSize_px(canvas_, title, 20 * unit_, room, render::Weight::bold),
                  render::kPlotText, Align::left, render::Weight::bold);
-    const std::string heights = hasRoomForTitle(frame) ? "" : "; " + heightTitle();
+    std::string heights = hasRoomForTitle(frame) ? "" : "; " + heightTitle();
+    if (top_m_ < diagram_.heights_m.back())
+      heights += fmt::format("; no field above the picture, up to {:.0f} m", diagram_.heights_m.back());
     canvas_.text(fmt::format("t = {:g} s, {}, {}{}", request_.time_s, diagram_.model, earth, heights),
                  {frame.x, 52 * unit_}, 15 * unit_, render::kPlotFaintText);
     double x = frame.x;
@@ -281,7 +326,7 @@ class VerticalPlot {
       canvas_.text(words, {x + 34 * unit_, y}, 14 * unit_, render::kPlotText);
       x += 34 * unit_ + canvas_.textBox(words, 14 * unit_).width + 28 * unit_;
     };
-    entry(fmt::format("{:g} {}", request_.threshold, legend_.unit), kContour, false);
+    entry(fmt::format("{} = {:g} {}", legend_.quantity, request_.threshold, legend_.unit), kContour, false);
     if (isChart()) {
       entry("the same in free space", kFreeSpace, true);
       entry("rays of constant elevation", kRay, false);
@@ -295,6 +340,7 @@ class VerticalPlot {
   double unit_;  ///< pixels of the picture in one of a 1400 x 800 one
   VerticalColors colors_;
   render::Legend legend_;
+  double top_m_ = 0;  ///< of the panels
 };
 
 }  // namespace

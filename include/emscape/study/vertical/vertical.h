@@ -24,8 +24,9 @@ struct VerticalRequest {
   double threshold = 0.5;  ///< in the quantity's unit
   /// mean_sea_level: heights from the lowest ground upwards. ground: heights above the ground at each range.
   emfield::HeightReference axis = emfield::HeightReference::mean_sea_level;
-  double range_m = 0;       ///< of the right edge, along the ground
-  double max_height_m = 0;  ///< of the upper edge, on the axis, 10..1e5; above mean sea level from -500
+  double range_m = 0;        ///< of the right edge, along the ground
+  double max_height_m = 0;   ///< of the upper edge, on the axis, 10..1e5; above mean sea level from -500
+  bool fits_height = false;  ///< pictures end above the highest point with a field
   /// Blake's chart: over a smooth earth instead of the terrain, at the height of the ground below the emitter
   /// (or ground.surface_msl_m). All heights are above this surface; axis must be mean_sea_level.
   bool smooth_earth = false;
@@ -77,7 +78,7 @@ struct VerticalDiagram {
 double defaultRange_m(const scenario::Scenario& scenario, const VerticalRequest& request);
 
 /// Fills what is NaN: the threshold (thresholdOf()), the range (defaultRange_m()), and the height, with that
-/// of the region.
+/// of the region, to which pictures need not reach (fits_height).
 /// @param has_quantity  false: detection_probability of a radar, power_density_dbwm2 of another emitter
 /// @param option        name of the threshold, for the message
 /// @throws Error (usage) as thresholdOf() does
