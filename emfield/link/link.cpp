@@ -127,6 +127,9 @@ LinkReport computeLinks(const std::shared_ptr<const Scenario>& scenario, const s
       if (known.insert(warning).second) report.warnings.push_back(warning);
     }
   };
+  if (const std::string outside = scenario::outsideClockText(options.times_s, scenario->clock);
+      !outside.empty())
+    addOnce({outside});
   for (const ReceiverListener& listener : listeners) addOnce(listener.warnings);
   for (TargetWatcher& watcher : watchers) {
     addOnce(watcher.warnings);

@@ -85,6 +85,7 @@ void fillPath(PathRow& row, const Emitter& emitter, const PathBudget* budget) {
   row.power_density_dbwm2 = budget->active ? budget->find("power_density_dbwm2")->value : -HUGE_VAL;
   row.is_blocked = isBlocked(*budget);
   row.pattern_db = budget->pointing.pattern_db;
+  row.off_axis_rad = budget->pointing.off_axis_rad;
   row.verdict = budget->verdict;
   row.path = pathVerdictOf(*budget);
 }
@@ -298,6 +299,7 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
     keepWarnings(warnings, radar.name, target.name, *budget);
   }
   fillPath(row, radar, budget ? &*budget : nullptr);
+  row.look_pattern_db = budget ? budget->look_pattern_db.value_or(row.pattern_db) : 0;
   const auto valueOr = [&](const char* key, double otherwise) {
     const BudgetTerm* const term = budget ? budget->find(key) : nullptr;
     return term == nullptr ? otherwise : term->value;

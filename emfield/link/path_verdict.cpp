@@ -10,6 +10,13 @@
 namespace emscape::emfield {
 namespace {
 
+constexpr double kFree_radii = 0.6;  ///< clearance of a free path
+
+/// Whether an obstacle decides and is above the ray or close below it.
+bool isNear(const PathObstacle& obstacle) {
+  return obstacle.decides && obstacle.clearanceInFresnelRadii() < kFree_radii;
+}
+
 std::string distanceText(double distance_m) {
   return distance_m < 1000 ? fmt::format("{:.0f} m", distance_m)
                            : fmt::format("{:.1f} km", distance_m / 1000);
@@ -43,7 +50,7 @@ std::string pathText(const PathBudget& budget) {
     return fmt::format("Blocked: {} is {:.0f} m above the ray ({:.1f} Fresnel radii){}, and {}",
                        thingAt(*decisive), -decisive->clearance_m, -radii, company, costText(loss_db));
   }
-  if (radii < 0.6) {
+  if (radii < kFree_radii) {
     return fmt::format(
         "Grazing: {} leaves the ray {:.0f} m ({:.1f} Fresnel radii; 0.6 would be free), and {}",
         thingAt(*decisive), decisive->clearance_m, radii, costText(loss_db));
@@ -56,15 +63,17 @@ std::string pathText(const PathBudget& budget) {
 /// Text for a direction in which the antenna's gain is far below its maximum. For a radar that looks at the
 /// target the direction of the scan is ignored.
 std::string pointingText(const PathBudget& budget) {
-  constexpr double kWorthSaying_db = -6;
   const PathPointing& pointing = budget.pointing;
-  if (budget.look_pattern_db.value_or(pointing.pattern_db) > kWorthSaying_db) return "";
+  const double pattern_db = budget.look_pattern_db.value_or(pointing.pattern_db);
+  if (pattern_db > kBeamMisses_db) return "";
+  // A loss is one more reason after a loss of the path; after a clear path it is the opposite.
+  const bool is_clear = std::none_of(budget.obstacles.begin(), budget.obstacles.end(), isNear);
+  const char* const join = is_clear ? "but" : "and";
   if (budget.look_pattern_db) {
-    return fmt::format(", but the scan does not reach there, which costs {:.1f} dB",
-                       -*budget.look_pattern_db);
+    return fmt::format(", {} the scan does not reach there, which costs {:.1f} dB", join, -pattern_db);
   }
-  return fmt::format(", but the antenna points {:.1f} deg away, which costs {:.1f} dB",
-                     radToDeg(pointing.off_axis_rad), -pointing.pattern_db);
+  return fmt::format(", {} the antenna points {:.1f} deg away, which costs {:.1f} dB", join,
+                     radToDeg(pointing.off_axis_rad), -pattern_db);
 }
 
 /// The probability of detection, with its causes: jamming and clutter near or above the level of the echo.

@@ -5,6 +5,7 @@
 
 #include "base/files/whole_file.h"
 #include "base/text/csv_cell.h"
+#include "emfield/link/path_verdict.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -40,6 +41,7 @@ Json pathJson(const PathRow& row) {
           {"range_m", row.has_path ? Json(row.range_m) : Json(nullptr)},
           {"power_density_dbwm2", number(row.power_density_dbwm2)},
           {"pattern_db", number(row.pattern_db)},
+          {"off_axis_deg", row.has_path ? Json(radToDeg(row.off_axis_rad)) : Json(nullptr)},
           {"blocked", row.is_blocked},
           {"verdict", row.verdict}};
 }
@@ -58,6 +60,7 @@ Json toJson(const LinkRow& row) {
 Json toJson(const DetectionRow& row) {
   Json json = pathJson(row);
   json["rcs_dbsm"] = ratioToDb(row.rcs_m2);
+  json["look_pattern_db"] = number(row.look_pattern_db);
   json["snr_db"] = number(row.snr_db);
   if (row.radial_speed_mps) {
     json["sclnr_db"] = number(row.sclnr_db);
@@ -77,18 +80,29 @@ Json rowsJson(const std::vector<Row>& rows) {
   return json;
 }
 
-/// Calls out.add(row, path) for evenly spaced rows including the last one, and prints their total number.
+/// Calls add_row(row, path) for evenly spaced rows including the last one, and prints their total number.
+/// @param pathOf   the path's text of a row
 /// @param add_row  gets an empty path if it equals that of the row above
-template <class Row, class AddRow>
-void addThinned(Text& out, const std::vector<Row>& rows, const AddRow& add_row) {
+template <class Row, class PathOf, class AddRow>
+void addThinned(Text& out, const std::vector<Row>& rows, const PathOf& pathOf, const AddRow& add_row) {
   const std::size_t step = std::max<std::size_t>((rows.size() + kTableRows - 2) / (kTableRows - 1), 1);
   std::string last;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     if (i % step != 0 && i + 1 != rows.size()) continue;
-    add_row(rows[i], rows[i].path == last ? "" : rows[i].path);
-    last = rows[i].path;
+    const std::string path = pathOf(rows[i]);
+    add_row(rows[i], path == last ? "" : path);
+    last = path;
   }
   if (step > 1) out.add("  one row in {} of {} times; --csv and --json have all\n", step, rows.size());
+}
+
+/// The path, and whether the beam is there: a clear path alone does not say that there is a signal.
+std::string pathText(const PathRow& row, double pattern_db) {
+  const bool misses = row.has_path && row.active && pattern_db < emfield::kBeamMisses_db;
+  if (!misses) return row.path;
+  std::string text = row.path;
+  if (!text.empty() && text.back() == '.') text.pop_back();
+  return text + "; the beam misses.";
 }
 
 const std::string& emitterName(const NamedLinks& links, int emitter) {
@@ -140,27 +154,29 @@ void addLinkSummary(Text& out, const NamedLinks& links) {
 
 void addDetectionSummary(Text& out, const NamedLinks& links) {
   if (links.report.detections.empty()) return;
-  out.add("Targets\n  {:<22} {:<22} {:>17} {:>12} {:>14} {:>8}\n", "radar", "target", "SNR dB", "Pd >= 0.5 s",
-          "cumulative Pd", "blocked");
+  out.add("Targets\n  {:<22} {:<22} {:>17} {:>15} {:>14} {:>8}\n", "radar", "target", "SNR dB",
+          "detected from s", "cumulative Pd", "blocked");
   for (const Detection& detection : links.report.detections) {
-    out.add("  {:<22} {:<22} {:>17} {:>12} {:>14} {:>8}\n", emitterName(links, detection.radar),
+    out.add("  {:<22} {:<22} {:>17} {:>15} {:>14} {:>8}\n", emitterName(links, detection.radar),
             targetName(links, detection),
             rangeText(detection.rows, [](const DetectionRow& row) { return row.snr_db; }),
             timeText(detection.firstDetection_s()), cell(detection.rows.back().cumulative_probability, 3),
             fmt::format("{:.0f} %", 100 * blockedShare(detection.rows)));
   }
-  out.add("\n");
+  out.add("  detected from: the first time at which one look detects with a probability of 0.5 or more\n\n");
 }
 
 void addLink(Text& out, const NamedLinks& links, const Link& link) {
   const scenario::PlacedReceiver& receiver = receiverOf(links, link);
   out.add("'{}' at receiver '{}'\n", emitterName(links, link.emitter), receiver.name);
-  out.add("  {:>8} {:>9} {:>9} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", "time s", "range km", "beam dB",
-          "power dBm", "interference dBm", "noise dBm", "SINR dB", "J/S dB", "received",
-          "path, where it changes");
-  addThinned(out, link.rows, [&](const LinkRow& row, const std::string& path) {
-    out.add("  {:>8g} {:>9.3f} {:>9} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", row.time_s,
-            row.range_m / 1000, cell(row.pattern_db), cell(row.received_power_dbm),
+  out.add("  {:>8} {:>9} {:>9} {:>10} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", "time s", "range km",
+          "beam dB", "off it deg", "power dBm", "interference dBm", "noise dBm", "SINR dB", "J/S dB",
+          "received", "path, where it changes");
+  const auto pathOf = [](const LinkRow& row) { return pathText(row, row.pattern_db); };
+  addThinned(out, link.rows, pathOf, [&](const LinkRow& row, const std::string& path) {
+    out.add("  {:>8g} {:>9.3f} {:>9} {:>10} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", row.time_s,
+            row.range_m / 1000, cell(row.pattern_db),
+            row.has_path ? cell(radToDeg(row.off_axis_rad), 0) : "-", cell(row.received_power_dbm),
             cell(row.interference_dbm), cell(row.noise_dbm), cell(row.sinr_db), cell(row.jammer_to_signal_db),
             receiver.hasThreshold() ? row.is_received ? "yes" : "no" : "-", path);
   });
@@ -173,12 +189,13 @@ void addDetection(Text& out, const NamedLinks& links, const Detection& detection
   const auto ofClutter = [&](const std::string& speed, const std::string& ratio) {
     return has_clutter ? fmt::format(" {:>9} {:>10}", speed, ratio) : std::string();
   };
-  out.add("  {:>8} {:>9} {:>9} {:>8}{} {:>8} {:>6} {:>6} {:>10}  {}\n", "time s", "range km", "RCS dBsm",
-          "SNR dB", ofClutter("speed m/s", "S/(C+N) dB"), "J/S dB", "Pd", "looks", "cumulative",
+  out.add("  {:>8} {:>9} {:>9} {:>9} {:>8}{} {:>8} {:>6} {:>6} {:>10}  {}\n", "time s", "range km", "beam dB",
+          "RCS dBsm", "SNR dB", ofClutter("speed m/s", "S/(C+N) dB"), "J/S dB", "Pd", "looks", "cumulative",
           "path, where it changes");
-  addThinned(out, detection.rows, [&](const DetectionRow& row, const std::string& path) {
-    out.add("  {:>8g} {:>9.3f} {:>9} {:>8}{} {:>8} {:>6} {:>6} {:>10}  {}\n", row.time_s, row.range_m / 1000,
-            cell(ratioToDb(row.rcs_m2)), cell(row.snr_db),
+  const auto pathOf = [](const DetectionRow& row) { return pathText(row, row.look_pattern_db); };
+  addThinned(out, detection.rows, pathOf, [&](const DetectionRow& row, const std::string& path) {
+    out.add("  {:>8g} {:>9.3f} {:>9} {:>9} {:>8}{} {:>8} {:>6} {:>6} {:>10}  {}\n", row.time_s,
+            row.range_m / 1000, cell(row.look_pattern_db), cell(ratioToDb(row.rcs_m2)), cell(row.snr_db),
             ofClutter(cell(row.radial_speed_mps.value_or(0)), cell(row.sclnr_db)),
             cell(row.jammer_to_signal_db), cell(row.detection_probability, 3), row.looks,
             cell(row.cumulative_probability, 3), path);
@@ -188,6 +205,10 @@ void addDetection(Text& out, const NamedLinks& links, const Detection& detection
 
 std::string csvNumber(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : "";
+}
+
+std::string offAxisText(const PathRow& row) {
+  return row.has_path ? csvNumber(radToDeg(row.off_axis_rad)) : "";
 }
 
 std::string csvPath(const char* kind, const std::string& emitter, const std::string& to, const PathRow& row) {
@@ -266,24 +287,25 @@ void writeCsv(const NamedLinks& links, const std::string& file) {
     out << "kind,time_s,emitter,to,active,range_m,power_density_dbwm2,pattern_db,blocked,jammer_to_signal_db,"
            "received_power_dbm,interference_dbm,noise_dbm,sinr_db,received,"
            "rcs_dbsm,snr_db,sclnr_db,radial_speed_mps,detection_probability,looks,cumulative_probability,"
-           "verdict\n";
+           "verdict,off_axis_deg,look_pattern_db\n";
     for (const Link& link : links.report.links) {
       for (const LinkRow& row : link.rows) {
         out << csvPath("receiver", emitterName(links, link.emitter), receiverOf(links, link).name, row)
-            << fmt::format(",{},{},{},{},{},{},,,,,,,,{}\n", csvNumber(row.jammer_to_signal_db),
+            << fmt::format(",{},{},{},{},{},{},,,,,,,,{},{},\n", csvNumber(row.jammer_to_signal_db),
                            csvNumber(row.received_power_dbm), csvNumber(row.interference_dbm),
                            csvNumber(row.noise_dbm), csvNumber(row.sinr_db), int(row.is_received),
-                           csvCell(row.verdict));
+                           csvCell(row.verdict), offAxisText(row));
       }
     }
     for (const Detection& detection : links.report.detections) {
       for (const DetectionRow& row : detection.rows) {
         out << csvPath("target", emitterName(links, detection.radar), targetName(links, detection), row)
-            << fmt::format(",{},,,,,,{},{},{},{},{},{},{},{}\n", csvNumber(row.jammer_to_signal_db),
+            << fmt::format(",{},,,,,,{},{},{},{},{},{},{},{},{},{}\n", csvNumber(row.jammer_to_signal_db),
                            csvNumber(ratioToDb(row.rcs_m2)), csvNumber(row.snr_db), csvNumber(row.sclnr_db),
                            csvNumber(row.radial_speed_mps.value_or(std::nan(""))),
                            csvNumber(row.detection_probability), row.looks,
-                           csvNumber(row.cumulative_probability), csvCell(row.verdict));
+                           csvNumber(row.cumulative_probability), csvCell(row.verdict), offAxisText(row),
+                           csvNumber(row.look_pattern_db));
       }
     }
   });

@@ -249,6 +249,8 @@ TEST(PathBudget, VerdictNamesTheReason) {
   EXPECT_THAT(verdict({45.4, -71.4, 10}, 10, 0), HasSubstr("the model gives no field behind it"));
   scenario->emitters[0].antenna = scenario::makeGaussian(30, 3, 3, -40);
   EXPECT_THAT(verdict({44.3, -71.47, 3000}, 3000, 0), HasSubstr("but the antenna points "));
+  EXPECT_THAT(verdict({43.2, -71.47, 10}, 10, 0),
+              HasSubstr("the model gives no field behind it, and the antenna points "));
 }
 
 TEST(PathBudget, VerdictOfRadarOnTargetOmitsScanDirection) {

@@ -31,6 +31,7 @@ struct PathRow {
   double range_m = 0;    ///< slant
   double power_density_dbwm2 = 0;
   double pattern_db = 0;    ///< emitter's antenna towards the other end, relative to its maximum
+  double off_axis_rad = 0;  ///< of the ray from the axis of the emitter's beam
   bool is_blocked = false;  ///< ground or the earth's bulge is above the ray
   std::string verdict;      ///< one sentence: that of the budget
   std::string path;         ///< the same without antenna and detection
@@ -60,6 +61,9 @@ struct Link {
 /// A target observed by a radar at one time, with the radar's beam as close to the target as its scan
 /// permits.
 struct DetectionRow : PathRow {
+  /// Of the radar's beam at its look at the target, relative to its maximum: far below 0 if the scan does not
+  /// reach there.
+  double look_pattern_db = 0;
   double rcs_m2 = 0;    ///< from the radar's aspect
   double snr_db = 0;    ///< one pulse
   double sclnr_db = 0;  ///< echo over clutter and noise after the radar's filter; snr_db without clutter
