@@ -11,8 +11,10 @@
 namespace emscape::document {
 
 /// Removes a byte order mark and checks that the rest is UTF-8 text without control characters.
-/// @throws Error (bad_input) with the location of the first byte that is not
-std::string checkedUtf8(const std::string& file, std::string bytes);
+/// @param expected  content of the file, for the error about one that holds a picture, a volume or an archive
+/// @throws Error (bad_input) with the location of the first byte that is not; naming the content of a file of
+/// a known other format
+std::string checkedUtf8(const std::string& file, std::string bytes, const std::string& expected = "text");
 
 /// Characters (code points) of UTF-8 text.
 std::size_t characterCount(std::string_view text);

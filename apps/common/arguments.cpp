@@ -8,6 +8,8 @@
 #include <optional>
 #include <set>
 
+#include "document/schema_check.h"
+
 namespace emscape::app {
 namespace {
 
@@ -135,7 +137,10 @@ std::string messageOf(const CLI::App& app, const CLI::ParseError& error) {
     return fmt::format("unexpected argument{} '{}'", words.size() == 1 ? "" : "s", fmt::join(words, "', '"));
   }
   for (const std::string& word : words) {
-    if (!word.empty() && word.front() != '-') return "there is no subcommand '" + word + "'";
+    if (word.empty() || word.front() == '-') continue;
+    std::vector<std::string> names;
+    for (const CLI::App* subcommand : last->get_subcommands({})) names.push_back(subcommand->get_name());
+    return "there is no subcommand '" + word + "'" + document::didYouMean(word, names);
   }
   return plainMessage(*last, error.what());
 }

@@ -40,8 +40,10 @@ inline CLI::Range within(const render::SettingLimits& limits) {
   return {limits.min, limits.max};
 }
 
-/// The option that a hint suggests, as " (...)"; empty for Hint::none.
-std::string optionText(Hint hint);
+/// The option that a hint suggests, as " (...)"; empty for Hint::none, and for a subcommand without the
+/// option.
+/// @param app  the program or its subcommand
+std::string optionText(const CLI::App& app, Hint hint);
 
 /// Adds --set PATH=VALUE, which may be given several times. Parsing it throws Error (usage) for a text
 /// without '='.

@@ -52,12 +52,16 @@ void addLicences(CLI::App& app, const GlobalOptions& global) {
 
 }  // namespace
 
-std::string optionText(Hint hint) {
+std::string optionText(const CLI::App& app, Hint hint) {
+  const CLI::App* last = &app;
+  while (!last->get_subcommands().empty()) last = last->get_subcommands().front();
   switch (hint) {
     case Hint::none:
       break;
     case Hint::allow_missing_terrain:
-      return " (--allow-missing-terrain draws holes)";
+      if (last->get_option_no_throw("--allow-missing-terrain") != nullptr)
+        return " (--allow-missing-terrain draws holes)";
+      break;
   }
   return "";
 }
@@ -69,7 +73,8 @@ int fail(ErrorCode code, const std::string& message) {
   return static_cast<int>(code);
 }
 
-int run(const Action& action) {
+/// @param app  null: no command line has been parsed
+int run(const Action& action, const CLI::App* const& app) {
   try {
     const int status = action();
     finishResult();
@@ -78,7 +83,7 @@ int run(const Action& action) {
     printMessage("emscape: stopped by signal {}; finished files are kept\n", caughtSignal());
     return 128 + caughtSignal();
   } catch (const Error& error) {
-    return fail(error.code(), error.what() + optionText(error.hint()));
+    return fail(error.code(), error.what() + (app != nullptr ? optionText(*app, error.hint()) : ""));
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::other, "out of memory; fewer voxels, pixels, emitters or times take less");
   } catch (const std::exception& error) {
@@ -149,16 +154,21 @@ void CommandLine::parse(const std::vector<std::string>& arguments) {
 
 int runCommandLine(const std::vector<std::string>& words, const AddSubcommands& addSubcommands) {
   openStandardStreams();
-  return run([&] {
-    CommandLine line(addSubcommands);
-    CommandLine::Impl& parsed = *line.impl_;
-    if (const int status = parseAndReport(parsed.app, {words.rbegin(), words.rend()}); status >= 0)
-      return status;
-    installLog(parsed.global);
-    setThreadLimit(parsed.global.threads);
-    handleSignals();
-    return parsed.action();
-  });
+  std::unique_ptr<CommandLine> line;  // also for the text of an error
+  const CLI::App* app = nullptr;
+  return run(
+      [&] {
+        line = std::make_unique<CommandLine>(addSubcommands);
+        CommandLine::Impl& parsed = *line->impl_;
+        app = &parsed.app;
+        if (const int status = parseAndReport(parsed.app, {words.rbegin(), words.rend()}); status >= 0)
+          return status;
+        installLog(parsed.global);
+        setThreadLimit(parsed.global.threads);
+        handleSignals();
+        return parsed.action();
+      },
+      app);
 }
 
 int runProgram(const std::vector<std::string>& words, const AddSubcommands& addSubcommands) {

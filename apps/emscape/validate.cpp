@@ -27,11 +27,12 @@ using scenario::Severity;
 Problem problemOf(const Error& error, const std::string& scenario_file) {
   const SourceLocation location =
       error.location().file.empty() ? SourceLocation{scenario_file, 0, 0} : error.location();
-  return {location, Severity::error, error.message() + optionText(error.hint())};
+  return {location, Severity::error, error.message()};
 }
 
 /// Reports columns of the region with unknown ground at their centre.
-void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& terrain,
+/// @param is_allowed  a warning instead of an error
+void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& terrain, bool is_allowed,
                    std::vector<Problem>& problems) {
   const volume::Grid grid = emfield::gridOf(scenario.region);
   const GeoFrame frame(grid.frame);
@@ -48,11 +49,16 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
   const SourceLocation location = scenario.terrain->locations.empty() ? SourceLocation{scenario.file, 0, 0}
                                                                       : scenario.terrain->locations.front();
   problems.push_back(
-      {location, Severity::error,
-       fmt::format("the elevation files leave {} of the region's {} columns without a height, the first at "
-                   "latitude {:.5f}, longitude {:.5f} deg; allowed only with --allow-missing-terrain",
-                   missing, static_cast<long long>(grid.dims.x) * grid.dims.y, first.latitude_deg,
-                   first.longitude_deg)});
+      {location, is_allowed ? Severity::warning : Severity::error,
+       fmt::format(
+           "the elevation files leave {} of the region's {} columns without a height, the first at "
+           "latitude {:.5f}, longitude {:.5f} deg; maps have no value there; volumes and pictures have "
+           "holes there{}",
+           missing, static_cast<long long>(grid.dims.x) * grid.dims.y, first.latitude_deg,
+           first.longitude_deg,
+           is_allowed ? ""
+                      : ", which validate, simulate, render, view and bench accept only with "
+                        "--allow-missing-terrain")});
 }
 
 /// Checks at every step of the clock that no platform is below the ground or over missing terrain.
@@ -86,11 +92,12 @@ bool checkSteps(const scenario::Scenario& scenario, const scenario::Terrain* ter
 /// Checks that need the whole scenario: the ground, the quantities, the models, every step.
 /// @param choices  receives the models' automatic choices at the first step
 /// @param work     receives the field's memory, time and disk space, if it can be computed
-void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std::vector<Problem>& problems,
-                  std::vector<emfield::EmitterChoice>& choices, std::optional<report::WorkEstimate>& work) {
+void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, bool allow_missing_terrain,
+                  std::vector<Problem>& problems, std::vector<emfield::EmitterChoice>& choices,
+                  std::optional<report::WorkEstimate>& work) {
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-    if (terrain) checkCoverage(*scenario, *terrain, problems);
+    if (terrain) checkCoverage(*scenario, *terrain, allow_missing_terrain, problems);
     const bool starts = checkSteps(*scenario, terrain.get(), problems);
     emfield::FieldOptions options;
     options.allow_missing_terrain = true;  // reported above
@@ -112,12 +119,20 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, std
   }
 }
 
-int validate(const std::string& file, const std::vector<scenario::Edit>& edits, const GlobalOptions& global) {
+struct ValidateCommand {
+  std::string file;
+  std::vector<scenario::Edit> edits;
+  bool allow_missing_terrain = false;
+};
+
+int validate(const ValidateCommand& command, const GlobalOptions& global) {
   endAtInterrupts();
-  scenario::ParseResult result = scenario::parseScenario(file, edits);
+  const std::string& file = command.file;
+  scenario::ParseResult result = scenario::parseScenario(file, command.edits);
   std::vector<emfield::EmitterChoice> choices;
   std::optional<report::WorkEstimate> work;
-  if (result.scenario) checkMeaning(result.scenario, result.problems, choices, work);
+  if (result.scenario)
+    checkMeaning(result.scenario, command.allow_missing_terrain, result.problems, choices, work);
   const bool ok = std::none_of(result.problems.begin(), result.problems.end(),
                                [](const Problem& problem) { return problem.severity == Severity::error; });
 
@@ -168,13 +183,13 @@ Examples:
                                                      "available_mib", "steps", "step_mib", "time_s", "threads"}}
 
 Exit status: 0 without errors (warnings are ignored), 3 otherwise.)");
-  auto file = std::make_shared<std::string>();
-  command->add_option("SCENARIO", *file, "Scenario (YAML or JSON)")->required();
-  auto edits = std::make_shared<std::vector<scenario::Edit>>();
-  addSetOption(*command, *edits);
-  command->callback([file, edits, &global, &action] {
-    action = [file, edits, &global] { return validate(*file, *edits, global); };
-  });
+  auto options = std::make_shared<ValidateCommand>();
+  command->add_option("SCENARIO", options->file, "Scenario (YAML or JSON)")->required();
+  addSetOption(*command, options->edits);
+  command->add_flag("--allow-missing-terrain", options->allow_missing_terrain,
+                    "Missing elevation data in the region are a warning, as for maps");
+  command->callback(
+      [options, &global, &action] { action = [options, &global] { return validate(*options, global); }; });
 }
 
 }  // namespace emscape::app

@@ -71,7 +71,10 @@ void FieldSeries::rehearse() {
 }
 
 std::vector<std::string> FieldSeries::warnings() const {
-  return difference_ ? difference_->warnings(solver_.warnings()) : solver_.warnings();
+  std::vector<std::string> all = difference_ ? difference_->warnings(solver_.warnings()) : solver_.warnings();
+  const std::string outside = scenario::outsideClockText(times_s_, input_.scenario->clock);
+  if (!outside.empty()) all.push_back(outside);
+  return all;
 }
 
 void FieldSeries::update(int step) {

@@ -250,7 +250,8 @@ std::string comparedFile(const fs::path& view, const std::string& name) {
 ViewState parseViewState(const std::string& text, const std::string& file) {
   ProblemList problems;
   ViewState state;
-  const DocumentNodePtr root = document::readDocument(file, document::checkedUtf8(file, text), problems);
+  const DocumentNodePtr root =
+      document::readDocument(file, document::checkedUtf8(file, text, "a view"), problems);
   if (root) {
     refuseNewerVersion(file, root);
     const DocumentNodePtr transfer = document::valueAt(root, {"transfer"});

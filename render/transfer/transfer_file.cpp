@@ -30,7 +30,8 @@ TransferFunction parseTransferFunction(const std::string& text, const std::strin
   }
   document::ProblemList problems;
   TransferFunction function;
-  const auto root = document::readDocument(file, document::checkedUtf8(file, text), problems);
+  const auto root =
+      document::readDocument(file, document::checkedUtf8(file, text, "a transfer function"), problems);
   const TransferFormat format(root.get());
   if (root && document::checkObject(file, *root, format.object(), problems)) {
     function = readTransferFunction({file, root.get(), format.object()}, format, &info, problems, range);

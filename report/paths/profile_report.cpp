@@ -113,6 +113,10 @@ void addBudget(Text& out, const PathBudget& budget) {
     out.add("{} {:<48} {:>9} {:<8} {}\n", is_sum ? " =" : "  ", term.label, valueText(term.value),
             std::isinf(term.value) ? "" : term.unit, term.note);
   }
+  out.add(
+      "  Of this emitter alone, at the point itself: a volume has values at the centres of its voxels, of "
+      "all "
+      "emitters unless output.combine is per_emitter\n");
 }
 
 void addCompared(Text& out, const std::vector<Comparison>& compared, const PathBudget& own) {
@@ -175,6 +179,9 @@ ProfileReport profileReport(const std::string& file, const scenario::Scenario& s
   };
   const scenario::Emitter& emitter = scenario.emitters[static_cast<std::size_t>(request.emitter)];
   ProfileReport report{file, snapshot, terrain, request.emitter, budgetBy(emitter.propagation.model), {}};
+  if (const std::string outside = scenario::outsideClockText({request.time_s}, scenario.clock);
+      !outside.empty())
+    report.budget.warnings.push_back(outside);
   for (const propagation::PropagationModel model : request.models) {
     Comparison comparison;
     comparison.model = model;

@@ -154,7 +154,7 @@ class TrackReader {
 std::vector<TrackPoint> parseTrack(const std::string& file, const std::string& bytes,
                                    const SourceLocation& named_at, ProblemList& problems) {
   try {
-    return TrackReader(file, named_at, problems).read(document::checkedUtf8(file, bytes));
+    return TrackReader(file, named_at, problems).read(document::checkedUtf8(file, bytes, "a track"));
   } catch (const Error& error) {
     problems.addErrorElsewhere(named_at, error.location(), error.message());
     return {};

@@ -329,7 +329,7 @@ ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edit
   context.read_for = read_for;
   ScenarioSource source;
   try {
-    source.text = {file, document::checkedUtf8(file, readWholeText(file, kMaxScenarioBytes))};
+    source.text = {file, document::checkedUtf8(file, readWholeText(file, kMaxScenarioBytes), "a scenario")};
     source.root = document::readDocument(file, source.text.text(), context.problems);
   } catch (const Error& error) {
     context.problems.addError(error.location(), error.message());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/scenario/model/quantities.h"
 #include "scenario/file/quantity_needs.h"
 #include "scenario/scan/scan_sampling.h"
@@ -150,6 +151,56 @@ void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseConte
   context.problems.addWarning(scan.locationOf(rotates ? "rate_rpm" : "rate_deg_s"), unlit->warning);
 }
 
+/// Warns about emitters that are never over the region. Stand-off jammers may be; a mistyped position is too.
+void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const GeoFrame frame(scenario.region.origin);
+  const Vec3d half = scenario.region.size_m * 0.5;
+  const auto outside_m = [&](const TrackPoint& point) {
+    const Vec3d at = frame.toLocal({point.position.latitude_deg, point.position.longitude_deg, 0});
+    return std::hypot(std::max(std::abs(at.x) - half.x, 0.0), std::max(std::abs(at.y) - half.y, 0.0));
+  };
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& emitter = scenario.emitters[i];
+    double nearest_m = HUGE_VAL;
+    for (const TrackPoint& point : scenario.platforms[emitter.platform].track)
+      nearest_m = std::min(nearest_m, outside_m(point));
+    if (!(nearest_m > 0) || std::isinf(nearest_m)) continue;
+    warning.add(
+        sections[i].locationOf("platform"), emitter.name,
+        fmt::format("emitter '{}' is outside the region, {:.1f} km from it: its field in the region is "
+                    "computed, but pictures and maps do not show where it is",
+                    emitter.name, nearest_m / 1000));
+  }
+  warning.addTo(context.problems);
+}
+
+/// Warns about lengths that only make sense in kilometres.
+void warnOfKilometres(const Scenario& scenario, const Section& root, ParseContext& context) {
+  constexpr double kSmallRegion_m = 200, kShortRange_m = 1000;
+  const Vec3d& size_m = scenario.region.size_m;
+  if (std::max(size_m.x, size_m.y) < kSmallRegion_m) {
+    context.problems.addWarning(
+        root.section("region").locationOf("size_m"),
+        fmt::format("the region is {:g} m by {:g} m: 'size_m' is in metres, not in kilometres", size_m.x,
+                    size_m.y));
+  }
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& radar = scenario.emitters[i];
+    const double range_m =
+        radar.waveform ? radar.waveform->instrumented_range_m.value_or(HUGE_VAL) : HUGE_VAL;
+    if (range_m >= kShortRange_m) continue;
+    warning.add(sections[i].section("waveform").locationOf("instrumented_range_m"), radar.name,
+                fmt::format("radar '{}' looks only {:g} m far: 'instrumented_range_m' is in metres, not in "
+                            "kilometres",
+                            radar.name, range_m));
+  }
+  warning.addTo(context.problems);
+}
+
 }  // namespace
 
 void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseContext& context) {
@@ -157,6 +208,8 @@ void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseCon
   warnOfIdleJammers(scenario, root, context);
   warnOfGains(scenario, root, context);
   warnOfTargetsTakenAsSteady(scenario, root, context);
+  warnOfEmittersOutside(scenario, root, context);
+  warnOfKilometres(scenario, root, context);
   if (context.read_for == ReadFor::series) warnOfCoarseSteps(scenario, root, context);
 }
 

@@ -118,6 +118,18 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
   return timesOf(values[0], values[1], values.size() == 3 ? values[2] : clock.step_s, limit_s);
 }
 
+std::string outsideClockText(const std::vector<double>& times_s, const Clock& clock) {
+  if (!(clock.duration_s > 0)) return "";
+  const auto isOutside = [&](double time_s) { return time_s < 0 || time_s > clock.duration_s; };
+  const auto first = std::find_if(times_s.begin(), times_s.end(), isOutside);
+  if (first == times_s.end()) return "";
+  const auto count = std::count_if(times_s.begin(), times_s.end(), isOutside);
+  const std::string which =
+      count == 1 ? fmt::format("t = {:g} s is", *first)
+                 : fmt::format("{} of {} times, first t = {:g} s, are", count, times_s.size(), *first);
+  return fmt::format("{} outside the scenario's clock, 0 to {:g} s", which, clock.duration_s);
+}
+
 std::string utcAt(const Clock& clock, double t_s) {
   if (clock.epoch_utc.empty()) return "";
   const auto epoch_ms = parseUtc_ms(clock.epoch_utc);

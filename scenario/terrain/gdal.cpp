@@ -273,7 +273,13 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
 void TerrainFile::Impl::placeOnEarth(OGRSpatialReferenceH given) {
   GdalMessages messages;
   if (given == nullptr || OSRGetName(given) == nullptr) {
-    fail("has no coordinate reference system (gdal_edit.py -a_srs EPSG:4326 sets latitudes and longitudes)");
+    // Only formats with a place for it can be edited; for the others GDAL reads a file beside them.
+    const bool is_text_grid = fs::path(name).extension() == ".asc";
+    fail(is_text_grid
+             ? "has no coordinate reference system (a file of the same name that ends in .prj gives it one: "
+               "gdalsrsinfo -o wkt_esri EPSG:4326 > NAME.prj for latitudes and longitudes)"
+             : "has no coordinate reference system (gdal_edit.py -a_srs EPSG:4326 sets latitudes and "
+               "longitudes)");
   }
   crs.reset(OSRClone(given));
   if (const char* datum = OSRGetAttrValue(crs.get(), "VERT_CS", 0)) {

@@ -290,6 +290,9 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
   }
   if (progress) progress("track", 1);
   exposure.warnings.assign(track.warnings.begin(), track.warnings.end());
+  if (const std::string outside = scenario::outsideClockText(request.times_s, scenario->clock);
+      !outside.empty())
+    exposure.warnings.push_back(outside);
   for (std::size_t n = 0; n < exposure.names.size(); ++n) {
     exposure.each.push_back(
         summaryOf(exposure.names[n], exposure, [n](const ExposureRow& row) { return row.each[n]; }));

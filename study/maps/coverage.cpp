@@ -102,6 +102,18 @@ std::optional<std::string> inactiveWarning(const std::shared_ptr<const scenario:
                      kind, empty_s.size(), times_s.size(), empty_s.front());
 }
 
+/// Warning for heights that only make sense in kilometres.
+std::optional<std::string> heightWarning(const std::vector<CoverageRequest>& requests) {
+  constexpr double kLow_m = 1;
+  for (const CoverageRequest& request : requests) {
+    for (const MapHeight& height : request.heights) {
+      if (height.metres > 0 && height.metres < kLow_m)
+        return fmt::format("a map at {}: heights are in metres, not in kilometres", describe(height));
+    }
+  }
+  return std::nullopt;
+}
+
 emfield::FieldOptions withoutQuantities(emfield::FieldOptions options) {
   options.quantities.clear();
   return options;
@@ -285,7 +297,10 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
   std::vector<std::vector<std::string>> warnings(scenarios.size());
   for (std::size_t s = 0; s < scenarios.size(); ++s) {
     const auto inactive = inactiveWarning(at_targets[s], terrain, requests.front().quantity, times_s);
-    for (const auto& warning : {inactive, scanWarning(*at_targets[s], requests), impl_->scale_warning})
+    const std::string outside = scenario::outsideClockText(times_s, at_targets[s]->clock);
+    if (!outside.empty()) warnings[s].push_back(outside);
+    for (const auto& warning :
+         {inactive, scanWarning(*at_targets[s], requests), impl_->scale_warning, heightWarning(requests)})
       if (warning) warnings[s].push_back(*warning);
     for (Impl::OfReference& of : impl_->references) {
       for (std::size_t r = 0; r < requests.size(); ++r)

@@ -195,6 +195,7 @@ TEST(CommandLine, AResultThatCannotBeWrittenIsAnError) {
 
 TEST(CommandLine, ErrorsWithoutAFieldPrecedeComputation) {
   EXPECT_THAT(run({"explode"}).err, StartsWith("emscape: error: there is no subcommand 'explode'"));
+  EXPECT_THAT(run({"simulte"}).err, HasSubstr("'simulte'; did you mean 'simulate'?"));
   EXPECT_THAT(run({"bench", "explode"}).err, StartsWith("emscape: error: there is no subcommand 'explode'"));
   EXPECT_THAT(run({}).err, StartsWith("emscape: error: A subcommand is required"));
   EXPECT_THAT(run({"render", shippedScenario("quick.yaml"), "-o", "x.gif"}).err,
@@ -342,6 +343,20 @@ TEST(CommandLine, ErrorOfMissingTerrainNamesTheOption) {
   EXPECT_EQ(result.status, 3);
   EXPECT_THAT(result.err, HasSubstr("terrain is missing below"));
   EXPECT_THAT(result.err, HasSubstr("(--allow-missing-terrain draws holes)\n"));
+  const ProgramResult refused = run({"validate", folder / "wide.yaml"});
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_THAT(refused.out, HasSubstr("accept only with --allow-missing-terrain"));
+  const ProgramResult allowed = run({"validate", folder / "wide.yaml", "--allow-missing-terrain"});
+  EXPECT_EQ(allowed.status, 0) << allowed.out;
+  EXPECT_THAT(allowed.out, HasSubstr("warning: the elevation files leave"));
+}
+
+TEST(CommandLine, PictureInPlaceOfAScenarioIsNamed) {
+  const TemporaryFolder folder;
+  writeFile(folder / "map.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR", 16));
+  const ProgramResult result = run({"validate", folder / "map.png"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.out + result.err, HasSubstr("this is a picture (PNG), not a scenario"));
 }
 
 }  // namespace

@@ -117,6 +117,15 @@ TEST(Clock, SaysWhichNumberOfAUtcTimeIsOutOfRange) {
   EXPECT_EQ(utcFault("2026-06-01"), "");
 }
 
+TEST(Clock, TimesOutsideAreNamedInOneLine) {
+  const Clock clock{"", 120, 0.5};
+  EXPECT_EQ(outsideClockText({0, 60, 120}, clock), "");
+  EXPECT_EQ(outsideClockText({200}, clock), "t = 200 s is outside the scenario's clock, 0 to 120 s");
+  EXPECT_EQ(outsideClockText({-5, 0, 130}, clock),
+            "2 of 3 times, first t = -5 s, are outside the scenario's clock, 0 to 120 s");
+  EXPECT_EQ(outsideClockText({5}, Clock{}), "") << "a scenario without a clock has no such times";
+}
+
 TEST(Clock, RefusesInvalidUtcTime) {
   for (const char* text : {"", "2026-06-01", "2026-06-01T06:00:00", "2026-06-01 06:00:00Z",
                            "2026-13-01T06:00:00Z", "2026-02-29T06:00:00Z", "2026-06-01T24:00:00Z",

@@ -283,6 +283,20 @@ TEST_F(ScenarioYaml, HashFollowsTheScenarioAndEveryNamedFile) {
   EXPECT_NE(load(valid_)->hash, other_track);
 }
 
+TEST_F(ScenarioYaml, MistypedPlacesAndLengthsAreWarningsOfOneLine) {
+  const auto warningsWith = [&](const std::string& path, const std::string& value) {
+    std::string all;
+    for (const auto& problem :
+         parseScenario(folder_.write("scenario.yaml", valid_), {{path, value}}).problems)
+      all += problem.message + "\n";
+    return all;
+  };
+  EXPECT_THAT(warningsWith("region.origin.latitude_deg", "40"),
+              AllOf(HasSubstr("is outside the region, "), HasSubstr("; likewise '")));
+  EXPECT_THAT(warningsWith("region.size_m", "[29, 29, 6000]"),
+              HasSubstr("the region is 29 m by 29 m: 'size_m' is in metres, not in kilometres"));
+}
+
 TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
   const std::string text = replaced(valid_, "begin_hz: 8.0e9", "begin_hz: 9.5e9");
   const ParseResult result = parseScenario(folder_.write("scenario.yaml", text));

@@ -569,6 +569,19 @@ TEST_F(TerrainFileTest, FileWithoutGeoreferenceIsRefused) {
   EXPECT_THAT(problemOf(write("c.tif", file)), HasSubstr("cannot be brought to latitude and longitude"));
 }
 
+TEST_F(TerrainFileTest, TextGridWithoutReferenceIsReadAsTheMessageSays) {
+  const std::filesystem::path grid = folder_ / "a.asc";
+  test::writeFile(grid,
+                  "ncols 3\nnrows 3\nxllcorner 10\nyllcorner 50\ncellsize 0.001\n1 2 3\n4 5 6\n7 8 9\n");
+  EXPECT_THAT(problemOf(grid), AllOf(HasSubstr("a file of the same name that ends in .prj"),
+                                     testing::Not(HasSubstr("gdal_edit"))));
+  test::writeFile(
+      folder_ / "a.prj",
+      "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],"
+      "PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]");
+  EXPECT_EQ(load({grid}, {50.0005, 50.0025, 10.0005, 10.0025})->heightMsl_m(50.0015, 10.0015), 5);
+}
+
 TEST_F(TerrainFileTest, ComplexNumbersAreNoHeights) {
   GDALAllRegister();
   const std::string path = folder_ / "a.tif";

@@ -29,6 +29,9 @@ std::vector<double> timesOf(const Clock& clock);
 /// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T". @param limit_s  as for timesOf()
 /// @throws Error (usage), as timesOf() and requireTime() too
 std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s = kMaxTime_s);
+/// A warning about times before or after those of the clock; empty: there are none.
+/// @param times_s  ascending
+std::string outsideClockText(const std::vector<double>& times_s, const Clock& clock);
 /// ISO 8601 time (UTC, milliseconds) at t_s; empty without an epoch, and at times that requireTime() refuses.
 /// @throws Error (bad_input) if the epoch is not a valid time
 std::string utcAt(const Clock& clock, double t_s);
