@@ -93,9 +93,11 @@ void LiveFields::request(FieldRequest request) {
 /// Stops the field in progress if a request is pending. The mutex is locked.
 void LiveFields::applyPatience() {
   if (!begun_ || std::isinf(pending_patience_ms_)) return;
-  if (!superseded_) superseded_ = SteadyClock::now();
   const bool has_more_time = is_patient_ && pending_patience_ms_ > 0;
-  work_.stopAt(*begun_ + milliseconds(has_more_time ? kLongPatience_ms : pending_patience_ms_));
+  const Time at = std::max(*begun_ + milliseconds(has_more_time ? kLongPatience_ms : pending_patience_ms_),
+                           SteadyClock::now());
+  stop_at_ = std::min(stop_at_.value_or(at), at);
+  work_.stopAt(at);
 }
 
 void LiveFields::run() {
@@ -185,7 +187,7 @@ void LiveFields::serve() {
     begun_.reset();
     const std::lock_guard<std::mutex> status_lock(mutex_);
     ++status_.fields_abandoned;
-    if (superseded_) status_.abandon_ms = std::max(status_.abandon_ms, since_ms(*superseded_));
+    if (stop_at_) status_.abandon_ms = std::max(status_.abandon_ms, since_ms(*stop_at_));
   } catch (const std::exception& error) {
     fail(failureLine(error), codeOf(error));
   }
@@ -268,7 +270,7 @@ void LiveFields::begin(const std::string& what) {
   const std::lock_guard<std::mutex> lock(patience_mutex_);
   work_.begin(what);
   begun_ = SteadyClock::now();
-  superseded_.reset();
+  stop_at_.reset();
   applyPatience();  // of requests since accept()
 }
 

@@ -27,7 +27,7 @@ struct FieldRequest {
   long long revision = 0;  ///< counts requests
   ViewState view;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
-  long long search = 0;  ///< number of the requested search of the series' range; 0: none
+  long long search = 0;                  ///< number of the requested search of the series' range; 0: none
   double patience_ms = Patience::kNone;  ///< with the field in progress
 };
 
@@ -55,7 +55,7 @@ struct FieldsStatus {
   double field_ms = 0;  ///< of the last field
   long long fields_computed = 0;
   long long fields_abandoned = 0;
-  double abandon_ms = 0;  ///< longest time from a request to the end of the field that it superseded
+  double abandon_ms = 0;  ///< longest time from the end of a request's patience to the end of the field
   WorkProgress progress;  ///< of the field in progress; of the opening before the first
   std::vector<std::string> warnings;  ///< of the models, on the fields so far
   long long failed_revision = 0;      ///< the last request that failed
@@ -161,10 +161,10 @@ class LiveFields {
   StopFlag stop_{false};
   Work work_{&stop_};
 
-  std::mutex patience_mutex_;  // of the next four
+  std::mutex patience_mutex_;                        // of the next four
   double pending_patience_ms_ = Patience::kEndless;  // smallest of the requests in the box
   std::optional<Time> begun_;                        // a field that may be abandoned is being computed
-  std::optional<Time> superseded_;                   // when the first request after it arrived
+  std::optional<Time> stop_at_;                      // of that field
   bool is_patient_ = false;                          // the field before was abandoned
 
   // Of the thread

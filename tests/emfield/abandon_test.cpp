@@ -101,6 +101,24 @@ TEST(AbandonedField, LeavesASolverThatComputesTheSameFields) {
   }
 }
 
+TEST(AbandonedField, LeavesNoUnfinishedPowersInTheCaches) {
+  const ScenarioPtr scenario = withModel("horizon", "[150, 150, 60]");
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
+  const auto at = [&](double time_s) { return scenario::snapshotAt(scenario, terrain.get(), time_s); };
+  const auto valuesOf = [](const FieldSolver& solver) { return solver.volumes().front().host()->values; };
+  FieldSolver fresh(scenario, terrain);
+  fresh.update(at(9));
+  for (const double after_ms : {0.0, 1.0, 2.0, 4.0, 8.0, 16.0}) {
+    FieldSolver solver(scenario, terrain);
+    for (const double time_s : {0.0, 1.0, 2.0}) abandon_ms(solver, at(time_s), after_ms);
+    solver.update(at(9));
+    EXPECT_EQ(valuesOf(solver), valuesOf(fresh)) << after_ms;
+    solver.update(at(0));
+    solver.update(at(9));
+    EXPECT_EQ(valuesOf(solver), valuesOf(fresh)) << after_ms;
+  }
+}
+
 TEST(Work, ReportsItsPartsAndIsStoppedAtATime) {
   Work work;
   const WorkScope scope(&work);
