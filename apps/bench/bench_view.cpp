@@ -105,6 +105,8 @@ Json jsonOf(const ViewTimes& times) {
           {"seeks", times.seek_count},
           {"seeks_fields_computed", times.seek_fields},
           {"seeks_last_shown", times.seek_last_shown},
+          {"play_fields_per_s", times.play_fields_per_s},
+          {"play_edit_to_picture_ms", medianJson(times.play_edit_to_picture)},
           {"idle_cpu_percent", times.idle_cpu_percent},
           {"rss_mib", times.rss_mib}};
 }
@@ -140,6 +142,9 @@ void printTable(const ViewTimes& times) {
     row(fmt::format("{} seeks in 2 s: fields computed", times.seek_count).c_str(),
         fmt::format("{}, the last one {}", times.seek_fields, times.seek_last_shown ? "shown" : "NOT SHOWN"));
   }
+  if (times.play_fields_per_s > 0)
+    row("playing at x1: different fields in a second", fmt::format("{:.1f}", times.play_fields_per_s));
+  median("power changed while playing to picture with it", times.play_edit_to_picture);
   row("idle: of one core", fmt::format("{:.2f} %", times.idle_cpu_percent));
   row("resident memory", fmt::format("{:.0f} MiB", times.rss_mib));
 }
@@ -171,7 +176,7 @@ void addBenchView(CLI::App& bench, const GlobalOptions& global, Action& action) 
   command->fallthrough();
   command->footer(R"(
 Opens the window on the display and runs a script of half a minute to some minutes: a turning camera, single inputs, inputs
-during a restoration, a change of the first emitter's power, seeking, an idle phase. All times are from the window's log (--log): from
+during a restoration, a change of the first emitter's power, seeking, playing, an idle phase. All times are from the window's log (--log): from
 the input to the frame that shows it. A frame of the user interface: its events, panels and drawing commands; "with the display":
 until the display, or the software renderer, has finished.
 

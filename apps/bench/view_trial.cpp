@@ -18,6 +18,8 @@ constexpr int kRepeats = 12;
 constexpr int kManySeeks = 200;
 constexpr int kSeeksAtOnce = 5;  // between two frames of the window
 constexpr double kManySeeks_s = 2;
+constexpr double kPlay_s = 8;
+constexpr int kPlayEdits = 6;
 
 class ScriptText {
  public:
@@ -91,6 +93,26 @@ void addSeekTrial(ScriptText& script, const std::vector<double>& times_s) {
   script.mark("many seeks end");
   script.waitFor("exact");
   script.mark("many seeks shown");
+}
+
+void addPlayTrial(ScriptText& script, const ViewTrial& trial) {
+  script.add({{"do", "first"}});
+  script.waitFor("exact");
+  script.add({{"do", "loop"}, {"on", true}});
+  script.add({{"do", "rate"}, {"value", 1}});
+  script.add({{"do", "play"}, {"on", true}});
+  script.wait(1);
+  script.mark("play");
+  script.wait(kPlay_s);
+  script.mark("play ends");
+  for (int n = 0; n < kPlayEdits && trial.edit; ++n) {
+    const double value = trial.edit_value * (n % 2 == 0 ? 2 : 1);
+    script.mark("play edit");
+    script.add({{"do", "set"}, {"path", trial.edit->path}, {"value", fmt::format("{:.10g}", value)}});
+    script.wait(1);
+  }
+  script.add({{"do", "pause"}});
+  script.waitFor("exact");
 }
 
 // --- the log ---
@@ -197,6 +219,28 @@ void readSeeks(const Lines& lines, ViewTimes& times) {
   times.seek_last_shown = lines[shown]["shown_s"] == lines[shown]["asked_s"];
 }
 
+void readPlay(const Lines& lines, ViewTimes& times) {
+  const std::size_t begin = find(lines, 0, [](const Json& l) { return isMark(l, "play"); });
+  const std::size_t end = find(lines, begin, [](const Json& l) { return isMark(l, "play ends"); });
+  if (end >= lines.size()) return;
+  int fields = 0;
+  Json shown_s = lines[begin]["shown_s"];
+  for (std::size_t n = begin; n < end; ++n) {
+    if (!isFrame(lines[n]) || lines[n]["shown_s"] == shown_s) continue;
+    shown_s = lines[n]["shown_s"];
+    ++fields;
+  }
+  times.play_fields_per_s = 1000 * fields / (time_ms(lines[end]) - time_ms(lines[begin]));
+  forMarks(lines, "play edit", [&](std::size_t mark) {
+    const std::size_t edited =
+        find(lines, mark, [](const Json& l) { return isFrame(l) && l["shows_edits"] == false; });
+    const std::size_t shown =
+        find(lines, edited, [](const Json& l) { return isFrame(l) && l["shows_edits"] == true; });
+    if (shown < lines.size())
+      times.play_edit_to_picture.push_back(time_ms(lines[shown]) - time_ms(lines[mark]));
+  });
+}
+
 void readFrames(const Lines& lines, ViewTimes& times) {
   for (const Json& line : lines) {
     if (line["event"] == "start") {
@@ -237,7 +281,10 @@ std::string trialScript(const ViewTrial& trial) {
   script.waitFor("exact");
   addCameraTrial(script);
   if (trial.edit) addEditTrial(script, trial);
-  if (trial.times_s.size() > 1) addSeekTrial(script, trial.times_s);
+  if (trial.times_s.size() > 1) {
+    addSeekTrial(script, trial.times_s);
+    addPlayTrial(script, trial);
+  }
   script.wait(2);  // for the steps that are computed ahead
   script.mark("idle");
   script.wait(trial.idle_s);
@@ -259,6 +306,7 @@ ViewTimes trialTimes(const std::string& log) {
   readCamera(lines, times);
   readEdits(lines, times);
   readSeeks(lines, times);
+  readPlay(lines, times);
   return times;
 }
 

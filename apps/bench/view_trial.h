@@ -37,6 +37,8 @@ struct ViewTimes {
   std::vector<double> seek, seek_field, seek_cached;  ///< seek_field: the field's part of seek
   int seek_count = 0, seek_fields = 0;                ///< many seeks in two seconds: fields computed
   bool seek_last_shown = false;
+  double play_fields_per_s = 0;  ///< different fields on screen while playing at x1; 0: not measured
+  std::vector<double> play_edit_to_picture;  ///< `edit_to_picture` while playing
   double idle_cpu_percent = 0;
   double rss_mib = 0;
 };

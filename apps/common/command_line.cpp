@@ -79,7 +79,7 @@ int run(const Action& action, const CLI::App* const& app) {
     const int status = action();
     finishResult();
     return status;
-  } catch (const playback::Stopped&) {
+  } catch (const Stopped&) {
     printMessage("emscape: stopped by signal {}; finished files are kept\n", caughtSignal());
     return 128 + caughtSignal();
   } catch (const Error& error) {

@@ -66,7 +66,7 @@ class Progress {
 
 /// A progress sink for a library that owns a new Progress for each step.
 ProgressSink progressSink(const GlobalOptions& global);
-/// The same; each call throws playback::Stopped if the user has stopped the program.
+/// The same; each call throws Stopped if the user has stopped the program.
 ProgressSink stoppingProgress(const GlobalOptions& global);
 
 }  // namespace emscape::app

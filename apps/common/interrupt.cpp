@@ -61,7 +61,7 @@ int caughtSignal() {
 }
 
 void stopIfInterrupted() {
-  playback::throwIfStopped(&stop);
+  throwIfStopped(&stop);
 }
 
 }  // namespace emscape::app

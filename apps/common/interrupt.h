@@ -1,7 +1,7 @@
 /// Signals of the programs: an orderly shutdown on SIGINT, SIGTERM, SIGHUP and SIGXCPU.
 #pragma once
 
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 
 namespace emscape::app {
 
@@ -20,7 +20,7 @@ const StopFlag& stopFlag();
 /// The signal that set stopFlag(); 0 before.
 int caughtSignal();
 
-/// @throws playback::Stopped if stopFlag() is set
+/// @throws Stopped if stopFlag() is set
 void stopIfInterrupted();
 
 }  // namespace emscape::app

@@ -184,7 +184,31 @@ struct Stage {
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<Painter> painter;
   std::optional<playback::ValueRange> range;  ///< of the searched steps of the series
+  playback::Film film;
 };
+
+constexpr double kFilmRate = 10;
+
+/// Pictures per second of a video among the outputs.
+std::optional<double> filmRate(const RenderOptions& options) {
+  const bool has_video = std::any_of(
+      options.outputs.begin(), options.outputs.end(),
+      [](const std::string& output) { return std::filesystem::path(output).extension() == ".mp4"; });
+  return has_video ? std::optional(options.frames_per_s.value_or(kFilmRate)) : std::nullopt;
+}
+
+/// @throws Error (usage) that lists the platforms
+void checkFollowed(const ViewState& view, const playback::LoadedScenario* scene) {
+  if (view.follow.empty()) return;
+  std::vector<std::string> names;
+  if (scene != nullptr) {
+    for (const scenario::Platform& platform : scene->scenario->platforms) names.push_back(platform.name);
+  }
+  if (std::find(names.begin(), names.end(), view.follow) != names.end()) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("--follow '{}': there is no such platform; there are {}", view.follow,
+                          names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
+}
 
 Stage openStage(const ViewState& view, const RenderOptions& options, const GlobalOptions& global) {
   const bool must_show_isosurface =
@@ -195,8 +219,14 @@ Stage openStage(const ViewState& view, const RenderOptions& options, const Globa
         target,
         playback::openFrameSource(selectionOf(view, options), target, progressSink(global), &stopFlag()),
         nullptr,
+        {},
         {}};
     stage.painter = std::make_unique<Painter>(view, *stage.source, target, must_show_isosurface);
+    checkFollowed(view, stage.source->scene());
+    if (!options.realtime) {
+      stage.film = playback::filmOf(view, *stage.source, filmRate(options));
+      stage.painter->setSpeed(stage.film.speed);
+    }
     const playback::Frame frame = stage.source->frame(0);
     stage.painter->setFrame(frame);
     const playback::ValueRange range = render::colorRangeOf(frame.info(), frame.color_range);
@@ -246,7 +276,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   const std::unique_ptr<FrameSource>& source = stage.source;
   Painter& painter = *stage.painter;
   const Sinks sinks =
-      openSinks(options, view, source->name(), source->count(), options.frames_per_s.value_or(10));
+      openSinks(options, view, source->name(), source->count(), options.frames_per_s.value_or(kFilmRate));
 
   logInfo(fmt::format("drawing {} picture{} of {}x{} into {}", source->count(),
                       source->count() == 1 ? "" : "s", view.size.width, view.size.height,
@@ -256,7 +286,7 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   {
     Progress progress(global, "drawing");
     cast_ms = playback::drawPictures(
-        *source, painter, plan, sinks,
+        *source, painter, plan, sinks, stage.film,
         [&](int pictures) { progress.show(static_cast<double>(pictures) / source->count()); }, &stopFlag());
   }
   report::logWarnings(source->warnings());

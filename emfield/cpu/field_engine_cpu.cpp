@@ -10,6 +10,7 @@
 #include "emfield/solver/field_engine.h"
 #include "emfield/solver/power_cache.h"
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -153,22 +154,30 @@ void CpuEngine::combine(const CombinePass& pass) {
       kept_power_.choose(static_cast<std::size_t>(member.slot), member.beam_antenna, task.emitters.back());
   }
   Stopwatch watch;
-  combineCpu(task);
-  for (std::size_t m = 0; m < pass.members.size(); ++m) {
-    const int slot = pass.members[m].slot;
-    const scenario::AntennaPtr& antenna = pass.members[m].antenna;
-    EmitterBeam beam = task.emitters[m].beam;
-    beam.pattern = antenna->view();
-    for (const RadarShare& share : pass.members[m].radars) {
-      float* const accumulator = task.accumulators[share.channel].value;
-      if (accumulator == nullptr) continue;
-      const LookWeights weights = kept_looks_.choose(static_cast<std::size_t>(slot), antenna, share);
-      radarCpu(radarPass(share, beam, slots_[slot].clutterMap(), task, accumulator), weights);
+  try {
+    combineCpu(task);
+    for (std::size_t m = 0; m < pass.members.size(); ++m) {
+      const int slot = pass.members[m].slot;
+      const scenario::AntennaPtr& antenna = pass.members[m].antenna;
+      EmitterBeam beam = task.emitters[m].beam;
+      beam.pattern = antenna->view();
+      for (const RadarShare& share : pass.members[m].radars) {
+        float* const accumulator = task.accumulators[share.channel].value;
+        if (accumulator == nullptr) continue;
+        const LookWeights weights = kept_looks_.choose(static_cast<std::size_t>(slot), antenna, share);
+        radarCpu(radarPass(share, beam, slots_[slot].clutterMap(), task, accumulator), weights);
+      }
+      for (const OccupancyShare& share : pass.members[m].occupancies) {
+        float* const accumulator = task.accumulators[share.channel].value;
+        if (accumulator != nullptr) occupancyCpu(occupancyPass(share, beam, task, accumulator));
+      }
     }
-    for (const OccupancyShare& share : pass.members[m].occupancies) {
-      float* const accumulator = task.accumulators[share.channel].value;
-      if (accumulator != nullptr) occupancyCpu(occupancyPass(share, beam, task, accumulator));
+  } catch (const Stopped&) {
+    for (const CombinePass::Member& member : pass.members) {  // what is kept of them may be unfinished
+      kept_power_.forget(static_cast<std::size_t>(member.slot));
+      kept_looks_.forget(static_cast<std::size_t>(member.slot));
     }
+    throw;
   }
   times_.combine_ms += watch.lap_ms();
 }

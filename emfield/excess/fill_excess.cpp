@@ -9,6 +9,7 @@
 #include "emfield/excess/surface_diffraction.h"
 #include "emfield/ground/read_posts.h"
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -36,6 +37,7 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
   const auto isLeft = [&](std::size_t column) { return is_left.empty() || is_left[column] != 0; };
   const int columns = static_cast<int>(grid.column_count);
   std::atomic<unsigned> all_warnings{0};
+  std::atomic<int> filled_columns{0};
   parallelFor((columns + kBlock - 1) / kBlock, 4, [&](int begin, int end) {
     std::vector<double> memory(ExcessScratch::bytes(task.posts(), grid.layers) / sizeof(double) + 1);
     const ExcessScratch scratch = ExcessScratch::in(memory.data(), task.posts(), grid.layers);
@@ -46,6 +48,7 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
       for (int i = 0; i < count; ++i) {
         const auto column = static_cast<std::size_t>(first + i);
         if (!isLeft(column)) continue;
+        checkpoint();
         const auto setAll = [&](float db) { std::fill_n(scratch.excess_db, grid.layers, db); };
         unsigned of_column = 0;
         if (grid.isLeftOut(column)) {
@@ -69,6 +72,7 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
           out.excess.set(row + i, excess_db[static_cast<std::size_t>(k) * kBlock + i]);
         }
       }
+      reportDone(static_cast<double>(filled_columns += count) / columns);
     }
     all_warnings |= warnings;
   });

@@ -10,6 +10,7 @@
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -84,6 +85,7 @@ bool FieldSolver::Impl::hasDeviceColumns() const {
 
 /// Makes the columns where the backend needs them. Those of a region are the same for all backends.
 void FieldSolver::Impl::makeColumns() {
+  const WorkPart part("columns of the grid", 0, 0);
   if (options.surface == nullptr) {
     if (setup.columns.of_grid.empty()) setup.columns = makeGridColumns(setup.grid, setup.terrain.get());
   } else {

@@ -77,7 +77,7 @@ struct FieldSolver::Impl {
   FieldChanged update(const scenario::Snapshot& snapshot, std::optional<FieldPlan> edited);
   void compute(const scenario::Snapshot& snapshot, Changes& changes);
   void setEnginePlan(bool channels_changed);
-  void discardAll();
+  void discardResults(bool keeps_geometry);
 
   void findMoved(const scenario::Snapshot& snapshot, Changes& changes);
   void findIntervals(const scenario::Snapshot& snapshot);

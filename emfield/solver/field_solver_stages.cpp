@@ -10,6 +10,7 @@
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "volume/labels.h"
 
 namespace emscape::emfield {
@@ -29,12 +30,23 @@ double eirpOf_w(const Emitter& emitter) {
 /// Computes the geometry of some emitters, into their own slots or the slot of uncached emitters.
 void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool into_scratch) {
   if (chosen.empty()) return;
-  std::vector<GeometryRequest> requests;
-  for (int e : chosen) {
-    requests.push_back({e, into_scratch ? static_cast<int>(emitters.size()) : e, emitters[e].state});
-  }
-  std::vector<GeometryResult> geometry_result = engine->computeGeometry(requests);
-  for (std::size_t i = 0; i < chosen.size(); ++i) takeGeometry(chosen[i], std::move(geometry_result[i]));
+  const auto compute = [&](std::size_t begin, std::size_t end) {
+    const auto count = static_cast<double>(chosen.size());
+    const Emitter& emitter = setup.scenario->emitters[chosen[begin]];
+    const WorkPart part(fmt::format("'{}' by {}, {} of {}", emitter.name,
+                                    toString(emitter.propagation.model), begin + 1, chosen.size()),
+                        static_cast<double>(begin) / count, static_cast<double>(end) / count);
+    std::vector<GeometryRequest> requests;
+    for (std::size_t i = begin; i < end; ++i) {
+      const int e = chosen[i];
+      if (!into_scratch) emitters[e].geometry.reset();  // the slot may be left unfinished
+      requests.push_back({e, into_scratch ? static_cast<int>(emitters.size()) : e, emitters[e].state});
+    }
+    std::vector<GeometryResult> found = engine->computeGeometry(requests);
+    for (std::size_t i = begin; i < end; ++i) takeGeometry(chosen[i], std::move(found[i - begin]));
+  };
+  if (backend == Backend::cuda) return compute(0, chosen.size());  // at the same time
+  for (std::size_t i = 0; i < chosen.size(); ++i) compute(i, i + 1);
 }
 
 void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {

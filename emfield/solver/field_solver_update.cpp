@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "emfield/solver/field_solver_impl.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -49,9 +50,13 @@ FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::
     }
     if (changes.is_edited || is_stale) setEnginePlan(changes.report.channels);
     compute(snapshot, changes);
+  } catch (const Stopped&) {
+    if (changes.before != nullptr) static_cast<FieldPlan&>(setup) = std::move(before);
+    discardResults(true);
+    throw;
   } catch (...) {
     if (changes.before != nullptr) static_cast<FieldPlan&>(setup) = std::move(before);
-    discardAll();
+    discardResults(false);
     throw;
   }
   for (volume::Volume& volume : volumes) {
@@ -70,13 +75,19 @@ void FieldSolver::Impl::setEnginePlan(bool channels_changed) {
 }
 
 /// After a failure: the results may belong to either scenario.
-void FieldSolver::Impl::discardAll() {
+/// @param keeps_geometry  the slots of emitters with a geometry are valid; the next update compares the inputs
+void FieldSolver::Impl::discardResults(bool keeps_geometry) {
   is_stale = true;
   static_count = recombined_since = 0;
   for (EmitterCache& cache : emitters) {
-    const bool is_cached = cache.is_cached;
-    cache = {};
-    cache.is_cached = is_cached;
+    EmitterCache kept;
+    kept.is_cached = cache.is_cached;
+    if (keeps_geometry && cache.is_cached && cache.geometry) {
+      kept.geometry = std::move(cache.geometry);
+      kept.geometry_result = std::move(cache.geometry_result);
+      kept.warnings = std::move(cache.warnings);
+    }
+    cache = std::move(kept);
   }
   volumes.resize(setup.channels.size());
   masks.resize(setup.channels.size());
@@ -97,11 +108,18 @@ void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& cha
   for (int e : report.moved) {
     if (emitters[e].is_cached) recomputed.push_back(e);
   }
-  computeGeometry(recomputed, false);
+  constexpr double kGeometryPart = 0.95;
+  const double combine_from = recomputed.empty() ? 0 : kGeometryPart;
+  {
+    const WorkPart part("", 0, combine_from);
+    computeGeometry(recomputed, false);
+  }
+  const WorkPart part("sums of the emitters", combine_from, 1);
   if (isAny(changes.sums)) {
     chooseResting(changes.emitters);
     combine(static_count, static_cast<int>(emitters.size()), changes.sums, false);
   }
+  checkpoint();
   makeVolumes(snapshot, changes);
 }
 
@@ -110,7 +128,7 @@ void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& c
   for (std::size_t e = 0; e < emitters.size(); ++e) {
     const EmitterState& now = snapshot.emitters[e];
     EmitterCache& cache = emitters[e];
-    if (changes.is_edited && cache.geometry &&
+    if ((changes.is_edited || changes.all) && cache.geometry &&
         !areSame(*cache.geometry, geometryInputs(setup, static_cast<int>(e), now))) {
       cache.geometry.reset();
       cache.geometry_result = {};

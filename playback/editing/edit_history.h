@@ -43,6 +43,8 @@ class EditHistory {
   long long stepsMade() const { return stack_.stepsMade(); }
   bool canUndo() const { return stack_.canUndo(); }
   bool canRedo() const { return stack_.canRedo(); }
+  /// As UndoStack::stepsTo().
+  int stepsTo(const ScenarioPtr& scenario) const { return stack_.stepsTo(scenario); }
   void undo();
   void redo();
 

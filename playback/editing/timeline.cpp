@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "base/text/time_text.h"
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
 
@@ -36,14 +37,32 @@ double tickStep_s(double span_s, int count) {
   return 10 * power * unit_s;
 }
 
-/// The time of day of an ISO 8601 time, with as many decimals as another text of seconds has.
-std::string timeOfDay(const std::string& utc, const std::string& seconds_text) {
+constexpr double kMinute_s = 60, kHour_s = 3600, kDay_s = 86400;
+
+/// The text of a tick.
+std::string textOfTick(double time_s, double step_s, double span_s) {
+  if (span_s < kHour_s || step_s < 1) return render::tickText(time_s, step_s) + " s";
+  const std::string text = timeText(time_s, span_s);
+  if (step_s >= kDay_s) return text.substr(0, text.find(' ')) + " d";
+  return step_s >= kMinute_s ? text.substr(0, text.size() - 3) : text;  // without ":00"
+}
+
+/// Decimals of a number's text.
+std::size_t decimalsOf(const std::string& number) {
+  const std::size_t point = number.find('.');
+  if (point == std::string::npos) return 0;
+  return std::min<std::size_t>(3, number.size() - point - 1);
+}
+
+/// "2026-06-02" of an ISO 8601 time; empty for an empty one.
+std::string dateOf(const std::string& utc) {
+  return utc.substr(0, utc.find('T'));
+}
+
+/// The time of day of an ISO 8601 time.
+std::string timeOfDay(const std::string& utc, std::size_t decimals) {
   if (utc.empty()) return "";
   const std::size_t begin = utc.find('T') + 1, point = utc.find('.', begin);
-  const std::size_t decimal_point = seconds_text.find('.');
-  const std::size_t decimals = decimal_point == std::string::npos
-                                   ? 0
-                                   : std::min<std::size_t>(3, seconds_text.size() - decimal_point - 1);
   return utc.substr(begin, point - begin) + (decimals == 0 ? "" : utc.substr(point, 1 + decimals));
 }
 
@@ -70,17 +89,8 @@ constexpr double kMinVisible = 1e-6;
 }  // namespace
 
 const std::vector<double>& playRates() {
-  static const std::vector<double> rates{0.1, 0.25, 0.5, 1, 2, 5, 10, 30, 60, 120};
+  static const std::vector<double> rates{0.1, 0.25, 0.5, 1, 2, 5, 10, 30, 60, 120, 300, 600, 1000};
   return rates;
-}
-
-double snappedRate(double rate) {
-  const std::vector<double>& rates = playRates();
-  const double size = std::abs(rate);
-  const double nearest = *std::min_element(rates.begin(), rates.end(), [size](double a, double b) {
-    return std::abs(std::log(a / size)) < std::abs(std::log(b / size));
-  });
-  return std::copysign(nearest, rate);
 }
 
 std::vector<ActivityBar> activityBarsOf(const scenario::Scenario& scenario, double from_s, double to_s) {
@@ -142,17 +152,26 @@ std::vector<TimelineTick> Timeline::ticks(double from_s, double to_s, int count)
   if (!(from_s < to_s) || !std::isfinite(to_s - from_s)) return ticks;
   const double step_s = tickStep_s(to_s - from_s, count);
   const scenario::Clock clock{epoch_utc_, 0, 1};
+  const double span_s = std::max({std::abs(begin_s()), std::abs(end_s()), to_s - from_s});
+  const bool has_dates = dateOf(scenario::utcAt(clock, from_s)) != dateOf(scenario::utcAt(clock, to_s));
+  std::string date;
   // By whole numbers of steps, so that no error accumulates.
   for (double n = std::ceil(from_s / step_s - 1e-9); n * step_s <= to_s + 1e-9 * step_s; ++n) {
     const double time_s = n * step_s + 0.0;  // not -0
-    const std::string text = render::tickText(time_s, step_s);
-    ticks.push_back({time_s, text, timeOfDay(scenario::utcAt(clock, time_s), text)});
+    const std::string utc = scenario::utcAt(clock, time_s);
+    std::string utc_text = timeOfDay(utc, decimalsOf(render::tickText(time_s, step_s)));
+    const bool is_other_date = has_dates && std::exchange(date, dateOf(utc)) != dateOf(utc);
+    if (step_s >= kDay_s) {
+      utc_text = dateOf(utc);
+    } else if (is_other_date && !utc.empty()) {
+      utc_text = dateOf(utc).substr(5) + " " + utc_text;
+    }
+    ticks.push_back({time_s, textOfTick(time_s, step_s, span_s), std::move(utc_text)});
   }
   return ticks;
 }
 
 double Timeline::parseTime_s(const std::string& text) const {
-  constexpr double kDay_s = 86400;
   char* end = nullptr;
   const double seconds = std::strtod(text.c_str(), &end);
   if (!text.empty() && *end == '\0' && std::isfinite(seconds)) return seconds;
@@ -162,7 +181,7 @@ double Timeline::parseTime_s(const std::string& text) const {
                                                   epoch_utc_.empty() ? "" : " or hh:mm[:ss] in UTC"));
   }
   const std::string begin = scenario::utcAt({epoch_utc_, 0, 1}, begin_s());
-  const double begin_of_day_s = secondsOfDay(timeOfDay(begin, ".000")).value_or(0);
+  const double begin_of_day_s = secondsOfDay(timeOfDay(begin, 3)).value_or(0);
   const double after_begin_s = std::fmod(*wanted_s - begin_of_day_s + kDay_s, kDay_s);
   return begin_s() + after_begin_s;
 }
@@ -221,6 +240,22 @@ void Timeline::follow(double before_s) {
 void Timeline::seek(double time_s) {
   if (std::isnan(time_s)) return;
   time_s_ = times_s_.empty() ? time_s : std::clamp(time_s, begin_s(), end_s());
+  rounding_s_ = 0;
+}
+
+double Timeline::asked_s() const {
+  if (!is_continuous_) return step_s();
+  if (rounding_s_ == 0 || times_s_.empty()) return time_s_;
+  const double per_s = std::round(1 / rounding_s_);
+  const double rounded_s =
+      per_s >= 1 ? std::round(time_s_ * per_s) / per_s : std::round(time_s_ / rounding_s_) * rounding_s_;
+  return std::clamp(rounded_s, begin_s(), end_s());
+}
+
+void Timeline::pause() {
+  if (!playing_) return;
+  playing_ = false;
+  if (is_continuous_) seek(asked_s());
 }
 
 int Timeline::nearestStep(double time_s) const {
@@ -236,11 +271,17 @@ void Timeline::goToStep(int step) {
   if (times_s_.empty()) return;
   const auto last = static_cast<int>(times_s_.size()) - 1;
   time_s_ = times_s_[static_cast<std::size_t>(std::clamp(step, 0, last))];
+  rounding_s_ = 0;
 }
 
 void Timeline::stepBy(int steps) {
   const auto count = static_cast<int>(times_s_.size());
-  goToStep(step() + std::clamp(steps, -count, count));
+  int from = step();
+  if (is_continuous_ && count > 0) {  // between two steps the first one ends at the next
+    if (steps > 0 && step_s() > asked_s()) --from;
+    if (steps < 0 && step_s() < asked_s()) ++from;
+  }
+  goToStep(from + std::clamp(steps, -count, count));
 }
 
 TimeInterval Timeline::playRange() const {
@@ -285,9 +326,28 @@ void Timeline::setRate(double rate) {
   if (rate != 0 && std::isfinite(rate)) rate_ = rate;
 }
 
-void Timeline::changeRate(int direction) {
+double Timeline::stepsPerSecond(double rate) const {
+  if (!hasSpan()) return 0;
+  return rate * static_cast<double>(times_s_.size() - 1) / (end_s() - begin_s());
+}
+
+bool Timeline::hasLongSteps() const {
+  constexpr double kLong_s = 2;
+  return hasSpan() && stepsPerSecond(kLong_s) <= 1;
+}
+
+std::vector<double> Timeline::usualRates() const {
+  constexpr double kMaxRate = 10000, kMaxStepsPerSecond = 10;
   std::vector<double> rates = playRates();
-  for (const double rate : playRates()) rates.push_back(-rate);
+  for (const double rate : {2000.0, 5000.0, kMaxRate}) {
+    if (hasSpan() && stepsPerSecond(rate) <= kMaxStepsPerSecond) rates.push_back(rate);
+  }
+  return rates;
+}
+
+void Timeline::changeRate(int direction) {
+  std::vector<double> rates = usualRates();
+  for (const double rate : usualRates()) rates.push_back(-rate);
   std::sort(rates.begin(), rates.end());
   if (direction > 0) {
     const auto next = std::upper_bound(rates.begin(), rates.end(), rate_);
@@ -300,8 +360,10 @@ void Timeline::changeRate(int direction) {
 
 double Timeline::advance(double dt_s) {
   if (!playing_ || !(dt_s > 0)) return time_s_;
+  constexpr double kShown_s = 1.0 / 30;
   const TimeInterval range = playRange();
   const double before_s = time_s_;
+  rounding_s_ = std::pow(10.0, std::floor(std::log10(std::abs(rate_) * kShown_s)));
   const double next_s = time_s_ + rate_ * dt_s;
   const bool is_in_range = rate_ > 0 ? next_s <= range.end_s : next_s >= range.begin_s;
   if (is_in_range) {
@@ -312,6 +374,7 @@ double Timeline::advance(double dt_s) {
     time_s_ = range.begin_s + (beyond_s < 0 ? beyond_s + length_s : beyond_s);
   } else {  // a time outside the playing range is not changed
     time_s_ = rate_ > 0 ? std::max(time_s_, range.end_s) : std::min(time_s_, range.begin_s);
+    rounding_s_ = 0;
     playing_ = false;
   }
   follow(before_s);
@@ -320,6 +383,7 @@ double Timeline::advance(double dt_s) {
 
 std::optional<double> Timeline::untilNextStep_s() const {
   if (!playing_) return std::nullopt;
+  if (is_continuous_) return 0;
   const auto time = [this](int index) { return times_s_[static_cast<std::size_t>(index)]; };
   const int now = step(), next = rate_ > 0 ? now + 1 : now - 1;
   const TimeInterval range = playRange();

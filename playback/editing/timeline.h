@@ -12,8 +12,9 @@ namespace emscape::playback {
 /// A mark at a round time.
 struct TimelineTick {
   double time_s = 0;
-  std::string seconds_text;  ///< "12.5"
-  std::string utc_text;      ///< "06:00:12.5", with as many decimals; empty without an epoch
+  std::string text;      ///< "12.5 s"; on long time lines "26:00", "1 d 02:00"
+  std::string utc_text;  ///< "06:00:12.5", with as many decimals; with the date where it changes, and in days
+                         ///< "2026-06-02"; empty without an epoch
 };
 
 /// The active intervals of an emitter within the span of the steps.
@@ -25,10 +26,9 @@ struct ActivityBar {
 
 /// The usual rates, ascending, in scenario seconds per second; negative rates (backwards) are not listed.
 const std::vector<double>& playRates();
-/// The usual rate nearest to `rate` by ratio, with its sign; the slowest for 0.
-double snappedRate(double rate);
 
-/// Time is between the first and the last step. For one thread.
+/// Time is between the first and the last step. A continuous time line shows all times, others those of steps.
+/// For one thread.
 class Timeline {
  public:
   /// No steps: nothing moves before setSteps().
@@ -43,6 +43,9 @@ class Timeline {
   /// Sets other steps, ascending. The current time, the playing range and the visible part are clamped to the
   /// new steps.
   void setSteps(std::vector<double> times_s);
+  /// Sets whether times between the steps are shown; false at first.
+  void setContinuous(bool is_continuous) { is_continuous_ = is_continuous; }
+  bool isContinuous() const { return is_continuous_; }
   /// Sets the epoch and the emitters' active intervals.
   void setScenario(const scenario::Scenario& scenario);
 
@@ -86,12 +89,15 @@ class Timeline {
   void seek(double time_s);
   /// The index of the step nearest to a time; of two equally near, the earlier.
   int nearestStep(double time_s) const;
-  /// The step that is shown.
+  /// The nearest step.
   int step() const { return nearestStep(time_s_); }
-  /// Time of the shown step; without steps, time_s().
+  /// Time of the nearest step; without steps, time_s().
   double step_s() const { return times_s_.empty() ? time_s_ : times_s_[static_cast<std::size_t>(step())]; }
-  /// Moves by a number of steps from the shown one (negative: backwards), at most to the first or last. Stops
-  /// playing.
+  /// The time to show: that of a step, or of a continuous time line any. While playing it is rounded to a
+  /// decimal that a thirtieth of a second of the user's clock shows.
+  double asked_s() const;
+  /// Moves by a number of steps from the present time (negative: backwards), at most to the first or last.
+  /// Stops playing.
   void stepBy(int steps);
   void goToFirst() { goToStep(0); }
   void goToLast() { goToStep(static_cast<int>(times_s_.size()) - 1); }
@@ -101,7 +107,8 @@ class Timeline {
   /// Starts playing. At the end in the direction of the rate, or outside the playing range, it starts from
   /// the other end.
   void play();
-  void pause() { playing_ = false; }
+  /// Stops playing, at asked_s().
+  void pause();
   /// Range of playing; the span of all steps at first.
   scenario::TimeInterval playRange() const;
   /// Sets the range of playing; its ends are moved to the nearest steps, and it has at least two steps.
@@ -117,6 +124,12 @@ class Timeline {
   void setRate(double rate);
   /// Changes to the next usual rate above (1) or below (-1). Below the slowest follow the negative rates.
   void changeRate(int direction);
+  /// playRates(), and faster ones if steps are long.
+  std::vector<double> usualRates() const;
+  /// Steps per second of the user's clock at a rate; 0 without a span.
+  double stepsPerSecond(double rate) const;
+  /// True if steps are so long that rates are better understood in steps per second.
+  bool hasLongSteps() const;
   void reverse() { rate_ = -rate_; }
   bool loop() const { return loop_; }
   void setLoop(bool loop) { loop_ = loop; }
@@ -126,7 +139,8 @@ class Timeline {
   /// @param dt_s  of the user's clock, >= 0
   /// @return time_s()
   double advance(double dt_s);
-  /// Seconds of the user's clock until another step is shown; none while it does not play.
+  /// Seconds of the user's clock until another step is shown; none while it does not play, 0 if it is
+  /// continuous.
   std::optional<double> untilNextStep_s() const;
 
  private:
@@ -140,9 +154,11 @@ class Timeline {
   std::vector<ActivityBar> bars_;
   std::optional<scenario::TimeInterval> visible_, play_range_;  // none: the whole span
   double time_s_ = 0;
+  double rounding_s_ = 0;  // of asked_s(); 0: none
   double rate_ = 1;
   bool playing_ = false;
   bool loop_ = false;
+  bool is_continuous_ = false;
 };
 
 /// The active intervals of each emitter of a scenario between two times.

@@ -1,6 +1,7 @@
 /// Undo and redo of whole states. A drag is one step.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -43,6 +44,15 @@ class UndoStack {
   long long stepsMade() const { return steps_made_; }
   bool canUndo() const { return !past_.empty() || drag_; }
   bool canRedo() const { return !future_.empty() && !drag_; }
+  /// Number of steps to another state, latest first: negative by undo(), positive by redo(); 0: there is none.
+  int stepsTo(const State& state) const {
+    const auto stepsIn = [&](const std::vector<State>& states) {
+      const auto found = std::find(states.rbegin(), states.rend(), state);
+      return found == states.rend() ? 0 : static_cast<int>(found - states.rbegin()) + 1;
+    };
+    const int back = stepsIn(past_);
+    return back > 0 ? -back : stepsIn(future_);
+  }
   /// Goes back one step; an open drag is that step. No effect if there is none.
   void undo() {
     endDrag();

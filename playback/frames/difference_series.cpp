@@ -44,6 +44,14 @@ const std::vector<volume::Volume>& DifferenceSeries::reference(double time_s) {
   if (!reference_) reference_ = open_();
   const int step = reference_->nearestIndex(time_s);
   if (std::abs(reference_->time_s(step) - time_s) > kSameTime_s) {
+    if (reference_->isContinuous()) {
+      if (between_s_ != time_s) {
+        between_s_.reset();
+        between_ = reference_->computeAt(time_s);
+        between_s_ = time_s;
+      }
+      return between_;
+    }
     throw Error(ErrorCode::bad_input,
                 fmt::format("{} has no step at {:g} s to compare with; the nearest is at {:g} s", name_,
                             time_s, reference_->time_s(step)));

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +29,7 @@ class DifferenceSeries {
 
   /// volume::difference() of each volume and that of the reference at a time. The results are in host memory
   /// and have the time of `volumes`.
-  /// @throws Error (bad_input) if the reference has no step at that time or other volumes, as
+  /// @throws Error (bad_input) if the reference has no volumes at that time or other volumes, as
   /// volume::difference(), (device); Stopped
   std::vector<volume::Volume> of(const std::vector<volume::Volume>& volumes, double time_s);
   /// The volumes of the reference. @throws as of()
@@ -36,13 +37,19 @@ class DifferenceSeries {
   /// @return the warnings of the other series, followed by those of the reference, which name it
   std::vector<std::string> warnings(std::vector<std::string> others) const;
   /// Drops the cached volumes.
-  void clear() { cache_.clear(); }
+  void clear() {
+    cache_.clear();
+    between_s_.reset();
+  }
+  std::size_t cachedBytes() const { return cache_.bytes(); }
 
  private:
   const Open open_;
   const std::string name_;
   std::shared_ptr<VolumeSeries> reference_;
   StepCache<std::vector<volume::Volume>> cache_;
+  std::optional<double> between_s_;  // time of between_
+  std::vector<volume::Volume> between_;  // the last volumes that are not of a step
 };
 
 }  // namespace emscape::playback

@@ -3,16 +3,11 @@
 #include <utility>
 
 namespace emscape::playback {
-namespace {
-
-constexpr std::size_t kCacheBytes = std::size_t{512} << 20;
-
-}  // namespace
-
-DifferenceSource::DifferenceSource(std::unique_ptr<FrameSource> source, Open open, std::string name,
-                                   bool compares)
+DifferenceSource::DifferenceSource(std::unique_ptr<FrameSource> source, Open open,
+                                   const DifferenceReference& reference, bool compares)
     : source_(std::move(source)),
       compares_(compares),
+      reference_is_continuous_(reference.is_continuous),
       difference_(
           [this, open = std::move(open)] {
             std::unique_ptr<FrameSource> opened = open();
@@ -20,12 +15,11 @@ DifferenceSource::DifferenceSource(std::unique_ptr<FrameSource> source, Open ope
             reference_ = opened.get();
             return opened;
           },
-          std::move(name), kCacheBytes) {}
+          reference.name, reference.cache_bytes) {}
 
-Frame DifferenceSource::makeFrame(int index) {
-  Frame frame = source_->frame(index);
+Frame DifferenceSource::compared(Frame frame) {
   if (!compares_) return frame;
-  frame.volume = difference_.of({comparableVolume(frame)}, time_s(index)).front();
+  frame.volume = difference_.of({comparableVolume(frame)}, frame.info().time_s).front();
   frame.changed = true;
   return frame;
 }

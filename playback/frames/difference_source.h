@@ -12,6 +12,12 @@
 
 namespace emscape::playback {
 
+struct DifferenceReference {
+  std::string name;            ///< for legends
+  bool is_continuous = false;  ///< see VolumeSeries
+  std::size_t cache_bytes = std::size_t{512} << 20;
+};
+
 /// Frames of a source, or their differences to those of a reference at the same times. Edits apply only to
 /// the source: the reference's frames are cached and not recomputed after an edit. Frames must be independent
 /// (FrameSelection::independent).
@@ -20,25 +26,33 @@ class DifferenceSource : public FrameSource {
   using Open = std::function<std::unique_ptr<FrameSource>()>;
 
   /// @param open  opens the reference, when a difference is first requested. May throw Error
-  /// @param name  of the reference, for legends
-  DifferenceSource(std::unique_ptr<FrameSource> source, Open open, std::string name, bool compares);
+  DifferenceSource(std::unique_ptr<FrameSource> source, Open open, const DifferenceReference& reference,
+                   bool compares);
 
   int count() const override { return source_->count(); }
   double time_s(int index) const override { return source_->time_s(index); }
+  bool isContinuous() const override {
+    return source_->isContinuous() && (!compares_ || reference_is_continuous_);
+  }
   std::string name() const override { return source_->name(); }
   const LoadedScenario* scene() const override { return source_->scene(); }
   std::vector<std::string> warnings() const override { return difference_.warnings(source_->warnings()); }
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override;
   void setQuantity(const std::string& quantity) override;
   void setComparison(bool on) override { compares_ = on; }
+  std::size_t cachedBytes() const override { return difference_.cachedBytes(); }
 
  protected:
   /// @throws Error as DifferenceSeries::of(); as the sources; Stopped
-  Frame makeFrame(int index) override;
+  Frame makeFrame(int index) override { return compared(source_->frame(index)); }
+  Frame makeFrameAt(double time_s) override { return compared(source_->frameAt(time_s)); }
 
  private:
+  Frame compared(Frame frame);
+
   std::unique_ptr<FrameSource> source_;
   bool compares_;
+  const bool reference_is_continuous_;
   FrameSource* reference_ = nullptr;     // of difference_; null before it is opened
   std::optional<std::string> quantity_;  // that was set after the sources were opened
   DifferenceSeries difference_;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 #include "emscape/scenario/model/quantities.h"
 #include "playback/frames/difference_series.h"
 #include "volume/difference.h"
@@ -31,14 +31,14 @@ FieldSeries::FieldSeries(LoadedScenario input, std::vector<double> times_s,
 
 FieldSeries::~FieldSeries() = default;
 
-scenario::Snapshot FieldSeries::snapshot(int step) const {
-  return scenario::snapshotAt(input_.scenario, input_.terrain.get(), time_s(step));
+scenario::Snapshot FieldSeries::snapshotAt(double time_s) const {
+  return scenario::snapshotAt(input_.scenario, input_.terrain.get(), time_s);
 }
 
 void FieldSeries::setScenario(LoadedScenario input, std::vector<double> times_s) {
   input_ = std::move(input);
   times_s_ = std::move(times_s);
-  updated_step_ = -1;
+  updated_s_.reset();
 }
 
 void FieldSeries::compareWith(const LoadedScenario& reference, const std::string& name) {
@@ -66,7 +66,7 @@ void FieldSeries::compareWith(const LoadedScenario& reference, const std::string
 }
 
 void FieldSeries::rehearse() {
-  update(0);
+  update(time_s(0));
   if (difference_) difference_->reference(time_s(0));
 }
 
@@ -77,18 +77,20 @@ std::vector<std::string> FieldSeries::warnings() const {
   return all;
 }
 
-void FieldSeries::update(int step) {
+void FieldSeries::update(double time_s) {
   throwIfStopped(stop_);
-  if (step == updated_step_) return;
-  updated_step_ = -1;
-  if (solver_.update(snapshot(step), input_.terrain).any) changed_since_given_ = true;
-  updated_step_ = step;
+  if (time_s == updated_s_) return;
+  updated_s_.reset();
+  Work stoppable(stop_);
+  const WorkScope scope(currentWork() != nullptr ? currentWork() : &stoppable);
+  if (solver_.update(snapshotAt(time_s), input_.terrain).any) changed_since_given_ = true;
+  updated_s_ = time_s;
 }
 
-std::vector<volume::Volume> FieldSeries::compute(int step) {
-  update(step);
+std::vector<volume::Volume> FieldSeries::computeAt(double time_s) {
+  update(time_s);
   changed_ = std::exchange(changed_since_given_, false) || difference_;
-  return difference_ ? difference_->of(solver_.volumes(), time_s(step)) : solver_.volumes();
+  return difference_ ? difference_->of(solver_.volumes(), time_s) : solver_.volumes();
 }
 
 }  // namespace emscape::playback

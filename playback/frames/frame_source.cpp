@@ -9,7 +9,7 @@
 #include "emscape/base/error.h"
 #include "emscape/emfield/columns/terrain_mesh.h"
 #include "emscape/playback/frames/scene.h"
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 #include "emscape/volume/format/file.h"
 #include "playback/frames/difference_source.h"
 #include "playback/frames/platform_tracks.h"
@@ -89,6 +89,7 @@ class ComputedFrames : public FrameSource {
 
   int count() const override { return series_->count(); }
   double time_s(int index) const override { return series_->time_s(index); }
+  bool isContinuous() const override { return true; }
   std::string name() const override { return series_->input().scenario->name; }
   const LoadedScenario* scene() const override { return &series_->input(); }
   std::vector<std::string> warnings() const override { return series_->warnings(); }
@@ -118,13 +119,14 @@ class ComputedFrames : public FrameSource {
   }
 
  protected:
-  Frame makeFrame(int index) override {
-    const std::vector<volume::Volume> volumes = series_->compute(index);
+  Frame makeFrame(int index) override { return makeFrameAt(series_->time_s(index)); }
+  Frame makeFrameAt(double time_s) override {
+    const std::vector<volume::Volume> volumes = series_->computeAt(time_s);
     const std::size_t channel = channelOf(series_->channels(), selection_.quantity);
     Frame frame{mesh_.shown(volumes[channel]), {}, {}, series_->changed(), {}};
     const LoadedScenario& input = series_->input();
-    frame.markers = markersOf(series_->snapshot(index), input.terrain.get(), frame.grid());
-    frame.tracks = tracks_.at(series_->time_s(index), input, frame.grid());
+    frame.markers = markersOf(series_->snapshotAt(time_s), input.terrain.get(), frame.grid());
+    frame.tracks = tracks_.at(time_s, input, frame.grid());
     return frame;
   }
 
@@ -301,9 +303,12 @@ std::unique_ptr<FrameSource> openComparison(const FrameSelection& selection, con
   const bool compares = !selection.compare.empty();
   if (compares) referenceOf(field);  // throws its faults here
   const auto openReference = [field, target, stop] { return openField(referenceOf(field), target, stop); };
+  const bool is_scenario = !compares || inputKindOf(referenceOf(field).input) == InputKind::scenario;
   const std::string name =
       !compares || selection.compare == kOriginal ? "the original scenario" : selection.compare;
-  return std::make_unique<DifferenceSource>(openField(field, target, stop), openReference, name, compares);
+  return std::make_unique<DifferenceSource>(openField(field, target, stop), openReference,
+                                            DifferenceReference{name, is_scenario, selection.cache_bytes},
+                                            compares);
 }
 
 /// The range of the values of a series.

@@ -9,6 +9,7 @@
 
 #include "base/files/file_reading.h"
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/volume/format/file.h"
 #include "playback/frames/volume_input.h"
@@ -84,9 +85,14 @@ void requireScenarioFile(const std::string& file) {
 }
 
 LoadedScenario loadScenarioWithTerrain(const std::string& file, const std::vector<scenario::Edit>& edits) {
+  constexpr double kScenarioPart = 0.2;
   requireScenarioFile(file);
   LoadedScenario loaded;
-  loaded.scenario = scenario::loadScenario(file, edits);
+  {
+    const WorkPart part("reading the scenario", 0, kScenarioPart);
+    loaded.scenario = scenario::loadScenario(file, edits);
+  }
+  const WorkPart part("reading the terrain", kScenarioPart, 1);
   loaded.terrain = scenario::loadTerrain(*loaded.scenario);
   return loaded;
 }

@@ -51,16 +51,25 @@ Vec3d positionOf(const scenario::SitePosition& site, const scenario::Terrain* te
   return frame.toLocal(position);
 }
 
+/// Position of a time on a track, as Track::travelled.
+double travelledAt(const render::Track& track, double time_s) {
+  const std::vector<double>& times_s = track.times_s;
+  const auto next = std::upper_bound(times_s.begin(), times_s.end(), time_s);
+  if (next == times_s.end()) return static_cast<double>(times_s.size() - 1);
+  if (next == times_s.begin()) return 0;
+  const double before_s = *(next - 1);
+  return static_cast<double>(next - 1 - times_s.begin()) + (time_s - before_s) / (*next - before_s);
+}
+
 }  // namespace
 
-PlatformTracks::Line PlatformTracks::lineOf(const scenario::Platform& platform, double duration_s,
-                                            int max_points, const scenario::Terrain* terrain,
-                                            const GeoFrame& frame) {
-  Line line;
+render::Track PlatformTracks::lineOf(const scenario::Platform& platform, double duration_s, int max_points,
+                                     const scenario::Terrain* terrain, const GeoFrame& frame) {
+  render::Track line;
   for (const double time_s : timesOf(platform.track, duration_s, max_points)) {
     const Vec3d point_m = positionOf(scenario::pointAt(platform, time_s).position, terrain, frame);
     if (std::isnan(point_m.x + point_m.y + point_m.z)) continue;
-    line.track.points_m.push_back(point_m);
+    line.points_m.push_back(point_m);
     line.times_s.push_back(time_s);
   }
   return line;
@@ -77,30 +86,43 @@ std::vector<render::Track> PlatformTracks::at(double time_s, const LoadedScenari
                       [](const scenario::Platform& platform) { return platform.track.size() > 1; }));
     for (std::size_t p = 0; p < platforms.size(); ++p) {
       if (platforms[p].track.size() < 2) continue;
-      Line line = lineOf(platforms[p], scene.scenario->clock.duration_s,
-                         std::clamp(kMaxPointsOfAll / moving, 2, kMaxPoints), scene.terrain.get(), frame);
+      render::Track line =
+          lineOf(platforms[p], scene.scenario->clock.duration_s,
+                 std::clamp(kMaxPointsOfAll / moving, 2, kMaxPoints), scene.terrain.get(), frame);
       for (const scenario::Emitter& emitter : scene.scenario->emitters) {
-        if (emitter.platform == static_cast<int>(p)) line.track.kind = markerKindOf(emitter.kind);
+        if (emitter.platform == static_cast<int>(p)) line.kind = markerKindOf(emitter.kind);
       }
       if (line.times_s.size() > 1) lines_.push_back(std::move(line));
     }
     scenario_ = scene.scenario;
     grid_ = grid;
   }
-  std::vector<render::Track> tracks;
-  for (const Line& line : lines_) {
-    const auto next = std::upper_bound(line.times_s.begin(), line.times_s.end(), time_s);
-    render::Track track = line.track;
-    if (next == line.times_s.end()) {
-      track.travelled = static_cast<double>(line.times_s.size() - 1);
-    } else if (next != line.times_s.begin()) {
-      const double before_s = *(next - 1);
-      track.travelled =
-          static_cast<double>(next - 1 - line.times_s.begin()) + (time_s - before_s) / (*next - before_s);
-    }
-    tracks.push_back(std::move(track));
-  }
+  std::vector<render::Track> tracks = lines_;
+  for (render::Track& track : tracks) track.travelled = travelledAt(track, time_s);
   return tracks;
+}
+
+render::Track partOf(const render::Track& track, double from_s, double to_s) {
+  render::Track part;
+  part.kind = track.kind;
+  const auto add = [&](double at, double time_s) {
+    const auto before = std::min(static_cast<std::size_t>(at), track.points_m.size() - 1);
+    const std::size_t after = std::min(before + 1, track.points_m.size() - 1);
+    const double fraction = at - static_cast<double>(before);
+    part.points_m.push_back(track.points_m[before] * (1 - fraction) + track.points_m[after] * fraction);
+    part.times_s.push_back(time_s);
+  };
+  if (track.times_s.empty() || !(from_s < to_s)) return part;
+  const double begin_s = std::max(from_s, track.times_s.front()),
+               end_s = std::min(to_s, track.times_s.back());
+  if (!(begin_s < end_s)) return part;
+  const double begin = travelledAt(track, begin_s), end = travelledAt(track, end_s);
+  add(begin, begin_s);
+  for (auto n = static_cast<std::size_t>(std::floor(begin)) + 1; static_cast<double>(n) < end; ++n)
+    add(static_cast<double>(n), track.times_s[n]);
+  add(end, end_s);
+  part.travelled = static_cast<double>(part.points_m.size() - 1);
+  return part;
 }
 
 std::vector<render::Track> tracksOf(const LoadedScenario& scene, const volume::Grid& grid, double time_s) {

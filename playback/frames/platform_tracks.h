@@ -10,6 +10,9 @@
 
 namespace emscape::playback {
 
+/// The part of a track between two times.
+render::Track partOf(const render::Track& track, double from_s, double to_s);
+
 /// Keeps the lines: only the current positions differ from one time to the next. For one thread.
 class PlatformTracks {
  public:
@@ -17,16 +20,12 @@ class PlatformTracks {
   std::vector<render::Track> at(double time_s, const LoadedScenario& scene, const volume::Grid& grid);
 
  private:
-  struct Line {
-    render::Track track;
-    std::vector<double> times_s;  ///< one per point
-  };
-  static Line lineOf(const scenario::Platform& platform, double duration_s, int max_points,
-                     const scenario::Terrain* terrain, const GeoFrame& frame);
+  static render::Track lineOf(const scenario::Platform& platform, double duration_s, int max_points,
+                              const scenario::Terrain* terrain, const GeoFrame& frame);
 
   std::shared_ptr<const scenario::Scenario> scenario_;  // of the lines
   volume::Grid grid_;
-  std::vector<Line> lines_;
+  std::vector<render::Track> lines_;
 };
 
 }  // namespace emscape::playback

@@ -58,6 +58,8 @@ class StepCache {
     return std::any_of(steps_.begin(), steps_.end(),
                        [&](const auto& kept) { return distance(kept.first) > distance(index); });
   }
+  /// Sets another limit; keep() applies it.
+  void setLimit(std::size_t max_bytes) { max_bytes_ = max_bytes; }
   /// Ascending.
   std::vector<int> indices() const {
     std::vector<int> indices;
@@ -65,15 +67,15 @@ class StepCache {
     return indices;
   }
   void clear() { steps_.clear(); }
-
- private:
+  /// Of all steps.
   std::size_t bytes() const {
     std::size_t bytes = 0;
     for (const auto& [index, data] : steps_) bytes += bytesOf(data);
     return bytes;
   }
 
-  const std::size_t max_bytes_;
+ private:
+  std::size_t max_bytes_;
   std::map<int, Data> steps_;
   std::size_t step_bytes_ = 0;  // of the largest so far
 };

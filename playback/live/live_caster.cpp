@@ -118,7 +118,7 @@ void LiveCaster::takeMail() {
   prepare_ms_ += watch.lap_ms();
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (field) status_.field_revision = field->value.revision;
+    if (field) status_.field_revision = progress_.field_revision = field->value.revision;
     if (view) status_.view_revision = view->value.revision;
   }
   if (is_labels_only_ && !is_raised_ && has_image_) {
@@ -144,7 +144,10 @@ void LiveCaster::applyView(const ViewRequest& request) {
   };
   apply(change.size && view.size.count() > 0, SceneEvent::resized, [&] { painter_.setSize(view.size); });
   apply(change.settings, SceneEvent::mode, [&] { painter_.setSettings(view.settings); });
-  apply(change.camera, SceneEvent::view, [&] { painter_.setCamera(view.camera); });
+  apply(change.camera, SceneEvent::view, [&] {
+    painter_.setFollowed(view);
+    painter_.setCamera(view.camera);
+  });
   if (change.colors && (view.transfer || view.range)) {
     attempt([&] {
       if (painter_.setColors(view)) raise(SceneEvent::transfer_function);
@@ -182,7 +185,11 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
     }
   }
   if (is_first && delivery.frame.cells) controller_.setOptions(controllerOptions(), now_ms());
-  if (!is_same_field) raise(is_other_grid ? SceneEvent::resized : SceneEvent::field);
+  if (!is_same_field) {
+    raise(is_other_grid ? SceneEvent::resized : SceneEvent::field);
+  } else if (!request_.view.follow.empty()) {
+    raise(SceneEvent::view);
+  }
   if (is_other_quantity) painter_.setColors({});
   if (refused) std::rethrow_exception(refused);
 }

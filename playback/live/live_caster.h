@@ -38,8 +38,9 @@ struct CasterStatus {
 
 /// Progress of a picture.
 struct PictureProgress {
-  long long scene = 0;    ///< that it shows
-  bool complete = false;  ///< all of its pixels are cast
+  long long scene = 0;           ///< that it shows
+  bool complete = false;         ///< all of its pixels are cast
+  long long field_revision = 0;  ///< of the request for its field
 };
 
 /// Draws the last request: the state machine of render::FrameController on a separate thread.

@@ -1,12 +1,16 @@
 #include "playback/live/live_fields.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <utility>
 
 #include "base/stopwatch.h"
 #include "emscape/base/parallel.h"
-#include "emscape/playback/stop.h"
 #include "playback/live/first_line.h"
+#include "playback/live/nearest_time.h"
 
 namespace emscape::playback {
 namespace {
@@ -15,6 +19,10 @@ using SteadyClock = std::chrono::steady_clock;
 
 SteadyClock::duration milliseconds(double ms) {
   return std::chrono::duration_cast<SteadyClock::duration>(std::chrono::duration<double, std::milli>(ms));
+}
+
+double since_ms(SteadyClock::time_point time) {
+  return std::chrono::duration<double, std::milli>(SteadyClock::now() - time).count();
 }
 
 std::vector<double> timesOf(const FrameSource& source) {
@@ -27,8 +35,20 @@ std::vector<double> timesOf(const FrameSource& source) {
 constexpr double kQuiet_ms = 150;
 /// A field that takes longer leaves a core free even if it is not needed yet.
 constexpr double kLongField_ms = 200;
+/// Patience of a request after a field was abandoned.
+constexpr double kLongPatience_ms = 1000;
 
 }  // namespace
+
+double LiveFields::Content::timeOf(double asked_s) const {
+  return is_continuous ? std::clamp(asked_s, times_s.front(), times_s.back())
+                       : times_s[static_cast<std::size_t>(nearestTime(times_s, asked_s))];
+}
+
+int LiveFields::Content::stepAt(double time_s) const {
+  const int nearest = nearestTime(times_s, time_s);
+  return times_s[static_cast<std::size_t>(nearest)] == time_s ? nearest : -1;
+}
 
 LiveFields::LiveFields(Open open, FieldRequest first, const Options& options, Events events)
     : open_(std::move(open)),
@@ -36,9 +56,8 @@ LiveFields::LiveFields(Open open, FieldRequest first, const Options& options, Ev
       events_(std::move(events)),
       arena_(options.threads > 0 ? options.threads : threadCount(), options.niceness),
       narrow_arena_(threadCount() - 1, options.niceness),
+      wanted_(first),
       cache_(options.cache_bytes) {
-  compares_ = !first.view.compare.empty();
-  wanted_ = first;
   box_.put(std::move(first));
   worker_.push([this] { run(); });
 }
@@ -59,13 +78,33 @@ void LiveFields::stop() {
 
 FieldsStatus LiveFields::status() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return status_;
+  FieldsStatus status = status_;
+  status.progress = work_.progress();
+  return status;
+}
+
+void LiveFields::request(FieldRequest request) {
+  const std::lock_guard<std::mutex> lock(patience_mutex_);
+  pending_patience_ms_ = std::min(pending_patience_ms_, request.patience_ms);
+  box_.put(std::move(request));
+  applyPatience();
+}
+
+/// Stops the field in progress if a request is pending. The mutex is locked.
+void LiveFields::applyPatience() {
+  if (!begun_ || std::isinf(pending_patience_ms_)) return;
+  const bool has_more_time = is_patient_ && pending_patience_ms_ > 0;
+  const Time at = std::max(*begun_ + milliseconds(has_more_time ? kLongPatience_ms : pending_patience_ms_),
+                           SteadyClock::now());
+  stop_at_ = std::min(stop_at_.value_or(at), at);
+  work_.stopAt(at);
 }
 
 void LiveFields::run() {
+  const WorkScope scope(&work_);
   open();
   while (!stop_) {
-    if (auto letter = box_.take()) accept(std::move(*letter));
+    accept();
     if (is_due_) {
       serve();
       continue;
@@ -83,13 +122,17 @@ void LiveFields::run() {
 
 void LiveFields::open() {
   try {
+    work_.begin("opening");
     source_ = open_(stop_);
     if (!source_) return;
-    if (const LoadedScenario* scene = source_->scene()) scenario_ = scene->scenario;
-    quantity_ = quantityOf(wanted_);
+    if (const LoadedScenario* scene = source_->scene()) opened_scenario_ = scene->scenario;
+    Content content;
+    content.shown = {opened_scenario_, "", !wanted_.view.compare.empty()};
+    content.shown.quantity = shownOf(wanted_).quantity;
+    content_ = std::make_shared<const Content>(content);
+    noteContent();
     const std::lock_guard<std::mutex> lock(mutex_);
-    status_.scenario = scenario_;
-    status_.times_s = timesOf(*source_);
+    status_.scenario = opened_scenario_;
   } catch (const std::exception& error) {
     source_ = nullptr;
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -98,9 +141,17 @@ void LiveFields::open() {
   }
 }
 
-void LiveFields::accept(Mailbox<FieldRequest>::Letter letter) {
-  asked_ = is_due_ ? std::min(asked_, letter.since) : letter.since;
-  wanted_ = std::move(letter.value);
+/// Takes the pending request.
+void LiveFields::accept() {
+  std::optional<Mailbox<FieldRequest>::Letter> letter;
+  {
+    const std::lock_guard<std::mutex> lock(patience_mutex_);
+    letter = box_.take();
+    pending_patience_ms_ = Patience::kEndless;
+  }
+  if (!letter) return;
+  asked_ = is_due_ ? std::min(asked_, letter->since) : letter->since;
+  wanted_ = std::move(letter->value);
   is_due_ = true;
   quiet_from_ = SteadyClock::now() + milliseconds(kQuiet_ms);
   if (wanted_.search != search_) beginSearch();
@@ -113,79 +164,153 @@ void LiveFields::serve() {
     return;
   }
   try {
-    const bool is_changed = applyChanges();
-    const int index = source_->nearestIndex(wanted_.view.time_s);
-    const Frame* frame = cache_.find(index);
-    if (!frame && !is_changed && field_begin_) {
-      const Time may_begin = *field_begin_ + milliseconds(options_.min_seek_interval_ms);
+    const Shown wanted = shownOf(wanted_);
+    if (serveFromMemory(wanted)) return;
+    const bool is_other = !(wanted == content_->shown);
+    begin(fmt::format("{} at {:.6g} s", wanted.quantity.empty() ? content_->title : wanted.quantity,
+                      wanted_.view.time_s));
+    if (is_other) change(wanted);
+    if (!is_other && field_begin_) {
+      const bool plays = std::isinf(wanted_.patience_ms);
+      const Time may_begin =
+          *field_begin_ + milliseconds(plays ? options_.min_play_interval_ms : options_.min_seek_interval_ms);
       if (SteadyClock::now() < may_begin) return waitUntil(may_begin);
     }
-    if (index != index_) is_playing_ = index == index_ + 1;
-    index_ = index;
-    deliver(frame ? *frame : compute(index));
+    const double time_s = content_->timeOf(wanted_.view.time_s);
+    const int nearest = nearestTime(content_->times_s, time_s);
+    if (nearest != index_) is_playing_ = !content_->is_continuous && nearest == index_ + 1;
+    index_ = nearest;
+    deliver(content_, compute(time_s));
   } catch (const Stopped&) {
+    const std::lock_guard<std::mutex> lock(patience_mutex_);
+    is_patient_ = true;
+    begun_.reset();
+    const std::lock_guard<std::mutex> status_lock(mutex_);
+    ++status_.fields_abandoned;
+    if (stop_at_) status_.abandon_ms = std::max(status_.abandon_ms, since_ms(*stop_at_));
   } catch (const std::exception& error) {
     fail(failureLine(error), codeOf(error));
   }
 }
 
-/// The name of the requested quantity: if the view has none, the first of the computed scenario.
-std::string LiveFields::quantityOf(const FieldRequest& request) const {
-  const bool is_computed = source_->scene() != nullptr && request.view.scenario.empty();
-  if (!request.view.quantity.empty() || !is_computed) return request.view.quantity;
-  return (request.scenario ? request.scenario : scenario_)->output.quantities.front();
-}
-
-/// Sets the requested scenario and quantity of the source. @return true if they have changed
-bool LiveFields::applyChanges() {
-  const std::string quantity = quantityOf(wanted_);
-  const bool compares = !wanted_.view.compare.empty();
-  const bool is_edited = wanted_.scenario && wanted_.scenario != scenario_;
-  const bool is_other_quantity = quantity != quantity_;
-  const bool is_other_comparison = compares != compares_;
-  if (!is_edited && !is_other_quantity && !is_other_comparison) return false;
-  if (is_edited) {
-    source_->setScenario(wanted_.scenario);
-    scenario_ = wanted_.scenario;
-    cache_.clear();
+/// Delivers a field that is in memory: the last one, or a cached step. The source need not show it: it stays
+/// as it is after an abandoned field.
+bool LiveFields::serveFromMemory(const Shown& wanted) {
+  const double asked_s = wanted_.view.time_s;
+  const auto publishTimes = [this](const Content& content) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    status_.times_s = content.times_s;
+    status_.is_continuous = content.is_continuous;
+  };
+  if (last_ && last_->shown == wanted && last_frame_.info().time_s == last_->timeOf(asked_s)) {
+    publishTimes(*last_);
+    deliver(last_, last_frame_);
+    return true;
   }
-  if (is_other_quantity) {
-    source_->setQuantity(quantity);
-    quantity_ = quantity;
-    cache_.clear();
-  }
-  if (is_other_comparison) {
-    source_->setComparison(compares);
-    compares_ = compares;
-    cache_.clear();
-  }
-  if (range_search_.next()) beginSearch();
-  const std::lock_guard<std::mutex> lock(mutex_);
-  status_.times_s = timesOf(*source_);
-  status_.cached_steps.clear();
+  if (!cached_ || !(cached_->shown == wanted)) return false;
+  const int step = cached_->stepAt(cached_->timeOf(asked_s));
+  const Frame* const frame = step < 0 ? nullptr : cache_.find(step);
+  if (frame == nullptr) return false;
+  publishTimes(*cached_);
+  if (step != index_) is_playing_ = !cached_->is_continuous && step == index_ + 1;
+  index_ = step;
+  deliver(cached_, *frame);
   return true;
 }
 
-Frame LiveFields::compute(int index) {
+/// What a request shows. Without a quantity it is the first of the computed scenario.
+LiveFields::Shown LiveFields::shownOf(const FieldRequest& request) const {
+  Shown shown{request.scenario ? request.scenario : opened_scenario_, request.view.quantity,
+              !request.view.compare.empty()};
+  const bool is_computed = source_->scene() != nullptr && request.view.scenario.empty();
+  if (shown.quantity.empty() && is_computed) shown.quantity = shown.scenario->output.quantities.front();
+  return shown;
+}
+
+/// Makes the source show something else.
+void LiveFields::change(const Shown& wanted) {
+  Content content{content_->shown, "", std::nullopt, {}, false};
+  const auto changed = [&] {
+    content_ = std::make_shared<const Content>(content);
+    noteContent();
+  };
+  if (wanted.scenario != content.shown.scenario) {
+    source_->setScenario(wanted.scenario);
+    content.shown.scenario = wanted.scenario;
+    changed();
+  }
+  if (wanted.quantity != content.shown.quantity) {
+    source_->setQuantity(wanted.quantity);
+    content.shown.quantity = wanted.quantity;
+    changed();
+  }
+  if (wanted.compares != content.shown.compares) {
+    source_->setComparison(wanted.compares);
+    content.shown.compares = wanted.compares;
+    changed();
+  }
+  if (range_search_.next()) beginSearch();
+}
+
+/// Completes content_ by what the source has.
+void LiveFields::noteContent() {
+  Content content = *content_;
+  content.title = source_->name();
+  if (const LoadedScenario* scene = source_->scene()) content.scene = *scene;
+  content.times_s = timesOf(*source_);
+  content.is_continuous = source_->isContinuous();
+  content_ = std::make_shared<const Content>(std::move(content));
+  const std::lock_guard<std::mutex> lock(mutex_);
+  status_.times_s = content_->times_s;
+  status_.is_continuous = content_->is_continuous;
+}
+
+/// Begins work that newer requests may abandon.
+void LiveFields::begin(const std::string& what) {
+  const std::lock_guard<std::mutex> lock(patience_mutex_);
+  work_.begin(what);
+  begun_ = SteadyClock::now();
+  stop_at_.reset();
+  applyPatience();  // of requests since accept()
+}
+
+Frame LiveFields::compute(double time_s) {
   Stopwatch watch;
   field_begin_ = SteadyClock::now();
   const FieldsStatus before = status();
   const bool shares = (events_.is_shared && events_.is_shared()) || before.field_ms > kLongField_ms;
   Frame frame;
   const bool leaves_a_core = options_.threads == 0 && shares && before.fields_computed > 0;
-  (leaves_a_core ? narrow_arena_ : arena_).run([&] { frame = source_->frame(index); });
-  cache_.keep(index, frame, distance());
+  const int step = content_->stepAt(time_s);
+  (leaves_a_core ? narrow_arena_ : arena_).run([&] {
+    const WorkScope scope(&work_);  // the arena may run it on another thread
+    checkpoint();
+    frame = step < 0 ? source_->frameAt(time_s) : source_->frame(step);
+  });
+  {
+    const std::lock_guard<std::mutex> lock(patience_mutex_);
+    begun_.reset();
+    is_patient_ = false;
+  }
+  if (!cached_ || !(cached_->shown == content_->shown)) cache_.clear();
+  cached_ = content_;
+  const std::size_t of_source = std::min(source_->cachedBytes(), options_.cache_bytes);
+  cache_.setLimit(options_.cache_bytes - of_source);
+  if (step >= 0) cache_.keep(step, frame, distance());
   const std::lock_guard<std::mutex> lock(mutex_);
   status_.field_ms = watch.lap_ms();
   ++status_.fields_computed;
   status_.cached_steps = cache_.indices();
+  status_.cached_bytes = cache_.bytes() + of_source;
+  status_.warnings = source_->warnings();
   return frame;
 }
 
-void LiveFields::deliver(const Frame& frame) {
+void LiveFields::deliver(const ContentPtr& content, const Frame& frame) {
   is_due_ = false;
-  FieldDelivery delivery{wanted_.revision, source_->name(), std::nullopt, quantity_, frame};
-  if (const LoadedScenario* scene = source_->scene()) delivery.scene = *scene;
+  last_ = content;
+  last_frame_ = frame;
+  FieldDelivery delivery{wanted_.revision, content->title, content->scene, content->shown.quantity, frame};
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.error.clear();
@@ -197,6 +322,10 @@ void LiveFields::deliver(const Frame& frame) {
 void LiveFields::fail(const std::string& line, ErrorCode code) {
   is_due_ = false;
   range_search_ = RangeSearch();
+  {
+    const std::lock_guard<std::mutex> lock(patience_mutex_);
+    begun_.reset();
+  }
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.error = line;
@@ -231,8 +360,11 @@ std::optional<int> LiveFields::idleStep() const {
 
 void LiveFields::doIdleWork(int index) {
   try {
-    const Frame* cached = cache_.find(index);
-    const Frame frame = cached ? *cached : compute(index);
+    const Shown wanted = shownOf(wanted_);
+    begin("range of the series");
+    if (!(wanted == content_->shown)) change(wanted);  // after an abandoned field
+    const Frame* cached = cached_ == content_ ? cache_.find(index) : nullptr;
+    const Frame frame = cached ? *cached : compute(source_->time_s(index));
     if (range_search_.next() == index) {
       range_search_.add(frame.info());
       if (!range_search_.next()) endSearch(range_search_.range());
@@ -243,9 +375,15 @@ void LiveFields::doIdleWork(int index) {
     is_playing_ = false;
     fail(failureLine(error), codeOf(error));
   }
+  const std::lock_guard<std::mutex> lock(patience_mutex_);
+  begun_.reset();
 }
 
 void LiveFields::waitUntil(Time time) {
+  {
+    const std::lock_guard<std::mutex> lock(patience_mutex_);
+    begun_.reset();
+  }
   event_.waitUntil(time);
   const std::lock_guard<std::mutex> lock(mutex_);
   ++status_.wake_ups;

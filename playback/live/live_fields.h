@@ -12,11 +12,13 @@
 #include "base/thread_arena.h"
 #include "base/worker.h"
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/view/view_state.h"
 #include "playback/frames/range_search.h"
 #include "playback/frames/step_cache.h"
 #include "playback/live/mailbox.h"
+#include "playback/live/patience.h"
 
 namespace emscape::playback {
 
@@ -25,7 +27,8 @@ struct FieldRequest {
   long long revision = 0;  ///< counts requests
   ViewState view;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
-  long long search = 0;  ///< number of the requested search of the series' range; 0: none
+  long long search = 0;                  ///< number of the requested search of the series' range; 0: none
+  double patience_ms = Patience::kNone;  ///< with the field in progress
 };
 
 /// A field and its data.
@@ -45,24 +48,32 @@ struct SeriesRange {
 
 struct FieldsStatus {
   std::vector<double> times_s;                         ///< of the source; empty before it is open
+  bool is_continuous = false;                          ///< VolumeSeries::isContinuous()
   std::shared_ptr<const scenario::Scenario> scenario;  ///< as it was opened; may be null
   std::vector<int> cached_steps;
+  std::size_t cached_bytes = 0;
   double field_ms = 0;  ///< of the last field
   long long fields_computed = 0;
-  long long failed_revision = 0;  ///< the last request that failed
-  std::string error;              ///< reason; empty after another request has succeeded
+  long long fields_abandoned = 0;
+  double abandon_ms = 0;  ///< longest time from the end of a request's patience to the end of the field
+  WorkProgress progress;  ///< of the field in progress; of the opening before the first
+  std::vector<std::string> warnings;  ///< of the models, on the fields so far
+  long long failed_revision = 0;      ///< the last request that failed
+  std::string error;                  ///< reason; empty after another request has succeeded
   ErrorCode error_code = ErrorCode::other;
   SeriesRange series;  ///< of the last completed search
   long long wake_ups = 0;
 };
 
-/// Serves the latest request; a new one replaces a pending one. After a moment without requests it computes
-/// the next steps of a playing series, and searches its range.
+/// Serves the latest request; a new one replaces a pending one, and the field in progress is abandoned
+/// (Patience). After a moment without requests it computes the next steps of a playing series, and searches
+/// its range.
 class LiveFields {
  public:
   struct Options {
-    std::size_t cache_bytes = 0;
+    std::size_t cache_bytes = 0;  ///< of the steps and of the source's own cache
     double min_seek_interval_ms = 0;
+    double min_play_interval_ms = 0;  ///< the same for requests with endless patience
     int steps_ahead = 0;
     int threads = 0;  ///< 0: one fewer than all while other threads need them
     int niceness = 0;
@@ -85,8 +96,8 @@ class LiveFields {
   LiveFields& operator=(const LiveFields&) = delete;
 
   /// Any thread calls these.
-  void request(FieldRequest request) { box_.put(std::move(request)); }
-  /// Stops the work in progress after its step.
+  void request(FieldRequest request);
+  /// Stops the work in progress at its next checkpoint.
   void stop();
   /// stop(), and waits for the end.
   void close();
@@ -95,14 +106,43 @@ class LiveFields {
  private:
   using Time = Mailbox<FieldRequest>::Time;
 
+  /// What the source shows, apart from the time.
+  struct Shown {
+    std::shared_ptr<const scenario::Scenario> scenario;
+    std::string quantity;
+    bool compares = false;
+
+    bool operator==(const Shown& other) const {
+      return scenario == other.scenario && quantity == other.quantity && compares == other.compares;
+    }
+  };
+  /// The same with what the source has for it.
+  struct Content {
+    Shown shown;
+    std::string title;
+    std::optional<LoadedScenario> scene;
+    std::vector<double> times_s;
+    bool is_continuous = false;
+
+    /// The time of the field for a requested time.
+    double timeOf(double asked_s) const;
+    /// The step at a time; -1: none.
+    int stepAt(double time_s) const;
+  };
+  using ContentPtr = std::shared_ptr<const Content>;
+
   void run();
   void open();
-  void accept(Mailbox<FieldRequest>::Letter letter);
+  void accept();
   void serve();
-  std::string quantityOf(const FieldRequest& request) const;
-  bool applyChanges();
-  Frame compute(int index);
-  void deliver(const Frame& frame);
+  bool serveFromMemory(const Shown& wanted);
+  Shown shownOf(const FieldRequest& request) const;
+  void change(const Shown& wanted);
+  void noteContent();
+  Frame compute(double time_s);
+  void begin(const std::string& what);
+  void applyPatience();
+  void deliver(const ContentPtr& content, const Frame& frame);
   void fail(const std::string& line, ErrorCode code);
   void beginSearch();
   void endSearch(const ValueRange& range);
@@ -119,20 +159,28 @@ class LiveFields {
   Event event_;
   Mailbox<FieldRequest> box_{event_};
   StopFlag stop_{false};
+  Work work_{&stop_};
+
+  std::mutex patience_mutex_;                        // of the next four
+  double pending_patience_ms_ = Patience::kEndless;  // smallest of the requests in the box
+  std::optional<Time> begun_;                        // a field that may be abandoned is being computed
+  std::optional<Time> stop_at_;                      // of that field
+  bool is_patient_ = false;                          // the field before was abandoned
 
   // Of the thread
   std::unique_ptr<FrameSource> source_;
   ThreadArena arena_;         // of Options::threads; 0: all
   ThreadArena narrow_arena_;  // leaves a core to others
-  StepCache<Frame> cache_;
   FieldRequest wanted_;
   Time asked_;  // when
   bool is_due_ = false;
-  // Of the source
-  std::shared_ptr<const scenario::Scenario> scenario_;
-  std::string quantity_;
-  bool compares_ = false;
-  int index_ = 0;                    // of the last requested step, in the source
+  std::shared_ptr<const scenario::Scenario> opened_scenario_;
+  ContentPtr content_;  // of the source
+  ContentPtr cached_;   // of the cache: that of the last computed step
+  StepCache<Frame> cache_;
+  ContentPtr last_;  // of the last delivered field
+  Frame last_frame_;
+  int index_ = 0;                    // of the step nearest to the last request
   bool is_playing_ = false;          // steps are requested one after another
   std::optional<Time> field_begin_;  // of the last field
   Time quiet_from_{};

@@ -1,22 +1,54 @@
 #include "playback/live/live_view.h"
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
+#include <deque>
 #include <mutex>
 
 #include "playback/live/live_caster.h"
 #include "playback/live/live_fields.h"
+#include "playback/live/nearest_time.h"
 #include "playback/view/view_settings.h"
 
 namespace emscape::playback {
 namespace {
 
-double nearestOf(const std::vector<double>& times_s, double time_s) {
-  if (times_s.empty()) return time_s;
-  return *std::min_element(times_s.begin(), times_s.end(), [time_s](double a, double b) {
-    return std::abs(a - time_s) < std::abs(b - time_s);
-  });
+using SteadyClock = std::chrono::steady_clock;
+
+/// The time of the field for a requested time.
+double fieldTime_s(const FieldsStatus& fields, double asked_s) {
+  const std::vector<double>& times_s = fields.times_s;
+  if (times_s.empty()) return asked_s;
+  if (fields.is_continuous) return std::clamp(asked_s, times_s.front(), times_s.back());
+  return times_s[static_cast<std::size_t>(nearestTime(times_s, asked_s))];
 }
+
+/// Times at which pictures began to show another field.
+class FieldRate {
+ public:
+  void note(double shown_s, SteadyClock::time_point now) {
+    if (!changes_.empty() && shown_s == shown_s_) return;
+    shown_s_ = shown_s;
+    changes_.push_back(now);
+    drop(now);
+  }
+  /// Fields per second over the last two seconds.
+  double perSecond(SteadyClock::time_point now) {
+    drop(now);
+    if (changes_.size() < 2) return 0;
+    const std::chrono::duration<double> span = changes_.back() - changes_.front();
+    return static_cast<double>(changes_.size() - 1) / std::max(span.count(), 1e-3);
+  }
+
+ private:
+  void drop(SteadyClock::time_point now) {
+    constexpr std::chrono::seconds kSpan{2};
+    while (!changes_.empty() && now - changes_.front() > kSpan) changes_.pop_front();
+  }
+
+  std::deque<SteadyClock::time_point> changes_;
+  double shown_s_ = 0;
+};
 
 /// Pictures of existing fields have priority over new fields.
 int solveNiceness(const LiveOptions& options) {
@@ -24,8 +56,9 @@ int solveNiceness(const LiveOptions& options) {
   return options.niceness > 0 ? options.niceness + kBehindPictures : 0;
 }
 
-FrameSelection selectionOf(const ViewState& view) {
+FrameSelection selectionOf(const ViewState& view, const LiveOptions& options) {
   FrameSelection selection(view);
+  selection.cache_bytes = options.cache_bytes / 2;
   selection.range.reset();  // of the colours, which the painter fits
   selection.independent = true;
   return selection;
@@ -48,6 +81,7 @@ struct LiveView::Impl {
   FieldRequest field;        // the same
   std::shared_ptr<const LivePicture> picture;
   PictureProgress progress;  // of the picture
+  mutable FieldRate rate;
 
   LiveCaster caster;
   LiveFields fields;
@@ -62,11 +96,12 @@ struct LiveView::Impl {
                {[this](LivePicture made, PictureProgress of_made) { publish(std::move(made), of_made); },
                 [this] { tell(); }}),
         fields(
-            [selection = selectionOf(shown), target = options.target](const StopFlag& stop) {
+            [selection = selectionOf(shown, options), target = options.target](const StopFlag& stop) {
               return selection.input.empty() ? nullptr : openFrameSource(selection, target, {}, &stop);
             },
             field,
-            {options.cache_bytes, options.min_seek_interval_ms, options.steps_ahead, options.solve_threads,
+            {options.cache_bytes, options.min_seek_interval_ms, options.min_play_interval_ms,
+             options.steps_ahead, options.solve_threads,
              solveNiceness(options)},
             {[this](FieldDelivery delivery, Mailbox<FieldRequest>::Time asked) {
                caster.deliver(std::move(delivery), asked);
@@ -88,6 +123,7 @@ struct LiveView::Impl {
     {
       const std::lock_guard<std::mutex> lock(mutex);
       progress = of_made;
+      rate.note(made.status.shown_s, SteadyClock::now());
       made.status.frame = picture ? picture->status.frame + 1 : 1;
       made.status = completed(made.status);
       picture = std::make_shared<const LivePicture>(std::move(made));
@@ -99,7 +135,9 @@ struct LiveView::Impl {
   LiveStatus completed(LiveStatus status) const {
     const CasterStatus cast = caster.status();
     FieldsStatus solve = fields.status();
-    const bool is_field_shown = cast.field_revision == field.revision;
+    // Without a size nothing is drawn.
+    const bool is_field_shown =
+        (view.view.size.count() > 0 ? progress.field_revision : cast.field_revision) == field.revision;
     const bool has_failed = solve.failed_revision == field.revision;
     status.state = cast.state;
     status.reason = cast.reason;
@@ -107,12 +145,19 @@ struct LiveView::Impl {
     status.failed = !is_field_shown && has_failed;
     status.exact = progress.complete && progress.scene == cast.scene && cast.view_revision == view.revision &&
                    !status.computing;
-    status.asked_s = nearestOf(solve.times_s, field.view.time_s);
+    status.asked_s = fieldTime_s(solve, field.view.time_s);
+    status.is_continuous = solve.is_continuous;
+    status.progress = std::move(solve.progress);
+    status.fields_per_s = rate.perSecond(SteadyClock::now());
     status.searching = solve.series.search != field.search;
     if (!status.searching && !solve.series.range.empty()) status.series_range = solve.series.range;
     status.field_ms = solve.field_ms;
     status.fields_computed = solve.fields_computed;
+    status.fields_abandoned = solve.fields_abandoned;
+    status.abandon_ms = solve.abandon_ms;
     status.cached_steps = std::move(solve.cached_steps);
+    status.cached_bytes = solve.cached_bytes;
+    status.warnings = std::move(solve.warnings);
     status.error = solve.error.empty() ? cast.error : solve.error;
     status.error_code = solve.error.empty() ? ErrorCode::other : solve.error_code;
     status.wake_ups = cast.wake_ups + solve.wake_ups;
@@ -137,23 +182,26 @@ LiveView::LiveView(const ViewState& view, const LiveOptions& options, std::funct
 
 LiveView::~LiveView() = default;
 
-void LiveView::show(const ViewState& view, std::shared_ptr<const scenario::Scenario> edited) {
-  const std::vector<double> steps_s = times_s();
+void LiveView::show(const ViewState& view, std::shared_ptr<const scenario::Scenario> edited,
+                    double patience_ms) {
+  const FieldsStatus fields = impl_->fields.status();
   bool is_other_view = false, is_other_field = false;
   {
     const std::lock_guard<std::mutex> lock(impl_->mutex);
     const ViewState& before = impl_->view.view;
     const ViewChange change = changeOf(before, view);
-    const bool is_other_step = change.time && (steps_s.empty() || nearestOf(steps_s, view.time_s) !=
-                                                                      nearestOf(steps_s, before.time_s));
+    const bool is_other_time =
+        change.time && (fields.times_s.empty() ||
+                        fieldTime_s(fields, view.time_s) != fieldTime_s(fields, before.time_s));
     is_other_view = change.size || change.camera || change.settings || change.colors || change.ground ||
                     change.labels || change.pattern;
-    is_other_field = change.field || is_other_step || (edited && edited != impl_->field.scenario);
+    is_other_field = change.field || is_other_time || (edited && edited != impl_->field.scenario);
     impl_->view.view = impl_->field.view = view;
   }
   if (is_other_view) impl_->ask(impl_->view, impl_->caster, [] {});
   if (!is_other_field) return;
   impl_->ask(impl_->field, impl_->fields, [&] {
+    impl_->field.patience_ms = patience_ms;
     if (edited) impl_->field.scenario = std::move(edited);
   });
 }
@@ -163,7 +211,10 @@ void LiveView::keepOnDevice(bool keep) {
 }
 
 void LiveView::searchSeriesRange() {
-  impl_->ask(impl_->field, impl_->fields, [&] { ++impl_->field.search; });
+  impl_->ask(impl_->field, impl_->fields, [&] {
+    impl_->field.patience_ms = Patience::kEndless;
+    ++impl_->field.search;
+  });
 }
 
 std::shared_ptr<const LivePicture> LiveView::picture() const {

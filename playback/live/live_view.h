@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "emscape/playback/frames/compute_target.h"
 #include "emscape/playback/frames/shown_field.h"
 #include "emscape/playback/pictures/painter.h"
@@ -24,6 +25,7 @@
 #include "emscape/scenario/model/scenario.h"
 #include "emscape/scenario/terrain/terrain.h"
 #include "emscape/volume/value_range.h"
+#include "playback/live/patience.h"
 #include "render/patterns/frame_controller.h"
 
 namespace emscape::playback {
@@ -31,9 +33,10 @@ namespace emscape::playback {
 struct LiveOptions {
   ComputeTarget target;
   render::ControllerOptions controller;
-  std::size_t cache_bytes = std::size_t{1} << 30;  ///< of the cached volumes of steps
+  std::size_t cache_bytes = std::size_t{512} << 20;  ///< of the cached volumes of steps and of the reference
   /// Minimum interval (ms) between the starts of two fields that only a change of time requests.
   double min_seek_interval_ms = 60;
+  double min_play_interval_ms = 15;  ///< the same while playing
   /// Number of steps computed ahead of the one on screen, while steps are requested in sequence and there is
   /// no other work.
   int steps_ahead = 2;
@@ -58,20 +61,27 @@ struct LiveStatus {
   /// The picture shows the last request, and each of its pixels is cast. After a failure: the last valid
   /// request.
   bool exact = false;
-  double asked_s = 0;      ///< time of the last requested step
-  double shown_s = 0;      ///< time of the picture's step
-  bool computing = false;  ///< the last requested field is being computed
+  double asked_s = 0;       ///< time of the last requested field
+  double shown_s = 0;       ///< time of the picture's field
+  bool computing = false;   ///< the last requested field is being computed, or no picture shows it yet
+  WorkProgress progress;    ///< of the field in progress, and of the opening of the input
+  double fields_per_s = 0;  ///< different fields in the pictures of the last two seconds; 0: at most one
+  bool is_continuous = false;  ///< there are fields between the steps, too
   bool failed = false;     ///< the last requested field cannot be computed; the picture shows an earlier one
   bool searching = false;  ///< searchSeriesRange() is in progress
   std::optional<volume::ValueRange>
       series_range;               ///< result of the search; none before, and if there are no values
   std::vector<int> cached_steps;  ///< indices into times_s() of cached steps, ascending
+  std::size_t cached_bytes = 0;   ///< of the steps and of the reference of a comparison
+  std::vector<std::string> warnings;  ///< of the models, on the fields so far
   std::string reason;             ///< reason for the pattern
   std::string device;             ///< "cpu" or the name of the GPU
   std::string error;              ///< the last failure, in one line; empty after the next success of its kind
   ErrorCode error_code = ErrorCode::other;  ///< of an input that cannot be opened
   long long frame = 0;                      ///< number of the picture, from 1; 0: none yet
   long long fields_computed = 0;
+  long long fields_abandoned = 0;  ///< because a request superseded them
+  double abandon_ms = 0;           ///< longest time that this took
   long long wake_ups = 0;  ///< of both threads since the start; constant while there is no work
 
   /// True if nothing is to be done until the next input.
@@ -123,21 +133,24 @@ class LiveView {
   /// @throws Error (bad_input) for settings out of their range, (device); faults of the input are in
   /// status().error
   LiveView(const ViewState& view, const LiveOptions& options, std::function<void()> wake);
-  /// Stops the work in progress: a picture within a few rows of tiles, a field at the end of its step.
+  /// Stops the work in progress: a picture within a few rows of tiles, a field at its next checkpoint.
   ~LiveView();
   LiveView(const LiveView&) = delete;
   LiveView& operator=(const LiveView&) = delete;
 
   /// Shows another view: only what differs from the last one is computed and drawn.
   ///
-  /// The step is the nearest to its time, also beyond the ends. An edited scenario keeps the results that the
+  /// The time is the nearest that there is a field for, also beyond the ends: that of a step, or of a computed
+  /// scenario any. An edited scenario keeps the results that the
   /// edit does not invalidate; cached steps are dropped. A comparison is with the reference of the first
   /// view, else with the opened scenario without edits; an edit does not recompute the reference. Of another
   /// input, scenario or mesh than the first view's nothing is shown. If a model refuses an input, fields
   /// cannot be compared, or settings are out of their range, the message is in status().error and the picture
   /// stays as it was in this respect.
-  /// @param edited  the scenario with the edits of the view; null: as it was shown last
-  void show(const ViewState& view, std::shared_ptr<const scenario::Scenario> edited = nullptr);
+  /// @param edited       the scenario with the edits of the view; null: as it was shown last
+  /// @param patience_ms  with the field in progress, if another one is requested: see Patience
+  void show(const ViewState& view, std::shared_ptr<const scenario::Scenario> edited = nullptr,
+            double patience_ms = Patience::kNone);
   /// Sets whether busy pictures of a GPU stay in its memory, to be displayed from there; false at first.
   void keepOnDevice(bool keep);
 

@@ -2,12 +2,15 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <utility>
 
+#include "base/text/time_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/scene.h"
 #include "playback/frames/difference_series.h"
+#include "playback/frames/platform_tracks.h"
 
 namespace emscape::playback {
 namespace {
@@ -71,7 +74,8 @@ void Painter::setFrame(const Frame& frame) {
   }
   frame_ = frame;
   const volume::VolumeInfo& info = frame.info();
-  annotations_.time = fmt::format("t = {:g} s", info.time_s);
+  annotations_.time = "t = " + timeText(info.time_s);
+  if (speed_) annotations_.time += fmt::format("   ×{:.3g}", *speed_);
   annotations_.time_utc = info.time_utc;
   annotations_.subtitle = subtitleOf(info);
   annotations_.georeferenced = frame.grid().georeferenced;
@@ -79,7 +83,7 @@ void Painter::setFrame(const Frame& frame) {
   setLegend();
   if (is_other_grid) setGround(nullptr);
   setGround();
-  if (is_other_grid) fitCamera();
+  if (is_other_grid || !view_.follow.empty()) fitCamera();
   if (is_first_of_colors && view_.settings.mode == render::CompositingMode::iso) {
     const std::string missing =
         render::missingIsosurface(renderer_.isoValue(), *frame.volume.host(), frame.color_range);
@@ -97,6 +101,12 @@ void Painter::setAzimuth(double azimuth_deg) {
 void Painter::setCamera(const render::CameraSpec& spec) {
   if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(spec)); });
   view_.camera = spec;
+}
+
+void Painter::setFollowed(const ViewState& view) {
+  view_.follow = view.follow;
+  view_.follow_mode = view.follow_mode;
+  fitCamera();
 }
 
 void Painter::setSize(render::ImageSize size) {
@@ -137,6 +147,7 @@ void Painter::setScenery(const ViewState& view) {
   view_.show_terrain = view.show_terrain;
   view_.show_emitters = view.show_emitters;
   view_.labels = view.labels;
+  view_.trail_s = view.trail_s;
   view_.theme = annotations_.theme = view.theme;
   setMarkers();
   if (frame_) setGround();
@@ -260,7 +271,25 @@ std::string Painter::note(render::Pattern pattern) const {
                      view_.settings.step_voxels);
 }
 
-render::Camera Painter::cameraOf(const render::CameraSpec& spec) const {
+/// The camera at the platform that it follows.
+render::CameraSpec Painter::followed(render::CameraSpec spec) const {
+  if (view_.follow.empty() || !scene_ || !frame_ || !frame_->grid().georeferenced) return spec;
+  const std::vector<scenario::Platform>& platforms = scene_->scenario->platforms;
+  const auto found =
+      std::find_if(platforms.begin(), platforms.end(),
+                   [&](const scenario::Platform& platform) { return platform.name == view_.follow; });
+  if (found == platforms.end()) return spec;
+  const scenario::Snapshot snapshot =
+      scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), frame_->info().time_s);
+  const scenario::PlatformState& state =
+      snapshot.platforms[static_cast<std::size_t>(found - platforms.begin())];
+  spec.target_m = GeoFrame(frame_->grid().frame).toLocal(state.position);
+  if (view_.follow_mode == FollowMode::chase) spec.azimuth_deg += state.attitude.heading_deg;
+  return spec;
+}
+
+render::Camera Painter::cameraOf(const render::CameraSpec& given) const {
+  const render::CameraSpec spec = followed(given);
   return render::makeCamera(spec, sceneBox(), view_.size, render::overlayMargins(view_.size, annotations_));
 }
 
@@ -283,6 +312,10 @@ void Painter::setMarkers() {
   const bool shows = view_.show_emitters && frame_;
   annotations_.markers = shows ? frame_->markers : std::vector<render::Marker>{};
   annotations_.tracks = shows ? frame_->tracks : std::vector<render::Track>{};
+  if (view_.trail_s > 0) {
+    const double time_s = frame_ ? frame_->info().time_s : 0;
+    for (render::Track& track : annotations_.tracks) track = partOf(track, time_s - view_.trail_s, time_s);
+  }
   if (view_.labels == Labels::all) return;
   annotations_.tracks.clear();
   for (render::Marker& marker : annotations_.markers) {

@@ -1,18 +1,19 @@
 #include "playback/pictures/picture_series.h"
 
 #include "base/worker.h"
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 
 namespace emscape::playback {
 
 double drawPictures(FrameSource& source, Painter& painter, const render::FramePlan& plan,
-                    const std::vector<std::unique_ptr<PictureSink>>& sinks,
+                    const std::vector<std::unique_ptr<PictureSink>>& sinks, const Film& film,
                     const std::function<void(int)>& done, const StopFlag* stop) {
   double cast_ms = 0;
   Worker writer(2);  // PNG and video are encoded while the next picture is cast
   for (int index = 0; index < source.count(); ++index) {
     throwIfStopped(stop);
     if (index > 0) painter.setFrame(source.frame(index));
+    if (!film.cameras.empty()) painter.setCamera(film.cameras[static_cast<std::size_t>(index)]);
     cast_ms += painter.draw(plan, stop).total_ms();
     throwIfStopped(stop);
     writer.push([&sinks, index, picture = painter.picture(painter.note(plan.pattern))] {

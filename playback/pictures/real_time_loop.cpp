@@ -7,7 +7,7 @@
 #include <cstring>
 
 #include "emscape/base/error.h"
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 
 namespace emscape::playback {
 namespace {

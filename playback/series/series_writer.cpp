@@ -11,7 +11,7 @@
 #include "base/worker.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "playback/series/series_files.h"
 #include "playback/series/series_journal.h"

@@ -189,6 +189,41 @@ void addCameraAndTime(Table& table) {
       .withOption("--camera",
                   "orbit:azimuth_deg=..,elevation_deg=..,distance=..,fov_deg=.. or "
                   "lookat:eye_x_m=..,..,target_x_m=..,..");
+  table
+      .member(
+          "follow", Table::textSpec(), [](auto& view) -> auto& { return view.follow; },
+          "platform at which the camera looks, as it moves")
+      .withTexts("text", "none")
+      .withEffect(&ViewChange::camera)
+      .withOption("--follow", "Platform at which the camera looks, as it moves");
+  table
+      .member(
+          "follow_mode", choiceOf<FollowMode>(), [](auto& view) -> auto& { return view.follow_mode; },
+          "follow: the camera keeps its bearing; chase: `azimuth_deg` counts from the platform's heading, "
+          "180 is "
+          "behind it")
+      .withEffect(&ViewChange::camera)
+      .withOption(
+          "--follow-mode",
+          "follow: the camera keeps its bearing; chase: azimuth_deg counts from the platform's heading, "
+          "180 is behind it");
+  table
+      .member(
+          "camera_path", choiceOf<CameraPath>(), [](auto& view) -> auto& { return view.camera_path; },
+          "of several pictures, as films: the camera stays (fixed), or flies from one bookmark to the next, "
+          "at their "
+          "times if all have ascending ones, else evenly")
+      .withOption("--camera-path",
+                  "Camera of several pictures: fixed, or along the bookmarks of the view (--state)")
+      .withVerb("camera_path", "path",
+                "Camera of recordings: fixed, or bookmarks: from one bookmark to the next; without a name "
+                "the next one");
+  table
+      .member(
+          "film_speed", switchSpec(), [](auto& view) -> auto& { return view.film_speed; },
+          "videos state their speed beside the time, as ×5")
+      .withOption("--film-speed", "State the speed of a video beside the time, as x5: on or off")
+      .withVerb("film_speed", "on", "Videos state their speed beside the time");
   table.stored("bookmarks", "stored cameras: `name`, `camera`, and optionally `time_s`")
       .withTexts("list", "none");
   table
@@ -339,6 +374,15 @@ void addScenery(Table& table) {
       .withOption("--labels", "Labels of the emitters; default: all")
       .withVerb("labels", "labels", "Labels of the emitters: off, names or all; without a name the next one")
       .withAction("Labels", "N");
+  table
+      .member(
+          "trail_s", spec::number("s").from(0).to(volume::kMaxTime_s),
+          [](auto& view) -> auto& { return view.trail_s; },
+          "length of the tracks that are drawn behind moving platforms; 0: whole tracks, also ahead")
+      .withEffect(&ViewChange::labels)
+      .withOption("--trail", "Length of the tracks behind moving platforms, in seconds; 0: whole tracks")
+      .withVerb("trail", "seconds",
+                "Length of the tracks behind moving platforms; 0: whole tracks, also ahead");
   table
       .parsed(
           "size", spec::listOf(spec::simple(ValueType::integer).from(1).to(render::kMaxImageSide), 2, 2),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/work.h"
 #include "propagation/parabolic_equation/excess.h"
 
 namespace emscape::propagation {
@@ -16,9 +17,15 @@ float meanPower_db(float a_db, float b_db) {
 /// Losses of a member, of the mean power of the polarisations.
 /// @return pieces of ground taken as steps
 int marchMember(FieldMarch& field, const std::vector<RefractivityAlongPath>& member, float* cells_db) {
-  int staircases = marchAzimuths(field.set(member, field.surfaces.front()), cells_db).staircases;
+  const bool has_other = field.surfaces.size() > 1;
+  int staircases = 0;
+  {
+    const WorkPart part("", 0, has_other ? 0.5 : 1);
+    staircases = marchAzimuths(field.set(member, field.surfaces.front()), cells_db).staircases;
+  }
   const std::size_t count = field.cellCount();
-  if (field.surfaces.size() > 1) {
+  if (has_other) {
+    const WorkPart part("", 0.5, 1);
     std::vector<float> other_db(count);
     staircases = marchAzimuths(field.set(member, field.surfaces.back()), other_db.data()).staircases;
     for (std::size_t i = 0; i < count; ++i) cells_db[i] = meanPower_db(cells_db[i], other_db[i]);
@@ -33,7 +40,10 @@ int marchMember(FieldMarch& field, const std::vector<RefractivityAlongPath>& mem
 int marchEnsemble(FieldMarch& field, float* excess_db) {
   int staircases = 0;
   std::vector<std::vector<float>> members;
+  const auto count = static_cast<double>(field.members.size());
   for (const auto& member : field.members) {
+    const auto done = static_cast<double>(members.size());
+    const WorkPart part("", done / count, (done + 1) / count);
     members.emplace_back(field.cellCount());
     staircases = marchMember(field, member, members.back().data());
   }

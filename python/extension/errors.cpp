@@ -7,7 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 #include "python/extension/module.h"
 
 namespace emscape::python {
@@ -82,7 +82,7 @@ void bindErrors(nb::module_& module) {
       std::rethrow_exception(thrown);
     } catch (const Error& error) {
       raise(error);
-    } catch (const playback::Stopped&) {
+    } catch (const Stopped&) {
       PyErr_SetNone(PyExc_KeyboardInterrupt);
     }
   });

@@ -10,6 +10,7 @@
 
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "scenario/terrain/file.h"
 #include "scenario/terrain/gdal_messages.h"
 #include "scenario/terrain/raster_access.h"
@@ -430,6 +431,7 @@ void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
   std::vector<float> strip;
   std::vector<GByte> mask;
   for (long long begin = 0; begin < window.rows; begin += strip_rows) {
+    checkpoint();
     const int rows = static_cast<int>(std::min(strip_rows, window.rows - begin));
     const long long south = window.first_row + begin;
     const int top = static_cast<int>(impl_->north_first ? impl_->rows - south - rows : south);

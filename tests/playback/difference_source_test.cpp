@@ -71,7 +71,7 @@ TEST(DifferenceSource, AnEditDoesNotComputeTheReferenceAgain) {
         reference = frames.get();
         return frames;
       },
-      "the other", false);
+      {"the other"}, false);
   source.frame(0);
   EXPECT_EQ(opened, 0) << "nothing is compared yet";
   source.setComparison(true);
@@ -91,7 +91,7 @@ TEST(DifferenceSource, TheReferenceMustHaveTheSameSteps) {
       [] {
         return made({0, 1, 2});
       },
-      "the other", true);
+      {"the other"}, true);
   EXPECT_NO_THROW(source.frame(0));
   EXPECT_EQ(errorOf([&] { source.frame(1); }),
             "the other has no step at 1.25 s to compare with; the nearest is at 1 s");
@@ -109,9 +109,9 @@ TEST(DifferenceSource, FieldOnTetrahedraIsRefusedOnEitherSide) {
       [] {
         return made({0, 1, 2, 3});
       },
-      "the other", true);
+      {"the other"}, true);
   EXPECT_THAT(errorOf([&] { of_mesh.frame(0); }), HasSubstr("fields on tetrahedra are not compared"));
-  DifferenceSource to_mesh(made({0, 1, 2, 3}), open, "the mesh", true);
+  DifferenceSource to_mesh(made({0, 1, 2, 3}), open, {"the mesh"}, true);
   EXPECT_THAT(errorOf([&] { to_mesh.frame(0); }), HasSubstr("fields on tetrahedra are not compared"));
 }
 

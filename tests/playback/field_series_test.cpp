@@ -1,6 +1,6 @@
 #include "emscape/playback/frames/field_series.h"
 
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 #include "emscape/volume/format/file.h"
 #include "playback/frames/range_search.h"
 #include "playback/frames/volume_input.h"

@@ -75,6 +75,10 @@ class Fields {
     std::unique_lock<std::mutex> lock(mutex_);
     while (!condition()) changed_.wait_for(lock, std::chrono::milliseconds(10));
   }
+  std::size_t deliveries() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return delivered_.size();
+  }
   double shown_s() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return delivered_.back().frame.volume.info().time_s;
@@ -196,6 +200,91 @@ TEST(LiveFields, StepsAskedForInOrderAreComputedAhead) {
   live.wait();
   std::this_thread::sleep_for(std::chrono::milliseconds(100));
   EXPECT_THAT(live.fields->status().cached_steps, ElementsAre(0, 1, 2, 3, 7)) << "a jump is no playing";
+}
+
+/// Work of 10 s, with checkpoints.
+void workForLong() {
+  for (int n = 0; n < 10000; ++n) {
+    checkpoint();
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+TEST(LiveFields, ASupersededFieldIsAbandonedAndNeverShown) {
+  std::atomic<bool> is_slow{false}, has_begun{false};
+  Fields live(10, Fields::defaults(), [&](int step) {
+    if (step != 0 && is_slow) {
+      has_begun = true;
+      workForLong();
+    }
+  });
+  live.wait();
+  is_slow = true;
+  live.ask([](FieldRequest& request) {
+    request.scenario = scenarioNamed("slow");
+    request.view.time_s = 5;
+  });
+  live.waitFor([&] { return has_begun.load(); });
+  EXPECT_EQ(live.fields->status().progress.what, "made at 5 s");
+  live.ask([](FieldRequest& request) {
+    request.scenario = nullptr;
+    request.view.time_s = 0;
+  });
+  live.wait();
+  EXPECT_EQ(live.shown_s(), 0);
+  EXPECT_EQ(live.deliveries(), 2U);
+  EXPECT_EQ(live.fields->status().fields_abandoned, 1);
+  EXPECT_EQ(live.fields->status().fields_computed, 1) << "the field before is still in memory";
+  EXPECT_THAT(live.fields->status().cached_steps, ElementsAre(0)) << "so are its steps";
+}
+
+TEST(LiveFields, PlayingFinishesItsFieldsAndTheNewestTimeFollows) {
+  Fields live(1000, Fields::defaults(),
+              [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(20)); });
+  live.wait();
+  for (int n = 1; n <= 100; ++n) {
+    live.ask([n](FieldRequest& request) {
+      request.view.time_s = n;
+      request.patience_ms = Patience::kEndless;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  live.wait();
+  EXPECT_EQ(live.shown_s(), 100);
+  EXPECT_EQ(live.fields->status().fields_abandoned, 0);
+  EXPECT_GT(live.deliveries(), 3U);
+}
+
+TEST(LiveFields, AStreamOfSeeksShowsFieldsThatTakeLongerThanThePauses) {
+  Fields live(1000, Fields::defaults(), [](int) {
+    for (int n = 0; n < 100; ++n) {
+      checkpoint();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  live.wait();
+  for (int n = 1; n <= 100; ++n) {
+    live.ask([n](FieldRequest& request) {
+      request.view.time_s = n;
+      request.patience_ms = Patience::kShort;
+    });
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  }
+  live.wait();
+  EXPECT_EQ(live.shown_s(), 100);
+  EXPECT_GT(live.deliveries(), 3U) << "the picture follows";
+}
+
+TEST(LiveFields, CachedStepsStayWithinTheLimit) {
+  LiveFields::Options options = Fields::defaults();
+  options.cache_bytes = 3 * MadeFrames::kVoxels * sizeof(float);
+  Fields live(10, options);
+  for (int step = 0; step < 10; ++step) {
+    live.seek(step);
+    live.wait();
+    EXPECT_LE(live.fields->status().cached_bytes, options.cache_bytes);
+  }
+  EXPECT_EQ(live.fields->status().cached_steps.size(), 3U);
 }
 
 TEST(LiveFields, ThreadSleepsWithoutWork) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 #include "tests/playback/playback_samples.h"
 
 namespace emscape::playback::test {

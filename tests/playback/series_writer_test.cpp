@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "emscape/base/log.h"
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 #include "emscape/volume/format/file.h"
 #include "tests/playback/playback_samples.h"
 #include "volume/vtk/vti.h"

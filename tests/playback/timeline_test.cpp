@@ -25,17 +25,66 @@ TEST(Timeline, TicksAreAtRoundTimesWithBothTexts) {
   const Timeline timeline(halfSeconds(241), "2026-06-01T06:00:00Z");
   const std::vector<TimelineTick> ticks = timeline.ticks(0, 120, 8);
   EXPECT_THAT(timesOf(ticks), ElementsAre(0, 15, 30, 45, 60, 75, 90, 105, 120));
-  EXPECT_EQ(ticks[1].seconds_text, "15");
+  EXPECT_EQ(ticks[1].text, "15 s");
   EXPECT_EQ(ticks[5].utc_text, "06:01:15");
   const std::vector<TimelineTick> close = timeline.ticks(10.02, 11, 5);
   EXPECT_THAT(timesOf(close),
               ElementsAre(DoubleEq(10.2), DoubleEq(10.4), DoubleEq(10.6), DoubleEq(10.8), 11));
-  EXPECT_EQ(close[0].seconds_text, "10.2");
+  EXPECT_EQ(close[0].text, "10.2 s");
   EXPECT_EQ(close[0].utc_text, "06:00:10.2");
   EXPECT_THAT(timesOf(timeline.ticks(0, 86400 * 30, 6)),
               ElementsAre(0, 432000, 864000, 1296000, 1728000, 2160000, 2592000));
   EXPECT_TRUE(timeline.ticks(5, 5, 5).empty());
   EXPECT_EQ(Timeline(halfSeconds(3)).ticks(0, 1, 2)[0].utc_text, "");
+}
+
+TEST(Timeline, LongTimeLinesHaveDaysAndDates) {
+  std::vector<double> times_s;
+  for (int step = 0; step <= 6 * 48; ++step) times_s.push_back(600.0 * step);  // two days
+  const Timeline timeline(times_s, "2026-06-01T18:00:00Z");
+  const std::vector<TimelineTick> ticks = timeline.ticks(0, 172800, 8);
+  ASSERT_EQ(ticks.size(), 9U);
+  EXPECT_EQ(ticks[0].text, "0 d 00:00");
+  EXPECT_EQ(ticks[0].utc_text, "06-01 18:00:00");
+  EXPECT_EQ(ticks[1].text, "0 d 06:00");
+  EXPECT_EQ(ticks[1].utc_text, "06-02 00:00:00") << "the date where it changes";
+  EXPECT_EQ(ticks[2].utc_text, "06:00:00");
+  EXPECT_EQ(ticks[8].text, "2 d 00:00");
+  const std::vector<TimelineTick> days = timeline.ticks(0, 86400 * 8, 8);
+  EXPECT_EQ(days[3].text, "3 d");
+  EXPECT_EQ(days[3].utc_text, "2026-06-04");
+  EXPECT_TRUE(timeline.hasLongSteps());
+  EXPECT_DOUBLE_EQ(timeline.stepsPerSecond(1200), 2);
+  EXPECT_EQ(timeline.usualRates().back(), 5000) << "at most 10 steps per second";
+  EXPECT_EQ(Timeline(seconds(3)).usualRates(), playRates());
+}
+
+TEST(Timeline, AContinuousOneShowsTimesBetweenSteps) {
+  Timeline timeline(seconds(11));
+  timeline.setContinuous(true);
+  timeline.seek(3.3);
+  EXPECT_EQ(timeline.asked_s(), 3.3);
+  EXPECT_EQ(timeline.step_s(), 3);
+  timeline.stepBy(1);
+  EXPECT_EQ(timeline.asked_s(), 4) << "the next step";
+  timeline.seek(3.7);
+  timeline.stepBy(1);
+  EXPECT_EQ(timeline.asked_s(), 4);
+  timeline.seek(3.7);
+  timeline.stepBy(-1);
+  EXPECT_EQ(timeline.asked_s(), 3);
+  timeline.seek(3.3);
+  timeline.stepBy(-2);
+  EXPECT_EQ(timeline.asked_s(), 2);
+  timeline.seek(0);
+  timeline.play();
+  timeline.advance(1.2345678);
+  EXPECT_EQ(timeline.asked_s(), 1.23) << "no more decimals than the eye sees";
+  EXPECT_EQ(timeline.untilNextStep_s(), 0);
+  timeline.pause();
+  EXPECT_EQ(timeline.time_s(), 1.23);
+  timeline.setContinuous(false);
+  EXPECT_EQ(timeline.asked_s(), 1);
 }
 
 TEST(Timeline, TimesAreReadInSecondsAndInUtc) {
@@ -160,13 +209,9 @@ TEST(Timeline, OneStepDoesNotPlay) {
 }
 
 TEST(Timeline, RatesSnapAndGoUpAndDownInEitherDirection) {
-  EXPECT_THAT(playRates(), ElementsAre(0.1, 0.25, 0.5, 1, 2, 5, 10, 30, 60, 120));
-  EXPECT_EQ(snappedRate(0.9), 1);
-  EXPECT_EQ(snappedRate(-20), -30);
-  EXPECT_EQ(snappedRate(1e9), 120);
-  EXPECT_EQ(snappedRate(0), 0.1);
+  EXPECT_THAT(playRates(), ElementsAre(0.1, 0.25, 0.5, 1, 2, 5, 10, 30, 60, 120, 300, 600, 1000));
   Timeline timeline(seconds(2));
-  for (const double rate : {2.0, 5.0, 10.0, 30.0, 60.0, 120.0, 120.0}) {
+  for (const double rate : {2.0, 5.0, 10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1000.0, 1000.0}) {
     timeline.changeRate(1);
     EXPECT_EQ(timeline.rate(), rate);
   }

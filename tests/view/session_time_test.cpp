@@ -30,7 +30,10 @@ TEST_F(SessionTime, StepsRatesAndTheirFaults) {
   perform(R"({"do":"rate","value":0})");
   EXPECT_THAT(error(), testing::HasSubstr("rate: value 0: expected a number -10000..10000 other than 0"));
   perform(R"({"do":"rate"})");
-  EXPECT_EQ(error(), "rate: expected either value or change");
+  EXPECT_EQ(error(), "rate: expected value, change or steps_per_s");
+  perform(R"({"do":"rate","steps_per_s":3})");
+  EXPECT_EQ(session->timeline().rate(), 3);
+  perform(R"({"do":"rate","value":-0.1})");
   perform(R"({"do":"rate","change":2})");
   EXPECT_EQ(error(), "rate: change 2: expected -1 or 1");
   EXPECT_EQ(session->timeline().rate(), -0.1);

@@ -92,7 +92,7 @@ int work(const study::LoadedStudy& loaded, const study::StudyFolder& folder, con
     study::PartComputer(loaded, folder, global.backend)
         .serve(std::cin, isComplete, [](const std::string&, double) { stopIfInterrupted(); });
     return 0;
-  } catch (const playback::Stopped&) {
+  } catch (const Stopped&) {
     return 128 + caughtSignal();
   }
 }

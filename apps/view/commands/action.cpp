@@ -39,6 +39,8 @@ const std::vector<Action>& actions() {
         {"Edit", "Redo", "Ctrl+Shift+Z Ctrl+Y", R"({"do":"redo"})",
          "with the last --set, another --transfer FILE"},
 
+        {"Edit", "Cancel the computation", "Shift+Esc", R"({"do":"cancel"})", "Ctrl-C in the terminal"},
+
         {"Time", "Play or pause", "Space", R"({"do":"play"})", "emscape render INPUT --realtime"},
         {"Time", "Pause", "K", R"({"do":"pause"})", "emscape render INPUT --times T"},
         {"Time", "Step forward", "Right .", R"({"do":"step","steps":1})", "--times T"},
@@ -68,6 +70,7 @@ const std::vector<Action>& actions() {
          "--camera orbit:elevation_deg=.."},
         {"Camera", "Closer", "+", R"({"do":"dolly","factor":0.8})", "--camera orbit:distance=.."},
         {"Camera", "Further", "-", R"({"do":"dolly","factor":1.25})", "--camera orbit:distance=.."},
+        {"Camera", "Follow a platform", "Ctrl+F", R"({"do":"follow"})", "--follow PLATFORM"},
         {"Camera", "From above", "V", R"({"do":"camera","spec":"orbit:azimuth_deg=180,elevation_deg=89"})",
          "--camera orbit:azimuth_deg=180,elevation_deg=89"},
     };

@@ -8,6 +8,7 @@
 
 #include "apps/view/files/file_browser.h"
 #include "apps/view/files/recorder.h"
+#include "apps/view/parts/program_state.h"
 #include "emscape/playback/view/view_state.h"
 #include "playback/editing/autosave.h"
 
@@ -31,6 +32,8 @@ struct Files {
   std::shared_ptr<playback::Autosaves> autosaves = std::make_shared<playback::Autosaves>();
   std::optional<OpenRequest> request;  ///< pending, for the window
   bool is_opening = false;             ///< a request is not on screen yet
+  OpeningProgress opening;             ///< of that request
+  bool cancels_opening = false;        ///< for the window, which resets it
 };
 
 }  // namespace emscape::view

@@ -10,12 +10,16 @@
 #include "base/thread_arena.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 #include "playback/pictures/picture_series.h"
 #include "playback/pictures/picture_sink.h"
 
 namespace emscape::view {
 namespace {
+
+bool isVideo(const std::string& output) {
+  return std::filesystem::path(output).extension() == ".mp4";
+}
 
 /// Draws all pictures. @param done  called with the number of pictures so far and the total number
 void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(int, int)>& done) {
@@ -28,14 +32,14 @@ void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(i
                                             job.frames_per_s));
   done(0, source->count());
   playback::Painter painter(job.view, *source, job.target, /*must_show_isosurface=*/false);
+  const std::optional<double> frames_per_s =
+      isVideo(job.output) ? std::optional(job.frames_per_s) : std::nullopt;
+  const playback::Film film = playback::filmOf(job.view, *source, frames_per_s);
+  painter.setSpeed(film.speed);
   painter.setFrame(source->frame(0));
   const render::FramePlan plan{render::Pattern::full, {}};
   playback::drawPictures(
-      *source, painter, plan, sinks, [&](int pictures) { done(pictures, source->count()); }, &stop);
-}
-
-bool isVideo(const std::string& output) {
-  return std::filesystem::path(output).extension() == ".mp4";
+      *source, painter, plan, sinks, film, [&](int pictures) { done(pictures, source->count()); }, &stop);
 }
 
 }  // namespace
@@ -65,7 +69,7 @@ void Recorder::start(const RecordJob& job, std::function<void()> wake) {
       });
       outcome.text = fmt::format("recorded {} picture{}: {}", counter->total.load(),
                                  counter->total == 1 ? "" : "s", job.output);
-    } catch (const playback::Stopped&) {
+    } catch (const Stopped&) {
       outcome.text = "recording cancelled: ";
       outcome.text += isVideo(job.output)
                           ? fmt::format("{} is not written", job.output)

@@ -8,9 +8,9 @@
 
 #include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
+#include "base/text/time_text.h"
 #include "emscape/render/annotate/legend.h"
 #include "playback/view/view_settings.h"
-#include "volume/difference.h"
 
 namespace emscape::view {
 namespace {
@@ -61,31 +61,6 @@ bool isEnabled(const Session& session, const std::string& name) {
   if (name == "Open the input before this")
     return session.files().recent.size() > (session.hasInput() ? 1 : 0);
   return true;
-}
-
-/// Description of the picture, its pattern and its times; the last parts are omitted if the width (pixels) is
-/// too small.
-std::string statusText(const Session& session, float room) {
-  const playback::LiveStatus& status = session.status();
-  std::vector<std::string> parts;
-  if (volume::isDifference(session.picture()->info())) parts.emplace_back("DIFFERENCE");
-  parts.emplace_back(session.exact() ? "exact" : "approximate");
-  if (status.cells.empty()) {
-    parts.push_back(fmt::format("{}{}, {:.0f} % of rays", session.view().pattern ? "" : "auto: ",
-                                render::toString(status.pattern), 100 * status.rays_fraction));
-  } else {
-    parts.push_back(status.cells);
-  }
-  parts.push_back(fmt::format("cast {:.0f} ms", status.cast_ms));
-  if (status.field_ms > 0) parts.push_back(fmt::format("field {:.0f} ms", status.field_ms));
-  parts.push_back(status.device);
-  std::string text;
-  for (const std::string& part : parts) {
-    const std::string longer = text + (text.empty() ? "" : "   ·   ") + part;
-    if (!text.empty() && ImGui::CalcTextSize(longer.c_str()).x > room) break;
-    text = longer;
-  }
-  return text;
 }
 
 }  // namespace
@@ -197,36 +172,20 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   place(area);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(12 * s, 5 * s));
   ImGui::Begin("status", nullptr, kFixedPanel | ImGuiWindowFlags_NoScrollbar);
-  const bool is_opening = session.hasInput() || session.files().is_opening;
-  const char* name = session.picture() ? render::toString(status.state) : is_opening ? "OPENING" : "EMPTY";
-  const ImVec4 color = session.picture() ? stateColor(status.state) : mutedColor(session.theme());
-  // The badge: the state's name on its colour.
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const ImVec2 text = ImGui::CalcTextSize(name);
-  const float badge_width = ImGui::CalcTextSize("RESTORE").x + 16 * s;
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled({at.x, at.y - s}, {at.x + badge_width, at.y + text.y + 2 * s},
-                     ImGui::ColorConvertFloat4ToU32(color), 4 * s);
-  list.AddText({at.x + (badge_width - text.x) / 2, at.y}, IM_COL32(16, 20, 27, 255), name);
-  ImGui::Dummy({badge_width, text.y});
+  std::string right;
   if (session.picture()) {
-    ImGui::SameLine(0, 12 * s);
-    const std::string right = status.shown_s == status.asked_s ? fmt::format("t = {:g} s", status.shown_s)
-                                                               : fmt::format("requested {:g} s, shown {:g} s",
-                                                                             status.asked_s, status.shown_s);
-    const float right_x = area.width - ImGui::CalcTextSize(right.c_str()).x - 12 * s;
-    const float room = right_x - ImGui::GetCursorPosX() - 12 * s;
-    const std::string left = statusText(session, room);
-    if (ImGui::CalcTextSize(left.c_str()).x <= room) {
-      ImGui::TextUnformatted(left.c_str());
-      ImGui::SameLine();
-    }
+    const double span_s = session.timeline().end_s();
+    const std::string shown = timeText(status.shown_s, span_s);
+    const bool is_late = status.shown_s != status.asked_s && !session.timeline().playing();
+    right = is_late ? fmt::format("requested {}, shown {}", timeText(status.asked_s, span_s), shown)
+                    : "t = " + shown;
+  }
+  const float right_x = area.width - ImGui::CalcTextSize(right.c_str()).x - 12 * s;
+  drawStateBadge(context, right_x - 12 * s);
+  if (!right.empty()) {
+    ImGui::SameLine();
     ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), right_x));
-    if (status.shown_s == status.asked_s) {
-      ImGui::TextUnformatted(right.c_str());
-    } else {
-      ImGui::TextColored(stateColor(render::ControllerState::busy), "%s", right.c_str());
-    }
+    ImGui::TextUnformatted(right.c_str());
   }
   ImGui::End();
   ImGui::PopStyleVar();
@@ -239,7 +198,8 @@ void drawNotice(PanelContext& context, const Area& picture) {
   ImVec4 color =
       session.notice().is_error ? errorColor(session.theme()) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
   if (text.empty() && !session.picture() && (session.hasInput() || session.files().is_opening)) {
-    text = "opening …";
+    const std::string what = session.programState().what;
+    text = what.empty() ? "opening …" : what + " …";
     color = mutedColor(session.theme());
   }
   if (text.empty()) return;
@@ -322,7 +282,7 @@ void drawGoToTime(PanelContext& context) {
       "Go to time", &session.panels.time,
       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   if (ImGui::IsWindowAppearing()) {
-    *fmt::format_to_n(typed, sizeof typed - 1, "{:g}", session.timeline().step_s()).out = '\0';
+    *fmt::format_to_n(typed, sizeof typed - 1, "{:g}", session.timeline().asked_s()).out = '\0';
     ImGui::SetKeyboardFocusHere();
   }
   ImGui::SetNextItemWidth(160 * context.scale);

@@ -34,6 +34,25 @@ ImVec4 stateColor(render::ControllerState state) {
   return rgb(0x9BE07A);
 }
 
+ImVec4 activityColor(Activity activity, render::Theme theme) {
+  switch (activity) {
+    case Activity::empty:
+      return mutedColor(theme);
+    case Activity::opening:
+    case Activity::computing:
+      return rgb(0xC79BF2);
+    case Activity::playing:
+      return rgb(0x6FD3C7);
+    case Activity::busy:
+      return stateColor(render::ControllerState::busy);
+    case Activity::restore:
+      return stateColor(render::ControllerState::restore);
+    case Activity::idle:
+      break;
+  }
+  return stateColor(render::ControllerState::idle);
+}
+
 ImVec4 emitterColor(scenario::EmitterKind kind, render::Theme theme) {
   const bool dark = theme == render::Theme::dark;
   switch (kind) {

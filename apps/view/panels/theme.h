@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include "apps/view/parts/program_state.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/scene/camera.h"
 #include "emscape/scenario/model/emitter.h"
@@ -15,6 +16,8 @@ ImGuiStyle styleOf(render::Theme theme, float scale);
 /// Amber while the picture changes, blue while it is being restored, green when settled; the brightness
 /// differs, too.
 ImVec4 stateColor(render::ControllerState state);
+/// The same, and for what else the program does.
+ImVec4 activityColor(Activity activity, render::Theme theme);
 /// The colours of the picture's overlay; darker on a light background.
 ImVec4 emitterColor(scenario::EmitterKind kind, render::Theme theme);
 ImVec4 accentColor(render::Theme theme);

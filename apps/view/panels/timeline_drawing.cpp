@@ -13,7 +13,7 @@ ImU32 colorOf(const ImVec4& color, float alpha = 1) {
 
 /// Time of the hand; between the steps while playing.
 double handTime_s(const Session& session) {
-  return session.timeline().playing() ? session.timeline().time_s() : session.timeline().step_s();
+  return session.timeline().playing() ? session.timeline().time_s() : session.timeline().asked_s();
 }
 
 }  // namespace
@@ -27,13 +27,12 @@ void drawTicks(ImDrawList& list, const TimeAxis& axis, const Session& session, f
   for (const playback::TimelineTick& tick : session.timeline().ticks(axis.begin_s, axis.end_s, count)) {
     const float x = axis.x(tick.time_s);
     list.AddLine({x, top}, {x, bottom}, colorOf(mutedColor(session.theme()), 0.25F));
-    const std::string seconds = tick.seconds_text + " s";
     const float width =
-        std::max(ImGui::CalcTextSize(seconds.c_str()).x, ImGui::CalcTextSize(tick.utc_text.c_str()).x);
+        std::max(ImGui::CalcTextSize(tick.text.c_str()).x, ImGui::CalcTextSize(tick.utc_text.c_str()).x);
     const float at = std::clamp(x - width / 2, axis.left, std::max(axis.left, axis.right() - width));
     if (at < free_from) continue;
     free_from = at + width + 6 * scale;
-    list.AddText({at, bottom + 2 * scale}, ImGui::GetColorU32(ImGuiCol_Text), seconds.c_str());
+    list.AddText({at, bottom + 2 * scale}, ImGui::GetColorU32(ImGuiCol_Text), tick.text.c_str());
     if (!tick.utc_text.empty()) list.AddText({at, bottom + 2 * scale + line}, ink, tick.utc_text.c_str());
   }
 }
@@ -133,7 +132,7 @@ void drawHands(ImDrawList& list, const TimeAxis& axis, const Session& session, f
       list.AddLine({axis.x(time_s), top}, {axis.x(time_s), bottom}, colorOf(color), 2 * scale);
     }
   };
-  if (session.picture() && session.status().shown_s != timeline.step_s()) {
+  if (session.picture() && session.status().shown_s != timeline.asked_s()) {
     line(session.status().shown_s, stateColor(render::ControllerState::busy));
   }
   line(handTime_s(session), accentColor(session.theme()));

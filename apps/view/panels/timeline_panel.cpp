@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "apps/view/panels/timeline_drawing.h"
+#include "base/text/time_text.h"
+#include "emscape/scenario/model/clock.h"
 
 namespace emscape::view {
 namespace {
@@ -47,6 +49,28 @@ Grip gripAt(PanelContext& context, const TimeAxis& axis, bool on_marks) {
   return Grip::hand;
 }
 
+/// The time under the mouse: that of the nearest step if it is near, or if there is nothing between the
+/// steps; else rounded to a decimal of a pixel.
+double pointedTime_s(const PanelContext& context, const TimeAxis& axis, double step_s) {
+  constexpr float kNear = 3;
+  const playback::Timeline& timeline = context.session.timeline();
+  const float x = ImGui::GetIO().MousePos.x;
+  if (!timeline.isContinuous() || std::abs(axis.x(step_s) - x) <= kNear * context.scale) return step_s;
+  const double per_s = std::pow(10.0, std::ceil(-std::log10(axis.perPixel_s())));
+  return std::clamp(std::round(axis.time_s(x) * per_s) / per_s, timeline.begin_s(), timeline.end_s());
+}
+
+void showTime(const PanelContext& context, double time_s) {
+  const Session& session = context.session;
+  std::string text = timeText(time_s, session.timeline().end_s());
+  if (const auto scenario = session.scenario(); scenario && !scenario->clock.epoch_utc.empty())
+    text += "\n" + scenario::utcAt(scenario->clock, time_s);
+  // The child window of the rows has none of its own.
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10 * context.scale, 7 * context.scale));
+  ImGui::SetTooltip("%s", text.c_str());
+  ImGui::PopStyleVar();
+}
+
 /// Handles the mouse over the item drawn last.
 void handleMouse(PanelContext& context, const TimeAxis& axis, bool on_marks) {
   Session& session = context.session;
@@ -60,7 +84,8 @@ void handleMouse(PanelContext& context, const TimeAxis& axis, bool on_marks) {
   }
   const playback::Timeline& timeline = session.timeline();
   const double step_s = timeline.times_s()[static_cast<std::size_t>(timeline.nearestStep(mouse_s))];
-  if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) ImGui::SetTooltip("%g s", step_s);
+  const double pointed_s = pointedTime_s(context, axis, step_s);
+  if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) showTime(context, pointed_s);
   int* grip = ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("grip"));
   if (ImGui::IsItemActivated()) *grip = static_cast<int>(gripAt(context, axis, on_marks));
   if (!ImGui::IsItemActive()) return;
@@ -69,7 +94,7 @@ void handleMouse(PanelContext& context, const TimeAxis& axis, bool on_marks) {
     case Grip::nothing:
       break;
     case Grip::hand:
-      if (step_s != timeline.step_s()) session.perform({"seek", {{"time_s", step_s}}});
+      if (pointed_s != timeline.asked_s()) session.perform({"seek", {{"time_s", pointed_s}}});
       break;
     case Grip::begin:
       if (step_s != range.begin_s && step_s < range.end_s)

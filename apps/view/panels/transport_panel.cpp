@@ -5,6 +5,7 @@
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
+#include "base/text/time_text.h"
 #include "emscape/scenario/model/clock.h"
 
 namespace emscape::view {
@@ -82,12 +83,19 @@ void drawRate(PanelContext& context) {
   ImGui::SetNextItemWidth(64 * s);
   if (numberField("##rate", typed, "× %.4g")) session.perform({"rate", {{"value", typed}}});
   if (ImGui::IsItemHovered()) {
-    ImGui::SetTooltip("Scenario seconds per second, negative: backwards (J lower, L higher)");
+    ImGui::SetTooltip(
+        "%s", fmt::format("Scenario seconds per second, negative: backwards (J lower, L higher)\n{:.3g} "
+                          "steps per second",
+                          session.timeline().stepsPerSecond(rate))
+                  .c_str());
   }
   ImGui::SameLine(0, 2 * s);
   if (ImGui::BeginCombo("##rates", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_HeightLargest)) {
-    for (const double usual : playback::playRates()) {
-      if (ImGui::Selectable(fmt::format("× {:g}", usual).c_str(), usual == std::abs(rate))) {
+    const playback::Timeline& timeline = session.timeline();
+    for (const double usual : timeline.usualRates()) {
+      std::string text = fmt::format("× {:g}", usual);
+      if (timeline.hasLongSteps()) text += fmt::format("   {:.2g} steps/s", timeline.stepsPerSecond(usual));
+      if (ImGui::Selectable(text.c_str(), usual == std::abs(rate))) {
         session.perform({"rate", {{"value", std::copysign(usual, rate)}}});
       }
     }
@@ -106,18 +114,18 @@ void drawTimes(const PanelContext& context) {
   const Session& session = context.session;
   const playback::Timeline& timeline = session.timeline();
   const float spacing = 18 * context.scale;
-  const double asked_s = timeline.step_s();
+  const double asked_s = timeline.asked_s(), span_s = timeline.end_s();
   const auto draw = [&](const std::string& text, const ImVec4& color) {
     if (roomInLine(spacing) < ImGui::CalcTextSize(text.c_str()).x) return;
     ImGui::SameLine(0, spacing);
     ImGui::TextColored(color, "%s", text.c_str());
   };
   const ImVec4 ink = ImGui::GetStyleColorVec4(ImGuiCol_Text), muted = mutedColor(session.theme());
-  draw(fmt::format("t = {:g} s", asked_s), ink);
-  if (session.picture() && session.status().shown_s != asked_s) {
-    draw(fmt::format("shown {:g} s", session.status().shown_s), stateColor(render::ControllerState::busy));
+  draw("t = " + timeText(asked_s, span_s), ink);
+  if (session.picture() && session.status().shown_s != asked_s && !timeline.playing()) {
+    draw("shown " + timeText(session.status().shown_s, span_s), stateColor(render::ControllerState::busy));
   }
-  if (!timeline.times_s().empty()) {
+  if (!timeline.times_s().empty() && timeline.step_s() == asked_s) {
     draw(fmt::format("step {} of {}", timeline.step() + 1, timeline.times_s().size()), ink);
   }
   if (const auto scenario = session.scenario(); scenario && !scenario->clock.epoch_utc.empty()) {

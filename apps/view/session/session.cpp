@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "base/memory.h"
 #include "base/text/failure_text.h"
+#include "emscape/base/cuda/device.h"
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/cells/cell_renderer.h"
@@ -13,13 +15,21 @@
 namespace emscape::view {
 namespace {
 
-playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::ComputeTarget& target) {
-  constexpr std::size_t kCacheBytes = std::size_t{512} << 20;
+/// Limit of the memory of cached fields: a part of what is free, on the host and on the GPU.
+std::size_t cacheLimitOf(const playback::ComputeTarget& target) {
+  constexpr std::size_t kMax = std::size_t{512} << 20, kPart = 8;
+  std::size_t limit = std::min(kMax, availableMemory_bytes().value_or(kMax) / kPart);
+  if (target.onGpu()) limit = std::min(limit, findDevice().free_bytes / kPart);
+  return limit;
+}
+
+playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::ComputeTarget& target,
+                                    std::size_t cache_bytes) {
   constexpr int kNiceness = 5;  // the window has priority
   playback::LiveOptions live;
   live.target = target;
   live.controller = options.controller;
-  live.cache_bytes = kCacheBytes;
+  live.cache_bytes = cache_bytes;
   live.niceness = kNiceness;
   return live;
 }
@@ -38,8 +48,9 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       log_(log),
       target_(target),
       wake_(std::move(wake)),
+      cache_limit_bytes_(cacheLimitOf(target)),
       view_(withoutSize(options.view)),
-      live_(view_, liveOptionsOf(options, target), wake_),
+      live_(view_, liveOptionsOf(options, target, cache_limit_bytes_), wake_),
       edit_queue_(wake_),
       prober_(wake_),
       files_(files ? std::move(files) : std::make_shared<Files>()),
@@ -53,9 +64,9 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
 
 std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;
-  for (const auto& topic :
-       {timeVerbs(), cameraVerbs(), scenarioVerbs(), probeVerbs(), pictureVerbs(), planeVerbs(),
-        transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(), recordVerbs()}) {
+  for (const auto& topic : {programVerbs(), timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(),
+                            probeVerbs(), pictureVerbs(), planeVerbs(), transferVerbs(), windowVerbs(),
+                            stateVerbs(), fileVerbs(), recordVerbs()}) {
     all.insert(all.end(), topic.begin(), topic.end());
   }
   return all;
@@ -75,6 +86,8 @@ void Session::perform(const Command& command) {
     tell(failureText(error), true);
   }
   noteSteps();
+  status_ = live_.status();
+  noteProgram();
 }
 
 void Session::tell(const std::string& text, bool is_error) {
@@ -85,9 +98,9 @@ void Session::tell(const std::string& text, bool is_error) {
 // --- time, pictures, scenario ---
 
 void Session::askTime() {
-  if (timeline_.times_s().empty() || view_.time_s == timeline_.step_s()) return;
-  view_.time_s = timeline_.step_s();
-  live_.show(view_);
+  if (timeline_.times_s().empty() || view_.time_s == timeline_.asked_s()) return;
+  view_.time_s = timeline_.asked_s();
+  live_.show(view_, nullptr, timeline_.playing() ? playback::Patience::kEndless : playback::Patience::kShort);
 }
 
 void Session::takeScenario() {
@@ -95,11 +108,12 @@ void Session::takeScenario() {
   if (times_s.empty() || times_s == timeline_.times_s()) return;
   const bool is_first = timeline_.times_s().empty();
   timeline_.setSteps(std::move(times_s));
+  timeline_.setContinuous(live_.status().is_continuous);
   if (is_first) {
     timeline_.seek(options_.view.time_s);
     if (const auto& part = options_.view.play_range) timeline_.setPlayRange(part->begin_s, part->end_s);
     if (const auto& part = options_.view.visible_time) timeline_.setVisible(part->begin_s, part->end_s);
-    view_.time_s = timeline_.step_s();
+    view_.time_s = timeline_.asked_s();
     if (live_.scenario()) {
       edits_.emplace(live_.scenario());
       view_.edits = edits_->edits();
@@ -139,6 +153,9 @@ bool Session::update() {
   takeEdits();
   const playback::LiveStatus before = status_;
   status_ = live_.status();
+  if (status_.is_continuous != timeline_.isContinuous() && !timeline_.times_s().empty()) {
+    timeline_.setContinuous(status_.is_continuous);
+  }
   const auto old_picture = picture_;
   takePicture();
   countValues();
@@ -163,14 +180,19 @@ bool Session::update() {
   prober_.turnOn(panels.probe && !panels.hidden);
   const bool is_read = prober_.update(picture_);
   const bool touched = std::exchange(touched_, false);
-  return touched || is_read || notice_ends || picture_ != old_picture || status_.state != before.state ||
-         status_.computing != before.computing || status_.cached_steps != before.cached_steps ||
-         timeline_.playing();
+  const std::string words = noted_words_;
+  noteProgram();
+  return touched || words != noted_words_ || is_read || notice_ends || picture_ != old_picture ||
+         status_.state != before.state || status_.computing != before.computing ||
+         status_.cached_steps != before.cached_steps || timeline_.playing();
 }
 
 std::optional<double> Session::nextUpdate_s() const {
-  constexpr double kRedraw_s = 1.0 / 30;
-  if (timeline_.playing()) return std::min(kRedraw_s, timeline_.untilNextStep_s().value_or(kRedraw_s));
+  constexpr double kRedraw_s = 1.0 / 60, kProgress_s = 0.1;
+  if (timeline_.playing())
+    return timeline_.isContinuous() ? kRedraw_s
+                                    : std::min(2 * kRedraw_s, timeline_.untilNextStep_s().value_or(1));
+  if (computing_from_s_) return kProgress_s;
   if (!notice_.text.empty()) return 0.5;
   if (files_->recorder.running() || files_->browser.reading()) return 0.1;
   if (keep_at_s_) return std::max(0.0, *keep_at_s_ - log_.now_s());
@@ -181,6 +203,14 @@ void Session::setPictureSize(render::ImageSize size) {
   if (size == view_.size || size.width < 1 || size.height < 1) return;
   view_.size = size;
   live_.show(view_);
+}
+
+std::string Session::shownQuantity() const {
+  return picture_ ? picture_->info().quantity : "";
+}
+
+bool Session::isQuantityPending() const {
+  return picture_ && status_.computing && last_shown_.quantity != view_.quantity;
 }
 
 bool Session::exact() const {

@@ -16,6 +16,7 @@
 #include "apps/view/parts/camera_control.h"
 #include "apps/view/parts/open_panels.h"
 #include "apps/view/parts/prober.h"
+#include "apps/view/parts/program_state.h"
 #include "apps/view/parts/undo_order.h"
 #include "apps/view/parts/value_summary.h"
 #include "apps/view/parts/view_options.h"
@@ -86,6 +87,14 @@ class Session {
   // --- state on screen ---
   const playback::LivePicture* picture() const { return picture_.get(); }
   const playback::LiveStatus& status() const { return status_; }
+  /// What the program does, in words.
+  ProgramState programState() const;
+  /// Limit of status().cached_bytes.
+  std::size_t cacheLimit_bytes() const { return cache_limit_bytes_; }
+  /// Quantity or channel of the picture; empty before the first.
+  std::string shownQuantity() const;
+  /// True while a picture of another quantity is requested.
+  bool isQuantityPending() const;
   bool exact() const;
   /// True if requested edits or readings are pending: scripts wait for them.
   bool isAnswering() const { return edit_queue_.isBusy() || prober_.isBusy(); }
@@ -158,6 +167,8 @@ class Session {
   EventLog& log() { return log_; }
 
  private:
+  static std::vector<Verb> programVerbs();
+  static std::vector<Verb> followVerbs();
   static std::vector<Verb> timeVerbs();
   static std::vector<Verb> cameraVerbs();
   static std::vector<Verb> scenarioVerbs();
@@ -175,6 +186,11 @@ class Session {
   void changeSetting(const Command& command);
   void showQuantity(const std::string& name);
   void revertRejected();
+  void showLastQuantity();
+  /// Abandons what is being computed or opened.
+  void cancel();
+  void noteProgram();
+  void follow(const std::string& name, const std::string& mode);
   /// The scenario that the field is computed from; null for volumes.
   playback::ScenarioPtr computedScenario() const { return view_.scenario.empty() ? scenario() : nullptr; }
   void browse(FileBrowser::Purpose purpose);
@@ -209,6 +225,7 @@ class Session {
   /// Report of the probe for the log.
   Json probeReport() const;
   void tellRate();
+  void pause();
   /// Undoes or redoes a step after the edits that were requested before.
   void askUndo(bool undo);
   void undoOrRedo(bool undo);
@@ -230,6 +247,7 @@ class Session {
   EventLog& log_;
   const playback::ComputeTarget target_;
   const std::function<void()> wake_;
+  const std::size_t cache_limit_bytes_;
   playback::ViewState view_;  // requested; without a size nothing is drawn before the window has set it
   playback::LiveView live_;
 
@@ -237,6 +255,9 @@ class Session {
   playback::LiveStatus status_;
   std::string reported_error_;
   render::ControllerState logged_state_ = render::ControllerState::idle;
+  Activity logged_activity_ = Activity::empty;
+  std::string noted_words_;                 // of the program's state at the last update
+  std::optional<double> computing_from_s_;  // when the pending field was requested
   CameraControl camera_;
   playback::Timeline timeline_;
   double advanced_at_s_ = 0;

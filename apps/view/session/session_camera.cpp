@@ -123,7 +123,7 @@ std::vector<Verb> Session::cameraVerbs() {
        [](Session& session, const Command& command) {
          const int number = bookmarkNumber(command);
          session.bookmarks_[static_cast<std::size_t>(number - 1)] =
-             playback::Bookmark{std::to_string(number), session.camera_.spec(), session.timeline_.step_s()};
+             playback::Bookmark{std::to_string(number), session.camera_.spec(), session.timeline_.asked_s()};
          session.tell(fmt::format("bookmark {} stored", number));
        }},
       {"recall",

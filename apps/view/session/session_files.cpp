@@ -37,6 +37,7 @@ void Session::browse(FileBrowser::Purpose purpose) {
 }
 
 void Session::ask(OpenRequest request) {
+  files_->opening = {std::filesystem::path(request.file).filename().string(), {}};
   files_->request = std::move(request);
   files_->is_opening = true;
   panels.open = panels.restore = false;

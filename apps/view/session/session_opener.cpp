@@ -1,5 +1,7 @@
 #include "apps/view/session/session_opener.h"
 
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "base/text/failure_text.h"
@@ -8,6 +10,7 @@
 namespace emscape::view {
 
 bool SessionOpener::update(std::unique_ptr<Session>& session) {
+  if (std::exchange(files_->cancels_opening, false)) cancel(*session);
   if (files_->request && !task_.active()) {
     OpenRequest request = *std::exchange(files_->request, std::nullopt);
     endBeside(std::move(next_));  // there is a newer request
@@ -22,6 +25,7 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
   }
   if (task_.done()) take(*session);
   if (!next_) return false;
+  files_->opening.progress = next_->status().progress;
   next_->setPictureSize(session->pictureSize());
   next_->update();
   if (next_->picture()) {
@@ -37,7 +41,7 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
 void SessionOpener::take(Session& session) {
   try {
     opening_ = task_.take();
-    if (files_->request) return;  // there is a newer request
+    if (files_->request || !files_->is_opening) return;  // there is a newer request, or it was cancelled
     if (!opening_.colors.empty()) {
       files_->is_opening = false;
       session.perform({"transfer", {{"file", opening_.colors}}});
@@ -45,6 +49,7 @@ void SessionOpener::take(Session& session) {
     }
     next_ = make_(opening_.options);
   } catch (const std::exception& error) {
+    if (!files_->is_opening) return;  // cancelled
     session.tell(failureText(error), true);
     giveUp();
   }
@@ -58,6 +63,12 @@ void SessionOpener::replace(std::unique_ptr<Session>& session) {
   session = std::move(next_);
   files_->is_opening = files_->request.has_value();
   session->shown(opening_.left_out);
+}
+
+void SessionOpener::cancel(Session& session) {
+  files_->request.reset();
+  giveUp();
+  session.tell(fmt::format("cancelled: {} is not opened", files_->opening.file));
 }
 
 void SessionOpener::giveUp() {

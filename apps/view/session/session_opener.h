@@ -30,6 +30,7 @@ class SessionOpener {
   void take(Session& session);
   void replace(std::unique_ptr<Session>& session);
   void giveUp();
+  void cancel(Session& session);
   void endBeside(std::unique_ptr<Session> session);
 
   std::shared_ptr<Files> files_;

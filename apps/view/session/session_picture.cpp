@@ -62,6 +62,12 @@ void Session::revertRejected() {
       last_shown_ = {view_.quantity, view_.compare, view_.settings.iso_value};
     return;
   }
+  showLastQuantity();
+  status_ = live_.status();
+}
+
+/// Returns to quantity and comparison of the last field.
+void Session::showLastQuantity() {
   if (last_shown_.quantity == view_.quantity && last_shown_.compare == view_.compare) return;
   takes_colors_ = true;
   change([this](playback::ViewState& view) {
@@ -69,7 +75,6 @@ void Session::revertRejected() {
     view.compare = last_shown_.compare;
     view.settings.iso_value = last_shown_.iso_value;
   });
-  status_ = live_.status();
 }
 
 std::vector<Verb> Session::pictureVerbs() {

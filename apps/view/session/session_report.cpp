@@ -12,12 +12,20 @@ double rounded(double value, double unit) {
   return std::round(value / unit) * unit;
 }
 
+double mebibytes(std::size_t bytes) {
+  return static_cast<double>(bytes) / (1 << 20);
+}
+
 }  // namespace
 
 Json Session::report() const {
   const render::CameraSpec& camera = camera_.spec();
   const render::RenderSettings& settings = view_.settings;
+  const ProgramState program = programState();
   Json report{{"frame", status_.frame},
+              {"program", emscape::toString(program.activity)},
+              {"progress", program.fraction < 0 ? Json() : Json(rounded(program.fraction, 1e-3))},
+              {"computing_what", program.what},
               {"state", render::toString(status_.state)},
               {"pattern", render::toString(status_.pattern)},
               {"rays_fraction", rounded(status_.rays_fraction, 1e-4)},
@@ -28,12 +36,17 @@ Json Session::report() const {
               {"input_to_picture_ms", rounded(status_.input_to_picture_ms, 1e-2)},
               {"input_to_frame_ms", rounded(status_.input_to_frame_ms, 1e-2)},
               {"fields_computed", status_.fields_computed},
-              {"asked_s", timeline_.step_s()},
+              {"fields_abandoned", status_.fields_abandoned},
+              {"abandon_ms", rounded(status_.abandon_ms, 1e-2)},
+              {"fields_per_s", rounded(status_.fields_per_s, 1e-2)},
+              {"asked_s", timeline_.asked_s()},
               {"shown_s", status_.shown_s},
               {"exact", exact()},
               {"settled", settled()},
               {"computing", status_.computing},
               {"cached_steps", status_.cached_steps.size()},
+              {"cache_mib", rounded(mebibytes(status_.cached_bytes), 1e-2)},
+              {"cache_limit_mib", rounded(mebibytes(cache_limit_bytes_), 1e-2)},
               {"device", status_.device},
               {"error", notice_.is_error ? notice_.text : std::string()},
               {"playing", timeline_.playing()},
@@ -49,7 +62,10 @@ Json Session::report() const {
               {"iso_value", std::isnan(settings.iso_value) ? Json() : Json(settings.iso_value)},
               {"planes", std::count_if(settings.planes.begin(), settings.planes.end(),
                                        [](const render::CutPlane& plane) { return plane.on; })},
+              {"following", view_.follow},
               {"compare", compares()},
+              {"shows_edits",
+               picture_ && !edit_queue_.isBusy() && (!edits_ || picture_->scenario == edits_->scenario())},
               {"edits", edits_ ? edits_->edits().size() : 0},
               {"unsaved", hasUnsavedEdits()},
               {"input", options_.view.input},

@@ -1,12 +1,18 @@
 /// Verbs of time: playing, stepping, seeking.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
+namespace {
+
+constexpr NumberLimits kRates{-1e4, 1e4, false, true};
+
+}  // namespace
 
 std::vector<Verb> Session::timeVerbs() {
   return {
@@ -19,10 +25,10 @@ std::vector<Verb> Session::timeVerbs() {
            session.timeline_.play();
            session.askTime();
          } else {
-           session.timeline_.pause();
+           session.pause();
          }
        }},
-      {"pause", {}, "Pauses", [](Session& session, const Command&) { session.timeline_.pause(); }},
+      {"pause", {}, "Pauses", [](Session& session, const Command&) { session.pause(); }},
       {"step",
        {{"steps", kNumber, true, {-1e9, 1e9, true}}},
        "Moves by so many steps of the series, backwards if negative; pauses",
@@ -32,9 +38,9 @@ std::vector<Verb> Session::timeVerbs() {
        }},
       {"seek",
        {{"time_s", kNumber, false}, {"time", kText, false}},
-       "Shows the step nearest to a time, or to one written as seconds or hh:mm:ss in UTC; playing goes on "
-       "from "
-       "there",
+       "Shows a time, given in seconds or written as seconds or hh:mm:ss in UTC; of volumes the nearest "
+       "step. "
+       "Playing goes on from there",
        [](Session& session, const Command& command) {
          if (command.has("time_s") == command.has("time")) {
            throw Error(ErrorCode::bad_input, "seek: expected either time_s or time");
@@ -58,15 +64,22 @@ std::vector<Verb> Session::timeVerbs() {
          session.askTime();
        }},
       {"rate",
-       {{"value", kNumber, false, {-1e4, 1e4, false, true}}, {"change", kNumber, false, {-1, 1, true, true}}},
+       {{"value", kNumber, false, kRates},
+        {"change", kNumber, false, {-1, 1, true, true}},
+        {"steps_per_s", kNumber, false, {-1e3, 1e3, false, true}}},
        "Scenario seconds per second, backwards if negative; or `change`, 1 or -1: the next usual rate above "
-       "or below, below the slowest backwards",
+       "or below, below the slowest backwards; or `steps_per_s`: steps of the series per second",
        [](Session& session, const Command& command) {
-         if (command.has("value") == command.has("change")) {
-           throw Error(ErrorCode::bad_input, "rate: expected either value or change");
+         if (command.has("value") + command.has("change") + command.has("steps_per_s") != 1) {
+           throw Error(ErrorCode::bad_input, "rate: expected value, change or steps_per_s");
          }
          if (command.has("value")) {
            session.timeline_.setRate(command.number("value"));
+         } else if (command.has("steps_per_s")) {
+           const double step_rate = session.timeline_.stepsPerSecond(1);
+           if (step_rate == 0) throw Error(ErrorCode::bad_input, "rate: there is only one step");
+           session.timeline_.setRate(
+               std::clamp(command.number("steps_per_s") / step_rate, kRates.min, kRates.max));
          } else {
            session.timeline_.changeRate(static_cast<int>(command.number("change")));
          }
@@ -89,13 +102,13 @@ std::vector<Verb> Session::timeVerbs() {
        {{"time_s", kNumber, false}},
        "Playing stays after this time; without one after the present",
        [](Session& session, const Command& command) {
-         session.timeline_.setPlayBegin(command.number("time_s", session.timeline_.step_s()));
+         session.timeline_.setPlayBegin(command.number("time_s", session.timeline_.asked_s()));
        }},
       {"play_to",
        {{"time_s", kNumber, false}},
        "Playing stays before this time; without one before the present",
        [](Session& session, const Command& command) {
-         session.timeline_.setPlayEnd(command.number("time_s", session.timeline_.step_s()));
+         session.timeline_.setPlayEnd(command.number("time_s", session.timeline_.asked_s()));
        }},
       {"play_all",
        {},
@@ -124,15 +137,23 @@ std::vector<Verb> Session::timeVerbs() {
            timeline.setVisible(from_s, to_s);
          }
          if (command.has("zoom"))
-           timeline.zoom(command.number("zoom"), command.number("about_s", timeline.step_s()));
+           timeline.zoom(command.number("zoom"), command.number("about_s", timeline.asked_s()));
          if (command.has("pan_s")) timeline.pan(command.number("pan_s"));
        }},
   };
 }
 
+void Session::pause() {
+  timeline_.pause();
+  askTime();
+}
+
 void Session::tellRate() {
   const double rate = timeline_.rate();
-  tell(fmt::format("{:g} times real time{}", std::abs(rate), rate < 0 ? ", backwards" : ""));
+  const std::string steps = timeline_.hasLongSteps()
+                                ? fmt::format(", {:.2g} steps/s", std::abs(timeline_.stepsPerSecond(rate)))
+                                : "";
+  tell(fmt::format("{:g} times real time{}{}", std::abs(rate), steps, rate < 0 ? ", backwards" : ""));
 }
 
 }  // namespace emscape::view

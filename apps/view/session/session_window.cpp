@@ -1,6 +1,8 @@
 /// Verbs of the window.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "apps/view/files/file_endings.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
@@ -74,13 +76,17 @@ std::vector<Verb> Session::windowVerbs() {
        [](Session& session, const Command& command) { session.window_.screenshot(command.text("file")); }},
       {"back",
        {},
-       "Closes what is open",
+       "Closes what is open; if nothing is, cancels what is being computed or opened",
        [](Session& session, const Command&) {
+         bool was_open = !session.notice_.text.empty();
          session.notice_ = {};
          if (session.isDragging()) return session.cancelDrag();
          for (const PanelName& panel : panelNames()) {
-           if (!panel.stays) session.panels.*panel.open = false;
+           if (!panel.stays) was_open |= std::exchange(session.panels.*panel.open, false);
          }
+         const ProgramState program = session.programState();
+         const bool plays = program.activity == Activity::playing;
+         if (!was_open && !plays && program.can_cancel) session.cancel();
        }},
   };
 }

@@ -7,6 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
 #include "propagation/parabolic_equation/march/lane_march.h"
 
 namespace emscape::propagation {
@@ -46,6 +47,7 @@ MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db) {
       std::any_of(march.air.begin(), march.air.end(), [](const auto& air) { return air.pointwise(); });
   const std::size_t of_azimuth = std::size_t(march.cells.ranges) * std::size_t(march.cells.heights);
   std::mutex of_notes;
+  int marched_azimuths = 0;
   const LaneMarchPlan plan = laneMarchPlan(march);
   parallelFor((march.azimuths + kStepLanes - 1) / kStepLanes, 1, [&](int begin, int end) {
     for (int group = begin; group < end; ++group) {
@@ -60,6 +62,8 @@ MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db) {
       }
       const std::lock_guard lock(of_notes);
       notes.staircases += of_group.staircases();
+      marched_azimuths += count;
+      reportDone(static_cast<double>(marched_azimuths) / march.azimuths);
     }
   });
   return notes;

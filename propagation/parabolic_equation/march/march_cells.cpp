@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "propagation/parabolic_equation/march/cell_span.h"
 #include "propagation/parabolic_equation/march/lane_march.h"
 
@@ -35,6 +36,7 @@ std::array<std::vector<float>, March::kLaneCount> marchCells(March& march, const
     // steps in (begin, end]
     const double last_m = (i + 1) * cells.range_step_m * (1 + 1e-12) - march.grid().range_step_m;
     while (march.range_m() <= last_m) {
+      checkpoint();
       march.advance();
       if (cells.are_points && march.range_m() <= last_m) continue;
       for (int l = 0; l < kLanes; ++l) {

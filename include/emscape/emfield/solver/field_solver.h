@@ -121,7 +121,9 @@ class FieldSolver {
   /// different terrain
   /// @throws Error (bad_input) if terrain is missing, unless allowed, and as the constructor. The solver
   /// then still has the scenario of the last successful update, its channels and volumes, and the next update
-  /// recomputes everything. After Error (device) volumes may be empty
+  /// recomputes everything. After Error (device) volumes may be empty. Stopped, if the work of the calling
+  /// thread is stopped (base/work.h): the same, but the next update keeps the geometry that is valid for it;
+  /// volumes may be empty
   FieldChanged update(const scenario::Snapshot& snapshot, scenario::TerrainPtr terrain);
   /// The same with the solver's present terrain.
   /// @throws Error (bad_input) also if the snapshot's scenario names other elevation files

@@ -43,7 +43,7 @@ class FieldSeries : public VolumeSeries {
   /// May be null.
   const StopFlag* stopFlag() const { return stop_; }
   const emfield::FieldOptions& options() const { return options_; }
-  scenario::Snapshot snapshot(int step) const;
+  scenario::Snapshot snapshotAt(double time_s) const;
 
   /// Changes the scenario: results that an edit does not invalidate are kept. Faults that only the
   /// computation detects are thrown by the next compute().
@@ -62,14 +62,16 @@ class FieldSeries : public VolumeSeries {
   void rehearse();
 
   /// The channels' volumes at a step, or their differences. The last computed step is not recomputed.
-  std::vector<volume::Volume> compute(int step) override;
+  std::vector<volume::Volume> compute(int step) override { return computeAt(time_s(step)); }
+  bool isContinuous() const override { return true; }
+  std::vector<volume::Volume> computeAt(double time_s) override;
 
   /// False if the last volumes of compute() are those of the call before; true for differences.
   bool changed() const { return changed_; }
   std::vector<std::string> warnings() const override;
 
  private:
-  void update(int step);
+  void update(double time_s);
 
   LoadedScenario input_;
   std::vector<double> times_s_;
@@ -79,7 +81,7 @@ class FieldSeries : public VolumeSeries {
   std::optional<LoadedScenario> reference_;
   std::unique_ptr<DifferenceSeries> difference_;
   std::vector<emfield::Channel> difference_channels_;
-  int updated_step_ = -1;
+  std::optional<double> updated_s_;  // time of the solver's field
   bool changed_since_given_ = false;  // by an update since the last compute()
   bool changed_ = true;
 };

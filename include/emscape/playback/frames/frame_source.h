@@ -1,6 +1,7 @@
 /// A sequence of instants to draw: a computed scenario, or fields from files.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -45,6 +46,8 @@ struct FrameSelection : FieldChoice {
   /// Frames of a scenario are independent of each other and of their order: each has the range of its own
   /// values, and there is no tolerance for the movement of emitters.
   bool independent = false;
+  /// Limit of the cached volumes of the reference; the last one is kept in any case.
+  std::size_t cache_bytes = std::size_t{512} << 20;
 
   FrameSelection() = default;
   explicit FrameSelection(const FieldChoice& choice) : FieldChoice(choice) {}
@@ -66,10 +69,20 @@ class FrameSource : public VolumeSeries {
     made.color_range = color_range_;
     return made;
   }
+  /// The frame at a time between the first and the last step; if the source is not continuous, that of the
+  /// nearest step. @throws Error, Stopped
+  Frame frameAt(double time_s) {
+    Frame made = makeFrameAt(time_s);
+    made.color_range = color_range_;
+    return made;
+  }
   /// Sets the range of the colours of all frames; none: each has that of its values.
   void setColorRange(const render::ColorRange& range) { color_range_ = range; }
   /// The volume of frame(). @throws Error, Stopped; as comparableVolume()
   std::vector<volume::Volume> compute(int index) override { return {comparableVolume(frame(index))}; }
+  std::vector<volume::Volume> computeAt(double time_s) override {
+    return {comparableVolume(frameAt(time_s))};
+  }
 
   /// For titles and file names.
   virtual std::string name() const = 0;
@@ -90,8 +103,12 @@ class FrameSource : public VolumeSeries {
   /// is no reference
   virtual void setComparison(bool on);
 
+  /// Memory of cached volumes (bytes).
+  virtual std::size_t cachedBytes() const { return 0; }
+
  protected:
   virtual Frame makeFrame(int index) = 0;
+  virtual Frame makeFrameAt(double time_s) { return makeFrame(nearestIndex(time_s)); }
 
  private:
   render::ColorRange color_range_;

@@ -18,6 +18,10 @@ class VolumeSeries {
   virtual double time_s(int step) const = 0;
   /// The volumes of a step; info() has their own range and the time of the step. @throws Error, Stopped
   virtual std::vector<volume::Volume> compute(int step) = 0;
+  /// True if there are volumes between the steps, too: at any time between the first and the last.
+  virtual bool isContinuous() const { return false; }
+  /// The volumes at a time; if the series is not continuous, those of the nearest step. @throws as compute()
+  virtual std::vector<volume::Volume> computeAt(double time_s) { return compute(nearestIndex(time_s)); }
   /// The models' warnings on the steps so far.
   virtual std::vector<std::string> warnings() const = 0;
 

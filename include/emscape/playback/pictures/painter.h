@@ -62,6 +62,12 @@ class Painter {
   /// @throws Error (usage) if eye and target coincide; the camera is then unchanged
   void setCamera(const render::CameraSpec& spec);
 
+  /// Sets the platform that the camera follows, and how (ViewState::follow); its position is that at the time
+  /// of the frame. Without such a platform the camera is not changed.
+  void setFollowed(const ViewState& view);
+  /// States the speed of a film beside the time of the next frames; none: does not.
+  void setSpeed(std::optional<double> scenario_seconds_per_second) { speed_ = scenario_seconds_per_second; }
+
   /// Sets the size. This and the following functions change the view of the next pictures, before or after
   /// the first frame.
   /// @param size  both sides at least 1
@@ -138,7 +144,8 @@ class Painter {
   void setTransferFunction(const render::TransferFunction& function);
   /// Fits the camera again if the width of the legend has changed.
   void setLegend();
-  render::Camera cameraOf(const render::CameraSpec& spec) const;
+  render::CameraSpec followed(render::CameraSpec spec) const;
+  render::Camera cameraOf(const render::CameraSpec& given) const;
   void fitCamera();
   render::TransferFunction functionFor(const Frame& frame) const;
 
@@ -158,6 +165,7 @@ class Painter {
   bool fetched_ = false;  ///< image_ is the last picture
   bool has_colors_ = false;
   double legend_space_ = 0;  ///< part of the width
+  std::optional<double> speed_;
 };
 
 }  // namespace emscape::playback

@@ -46,6 +46,24 @@ constexpr auto namesOf(Labels) {
   return std::array{"off", "names", "all"};
 }
 
+/// How the camera follows a platform.
+enum class FollowMode {
+  follow,  ///< an orbit about the platform
+  chase    ///< the same, with the bearing of the camera counted from the platform's heading: 180 is behind it
+};
+constexpr auto namesOf(FollowMode) {
+  return std::array{"follow", "chase"};
+}
+
+/// Cameras of the pictures of a series.
+enum class CameraPath {
+  fixed,     ///< ViewState::camera
+  bookmarks  ///< from one bookmark to the next
+};
+constexpr auto namesOf(CameraPath) {
+  return std::array{"fixed", "bookmarks"};
+}
+
 /// A stored camera, and a time if that is stored too.
 struct Bookmark {
   std::string name;
@@ -70,6 +88,12 @@ struct ViewState : FieldChoice {
   render::ImageSize size{1280, 720};
   /// Pixels that are cast while the picture changes; none: as many as time allows.
   std::optional<render::Pattern> pattern;
+
+  std::string follow;  ///< platform at which the camera looks, as it moves; empty: none
+  FollowMode follow_mode = FollowMode::follow;
+  double trail_s = 0;  ///< length of the tracks behind moving platforms; 0: whole tracks
+  CameraPath camera_path = CameraPath::fixed;
+  bool film_speed = true;  ///< videos state their speed
 
   double time_s = 0;  ///< since the scenario's epoch
   double rate = 1;    ///< scenario seconds per second; negative: backwards

@@ -32,6 +32,7 @@ struct Marker {
 struct Track {
   MarkerKind kind = MarkerKind::platform;
   std::vector<Vec3d> points_m;  ///< frame metres, in the order of time
+  std::vector<double> times_s;  ///< of the points; empty: unknown
   /// Current position: 2.5 is half way from points_m[2] to points_m[3]. The part before it is drawn brighter.
   double travelled = 0;
 };

@@ -1,0 +1,88 @@
+#include "apps/view/parts/program_state.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "emscape/base/enum_names.h"
+
+namespace emscape::view {
+namespace {
+
+/// Fields that take longer are explained.
+constexpr double kExplainedAfter_s = 0.3;
+
+Activity activityOf(const ProgramFacts& facts, const playback::LiveStatus& status) {
+  if (facts.opening || (facts.has_input && !facts.has_picture)) return Activity::opening;
+  if (!facts.has_picture) return Activity::empty;
+  if (facts.is_playing) return Activity::playing;
+  if (status.computing || status.searching || facts.has_pending_edits) return Activity::computing;
+  switch (status.state) {
+    case render::ControllerState::busy:
+      return Activity::busy;
+    case render::ControllerState::restore:
+      return Activity::restore;
+    case render::ControllerState::idle:
+      break;
+  }
+  // Until the picture with the last rays is published.
+  return status.exact || status.failed ? Activity::idle : Activity::restore;
+}
+
+std::string textOf(const WorkProgress& progress) {
+  return progress.part.empty() ? progress.what : progress.what + ": " + progress.part;
+}
+
+std::string pictureText(const playback::LiveStatus& status, bool is_computing) {
+  if (is_computing) return "the picture shows the field before";
+  const char* const exactness = status.exact ? "exact" : "approximate";
+  if (!status.cells.empty()) return fmt::format("{}, {}", exactness, status.cells);
+  if (status.exact) return fmt::format("exact, {} rays", render::toString(render::Pattern::full));
+  return fmt::format("approximate, {} rays ({:.0f} %)", render::toString(status.pattern),
+                     100 * status.rays_fraction);
+}
+
+}  // namespace
+
+ProgramState programState(const ProgramFacts& facts, const playback::LiveStatus& status) {
+  ProgramState state;
+  state.activity = activityOf(facts, status);
+  state.badge = emscape::toString(state.activity);
+  const bool is_long = facts.computing_s > kExplainedAfter_s;
+  switch (state.activity) {
+    case Activity::opening: {
+      const WorkProgress& progress = facts.opening ? facts.opening->progress : status.progress;
+      state.what = textOf(progress);
+      if (facts.opening) state.what = facts.opening->file + (state.what.empty() ? "" : ": " + state.what);
+      state.fraction = progress.fraction;
+      state.can_cancel = facts.opening && facts.has_picture;
+      break;
+    }
+    case Activity::playing:
+      state.what = fmt::format("× {:g}", facts.rate);
+      if (status.fields_per_s > 0) state.what += fmt::format(", {:.1f} fields/s", status.fields_per_s);
+      if (status.computing && is_long && status.fields_per_s < 1) {
+        state.what += ", " + textOf(status.progress);
+        state.fraction = status.progress.fraction;
+      }
+      state.can_cancel = true;
+      break;
+    case Activity::computing:
+      state.can_cancel = status.computing || facts.has_pending_edits;
+      if (facts.has_pending_edits && !status.computing) {
+        state.what = "the scenario is read with the change";
+      } else if (is_long || status.searching) {
+        state.what = textOf(status.progress);
+        state.fraction = status.progress.fraction;
+      }
+      break;
+    default:
+      break;
+  }
+  if (state.fraction >= 0) state.badge += fmt::format(" {:.0f} %", std::floor(100 * state.fraction));
+  if (facts.has_picture && state.activity != Activity::playing)
+    state.picture = pictureText(status, state.activity == Activity::computing && status.computing);
+  return state;
+}
+
+}  // namespace emscape::view

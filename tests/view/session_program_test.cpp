@@ -1,0 +1,143 @@
+#include "apps/view/parts/program_state.h"
+#include "tests/view/session_sample.h"
+
+namespace emscape::view::test {
+namespace {
+
+using testing::HasSubstr;
+
+playback::LiveStatus settledStatus() {
+  playback::LiveStatus status;
+  status.exact = true;
+  return status;
+}
+
+ProgramFacts shownFacts() {
+  ProgramFacts facts;
+  facts.has_input = facts.has_picture = true;
+  return facts;
+}
+
+TEST(ProgramState, SaysWhatIsComputedAndHowFarItIs) {
+  playback::LiveStatus status = settledStatus();
+  ProgramFacts facts = shownFacts();
+  EXPECT_EQ(programState(facts, status).badge, "IDLE");
+  EXPECT_EQ(programState(facts, status).picture, "exact, full rays");
+  status.computing = true;
+  status.exact = false;
+  status.progress = {"power_density_dbwm2 at 3 s", "'radar' by itm, 1 of 2", 0.423};
+  EXPECT_EQ(programState(facts, status).badge, "COMPUTING");
+  EXPECT_EQ(programState(facts, status).what, "") << "short ones are not explained";
+  facts.computing_s = 1;
+  const ProgramState state = programState(facts, status);
+  EXPECT_EQ(state.badge, "COMPUTING 42 %");
+  EXPECT_EQ(state.what, "power_density_dbwm2 at 3 s: 'radar' by itm, 1 of 2");
+  EXPECT_EQ(state.picture, "the picture shows the field before");
+  EXPECT_TRUE(state.can_cancel);
+}
+
+TEST(ProgramState, IsNeverIdleWithWorkLeft) {
+  const ProgramFacts shown = shownFacts();
+  ProgramFacts pending = shown, plays = shown, opens = shown, first = shown;
+  pending.has_pending_edits = true;
+  EXPECT_EQ(programState(pending, settledStatus()).activity, Activity::computing);
+  plays.is_playing = true;
+  playback::LiveStatus playing = settledStatus();
+  playing.fields_per_s = 3.14;
+  EXPECT_EQ(programState(plays, playing).badge, "PLAYING");
+  EXPECT_EQ(programState(plays, playing).what, "× 1, 3.1 fields/s");
+  opens.opening = OpeningProgress{"b.yaml", {"opening", "reading the terrain", 0.2}};
+  EXPECT_EQ(programState(opens, settledStatus()).badge, "OPENING 20 %");
+  EXPECT_EQ(programState(opens, settledStatus()).what, "b.yaml: opening: reading the terrain");
+  EXPECT_TRUE(programState(opens, settledStatus()).can_cancel);
+  first.has_picture = false;
+  EXPECT_EQ(programState(first, {}).activity, Activity::opening);
+  EXPECT_EQ(programState({}, {}).badge, "EMPTY");
+  playback::LiveStatus status;
+  EXPECT_EQ(programState(shown, status).activity, Activity::restore) << "not exact yet";
+  status = settledStatus();
+  status.searching = true;
+  EXPECT_EQ(programState(shown, status).activity, Activity::computing);
+  EXPECT_FALSE(programState(shown, status).can_cancel);
+}
+
+class SessionProgram : public SessionTest {
+ protected:
+  /// Requests a field that takes long: the parabolic equation over a large region.
+  void computeForLong() {
+    perform(R"({"do":"set_together","edits":["emitters.radar.propagation=parabolic_equation",
+            "emitters.transmitter.propagation=parabolic_equation","region.size_m=[200000, 200000, 9000]",
+            "region.dims=[200, 200, 100]"]})");
+    waitUntil([this] { return session->status().progress.fraction >= 0; });
+  }
+};
+
+TEST_F(SessionProgram, ComputesFromTheCommandOnUntilThePictureHoldsIt) {
+  perform(R"({"do":"seek","time_s":3.3})");
+  EXPECT_EQ(session->report()["program"], "COMPUTING");
+  waitUntil([this] { return session->report()["program"] != "COMPUTING"; });
+  EXPECT_EQ(session->status().shown_s, 3.3);
+  perform(R"({"do":"quantity","name":"field_strength_dbuvm"})");
+  EXPECT_TRUE(session->isQuantityPending());
+  EXPECT_EQ(session->shownQuantity(), "power_density_dbwm2") << "so is the legend";
+  waitUntil([this] { return session->report()["program"] != "COMPUTING"; });
+  EXPECT_EQ(session->shownQuantity(), "field_strength_dbuvm");
+  EXPECT_FALSE(session->isQuantityPending());
+}
+
+TEST_F(SessionProgram, CancelGoesBackToWhatThePictureShows) {
+  const auto before = session->scenario();
+  const auto pixels = session->picture()->image.rgba;
+  computeForLong();
+  EXPECT_EQ(session->report()["program"], "COMPUTING");
+  perform(R"({"do":"cancel"})");
+  EXPECT_EQ(error(), "");
+  EXPECT_THAT(session->notice().text, HasSubstr("cancelled"));
+  settle();
+  EXPECT_EQ(session->scenario(), before);
+  EXPECT_TRUE(session->picture()->image.rgba == pixels);
+  EXPECT_TRUE(session->canRedo()) << "the edit can be made again";
+  EXPECT_EQ(session->status().fields_computed, 1);
+  EXPECT_EQ(session->status().fields_abandoned, 1);
+  perform(R"({"do":"cancel"})");
+  EXPECT_EQ(error(), "cancel: nothing is being computed or opened");
+}
+
+TEST_F(SessionProgram, AnUndoneFieldIsAbandonedAndNeverShown) {
+  computeForLong();
+  perform(R"({"do":"undo"})");
+  settle();
+  EXPECT_EQ(session->status().fields_computed, 1);
+  EXPECT_EQ(session->picture()->grid().dims, (Dims{40, 40, 20}));
+}
+
+TEST_F(SessionProgram, CancelledTimesAndQuantitiesReturn) {
+  perform(R"({"do":"set_together","edits":["region.size_m=[200000, 200000, 9000]"]})");
+  settle();
+  perform(R"({"do":"quantity","name":"field_strength_dbuvm"})");
+  perform(R"({"do":"seek","time_s":2})");
+  if (!session->status().computing) GTEST_SKIP() << "computed already";
+  perform(R"({"do":"back"})");
+  settle();
+  EXPECT_EQ(session->shownQuantity(), "power_density_dbwm2");
+  EXPECT_EQ(session->timeline().asked_s(), 0);
+}
+
+TEST_F(SessionProgram, FollowsPlatformsByTheirNameOrThatOfAnEmitter) {
+  perform(R"({"do":"follow","name":"radar","mode":"chase"})");
+  EXPECT_EQ(session->view().follow, "radar site");
+  EXPECT_EQ(session->notice().text, "the camera chases radar site");
+  perform(R"({"do":"follow"})");
+  EXPECT_EQ(session->report()["following"], "");
+  perform(R"({"do":"follow"})");
+  EXPECT_EQ(session->report()["following"], "radar site");
+  perform(R"({"do":"follow","mode":"off"})");
+  EXPECT_EQ(session->report()["following"], "");
+  perform(R"({"do":"follow","name":"nobody"})");
+  EXPECT_THAT(error(), HasSubstr("follow: there is no platform 'nobody'; there are radar site, mast"));
+  perform(R"({"do":"trail","seconds":20})");
+  EXPECT_EQ(session->report()["trail"], 20);
+}
+
+}  // namespace
+}  // namespace emscape::view::test
