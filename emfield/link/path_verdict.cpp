@@ -10,6 +10,8 @@
 namespace emscape::emfield {
 namespace {
 
+constexpr double kFreeRadii = 0.6;  // clearance (Fresnel radii) of a path without obstruction
+
 std::string distanceText(double distance_m) {
   return distance_m < 1000 ? fmt::format("{:.0f} m", distance_m)
                            : fmt::format("{:.1f} km", distance_m / 1000);
@@ -43,10 +45,9 @@ std::string pathText(const PathBudget& budget) {
     return fmt::format("Blocked: {} is {:.0f} m above the ray ({:.1f} Fresnel radii){}, and {}",
                        thingAt(*decisive), -decisive->clearance_m, -radii, company, costText(loss_db));
   }
-  if (radii < 0.6) {
-    return fmt::format(
-        "Grazing: {} leaves the ray {:.0f} m ({:.1f} Fresnel radii; 0.6 would be free), and {}",
-        thingAt(*decisive), decisive->clearance_m, radii, costText(loss_db));
+  if (radii < kFreeRadii) {
+    return fmt::format("Grazing: {} leaves the ray {:.0f} m ({:.1f} Fresnel radii; {} would be free), and {}",
+                       thingAt(*decisive), decisive->clearance_m, radii, kFreeRadii, costText(loss_db));
   }
   return fmt::format(
       "Clear: the nearest ground, {}, is {:.0f} m below the ray ({:.1f} Fresnel radii), and {}",
@@ -54,16 +55,21 @@ std::string pathText(const PathBudget& budget) {
 }
 
 /// Text for a direction in which the antenna's gain is far below its maximum. For a radar that looks at the
-/// target the direction of the scan is ignored.
+/// target the direction of the scan is ignored. A second reason after an obstacle, an exception after a clear
+/// path.
 std::string pointingText(const PathBudget& budget) {
   constexpr double kWorthSaying_db = -6;
   const PathPointing& pointing = budget.pointing;
   if (budget.look_pattern_db.value_or(pointing.pattern_db) > kWorthSaying_db) return "";
+  const bool is_obstructed = std::any_of(
+      budget.obstacles.begin(), budget.obstacles.end(),
+      [](const PathObstacle& obstacle) { return obstacle.clearanceInFresnelRadii() < kFreeRadii; });
+  const char* const conjunction = is_obstructed ? "and" : "but";
   if (budget.look_pattern_db) {
-    return fmt::format(", but the scan does not reach there, which costs {:.1f} dB",
+    return fmt::format(", {} the scan does not reach there, which costs {:.1f} dB", conjunction,
                        -*budget.look_pattern_db);
   }
-  return fmt::format(", but the antenna points {:.1f} deg away, which costs {:.1f} dB",
+  return fmt::format(", {} the antenna points {:.1f} deg away, which costs {:.1f} dB", conjunction,
                      radToDeg(pointing.off_axis_rad), -pointing.pattern_db);
 }
 

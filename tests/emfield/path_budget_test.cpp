@@ -249,6 +249,16 @@ TEST(PathBudget, VerdictNamesTheReason) {
   EXPECT_THAT(verdict({45.4, -71.4, 10}, 10, 0), HasSubstr("the model gives no field behind it"));
   scenario->emitters[0].antenna = scenario::makeGaussian(30, 3, 3, -40);
   EXPECT_THAT(verdict({44.3, -71.47, 3000}, 3000, 0), HasSubstr("but the antenna points "));
+  // A second reason beside an obstacle.
+  int beside_the_beam = 0;
+  for (const GeodeticPosition& far : {GeodeticPosition{45.4, -71.4, 10}, GeodeticPosition{43.2, -71.4, 10},
+                                      GeodeticPosition{44.3, -70, 10}, GeodeticPosition{44.3, -72.8, 10}}) {
+    const std::string text = verdict(far, 10, 0);
+    EXPECT_THAT(text, ::testing::StartsWith("Blocked: "));
+    EXPECT_THAT(text, ::testing::Not(HasSubstr("but ")));
+    if (text.find(", and the antenna points ") != std::string::npos) ++beside_the_beam;
+  }
+  EXPECT_GE(beside_the_beam, 2);
 }
 
 TEST(PathBudget, VerdictOfRadarOnTargetOmitsScanDirection) {
