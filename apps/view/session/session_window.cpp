@@ -26,6 +26,7 @@ const std::vector<PanelName>& panelNames() {
       {"time", &Panels::time, false},        {"open", &Panels::open, false},
       {"record", &Panels::record, false},    {"restore", &Panels::restore, false},
       {"unsaved", &Panels::unsaved, false},  {"changed", &Panels::changed, false},
+      {"menu", &Panels::menu, false},
   };
   return all;
 }
@@ -35,7 +36,7 @@ std::vector<Verb> Session::windowVerbs() {
       {"panel",
        {{"name", kText, true, {}, panelChoices()}, {"open", kBoolean, false}},
        "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, record, "
-       "restore, unsaved, changed, all",
+       "restore, unsaved, changed, menu (of the selection), all",
        [](Session& session, const Command& command) {
          const std::string name = command.text("name");
          if (name == "all") {
@@ -78,6 +79,10 @@ std::vector<Verb> Session::windowVerbs() {
        [](Session& session, const Command&) {
          session.notice_ = {};
          if (session.isDragging()) return session.cancelDrag();
+         if (session.tool_.isOn()) {
+           session.tool_ = {};
+           return;
+         }
          for (const PanelName& panel : panelNames()) {
            if (!panel.stays) session.panels.*panel.open = false;
          }
