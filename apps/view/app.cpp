@@ -316,7 +316,9 @@ void App::drawPanels(const Layout& layout) {
   }
   drawStart(context, layout.picture);
   drawProbeMarker(context, layout.picture);
-  drawProbe(context, layout.picture);
+  drawPictureOverlay(context, layout.picture);
+  drawToolHint(context, layout.picture);
+  drawContextMenu(context, layout.picture, mouse_.menu());
   drawNotice(context, layout.picture);
   drawHelp(context);
   drawGoToTime(context);

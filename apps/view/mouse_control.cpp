@@ -24,51 +24,91 @@ bool isInside(const Area& area, double x, double y) {
   return x >= area.x && y >= area.y && x < area.x + area.width && y < area.y + area.height;
 }
 
+/// The object under a pixel of the picture; null if there is none, or if emitters are not drawn.
+const SceneObject* objectUnder(const Session& session, double x, double y) {
+  if (!session.picture() || !session.view().show_emitters) return nullptr;
+  return objectAt(session.objects(), *session.picture(), x, y);
+}
+
 }  // namespace
 
 void MouseControl::handle(const std::vector<InputEvent>& events, const Area& picture, bool panels_want_mouse,
                           Session& session) {
-  bool moved = false;
   for (const InputEvent& event : events) {
     const std::optional<Viewport> viewport = session.viewport();
     if (event.kind == InputEvent::Kind::cursor) {
       const double right_px = event.x - x_, down_px = event.y - y_;
       x_ = event.x;
       y_ = event.y;
-      if (drag_ == Drag::none || !viewport) continue;
-      if (drag_ == Drag::platform) {
-        movePlatform(picture, session);
-        continue;
-      }
-      CameraControl& camera = session.camera();
-      if (drag_ == Drag::orbit) camera.orbit(kOrbit_deg_px * right_px, kOrbit_deg_px * down_px, *viewport);
-      if (drag_ == Drag::pan) camera.pan(right_px, down_px, *viewport);
-      if (drag_ == Drag::look) camera.look(kLook_deg_px * right_px, kLook_deg_px * down_px, *viewport);
-      moved = moved || right_px != 0 || down_px != 0;
+      if (drag_ != Drag::none && viewport) move(picture, *viewport, right_px, down_px, session);
     } else if (event.kind == InputEvent::Kind::button && event.action == GLFW_RELEASE) {
-      if (event.code != button_) continue;
-      if (drag_ == Drag::platform) session.endDrag();
-      drag_ = Drag::none;
+      if (event.code == button_ && drag_ != Drag::none) release(picture, session);
     } else if (panels_want_mouse || !viewport) {
       continue;
     } else if (event.kind == InputEvent::Kind::button) {
       if (isInside(picture, x_, y_) && drag_ == Drag::none) press(event, picture, session);
     } else if (event.kind == InputEvent::Kind::wheel && event.y != 0) {
       session.camera().dolly(std::pow(kDollyPerNotch, event.y), x_ - picture.x, y_ - picture.y, *viewport);
-      moved = true;
+      session.cameraMoved();
     }
   }
-  if (moved) session.cameraMoved();
   if (drag_ == Drag::none) {
     const bool is_over = !panels_want_mouse && isInside(picture, x_, y_);
-    session.prober().hover(is_over ? std::optional(render::Projected{x_ - picture.x, y_ - picture.y})
-                                   : std::nullopt);
+    const auto under =
+        is_over ? std::optional(render::Projected{x_ - picture.x, y_ - picture.y}) : std::nullopt;
+    session.prober().hover(under);
+    session.cursor().hover(under);
   }
   showCursor(picture, panels_want_mouse, session);
 }
 
+/// Moves what is dragged. @param right_px, down_px  since the last event
+void MouseControl::move(const Area& picture, const Viewport& viewport, double right_px, double down_px,
+                        Session& session) {
+  if (!is_moved_ && std::hypot(x_ - pressed_x_, y_ - pressed_y_) < kClick_px) return;
+  if (drag_ == Drag::platform) return movePlatform(picture, session);
+  is_moved_ = true;
+  if (drag_ == Drag::plane) {
+    plane_->moveTo(x_ - picture.x, y_ - picture.y, session);
+    return;
+  }
+  CameraControl& camera = session.camera();
+  if (drag_ == Drag::orbit) camera.orbit(kOrbit_deg_px * right_px, kOrbit_deg_px * down_px, viewport);
+  if (drag_ == Drag::pan) camera.pan(right_px, down_px, viewport);
+  if (drag_ == Drag::look) camera.look(kLook_deg_px * right_px, kLook_deg_px * down_px, viewport);
+  session.cameraMoved();
+}
+
+void MouseControl::release(const Area& picture, Session& session) {
+  const Drag drag = std::exchange(drag_, Drag::none);
+  if (drag == Drag::platform && is_moved_) session.endDrag();
+  if (is_moved_) return;
+  const double x = pressed_x_ - picture.x, y = pressed_y_ - picture.y;
+  const SceneObject* const object = objectUnder(session, x, y);
+  if (drag == Drag::look) {
+    menu_ = {true, x, y, object != nullptr ? object->path : std::string()};
+    if (object != nullptr && object->path != session.selected())
+      session.perform({"select", {{"path", object->path}}});
+  } else if (drag == Drag::orbit || drag == Drag::platform) {
+    click(x, y, object, session);
+  }
+}
+
+/// A click with the left button.
+void MouseControl::click(double x, double y, const SceneObject* object, Session& session) {
+  static constexpr const char* kVerbs[] = {"", "measure", "draw_track", "place"};
+  const char* const verb = kVerbs[static_cast<std::size_t>(session.tool().kind)];
+  if (session.tool().isOn()) return session.perform({verb, {{"x", x}, {"y", y}}});
+  const std::string path = object != nullptr ? object->path : std::string();
+  if (path == session.selected()) return;
+  session.perform({"select", path.empty() ? Json::object() : Json{{"path", path}}});
+}
+
 void MouseControl::press(const InputEvent& event, const Area& picture, Session& session) {
   button_ = event.code;
+  pressed_x_ = x_;
+  pressed_y_ = y_;
+  is_moved_ = false;
   const bool shift = (event.modifiers & GLFW_MOD_SHIFT) != 0;
   if (event.code == GLFW_MOUSE_BUTTON_MIDDLE) drag_ = Drag::pan;
   if (event.code == GLFW_MOUSE_BUTTON_RIGHT) drag_ = Drag::look;
@@ -79,16 +119,29 @@ void MouseControl::press(const InputEvent& event, const Area& picture, Session& 
     return;
   }
   drag_ = shift ? Drag::pan : Drag::orbit;
-  const std::optional<std::size_t> emitter = markerAt(*session.picture(), x, y);
   if (isDoubleClick(session.log().now_s())) {
     drag_ = Drag::none;
-    if (emitter) {
-      session.perform({"focus", {{"emitter", session.picture()->scenario->emitters[*emitter].name}}});
-    } else {
-      session.perform({"focus", {{"x", x}, {"y", y}}});
-    }
-  } else if (emitter && !shift && (event.modifiers & GLFW_MOD_ALT) == 0) {
-    takePlatform(*emitter, picture, session);
+    doubleClick(x, y, session);
+    return;
+  }
+  if (shift || (event.modifiers & GLFW_MOD_ALT) != 0 || session.tool().isOn()) return;
+  if (const SceneObject* object = objectUnder(session, x, y)) {
+    takePlatform(*object, picture, session);
+  } else if (const auto plane = planeHandleAt(session, x, y)) {
+    plane_.emplace(session, *plane, x, y);
+    drag_ = Drag::plane;
+  }
+}
+
+void MouseControl::doubleClick(double x, double y, Session& session) {
+  if (session.tool().kind == PickTool::Kind::track) {
+    session.perform({"draw_track"});
+  } else if (session.tool().isOn()) {
+    return;
+  } else if (const SceneObject* object = objectUnder(session, x, y)) {
+    session.perform({"focus", {{"path", object->path}}});
+  } else {
+    session.perform({"focus", {{"x", x}, {"y", y}}});
   }
 }
 
@@ -101,22 +154,23 @@ bool MouseControl::isDoubleClick(double now_s) {
   return is_second;
 }
 
-void MouseControl::takePlatform(std::size_t emitter, const Area& picture, Session& session) {
+void MouseControl::takePlatform(const SceneObject& object, const Area& picture, const Session& session) {
+  drag_ = Drag::platform;
+  platform_.reset();
   try {
-    platform_.emplace(*session.picture(), emitter, x_ - picture.x, y_ - picture.y);
-    drag_ = Drag::platform;
-    pressed_x_ = x_;
-    pressed_y_ = y_;
-    is_platform_moved_ = false;
+    platform_.emplace(*session.picture(), object, x_ - picture.x, y_ - picture.y);
   } catch (const Error& error) {
-    session.tell(error.message(), true);
-    drag_ = Drag::none;
+    refusal_ = error.message();
   }
 }
 
 void MouseControl::movePlatform(const Area& picture, Session& session) {
-  if (!is_platform_moved_ && std::hypot(x_ - pressed_x_, y_ - pressed_y_) < kClick_px) return;
-  if (std::exchange(is_platform_moved_, true) && !session.isDragging()) {  // it was undone
+  const bool is_first = !std::exchange(is_moved_, true);
+  if (!platform_) {
+    if (is_first) session.tell(refusal_, true);
+    return;
+  }
+  if (!is_first && !session.isDragging()) {  // it was undone
     drag_ = Drag::none;
     return;
   }
@@ -126,19 +180,26 @@ void MouseControl::movePlatform(const Area& picture, Session& session) {
   session.drag(*edits);
 }
 
-void MouseControl::showCursor(const Area& picture, bool panels_want_mouse, Session& session) const {
+void MouseControl::showCursor(const Area& picture, bool panels_want_mouse, const Session& session) const {
   if (drag_ == Drag::platform) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
-    if (!is_platform_moved_) return;
+    if (!is_moved_ || !platform_) return;
     // The picture follows as soon as possible.
     const ImVec2 cursor(static_cast<float>(x_), static_cast<float>(y_));
     ImGui::GetBackgroundDrawList()->AddCircle(cursor, 0.7F * ImGui::GetFontSize(),
                                               ImGui::ColorConvertFloat4ToU32(accentColor(session.theme())), 0,
                                               2);
     ImGui::SetTooltip("%s", platform_text_.c_str());
-  } else if (drag_ == Drag::none && !panels_want_mouse && session.picture() && isInside(picture, x_, y_) &&
-             markerAt(*session.picture(), x_ - picture.x, y_ - picture.y)) {
+    return;
+  }
+  if (drag_ == Drag::plane) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+  if (drag_ != Drag::none || panels_want_mouse || !session.picture() || !isInside(picture, x_, y_)) return;
+  const double x = x_ - picture.x, y = y_ - picture.y;
+  if (const SceneObject* object = objectUnder(session, x, y)) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    ImGui::SetTooltip("%s", tooltipOf(*object, session.view()).c_str());
+  } else if (!session.tool().isOn() && planeHandleAt(session, x, y)) {
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
   }
 }
 

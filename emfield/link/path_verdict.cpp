@@ -61,7 +61,8 @@ std::string pathText(const PathBudget& budget) {
 }
 
 /// Text for a direction in which the antenna's gain is far below its maximum. For a radar that looks at the
-/// target the direction of the scan is ignored.
+/// target the direction of the scan is ignored. A second reason after an obstacle, an exception after a clear
+/// path.
 std::string pointingText(const PathBudget& budget) {
   const PathPointing& pointing = budget.pointing;
   const double pattern_db = budget.look_pattern_db.value_or(pointing.pattern_db);

@@ -90,7 +90,7 @@ ClippedRay clipped(const Ray& ray, const std::vector<render::CutPlane>& planes, 
                    bool of_ground) {
   ClippedRay result{ray};
   for (const render::CutPlane& plane : planes) {
-    if (!plane.on || (of_ground && plane.kind != render::CutPlane::Kind::vertical)) continue;
+    if (!plane.on || (of_ground && !plane.cutsGround())) continue;
     const HalfSpace kept = halfSpaceOf(plane, box);
     const double rate = dot(kept.outward, ray.direction);
     const double inside = kept.offset_m - dot(kept.outward, ray.origin_m);
@@ -147,13 +147,41 @@ std::optional<double> meetGround(const Ray& ray, const render::HeightField& grou
   return std::nullopt;
 }
 
-/// Position of the ray's largest value; none if it meets no field.
-std::optional<double> strongestOn(const Ray& ray, const DenseVolume& volume) {
+/// Steps of half a voxel along a ray.
+int halfVoxels(const Ray& ray, const DenseVolume& volume) {
   const Vec3d spacing_m = volume.grid.spacing_m;
   const double voxels = length(Vec3d{ray.direction.x / spacing_m.x, ray.direction.y / spacing_m.y,
                                      ray.direction.z / spacing_m.z}) *
                         (ray.end - ray.begin);
-  const int steps = static_cast<int>(std::ceil(2 * voxels)) + 1;
+  return static_cast<int>(std::ceil(2 * voxels)) + 1;
+}
+
+/// The first point of the ray with at least a value.
+std::optional<double> meetSurface(const Ray& ray, const DenseVolume& volume, double iso_value) {
+  const auto isInside = [&](double t) {
+    const VolumeSample sample = sampleVolume(volume, ray.at(t));
+    return sample.kind == VolumeSample::Kind::value && double{sample.value} >= iso_value;
+  };
+  const int steps = halfVoxels(ray, volume);
+  double outside = ray.begin;
+  for (int step = 0; step <= steps; ++step) {
+    double inside = ray.begin + (ray.end - ray.begin) * step / steps;
+    if (!isInside(inside)) {
+      outside = inside;
+      continue;
+    }
+    for (int half = 0; half < 20; ++half) {
+      const double middle = 0.5 * (outside + inside);
+      (isInside(middle) ? inside : outside) = middle;
+    }
+    return inside;
+  }
+  return std::nullopt;
+}
+
+/// Position of the ray's largest value; none if it meets no field.
+std::optional<double> strongestOn(const Ray& ray, const DenseVolume& volume) {
+  const int steps = halfVoxels(ray, volume);
   std::optional<double> strongest;
   float largest = -std::numeric_limits<float>::infinity();
   for (int step = 0; step < steps; ++step) {
@@ -171,7 +199,8 @@ std::optional<double> strongestOn(const Ray& ray, const DenseVolume& volume) {
 std::optional<PickedPoint> pick(const render::Camera& camera, const render::SceneBox& box,
                                 render::ImageSize size, double x, double y, const DenseVolume& volume,
                                 const render::HeightField* ground,
-                                const std::vector<render::CutPlane>& planes) {
+                                const std::vector<render::CutPlane>& planes,
+                                std::optional<double> iso_value) {
   const std::optional<Ray> ray = rayThrough(camera, box, size, x, y);
   if (!ray) return std::nullopt;
   using On = PickedPoint::On;
@@ -186,6 +215,14 @@ std::optional<PickedPoint> pick(const render::Camera& camera, const render::Scen
            sampleVolume(volume, ray->at(t)).kind == VolumeSample::Kind::value;
   };
   if (shows(kept.begins_at_plane, kept.ray.begin)) return PickedPoint{ray->at(kept.ray.begin), On::section};
+  if (iso_value && !volume.info.categorical && !kept.isEmpty()) {
+    Ray before_ground = kept.ray;
+    if (ground_t) before_ground.end = std::min(before_ground.end, *ground_t);
+    if (before_ground.begin < before_ground.end) {
+      if (const auto t = meetSurface(before_ground, volume, *iso_value))
+        return PickedPoint{ray->at(*t), On::surface};
+    }
+  }
   if (shows(kept.ends_at_plane, kept.ray.end)) return PickedPoint{ray->at(kept.ray.end), On::section};
   if (ground_t) return PickedPoint{ray->at(*ground_t), On::ground};
   if (!volume.info.categorical && !kept.isEmpty()) {

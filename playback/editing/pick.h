@@ -19,6 +19,7 @@ struct PickedPoint {
   enum class On {
     ground,     ///< the ray meets the ground
     section,    ///< before the ground, a cutting plane at a point with a value
+    surface,    ///< before the ground, the isosurface
     strongest,  ///< otherwise, the largest value along the ray in the part of the volume that the planes keep
     box         ///< if there is no value: where the ray enters the box
   };
@@ -31,12 +32,14 @@ struct PickedPoint {
 /// @param x, y     pixel coordinates, may be fractional; (0, 0) is the centre of the first pixel
 /// @param volume   shown by the picture; categories have no largest value
 /// @param ground   as drawn; null if there is none
-/// @param planes   cutting the volume and, if vertical, the ground
+/// @param planes   cutting the volume and the ground
+/// @param iso_value  of the isosurface; none: there is none
 /// @return none if the ray misses the box
 std::optional<PickedPoint> pick(const render::Camera& camera, const render::SceneBox& box,
                                 render::ImageSize size, double x, double y, const volume::DenseVolume& volume,
                                 const render::HeightField* ground,
-                                const std::vector<render::CutPlane>& planes = {});
+                                const std::vector<render::CutPlane>& planes = {},
+                                std::optional<double> iso_value = std::nullopt);
 
 /// The position of the ground under a pixel; parameters as for pick().
 /// @return none if the ray misses the ground

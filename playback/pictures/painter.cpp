@@ -37,6 +37,7 @@ Painter::Painter(const ViewState& view, const ComputeTarget& target, bool must_s
     : view_(view), must_show_isosurface_(must_show_isosurface), renderer_(target.rendererOptions()) {
   renderer_.setSettings(view.settings);
   annotations_.theme = view.theme;
+  annotations_.planes = view.settings.planes;
 }
 
 void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
@@ -119,6 +120,7 @@ void Painter::setSettings(const render::RenderSettings& settings) {
   renderer_.setSettings(settings);
   if (cells_) cells_->setSettings(settings);
   view_.settings = settings;
+  annotations_.planes = settings.planes;
   setLegend();
   fitCamera();  // the vertical exaggeration may have changed
 }
@@ -335,8 +337,6 @@ void Painter::setLegend() {
         categoriesOf(frame_->info(), render::colorRangeOf(frame_->info(), frame_->color_range),
                      scene_ ? scene_->scenario.get() : nullptr);
   }
-  const double space = render::overlayMargins(view_.size, annotations_).right;
-  if (std::exchange(legend_space_, space) != space) fitCamera();
 }
 
 }  // namespace emscape::playback

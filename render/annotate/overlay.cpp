@@ -19,6 +19,10 @@ namespace {
 constexpr double kMargin = 26;
 constexpr double kTitle = 23;
 constexpr double kCompassRadius = 40;
+/// Width kept free for the legend; the same for all, so that the scene stays where it is when another
+/// quantity is shown. Wider legends reach over the scene.
+constexpr double kLegendRoom = 180;
+constexpr double kMaxLegendRoom = 0.4;  // of the picture's width
 constexpr double kMinUnit = 0.62;
 constexpr double kNamePart = 1.0 / 3;  // maximum width of a name, of the picture's
 constexpr double kMinName = 160;
@@ -98,6 +102,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     taken.push_back({center.x - reach / 2, center.y - reach / 2, reach, reach});
   }
   drawFooter(canvas, style, projector.box, annotations, taken);
+  drawPlanes(canvas, style, projector, annotations.planes, taken);
   if (annotations.legend) {
     drawLegend(canvas, style, *annotations.legend);
     const double width = legendWidth(style, *annotations.legend);
@@ -172,7 +177,9 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
   FrameMargins margins;
   margins.left = side_px / size.width;
   margins.right =
-      (annotations.legend ? legendWidth(style, *annotations.legend) + 0.3 * axis_px : side_px) / size.width;
+      (annotations.legend ? std::min(kLegendRoom * style.unit, kMaxLegendRoom * size.width) + 0.3 * axis_px
+                          : side_px) /
+      size.width;
   margins.top = (has_texts ? headerHeight(style) : side_px) / size.height;
   margins.bottom = (1.1 * kMargin * style.unit + axis_px) / size.height;
   return margins;

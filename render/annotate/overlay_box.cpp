@@ -78,16 +78,19 @@ bool ends(const Projector& p, const Edge& edge, Point2& a, Point2& b) {
          p.project(pointOf(edge, p.box, component(p.box.upper_m, edge.axis)), b);
 }
 
-/// The edge with the ticks of an axis: on the silhouette; for horizontal axes the lowest in the picture, for
-/// the vertical axis the leftmost.
+/// The edge with the ticks of an axis. For horizontal axes on the ground, where positions are read, if
+/// possible on the silhouette, and the lowest in the picture; for the vertical axis the leftmost of the
+/// silhouette.
 bool labelledEdge(const Projector& p, int axis, Edge& chosen) {
+  constexpr double kOnSilhouette = 1e9;
   double best = -1e300;
   for (const Edge& edge : allEdges()) {
-    if (edge.axis != axis || seenFaces(p, edge) != 1) continue;
+    const int seen = seenFaces(p, edge);
+    if (edge.axis != axis || (axis == 2 ? seen != 1 : edge.end[2] != 0)) continue;
     Point2 a;
     Point2 b;
     if (!ends(p, edge, a, b)) continue;
-    const double score = axis == 2 ? -(a.x + b.x) : a.y + b.y;
+    const double score = axis == 2 ? -(a.x + b.x) : a.y + b.y + (seen == 1 ? kOnSilhouette : 0);
     if (score > best) {
       best = score;
       chosen = edge;

@@ -45,6 +45,9 @@ double legendWidth(const Style& style, const Legend& legend);
 /// Minimum height of a picture with room for all entries of a categorical legend; 0 for other legends.
 double legendHeight(const Style& style, const Legend& legend);
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend);
+/// Frames of the planes that are on, and their captions. Adds the boxes of the captions to `taken`.
+void drawPlanes(Canvas& canvas, const Style& style, const Projector& projector,
+                const std::vector<CutPlane>& planes, std::vector<Rect>& taken);
 /// Tracks, within the sides of the box and above its bottom face.
 void drawTracks(Canvas& canvas, const Style& style, const Projector& projector,
                 const std::vector<Track>& tracks, const HiddenTest& hidden);

@@ -41,6 +41,13 @@ bool parseSwitch(const SpecText& text, const std::string& value) {
   text.refuse(fmt::format("on '{}': expected true or false", value));
 }
 
+bool parseGround(const SpecText& text, const CutPlane& plane, const std::string& value) {
+  if (plane.kind == CutPlane::Kind::horizontal) text.refuse("ground: a horizontal plane leaves it whole");
+  if (value == "cut") return true;
+  if (value == "keep") return false;
+  text.refuse(fmt::format("ground '{}': expected cut or keep", value));
+}
+
 /// The two points of a line.
 struct LinePoints {
   double x1_m = 0, y1_m = 0, x2_m = 0, y2_m = 0;
@@ -97,7 +104,7 @@ void requireWithin(const char* name, double value, double largest) {
 bool CutPlane::operator==(const CutPlane& other) const {
   return kind == other.kind && keep == other.keep && on == other.on && altitude_m == other.altitude_m &&
          bearing_deg == other.bearing_deg && x_m == other.x_m && y_m == other.y_m &&
-         offset_m == other.offset_m;
+         offset_m == other.offset_m && cuts_ground == other.cuts_ground;
 }
 
 CutPlane parseCutPlane(const std::string& text) {
@@ -119,7 +126,11 @@ CutPlane parseCutPlane(const std::string& text) {
       plane.on = parseSwitch(parts, value);
       continue;
     }
-    std::string allowed = "keep, on";
+    if (key == "ground") {
+      plane.cuts_ground = parseGround(parts, plane, value);
+      continue;
+    }
+    std::string allowed = plane.kind == CutPlane::Kind::vertical ? "keep, on, ground" : "keep, on";
     const PlaneKey* found = nullptr;
     for (const PlaneKey& known : keys) {
       allowed += std::string(", ") + known.name;
@@ -147,6 +158,7 @@ std::string toString(const CutPlane& plane) {
     if (plane.offset_m != 0) text += fmt::format(",offset_m={}", plane.offset_m);
   }
   text += fmt::format(",keep={}", nameOf(plane.keep));
+  if (plane.kind == CutPlane::Kind::vertical && !plane.cuts_ground) text += ",ground=keep";
   if (!plane.on) text += ",on=false";
   return text;
 }

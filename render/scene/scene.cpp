@@ -44,7 +44,7 @@ CameraView viewOf(const Camera& camera, const IndexSpace& space, ImageSize size)
 std::vector<CutPlane> planesOfGround(const std::vector<CutPlane>& planes) {
   std::vector<CutPlane> cutting;
   for (const CutPlane& plane : planes) {
-    if (plane.on && plane.kind == CutPlane::Kind::vertical) cutting.push_back(plane);
+    if (plane.cutsGround()) cutting.push_back(plane);
   }
   return cutting;
 }
@@ -66,7 +66,7 @@ CutView::Plane viewOf(const CutPlane& plane, const volume::Grid& grid) {
   const Vec3d normal{outward.x * grid.spacing_m.x, outward.y * grid.spacing_m.y,
                      outward.z * grid.spacing_m.z};
   const double scale = 1.0 / length(normal);
-  return {normal * scale, dot(outward, point_m - grid.first_center_m) * scale, vertical};
+  return {normal * scale, dot(outward, point_m - grid.first_center_m) * scale, plane.cutsGround()};
 }
 
 /// The light is slightly above and to the left of the viewer.

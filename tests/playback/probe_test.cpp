@@ -166,6 +166,28 @@ TEST(Pick, FindsSectionsOfPlanesAndIgnoresRemovedParts) {
   const PickedPoint wall = pickedAt(on_wall, {"vertical:bearing_deg=90,y_m=600,x_m=500,keep=left"});
   EXPECT_EQ(wall.on, PickedPoint::On::section);
   EXPECT_LT(length(wall.position_m - on_wall), 0.01);
+  const Vec3d in_south{500, 200, 200};
+  EXPECT_EQ(pickedAt(in_south, {"vertical:bearing_deg=90,y_m=600,x_m=500,keep=left,ground=keep"}).on,
+            PickedPoint::On::ground);
+}
+
+TEST(Pick, FindsTheIsosurfaceBeforeTheGround) {
+  const volume::DenseVolume volume = madeVolume();  // values grow upwards: the surface is a level
+  render::HeightField ground;
+  ground.columns = ground.rows = 2;
+  ground.spacing_x_m = ground.spacing_y_m = 1000;
+  ground.heights_m.assign(4, 200);
+  const render::SceneBox box = render::sceneBoxOf(volume.grid, 1);
+  const render::Camera camera = cameraAt("orbit:elevation_deg=-30,azimuth_deg=120", box, kSize);
+  const Vec3d center{500, 500, 500};
+  const render::Projected pixel = render::project(camera, kSize, center);
+  const auto surface = pick(camera, box, kSize, pixel.x, pixel.y, volume, nullptr, {}, /*iso_value=*/500.0);
+  ASSERT_TRUE(surface);
+  EXPECT_EQ(surface->on, PickedPoint::On::surface);
+  EXPECT_NEAR(sampleVolume(volume, surface->position_m).value, 500, 0.1);
+  const auto none = pick(camera, box, kSize, pixel.x, pixel.y, volume, &ground, {}, /*iso_value=*/5000.0);
+  ASSERT_TRUE(none);
+  EXPECT_NE(none->on, PickedPoint::On::surface);
 }
 
 TEST(Pick, WithoutGroundFindsTheLargestValueOfTheRayElseTheBox) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "emscape/render/scene/renderer.h"
+#include "render/scene/plane_frame.h"
 #include "tests/render/random_scene.h"
 #include "tests/support/errors.h"
 #include "tests/support/on_backends.h"
@@ -56,7 +57,8 @@ void expectColor(const Rgba& pixel, const Rgb& color, const std::string& what) {
 TEST(CutPlane, TextIsReadBackToTheSamePlane) {
   for (const char* text :
        {"horizontal:altitude_m=1500", "horizontal:altitude_m=-20.5,keep=above,on=false", "vertical",
-        "vertical:bearing_deg=33,offset_m=-4000,keep=right", "vertical:x_m=10,y_m=20.25,bearing_deg=-90"}) {
+        "vertical:bearing_deg=33,offset_m=-4000,keep=right", "vertical:x_m=10,y_m=20.25,bearing_deg=-90",
+        "vertical:bearing_deg=45,ground=keep"}) {
     const CutPlane plane = parseCutPlane(text);
     EXPECT_EQ(parseCutPlane(toString(plane)), plane) << text;
   }
@@ -79,11 +81,37 @@ TEST(CutPlane, ErrorsNameKeyValueAndAllowedOnes) {
             "plane 'horizontal:altitude_m=1,keep=left': keep 'left': expected below or above");
   EXPECT_EQ(errorOf("horizontal:height_m=1"),
             "plane 'horizontal:height_m=1': unknown key 'height_m': expected keep, on, altitude_m");
+  EXPECT_EQ(errorOf("vertical:ground=whole"),
+            "plane 'vertical:ground=whole': ground 'whole': expected cut or keep");
+  EXPECT_EQ(errorOf("horizontal:altitude_m=1,ground=cut"),
+            "plane 'horizontal:altitude_m=1,ground=cut': ground: a horizontal plane leaves it whole");
   EXPECT_EQ(errorOf("vertical:bearing_deg=400"),
             "plane 'vertical:bearing_deg=400': bearing_deg '400': expected a number -360..360");
   EXPECT_EQ(errorOf("vertical:x_m=1"), "plane 'vertical:x_m=1': x_m and y_m are needed together");
   EXPECT_EQ(errorOf("vertical:x1_m=1,y1_m=2"),
             "plane 'vertical:x1_m=1,y1_m=2': x1_m, y1_m, x2_m and y2_m are needed together");
+}
+
+TEST(CutPlane, FrameIsTheSectionOfTheBox) {
+  const SceneBox box{{-1000, -2000, 0}, {1000, 2000, 500}, 3};
+  const auto horizontal = frameOf(parseCutPlane("horizontal:altitude_m=200"), box);
+  ASSERT_TRUE(horizontal);
+  for (const Vec3d& corner : horizontal->corners_m) {
+    EXPECT_EQ(std::abs(corner.x), 1000);
+    EXPECT_EQ(std::abs(corner.y), 2000);
+    EXPECT_EQ(corner.z, 200);
+  }
+  EXPECT_FALSE(frameOf(parseCutPlane("horizontal:altitude_m=501"), box));
+  const CutPlane to_north = parseCutPlane("vertical:bearing_deg=0,offset_m=300");
+  const auto vertical = frameOf(to_north, box);
+  ASSERT_TRUE(vertical);
+  EXPECT_NEAR(vertical->center_m().x, 300, 1e-9) << "right of north is east";
+  EXPECT_NEAR(vertical->center_m().z, 250, 1e-9);
+  EXPECT_NEAR(vertical->normal.x, 1, 1e-12);
+  EXPECT_NEAR(length(vertical->corners_m[1] - vertical->corners_m[0]), 4000, 1e-6);
+  EXPECT_FALSE(frameOf(parseCutPlane("vertical:bearing_deg=0,offset_m=1001"), box));
+  EXPECT_EQ(captionOf(to_north), "bearing 0°, offset 300 m");
+  EXPECT_EQ(captionOf(parseCutPlane("horizontal:altitude_m=200")), "altitude 200 m");
 }
 
 TEST(CutPlane, MoreThanThreeAreRefused) {

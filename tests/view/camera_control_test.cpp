@@ -29,11 +29,11 @@ TEST(CameraControl, TheFirstMovementOfAFittedCameraDoesNotJump) {
   EXPECT_NEAR(pixelOf(control, {10000, 0, 2500}).x - after.x, width_before, 0.03 * std::abs(width_before));
 }
 
-TEST(CameraControl, OrbitTurnsAndStopsBelowTheZenith) {
+TEST(CameraControl, OrbitTurnsAndStopsAtTheZenith) {
   CameraControl control(render::parseCamera("orbit:azimuth_deg=350,elevation_deg=80,distance=1.5"));
   control.orbit(20, 30, kViewport);
   EXPECT_NEAR(control.spec().azimuth_deg, 10, 1e-9);
-  EXPECT_DOUBLE_EQ(control.spec().elevation_deg, 89);
+  EXPECT_DOUBLE_EQ(control.spec().elevation_deg, 90);
   EXPECT_DOUBLE_EQ(*control.spec().distance, 1.5);
 }
 
@@ -107,6 +107,34 @@ TEST(CameraControl, ALookatCameraBecomesTheOrbitWithTheSameEye) {
   control.orbit(0, 0, kViewport);
   EXPECT_EQ(control.spec().kind, render::CameraSpec::Kind::orbit);
   EXPECT_NEAR(length(cameraOf(control).eye_m - eye_m), 0, 1e-6 * length(eye_m));
+}
+
+TEST(CameraControl, ACameraStraightAboveKeepsNorthUpWhenItIsMoved) {
+  for (const char* spec :
+       {"orbit:azimuth_deg=180,elevation_deg=90,projection=orthographic",
+        "lookat:eye_x_m=0,eye_y_m=0,eye_z_m=30000,target_x_m=0,target_y_m=0,target_z_m=0"}) {
+    CameraControl control(render::parseCamera(spec));
+    control.pan(5, 0, kViewport);
+    const render::Camera camera = cameraOf(control);
+    EXPECT_NEAR(camera.up.y, 1, 1e-9) << spec;
+    EXPECT_NEAR(camera.right.x, 1, 1e-9) << spec;
+  }
+}
+
+TEST(CameraControl, OtherProjectionKeepsTheScaleAtTheTarget) {
+  for (const char* spec : {"orbit", "orbit:distance=0.7,elevation_deg=50"}) {
+    CameraControl control(render::parseCamera(spec));
+    control.pan(0, 0, kViewport);
+    const auto widthOf = [&] {
+      const Vec3d target_m = *control.spec().target_m;
+      const Vec3d right_m = cameraOf(control).right * 1000;
+      return pixelOf(control, target_m + right_m).x - pixelOf(control, target_m).x;
+    };
+    const double before = widthOf();
+    control.setProjection(render::Projection::orthographic, kViewport);
+    EXPECT_EQ(cameraOf(control).projection, render::Projection::orthographic);
+    EXPECT_NEAR(widthOf(), before, 1e-3 * before);
+  }
 }
 
 TEST(CameraControl, FocusLooksAtAPositionFromTheSameDirection) {

@@ -225,6 +225,57 @@ TEST_F(RealInput, ShiftAndDragPanThePictureAndAPlainDragTurnsIt) {
   EXPECT_TRUE(reports("azimuth_deg", [&](const Json& value) { return value != before["azimuth_deg"]; }));
 }
 
+class Selecting : public RealInput {
+ protected:
+  /// Selects the first object by its key. @return where it is in the window
+  Place select() {
+    constexpr int kMenuBar_px = 24;
+    open(quick());
+    EXPECT_TRUE(xdotool("key y"));
+    EXPECT_TRUE(reports("selected", "emitters.radar"));
+    const Json frame = log("frame").back();
+    return {static_cast<int>(frame["selected_x"].get<double>()),
+            static_cast<int>(frame["selected_y"].get<double>()) + kMenuBar_px};
+  }
+};
+
+TEST_F(Selecting, AClickOnTheGroundSelectsNothingAndOneOnAThingSelectsIt) {
+  const Place radar = select();
+  ASSERT_TRUE(xdotool(click(kPicture)));
+  EXPECT_TRUE(reports("selected", ""));
+  ASSERT_TRUE(xdotool(click({radar.x + 3, radar.y - 2})));
+  EXPECT_TRUE(reports("selected", "emitters.radar"));
+  EXPECT_EQ(log("edit").size(), 0U) << "a click does not move it";
+  EXPECT_EQ(log("error").size(), 0U);
+}
+
+TEST_F(Selecting, ARightClickOpensTheMenuAndARightDragLooksAround) {
+  const Place radar = select();
+  const Json before = log("frame").back();
+  // The second entry is "Look at it".
+  ASSERT_TRUE(xdotool(at(radar) + " click 3" + at({radar.x + 40, radar.y + 44}) + " sleep 0.5 click 1"));
+  EXPECT_TRUE(comes([&] { return commands().find("focus") != std::string::npos; })) << commands();
+  const std::string until_drag = commands();
+  ASSERT_TRUE(xdotool(at(kPicture) + " mousedown 3" + at({kPicture.x + 40, kPicture.y}) + " mouseup 3"));
+  EXPECT_TRUE(reports("azimuth_deg", [&](const Json& value) { return value != before["azimuth_deg"]; }));
+  EXPECT_EQ(commands(), until_drag);
+}
+
+TEST_F(Selecting, TwoClicksMeasureAndEscapeEnds) {
+  const Place radar = select();
+  ASSERT_TRUE(xdotool("key shift+m" + click(radar) + click({radar.x + 60, radar.y + 20})));
+  EXPECT_TRUE(reports("measured_m", [](const Json& value) { return value.is_number() && value > 100; }));
+  EXPECT_EQ(log("frame").back()["selected"], "emitters.radar") << "clicks of a tool do not select";
+  ASSERT_TRUE(xdotool("key Escape"));
+  EXPECT_TRUE(reports("tool", "none"));
+}
+
+TEST_F(RealInput, AMovingCursorShowsTheValueBelowIt) {
+  open(quick());
+  ASSERT_TRUE(xdotool(at({300, 300}) + at({330, 330})));
+  EXPECT_TRUE(reports("cursor_latitude_deg", [](const Json& value) { return value.is_number(); }));
+}
+
 TEST_F(RealInput, KeysAfterGoToTimeAreItsNumber) {
   open(quick());
   ASSERT_TRUE(xdotool("key g 3 Return"));

@@ -137,8 +137,10 @@ TEST(PlatformDrag, SLOW_FollowsTheCursorOverTheGround) {
   for (int i = 0; i < 3; ++i) {
     const render::Projected from = pixelOf(*sample, mast);
     const playback::LivePicture picture = *sample->picture();
-    EXPECT_EQ(markerAt(picture, from.x + 2, from.y - 2), mast);
-    const PlatformDrag drag(picture, mast, from.x + 2, from.y - 2);
+    const SceneObject* object = objectAt(sample->objects(), picture, from.x + 2, from.y - 2);
+    ASSERT_NE(object, nullptr);
+    EXPECT_EQ(object->path, "emitters.communications mast");
+    const PlatformDrag drag(picture, *object, from.x + 2, from.y - 2);
     EXPECT_EQ(drag.platform(), "mast");
     for (int step = 1; step <= 4; ++step) {
       const auto edits = drag.moveTo(picture, from.x + 2 + 4 * step, from.y - 2 + step);
@@ -157,7 +159,7 @@ TEST(PlatformDrag, SLOW_FollowsTheCursorOverTheGround) {
   }
   // What is above the ground is beside the picture's middle; the sky holds no ground.
   const render::Projected from = pixelOf(*sample, mast);
-  const PlatformDrag drag(*sample->picture(), mast, from.x, from.y);
+  const PlatformDrag drag(*sample->picture(), sample->objects()[mast], from.x, from.y);
   EXPECT_FALSE(drag.moveTo(*sample->picture(), from.x, -500));
 }
 
@@ -191,15 +193,15 @@ TEST(SessionFocus, LooksAtEmittersThatAreHidden) {
 
 TEST(SessionFocus, RefusesIncompatibleArguments) {
   SessionSample sample("quick.yaml");
-  EXPECT_EQ(sample.perform(R"({"do":"focus","x":3})"), "focus: expected x and y, or emitter");
+  EXPECT_EQ(sample.perform(R"({"do":"focus","x":3})"), "focus: expected x and y, emitter, or path");
   EXPECT_EQ(sample.perform(R"({"do":"focus","x":3,"y":3,"emitter":"radar"})"),
-            "focus: expected x and y, or emitter");
+            "focus: expected x and y, emitter, or path");
   EXPECT_FALSE(sample->camera().spec().target_m);
 }
 
 TEST(PlatformDrag, IsRefusedForMovingPlatforms) {
   SessionSample sample("jacksboro.yaml", {{"region.dims", "[40, 40, 20]"}});
-  const std::string error = errorOf([&] { PlatformDrag(*sample->picture(), 3, 0, 0); });
+  const std::string error = errorOf([&] { PlatformDrag(*sample->picture(), sample->objects()[3], 0, 0); });
   EXPECT_THAT(error, HasSubstr("'helicopter' cannot be put elsewhere: it moves along"));
   EXPECT_THAT(error, HasSubstr("helicopter.csv"));
 }

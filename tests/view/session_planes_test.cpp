@@ -1,4 +1,5 @@
 /// Cutting planes and comparison, as requested by keys, panels and scripts.
+#include "apps/view/session/plane_drag.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {
@@ -50,6 +51,41 @@ TEST_F(Planes, ANewVerticalOneFacesTheViewer) {
   const render::CutPlane plane = session->newPlane(render::CutPlane::Kind::vertical);
   EXPECT_EQ(plane.bearing_deg, 90) << "along the picture of a camera in the south";
   EXPECT_EQ(plane.keep, render::CutPlane::Side::left) << "the north";
+  EXPECT_FALSE(plane.cuts_ground);
+}
+
+TEST_F(Planes, SwitchingOneOnOpensItsPanel) {
+  ASSERT_FALSE(session->panels.planes);
+  perform(R"({"do":"plane","kind":"horizontal"})");
+  EXPECT_TRUE(session->panels.planes);
+  perform(R"({"do":"panel","name":"planes","open":false})");
+  perform(R"({"do":"plane","kind":"horizontal"})");
+  EXPECT_FALSE(session->panels.planes) << "it is off";
+}
+
+TEST_F(Planes, HandleMovesAPlaneAlongItsNormalWithTheCursor) {
+  session->setPictureSize({480, 360});
+  perform(R"({"do":"plane","kind":"horizontal"})");
+  settle();
+  const auto handleOf = [&] { return planeHandle(*session->picture(), session->settings().planes[0]); };
+  const auto before = handleOf();
+  ASSERT_TRUE(before);
+  ASSERT_EQ(planeHandleAt(*session, before->x + 3, before->y - 2), 0U);
+  EXPECT_FALSE(planeHandleAt(*session, before->x + 30, before->y));
+  const PlaneDrag drag(*session, 0, before->x + 3, before->y - 2);
+  drag.moveTo(before->x + 3, before->y - 12, *session);
+  EXPECT_GT(session->settings().planes[0].altitude_m, 2500);
+  settle();
+  EXPECT_NEAR(handleOf()->y, before->y - 10, 0.5);
+  drag.moveTo(before->x, -10000, *session);
+  EXPECT_EQ(session->settings().planes[0].altitude_m, 5000) << "the top of the box";
+}
+
+TEST_F(Planes, HandleIsMissingWhereThePlaneCannotBeMovedInThePicture) {
+  perform(R"({"do":"plane","kind":"horizontal"})");
+  perform(R"({"do":"camera","spec":"orbit:azimuth_deg=180,elevation_deg=90,projection=orthographic"})");
+  settle();
+  EXPECT_FALSE(planeHandle(*session->picture(), session->settings().planes[0]));
 }
 
 using Comparison = SessionTest;

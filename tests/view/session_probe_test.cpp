@@ -99,6 +99,32 @@ TEST(SessionProbe, CopiesNoCommandForAnUnknownEmitter) {
   EXPECT_EQ(sample.window.clipboard, "");
 }
 
+TEST(SessionProbe, ValueOverTimeIsThatOfTheField) {
+  SessionSample sample("quick.yaml");
+  sample.perform(kProbe);
+  const std::vector<double>& times_s = sample->timeline().times_s();
+  sample.waitUntil([&] { return sample->history().computed == times_s.size(); });
+  const ValueHistory history = sample->history();
+  EXPECT_EQ(history.error, "");
+  EXPECT_EQ(history.times_s, times_s);
+  // The same as the radar's and the transmitter's budgets at the point, and near the volume's value, which is
+  // interpolated between voxels.
+  for (const std::size_t step : {std::size_t{0}, std::size_t{2}}) {
+    sample.perform(R"({"do":"seek","time_s":)" + std::to_string(times_s[step]) + "}");
+    sample.settle();
+    double sum_w = 0;
+    for (const playback::EmitterProbe& emitter : sample->prober().result()->reading->emitters) {
+      sum_w += std::pow(10, emitter.budget->find("power_density_dbwm2")->value / 10);
+    }
+    EXPECT_NEAR(history.values[step], 10 * std::log10(sum_w), 0.05) << step;
+  }
+  sample.perform(R"({"do":"copy_history"})");
+  EXPECT_THAT(sample.window.clipboard, testing::StartsWith("t_s,\"power_density_dbwm2\"\n0,-"));
+  sample.perform(R"({"do":"lock_probe"})");
+  sample.settle();
+  EXPECT_EQ(sample->history().computed, 0U);
+}
+
 TEST(SessionProbe, ReportsInvalidPositions) {
   SessionSample sample("quick.yaml");
   sample.perform(R"({"do":"probe","x":3})");

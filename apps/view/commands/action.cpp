@@ -40,6 +40,11 @@ const std::vector<Action>& actions() {
          "with the last --set, another --transfer FILE"},
 
         {"Edit", "Cancel the computation", "Shift+Esc", R"({"do":"cancel"})", "Ctrl-C in the terminal"},
+        {"Edit", "Select the next", "Y", R"({"do":"select","change":1})", "the names of --set"},
+        {"Edit", "Select the previous", "Shift+Y", R"({"do":"select","change":-1})", "the names of --set"},
+        {"Edit", "Select nothing", "Ctrl+Shift+Y", R"({"do":"select"})", "the names of --set"},
+        {"Edit", "Menu of the selection", "Shift+F10", R"({"do":"panel","name":"menu"})",
+         "--set and the other options"},
 
         {"Time", "Play or pause", "Space", R"({"do":"play"})", "emscape render INPUT --realtime"},
         {"Time", "Pause", "K", R"({"do":"pause"})", "emscape render INPUT --times T"},
@@ -71,8 +76,10 @@ const std::vector<Action>& actions() {
         {"Camera", "Closer", "+", R"({"do":"dolly","factor":0.8})", "--camera orbit:distance=.."},
         {"Camera", "Further", "-", R"({"do":"dolly","factor":1.25})", "--camera orbit:distance=.."},
         {"Camera", "Follow a platform", "Ctrl+F", R"({"do":"follow"})", "--follow PLATFORM"},
-        {"Camera", "From above", "V", R"({"do":"camera","spec":"orbit:azimuth_deg=180,elevation_deg=89"})",
-         "--camera orbit:azimuth_deg=180,elevation_deg=89"},
+        {"Camera", "From above", "V",
+         R"({"do":"camera","spec":"orbit:azimuth_deg=180,elevation_deg=90,projection=orthographic"})",
+         "--camera orbit:azimuth_deg=180,elevation_deg=90,projection=orthographic"},
+        {"Camera", "Orthographic", "O", R"({"do":"projection"})", "--camera orbit:projection=orthographic"},
     };
     for (const playback::ViewSetting& setting : playback::viewSettings()) {
       if (setting.action.empty()) continue;
@@ -96,6 +103,8 @@ const std::vector<Action>& actions() {
         {"View", "Cut vertically", "Shift+H", R"({"do":"plane","kind":"vertical"})",
          "--plane vertical:bearing_deg=..,offset_m=.."},
         {"View", "Compare with the original", "C", R"({"do":"compare"})", "--compare original|FILE"},
+        {"View", "Measure", "Shift+M", R"({"do":"measure"})",
+         "emscape profile INPUT --emitter NAME --to LAT,LON,HEIGHT"},
         {"View", "Lock or unlock the probe", "P", R"({"do":"lock_probe"})",
          "emscape profile INPUT --emitter NAME --to LAT,LON,HEIGHT"},
 
@@ -175,7 +184,10 @@ const std::vector<Gesture>& gestures() {
   static const std::vector<Gesture> all{
       {"left drag, Alt + left drag", "orbit about the target"},
       {"left drag on an emitter", "move its platform over the ground; Esc takes it back"},
-      {"double click", "look at the emitter or the ground there"},
+      {"left drag on the handle of a plane", "move the plane"},
+      {"click", "select the emitter, platform, receiver or target there; on the ground nothing"},
+      {"right click", "the menu of the thing or the ground there"},
+      {"double click", "look at the thing or the ground there"},
       {"Ctrl + left click", "lock the probe there"},
       {"middle drag, Shift + left drag", "pan"},
       {"wheel", "towards the cursor and back"},

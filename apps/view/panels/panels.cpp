@@ -7,6 +7,7 @@
 #include <set>
 
 #include "apps/view/panels/names.h"
+#include "apps/view/panels/picture_overlay.h"
 #include "apps/view/panels/theme.h"
 #include "base/text/time_text.h"
 #include "emscape/render/annotate/legend.h"
@@ -20,6 +21,10 @@ void place(const Area& area) {
   ImGui::SetNextWindowSize({area.width, area.height});
 }
 
+bool isMeasuring(const Session& session) {
+  return session.tool().kind == PickTool::Kind::measure;
+}
+
 bool isChecked(const Session& session, const std::string& name) {
   const Panels& panels = session.panels;
   if (name == "Loop") return session.timeline().loop();
@@ -31,6 +36,8 @@ bool isChecked(const Session& session, const std::string& name) {
   if (name == "Scenario: what if") return panels.scenario && !panels.hidden;
   if (name == "Colours and opacity") return panels.colors && !panels.hidden;
   if (name == "Cutting planes") return panels.planes && !panels.hidden;
+  if (name == "Measure") return isMeasuring(session);
+  if (name == "Orthographic") return session.camera().spec().projection == render::Projection::orthographic;
   if (name == "Compare with the original") return session.compares();
   if (name == "Probe") return panels.probe && !panels.hidden;
   if (name == "Lock or unlock the probe") return session.prober().isLocked();
@@ -73,7 +80,8 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
     return layout;
   }
   const float status_height = 30 * scale;
-  const bool has_side = session.hasInput() && (panels.scenario || panels.colors || panels.planes);
+  const bool has_side = session.hasInput() && (panels.scenario || panels.colors || panels.planes ||
+                                               panels.probe || isMeasuring(session));
   const float side_width = has_side ? std::min(340 * scale, 0.45F * width) : 0;
   const bool has_timeline = session.hasInput() && panels.timeline;
   const float timeline_height = has_timeline ? std::min(timelineHeight(session, scale), 0.4F * height) : 0;
@@ -141,18 +149,32 @@ void drawSidePanel(PanelContext& context, const Area& area) {
   ImGui::Begin("side", nullptr, kFixedPanel);
   const Panels& panels = context.session.panels;
   const float height = ImGui::GetContentRegionAvail().y;
+  const bool measures = isMeasuring(context.session);
   if (panels.colors) {
-    const bool more = panels.scenario || panels.planes;
+    const bool more = panels.scenario || panels.planes || panels.probe || measures;
     ImGui::BeginChild("colors", {0, more ? std::min(0.7F * height, 470 * context.scale) : 0});
     drawColorsPanel(context);
     ImGui::EndChild();
     if (more) ImGui::Separator();
   }
   if (panels.planes) {
-    const auto rows = static_cast<float>(2 + 3 * context.session.settings().planes.size());
+    const bool more = panels.scenario || panels.probe || measures;
+    const auto rows = static_cast<float>(2 + 4 * context.session.settings().planes.size());
     const float wanted = rows * ImGui::GetFrameHeightWithSpacing();
-    ImGui::BeginChild("planes", {0, panels.scenario ? std::min(height / 2, wanted) : 0});
+    ImGui::BeginChild("planes", {0, more ? std::min(height / 2, wanted) : 0});
     drawPlanesPanel(context);
+    ImGui::EndChild();
+    if (more) ImGui::Separator();
+  }
+  if (measures) {
+    ImGui::BeginChild("measure", {0, std::min(height / 2, 330 * context.scale)});
+    drawMeasurePanel(context);
+    ImGui::EndChild();
+    ImGui::Separator();
+  }
+  if (panels.probe) {
+    ImGui::BeginChild("probe", {0, panels.scenario ? 0.55F * ImGui::GetContentRegionAvail().y : 0});
+    drawProbePanel(context);
     ImGui::EndChild();
     if (panels.scenario) ImGui::Separator();
   }
@@ -181,7 +203,15 @@ void drawStatusBar(PanelContext& context, const Area& area) {
                     : "t = " + shown;
   }
   const float right_x = area.width - ImGui::CalcTextSize(right.c_str()).x - 12 * s;
-  drawStateBadge(context, right_x - 12 * s);
+  // The value under the cursor has priority over how the picture was made.
+  const std::string under = session.picture() ? cursorText(session) : "";
+  const float under_x = right_x - (under.empty() ? 0 : ImGui::CalcTextSize(under.c_str()).x + 24 * s);
+  drawStateBadge(context, under_x - 12 * s);
+  if (!under.empty() && under_x >= ImGui::GetCursorPosX()) {
+    ImGui::SameLine();
+    ImGui::SetCursorPosX(under_x);
+    ImGui::TextUnformatted(under.c_str());
+  }
   if (!right.empty()) {
     ImGui::SameLine();
     ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), right_x));

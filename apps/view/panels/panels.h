@@ -52,7 +52,11 @@ void drawScenarioPanel(PanelContext& context);
 /// Colours and opacities: transfer_panel.cpp.
 void drawColorsPanel(PanelContext& context);
 void drawPlanesPanel(PanelContext& context);
-/// Panels of colours, planes and scenario, stacked.
+void drawProbePanel(PanelContext& context);
+/// The locked probe's value over time.
+void drawHistory(PanelContext& context);
+void drawMeasurePanel(PanelContext& context);
+/// Panels of colours, planes, probe, measurement and scenario, stacked.
 void drawSidePanel(PanelContext& context, const Area& area);
 void drawTimeline(PanelContext& context, const Area& area);
 /// Height that the timeline's rows need (pixels).
@@ -68,7 +72,6 @@ void drawStart(PanelContext& context, const Area& picture);
 void drawRecentFiles(PanelContext& context, std::size_t max_count);
 /// The notice, and the message before the first picture.
 void drawNotice(PanelContext& context, const Area& picture);
-void drawProbe(PanelContext& context, const Area& picture);
 /// The probe's locked point, over the picture.
 void drawProbeMarker(const PanelContext& context, const Area& picture);
 void drawHelp(PanelContext& context);

@@ -29,7 +29,8 @@ bool drawVertical(CutPlane& plane, const render::SceneBox& box) {
   const double reach_m = 0.5 * std::hypot(size_m.x, size_m.y);
   const bool turned = slide("##bearing", plane.bearing_deg, 0, 360, "bearing %.0f°");
   const bool moved = slide("##offset", plane.offset_m, -reach_m, reach_m, "offset %.0f m");
-  return turned || moved;
+  const bool cut = ImGui::Checkbox("cuts the ground", &plane.cuts_ground);
+  return turned || moved || cut;
 }
 
 const char* keptText(const CutPlane& plane) {

@@ -8,6 +8,7 @@
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/path_plot.h"
 #include "apps/view/panels/theme.h"
+#include "apps/view/parts/position_text.h"
 #include "emfield/link/path_report.h"
 #include "emscape/render/annotate/legend.h"
 
@@ -45,19 +46,14 @@ class Table {
   ImVec4 muted_;
 };
 
-std::string distanceText(double distance_m) {
-  return fmt::format("{:.1f} m", distance_m);
-}
-
-void drawPlace(const ProbeResult& result, render::Theme theme, float s) {
+void drawPlace(const ProbeResult& result, const playback::ViewState& view, render::Theme theme, float s) {
   const playback::ProbeReading& reading = *result.reading;
   const Table table("place", 96 * s, theme);
   if (reading.position) {
-    table.row("position", fmt::format("{:.5f}°, {:.5f}°", reading.position->latitude_deg,
-                                      reading.position->longitude_deg));
+    table.row("position", positionText(*reading.position, view));
     table.row("height",
-              distanceText(*reading.height_msl_m) + " above sea level" +
-                  (reading.height_agl_m ? ", " + distanceText(*reading.height_agl_m) + " above ground"
+              heightText(*reading.height_msl_m, view) + " above sea level" +
+                  (reading.height_agl_m ? ", " + heightText(*reading.height_agl_m, view) + " above ground"
                                         : std::string()));
   } else {
     table.row("position", fmt::format("{:g}, {:g}, {:g}", reading.position_m.x, reading.position_m.y,
@@ -165,46 +161,39 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
   ImGui::SetWindowFontScale(1);
   const std::string& unit = context.session.picture()->info().unit;
   ImGui::TextDisabled("%s", render::quantityTitle(result.quantity, unit).c_str());
-  drawPlace(result, theme, context.scale);
+  drawPlace(result, context.session.view(), theme, context.scale);
+  if (context.session.prober().isLocked()) drawHistory(context);
   if (reading.emitters.empty()) return;
   ImGui::Spacing();
+  ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(theme));
+  ImGui::TextWrapped("at the point itself (the value above is that of the volume, between voxel centres)");
+  ImGui::PopStyleColor();
   drawEmitters(context, result);
 }
 
 }  // namespace
 
-void drawProbe(PanelContext& context, const Area& picture) {
-  Session& session = context.session;
-  if (!session.panels.probe || session.panels.hidden) return;
-  const float s = context.scale;
-  ImGui::SetNextWindowPos({picture.x + 14 * s, picture.y + 62 * s}, ImGuiCond_Appearing);
-  ImGui::SetNextWindowSize(
-      {std::min(390 * s, 0.9F * picture.width), std::min(580 * s, 0.82F * picture.height)},
-      ImGuiCond_Appearing);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::SetNextWindowBgAlpha(0.95F);
-  if (ImGui::Begin("Probe", &session.panels.probe,
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-    const Prober& prober = session.prober();
-    if (ImGui::SmallButton(prober.isLocked() ? "unlock (P)" : "lock (P)"))
-      perform(context, R"({"do":"lock_probe"})");
-    ImGui::SameLine();
-    ImGui::TextDisabled(prober.isLocked() ? "locked; follows time and edits" : "under the cursor");
-    const ProbeResult* result = prober.result();
-    if (result == nullptr) {
-      ImGui::TextWrapped("Move the cursor over the picture; Ctrl + click locks the probe at a point.");
-    } else if (!result->error.empty()) {
-      ImGui::PushStyleColor(ImGuiCol_Text, errorColor(session.theme()));
-      ImGui::TextWrapped("%s", result->error.c_str());
-      ImGui::PopStyleColor();
-    } else if (!result->reading) {
-      ImGui::TextDisabled("outside the volume");
-    } else {
-      drawReading(context, *result);
-    }
+void drawProbePanel(PanelContext& context) {
+  const Session& session = context.session;
+  const Prober& prober = session.prober();
+  ImGui::TextColored(accentColor(session.theme()), "Probe");
+  ImGui::SameLine();
+  if (ImGui::SmallButton(prober.isLocked() ? "unlock (P)" : "lock (P)"))
+    perform(context, R"({"do":"lock_probe"})");
+  ImGui::SameLine();
+  ImGui::TextDisabled(prober.isLocked() ? "follows time and edits" : "under the cursor");
+  const ProbeResult* result = prober.result();
+  if (result == nullptr) {
+    ImGui::TextWrapped("Move the cursor over the picture; Ctrl + click locks the probe at a point.");
+  } else if (!result->error.empty()) {
+    ImGui::PushStyleColor(ImGuiCol_Text, errorColor(session.theme()));
+    ImGui::TextWrapped("%s", result->error.c_str());
+    ImGui::PopStyleColor();
+  } else if (!result->reading) {
+    ImGui::TextDisabled("outside the volume");
+  } else {
+    drawReading(context, *result);
   }
-  ImGui::End();
-  ImGui::PopStyleVar();
 }
 
 void drawProbeMarker(const PanelContext& context, const Area& picture) {

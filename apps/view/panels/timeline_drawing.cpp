@@ -89,8 +89,14 @@ void drawRows(ImDrawList& list, const TimeAxis& axis, const Session& session, fl
   const std::size_t visible_to = std::min(bars.size(), visible_from + kMaxTimelineRows + 1);
   for (std::size_t i = visible_from; i < visible_to; ++i) {
     const float y = at.y + row * static_cast<float>(i);
+    const bool is_selected = session.selected() == "emitters." + scenario::pathStep(bars[i].emitter);
+    if (is_selected) {
+      list.AddRectFilled({names_left, y}, {axis.right(), y + row},
+                         colorOf(accentColor(session.theme()), 0.3F), 2 * scale);
+    }
     list.PushClipRect({names_left, y}, {axis.left - 6 * scale, y + row}, true);
-    list.AddText({names_left, y + (row - ImGui::GetTextLineHeight()) / 2}, ImGui::GetColorU32(ImGuiCol_Text),
+    list.AddText({names_left, y + (row - ImGui::GetTextLineHeight()) / 2},
+                 is_selected ? colorOf(accentColor(session.theme())) : ImGui::GetColorU32(ImGuiCol_Text),
                  bars[i].emitter.c_str());
     list.PopClipRect();
     list.AddRectFilled({axis.left, y + scale}, {axis.right(), y + row - scale},

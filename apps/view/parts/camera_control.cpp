@@ -8,7 +8,7 @@
 namespace emscape::view {
 namespace {
 
-constexpr double kMaxElevation_deg = 89;
+constexpr double kMaxElevation_deg = 90;
 constexpr double kMinDistance = 0.02;  // diagonals of the drawn box
 constexpr double kMaxDistance = 50;
 
@@ -59,9 +59,11 @@ void CameraControl::settle(const Viewport& viewport) {
   orbit.kind = render::CameraSpec::Kind::orbit;
   orbit.eye_m.reset();
   orbit.distance = std::clamp(pose.distance_m / diagonal_m, kMinDistance, kMaxDistance);
-  const Vec3d back = -pose.camera.forward;
-  orbit.elevation_deg = radToDeg(std::asin(std::clamp(back.z, -1.0, 1.0)));
-  orbit.azimuth_deg = wrapped_deg(radToDeg(std::atan2(back.x, back.y)));
+  if (spec_.kind == render::CameraSpec::Kind::lookat) {
+    // The azimuth from the axis to the right, which is also defined straight above the target.
+    orbit.elevation_deg = radToDeg(std::asin(std::clamp(-pose.camera.forward.z, -1.0, 1.0)));
+    orbit.azimuth_deg = wrapped_deg(radToDeg(std::atan2(pose.camera.right.y, -pose.camera.right.x)));
+  }
   orbit.target_m = viewport.box.toFrame(pose.target_m);
   // A fitted camera shifts its lens; from here on the target is moved instead.
   const render::Camera unshifted = render::makeCamera(orbit, viewport.box, viewport.size, viewport.margins);
@@ -115,6 +117,11 @@ void CameraControl::fly(double forward, double right, double up, const Viewport&
   const render::Camera camera = poseIn(viewport).camera;
   const double diagonal_m = viewport.box.drawnDiagonal_m();
   moveTarget((camera.forward * forward + camera.right * right + camera.up * up) * diagonal_m, viewport);
+}
+
+void CameraControl::setProjection(render::Projection projection, const Viewport& viewport) {
+  settle(viewport);
+  spec_.projection = projection;
 }
 
 void CameraControl::focus(const Vec3d& target_m, double distance, const Viewport& viewport) {

@@ -22,7 +22,7 @@ class CameraControl {
   const render::CameraSpec& spec() const { return spec_; }
   void set(const render::CameraSpec& spec) { spec_ = spec; }
 
-  /// Turns the camera about its target. Elevation is clamped to -89..89.
+  /// Turns the camera about its target. Elevation is clamped to -90..90.
   /// @param azimuth_deg  clockwise as seen from above
   void orbit(double azimuth_deg, double elevation_deg, const Viewport& viewport);
   /// Moves the scene with the cursor, parallel to the picture.
@@ -37,6 +37,8 @@ class CameraControl {
   void look(double azimuth_deg, double elevation_deg, const Viewport& viewport);
   /// Moves eye and target. @param forward, right, up  in diagonals of the drawn box, along the camera's axes
   void fly(double forward, double right, double up, const Viewport& viewport);
+  /// Changes the projection; the scale at the target stays.
+  void setProjection(render::Projection projection, const Viewport& viewport);
   /// Looks at a position from the present direction. @param target_m  frame metres
   void focus(const Vec3d& target_m, double distance, const Viewport& viewport);
 

@@ -11,6 +11,7 @@ struct Panels {
   bool planes = false;
   bool open = false, record = false;      ///< the file browser; the dialog of recording
   bool restore = false, unsaved = false;  ///< questions
+  bool menu = false;                      ///< of the selection
   bool changed = false;                   ///< files of the input have changed on the disk
   bool hidden = false;                    ///< all of them, temporarily
 };

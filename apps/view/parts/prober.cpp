@@ -25,11 +25,20 @@ bool isOtherField(const playback::LivePicture& a, const playback::LivePicture& b
   return !sameValues(a, b) || a.info().time_s != b.info().time_s || a.scenario != b.scenario;
 }
 
+/// The value of the isosurface that a picture shows; none in the other modes.
+std::optional<double> isoValueOf(const playback::LivePicture& picture) {
+  if (picture.settings.mode != render::CompositingMode::iso) return std::nullopt;
+  const double value = picture.settings.iso_value;
+  return std::isnan(value) ? 0.5 * (picture.transfer.lowest() + picture.transfer.highest()) : value;
+}
+
 }  // namespace
 
 /// Reads a probe; keeps the last volume in host memory.
 class Prober::Reader {
  public:
+  explicit Reader(Detail detail) : detail_(detail) {}
+
   Answer operator()(const Question& question) {
     const playback::LivePicture& picture = *question.picture;
     Answer answer;
@@ -44,7 +53,7 @@ class Prober::Reader {
       if (question.pixel) {
         const auto picked =
             playback::pick(picture.camera, picture.box, picture.size, question.pixel->x, question.pixel->y,
-                           volume, picture.ground.get(), picture.settings.planes);
+                           volume, picture.ground.get(), picture.settings.planes, isoValueOf(picture));
         position_m.reset();
         if (picked) {
           position_m =
@@ -54,7 +63,9 @@ class Prober::Reader {
         }
       }
       if (position_m) {
-        result.reading = playback::probe(*position_m, volume, picture.scenario, picture.terrain.get());
+        result.reading =
+            playback::probe(*position_m, volume, detail_ == Detail::explained ? picture.scenario : nullptr,
+                            picture.terrain.get());
         result.contributions = contributionsOf(*result.reading, result.quantity);
       }
     } catch (const std::exception& error) {
@@ -71,11 +82,13 @@ class Prober::Reader {
     return *host_;
   }
 
+  const Detail detail_;
   PicturePtr picture_;
   std::shared_ptr<const volume::DenseVolume> host_;
 };
 
-Prober::Prober(std::function<void()> wake) : reader_(std::make_shared<Reader>()), task_(std::move(wake)) {}
+Prober::Prober(Detail detail, std::function<void()> wake)
+    : reader_(std::make_shared<Reader>(detail)), task_(std::move(wake)) {}
 
 void Prober::turnOn(bool on) {
   if (std::exchange(is_on_, on) != on) is_due_ = on;

@@ -39,9 +39,11 @@ struct ProbeResult {
 class Prober {
  public:
   using PicturePtr = std::shared_ptr<const playback::LivePicture>;
+  /// What is read: the values, or also their explanation, emitter by emitter.
+  enum class Detail { value, explained };
 
   /// @param wake  called on another thread when update() has a result
-  explicit Prober(std::function<void()> wake);
+  Prober(Detail detail, std::function<void()> wake);
 
   /// Nothing is read while it is turned off.
   void turnOn(bool on);
@@ -56,6 +58,8 @@ class Prober {
   void toggleLock();
   void unlock();
   bool isLocked() const { return is_locked_; }
+  /// True if the cursor is over the picture; else the result is an earlier one.
+  bool isOver() const { return pixel_.has_value(); }
   /// Position of the locked point; empty before it has been found.
   const std::optional<Vec3d>& locked_m() const { return locked_m_; }
 

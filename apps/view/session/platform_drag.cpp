@@ -8,34 +8,19 @@
 
 namespace emscape::view {
 
-std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double x, double y) {
-  constexpr double kReach_px = 14;
-  std::optional<std::size_t> nearest;
-  double nearest_px = kReach_px;
-  for (std::size_t i = 0; i < picture.annotations.markers.size(); ++i) {
-    const render::Projected at = render::project(
-        picture.camera, picture.size, picture.box.toDrawn(picture.annotations.markers[i].position_m));
-    const double away_px = std::hypot(at.x - x, at.y - y);
-    if (!at.in_front || away_px > nearest_px) continue;
-    nearest = i;
-    nearest_px = away_px;
-  }
-  return nearest;
-}
-
-PlatformDrag::PlatformDrag(const playback::LivePicture& picture, std::size_t emitter, double x, double y) {
-  if (!picture.scenario || emitter >= picture.scenario->emitters.size()) {
+PlatformDrag::PlatformDrag(const playback::LivePicture& picture, const SceneObject& object, double x,
+                           double y) {
+  const auto index = static_cast<std::size_t>(object.platform);
+  if (!picture.scenario || index >= picture.scenario->platforms.size()) {
     throw Error(ErrorCode::bad_input, "there is no scenario to change");
   }
   const scenario::Scenario& scenario = *picture.scenario;
-  const auto index = static_cast<std::size_t>(scenario.emitters[emitter].platform);
   const scenario::Platform& platform = scenario.platforms[index];
   platform_ = platform.name;
   movesOf(scenario, platform_, 0, 0);  // throws for a platform with a track
-  const render::Marker& marker = picture.annotations.markers[emitter];
-  grip_m_ = marker.position_m;
-  follows_ground_ = platform.track.front().position.height_agl_m && picture.ground && marker.ground_m;
-  if (follows_ground_) grip_m_.z = *marker.ground_m;
+  grip_m_ = object.position_m;
+  follows_ground_ = platform.track.front().position.height_agl_m && picture.ground && object.height_agl_m;
+  if (follows_ground_) grip_m_.z -= *object.height_agl_m;
   const render::Projected grip = render::project(picture.camera, picture.size, picture.box.toDrawn(grip_m_));
   offset_x_ = grip.x - x;
   offset_y_ = grip.y - y;

@@ -1,26 +1,23 @@
 /// Dragging of a platform in the picture.
 #pragma once
 
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/view/parts/scene_objects.h"
 #include "emscape/scenario/model/edit.h"
 #include "playback/live/live_view.h"
 
 namespace emscape::view {
 
-/// Index of the marker under a pixel, equal to the emitter's index; empty if there is no marker nearby.
-std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double x, double y);
-
 /// Starts a drag. A platform whose height is given above the ground follows the ground under the cursor; any
 /// other platform keeps its height. The cursor keeps its distance from the marker.
 class PlatformDrag {
  public:
-  /// @param emitter  index of its marker
+  /// @param object  on the platform
   /// @throws Error (bad_input) if the picture has no scenario, or the platform moves along a track
-  PlatformDrag(const playback::LivePicture& picture, std::size_t emitter, double x, double y);
+  PlatformDrag(const playback::LivePicture& picture, const SceneObject& object, double x, double y);
 
   const std::string& platform() const { return platform_; }
   /// The edits that move the platform to the cursor; empty if there is no position under it.

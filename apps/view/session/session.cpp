@@ -52,7 +52,9 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       view_(withoutSize(options.view)),
       live_(view_, liveOptionsOf(options, target, cache_limit_bytes_), wake_),
       edit_queue_(wake_),
-      prober_(wake_),
+      prober_(Prober::Detail::explained, wake_),
+      cursor_(Prober::Detail::value, wake_),
+      history_(wake_),
       files_(files ? std::move(files) : std::make_shared<Files>()),
       opened_unsaved_(options.unsaved_edits),
       has_kept_(options.unsaved_edits),
@@ -65,6 +67,7 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
 std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;
   for (const auto& topic : {programVerbs(), timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(),
+                            selectionVerbs(), toolVerbs(),
                             probeVerbs(), pictureVerbs(), planeVerbs(), transferVerbs(), windowVerbs(),
                             stateVerbs(), fileVerbs(), recordVerbs()}) {
     all.insert(all.end(), topic.begin(), topic.end());
@@ -178,11 +181,15 @@ bool Session::update() {
   const bool notice_ends = !notice_.text.empty() && now_s - notice_.since_s > (notice_.is_error ? 12 : 4);
   if (notice_ends) notice_ = {};
   prober_.turnOn(panels.probe && !panels.hidden);
-  const bool is_read = prober_.update(picture_);
+  cursor_.turnOn(!panels.hidden);
+  const bool is_probed = prober_.update(picture_), is_read = cursor_.update(picture_);
+  askHistory();
+  const bool has_history = history_.update();
   const bool touched = std::exchange(touched_, false);
   const std::string words = noted_words_;
   noteProgram();
-  return touched || words != noted_words_ || is_read || notice_ends || picture_ != old_picture ||
+  return touched || words != noted_words_ || is_probed || is_read || has_history || notice_ends ||
+         picture_ != old_picture ||
          status_.state != before.state || status_.computing != before.computing ||
          status_.cached_steps != before.cached_steps || timeline_.playing();
 }

@@ -15,8 +15,11 @@
 #include "apps/view/parts/background_jobs.h"
 #include "apps/view/parts/camera_control.h"
 #include "apps/view/parts/open_panels.h"
+#include "apps/view/parts/pick_tool.h"
+#include "apps/view/parts/probe_history.h"
 #include "apps/view/parts/prober.h"
 #include "apps/view/parts/program_state.h"
+#include "apps/view/parts/scene_objects.h"
 #include "apps/view/parts/undo_order.h"
 #include "apps/view/parts/value_summary.h"
 #include "apps/view/parts/view_options.h"
@@ -134,6 +137,7 @@ class Session {
   void record(const RecordRange& range, const std::string& output);
 
   CameraControl& camera() { return camera_; }
+  const CameraControl& camera() const { return camera_; }
   void cameraMoved();
   const playback::Timeline& timeline() const { return timeline_; }
   const render::RenderSettings& settings() const { return view_.settings; }
@@ -153,8 +157,22 @@ class Session {
   playback::ScenarioPtr scenario() const { return edits_ ? edits_->scenario() : nullptr; }
   /// The last edits if they were refused.
   const std::optional<Rejection>& rejection() const { return rejection_; }
+  /// The path of what is selected, such as "emitters.jammer"; empty: nothing.
+  std::string selected() const;
+  /// The objects of the picture, at its time.
+  const std::vector<SceneObject>& objects() const;
+  /// Null if the picture has no such object.
+  const SceneObject* objectOf(const std::string& path) const;
+  const PickTool& tool() const { return tool_; }
+  /// The ground under a pixel of the picture (frame metres); there must be a picture.
+  std::optional<Vec3d> groundAt(double x, double y) const;
+  /// Reads the value under the cursor.
+  Prober& cursor() { return cursor_; }
+  const Prober& cursor() const { return cursor_; }
   Prober& prober() { return prober_; }
   const Prober& prober() const { return prober_; }
+  /// Values over time at the locked probe, while its panel is open.
+  const ValueHistory& history() const { return history_.values(); }
   /// True if there is a change of the scenario or of the colours.
   bool canUndo() const { return undo_order_.canUndo() || dragging_ || isDragging(); }
   bool canRedo() const { return undo_order_.canRedo() && !dragging_ && !isDragging(); }
@@ -172,6 +190,8 @@ class Session {
   static std::vector<Verb> timeVerbs();
   static std::vector<Verb> cameraVerbs();
   static std::vector<Verb> scenarioVerbs();
+  static std::vector<Verb> selectionVerbs();
+  static std::vector<Verb> toolVerbs();
   static std::vector<Verb> probeVerbs();
   static std::vector<Verb> pictureVerbs();
   static std::vector<Verb> planeVerbs();
@@ -219,11 +239,23 @@ class Session {
   /// Takes effect with one of the next updates.
   void changeScenario(const std::vector<scenario::Edit>& edits);
   void takeEdits();
-  std::vector<render::Marker> emittersOfPicture() const;
   void focusEmitter(const std::optional<std::string>& name);
+  void focusObject(const SceneObject& object);
   void focusGround(double x, double y);
-  /// Report of the probe for the log.
+  void select(const std::string& path);
+  void selectNext(int change);
+  const SceneObject& requireObject(const std::string& path) const;
+  void copyText(const std::string& text);
+  ToolPoint pointOf(const Command& command) const;
+  double measuringFrequency_hz() const;
+  void addMeasured(const ToolPoint& point);
+  void measure(const Command& command);
+  void drawTrack(const Command& command);
+  void placeItem(const Command& command);
+  /// Reports of the probe, and of the selection and tools, for the log.
   Json probeReport() const;
+  Json selectionReport() const;
+  void askHistory();
   void tellRate();
   void pause();
   /// Undoes or redoes a step after the edits that were requested before.
@@ -278,7 +310,12 @@ class Session {
     double iso_value = 0;
   } last_shown_;  // of the view of the last computed field
   std::optional<Rejection> rejection_;
-  Prober prober_;
+  std::string selected_;
+  mutable std::vector<SceneObject> objects_;  // of ...
+  mutable std::shared_ptr<const playback::LivePicture> objects_of_;
+  PickTool tool_;
+  Prober prober_, cursor_;
+  ProbeHistory history_;
   UndoOrder undo_order_;
   bool dragging_ = false;  // the colours
   bool touched_ = false;   // by a command since the last update()

@@ -5,9 +5,6 @@
 
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/frames/scene.h"
-#include "emscape/scenario/model/snapshot.h"
-#include "playback/editing/pick.h"
 #include "scenario/file/named_items.h"
 
 namespace emscape::view {
@@ -25,33 +22,23 @@ int bookmarkNumber(const Command& command) {
 
 }  // namespace
 
-/// The emitters at the time of the picture, in the scenario's order, also while they are hidden; empty
-/// without a scenario, and for a picture that has no position on the earth.
-std::vector<render::Marker> Session::emittersOfPicture() const {
-  const playback::LivePicture& shown = *picture_;
-  if (!shown.scenario || !shown.grid().georeferenced) return {};
-  return playback::markersOf(scenario::snapshotAt(shown.scenario, shown.terrain.get(), shown.info().time_s),
-                             shown.terrain.get(), shown.grid());
+void Session::focusEmitter(const std::optional<std::string>& name) {
+  const std::size_t count = objects().empty() ? 0 : picture_->scenario->emitters.size();
+  if (count == 0) throw Error(ErrorCode::bad_input, "focus: the picture has no emitters");
+  const std::size_t index =
+      name ? scenario::indexOfNamed(picture_->scenario->emitters, *name, "emitter") : focused_ % count;
+  focused_ = index + 1;
+  focusObject(objects()[index]);
 }
 
-void Session::focusEmitter(const std::optional<std::string>& name) {
-  const std::vector<render::Marker> markers = emittersOfPicture();
-  if (markers.empty()) throw Error(ErrorCode::bad_input, "focus: the picture has no emitters");
-  const std::size_t index = name ? scenario::indexOfNamed(picture_->scenario->emitters, *name, "emitter")
-                                 : focused_ % markers.size();
-  focused_ = index + 1;
-  camera_.focus(markers[index].position_m, kFocus_diagonals, *viewport());
+void Session::focusObject(const SceneObject& object) {
+  camera_.focus(object.position_m, kFocus_diagonals, *viewport());
   cameraMoved();
-  tell(markers[index].label);
+  tell(object.name);
 }
 
 void Session::focusGround(double x, double y) {
-  const playback::LivePicture& picture = *picture_;
-  const std::optional<Vec3d> ground_m =
-      picture.ground
-          ? playback::pickGround(picture.camera, picture.box, picture.size, x, y, *picture.ground,
-                                 picture.settings.planes)
-          : playback::pickLevel(picture.camera, picture.box, picture.size, x, y, picture.box.lower_m.z);
+  const std::optional<Vec3d> ground_m = groundAt(x, y);
   if (!ground_m) return;
   camera_.focus(*ground_m, std::min(kFocus_diagonals, camera_.spec().distance.value_or(kFocus_diagonals)),
                 *viewport());
@@ -95,6 +82,19 @@ std::vector<Verb> Session::cameraVerbs() {
          session.camera_.set(render::parseCamera(command.text("spec")));
          session.cameraMoved();
        }},
+      {"projection",
+       {{"projection", kText, false, {}, {"perspective", "orthographic"}}},
+       "perspective or orthographic, at the same scale; without a name the other one",
+       [](Session& session, const Command& command) {
+         const std::optional<Viewport> view = session.viewport();
+         if (!view) return;
+         const bool was_orthographic = session.camera_.spec().projection == render::Projection::orthographic;
+         const bool is_orthographic =
+             command.has("projection") ? command.text("projection") == "orthographic" : !was_orthographic;
+         session.camera_.setProjection(
+             is_orthographic ? render::Projection::orthographic : render::Projection::perspective, *view);
+         session.cameraMoved();
+       }},
       {"reset_view",
        {},
        "Back to the camera of the start",
@@ -103,13 +103,15 @@ std::vector<Verb> Session::cameraVerbs() {
          session.cameraMoved();
        }},
       {"focus",
-       {{"emitter", kText, false}, {"x", kNumber, false}, {"y", kNumber, false}},
-       "Looks at an emitter, or at the ground under a pixel of the picture; without either at the next "
-       "emitter",
+       {{"emitter", kText, false}, {"path", kText, false}, {"x", kNumber, false}, {"y", kNumber, false}},
+       "Looks at an emitter, at what has a path such as platforms.ridge, or at the ground under a pixel of "
+       "the picture; without arguments at the next emitter",
        [](Session& session, const Command& command) {
-         if (command.has("x") != command.has("y") || (command.has("x") && command.has("emitter")))
-           throw Error(ErrorCode::bad_input, "focus: expected x and y, or emitter");
+         if (command.has("x") != command.has("y") ||
+             command.has("x") + command.has("emitter") + command.has("path") > 1)
+           throw Error(ErrorCode::bad_input, "focus: expected x and y, emitter, or path");
          if (!session.picture_) return;
+         if (command.has("path")) return session.focusObject(session.requireObject(command.text("path")));
          if (command.has("x")) {
            session.focusGround(command.number("x"), command.number("y"));
          } else {

@@ -35,9 +35,9 @@ std::size_t indexOf(const Command& command, const std::vector<CutPlane>& planes)
 /// Applies the values of a command to a plane.
 void changeValues(CutPlane& plane, const Command& command) {
   const bool horizontal = plane.kind == CutPlane::Kind::horizontal;
-  const std::vector<const char*> of_the_other = horizontal
-                                                    ? std::vector<const char*>{"bearing_deg", "offset_m"}
-                                                    : std::vector<const char*>{"altitude_m"};
+  const std::vector<const char*> of_the_other =
+      horizontal ? std::vector<const char*>{"bearing_deg", "offset_m", "cuts_ground"}
+                 : std::vector<const char*>{"altitude_m"};
   for (const char* name : of_the_other) {
     if (!command.has(name)) continue;
     throw Error(ErrorCode::bad_input,
@@ -46,6 +46,7 @@ void changeValues(CutPlane& plane, const Command& command) {
   plane.altitude_m = command.number("altitude_m", plane.altitude_m);
   plane.bearing_deg = command.number("bearing_deg", plane.bearing_deg);
   plane.offset_m = command.number("offset_m", plane.offset_m);
+  plane.cuts_ground = command.boolean("cuts_ground", plane.cuts_ground);
   plane.on = command.boolean("on", plane.on);
   if (command.boolean("flip", false)) plane = render::flipped(plane);
 }
@@ -55,6 +56,7 @@ void changeValues(CutPlane& plane, const Command& command) {
 CutPlane Session::newPlane(CutPlane::Kind kind) const {
   CutPlane plane;
   plane.kind = kind;
+  plane.cuts_ground = false;
   if (kind == CutPlane::Kind::vertical) {
     // Along the picture, so that the section faces the viewer.
     plane.bearing_deg = std::fmod(camera_.spec().azimuth_deg + 630, 360);
@@ -88,6 +90,8 @@ void Session::switchPlanes(const Command& command) {
     for (CutPlane& plane : planes) plane.on = on;
   }
   setPlanes(planes);
+  const bool cuts = std::any_of(planes.begin(), planes.end(), isOn);
+  if (cuts) panels.planes = true;  // where they are moved
 }
 
 void Session::changePlane(const Command& command) {
@@ -120,6 +124,7 @@ std::vector<Verb> Session::planeVerbs() {
         {"altitude_m", kNumber, false},
         {"bearing_deg", kNumber, false},
         {"offset_m", kNumber, false},
+        {"cuts_ground", kBoolean, false},
         {"flip", kBoolean, false},
         {"on", kBoolean, false},
         {"remove", kBoolean, false}},

@@ -75,6 +75,15 @@ std::vector<Verb> Session::probeVerbs() {
          session.prober_.turnOn(true);
          session.prober_.toggleLock();
        }},
+      {"copy_history",
+       {},
+       "Puts the values over time at the locked probe on the clipboard, as CSV",
+       [](Session& session, const Command&) {
+         if (session.history().computed == 0)
+           throw Error(ErrorCode::bad_input, "copy_history: there are no values over time yet");
+         session.window_.setClipboard(csvOf(session.history(), session.picture_->info().quantity));
+         session.tell(fmt::format("copied: {} values over time", session.history().computed));
+       }},
       {"copy_profile",
        {{"emitter", kText}},
        "Puts the command that explains the path from an emitter to the probe on the clipboard",
@@ -87,9 +96,25 @@ std::vector<Verb> Session::probeVerbs() {
   };
 }
 
+/// Asks for the values over time at the locked probe, and for none otherwise.
+void Session::askHistory() {
+  const ProbeResult* const result = prober_.result();
+  const bool is_asked = prober_.isOn() && prober_.isLocked() && result != nullptr && result->reading &&
+                        result->reading->position && picture_ && picture_->scenario && !picture_->cells &&
+                        computedScenario() && !compares() && timeline_.times_s().size() > 1;
+  if (!is_asked) return history_.clear();
+  history_.ask({{picture_->scenario, picture_->terrain},
+                picture_->info().quantity,
+                result->reading->position->latitude_deg,
+                result->reading->position->longitude_deg,
+                *result->reading->height_msl_m,
+                timeline_.times_s()});
+}
+
 Json Session::probeReport() const {
   Json report{{"probe_locked", prober_.isLocked()}};
   const ProbeResult* result = prober_.result();
+  report["history_steps"] = history_.values().computed;
   if (!prober_.isOn() || result == nullptr || !result->reading) return report;
   const playback::ProbeReading& reading = *result->reading;
   report["probe_text"] = reading.text;

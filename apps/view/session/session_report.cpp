@@ -59,6 +59,7 @@ Json Session::report() const {
               {"azimuth_deg", rounded(camera.azimuth_deg, 1e-6)},
               {"elevation_deg", rounded(camera.elevation_deg, 1e-6)},
               {"distance", camera.distance.value_or(0)},
+              {"orthographic", camera.projection == render::Projection::orthographic},
               {"iso_value", std::isnan(settings.iso_value) ? Json() : Json(settings.iso_value)},
               {"planes", std::count_if(settings.planes.begin(), settings.planes.end(),
                                        [](const render::CutPlane& plane) { return plane.on; })},
@@ -89,6 +90,7 @@ Json Session::report() const {
     report["range_max"] = picture_->transfer.highest();
   }
   report.update(probeReport());
+  report.update(selectionReport());
   report.update(transferReport());
   report["rss_mib"] = rounded(residentMemory_mib(), 0.1);
   report["cpu_s"] = rounded(processorTime_s(), 1e-3);

@@ -28,6 +28,7 @@ const std::vector<PanelName>& panelNames() {
       {"time", &Panels::time, false},        {"open", &Panels::open, false},
       {"record", &Panels::record, false},    {"restore", &Panels::restore, false},
       {"unsaved", &Panels::unsaved, false},  {"changed", &Panels::changed, false},
+      {"menu", &Panels::menu, false},
   };
   return all;
 }
@@ -37,7 +38,7 @@ std::vector<Verb> Session::windowVerbs() {
       {"panel",
        {{"name", kText, true, {}, panelChoices()}, {"open", kBoolean, false}},
        "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, record, "
-       "restore, unsaved, changed, all",
+       "restore, unsaved, changed, menu (of the selection), all",
        [](Session& session, const Command& command) {
          const std::string name = command.text("name");
          if (name == "all") {
@@ -81,6 +82,10 @@ std::vector<Verb> Session::windowVerbs() {
          bool was_open = !session.notice_.text.empty();
          session.notice_ = {};
          if (session.isDragging()) return session.cancelDrag();
+         if (session.tool_.isOn()) {
+           session.tool_ = {};
+           return;
+         }
          for (const PanelName& panel : panelNames()) {
            if (!panel.stays) was_open |= std::exchange(session.panels.*panel.open, false);
          }

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
 
 #include "emscape/base/error.h"
 #include "emscape/render/scene/renderer.h"
@@ -36,6 +38,11 @@ Annotations everything(const TransferFunction& function) {
     marker.ground_m = 100;
     annotations.markers.push_back(marker);
   }
+  for (const char* plane : {"horizontal:altitude_m=2000", "vertical:bearing_deg=40,offset_m=2000"})
+    annotations.planes.push_back(parseCutPlane(plane));
+  annotations.planes.insert(annotations.planes.begin() + 1, annotations.planes[0]);
+  annotations.planes[1].on = false;
+  std::swap(annotations.planes[1], annotations.planes[2]);
   annotations.tracks.push_back(
       {MarkerKind::jammer, {{-9000, 4000, 2500}, {0, 7000, 2500}, {40000, 7000, 2500}}, 0.5});
   return annotations;
@@ -88,6 +95,9 @@ TEST(Overlay, EveryAnnotationIsSeen) {
   EXPECT_GT(without([](Annotations& a) { a.markers.pop_back(); }), 50);
   EXPECT_GT(without([](Annotations& a) { a.markers[0].active = false; }), 20);
   EXPECT_GT(without([](Annotations& a) { a.tracks.clear(); }), 100);
+  EXPECT_GT(without([](Annotations& a) { a.planes.pop_back(); }), 200);
+  EXPECT_GT(without([](Annotations& a) { a.planes[0].altitude_m = 2100; }), 200);
+  EXPECT_EQ(without([](Annotations& a) { a.planes[2].altitude_m = 2100; }), 0) << "it is off";
   EXPECT_GT(without([](Annotations& a) { a.tracks[0].travelled = 1.5; }), 50);
   EXPECT_GT(without([](Annotations& a) { a.theme = Theme::light; }), 100000);
 }
@@ -149,12 +159,50 @@ TEST(Overlay, HiddenMarkersAreDrawnDifferently) {
   EXPECT_GT(differingPixels(seen, hidden), 200);
 }
 
-TEST(Overlay, MarginsGrowWithTheLegend) {
+TEST(Overlay, AnyLegendLeavesTheSceneTheSameRoom) {
   const ImageSize size{1200, 900};
   Annotations annotations = everything(testing::fog(0.5));
   const double with = overlayMargins(size, annotations).right;
+  annotations.legend->quantity = "Detection probability of a radar";
+  annotations.legend->unit = "";
+  EXPECT_EQ(overlayMargins(size, annotations).right, with);
+  annotations.legend->function.categorical = true;
+  annotations.legend->categories = {{0, "a radar with a long name"}};
+  EXPECT_EQ(overlayMargins(size, annotations).right, with);
   annotations.legend.reset();
   EXPECT_GT(with, overlayMargins(size, annotations).right + 0.03);
+}
+
+TEST(Overlay, TicksOfHorizontalAxesAreAtTheGroundsEdges) {
+  const ImageSize size{640, 480};
+  Annotations annotations;
+  for (const char* view : {"orbit", "orbit:azimuth_deg=180", "orbit:azimuth_deg=180,elevation_deg=89",
+                           "orbit:azimuth_deg=180,elevation_deg=90,projection=orthographic"}) {
+    const Camera camera = makeCamera(parseCamera(view), kBox, size, overlayMargins(size, annotations));
+    annotations.axes = true;
+    const Image8 with = compose(Image(size), camera, kBox, annotations);
+    annotations.axes = false;
+    const Image8 without = compose(Image(size), camera, kBox, annotations);
+    const Vec3d& low = kBox.lower_m;
+    // The middle of each axis, 0 km, has a tick: a line of some pixels away from the box.
+    int ticks = 0;
+    for (const Vec3d& at :
+         {Vec3d{0, low.y, low.z}, {0, -low.y, low.z}, {low.x, 0, low.z}, {-low.x, 0, low.z}}) {
+      const Projected on_edge = project(camera, size, at), center = project(camera, size, {0, 0, low.z});
+      const double away_px = std::hypot(on_edge.x - center.x, on_edge.y - center.y);
+      const int x = static_cast<int>(std::lround(on_edge.x + 3 * (on_edge.x - center.x) / away_px));
+      const int y = static_cast<int>(std::lround(on_edge.y + 3 * (on_edge.y - center.y) / away_px));
+      bool is_drawn = false;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          is_drawn = is_drawn || !std::equal(with.at(x + dx, y + dy), with.at(x + dx, y + dy) + 4,
+                                             without.at(x + dx, y + dy));
+        }
+      }
+      ticks += is_drawn ? 1 : 0;
+    }
+    EXPECT_GE(ticks, 2) << view;
+  }
 }
 
 /// Whether pictures differ in columns from..to-1.

@@ -142,7 +142,6 @@ class Painter {
   void setGround(const scenario::TerrainPtr& ground);
   void setMarkers();
   void setTransferFunction(const render::TransferFunction& function);
-  /// Fits the camera again if the width of the legend has changed.
   void setLegend();
   render::CameraSpec followed(render::CameraSpec spec) const;
   render::Camera cameraOf(const render::CameraSpec& given) const;
@@ -164,7 +163,6 @@ class Painter {
   render::Image image_;
   bool fetched_ = false;  ///< image_ is the last picture
   bool has_colors_ = false;
-  double legend_space_ = 0;  ///< part of the width
   std::optional<double> speed_;
 };
 

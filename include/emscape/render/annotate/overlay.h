@@ -12,6 +12,7 @@
 #include "emscape/render/picture/device_picture.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/render/scene/camera.h"
+#include "emscape/render/scene/cut_plane.h"
 
 namespace emscape::render {
 
@@ -53,6 +54,7 @@ struct Annotations {
   std::string note;  ///< small, at the bottom: rays, step
   std::vector<Marker> markers;
   std::vector<Track> tracks;
+  std::vector<CutPlane> planes;  ///< framed, with captions
   std::optional<Legend> legend;
   bool georeferenced = true;  ///< compass, axes in km and altitude; otherwise axes in the grid's unit
   bool axes = true;

@@ -9,8 +9,8 @@ namespace emscape::render {
 
 /// The volume on the removed side of a plane is not drawn. The section on the plane is drawn as an opaque
 /// surface in the colours of the transfer function; it is transparent where the volume is masked or holds no
-/// field (its floor). Several planes leave what all of them keep. A vertical plane cuts the ground as well, a
-/// horizontal one leaves it whole.
+/// field (its floor). Several planes leave what all of them keep. A vertical plane may cut the ground as
+/// well, a horizontal one leaves it whole.
 struct CutPlane {
   enum class Kind { horizontal, vertical };
   /// Side that is drawn: of a horizontal plane below or above it, of a vertical one the left or the right of
@@ -24,8 +24,11 @@ struct CutPlane {
   double bearing_deg = 0;  ///< vertical: of the line, clockwise from frame y (north); -360..360
   /// vertical: a point of the line in frame metres, -1e9..1e9; none: the centre of the box
   std::optional<double> x_m, y_m;
-  double offset_m = 0;  ///< vertical: distance of the line to the right of that point; -1e9..1e9
+  double offset_m = 0;      ///< vertical: distance of the line to the right of that point; -1e9..1e9
+  bool cuts_ground = true;  ///< vertical
 
+  /// True if it cuts the ground now.
+  bool cutsGround() const { return on && kind == Kind::vertical && cuts_ground; }
   bool operator==(const CutPlane& other) const;
   bool operator!=(const CutPlane& other) const { return !(*this == other); }
 };
@@ -33,9 +36,9 @@ struct CutPlane {
 constexpr int kMaxCutPlanes = 3;
 
 /// Parses `horizontal:altitude_m=1500,keep=below` or
-/// `vertical:bearing_deg=90,x_m=..,y_m=..,offset_m=..,keep=left`, or a vertical plane through two points,
-/// `vertical:x1_m=..,y1_m=..,x2_m=..,y2_m=..`. All keys but altitude_m have defaults; on=false switches it
-/// off.
+/// `vertical:bearing_deg=90,x_m=..,y_m=..,offset_m=..,keep=left,ground=cut`, or a vertical plane through two
+/// points, `vertical:x1_m=..,y1_m=..,x2_m=..,y2_m=..`. All keys but altitude_m have defaults; on=false
+/// switches it off.
 /// @throws Error (usage) that names the key, the value and what is allowed
 CutPlane parseCutPlane(const std::string& text);
 /// The text that parseCutPlane() reads back to the same plane.

@@ -1,0 +1,33 @@
+/// The result of a measurement.
+#include "apps/view/panels/panels.h"
+#include "apps/view/panels/path_plot.h"
+#include "apps/view/panels/theme.h"
+#include "apps/view/parts/position_text.h"
+
+namespace emscape::view {
+
+void drawMeasurePanel(PanelContext& context) {
+  const Session& session = context.session;
+  ImGui::TextColored(accentColor(session.theme()), "Measure");
+  if (!session.tool().measurement) {
+    ImGui::TextDisabled("two clicks: distance, bearing, line of sight");
+    return;
+  }
+  const Measurement& measured = *session.tool().measurement;
+  const playback::ViewState& view = session.view();
+  ImGui::Text("%s, straight %s", distanceText(measured.distance_m, view).c_str(),
+              distanceText(measured.slant_m, view).c_str());
+  ImGui::Text("bearing %s, back %s", bearingText(measured.bearing_deg).c_str(),
+              bearingText(measured.back_bearing_deg).c_str());
+  for (const auto& [name, end] : {std::pair("from", &measured.from), std::pair("to", &measured.to)}) {
+    ImGui::TextDisabled("%s", name);
+    ImGui::SameLine();
+    ImGui::TextWrapped("%s, %s above sea level", positionText(end->position, view).c_str(),
+                       heightText(end->height_msl_m, view).c_str());
+  }
+  ImGui::TextWrapped("%s", measured.verdict.c_str());
+  drawPathPlot(measured.path, {ImGui::GetContentRegionAvail().x, 150 * context.scale}, session.theme(),
+               context.scale);
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,90 @@
+#include "apps/view/session/plane_drag.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/scene/plane_frame.h"
+
+namespace emscape::view {
+namespace {
+
+constexpr double kMinPerBox_px =
+    20;  // of a movement through the whole box; below it the handle cannot be dragged
+
+render::Projected pixelOf(const playback::LivePicture& picture, const Vec3d& frame_m) {
+  return render::project(picture.camera, picture.size, picture.box.toDrawn(frame_m));
+}
+
+/// Extent of the box along a direction.
+double extent_m(const render::SceneBox& box, const Vec3d& direction) {
+  const Vec3d size = box.upper_m - box.lower_m;
+  return std::abs(size.x * direction.x) + std::abs(size.y * direction.y) + std::abs(size.z * direction.z);
+}
+
+}  // namespace
+
+std::optional<render::Projected> planeHandle(const playback::LivePicture& picture,
+                                             const render::CutPlane& plane) {
+  const std::optional<render::PlaneFrame> frame =
+      plane.on ? render::frameOf(plane, picture.box) : std::nullopt;
+  if (!frame) return std::nullopt;
+  const Vec3d half = frame->normal * (0.5 * extent_m(picture.box, frame->normal));
+  const render::Projected at = pixelOf(picture, frame->center_m());
+  const render::Projected a = pixelOf(picture, frame->center_m() - half),
+                          b = pixelOf(picture, frame->center_m() + half);
+  const bool is_movable = a.in_front && b.in_front && std::hypot(b.x - a.x, b.y - a.y) > kMinPerBox_px;
+  return at.in_front && is_movable ? std::optional(at) : std::nullopt;
+}
+
+std::optional<std::size_t> planeHandleAt(const Session& session, double x, double y) {
+  constexpr double kReach_px = 12;
+  if (session.picture() == nullptr) return std::nullopt;
+  const std::vector<render::CutPlane>& planes = session.settings().planes;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const std::optional<render::Projected> at = planeHandle(*session.picture(), planes[i]);
+    if (at && std::hypot(at->x - x, at->y - y) < kReach_px) return i;
+  }
+  return std::nullopt;
+}
+
+PlaneDrag::PlaneDrag(const Session& session, std::size_t index, double x, double y)
+    : index_(index), begin_(session.settings().planes[index]) {
+  const playback::LivePicture& picture = *session.picture();
+  const render::PlaneFrame frame = *render::frameOf(begin_, picture.box);
+  handle_m_ = frame.center_m();
+  normal_ = frame.normal;
+  reach_m_ = extent_m(picture.box, normal_);
+  const render::Projected at = pixelOf(picture, handle_m_);
+  offset_x_ = at.x - x;
+  offset_y_ = at.y - y;
+}
+
+void PlaneDrag::moveTo(double x, double y, Session& session) const {
+  std::vector<render::CutPlane> planes = session.settings().planes;
+  if (index_ >= planes.size()) return;
+  const playback::LivePicture& picture = *session.picture();
+  // Newton's method for the point of the normal that is nearest to the cursor in the picture.
+  double moved_m = 0;
+  for (int round = 0; round < 8; ++round) {
+    const double step_m = 1e-3 * reach_m_;
+    const render::Projected at = pixelOf(picture, handle_m_ + normal_ * moved_m),
+                            next = pixelOf(picture, handle_m_ + normal_ * (moved_m + step_m));
+    const double right = next.x - at.x, down = next.y - at.y;
+    const double square = right * right + down * down;
+    if (!at.in_front || !next.in_front || square < 1e-9) return;
+    const double along = ((x + offset_x_ - at.x) * right + (y + offset_y_ - at.y) * down) / square;
+    moved_m = std::clamp(moved_m + along * step_m, -reach_m_, reach_m_);
+  }
+  render::CutPlane moved = begin_;
+  if (begin_.kind == render::CutPlane::Kind::horizontal) {
+    moved.altitude_m = std::clamp(std::round(begin_.altitude_m + moved_m), std::ceil(picture.box.lower_m.z),
+                                  std::floor(picture.box.upper_m.z));
+  } else {
+    moved.offset_m = std::round(begin_.offset_m + moved_m);
+  }
+  if (!render::frameOf(moved, picture.box) || moved == planes[index_]) return;
+  planes[index_] = moved;
+  session.setPlanes(planes);
+}
+
+}  // namespace emscape::view
