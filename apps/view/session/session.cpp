@@ -67,9 +67,9 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
 std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;
   for (const auto& topic : {programVerbs(), timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(),
-                            selectionVerbs(), toolVerbs(),
-                            probeVerbs(), pictureVerbs(), planeVerbs(), transferVerbs(), windowVerbs(),
-                            stateVerbs(), fileVerbs(), recordVerbs()}) {
+                            itemVerbs(), selectionVerbs(), toolVerbs(), probeVerbs(), pictureVerbs(),
+                            planeVerbs(), transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(),
+                            recordVerbs()}) {
     all.insert(all.end(), topic.begin(), topic.end());
   }
   return all;
