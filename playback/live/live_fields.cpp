@@ -89,6 +89,7 @@ void LiveFields::open() {
     quantity_ = quantityOf(wanted_);
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.scenario = scenario_;
+    status_.quantities = source_->quantities();
     status_.times_s = timesOf(*source_);
   } catch (const std::exception& error) {
     source_ = nullptr;
@@ -175,7 +176,9 @@ Frame LiveFields::compute(int index) {
   const bool leaves_a_core = options_.threads == 0 && shares && before.fields_computed > 0;
   (leaves_a_core ? narrow_arena_ : arena_).run([&] { frame = source_->frame(index); });
   cache_.keep(index, frame, distance());
+  auto warnings = std::make_shared<const std::vector<std::string>>(source_->warnings());
   const std::lock_guard<std::mutex> lock(mutex_);
+  status_.warnings = std::move(warnings);
   status_.field_ms = watch.lap_ms();
   ++status_.fields_computed;
   status_.cached_steps = cache_.indices();

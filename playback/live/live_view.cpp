@@ -113,6 +113,8 @@ struct LiveView::Impl {
     status.field_ms = solve.field_ms;
     status.fields_computed = solve.fields_computed;
     status.cached_steps = std::move(solve.cached_steps);
+    status.quantities = std::move(solve.quantities);
+    status.warnings = std::move(solve.warnings);
     status.error = solve.error.empty() ? cast.error : solve.error;
     status.error_code = solve.error.empty() ? ErrorCode::other : solve.error_code;
     status.wake_ups = cast.wake_ups + solve.wake_ups;

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "base/text/time_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/scene.h"
@@ -34,6 +35,7 @@ Painter::Painter(const ViewState& view, const ComputeTarget& target, bool must_s
     : view_(view), must_show_isosurface_(must_show_isosurface), renderer_(target.rendererOptions()) {
   renderer_.setSettings(view.settings);
   annotations_.theme = view.theme;
+  annotations_.scale = view.label_scale;
 }
 
 void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
@@ -71,7 +73,8 @@ void Painter::setFrame(const Frame& frame) {
   }
   frame_ = frame;
   const volume::VolumeInfo& info = frame.info();
-  annotations_.time = fmt::format("t = {:g} s", info.time_s);
+  const double span_s = scene_ ? scene_->scenario->clock.duration_s : 0;
+  annotations_.time = info.has_time ? "t = " + timeText(info.time_s, span_s) : "";
   annotations_.time_utc = info.time_utc;
   annotations_.subtitle = subtitleOf(info);
   annotations_.georeferenced = frame.grid().georeferenced;
@@ -138,8 +141,11 @@ void Painter::setScenery(const ViewState& view) {
   view_.show_emitters = view.show_emitters;
   view_.labels = view.labels;
   view_.theme = annotations_.theme = view.theme;
+  view_.label_scale = annotations_.scale = view.label_scale;
   setMarkers();
-  if (frame_) setGround();
+  if (!frame_) return;
+  setGround();
+  setLegend();
 }
 
 render::FrameReport Painter::drawCells(bool is_complete, const StopFlag* stop) {

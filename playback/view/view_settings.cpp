@@ -22,6 +22,7 @@ namespace spec = document::spec;
 
 constexpr double kMaxRate = 1e4;
 constexpr double kMaxValue = 1e30;
+constexpr double kMaxLabelScale = 4;
 constexpr int kMaxItems = 10000;
 constexpr int kMaxText = 1 << 20;
 
@@ -250,7 +251,7 @@ void addRenderSettings(Table& table) {
           "compositing of the samples")
       .withOption("--mode", "Compositing mode; default: dvr")
       .withVerb("mode", "mode", "dvr, mida, mip or iso; without a name the next one")
-      .withAction("Next mode", "M");
+      .withAction("Mode", "M");
   table
       .member(
           "step_voxels", within(render::kStepLimits),
@@ -339,6 +340,18 @@ void addScenery(Table& table) {
       .withOption("--labels", "Labels of the emitters; default: all")
       .withVerb("labels", "labels", "Labels of the emitters: off, names or all; without a name the next one")
       .withAction("Labels", "N");
+  table
+      .member(
+          "label_scale", spec::number().from(0).to(kMaxLabelScale),
+          [](auto& view) -> auto& { return view.label_scale; },
+          "minimum size of texts and symbols; 1: that of a picture of 1200x900; 0: follows the picture's size")
+      .withEffect(&ViewChange::ground)  // their margins move the camera: cast again
+      .withOption("--label-scale",
+                  "Minimum size of texts and symbols; 1: that of a picture of 1200x900; 0: follows the "
+                  "picture's size")
+      .withVerb("label_scale", "factor",
+                "Minimum size of the texts and symbols in the picture; 0: follows the picture's size. The verb "
+                "scale sets it too");
   table
       .parsed(
           "size", spec::listOf(spec::simple(ValueType::integer).from(1).to(render::kMaxImageSide), 2, 2),

@@ -9,7 +9,6 @@
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/parameter_rows.h"
 #include "apps/view/panels/theme.h"
-#include "apps/view/parts/shown_quantity.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -102,30 +101,11 @@ void drawSwitch(PanelContext& context, ParameterRows& rows, const PanelState& st
   ParameterRows::end();
 }
 
-void drawQuantity(PanelContext& context, ParameterRows& rows, const scenario::Scenario& scenario) {
-  if (!rows.begin("quantity")) return;
-  rows.label("shown", "The quantity in the picture\n--quantity NAME", false);
-  ImGui::TableNextColumn();
-  ImGui::SetNextItemWidth(-1);
-  const std::string& chosen = context.session.view().quantity;
-  const std::string shown = chosen.empty() ? scenario.output.quantities.front() : chosen;
-  if (beginComboOfName("##quantity", shown)) {
-    for (const std::string& name : quantitiesOf(scenario)) {
-      pushNameId(name);
-      if (selectableName(name, name == shown)) context.session.perform({"quantity", {{"name", name}}});
-      ImGui::PopID();
-    }
-    ImGui::EndCombo();
-  }
-  ParameterRows::end();
-}
-
 void drawBody(PanelContext& context, PanelState& state, const Section& section) {
   ParameterRows rows(context, state.edited, state.typing);
   pushNameId(section.path);
   try {
     if (section.kind) drawSwitch(context, rows, state, section);
-    if (section.path == "output") drawQuantity(context, rows, *state.scenario);
     rows.draw(state.groupAt(section.path));
   } catch (const Error& error) {
     ImGui::TextWrapped("%s", error.message().c_str());
@@ -219,11 +199,13 @@ void drawScenarioPanel(PanelContext& context) {
     }
   }
   ImGui::Spacing();
-  ImGui::BeginChild("sections");
+  // With other panels above, all share the scroll bar of the side.
+  const bool scrolls = !context.session.panels.colors && !context.session.panels.planes;
+  if (scrolls) ImGui::BeginChild("sections");
   drawSections(context, state, state.emitters);
   drawSections(context, state, state.platforms);
   drawSections(context, state, state.others);
-  ImGui::EndChild();
+  if (scrolls) ImGui::EndChild();
 }
 
 }  // namespace emscape::view

@@ -24,8 +24,11 @@ playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::
   return live;
 }
 
-playback::ViewState withoutSize(playback::ViewState view) {
+/// The first view. Its size is set when the window has one.
+playback::ViewState firstView(const ViewOptions& options, const WindowControl& window) {
+  playback::ViewState view = options.view;
   view.size = {};
+  if (options.fits_labels) view.label_scale = window.scale();
   return view;
 }
 
@@ -38,7 +41,7 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       log_(log),
       target_(target),
       wake_(std::move(wake)),
-      view_(withoutSize(options.view)),
+      view_(firstView(options, window)),
       live_(view_, liveOptionsOf(options, target), wake_),
       edit_queue_(wake_),
       prober_(wake_),
@@ -55,7 +58,7 @@ std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;
   for (const auto& topic :
        {timeVerbs(), cameraVerbs(), scenarioVerbs(), probeVerbs(), pictureVerbs(), planeVerbs(),
-        transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(), recordVerbs()}) {
+        transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(), recordVerbs(), quitVerbs()}) {
     all.insert(all.end(), topic.begin(), topic.end());
   }
   return all;
@@ -105,6 +108,8 @@ void Session::takeScenario() {
       view_.edits = edits_->edits();
       shown_scenario_ = edits_->scenario();
       watchFiles();
+    } else if (std::exchange(panels.scenario, false)) {
+      panels.colors = true;  // there is nothing to change but the colours
     }
   }
   if (edits_) timeline_.setScenario(*edits_->scenario());
@@ -154,8 +159,14 @@ bool Session::update() {
     if (!reported_error_.empty()) tell(reported_error_, true);
   }
   revertRejected();
-  if (const auto recorded = files_->recorder.takeOutcome()) tell(recorded->text, recorded->is_error);
+  if (const auto recorded = files_->recorder.takeOutcome()) {
+    tell(recorded->text, recorded->is_error);
+    if (std::exchange(quits_when_recorded_, false) && !recorded->is_error) {
+      perform({"quit", {{"edits", quit_answers_.value("edits", "ask")}}});
+    }
+  }
   takeChangedFiles();
+  if (takeWarnings(now_s)) touched_ = true;
   writePendingPicture();
   keepEdits(now_s);
   const bool notice_ends = !notice_.text.empty() && now_s - notice_.since_s > (notice_.is_error ? 12 : 4);
@@ -173,6 +184,7 @@ std::optional<double> Session::nextUpdate_s() const {
   if (timeline_.playing()) return std::min(kRedraw_s, timeline_.untilNextStep_s().value_or(kRedraw_s));
   if (!notice_.text.empty()) return 0.5;
   if (files_->recorder.running() || files_->browser.reading()) return 0.1;
+  if (status_.warnings != joined_warnings_) return 0.5;
   if (keep_at_s_) return std::max(0.0, *keep_at_s_ - log_.now_s());
   return std::nullopt;
 }

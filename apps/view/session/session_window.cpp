@@ -1,7 +1,10 @@
 /// Verbs of the window.
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "apps/view/files/file_endings.h"
+#include "apps/view/files/picture_files.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 
@@ -26,6 +29,8 @@ const std::vector<PanelName>& panelNames() {
       {"time", &Panels::time, false},        {"open", &Panels::open, false},
       {"record", &Panels::record, false},    {"restore", &Panels::restore, false},
       {"unsaved", &Panels::unsaved, false},  {"changed", &Panels::changed, false},
+      {"replace", &Panels::replace, false},  {"warnings", &Panels::warnings, false},
+      {"side", &Panels::side, false},
   };
   return all;
 }
@@ -35,7 +40,7 @@ std::vector<Verb> Session::windowVerbs() {
       {"panel",
        {{"name", kText, true, {}, panelChoices()}, {"open", kBoolean, false}},
        "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, record, "
-       "restore, unsaved, changed, all",
+       "restore, unsaved, changed, replace, warnings, side (over the picture of a narrow window), all",
        [](Session& session, const Command& command) {
          const std::string name = command.text("name");
          if (name == "all") {
@@ -46,12 +51,14 @@ std::vector<Verb> Session::windowVerbs() {
            if (name != panel.name) continue;
            bool& open = session.panels.*panel.open;
            open = command.boolean("open", session.panels.hidden || !open);
-           if (open) session.panels.hidden = false;
+           if (!open) continue;
+           session.panels.hidden = false;
+           if (panel.stays) session.panels.side = true;
          }
        }},
       {"scale",
        {{"factor", kNumber, false, {kMinScale, kMaxScale}}, {"change", kNumber, false, {-1, 1, true, true}}},
-       "Size of texts and controls, 0.5..4; or `change`, 1 or -1: a step larger or smaller",
+       "Size of texts and controls, 0.5..4, in the picture too; or `change`, 1 or -1: a step larger or smaller",
        [](Session& session, const Command& command) {
          constexpr double kStep = 1.125;
          if (command.has("factor") == command.has("change")) {
@@ -60,6 +67,8 @@ std::vector<Verb> Session::windowVerbs() {
          const double change = command.number("change") < 0 ? 1 / kStep : kStep;
          session.window_.setScale(command.has("factor") ? command.number("factor")
                                                         : session.window_.scale() * change);
+         session.change(
+             [&](playback::ViewState& view) { view.label_scale = session.window_.scale(); });
        }},
       {"resize",
        {{"width", kNumber, true, kSize_px}, {"height", kNumber, true, kSize_px}},
@@ -69,15 +78,24 @@ std::vector<Verb> Session::windowVerbs() {
                                 static_cast<int>(command.number("height")));
        }},
       {"screenshot",
-       {{"file", kText, false, {}, {}, requirePictureEnding}},
-       "Writes the window as PNG; default: a new emscape-NNNN.png",
-       [](Session& session, const Command& command) { session.window_.screenshot(command.text("file")); }},
+       {{"file", kText, false, {}, {}, requirePictureEnding}, {"replace", kBoolean, false}},
+       "Writes the window as PNG; default: a new emscape-NNNN.png in the user's folder of pictures, else in "
+       "that of the input",
+       [](Session& session, const Command& command) {
+         const std::string given = command.text("file");
+         const std::string file = given.empty() ? newPictureFile(session.view_.input) : given;
+         if (!session.asksToReplace(command, file)) session.window_.screenshot(file);
+       }},
       {"back",
        {},
        "Closes what is open",
        [](Session& session, const Command&) {
          session.notice_ = {};
          if (session.isDragging()) return session.cancelDrag();
+         Panels& panels = session.panels;
+         // A question or a file browser over another dialog is closed alone.
+         if (std::exchange(panels.replace, false)) return;
+         if (panels.record && std::exchange(panels.open, false)) return;
          for (const PanelName& panel : panelNames()) {
            if (!panel.stays) session.panels.*panel.open = false;
          }

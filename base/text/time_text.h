@@ -1,0 +1,12 @@
+/// Times as people read them.
+#pragma once
+
+#include <string>
+
+namespace emscape {
+
+/// "12.5 s", "90 s"; from an hour on "1:30:00", from a day on "1 d 02:00:00", with tenths only where they are
+/// not 0. @param span_s  the longest time it stands beside, which decides the form; 0: the time itself
+std::string timeText(double time_s, double span_s = 0);
+
+}  // namespace emscape
