@@ -50,13 +50,13 @@ bool editsText(const KeyChord& chord) {
   return !chord.control || kEditing.count(chord.key) != 0;
 }
 
-/// The largest rectangle of a picture's proportions in the middle of an area: until the picture of a new size is
-/// there, the previous one is not distorted.
+/// The largest rectangle of a picture's proportions in the middle of an area: until the picture of a new size
+/// is there, the previous one is not distorted.
 Area fittedInto(const Area& area, render::ImageSize size) {
   const int width = static_cast<int>(area.width), height = static_cast<int>(area.height);
   if (size.count() == 0 || (size.width == width && size.height == height)) return area;
-  const float scale = std::min(area.width / static_cast<float>(size.width),
-                               area.height / static_cast<float>(size.height));
+  const float scale =
+      std::min(area.width / static_cast<float>(size.width), area.height / static_cast<float>(size.height));
   const float shown_width = std::floor(scale * static_cast<float>(size.width));
   const float shown_height = std::floor(scale * static_cast<float>(size.height));
   return {std::floor(area.x + (area.width - shown_width) / 2),
@@ -204,6 +204,7 @@ void App::handleRequests() {
 bool App::panelsChanged() {
   std::string open;
   for (const PanelName& panel : panelNames()) open += session_->panels.*panel.open ? '1' : '0';
+  open += session_->scenario() ? 's' : '-';  // the rows of What if appear
   return std::exchange(open_panels_, open) != open;
 }
 

@@ -6,7 +6,7 @@
 
 #include "apps/common/interrupt.h"
 #include "apps/view/app.h"
-#include "apps/view/parts/message_log.h"
+#include "apps/view/files/message_log.h"
 #include "base/text/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"

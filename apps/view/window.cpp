@@ -72,7 +72,8 @@ void setIcon(GLFWwindow* window) {
       const bool is_mast = away < 5.5 || (std::abs(right) < 2 && up < 0 && y < 54);
       const bool is_ground = y >= 54;
       const unsigned color = is_mast ? 0xF2F4F7 : is_wave ? 0x4FA3E3 : is_ground ? 0x6E7A4D : 0x181D25;
-      unsigned char* const pixel = &pixels[4 * (static_cast<std::size_t>(y) * kSide + static_cast<std::size_t>(x))];
+      unsigned char* const pixel =
+          &pixels[4 * (static_cast<std::size_t>(y) * kSide + static_cast<std::size_t>(x))];
       pixel[0] = static_cast<unsigned char>(color >> 16);
       pixel[1] = static_cast<unsigned char>(color >> 8 & 0xFF);
       pixel[2] = static_cast<unsigned char>(color & 0xFF);

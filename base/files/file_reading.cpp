@@ -51,7 +51,8 @@ std::string readWholeText(const fs::path& path, std::uintmax_t max_bytes) {
 std::string readTextOrPipe(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  if (!fs::is_fifo(status) && !fs::is_character_file(status) && !fs::is_socket(status)) return readWholeText(path);
+  if (!fs::is_fifo(status) && !fs::is_character_file(status) && !fs::is_socket(status))
+    return readWholeText(path);
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw Error(ErrorCode::bad_input, {path.string()}, "cannot read: " + causeOf(errno));

@@ -10,7 +10,7 @@ namespace emscape::playback {
 /// One instant of a series on disk.
 struct VolumeFile {
   std::filesystem::path file;
-  double time_s = 0;  ///< of the file; of the list (.pvd) for a file without a time
+  double time_s = 0;     ///< of the file; of the list (.pvd) for a file without a time
   bool has_time = true;  ///< false: neither states it
 };
 

@@ -44,9 +44,9 @@ struct SeriesRange {
 };
 
 struct FieldsStatus {
-  std::vector<double> times_s;                         ///< of the source; empty before it is open
-  std::shared_ptr<const scenario::Scenario> scenario;  ///< as it was opened; may be null
-  std::vector<std::string> quantities;                 ///< of the input's files
+  std::vector<double> times_s;                               ///< of the source; empty before it is open
+  std::shared_ptr<const scenario::Scenario> scenario;        ///< as it was opened; may be null
+  std::vector<std::string> quantities;                       ///< of the input's files
   std::shared_ptr<const std::vector<std::string>> warnings;  ///< of the last field; may be null
   std::vector<int> cached_steps;
   double field_ms = 0;  ///< of the last field

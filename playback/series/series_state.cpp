@@ -22,12 +22,8 @@ Json toJson(const SeriesState& state) {
   for (std::size_t c = 0; c < state.channels.size(); ++c) {
     ranges[state.channels[c]] = state.complete ? playback::toJson(state.ranges[c]) : Json(nullptr);
   }
-  return {{"format_version", kFormatVersion},
-          {"complete", state.complete},
-          {"ranges", ranges},
-          {"scenario_file", state.scenario_file},
-          {"edits", state.edits},
-          {"recipe", state.recipe}};
+  return {{"format_version", kFormatVersion},     {"complete", state.complete}, {"ranges", ranges},
+          {"scenario_file", state.scenario_file}, {"edits", state.edits},       {"recipe", state.recipe}};
 }
 
 SeriesState fromJson(const Json& json) {

@@ -344,14 +344,16 @@ void addScenery(Table& table) {
       .member(
           "label_scale", spec::number().from(0).to(kMaxLabelScale),
           [](auto& view) -> auto& { return view.label_scale; },
-          "minimum size of texts and symbols; 1: that of a picture of 1200x900; 0: follows the picture's size")
+          "minimum size of texts and symbols; 1: that of a picture of 1200x900; 0: follows the picture's "
+          "size")
       .withEffect(&ViewChange::ground)  // their margins move the camera: cast again
       .withOption("--label-scale",
                   "Minimum size of texts and symbols; 1: that of a picture of 1200x900; 0: follows the "
                   "picture's size")
-      .withVerb("label_scale", "factor",
-                "Minimum size of the texts and symbols in the picture; 0: follows the picture's size. The verb "
-                "scale sets it too");
+      .withVerb(
+          "label_scale", "factor",
+          "Minimum size of the texts and symbols in the picture; 0: follows the picture's size. The verb "
+          "scale sets it too");
   table
       .parsed(
           "size", spec::listOf(spec::simple(ValueType::integer).from(1).to(render::kMaxImageSide), 2, 2),

@@ -298,7 +298,7 @@ double legendHeight(const Style& style, const Legend& legend) {
 }
 
 PixelArea legendHeading(ImageSize size, const Annotations& annotations) {
-  const Style style(size, annotations);
+  const Style style(size, annotations.theme, annotations.scale);
   const Legend& legend = *annotations.legend;
   const double content = contentWidth(style, legend);
   const double gap = legend.function.categorical ? 0 : 10 * style.unit;

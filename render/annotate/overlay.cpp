@@ -20,7 +20,7 @@ constexpr double kMargin = 26;
 constexpr double kTitle = 23;
 constexpr double kCompassRadius = 40;
 constexpr double kMinUnit = 0.62;
-constexpr double kMaxOfSize = 2.2;  // unit that a scale may cause, in that of the picture's size
+constexpr double kMaxOfSize = 2.2;     // unit that a scale may cause, in that of the picture's size
 constexpr double kNamePart = 1.0 / 3;  // maximum width of a name, of the picture's
 constexpr double kMinName = 160;
 
@@ -112,7 +112,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
 template <class AnyImage>
 Image8 composed(const AnyImage& cast, const Camera& camera, const SceneBox& box,
                 const Annotations& annotations, const HiddenTest& hidden) {
-  const Style style(cast.size, annotations);
+  const Style style(cast.size, annotations.theme, annotations.scale);
   const Projector projector{camera, box, cast.size};
   Canvas canvas(cast.size);
   drawBehind(canvas, style, projector, annotations);
@@ -135,13 +135,13 @@ Theme parseTheme(const std::string& name) {
   return parseName<Theme>("theme", name);
 }
 
-Style::Style(ImageSize size, const Annotations& annotations) {
+Style::Style(ImageSize size, Theme theme, double scale) {
   const double by_size = std::min(size.width / 1200.0, size.height / 900.0);
-  unit = std::max({kMinUnit, by_size, std::min(annotations.scale, kMaxOfSize * by_size)});
+  unit = std::max({kMinUnit, by_size, std::min(scale, kMaxOfSize * by_size)});
   text_px *= unit;
   small_px *= unit;
   name_px = std::max(kNamePart * size.width, kMinName * unit);
-  if (annotations.theme == Theme::dark) {
+  if (theme == Theme::dark) {
     background_top = parseColor("#10141b");
     background_bottom = parseColor("#1d242f");
     text = parseColor("#f2f4f7");
@@ -167,7 +167,7 @@ double headerHeight(const Style& style) {
 }
 
 FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
-  const Style style(size, annotations);
+  const Style style(size, annotations.theme, annotations.scale);
   const double axis_px = annotations.axes ? 52 * style.unit : 0;
   const double side_px = 20 * style.unit + axis_px;
   const bool has_texts = !annotations.title.empty() || !annotations.time.empty();
@@ -182,7 +182,7 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
 
 void drawLayers(OverlayLayers& layers, ImageSize size, const Camera& camera, const SceneBox& box,
                 const Annotations& annotations, const HiddenTest& hidden) {
-  const Style style(size, annotations);
+  const Style style(size, annotations.theme, annotations.scale);
   const Projector projector{camera, box, size};
   layers.size = size;
   parallelFor(2, 1, [&](int begin, int end) {

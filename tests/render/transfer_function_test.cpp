@@ -91,8 +91,8 @@ TEST(TransferFunction, DefaultOfAVolumeFollowsItsValuesAndEndsAtRoundNumbers) {
 }
 
 TEST(TransferFunction, DefaultOfValuesOnBothSidesOfZeroIsSymmetricalAndDiverging) {
-  auto volume = *testing::makeVolume({20, 20, 20}, {1, 1, 1},
-                                     [](int i, int, int) { return i < 10 ? -0.3F : 0.5F; });
+  auto volume =
+      *testing::makeVolume({20, 20, 20}, {1, 1, 1}, [](int i, int, int) { return i < 10 ? -0.3F : 0.5F; });
   volume.info.floor = volume::kNoFloor;
   const TransferFunction f = defaultTransferFunction(volume);
   EXPECT_DOUBLE_EQ(f.lowest(), -f.highest());

@@ -15,12 +15,13 @@ using testing::HasSubstr;
 
 class Loss : public testing::Test {
  protected:
-  Loss() : shown_(optionsFor(folder_.write("own.yaml", readFile(shippedScenario("quick.yaml"))), {160, 120})) {
+  Loss()
+      : shown_(optionsFor(folder_.write("own.yaml", readFile(shippedScenario("quick.yaml"))), {160, 120})) {
     shown_.settle();
   }
   void record() {
-    shown_.perform(
-        fmt::format(R"({{"do":"record","file":"{}","begin_s":0,"end_s":2,"step_s":0.25}})", folder_ / "frames"));
+    shown_.perform(fmt::format(R"({{"do":"record","file":"{}","begin_s":0,"end_s":2,"step_s":0.25}})",
+                               folder_ / "frames"));
   }
   bool waitUntilRecorded() {
     return shown_.waitUntil([this] { return !shown_.files->recorder.running(); });
@@ -80,7 +81,9 @@ TEST_F(Loss, EditsAndARecordingAreBothAskedFor) {
 
 TEST_F(Loss, AnExistingFileIsReplacedOnlyAfterAnAnswer) {
   for (const char* verb : {"save", "save_state", "save_transfer", "picture"}) {
-    const std::string ending = verb == std::string("save") ? "yaml" : verb == std::string("picture") ? "png" : "json";
+    const std::string ending = verb == std::string("save")      ? "yaml"
+                               : verb == std::string("picture") ? "png"
+                                                                : "json";
     const std::string file = folder_.write(fmt::format("{}.{}", verb, ending), "precious");
     shown_.perform(fmt::format(R"({{"do":"{}","file":"{}"}})", verb, file));
     EXPECT_TRUE(shown_->panels.replace) << verb;
@@ -104,8 +107,8 @@ TEST_F(Loss, ARecordingDoesNotReplaceAFilmWithoutAnAnswer) {
 }
 
 TEST_F(Loss, ARecordingHasTheRequestedSize) {
-  shown_.perform(fmt::format(
-      R"({{"do":"record","file":"{}","begin_s":1,"end_s":1,"width":96,"height":54}})", folder_ / "one.png"));
+  shown_.perform(fmt::format(R"({{"do":"record","file":"{}","begin_s":1,"end_s":1,"width":96,"height":54}})",
+                             folder_ / "one.png"));
   ASSERT_TRUE(waitUntilRecorded());
   EXPECT_EQ(render::readPng(folder_ / "one.png").size, (render::ImageSize{96, 54}));
   EXPECT_THAT(shown_.perform(R"({"do":"record","file":"x.png","width":96})"), HasSubstr("width and height"));

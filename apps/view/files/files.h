@@ -9,8 +9,8 @@
 
 #include "apps/view/files/examples.h"
 #include "apps/view/files/file_browser.h"
+#include "apps/view/files/message_log.h"
 #include "apps/view/files/recorder.h"
-#include "apps/view/parts/message_log.h"
 #include "emscape/playback/view/view_state.h"
 #include "playback/editing/autosave.h"
 

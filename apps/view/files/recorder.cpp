@@ -53,8 +53,8 @@ RecordEstimate estimateOf(const RecordRange& range, double begin_s, double end_s
   estimate.film_s = pictures / range.frames_per_s;
   estimate.speed = step_s * range.frames_per_s;
   estimate.work_s = pictures * picture_ms / 1000;
-  estimate.bytes = pictures * static_cast<double>(size.count()) *
-                   (is_video ? kVideoBytesPerPixel : kBytesPerPixel);
+  estimate.bytes =
+      pictures * static_cast<double>(size.count()) * (is_video ? kVideoBytesPerPixel : kBytesPerPixel);
   return estimate;
 }
 

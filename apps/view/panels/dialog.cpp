@@ -33,12 +33,11 @@ void drawBehind(const char* title, float scale, Waits waits) {
   const Place place = placeOf(title);
   const float reach = 24 * scale;
   ImGui::SetNextWindowPos(dims ? ImVec2(0, 0) : ImVec2(place.from.x - reach, place.from.y - reach));
-  ImGui::SetNextWindowSize(dims ? ImGui::GetIO().DisplaySize
-                                : ImVec2(place.to.x - place.from.x + 2 * reach,
-                                         place.to.y - place.from.y + 2 * reach));
+  ImGui::SetNextWindowSize(
+      dims ? ImGui::GetIO().DisplaySize
+           : ImVec2(place.to.x - place.from.x + 2 * reach, place.to.y - place.from.y + 2 * reach));
   ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
-                           ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav |
-                           ImGuiWindowFlags_NoBackground;
+                           ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBackground;
   if (!dims) flags |= ImGuiWindowFlags_NoInputs;
   ImGui::Begin((std::string(title) + "##behind").c_str(), nullptr, flags);
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -70,8 +69,7 @@ bool beginDialog(PanelContext& context, const char* title, bool& open, const ImV
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.0F, s));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(16 * s, 14 * s));
   if (size.x <= 0) flags |= ImGuiWindowFlags_AlwaysAutoResize;
-  ImGui::Begin(title, &open,
-               flags | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+  ImGui::Begin(title, &open, flags | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
   const ImVec2 at = ImGui::GetWindowPos(), own = ImGui::GetWindowSize();
   // Stays inside when the window shrinks or the dialog is moved.
   const ImVec2 inside{std::clamp(at.x, margin, std::max(margin, screen.x - margin - own.x)),

@@ -117,7 +117,8 @@ void drawEntries(PanelContext& context, TypedPath& typed) {
       scrolled_to = i;
       const bool is_entered = ImGui::IsMouseDoubleClicked(0) && (is_folder || !browser.savesFile());
       if (is_entered) openFile(session, browser.choose());
-      if (!is_folder && browser.savesFile()) std::snprintf(typed.data(), typed.size(), "%s", entry.name.c_str());
+      if (!is_folder && browser.savesFile())
+        std::snprintf(typed.data(), typed.size(), "%s", entry.name.c_str());
     }
     if (is_folder) ImGui::PopStyleColor();
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 80 * context.scale);

@@ -12,7 +12,8 @@ constexpr const char* kFirstMinutes[]{
     "What if (W): change a power, a height, a pattern; the field follows. Ctrl+Z takes it back.",
     "P locks the probe at the cursor: the value there, the path to each emitter, and why it is blocked.",
     "T: colours and opacity. C: the difference to the scenario as it was opened. H: a cut.",
-    "Ctrl+S saves the changed scenario, Ctrl+M records a film, Ctrl+Shift+C copies the command for this picture.",
+    "Ctrl+S saves the changed scenario, Ctrl+M records a film, Ctrl+Shift+C copies the command for this "
+    "picture.",
 };
 
 void drawFirstMinutes(PanelContext& context) {

@@ -16,7 +16,8 @@ void drawLegendMenu(PanelContext& context, const Area& picture) {
   const auto at = [&](double x, double y) {
     return ImVec2(picture.x + static_cast<float>(x), picture.y + static_cast<float>(y));
   };
-  const ImVec2 from = at(heading.x, heading.y), to = at(heading.x + heading.width, heading.y + heading.height);
+  const ImVec2 from = at(heading.x, heading.y),
+               to = at(heading.x + heading.width, heading.y + heading.height);
   const float margin = 4 * s, arrow = 5 * s;
   ImGui::SetNextWindowPos({from.x - margin, from.y - margin});
   ImGui::SetNextWindowSize({to.x - from.x + 2 * margin, to.y - from.y + 2 * margin});

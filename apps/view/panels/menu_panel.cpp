@@ -71,9 +71,8 @@ void drawAction(PanelContext& context, const Action& action) {
 }
 
 /// A submenu of values to choose from. @param key  changes to the next one
-void drawChoices(PanelContext& context, const std::string& title, const std::string& key,
-                 const std::vector<std::string>& values, const std::string& present,
-                 const std::function<void(const std::string&)>& choose) {
+void drawChoices(const std::string& title, const std::string& key, const std::vector<std::string>& values,
+                 const std::string& present, const std::function<void(const std::string&)>& choose) {
   if (!ImGui::BeginMenu(title.c_str(), !values.empty())) return;
   for (const std::string& value : values) {
     if (ImGui::MenuItem(value.c_str(), nullptr, value == present)) choose(value);
@@ -87,15 +86,18 @@ bool drawChoicesOf(PanelContext& context, const Action& action) {
   Session& session = context.session;
   if (action.name == std::string("Next pattern of rays")) {
     std::vector<std::string> patterns{"auto"};
-    for (const render::Pattern pattern : render::allPatterns()) patterns.emplace_back(render::toString(pattern));
+    for (const render::Pattern pattern : render::allPatterns())
+      patterns.emplace_back(render::toString(pattern));
     const auto& pattern = session.view().pattern;
-    drawChoices(context, "Rays", keyOf(action), patterns, pattern ? render::toString(*pattern) : "auto",
-                [&](const std::string& name) { session.perform({"pattern", {{"pattern", name}}}); });
+    drawChoices("Rays", keyOf(action), patterns, pattern ? render::toString(*pattern) : "auto",
+                [&](const std::string& name) {
+                  session.perform({"pattern", {{"pattern", name}}});
+                });
     return true;
   }
   for (const playback::ViewSetting& setting : playback::viewSettings()) {
     if (setting.action != action.name || !setting.isChoice()) continue;
-    drawChoices(context, setting.action, keyOf(action), setting.spec.choices, setting.text(session.view()),
+    drawChoices(setting.action, keyOf(action), setting.spec.choices, setting.text(session.view()),
                 [&](const std::string& name) {
                   session.perform({setting.verb, {{setting.argument, name}}});
                 });
@@ -106,7 +108,8 @@ bool drawChoicesOf(PanelContext& context, const Action& action) {
 
 void drawQuantities(PanelContext& context) {
   Session& session = context.session;
-  const std::vector<ShownQuantity> quantities = session.picture() ? session.quantities() : std::vector<ShownQuantity>();
+  const std::vector<ShownQuantity> quantities =
+      session.picture() ? session.quantities() : std::vector<ShownQuantity>();
   if (!ImGui::BeginMenu("Quantity", quantities.size() > 1)) return;
   drawQuantityList(context, quantities);
   ImGui::EndMenu();
@@ -116,10 +119,10 @@ void drawViewMenu(PanelContext& context) {
   Session& session = context.session;
   drawQuantities(context);
   const playback::TransferEditor* const transfer = session.transfer();
-  drawChoices(context, "Colour map", "",
-              transfer ? playback::TransferEditor::presets() : std::vector<std::string>(),
-              transfer ? transfer->colorMap() : "",
-              [&](const std::string& name) { session.perform({"transfer", {{"colors", name}}}); });
+  drawChoices("Colour map", "", transfer ? playback::TransferEditor::presets() : std::vector<std::string>(),
+              transfer ? transfer->colorMap() : "", [&](const std::string& name) {
+                session.perform({"transfer", {{"colors", name}}});
+              });
   std::set<std::string> drawn;
   bool was_item = false;
   for (const Action& action : actions()) {

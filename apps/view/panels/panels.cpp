@@ -54,8 +54,8 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
     layout.picture = {0, 0, width, height};
     return layout;
   }
-  // The picture keeps the largest part of the window. Where that leaves too little for the side panel, it lies
-  // over the picture while it is used, and the time line is reduced to its buttons.
+  // The picture keeps the largest part of the window. Where that leaves too little for the side panel, it
+  // lies over the picture while it is used, and the time line is reduced to its buttons.
   const bool is_narrow = width < 620 * scale, is_low = height < 420 * scale;
   const float status_height = 30 * scale;
   layout.has_side = session.hasInput() && (panels.scenario || panels.colors || panels.planes);
@@ -107,8 +107,8 @@ bool numberField(const char* id, double& value, const char* format) {
 }
 
 void drawSideButton(PanelContext& context) {
-  const Layout layout = layoutOf(context.session, ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y,
-                                 context.scale);
+  const Layout layout =
+      layoutOf(context.session, ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y, context.scale);
   if (!layout.side_is_over) return;
   const char* const text = context.session.panels.side ? "Picture" : "Panels";
   ImGui::SameLine(ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text).x - 24 * context.scale);
@@ -170,10 +170,10 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   if (session.picture()) {
     ImGui::SameLine(0, 12 * s);
     // The picture and the buttons of the time line state the time; here only what differs.
-    const std::string right = status.shown_s == status.asked_s
-                                  ? ""
-                                  : fmt::format("requested {}, shown {}", timeText(status.asked_s),
-                                                timeText(status.shown_s));
+    const std::string right =
+        status.shown_s == status.asked_s
+            ? ""
+            : fmt::format("requested {}, shown {}", timeText(status.asked_s), timeText(status.shown_s));
     const float right_x = area.width - ImGui::CalcTextSize(right.c_str()).x - 12 * s;
     const float room = right_x - ImGui::GetCursorPosX() - 12 * s;
     const std::string left = statusText(session, room);

@@ -63,8 +63,8 @@ void drawPlanesPanel(PanelContext& context);
 /// Panels of colours, planes and scenario, stacked.
 void drawSidePanel(PanelContext& context, const Layout& layout);
 void drawTimeline(PanelContext& context, const Area& area);
-/// Height of the time line (pixels): with as many rows of emitters as fit, without them and the axis if it has
-/// no span or the room is too little. 0: it is not shown. @param room  for it (pixels)
+/// Height of the time line (pixels): with as many rows of emitters as fit, without them and the axis if it
+/// has no span or the room is too little. 0: it is not shown. @param room  for it (pixels)
 float timelineHeight(const Session& session, float scale, float room);
 /// The timeline's buttons: transport_panel.cpp.
 void drawTransport(PanelContext& context);

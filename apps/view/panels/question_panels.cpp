@@ -77,9 +77,9 @@ namespace {
 void drawRecordingQuestion(PanelContext& context, const Json& answers) {
   Session& session = context.session;
   const Recorder::Progress progress = session.files().recorder.progress();
-  ImGui::TextUnformatted(progress.total > 0
-                             ? fmt::format("A recording is {} of {}:", progress.pictures, progress.total).c_str()
-                             : "A recording is being opened:");
+  ImGui::TextUnformatted(
+      progress.total > 0 ? fmt::format("A recording is {} of {}:", progress.pictures, progress.total).c_str()
+                         : "A recording is being opened:");
   ImGui::TextDisabled("%s", progress.output.c_str());
   ImGui::Spacing();
   const auto answer = [&](const char* recording) {
@@ -126,7 +126,8 @@ void drawUnsavedQuestion(PanelContext& context) {
   Session& session = context.session;
   if (!beginDialog(context, "Quit", session.panels.unsaved)) return;
   const Json answers = session.quitAnswers();
-  const bool asks_recording = session.files().recorder.running() && answers.value("recording", "ask") == "ask";
+  const bool asks_recording =
+      session.files().recorder.running() && answers.value("recording", "ask") == "ask";
   if (asks_recording) {
     drawRecordingQuestion(context, answers);
   } else {

@@ -112,7 +112,8 @@ void drawSize(const PanelContext& context, Typed& typed) {
 }
 
 std::string bytesText(double bytes) {
-  return bytes < 1e9 ? fmt::format("{:.2g} MB", std::max(0.1, bytes / 1e6)) : fmt::format("{:.2g} GB", bytes / 1e9);
+  return bytes < 1e9 ? fmt::format("{:.2g} MB", std::max(0.1, bytes / 1e6))
+                     : fmt::format("{:.2g} GB", bytes / 1e9);
 }
 
 /// Number, speed, time and size of what will be recorded.
@@ -120,7 +121,8 @@ void drawEstimate(const PanelContext& context, const Typed& typed) {
   const Session& session = context.session;
   const playback::LiveStatus& status = session.status();
   const render::ImageSize size = typed.size(session), shown = session.pictureSize();
-  const double pixels = shown.count() > 0 ? static_cast<double>(size.count()) / static_cast<double>(shown.count()) : 1;
+  const double pixels =
+      shown.count() > 0 ? static_cast<double>(size.count()) / static_cast<double>(shown.count()) : 1;
   const double full_cast_ms = status.rays_fraction > 0 ? status.cast_ms / status.rays_fraction : 0;
   const RecordEstimate estimate =
       estimateOf({{}, {}, {}, typed.frames_per_s, {}}, typed.begin_s, typed.end_s, typed.step_s, size,
@@ -142,9 +144,10 @@ void drawEstimate(const PanelContext& context, const Typed& typed) {
 /// The same on the command line.
 std::string commandLine(const Session& session, const Typed& typed) {
   const render::ImageSize size = typed.size(session);
-  return fmt::format("emscape render {} --state VIEW.json --times {:g}:{:g}:{:g} --size {}x{} --fps {:g} -o {}",
-                     shellWord(session.view().input), typed.begin_s, typed.end_s, typed.step_s, size.width,
-                     size.height, typed.frames_per_s, shellWord(typed.file));
+  return fmt::format(
+      "emscape render {} --state VIEW.json --times {:g}:{:g}:{:g} --size {}x{} --fps {:g} -o {}",
+      shellWord(session.view().input), typed.begin_s, typed.end_s, typed.step_s, size.width, size.height,
+      typed.frames_per_s, shellWord(typed.file));
 }
 
 }  // namespace

@@ -136,7 +136,8 @@ class Session {
   /// The files that `save` and `save_transfer` write without a name.
   std::string usualScenarioFile() const;
   std::string usualColorsFile() const;
-  /// Warnings about models, files and scans: of the log since the input was opened, and of the field on screen.
+  /// Warnings about models, files and scans: of the log since the input was opened, and of the field on
+  /// screen.
   const std::vector<std::string>& warnings() const { return warnings_; }
   /// The autosave of an earlier run that did not end regularly.
   const std::optional<playback::AutosavedView>& keptView() const { return kept_view_; }
@@ -294,16 +295,16 @@ class Session {
   bool dragging_ = false;  // the colours
   bool touched_ = false;   // by a command since the last update()
   std::shared_ptr<Files> files_;
-  std::string saved_file_;    // view file that ...
-  std::string saved_text_;    // ... holds this view
-  std::string copied_;        // the command that was copied last
-  std::string picture_file_;  // written when the picture is settled
+  std::string saved_file_;                                // view file that ...
+  std::string saved_text_;                                // ... holds this view
+  std::string copied_;                                    // the command that was copied last
+  std::string picture_file_;                              // written when the picture is settled
   std::optional<render::TransferFunction> saved_colors_;  // as fitted, read or written last
   std::optional<Replacing> replacing_;
   Json quit_answers_ = Json::object();
   bool quits_when_recorded_ = false;
-  bool opened_unsaved_;       // with unsaved edits
-  std::string kept_hash_;     // of the scenario in the autosave, or of one without unsaved edits
+  bool opened_unsaved_;    // with unsaved edits
+  std::string kept_hash_;  // of the scenario in the autosave, or of one without unsaved edits
   std::optional<double> keep_at_s_;
   bool has_kept_;  // true: there is an autosave; a regular end removes it
   std::optional<playback::AutosavedView> kept_view_;

@@ -114,7 +114,8 @@ std::vector<Verb> Session::pictureVerbs() {
        }},
       {"reset_switches",
        {},
-       "Sets all settings of the view that have a key or a verb as they were at the start, and removes planes "
+       "Sets all settings of the view that have a key or a verb as they were at the start, and removes "
+       "planes "
        "and comparison; camera, quantity and colours stay",
        [](Session& session, const Command&) {
          const playback::ViewState& first = session.options_.view;

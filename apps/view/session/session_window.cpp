@@ -58,7 +58,8 @@ std::vector<Verb> Session::windowVerbs() {
        }},
       {"scale",
        {{"factor", kNumber, false, {kMinScale, kMaxScale}}, {"change", kNumber, false, {-1, 1, true, true}}},
-       "Size of texts and controls, 0.5..4, in the picture too; or `change`, 1 or -1: a step larger or smaller",
+       "Size of texts and controls, 0.5..4, in the picture too; or `change`, 1 or -1: a step larger or "
+       "smaller",
        [](Session& session, const Command& command) {
          constexpr double kStep = 1.125;
          if (command.has("factor") == command.has("change")) {
@@ -67,8 +68,7 @@ std::vector<Verb> Session::windowVerbs() {
          const double change = command.number("change") < 0 ? 1 / kStep : kStep;
          session.window_.setScale(command.has("factor") ? command.number("factor")
                                                         : session.window_.scale() * change);
-         session.change(
-             [&](playback::ViewState& view) { view.label_scale = session.window_.scale(); });
+         session.change([&](playback::ViewState& view) { view.label_scale = session.window_.scale(); });
        }},
       {"resize",
        {{"width", kNumber, true, kSize_px}, {"height", kNumber, true, kSize_px}},
