@@ -10,6 +10,11 @@ install(DIRECTORY "${share}/man/" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1" COM
 install(FILES "${share}/completion/emscape" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions" COMPONENT program OPTIONAL)
 install(FILES "${share}/completion/_emscape" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions"  # where Debian's zsh looks
   COMPONENT program OPTIONAL)
+if(EMSCAPE_WITH_VIEW)
+  install(FILES apps/view/desktop/emscape.desktop DESTINATION "${CMAKE_INSTALL_DATADIR}/applications" COMPONENT program)
+  install(FILES apps/view/desktop/emscape.svg DESTINATION "${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps" COMPONENT program)
+  install(FILES apps/view/desktop/emscape.xml DESTINATION "${CMAKE_INSTALL_DATADIR}/mime/packages" COMPONENT program)
+endif()
 # The documentation, and what it links to, at the same relative places as in the source folder.
 install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 install(FILES "${share}/emscape.cdx.json" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program OPTIONAL)

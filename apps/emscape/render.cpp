@@ -25,6 +25,7 @@
 #include "playback/pictures/picture_series.h"
 #include "playback/pictures/picture_sink.h"
 #include "playback/pictures/real_time_loop.h"
+#include "playback/series/series_scenario.h"
 #include "playback/view/view_file.h"
 #include "render/patterns/reconstruction.h"
 #include "report/maps/output_files.h"
@@ -77,6 +78,7 @@ ViewState viewOf(const RenderOptions& options) {
   ViewState view = options.state.empty() ? ViewState{} : playback::readViewState(options.state);
   playback::setInput(view, options.view);
   options.given.apply(view);
+  playback::addOwnScenario(view);
   view.edits.insert(view.edits.end(), options.edits.begin(), options.edits.end());
   requireMemoryOf(view.size);
   return view;

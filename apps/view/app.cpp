@@ -35,10 +35,12 @@ constexpr int kWindowFits = 8;
 constexpr double kFitLimit_s = 5;
 constexpr render::ImageSize kUsualSize{1200, 900};
 
-std::string titleOf(const ViewOptions& options) {
+/// With an asterisk for edits or colours that are not saved.
+std::string titleOf(const ViewOptions& options, bool is_unsaved) {
   const std::filesystem::path path = std::filesystem::path(options.view.input).lexically_normal();
   if (path.empty()) return "emscape";
-  return (path.has_filename() ? path : path.parent_path()).filename().string() + " — emscape";
+  const std::filesystem::path named = path.has_filename() ? path : path.parent_path();
+  return (is_unsaved ? "* " : "") + named.filename().string() + " — emscape";
 }
 
 bool isFunctionKey(const KeyChord& chord) {
@@ -52,14 +54,28 @@ bool editsText(const KeyChord& chord) {
   return !chord.control || kEditing.count(chord.key) != 0;
 }
 
+/// The largest rectangle of a picture's proportions in the middle of an area: until the picture of a new size
+/// is there, the previous one is not distorted.
+Area fittedInto(const Area& area, render::ImageSize size) {
+  const int width = static_cast<int>(area.width), height = static_cast<int>(area.height);
+  if (size.count() == 0 || (size.width == width && size.height == height)) return area;
+  const float scale =
+      std::min(area.width / static_cast<float>(size.width), area.height / static_cast<float>(size.height));
+  const float shown_width = std::floor(scale * static_cast<float>(size.width));
+  const float shown_height = std::floor(scale * static_cast<float>(size.height));
+  return {std::floor(area.x + (area.width - shown_width) / 2),
+          std::floor(area.y + (area.height - shown_height) / 2), shown_width, shown_height};
+}
+
 }  // namespace
 
-App::App(const ViewOptions& options)
+App::App(const ViewOptions& options, std::shared_ptr<MessageLog> messages)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
-      window_(titleOf(options), options.window_size.value_or(kUsualSize), options.scale),
+      window_(titleOf(options, false), options.window_size.value_or(kUsualSize), options.scale),
       shares_gpu_(options.share_gpu && render::openGlSharesGpu()),
-      session_(makeFirstSession(options)),
+      files_(std::make_shared<Files>()),
+      session_((files_->messages = std::move(messages), makeFirstSession(options))),
       opener_(files_, [this](const ViewOptions& next) { return makeSession(next); }),
       window_fits_(options.window_size ? 0 : kWindowFits) {
   log_.write("start", {{"gl_renderer", window_.renderer()},
@@ -101,7 +117,7 @@ void App::setScale(double factor) {
 }
 
 void App::screenshot(const std::string& file) {
-  screenshot_ = file.empty() ? newPictureName() : file;
+  screenshot_ = file;
   frames_left_ = std::max(frames_left_, 2);
 }
 
@@ -148,7 +164,8 @@ void App::failIfNothingOpens() const {
 }
 
 void App::showTitle() {
-  window_.setTitle(titleOf(session_->options()));
+  const std::string title = titleOf(session_->options(), session_->isUnsaved());
+  if (std::exchange(title_, title) != title) window_.setTitle(title);
 }
 
 /// Gives the window the size at which the picture has the size of the first view. The panels' size depends on
@@ -185,19 +202,18 @@ void App::handleRequests() {
   if (!opener_.update(session_)) return;
   shown_picture_ = 0;
   window_fits_ = 0;
-  showTitle();
   frames_left_ = kFramesAfterEvent;
 }
 
 bool App::panelsChanged() {
   std::string open;
   for (const PanelName& panel : panelNames()) open += session_->panels.*panel.open ? '1' : '0';
+  open += session_->scenario() ? 's' : '-';  // the rows of What if appear
   return std::exchange(open_panels_, open) != open;
 }
 
 void App::run() {
   session_->shown("");
-  if (!session_->hasInput()) session_->perform({"open"});
   // Files that are being written are finished, and their errors reported, before the window closes.
   const auto ends = [this] { return quits_ || app::stopFlag(); };
   while (!ends() || session_->writing()) {
@@ -208,6 +224,7 @@ void App::run() {
     // New rows take their widths in a second frame.
     const void* const scenario = session_->scenario().get();
     if (std::exchange(drawn_scenario_, scenario) != scenario) frames_left_ = kFramesAfterEvent;
+    showTitle();
     failIfNothingOpens();
     if (ImGui::GetIO().WantTextInput) frames_left_ = std::max(frames_left_, 1);
     if (!ends() && !script_.finished() && !isFitting()) script_.run(*session_, *this, log_.now_s());
@@ -280,22 +297,25 @@ void App::draw(const Layout& layout) {
     glClearColor(color.x, color.y, color.z, 1);
     glClear(GL_COLOR_BUFFER_BIT);
   };
-  if (!texture_.isSet()) fill(layout.picture, panel);
-  fill(layout.side, panel);
+  const Area shown = fittedInto(layout.picture, texture_.size());
+  const bool fills = shown.width == layout.picture.width && shown.height == layout.picture.height;
+  if (!texture_.isSet() || !fills) fill(layout.picture, panel);
+  if (!layout.side_is_over) fill(layout.side, panel);
   fill(layout.timeline, panel);
   fill(layout.status, bar);
   glDisable(GL_SCISSOR_TEST);
   if (texture_.isSet()) {
-    texture_.draw(static_cast<int>(layout.picture.x),
-                  size.height - static_cast<int>(layout.picture.y) - static_cast<int>(layout.picture.height),
-                  static_cast<int>(layout.picture.width), static_cast<int>(layout.picture.height));
+    const int height = static_cast<int>(shown.height);
+    texture_.draw(static_cast<int>(shown.x), size.height - static_cast<int>(shown.y) - height,
+                  static_cast<int>(shown.width), height);
   }
   window_.endFrame();
 }
 
 void App::handleKeys(const std::vector<InputEvent>& events) {
   const Panels& panels = session_->panels;
-  const bool dialog = panels.record || panels.restore || panels.unsaved || panels.time;
+  const bool dialog =
+      panels.record || panels.restore || panels.unsaved || panels.time || panels.replace || panels.warnings;
   const bool typing = ImGui::GetIO().WantTextInput && !panels.open;
   const bool in_panel = scenarioPanelHasKeyboard() || isPopupOpen();
   for (const InputEvent& event : events) {
@@ -323,23 +343,26 @@ void App::drawPanels(const Layout& layout) {
   PanelContext context{*session_, *this, static_cast<float>(window_.scale())};
   if (!session_->panels.hidden) {
     drawMenuBar(context);
-    drawSidePanel(context, layout.side);
+    drawSidePanel(context, layout);
     drawTimeline(context, layout.timeline);
     drawStatusBar(context, layout.status);
   }
+  if (!session_->panels.hidden) drawLegendMenu(context, layout.picture);
   drawStart(context, layout.picture);
   drawProbeMarker(context, layout.picture);
   drawPictureOverlay(context, layout.picture);
   drawToolHint(context, layout.picture);
   drawContextMenu(context, layout.picture, mouse_.menu());
-  drawNotice(context, layout.picture);
+  if (!screenshot_) drawNotice(context, layout.picture);
   drawHelp(context);
   drawGoToTime(context);
   drawFileBrowser(context);
   drawRecording(context, layout.picture);
   drawChangedFiles(context, layout.picture);
   drawRestoreQuestion(context);
+  drawWarnings(context);
   drawUnsavedQuestion(context);
+  drawReplaceQuestion(context);
 }
 
 void App::updateTexture() {

@@ -18,7 +18,8 @@ class App : private WindowControl {
  public:
   /// @throws Error (device) without a display or OpenGL, or without the GPU that the options ask for;
   /// (bad_input) for a faulty script; (other) if the log cannot be written
-  explicit App(const ViewOptions& options);
+  /// @param messages  receives the warnings of the libraries
+  App(const ViewOptions& options, std::shared_ptr<MessageLog> messages);
 
   /// Runs until the user, the script or a signal ends it.
   /// @throws Error if the input cannot be opened, (check_failed) by the script
@@ -61,7 +62,7 @@ class App : private WindowControl {
   PictureTexture texture_;
   bool shares_gpu_;  // pictures are passed from CUDA to OpenGL on the GPU
   playback::ComputeTarget target_;
-  std::shared_ptr<Files> files_ = std::make_shared<Files>();
+  std::shared_ptr<Files> files_;
   std::unique_ptr<Session> session_;
   SessionOpener opener_;
   MouseControl mouse_;
@@ -77,6 +78,7 @@ class App : private WindowControl {
   std::optional<std::string> screenshot_;
   std::string open_panels_;
   const void* drawn_scenario_ = nullptr;  // only compared
+  std::string title_;
   int window_fits_;            // remaining attempts to give the picture the size of the first view
   render::ImageSize fitting_;  // the size requested last
 };

@@ -1,10 +1,12 @@
 /// emscape-view: the window; started by `emscape view`.
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <optional>
 
 #include "apps/common/interrupt.h"
 #include "apps/view/app.h"
+#include "apps/view/files/message_log.h"
 #include "base/text/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
@@ -13,6 +15,7 @@
 #include "emscape/playback/frames/inputs.h"
 #include "emscape/render/cells/cell_renderer.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "playback/series/series_scenario.h"
 
 namespace emscape::view {
 namespace {
@@ -22,13 +25,16 @@ int fail(ErrorCode code, const std::string& message) {
   return static_cast<int>(code);
 }
 
-void show(const ViewOptions& options) {
-  setLogSink([quiet = options.quiet](LogLevel level, const std::string& line) {
+void show(ViewOptions options) {
+  const auto messages = std::make_shared<MessageLog>();  // for the window's list of warnings
+  setLogSink([quiet = options.quiet, messages](LogLevel level, const std::string& line) {
+    if (level == LogLevel::warning) messages->add(line);
     if (level == LogLevel::warning || (level == LogLevel::info && !quiet))
       std::fprintf(stderr, "%s\n", line.c_str());
   });
   setThreadLimit(options.threads);
   app::handleSignals();
+  if (!options.view.input.empty()) playback::addOwnScenario(options.view);
   // A wrong name and all errors in a scenario are reported before a window appears.
   using playback::InputKind;
   const std::optional<InputKind> kind =
@@ -43,7 +49,7 @@ void show(const ViewOptions& options) {
       !scenario::parseScenario(options.view.input, options.view.edits).scenario) {
     scenario::loadScenario(options.view.input, options.view.edits);
   }
-  App(options).run();
+  App(options, messages).run();
 }
 
 }  // namespace

@@ -22,6 +22,7 @@ class PictureTexture {
   /// picture is kept
   void set(const render::DevicePicture& picture);
   bool isSet() const { return size_.count() > 0; }
+  render::ImageSize size() const { return size_; }
   /// Draws the picture into the bound framebuffer, scaled with nearest-pixel sampling if the sizes differ.
   /// @param left, bottom, width, height  in pixels of the framebuffer
   void draw(int left, int bottom, int width, int height) const;

@@ -86,11 +86,13 @@ void readView(const Typed& typed, ViewOptions& options) {
     view = playback::readViewState(typed.state);
     options.state = typed.state;
     options.window_size.reset();
+    options.fits_labels = false;
   }
   if (!typed.size.empty()) options.window_size = render::parseImageSize(typed.size);
   const std::string of_file = playback::viewStateText(view);
   playback::setInput(view, options.view);
   typed.given.apply(view);
+  if (view.label_scale > 0) options.fits_labels = false;
   view.edits.insert(view.edits.end(), typed.edits.begin(), typed.edits.end());
   if (playback::viewStateText(view) != of_file || !view.transfer_file.empty()) options.state.clear();
   options.view = view;

@@ -10,12 +10,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "apps/view/panels/theme.h"
 #include "emscape/base/error.h"
@@ -55,6 +57,46 @@ void catchLostDisplay() {
   if (!xlib) return;
   if (void* const set = dlsym(xlib, "XSetIOErrorHandler")) {
     reinterpret_cast<Handler (*)(Handler)>(set)(endWithoutDisplay);
+  }
+  dlclose(xlib);
+}
+
+/// The icon of desktop/emscape.svg: waves from an antenna over the ground.
+void setIcon(GLFWwindow* window) {
+  constexpr int kSide = 64;
+  std::vector<unsigned char> pixels(std::size_t{kSide} * kSide * 4, 0);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const double right = x - 18.5, up = 45.5 - y, away = std::hypot(right, up);
+      const bool is_wave = up > 0 && right > 0 && std::fmod(away + 3, 13) < 6 && away > 7;
+      const bool is_mast = away < 5.5 || (std::abs(right) < 2 && up < 0 && y < 54);
+      const bool is_ground = y >= 54;
+      const unsigned color = is_mast ? 0xF2F4F7 : is_wave ? 0x4FA3E3 : is_ground ? 0x6E7A4D : 0x181D25;
+      unsigned char* const pixel =
+          &pixels[4 * (static_cast<std::size_t>(y) * kSide + static_cast<std::size_t>(x))];
+      pixel[0] = static_cast<unsigned char>(color >> 16);
+      pixel[1] = static_cast<unsigned char>(color >> 8 & 0xFF);
+      pixel[2] = static_cast<unsigned char>(color & 0xFF);
+      pixel[3] = 255;
+    }
+  }
+  const GLFWimage icon{kSide, kSide, pixels.data()};
+  glfwSetWindowIcon(window, 1, &icon);
+}
+
+/// A pixel of the window's background, so that parts that a resize uncovers do not flash.
+void setBackground(GLFWwindow* window, unsigned long pixel) {
+  using DisplayOf = void* (*)();
+  using WindowOf = unsigned long (*)(GLFWwindow*);
+  using Set = int (*)(void* display, unsigned long window, unsigned long pixel);
+  void* const xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
+  if (!xlib) return;
+  void* const set = dlsym(xlib, "XSetWindowBackground");
+  void* const display_of = dlsym(RTLD_DEFAULT, "glfwGetX11Display");
+  void* const window_of = dlsym(RTLD_DEFAULT, "glfwGetX11Window");
+  if (set && display_of && window_of) {
+    reinterpret_cast<Set>(set)(reinterpret_cast<DisplayOf>(display_of)(),
+                               reinterpret_cast<WindowOf>(window_of)(window), pixel);
   }
   dlclose(xlib);
 }
@@ -120,6 +162,9 @@ Window::Window(const std::string& title, render::ImageSize size, double scale) {
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_SRGB_CAPABLE, GLFW_FALSE);
   glfwWindowHint(GLFW_DEPTH_BITS, 0);
+  // By these desktops find the program's icon and group its windows.
+  glfwWindowHintString(GLFW_X11_CLASS_NAME, "emscape");
+  glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "emscape");
   window_ = glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
   if (!window_) {
     glfwTerminate();
@@ -128,6 +173,7 @@ Window::Window(const std::string& title, render::ImageSize size, double scale) {
   float content_x = 1, content_y = 1;
   glfwGetWindowContentScale(window_, &content_x, &content_y);
   setScale(scale > 0 ? scale : content_x);
+  setIcon(window_);
   glfwSetWindowUserPointer(window_, this);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
@@ -220,6 +266,7 @@ void Window::applyStyle() {
   style_changed_ = false;
   ImGuiIO& io = ImGui::GetIO();
   ImGui::GetStyle() = styleOf(theme_, static_cast<float>(scale_));
+  setBackground(window_, theme_ == render::Theme::dark ? 0x181D25 : 0xF3F5F8);
   static const ImWchar kGlyphs[] = {0x20,   0xFF,   0x370,  0x3FF,  0x2010, 0x2044, 0x2070, 0x209F, 0x2190,
                                     0x21FF, 0x2200, 0x22FF, 0x2300, 0x23FF, 0x25A0, 0x25FF, 0};
   io.Fonts->Clear();

@@ -2,6 +2,7 @@
 
 #include <cerrno>
 #include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include "base/files/descriptor.h"
@@ -45,6 +46,17 @@ std::vector<std::uint8_t> readWhole(const fs::path& path, std::uintmax_t max_byt
 
 std::string readWholeText(const fs::path& path, std::uintmax_t max_bytes) {
   return readAll<std::string>(path, max_bytes);
+}
+
+std::string readTextOrPipe(const fs::path& path) {
+  std::error_code ignored;
+  const fs::file_status status = fs::status(path, ignored);
+  if (!fs::is_fifo(status) && !fs::is_character_file(status) && !fs::is_socket(status))
+    return readWholeText(path);
+  errno = 0;
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) throw Error(ErrorCode::bad_input, {path.string()}, "cannot read: " + causeOf(errno));
+  return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
 }  // namespace emscape

@@ -16,4 +16,7 @@ std::vector<std::uint8_t> readWhole(const std::filesystem::path& path,
 /// The same bytes as a string. The encoding is not checked.
 std::string readWholeText(const std::filesystem::path& path, std::uintmax_t max_bytes = UINTMAX_MAX);
 
+/// The same, also of a pipe or a device such as /dev/stdin, up to its end.
+std::string readTextOrPipe(const std::filesystem::path& path);
+
 }  // namespace emscape

@@ -166,6 +166,7 @@ class StoredFrames : public FrameSource {
   std::string name() const override { return name_; }
   const LoadedScenario* scene() const override { return scene_ ? &*scene_ : nullptr; }
   std::vector<std::string> warnings() const override { return {}; }
+  std::vector<std::string> quantities() const override { return quantities_; }
 
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
     if (!scene_) return FrameSource::setScenario(std::move(scenario));
@@ -195,20 +196,23 @@ class StoredFrames : public FrameSource {
 
  private:
   /// The files to be shown. @param quantity  as for volumeFilesOf()
-  std::vector<VolumeFile> filesOf(std::string& quantity) const {
+  std::vector<VolumeFile> filesOf(std::string& quantity) {
     const auto list = holds_meshes_ ? meshFilesOf : volumeFilesOf;
-    return chosenFiles(list(selection_.input, quantity), selection_.times, selection_.first_only);
+    return chosenFiles(list(selection_.input, quantity, &quantities_), selection_.times,
+                       selection_.first_only);
   }
 
   ShownField readVoxels(const VolumeFile& file) const {
     volume::DenseVolume read = volume::readVolume(file.file, quantity_);
     read.info.time_s = file.time_s;
+    read.info.has_time = file.has_time;
     return {volume::Volume(std::move(read)), nullptr};
   }
   ShownField readCells(const VolumeFile& file) {
     volume::MeshFile read = volume::readMesh(file.file, quantity_);
     volume::MeshField& field = read.fields.front();
     field.info.time_s = file.time_s;
+    field.info.has_time = file.has_time;
     if (mesh_ && sameMesh(*mesh_, *read.mesh)) {
       field.mesh = mesh_;
     } else {
@@ -222,6 +226,7 @@ class StoredFrames : public FrameSource {
   std::string quantity_;
   const FrameSelection selection_;
   const bool holds_meshes_;
+  std::vector<std::string> quantities_;
   std::vector<VolumeFile> files_;
   std::optional<LoadedScenario> scene_;
   std::string name_;

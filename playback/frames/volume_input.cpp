@@ -35,13 +35,17 @@ class FilesOfQuantity {
   void add(const volume::SeriesStep& step, const volume::VolumeInfo& info) {
     if (quantity_.empty()) quantity_ = info.quantity;
     const double time_s = info.has_time ? info.time_s : step.time_s.value_or(info.time_s);
-    if (info.quantity == quantity_) files_.push_back({step.file, time_s});
+    if (info.quantity == quantity_) {
+      files_.push_back({step.file, time_s, info.has_time || step.time_s.has_value()});
+    }
     if (std::find(found_.begin(), found_.end(), info.quantity) == found_.end())
       found_.push_back(info.quantity);
   }
 
+  /// @param all  as for volumeFilesOf()
   /// @throws Error (bad_input) with the quantities that the input has
-  std::vector<VolumeFile> sorted(const fs::path& path) {
+  std::vector<VolumeFile> sorted(const fs::path& path, std::vector<std::string>* all) {
+    if (all) *all = found_;
     if (files_.empty()) {
       throw Error(ErrorCode::bad_input, {path.string(), 0, 0},
                   found_.empty() ? "there is no volume"
@@ -81,13 +85,14 @@ std::vector<volume::SeriesStep> meshesOf(const fs::path& path) {
 
 }  // namespace
 
-std::vector<VolumeFile> volumeFilesOf(const fs::path& path, std::string& quantity) {
+std::vector<VolumeFile> volumeFilesOf(const fs::path& path, std::string& quantity,
+                                      std::vector<std::string>* all) {
   FilesOfQuantity files(quantity);
   for (const volume::SeriesStep& step : volumesOf(path)) {
     for (const volume::DenseVolume& volume : volume::listVolume(step.file).volumes)
       files.add(step, volume.info);
   }
-  return files.sorted(path);
+  return files.sorted(path, all);
 }
 
 bool holdsMeshes(const fs::path& path) {
@@ -115,12 +120,13 @@ std::vector<fs::path> stepFilesOf(const fs::path& path) {
   return files;
 }
 
-std::vector<VolumeFile> meshFilesOf(const fs::path& path, std::string& quantity) {
+std::vector<VolumeFile> meshFilesOf(const fs::path& path, std::string& quantity,
+                                    std::vector<std::string>* all) {
   FilesOfQuantity files(quantity);
   for (const volume::SeriesStep& step : meshesOf(path)) {
     for (const volume::VolumeInfo& info : volume::listMesh(step.file)) files.add(step, info);
   }
-  return files.sorted(path);
+  return files.sorted(path, all);
 }
 
 std::vector<VolumeFile> chosenFiles(std::vector<VolumeFile> files, const std::string& times,

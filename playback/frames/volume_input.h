@@ -10,18 +10,22 @@ namespace emscape::playback {
 /// One instant of a series on disk.
 struct VolumeFile {
   std::filesystem::path file;
-  double time_s = 0;  ///< of the file; of the list (.pvd) for a file without a time
+  double time_s = 0;     ///< of the file; of the list (.pvd) for a file without a time
+  bool has_time = true;  ///< false: neither states it
 };
 
 /// One volume file, the steps of a .pvd, or the volumes of a folder, in the order of time.
 /// @param quantity  only files that contain it; empty: set to the first quantity of the first file
+/// @param all       null, or receives all quantities of the files
 /// @throws Error (bad_input)
-std::vector<VolumeFile> volumeFilesOf(const std::filesystem::path& path, std::string& quantity);
+std::vector<VolumeFile> volumeFilesOf(const std::filesystem::path& path, std::string& quantity,
+                                      std::vector<std::string>* all = nullptr);
 
 /// True for a .vtu file, a .pvd that lists .vtu files, and a folder with .vtu files and no volumes.
 bool holdsMeshes(const std::filesystem::path& path);
 /// volumeFilesOf() for an input for which holdsMeshes().
-std::vector<VolumeFile> meshFilesOf(const std::filesystem::path& path, std::string& quantity);
+std::vector<VolumeFile> meshFilesOf(const std::filesystem::path& path, std::string& quantity,
+                                    std::vector<std::string>* all = nullptr);
 
 /// The files of an input of volumes or meshes, of all quantities. Only a list (.pvd) is read.
 /// @throws Error (bad_input)

@@ -133,6 +133,7 @@ void LiveFields::open() {
     noteContent();
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.scenario = opened_scenario_;
+    status_.quantities = source_->quantities();
   } catch (const std::exception& error) {
     source_ = nullptr;
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -297,12 +298,13 @@ Frame LiveFields::compute(double time_s) {
   const std::size_t of_source = std::min(source_->cachedBytes(), options_.cache_bytes);
   cache_.setLimit(options_.cache_bytes - of_source);
   if (step >= 0) cache_.keep(step, frame, distance());
+  auto warnings = std::make_shared<const std::vector<std::string>>(source_->warnings());
   const std::lock_guard<std::mutex> lock(mutex_);
+  status_.warnings = std::move(warnings);
   status_.field_ms = watch.lap_ms();
   ++status_.fields_computed;
   status_.cached_steps = cache_.indices();
   status_.cached_bytes = cache_.bytes() + of_source;
-  status_.warnings = source_->warnings();
   return frame;
 }
 

@@ -47,9 +47,11 @@ struct SeriesRange {
 };
 
 struct FieldsStatus {
-  std::vector<double> times_s;                         ///< of the source; empty before it is open
-  bool is_continuous = false;                          ///< VolumeSeries::isContinuous()
-  std::shared_ptr<const scenario::Scenario> scenario;  ///< as it was opened; may be null
+  std::vector<double> times_s;                               ///< of the source; empty before it is open
+  bool is_continuous = false;                                ///< VolumeSeries::isContinuous()
+  std::shared_ptr<const scenario::Scenario> scenario;        ///< as it was opened; may be null
+  std::vector<std::string> quantities;                       ///< of the input's files
+  std::shared_ptr<const std::vector<std::string>> warnings;  ///< of the last field; may be null
   std::vector<int> cached_steps;
   std::size_t cached_bytes = 0;
   double field_ms = 0;  ///< of the last field
@@ -57,7 +59,6 @@ struct FieldsStatus {
   long long fields_abandoned = 0;
   double abandon_ms = 0;  ///< longest time from the end of a request's patience to the end of the field
   WorkProgress progress;  ///< of the field in progress; of the opening before the first
-  std::vector<std::string> warnings;  ///< of the models, on the fields so far
   long long failed_revision = 0;      ///< the last request that failed
   std::string error;                  ///< reason; empty after another request has succeeded
   ErrorCode error_code = ErrorCode::other;

@@ -157,6 +157,7 @@ struct LiveView::Impl {
     status.abandon_ms = solve.abandon_ms;
     status.cached_steps = std::move(solve.cached_steps);
     status.cached_bytes = solve.cached_bytes;
+    status.quantities = std::move(solve.quantities);
     status.warnings = std::move(solve.warnings);
     status.error = solve.error.empty() ? cast.error : solve.error;
     status.error_code = solve.error.empty() ? ErrorCode::other : solve.error_code;

@@ -38,6 +38,7 @@ Painter::Painter(const ViewState& view, const ComputeTarget& target, bool must_s
   renderer_.setSettings(view.settings);
   annotations_.theme = view.theme;
   annotations_.planes = view.settings.planes;
+  annotations_.scale = view.label_scale;
 }
 
 void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
@@ -75,8 +76,9 @@ void Painter::setFrame(const Frame& frame) {
   }
   frame_ = frame;
   const volume::VolumeInfo& info = frame.info();
-  annotations_.time = "t = " + timeText(info.time_s);
-  if (speed_) annotations_.time += fmt::format("   ×{:.3g}", *speed_);
+  const double span_s = scene_ ? scene_->scenario->clock.duration_s : 0;
+  annotations_.time = info.has_time ? "t = " + timeText(info.time_s, span_s) : "";
+  if (speed_ && info.has_time) annotations_.time += fmt::format("   ×{:.3g}", *speed_);
   annotations_.time_utc = info.time_utc;
   annotations_.subtitle = subtitleOf(info);
   annotations_.georeferenced = frame.grid().georeferenced;
@@ -151,8 +153,11 @@ void Painter::setScenery(const ViewState& view) {
   view_.labels = view.labels;
   view_.trail_s = view.trail_s;
   view_.theme = annotations_.theme = view.theme;
+  view_.label_scale = annotations_.scale = view.label_scale;
   setMarkers();
-  if (frame_) setGround();
+  if (!frame_) return;
+  setGround();
+  setLegend();
 }
 
 render::FrameReport Painter::drawCells(bool is_complete, const StopFlag* stop) {

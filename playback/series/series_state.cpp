@@ -22,10 +22,8 @@ Json toJson(const SeriesState& state) {
   for (std::size_t c = 0; c < state.channels.size(); ++c) {
     ranges[state.channels[c]] = state.complete ? playback::toJson(state.ranges[c]) : Json(nullptr);
   }
-  return {{"format_version", kFormatVersion},
-          {"complete", state.complete},
-          {"ranges", ranges},
-          {"recipe", state.recipe}};
+  return {{"format_version", kFormatVersion},     {"complete", state.complete}, {"ranges", ranges},
+          {"scenario_file", state.scenario_file}, {"edits", state.edits},       {"recipe", state.recipe}};
 }
 
 SeriesState fromJson(const Json& json) {
@@ -37,6 +35,8 @@ SeriesState fromJson(const Json& json) {
   if (!state.recipe.is_object()) throw Error(ErrorCode::bad_input, "recipe is not an object");
   if (!state.recipe.at("times").is_array()) throw Error(ErrorCode::bad_input, "recipe: times is not a list");
   state.complete = json.at("complete").get<bool>();
+  state.scenario_file = json.value("scenario_file", "");
+  state.edits = json.value("edits", std::vector<std::string>());
   for (const auto& [channel, range] : json.at("ranges").items()) {
     state.channels.push_back(channel);
     state.ranges.push_back(rangeFromJson(range));

@@ -20,7 +20,11 @@ struct SeriesState {
   Json recipe;
   std::vector<std::string> channels;
   std::vector<ValueRange> ranges;  ///< one per channel, over the series; valid if complete
-  bool complete = false;           ///< every step is present and its files have these ranges
+  /// The scenario's file, relative to the folder if it is below it, and its edits, for pictures of the
+  /// series. Empty in series of earlier versions.
+  std::string scenario_file;
+  std::vector<std::string> edits;
+  bool complete = false;  ///< every step is present and its files have these ranges
 };
 
 /// @throws Error (bad_input) for an elevation file that cannot be read

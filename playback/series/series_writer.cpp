@@ -46,6 +46,15 @@ const fs::path& made(const fs::path& folder) {
   return folder;
 }
 
+/// The path of a file, relative to a folder if it is below it.
+std::string pathFrom(const fs::path& folder, const std::string& file) {
+  if (file.empty()) return "";
+  std::error_code ignored;
+  const fs::path path = fs::weakly_canonical(fs::absolute(file, ignored), ignored);
+  const fs::path relative = path.lexically_relative(fs::weakly_canonical(folder, ignored));
+  return relative.empty() || *relative.begin() == ".." ? path.string() : relative.string();
+}
+
 /// The work of writeSeries().
 class SeriesWriter {
  public:
@@ -99,6 +108,9 @@ class SeriesWriter {
   void beginState() {
     state_.recipe = recipeOf(series_, options_);
     state_.channels = namesOf(series_.channels());
+    const scenario::Scenario& scenario = *series_.input().scenario;
+    state_.scenario_file = pathFrom(options_.folder, scenario.file);
+    for (const scenario::Edit& edit : scenario.edits()) state_.edits.push_back(scenario::toString(edit));
     ranges_.assign(state_.channels.size(), options_.range.value_or(ValueRange{}));
     const std::optional<SeriesState> found = readSeriesState(options_.folder);
     if (!found) {

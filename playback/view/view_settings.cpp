@@ -22,6 +22,7 @@ namespace spec = document::spec;
 
 constexpr double kMaxRate = 1e4;
 constexpr double kMaxValue = 1e30;
+constexpr double kMaxLabelScale = 4;
 constexpr int kMaxItems = 10000;
 constexpr int kMaxText = 1 << 20;
 
@@ -285,7 +286,7 @@ void addRenderSettings(Table& table) {
           "compositing of the samples")
       .withOption("--mode", "Compositing mode; default: dvr")
       .withVerb("mode", "mode", "dvr, mida, mip or iso; without a name the next one")
-      .withAction("Next mode", "M");
+      .withAction("Mode", "M");
   table
       .member(
           "step_voxels", within(render::kStepLimits),
@@ -383,6 +384,20 @@ void addScenery(Table& table) {
       .withOption("--trail", "Length of the tracks behind moving platforms, in seconds; 0: whole tracks")
       .withVerb("trail", "seconds",
                 "Length of the tracks behind moving platforms; 0: whole tracks, also ahead");
+  table
+      .member(
+          "label_scale", spec::number().from(0).to(kMaxLabelScale),
+          [](auto& view) -> auto& { return view.label_scale; },
+          "minimum size of texts and symbols; 1: that of a picture of 1200x900; 0: follows the picture's "
+          "size")
+      .withEffect(&ViewChange::ground)  // their margins move the camera: cast again
+      .withOption("--label-scale",
+                  "Minimum size of texts and symbols; 1: that of a picture of 1200x900; 0: follows the "
+                  "picture's size")
+      .withVerb(
+          "label_scale", "factor",
+          "Minimum size of the texts and symbols in the picture; 0: follows the picture's size. The verb "
+          "scale sets it too");
   table
       .parsed(
           "size", spec::listOf(spec::simple(ValueType::integer).from(1).to(render::kMaxImageSide), 2, 2),

@@ -105,8 +105,8 @@ double leastTop(const Style& style, const Legend& legend) {
 }
 
 /// Upper end of the contents below the heading.
-double topOf(const Canvas& canvas, const Style& style, const Legend& legend) {
-  return std::max(kBarTop * canvas.size().height, leastTop(style, legend));
+double topOf(ImageSize size, const Style& style, const Legend& legend) {
+  return std::max(kBarTop * size.height, leastTop(style, legend));
 }
 
 /// Draws the heading so that it ends above `bottom`.
@@ -155,7 +155,7 @@ void drawIsoMark(Canvas& canvas, const Style& style, double left, double y, doub
 
 void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double left) {
   const TransferFunction& function = legend.function;
-  const double top = topOf(canvas, style, legend);
+  const double top = topOf(canvas.size(), style, legend);
   const double bottom = kBarBottom * canvas.size().height;
   const double bar_left = left + kOpacityWidth * style.unit;
   const double bar_width = kBarWidth * style.unit;
@@ -206,7 +206,7 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
 }
 
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
-  double y = topOf(canvas, style, legend);
+  double y = topOf(canvas.size(), style, legend);
   drawHeading(canvas, style, legend, left, y);
   for (const Category& category : legend.categories) {
     y += kRowHeight * style.unit;
@@ -303,6 +303,16 @@ double legendHeight(const Style& style, const Legend& legend) {
   const double rows = kRowHeight * style.unit *
                       (static_cast<double>(legend.categories.size()) + (legend.note.empty() ? 1 : 2));
   return std::max(rows / (1 - kBarTop), leastTop(style, legend) + rows);
+}
+
+PixelArea legendHeading(ImageSize size, const Annotations& annotations) {
+  const Style style(size, annotations.theme, annotations.scale);
+  const Legend& legend = *annotations.legend;
+  const double content = contentWidth(style, legend);
+  const double gap = legend.function.categorical ? 0 : 10 * style.unit;
+  const double bottom = topOf(size, style, legend) - gap;
+  const double height = kLine * style.text_px * static_cast<double>(headingOf(legend).size());
+  return {size.width - kEdge * style.unit - content, bottom - height, content, height};
 }
 
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend) {

@@ -24,6 +24,7 @@ constexpr double kCompassRadius = 40;
 constexpr double kLegendRoom = 180;
 constexpr double kMaxLegendRoom = 0.4;  // of the picture's width
 constexpr double kMinUnit = 0.62;
+constexpr double kMaxOfSize = 2.2;     // unit that a scale may cause, in that of the picture's size
 constexpr double kNamePart = 1.0 / 3;  // maximum width of a name, of the picture's
 constexpr double kMinName = 160;
 
@@ -116,7 +117,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
 template <class AnyImage>
 Image8 composed(const AnyImage& cast, const Camera& camera, const SceneBox& box,
                 const Annotations& annotations, const HiddenTest& hidden) {
-  const Style style(cast.size, annotations.theme);
+  const Style style(cast.size, annotations.theme, annotations.scale);
   const Projector projector{camera, box, cast.size};
   Canvas canvas(cast.size);
   drawBehind(canvas, style, projector, annotations);
@@ -139,8 +140,9 @@ Theme parseTheme(const std::string& name) {
   return parseName<Theme>("theme", name);
 }
 
-Style::Style(ImageSize size, Theme theme) {
-  unit = std::max(kMinUnit, std::min(size.width / 1200.0, size.height / 900.0));
+Style::Style(ImageSize size, Theme theme, double scale) {
+  const double by_size = std::min(size.width / 1200.0, size.height / 900.0);
+  unit = std::max({kMinUnit, by_size, std::min(scale, kMaxOfSize * by_size)});
   text_px *= unit;
   small_px *= unit;
   name_px = std::max(kNamePart * size.width, kMinName * unit);
@@ -170,7 +172,7 @@ double headerHeight(const Style& style) {
 }
 
 FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
-  const Style style(size, annotations.theme);
+  const Style style(size, annotations.theme, annotations.scale);
   const double axis_px = annotations.axes ? 52 * style.unit : 0;
   const double side_px = 20 * style.unit + axis_px;
   const bool has_texts = !annotations.title.empty() || !annotations.time.empty();
@@ -187,7 +189,7 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
 
 void drawLayers(OverlayLayers& layers, ImageSize size, const Camera& camera, const SceneBox& box,
                 const Annotations& annotations, const HiddenTest& hidden) {
-  const Style style(size, annotations.theme);
+  const Style style(size, annotations.theme, annotations.scale);
   const Projector projector{camera, box, size};
   layers.size = size;
   parallelFor(2, 1, [&](int begin, int end) {

@@ -17,7 +17,8 @@ struct Style {
   Rgb background_top, background_bottom;
   Rgb text, muted, rim;
 
-  Style(ImageSize size, Theme theme);
+  /// @param scale  as Annotations::scale
+  Style(ImageSize size, Theme theme, double scale = 0);
   Ink textInk(double alpha = 1) const { return {text, alpha}; }
   Ink mutedInk(double alpha = 1) const { return {muted, alpha}; }
   Ink rimInk(double alpha = 0.75) const { return {rim, alpha}; }

@@ -151,6 +151,17 @@ double usualDifference(const volume::DenseVolume& volume) {
   return double{*usual};
 }
 
+/// The largest absolute value of the colours of values about 0 that another program wrote: all but a few are
+/// within it; 0: the values are not about 0, or of Emscape, whose quantities have a sense of their own.
+double largestOfSigned(const volume::VolumeInfo& info, const std::vector<float>& ascending) {
+  constexpr double kFew = 0.005;
+  constexpr double kMinPart = 0.05;  // of the smaller side, in the larger one
+  if (ascending.empty() || info.categorical || info.extra.count("scenario_hash") > 0) return 0;
+  const auto few = static_cast<std::size_t>(kFew * static_cast<double>(ascending.size() - 1));
+  const double below = -double{ascending[few]}, above = ascending[ascending.size() - 1 - few];
+  return std::min(below, above) > kMinPart * std::max(below, above) ? std::max(below, above) : 0;
+}
+
 /// The function of the volume's scale; none if the volume has no scale.
 std::optional<TransferFunction> functionOfScale(const volume::VolumeInfo& info, const ColorRange& range) {
   const auto scale = info.extra.find(volume::kScaleKey);
@@ -290,6 +301,9 @@ TransferFunction defaultTransferFunction(const volume::DenseVolume& volume, cons
   }
   if (const auto function = functionOfScale(volume.info, range)) return *function;
   const std::vector<float> values = sortedSample(volume);
+  if (const double largest = largestOfSigned(volume.info, values); largest > 0) {
+    return functionOfDifference(volume.info, largest);
+  }
   if (volume.info.categorical || values.empty()) return defaultTransferFunction(volume.info, range);
   const auto quantile = [&](double part) {
     return double{values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))]};

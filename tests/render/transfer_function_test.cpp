@@ -90,6 +90,20 @@ TEST(TransferFunction, DefaultOfAVolumeFollowsItsValuesAndEndsAtRoundNumbers) {
   EXPECT_LT(f.highest(), 60);
 }
 
+TEST(TransferFunction, DefaultOfValuesOnBothSidesOfZeroIsSymmetricalAndDiverging) {
+  auto volume =
+      *testing::makeVolume({20, 20, 20}, {1, 1, 1}, [](int i, int, int) { return i < 10 ? -0.3F : 0.5F; });
+  volume.info.floor = volume::kNoFloor;
+  const TransferFunction f = defaultTransferFunction(volume);
+  EXPECT_DOUBLE_EQ(f.lowest(), -f.highest());
+  EXPECT_GE(f.highest(), 0.5);
+  EXPECT_GT(f.opacity(-0.3), 0.01) << "negative values are visible";
+  EXPECT_GT(f.color(-0.4).b, f.color(-0.4).r);
+  EXPECT_GT(f.color(0.4).r, f.color(0.4).b);
+  volume.info.extra["scenario_hash"] = "of Emscape";
+  EXPECT_NE(defaultTransferFunction(volume).lowest(), -defaultTransferFunction(volume).highest());
+}
+
 TEST(TransferFunction, VolumeWithoutFieldHasADefault) {
   const auto empty = testing::makeVolume({4, 4, 4}, {1, 1, 1}, [](int, int, int) { return 0.0F; });
   const TransferFunction f = defaultTransferFunction(*empty);

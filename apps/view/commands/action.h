@@ -15,6 +15,7 @@ struct Action {
   const char* keys;          ///< chords separated by blanks: "Right .", "Ctrl+Shift+Z"
   std::string command;       ///< the same as a script line
   std::string command_line;  ///< the same on the command line
+  const char* section = "";  ///< in View the submenu, elsewhere separators divide the sections
 };
 
 const std::vector<Action>& actions();

@@ -29,7 +29,7 @@ class WindowControl {
   virtual double scale() const = 0;
   /// @param factor  limited to kMinScale..kMaxScale
   virtual void setScale(double factor) = 0;
-  /// Writes the next frame. @param file  empty: a new name
+  /// Writes the next frame.
   virtual void screenshot(const std::string& file) = 0;
   virtual void setClipboard(const std::string& text) = 0;
   virtual void quit() = 0;

@@ -30,6 +30,22 @@ bool comesBefore(const FolderEntry& a, const FolderEntry& b) {
   return a_name != b_name ? a_name < b_name : a.name < b.name;
 }
 
+bool mayChoose(FileBrowser::Purpose purpose, FileKind kind) {
+  if (kind == FileKind::folder) return true;
+  switch (purpose) {
+    case FileBrowser::Purpose::input:
+      return true;
+    case FileBrowser::Purpose::view:
+      return kind == FileKind::view;
+    case FileBrowser::Purpose::scenario:
+    case FileBrowser::Purpose::save_scenario:
+      return kind == FileKind::scenario;
+    case FileBrowser::Purpose::record:
+      break;
+  }
+  return false;
+}
+
 }  // namespace
 
 FileKind fileKindOf(const fs::path& file, bool is_folder) {
@@ -67,8 +83,9 @@ std::vector<FolderEntry> listFolder(const fs::path& folder) {
   return entries;
 }
 
-void FileBrowser::open(Purpose purpose, const fs::path& first_folder) {
+void FileBrowser::open(Purpose purpose, const fs::path& first_folder, const std::string& proposed) {
   purpose_ = purpose;
+  proposed_ = proposed;
   if (folder_.empty()) folder_ = first_folder.empty() ? fs::path(".") : first_folder;
   std::error_code ignored;
   const fs::path absolute = fs::weakly_canonical(fs::absolute(folder_, ignored), ignored);
@@ -105,9 +122,7 @@ bool FileBrowser::update() {
   }
   entries_.clear();
   for (const FolderEntry& entry : listing.entries) {
-    if (entry.kind == FileKind::folder || purpose_ == Purpose::input || entry.kind == FileKind::view) {
-      entries_.push_back(entry);
-    }
+    if (mayChoose(purpose_, entry.kind)) entries_.push_back(entry);
   }
   error_ = listing.error;
   selected_ = 0;

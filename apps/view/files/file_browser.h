@@ -27,11 +27,15 @@ std::vector<FolderEntry> listFolder(const std::filesystem::path& folder);
 /// Reads folders on a separate thread, because the disk may be slow. For use by the window's thread.
 class FileBrowser {
  public:
-  /// Kinds of files that may be chosen.
-  enum class Purpose { input, view };
+  /// What a file is chosen for. With the last two it may be new.
+  enum class Purpose { input, view, scenario, save_scenario, record };
 
   /// Rereads the last visited folder, at first the given one.
-  void open(Purpose purpose, const std::filesystem::path& first_folder);
+  /// @param proposed  the typed path at first; may be empty
+  void open(Purpose purpose, const std::filesystem::path& first_folder, const std::string& proposed = "");
+  const std::string& proposed() const { return proposed_; }
+  /// True if a typed name may be that of a new file.
+  bool savesFile() const { return purpose_ == Purpose::save_scenario || purpose_ == Purpose::record; }
   Purpose purpose() const { return purpose_; }
   void enter(const std::filesystem::path& folder);
   void goUp() { enter(folder_.parent_path()); }
@@ -63,6 +67,7 @@ class FileBrowser {
   void read();
 
   Purpose purpose_ = Purpose::input;
+  std::string proposed_;
   std::filesystem::path folder_;
   std::string left_;  // name of the folder that goUp() left, to be selected
   std::vector<FolderEntry> entries_;

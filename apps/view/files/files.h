@@ -3,10 +3,13 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "apps/view/files/examples.h"
 #include "apps/view/files/file_browser.h"
+#include "apps/view/files/message_log.h"
 #include "apps/view/files/recorder.h"
 #include "apps/view/parts/program_state.h"
 #include "emscape/playback/view/view_state.h"
@@ -26,14 +29,18 @@ struct OpenRequest {
 /// For use by the window's thread.
 struct Files {
   std::vector<std::string> recent;  ///< the newest first
+  std::vector<Example> examples;
   FileBrowser browser;
   Recorder recorder;
   /// Autosaves of this program; shared with running jobs.
   std::shared_ptr<playback::Autosaves> autosaves = std::make_shared<playback::Autosaves>();
+  std::shared_ptr<MessageLog> messages = std::make_shared<MessageLog>();
   std::optional<OpenRequest> request;  ///< pending, for the window
   bool is_opening = false;             ///< a request is not on screen yet
   OpeningProgress opening;             ///< of that request
   bool cancels_opening = false;        ///< for the window, which resets it
+  std::string record_output;           ///< chosen for the next recording; may be empty
+  std::set<std::string> written;       ///< absolute paths of the outputs of this window
 };
 
 }  // namespace emscape::view

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 #include <vector>
@@ -43,6 +45,22 @@ void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(i
 }
 
 }  // namespace
+
+RecordEstimate estimateOf(const RecordRange& range, double begin_s, double end_s, double step_s,
+                          render::ImageSize size, double picture_ms, bool is_video) {
+  // Measured on recordings of the shipped scenarios, whose pictures differ little from each other.
+  constexpr double kBytesPerPixel = 0.55, kVideoBytesPerPixel = 0.03;
+  RecordEstimate estimate;
+  if (!(step_s > 0) || !(end_s >= begin_s)) return estimate;
+  const double pictures = std::min(1e9, std::floor((end_s - begin_s) / step_s + 1e-9) + 1);
+  estimate.pictures = static_cast<int>(pictures);
+  estimate.film_s = pictures / range.frames_per_s;
+  estimate.speed = step_s * range.frames_per_s;
+  estimate.work_s = pictures * picture_ms / 1000;
+  estimate.bytes =
+      pictures * static_cast<double>(size.count()) * (is_video ? kVideoBytesPerPixel : kBytesPerPixel);
+  return estimate;
+}
 
 Recorder::~Recorder() {
   cancel();

@@ -17,9 +17,23 @@ namespace emscape::view {
 /// Times to record; all fields empty: every step of the series.
 struct RecordRange {
   std::optional<double> begin_s, end_s;
-  std::optional<double> step_s;  ///< empty: that of the series
-  double frames_per_s = 10;      ///< of a video, 0.1..240
+  std::optional<double> step_s;           ///< empty: that of the series
+  double frames_per_s = 10;               ///< of a video, 0.1..240
+  std::optional<render::ImageSize> size;  ///< of the pictures; none: that of the view
 };
+
+/// Size, length and cost of a recording.
+struct RecordEstimate {
+  int pictures = 0;
+  double film_s = 0;  ///< length of a video
+  double speed = 0;   ///< seconds of the scenario in one second of the video
+  double work_s = 0;  ///< time that recording takes; 0: not known
+  double bytes = 0;   ///< of the output, roughly
+};
+/// @param step_s      between two pictures
+/// @param picture_ms  to compute and cast a picture of the size; 0: not known
+RecordEstimate estimateOf(const RecordRange& range, double begin_s, double end_s, double step_s,
+                          render::ImageSize size, double picture_ms, bool is_video);
 
 /// The view to draw, and the output.
 struct RecordJob {

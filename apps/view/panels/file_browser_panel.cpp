@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cstdio>
 #include <filesystem>
 
+#include "apps/view/panels/dialog.h"
 #include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
@@ -27,10 +29,44 @@ const char* nameOf(FileKind kind) {
   return "";
 }
 
+using Purpose = FileBrowser::Purpose;
+
+struct PurposeText {
+  const char* title;
+  const char* button;
+};
+
+PurposeText textOf(Purpose purpose) {
+  switch (purpose) {
+    case Purpose::view:
+      return {"Load a view###open", "Open"};
+    case Purpose::scenario:
+      return {"Add the scenario###open", "Add"};
+    case Purpose::save_scenario:
+      return {"Save the scenario as###open", "Save"};
+    case Purpose::record:
+      return {"Record into###open", "Choose"};
+    case Purpose::input:
+      break;
+  }
+  return {"Open###open", "Open"};
+}
+
 void openFile(Session& session, const std::optional<std::string>& file) {
   if (!file) return;
-  session.perform({session.files().browser.purpose() == FileBrowser::Purpose::view ? "load_state" : "open",
-                   {{"file", *file}}});
+  switch (session.files().browser.purpose()) {
+    case Purpose::input:
+      return session.perform({"open", {{"file", *file}}});
+    case Purpose::view:
+      return session.perform({"load_state", {{"file", *file}}});
+    case Purpose::scenario:
+      return session.perform({"add_scenario", {{"file", *file}}});
+    case Purpose::save_scenario:
+      return session.perform({"save", {{"file", *file}}});
+    case Purpose::record:
+      session.files().record_output = *file;
+      session.panels.open = false;
+  }
 }
 
 /// Text of the path field.
@@ -41,6 +77,8 @@ void openChosen(Session& session, TypedPath& typed) {
   FileBrowser& browser = session.files().browser;
   const std::string path = typed.data();
   typed.fill('\0');
+  // A name to save under stays for the case that the user does not want to replace the file.
+  if (browser.savesFile()) std::snprintf(typed.data(), typed.size(), "%s", path.c_str());
   openFile(session, path.empty() ? browser.choose() : browser.choose(path));
 }
 
@@ -63,7 +101,7 @@ void handleKeys(Session& session, bool is_typed) {
   }
 }
 
-void drawEntries(PanelContext& context) {
+void drawEntries(PanelContext& context, TypedPath& typed) {
   Session& session = context.session;
   FileBrowser& browser = session.files().browser;
   static int scrolled_to = -1;
@@ -77,7 +115,10 @@ void drawEntries(PanelContext& context) {
     if (selectableName(name, i == browser.selected(), ImGuiSelectableFlags_AllowDoubleClick)) {
       browser.select(i);
       scrolled_to = i;
-      if (ImGui::IsMouseDoubleClicked(0)) openFile(session, browser.choose());
+      const bool is_entered = ImGui::IsMouseDoubleClicked(0) && (is_folder || !browser.savesFile());
+      if (is_entered) openFile(session, browser.choose());
+      if (!is_folder && browser.savesFile())
+        std::snprintf(typed.data(), typed.size(), "%s", entry.name.c_str());
     }
     if (is_folder) ImGui::PopStyleColor();
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - 80 * context.scale);
@@ -110,49 +151,44 @@ void drawTypedPath(PanelContext& context, TypedPath& typed) {
   ImGui::SetNextItemWidth(-90 * context.scale);
   ImGui::InputTextWithHint("##path", "type a path, from the folder above on", typed.data(), typed.size());
   ImGui::SameLine();
-  if (ImGui::Button("Open", {-1, 0}) || (has_focus && isEnterPressed())) openChosen(context.session, typed);
+  const char* const button = textOf(context.session.files().browser.purpose()).button;
+  if (ImGui::Button(button, {-1, 0}) || (has_focus && isEnterPressed())) openChosen(context.session, typed);
 }
 
 }  // namespace
 
 void drawFileBrowser(PanelContext& context) {
   Session& session = context.session;
-  if (!session.panels.open) return;
   FileBrowser& browser = session.files().browser;
-  browser.update();
-  const float s = context.scale;
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
-  ImGui::SetNextWindowSize({std::min(640 * s, 0.94F * screen.x), std::min(520 * s, 0.9F * screen.y)},
-                           ImGuiCond_Appearing);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  const bool views = browser.purpose() == FileBrowser::Purpose::view;
-  if (ImGui::Begin(views ? "Load a view###open" : "Open###open", &session.panels.open,
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav)) {
-    constexpr std::size_t kRecent = 4;
-    if (!views && !session.hasInput() && !session.files().recent.empty()) {
-      ImGui::TextColored(accentColor(session.theme()), "Opened last");
-      drawRecentFiles(context, kRecent);
-      ImGui::Spacing();
-    }
-    drawPathBar(context);
-    const float below = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y;
-    ImGui::BeginChild("entries", {0, -below}, true, ImGuiWindowFlags_NoNav);
-    drawEntries(context);
-    ImGui::EndChild();
-    static TypedPath typed;
-    if (ImGui::IsWindowAppearing()) typed.fill('\0');
-    const bool was_typed = typed[0] != '\0';  // before the keys of this frame edit it
-    drawTypedPath(context, typed);
-    if (!views) {
-      if (ImGui::Button("Open this folder of volumes")) openFile(session, browser.folder().string());
-      ImGui::SameLine();
-    }
-    ImGui::TextDisabled("arrows and Enter; Left: up; Esc closes");
-    if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) handleKeys(session, was_typed);
+  if (session.panels.open) browser.update();
+  const PurposeText text = textOf(browser.purpose());
+  if (!beginDialog(context, text.title, session.panels.open, {640, 520}, Waits::yes, ImGuiWindowFlags_NoNav))
+    return;
+  static TypedPath typed;
+  if (ImGui::IsWindowAppearing()) {
+    std::snprintf(typed.data(), typed.size(), "%s", browser.proposed().c_str());
   }
-  ImGui::End();
-  ImGui::PopStyleVar();
+  constexpr std::size_t kRecent = 4;
+  const bool is_input = browser.purpose() == Purpose::input;
+  if (is_input && !session.hasInput() && !session.files().recent.empty()) {
+    ImGui::TextColored(accentColor(session.theme()), "Opened last");
+    drawRecentFiles(context, kRecent);
+    ImGui::Spacing();
+  }
+  drawPathBar(context);
+  const float below = 2 * ImGui::GetFrameHeightWithSpacing() + ImGui::GetStyle().ItemSpacing.y;
+  ImGui::BeginChild("entries", {0, -below}, true, ImGuiWindowFlags_NoNav);
+  drawEntries(context, typed);
+  ImGui::EndChild();
+  const bool was_typed = typed[0] != '\0';  // before the keys of this frame edit it
+  drawTypedPath(context, typed);
+  if (is_input) {
+    if (ImGui::Button("Open this folder of volumes")) openFile(session, browser.folder().string());
+    ImGui::SameLine();
+  }
+  ImGui::TextDisabled("arrows and Enter; Left: up; Esc closes");
+  if (ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows)) handleKeys(session, was_typed);
+  endDialog();
 }
 
 }  // namespace emscape::view

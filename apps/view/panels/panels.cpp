@@ -1,17 +1,16 @@
 #include "apps/view/panels/panels.h"
 
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
-#include "apps/view/panels/names.h"
+#include "apps/view/panels/dialog.h"
 #include "apps/view/panels/picture_overlay.h"
 #include "apps/view/panels/theme.h"
 #include "base/text/time_text.h"
 #include "emscape/render/annotate/legend.h"
-#include "playback/view/view_settings.h"
 
 namespace emscape::view {
 namespace {
@@ -25,51 +24,6 @@ bool isMeasuring(const Session& session) {
   return session.tool().kind == PickTool::Kind::measure;
 }
 
-bool isChecked(const Session& session, const std::string& name) {
-  const Panels& panels = session.panels;
-  if (name == "Loop") return session.timeline().loop();
-  if (name == "Play or pause") return session.timeline().playing();
-  for (const playback::ViewSetting& setting : playback::viewSettings()) {
-    if (setting.isSwitch() && setting.action == name) return std::get<bool>(setting.get(session.view()));
-  }
-  if (name == "Isosurface") return session.settings().mode == render::CompositingMode::iso;
-  if (name == "Scenario: what if") return panels.scenario && !panels.hidden;
-  if (name == "Colours and opacity") return panels.colors && !panels.hidden;
-  if (name == "Cutting planes") return panels.planes && !panels.hidden;
-  if (name == "Measure") return isMeasuring(session);
-  if (name == "Orthographic") return session.camera().spec().projection == render::Projection::orthographic;
-  if (name == "Compare with the original") return session.compares();
-  if (name == "Probe") return panels.probe && !panels.hidden;
-  if (name == "Lock or unlock the probe") return session.prober().isLocked();
-  if (name == "Timeline") return panels.timeline && !panels.hidden;
-  return name == "Help" && panels.help;
-}
-
-void drawRecentMenu(PanelContext& context) {
-  const std::vector<std::string> recent = context.session.files().recent;
-  if (!ImGui::BeginMenu("Open recent", !recent.empty())) return;
-  for (std::size_t i = 0; i < recent.size(); ++i) {
-    ImGui::PushID(static_cast<int>(i));
-    if (selectableName(recent[i], false)) context.session.perform({"open_recent", {{"number", i + 1}}});
-    ImGui::PopID();
-  }
-  ImGui::EndMenu();
-}
-
-bool isEnabled(const Session& session, const std::string& name) {
-  static const std::set<std::string> kNeedInput{"Reload",          "Save the view", "Load a view",
-                                                "Copy as command", "Record",        "Save the picture"};
-  if (!session.hasInput() && kNeedInput.count(name) != 0) return false;
-  if (name == "Undo") return session.canUndo();
-  if (name == "Redo") return session.canRedo();
-  if (name == "Save the changed scenario") return session.scenario() != nullptr;
-  if (name == "Restore kept edits" || name == "Discard kept edits") return session.keptView().has_value();
-  if (name == "Cancel the recording") return session.files().recorder.running();
-  if (name == "Open the input before this")
-    return session.files().recent.size() > (session.hasInput() ? 1 : 0);
-  return true;
-}
-
 }  // namespace
 
 Layout layoutOf(const Session& session, float width, float height, float scale) {
@@ -79,18 +33,25 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
     layout.picture = {0, 0, width, height};
     return layout;
   }
+  // The picture keeps the largest part of the window. Where that leaves too little for the side panel, it
+  // lies over the picture while it is used, and the time line is reduced to its buttons.
+  const bool is_narrow = width < 620 * scale, is_low = height < 420 * scale;
   const float status_height = 30 * scale;
-  const bool has_side = session.hasInput() && (panels.scenario || panels.colors || panels.planes ||
-                                               panels.probe || isMeasuring(session));
-  const float side_width = has_side ? std::min(340 * scale, 0.45F * width) : 0;
-  const bool has_timeline = session.hasInput() && panels.timeline;
-  const float timeline_height = has_timeline ? std::min(timelineHeight(session, scale), 0.4F * height) : 0;
+  layout.has_side = session.hasInput() && (panels.scenario || panels.colors || panels.planes ||
+                                           panels.probe || isMeasuring(session));
+  layout.side_is_over = layout.has_side && is_narrow;
+  const float side_width = !layout.has_side ? 0
+                           : is_narrow      ? panels.side ? std::min(340 * scale, 0.85F * width) : 0
+                                            : std::min(340 * scale, std::max(270 * scale, 0.36F * width));
   layout.menu_height = ImGui::GetFrameHeight();
+  const float room = std::max(1.0F, height - status_height - layout.menu_height);
+  const float timeline_height = timelineHeight(session, scale, is_low ? 0 : 0.3F * room);
   layout.status = {0, height - status_height, width, status_height};
   layout.timeline = {0, layout.status.y - timeline_height, width, timeline_height};
   const float middle = std::max(1.0F, layout.timeline.y - layout.menu_height);
   layout.side = {width - side_width, layout.menu_height, side_width, middle};
-  layout.picture = {0, layout.menu_height, std::max(1.0F, width - side_width), middle};
+  const float beside = layout.side_is_over ? 0 : side_width;
+  layout.picture = {0, layout.menu_height, std::max(1.0F, width - beside), middle};
   return layout;
 }
 
@@ -129,65 +90,50 @@ bool numberField(const char* id, double& value, const char* format) {
   return true;
 }
 
-void drawMenuBar(PanelContext& context) {
-  if (!ImGui::BeginMainMenuBar()) return;
-  for (const std::string& menu : menuNames()) {
-    if (!ImGui::BeginMenu(menu.c_str())) continue;
-    for (const Action& action : actions()) {
-      if (menu != action.menu) continue;
-      const std::string key = toString(chordsOf(action).front());
-      if (ImGui::MenuItem(action.name, key.c_str(), isChecked(context.session, action.name),
-                          isEnabled(context.session, action.name))) {
-        perform(context, action.command.c_str());
-      }
-      if (action.name == std::string("Open the input before this")) drawRecentMenu(context);
-    }
-    ImGui::EndMenu();
-  }
-  ImGui::EndMainMenuBar();
+void drawSideButton(PanelContext& context) {
+  const Layout layout =
+      layoutOf(context.session, ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y, context.scale);
+  if (!layout.side_is_over) return;
+  const char* const text = context.session.panels.side ? "Picture" : "Panels";
+  ImGui::SameLine(ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text).x - 24 * context.scale);
+  if (ImGui::SmallButton(text)) perform(context, R"({"do":"panel","name":"side"})");
 }
 
-void drawSidePanel(PanelContext& context, const Area& area) {
+void drawSidePanel(PanelContext& context, const Layout& layout) {
+  const Area& area = layout.side;
   if (area.width < 1) return;
   place(area);
-  ImGui::Begin("side", nullptr, kFixedPanel);
+  ImGuiWindowFlags flags = kFixedPanel;
+  if (layout.side_is_over) {  // App does not fill the background below it
+    flags &= ~(ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus);
+  }
+  ImGui::Begin(layout.side_is_over ? "side over" : "side", nullptr, flags);
   const Panels& panels = context.session.panels;
-  const float height = ImGui::GetContentRegionAvail().y;
+  // All panels share the scroll bar of the side; only that of the scenario, if it is alone, has its own.
   const bool measures = isMeasuring(context.session);
+  const auto separator = [&](bool more) {
+    if (!more) return;
+    ImGui::Spacing();
+    ImGui::Separator();
+    ImGui::Spacing();
+  };
   if (panels.colors) {
-    const bool more = panels.scenario || panels.planes || panels.probe || measures;
-    ImGui::BeginChild("colors", {0, more ? std::min(0.7F * height, 470 * context.scale) : 0});
     drawColorsPanel(context);
-    ImGui::EndChild();
-    if (more) ImGui::Separator();
+    separator(panels.planes || panels.scenario || panels.probe || measures);
   }
   if (panels.planes) {
-    const bool more = panels.scenario || panels.probe || measures;
-    const auto rows = static_cast<float>(2 + 4 * context.session.settings().planes.size());
-    const float wanted = rows * ImGui::GetFrameHeightWithSpacing();
-    ImGui::BeginChild("planes", {0, more ? std::min(height / 2, wanted) : 0});
     drawPlanesPanel(context);
-    ImGui::EndChild();
-    if (more) ImGui::Separator();
+    separator(panels.scenario || panels.probe || measures);
   }
   if (measures) {
-    ImGui::BeginChild("measure", {0, std::min(height / 2, 330 * context.scale)});
     drawMeasurePanel(context);
-    ImGui::EndChild();
-    ImGui::Separator();
+    separator(panels.scenario || panels.probe);
   }
   if (panels.probe) {
-    ImGui::BeginChild("probe", {0, panels.scenario ? 0.55F * ImGui::GetContentRegionAvail().y : 0});
     drawProbePanel(context);
-    ImGui::EndChild();
-    if (panels.scenario) ImGui::Separator();
+    separator(panels.scenario);
   }
-  if (panels.scenario) {
-    // The panel scrolls if the others leave too little room.
-    ImGui::BeginChild("scenario", {0, std::max(ImGui::GetContentRegionAvail().y, 200 * context.scale)});
-    drawScenarioPanel(context);
-    ImGui::EndChild();
-  }
+  if (panels.scenario) drawScenarioPanel(context);
   ImGui::End();
 }
 
@@ -198,13 +144,16 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   place(area);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(12 * s, 5 * s));
   ImGui::Begin("status", nullptr, kFixedPanel | ImGuiWindowFlags_NoScrollbar);
+  // The picture and the buttons of the time line state the time; here only what differs.
   std::string right;
-  if (session.picture()) {
+  if (session.picture() && status.shown_s != status.asked_s && !session.timeline().playing()) {
     const double span_s = session.timeline().end_s();
-    const std::string shown = timeText(status.shown_s, span_s);
-    const bool is_late = status.shown_s != status.asked_s && !session.timeline().playing();
-    right = is_late ? fmt::format("requested {}, shown {}", timeText(status.asked_s, span_s), shown)
-                    : "t = " + shown;
+    right = fmt::format("requested {}, shown {}", timeText(status.asked_s, span_s),
+                        timeText(status.shown_s, span_s));
+  }
+  if (!warningsText(session).empty()) {
+    drawWarningsButton(context);
+    ImGui::SameLine(0, 8 * s);
   }
   const float right_x = area.width - ImGui::CalcTextSize(right.c_str()).x - 12 * s;
   // The value under the cursor has priority over how the picture was made.
@@ -241,11 +190,13 @@ void drawNotice(PanelContext& context, const Area& picture) {
   if (text.empty()) return;
   const float wrap = std::max(120 * s, std::min(picture.width - 60 * s, 760 * s));
   const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
-  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height - 24 * s},
-                          ImGuiCond_Always, {0.5F, 1.0F});
+  // Below the picture's title and what else lies at its top; the labels of the axes are at the bottom.
+  const float top = std::min(120 * s, 0.3F * picture.height);
+  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + top}, ImGuiCond_Always, {0.5F, 0.0F});
   ImGui::SetNextWindowSize({size.x + 32 * s, size.y + 20 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(16 * s, 10 * s));
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.0F, s));
   ImGui::SetNextWindowBgAlpha(0.94F);
   ImGui::Begin("notice", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoSavedSettings |
@@ -255,68 +206,15 @@ void drawNotice(PanelContext& context, const Area& picture) {
   ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
+  ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());  // also over dialogs, which told it
   ImGui::End();
-  ImGui::PopStyleVar(2);
-}
-
-void drawHelp(PanelContext& context) {
-  if (!context.session.panels.help) return;
-  const float s = context.scale;
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  const ImVec2 size{std::min(780 * s, 0.94F * screen.x), std::min(640 * s, 0.9F * screen.y)};
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
-  ImGui::SetNextWindowSize(size, ImGuiCond_Appearing);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  if (ImGui::Begin("Help", &context.session.panels.help,
-                   ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-    if (ImGui::BeginTable("help", 3, ImGuiTableFlags_RowBg)) {
-      ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.34F);
-      ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch, 0.33F);
-      ImGui::TableSetupColumn("command line", ImGuiTableColumnFlags_WidthStretch, 0.33F);
-      for (const Gesture& gesture : gestures()) {
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
-        ImGui::TextWrapped("%s", gesture.gesture);
-        ImGui::TableNextColumn();
-        ImGui::TextWrapped("%s", gesture.does);
-        ImGui::TableNextColumn();
-      }
-      for (const std::string& menu : menuNames()) {
-        ImGui::TableNextRow();
-        ImGui::TableNextColumn();
-        ImGui::TextColored(accentColor(context.session.theme()), "%s", menu.c_str());
-        for (const Action& action : actions()) {
-          if (menu != action.menu) continue;
-          std::string keys;
-          for (const KeyChord& chord : chordsOf(action)) keys += (keys.empty() ? "" : ", ") + toString(chord);
-          ImGui::TableNextRow();
-          ImGui::TableNextColumn();
-          ImGui::TextWrapped("%s", keys.c_str());
-          ImGui::TableNextColumn();
-          ImGui::TextWrapped("%s", action.name);
-          ImGui::TableNextColumn();
-          ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
-          ImGui::TextWrapped("%s", action.command_line.c_str());
-          ImGui::PopStyleColor();
-        }
-      }
-      ImGui::EndTable();
-    }
-  }
-  ImGui::End();
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(3);
 }
 
 void drawGoToTime(PanelContext& context) {
   Session& session = context.session;
-  if (!session.panels.time) return;
   static char typed[64] = "";
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * context.scale);
-  ImGui::Begin(
-      "Go to time", &session.panels.time,
-      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+  if (!beginDialog(context, "Go to time", session.panels.time)) return;
   if (ImGui::IsWindowAppearing()) {
     *fmt::format_to_n(typed, sizeof typed - 1, "{:g}", session.timeline().asked_s()).out = '\0';
     ImGui::SetKeyboardFocusHere();
@@ -331,8 +229,7 @@ void drawGoToTime(PanelContext& context) {
     session.perform({"seek", {{"time", typed}}});
     session.panels.time = session.notice().is_error && session.notice().since_s != told_s;
   }
-  ImGui::End();
-  ImGui::PopStyleVar();
+  endDialog();
 }
 
 }  // namespace emscape::view

@@ -16,6 +16,8 @@ struct Area {
 struct Layout {
   float menu_height = 0;  ///< the menu bar, at the top
   Area picture, side, timeline, status;
+  bool has_side = false;      ///< one of the side's panels is open
+  bool side_is_over = false;  ///< it lies over the picture, if it is shown
 };
 Layout layoutOf(const Session& session, float width, float height, float scale);
 
@@ -51,6 +53,12 @@ bool isEnterPressed();
 bool numberField(const char* id, double& value, const char* format);
 
 void drawMenuBar(PanelContext& context);
+/// The entries of a menu or list of quantities.
+void drawQuantityList(PanelContext& context, const std::vector<ShownQuantity>& quantities);
+/// The list of quantities at the heading of the picture's legend.
+void drawLegendMenu(PanelContext& context, const Area& picture);
+/// Shows or hides the side panel of a narrow window.
+void drawSideButton(PanelContext& context);
 void drawScenarioPanel(PanelContext& context);
 /// True if the panel of the scenario has the keyboard: its keys are not for the picture.
 bool scenarioPanelHasKeyboard();
@@ -64,10 +72,11 @@ void drawProbePanel(PanelContext& context);
 void drawHistory(PanelContext& context);
 void drawMeasurePanel(PanelContext& context);
 /// Panels of colours, planes, probe, measurement and scenario, stacked.
-void drawSidePanel(PanelContext& context, const Area& area);
+void drawSidePanel(PanelContext& context, const Layout& layout);
 void drawTimeline(PanelContext& context, const Area& area);
-/// Height that the timeline's rows need (pixels).
-float timelineHeight(const Session& session, float scale);
+/// Height of the time line (pixels): with as many rows of emitters as fit, without them and the axis if it
+/// has no span or the room is too little. 0: it is not shown. @param room  for it (pixels)
+float timelineHeight(const Session& session, float scale, float room);
 /// The timeline's buttons: transport_panel.cpp.
 void drawTransport(PanelContext& context);
 void drawStatusBar(PanelContext& context, const Area& area);
@@ -86,8 +95,13 @@ void drawGoToTime(PanelContext& context);
 void drawFileBrowser(PanelContext& context);
 /// The running recording, at the top of the picture, and the dialog of a new one.
 void drawRecording(PanelContext& context, const Area& picture);
+/// "3 warnings"; empty without any.
+std::string warningsText(const Session& session);
+void drawWarningsButton(PanelContext& context);
+void drawWarnings(PanelContext& context);
 void drawRestoreQuestion(PanelContext& context);
 void drawUnsavedQuestion(PanelContext& context);
+void drawReplaceQuestion(PanelContext& context);
 /// Message about files that have changed on the disk, at the top of the picture.
 void drawChangedFiles(PanelContext& context, const Area& picture);
 

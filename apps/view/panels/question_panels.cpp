@@ -1,29 +1,14 @@
-/// Dialogs: restore edits of an earlier run, unsaved edits, changed files.
+/// Questions: edits of an earlier run, losses at the end, files to be replaced, changed files.
 #include <fmt/format.h>
 
 #include <filesystem>
 
+#include "apps/view/panels/dialog.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 
 namespace emscape::view {
 namespace {
-
-/// Opens a dialog in the middle of the window. Always followed by endQuestion().
-bool beginQuestion(PanelContext& context, const char* title, bool& open) {
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * context.scale);
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(16 * context.scale, 14 * context.scale));
-  return ImGui::Begin(
-      title, &open,
-      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
-}
-
-void endQuestion() {
-  ImGui::End();
-  ImGui::PopStyleVar(2);
-}
 
 void drawEdits(const std::vector<scenario::Edit>& edits, render::Theme theme) {
   constexpr std::size_t kMaxLines = 6;
@@ -35,22 +20,13 @@ void drawEdits(const std::vector<scenario::Edit>& edits, render::Theme theme) {
   ImGui::PopStyleColor();
 }
 
-/// The default button, also pressed by Enter unless another dialog has the focus.
-bool firstButton(const char* text) {
-  const bool pressed = ImGui::Button((std::string(text) + " (Enter)").c_str());
-  ImGui::SameLine();
-  const bool takes_keys = !ImGui::IsWindowAppearing() &&
-                          (ImGui::IsWindowFocused() || !ImGui::IsWindowFocused(ImGuiFocusedFlags_AnyWindow));
-  return pressed || (takes_keys && isEnterPressed());
-}
-
 }  // namespace
 
 void drawRestoreQuestion(PanelContext& context) {
   Session& session = context.session;
-  if (!session.panels.restore || !session.keptView()) return;
+  if (!session.keptView()) return;
   const playback::AutosavedView kept = *session.keptView();
-  beginQuestion(context, "Edits that were not saved", session.panels.restore);
+  if (!beginDialog(context, "Edits that were not saved", session.panels.restore, {}, Waits::no)) return;
   ImGui::TextUnformatted(
       fmt::format("Edits of this input were not saved. A view with {} edit{} was kept at {}.",
                   kept.state.edits.size(), kept.state.edits.size() == 1 ? "" : "s", kept.written_utc)
@@ -60,12 +36,12 @@ void drawRestoreQuestion(PanelContext& context) {
     ImGui::TextUnformatted("The file was written since: edits that do not apply any more are left out.");
   }
   ImGui::Spacing();
-  if (firstButton("Restore")) perform(context, R"({"do":"restore"})");
+  if (defaultButton("Restore")) perform(context, R"({"do":"restore"})");
   if (ImGui::Button("Discard")) perform(context, R"({"do":"discard"})");
   ImGui::SameLine();
   if (ImGui::Button("Later (Esc)")) session.panels.restore = false;
   ImGui::TextDisabled("Later: it is kept until the next edit.");
-  endQuestion();
+  endDialog();
 }
 
 void drawChangedFiles(PanelContext& context, const Area& picture) {
@@ -95,18 +71,88 @@ void drawChangedFiles(PanelContext& context, const Area& picture) {
   ImGui::PopStyleVar(2);
 }
 
+namespace {
+
+/// Asks about a running recording.
+void drawRecordingQuestion(PanelContext& context, const Json& answers) {
+  Session& session = context.session;
+  const Recorder::Progress progress = session.files().recorder.progress();
+  ImGui::TextUnformatted(
+      progress.total > 0 ? fmt::format("A recording is {} of {}:", progress.pictures, progress.total).c_str()
+                         : "A recording is being opened:");
+  ImGui::TextDisabled("%s", progress.output.c_str());
+  ImGui::Spacing();
+  const auto answer = [&](const char* recording) {
+    Json all = answers;
+    all["recording"] = recording;
+    session.perform({"quit", all});
+  };
+  if (defaultButton("Wait, then quit")) answer("wait");
+  if (ImGui::Button("Cancel it and quit")) answer("cancel");
+  ImGui::SameLine();
+}
+
+/// Asks about edits and colours.
+void drawLossQuestion(PanelContext& context, const Json& answers) {
+  Session& session = context.session;
+  const auto tellFile = [](const std::string& file) {
+    std::error_code ignored;
+    ImGui::TextDisabled("to %s%s", file.c_str(),
+                        std::filesystem::exists(file, ignored) ? ", which is replaced" : "");
+  };
+  if (session.hasUnsavedEdits()) {
+    ImGui::TextUnformatted("The scenario has edits that are not saved.");
+    drawEdits(session.viewState().edits, session.theme());
+    tellFile(session.usualScenarioFile());
+  }
+  if (session.hasUnsavedColors()) {
+    ImGui::TextUnformatted("The colours were changed and are not saved.");
+    tellFile(session.usualColorsFile());
+  }
+  ImGui::Spacing();
+  const auto answer = [&](const char* edits) {
+    Json all = answers;
+    all["edits"] = edits;
+    session.perform({"quit", all});
+  };
+  if (defaultButton("Save and quit")) answer("save");
+  if (ImGui::Button("Discard and quit")) answer("discard");
+  ImGui::SameLine();
+}
+
+}  // namespace
+
 void drawUnsavedQuestion(PanelContext& context) {
   Session& session = context.session;
-  if (!session.panels.unsaved) return;
-  beginQuestion(context, "Quit", session.panels.unsaved);
-  ImGui::TextUnformatted("The scenario has edits that are not saved.");
-  drawEdits(session.viewState().edits, session.theme());
-  ImGui::Spacing();
-  if (firstButton("Save and quit")) perform(context, R"({"do":"quit","edits":"save"})");
-  if (ImGui::Button("Discard and quit")) perform(context, R"({"do":"quit","edits":"discard"})");
-  ImGui::SameLine();
+  if (!beginDialog(context, "Quit", session.panels.unsaved)) return;
+  const Json answers = session.quitAnswers();
+  const bool asks_recording =
+      session.files().recorder.running() && answers.value("recording", "ask") == "ask";
+  if (asks_recording) {
+    drawRecordingQuestion(context, answers);
+  } else {
+    drawLossQuestion(context, answers);
+  }
   if (ImGui::Button("Back (Esc)")) session.panels.unsaved = false;
-  endQuestion();
+  endDialog();
+}
+
+void drawReplaceQuestion(PanelContext& context) {
+  Session& session = context.session;
+  if (!session.replacing()) return;
+  if (!beginDialog(context, "Replace", session.panels.replace)) return;
+  const std::string file = session.replacing()->file;
+  std::error_code ignored;
+  ImGui::TextUnformatted(std::filesystem::is_directory(file, ignored)
+                             ? "This folder exists and has files in it:"
+                             : "This file exists already:");
+  ImGui::TextDisabled("%s", file.c_str());
+  ImGui::Spacing();
+  if (ImGui::Button("Replace")) perform(context, R"({"do":"replace"})");
+  ImGui::SameLine();
+  if (defaultButton("Back")) session.panels.replace = false;
+  ImGui::NewLine();
+  endDialog();
 }
 
 }  // namespace emscape::view

@@ -1,16 +1,22 @@
 /// The recording dialog, and the progress of a recording.
 #include <fmt/format.h>
 
-#include <cstring>
+#include <cstdio>
+#include <filesystem>
+#include <iterator>
 
+#include "apps/view/panels/dialog.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
+#include "base/text/shell_word.h"
+#include "base/text/time_text.h"
 
 namespace emscape::view {
 namespace {
 
 void drawProgress(PanelContext& context, const Area& picture) {
-  const Recorder& recorder = context.session.files().recorder;
+  const Session& session = context.session;
+  const Recorder& recorder = session.files().recorder;
   if (!recorder.running()) return;
   const float s = context.scale;
   const Recorder::Progress progress = recorder.progress();
@@ -18,11 +24,13 @@ void drawProgress(PanelContext& context, const Area& picture) {
   ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + 12 * s}, ImGuiCond_Always, {0.5F, 0});
   ImGui::SetNextWindowSize({width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.0F, s));
   ImGui::Begin("recording", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::TextUnformatted(("recording " + progress.output).c_str());
+  if (session.quitsWhenRecorded()) ImGui::TextDisabled("the program ends when it is complete");
   const float part =
       progress.total > 0 ? static_cast<float>(progress.pictures) / static_cast<float>(progress.total) : 0;
   const std::string text =
@@ -31,28 +39,115 @@ void drawProgress(PanelContext& context, const Area& picture) {
   ImGui::SameLine();
   if (ImGui::Button("Cancel")) perform(context, R"({"do":"record_cancel"})");
   ImGui::End();
-  ImGui::PopStyleVar();
+  ImGui::PopStyleVar(2);
 }
 
-/// Text of the dialog's fields.
+struct SizePreset {
+  const char* name;
+  render::ImageSize size;  ///< 0x0: as on screen
+};
+constexpr SizePreset kSizes[]{
+    {"as on screen", {0, 0}}, {"720p", {1280, 720}}, {"1080p", {1920, 1080}}, {"4K", {3840, 2160}}};
+
+/// Contents of the dialog's fields.
 struct Typed {
   char file[1024] = "";
   double begin_s = 0, end_s = 0, step_s = 0, frames_per_s = 10;
+  std::size_t preset = 0;
+
+  void setFile(const std::string& name) { std::snprintf(file, sizeof file, "%s", name.c_str()); }
+  bool isVideo() const { return std::filesystem::path(file).extension() == ".mp4"; }
+  render::ImageSize size(const Session& session) const {
+    return preset == 0 ? session.pictureSize() : kSizes[preset].size;
+  }
+  Command command() const {
+    Command record{"record",
+                   {{"file", file},
+                    {"begin_s", begin_s},
+                    {"end_s", end_s},
+                    {"step_s", step_s},
+                    {"frames_per_s", frames_per_s}}};
+    if (preset == 0) return record;
+    record.arguments["width"] = kSizes[preset].size.width;
+    record.arguments["height"] = kSizes[preset].size.height;
+    return record;
+  }
 };
 
-/// Default: the whole series as a video in the input's folder.
+/// Default: the whole series as a video beside the input.
 void fillIn(Typed& typed, const Session& session) {
   const std::vector<double>& times_s = session.timeline().times_s();
   if (times_s.empty()) return;
   typed.begin_s = times_s.front();
   typed.end_s = times_s.back();
   typed.step_s = times_s.size() > 1 ? times_s[1] - times_s[0] : 1;
-  if (typed.file[0] != '\0') return;
-  std::string name = session.view().input;
-  while (!name.empty() && name.back() == '/') name.pop_back();
-  name = name.substr(name.rfind('/') + 1);
-  name = name.substr(0, name.find('.')) + ".mp4";
-  std::strncpy(typed.file, name.c_str(), sizeof typed.file - 1);
+  if (typed.file[0] == '\0') typed.setFile(besideInput(session.view().input, ".mp4"));
+}
+
+void drawOutput(PanelContext& context, Typed& typed) {
+  Session& session = context.session;
+  if (!session.files().record_output.empty()) {
+    typed.setFile(std::exchange(session.files().record_output, ""));
+  }
+  ImGui::SetNextItemWidth(360 * context.scale);
+  ImGui::InputText("##file", typed.file, sizeof typed.file);
+  ImGui::SameLine();
+  if (ImGui::Button("Browse")) {
+    session.browse(FileBrowser::Purpose::record, std::filesystem::path(typed.file).filename().string());
+  }
+  ImGui::TextDisabled("NAME.mp4, or a folder for pictures");
+}
+
+void drawSize(const PanelContext& context, Typed& typed) {
+  const auto nameOf = [&](std::size_t preset) {
+    const render::ImageSize size = preset == 0 ? context.session.pictureSize() : kSizes[preset].size;
+    return fmt::format("{}, {} x {}", kSizes[preset].name, size.width, size.height);
+  };
+  ImGui::SetNextItemWidth(260 * context.scale);
+  if (!ImGui::BeginCombo("size", nameOf(typed.preset).c_str())) return;
+  for (std::size_t preset = 0; preset < std::size(kSizes); ++preset) {
+    if (ImGui::Selectable(nameOf(preset).c_str(), preset == typed.preset)) typed.preset = preset;
+  }
+  ImGui::EndCombo();
+}
+
+std::string bytesText(double bytes) {
+  return bytes < 1e9 ? fmt::format("{:.2g} MB", std::max(0.1, bytes / 1e6))
+                     : fmt::format("{:.2g} GB", bytes / 1e9);
+}
+
+/// Number, speed, time and size of what will be recorded.
+void drawEstimate(const PanelContext& context, const Typed& typed) {
+  const Session& session = context.session;
+  const playback::LiveStatus& status = session.status();
+  const render::ImageSize size = typed.size(session), shown = session.pictureSize();
+  const double pixels =
+      shown.count() > 0 ? static_cast<double>(size.count()) / static_cast<double>(shown.count()) : 1;
+  const double full_cast_ms = status.rays_fraction > 0 ? status.cast_ms / status.rays_fraction : 0;
+  const RecordEstimate estimate =
+      estimateOf({{}, {}, {}, typed.frames_per_s, {}}, typed.begin_s, typed.end_s, typed.step_s, size,
+                 status.field_ms + pixels * full_cast_ms, typed.isVideo());
+  if (estimate.pictures == 0) {
+    ImGui::TextColored(errorColor(session.theme()), "expected begin <= end and step > 0");
+    return;
+  }
+  std::string text = fmt::format("{} picture{}", estimate.pictures, estimate.pictures == 1 ? "" : "s");
+  if (typed.isVideo()) {
+    text += fmt::format(", a film of {}; one second shows {} of the scenario", timeText(estimate.film_s),
+                        timeText(estimate.speed));
+  }
+  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextDisabled("about %s to record, %s", timeText(std::max(1.0, std::round(estimate.work_s))).c_str(),
+                      bytesText(estimate.bytes).c_str());
+}
+
+/// The same on the command line.
+std::string commandLine(const Session& session, const Typed& typed) {
+  const render::ImageSize size = typed.size(session);
+  return fmt::format(
+      "emscape render {} --state VIEW.json --times {:g}:{:g}:{:g} --size {}x{} --fps {:g} -o {}",
+      shellWord(session.view().input), typed.begin_s, typed.end_s, typed.step_s, size.width, size.height,
+      typed.frames_per_s, shellWord(typed.file));
 }
 
 }  // namespace
@@ -60,44 +155,28 @@ void fillIn(Typed& typed, const Session& session) {
 void drawRecording(PanelContext& context, const Area& picture) {
   drawProgress(context, picture);
   Session& session = context.session;
-  if (!session.panels.record) return;
+  if (!beginDialog(context, "Record", session.panels.record)) return;
   static Typed typed;
-  const float s = context.scale;
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
-  ImGui::Begin(
-      "Record", &session.panels.record,
-      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
-  if (ImGui::IsWindowAppearing()) {
-    fillIn(typed, session);
-    ImGui::SetKeyboardFocusHere();
-  }
-  ImGui::SetNextItemWidth(360 * s);
-  bool begins = ImGui::InputText("file", typed.file, sizeof typed.file, ImGuiInputTextFlags_EnterReturnsTrue);
-  ImGui::TextDisabled("NAME.mp4, or a folder for pictures");
-  const auto number = [s](const char* name, double& value) {
-    ImGui::SetNextItemWidth(120 * s);
+  if (ImGui::IsWindowAppearing()) fillIn(typed, session);
+  drawOutput(context, typed);
+  drawSize(context, typed);
+  const auto number = [&](const char* name, double& value) {
+    ImGui::SetNextItemWidth(120 * context.scale);
     ImGui::InputDouble(name, &value, 0, 0, "%.6g");
   };
   number("begin (s)", typed.begin_s);
   number("end (s)", typed.end_s);
   number("step (s)", typed.step_s);
-  number("pictures a second of a video", typed.frames_per_s);
-  const render::ImageSize size = session.pictureSize();
-  ImGui::TextDisabled("%d x %d pixels, each of them cast", size.width, size.height);
-  begins |= ImGui::Button("Record");
-  if (begins) {
-    session.perform({"record",
-                     {{"file", typed.file},
-                      {"begin_s", typed.begin_s},
-                      {"end_s", typed.end_s},
-                      {"step_s", typed.step_s},
-                      {"frames_per_s", typed.frames_per_s}}});
-    session.panels.record = !session.files().recorder.running();
-  }
-  ImGui::End();
-  ImGui::PopStyleVar();
+  number("pictures a second of a film", typed.frames_per_s);
+  drawEstimate(context, typed);
+  ImGui::TextDisabled("%s", "the same on the command line, with the view saved as VIEW.json (Ctrl+Shift+V):");
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 520 * context.scale);
+  ImGui::TextDisabled("%s", commandLine(session, typed).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::Spacing();
+  if (defaultButton("Record")) session.perform(typed.command());
+  if (ImGui::Button("Back (Esc)")) session.panels.record = false;
+  endDialog();
 }
 
 }  // namespace emscape::view

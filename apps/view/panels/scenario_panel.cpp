@@ -10,7 +10,6 @@
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/parameter_rows.h"
 #include "apps/view/panels/theme.h"
-#include "apps/view/parts/shown_quantity.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -96,29 +95,10 @@ struct PanelState {
   }
 };
 
-void drawQuantity(PanelContext& context, ParameterRows& rows, const scenario::Scenario& scenario) {
-  if (!rows.begin("quantity")) return;
-  rows.label("shown", "The quantity in the picture\n--quantity NAME", false);
-  ImGui::TableNextColumn();
-  ImGui::SetNextItemWidth(-1);
-  const std::string& chosen = context.session.view().quantity;
-  const std::string shown = chosen.empty() ? scenario.output.quantities.front() : chosen;
-  if (beginComboOfName("##quantity", shown)) {
-    for (const std::string& name : quantitiesOf(scenario)) {
-      pushNameId(name);
-      if (selectableName(name, name == shown)) context.session.perform({"quantity", {{"name", name}}});
-      ImGui::PopID();
-    }
-    ImGui::EndCombo();
-  }
-  ParameterRows::end();
-}
-
 void drawBody(PanelContext& context, PanelState& state, const Section& section) {
   ParameterRows rows(context, state.edited, scenarioFocus(), state.rows);
   pushNameId(section.path);
   try {
-    if (section.path == "output") drawQuantity(context, rows, *state.scenario);
     rows.draw(state.groupAt(section.path));
   } catch (const Error& error) {
     ImGui::TextWrapped("%s", error.message().c_str());
@@ -370,7 +350,10 @@ void drawScenarioPanel(PanelContext& context) {
       state.filter.Build();
     }
   }
-  ImGui::BeginChild("sections");
+  // With other panels above, all share the scroll bar of the side.
+  const Panels& panels = context.session.panels;
+  const bool scrolls = !panels.colors && !panels.planes && !panels.probe;
+  if (scrolls) ImGui::BeginChild("sections");
   // Clicked before the rows, which may take the focus.
   const bool is_clicked =
       ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right);
@@ -379,7 +362,7 @@ void drawScenarioPanel(PanelContext& context) {
                             !isPopupOpen();
   for (const SectionGroup& group : state.section_groups) drawSections(context, state, group);
   focus.endFrame(is_clicked && is_elsewhere);
-  ImGui::EndChild();
+  if (scrolls) ImGui::EndChild();
 }
 
 }  // namespace emscape::view

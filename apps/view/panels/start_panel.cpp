@@ -23,36 +23,79 @@ void drawRecentFiles(PanelContext& context, std::size_t max_count) {
   }
 }
 
+namespace {
+
+/// Examples beside their first sentences.
+void drawExamples(PanelContext& context) {
+  Session& session = context.session;
+  ImGui::TextColored(accentColor(session.theme()), "Examples");
+  const float height = std::min(9.5F, static_cast<float>(session.files().examples.size())) *
+                       ImGui::GetTextLineHeightWithSpacing();
+  ImGui::BeginChild("examples", {0, height});
+  if (ImGui::BeginTable("examples", 2)) {
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed);
+    ImGui::TableSetupColumn("text", ImGuiTableColumnFlags_WidthStretch);
+    for (const Example& example : session.files().examples) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      pushNameId(example.file);
+      if (selectableName(std::filesystem::path(example.file).stem().string(), false)) {
+        session.perform({"open", {{"file", example.file}}});
+      }
+      ImGui::PopID();
+      ImGui::TableNextColumn();
+      ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(session.theme()));
+      ImGui::TextWrapped("%s", example.text.c_str());
+      ImGui::PopStyleColor();
+    }
+    ImGui::EndTable();
+  }
+  ImGui::EndChild();
+}
+
+}  // namespace
+
 void drawStart(PanelContext& context, const Area& picture) {
   Session& session = context.session;
   if (session.hasInput() || session.files().is_opening || session.panels.open) return;
   const float s = context.scale;
-  const float width = std::min(620 * s, 0.94F * picture.width);
+  const float width = std::min(720 * s, 0.94F * picture.width);
   ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + picture.height / 2}, ImGuiCond_Always,
                           {0.5F, 0.5F});
-  ImGui::SetNextWindowSize({width, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(8 * s, 10 * s));
+  ImGui::SetNextWindowSizeConstraints({width, 0}, {width, picture.height});
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2(8 * s, 8 * s));
   ImGui::Begin("start", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground |
-                   ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus);
-  ImGui::TextColored(accentColor(session.theme()), "Nothing is open");
-  ImGui::PushTextWrapPos(0);
+               ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
+                   ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoBringToFrontOnFocus);
+  ImGui::PushTextWrapPos(width - 12 * s);
   ImGui::TextUnformatted(
-      "Open a scenario (.yaml, .json), whose field is computed, or volumes from an earlier computation: a "
-      "file "
+      "Open a scenario (.yaml, .json), whose field is computed, or volumes of any program: a file "
       "(.vdb .nvdb .vti .raw .dat), a series (.pvd) or a folder.");
   ImGui::PopTextWrapPos();
   if (ImGui::Button("Open (Ctrl+O)")) perform(context, R"({"do":"open"})");
   ImGui::SameLine(0, 16 * s);
   ImGui::AlignTextToFramePadding();
-  ImGui::TextDisabled("or drop a file on the window. F1: keys and mouse");
+  ImGui::TextDisabled("or drop a file on the window. F1: first steps, keys and mouse");
   if (!session.files().recent.empty()) {
     ImGui::Spacing();
     ImGui::TextColored(accentColor(session.theme()), "Opened last");
     ImGui::SameLine();
     ImGui::TextDisabled("(the first: Ctrl+Shift+O)");
-    drawRecentFiles(context, session.files().recent.size());
+    drawRecentFiles(context, 5);
   }
+  if (!session.files().examples.empty()) {
+    ImGui::Spacing();
+    drawExamples(context);
+  }
+  ImGui::Spacing();
+  ImGui::TextDisabled("Appearance");
+  ImGui::SameLine();
+  if (ImGui::SmallButton("dark or light (D)")) perform(context, R"({"do":"theme"})");
+  ImGui::SameLine();
+  if (ImGui::SmallButton("larger texts (Ctrl++)")) perform(context, R"({"do":"scale","change":1})");
+  ImGui::SameLine();
+  if (ImGui::SmallButton("smaller texts (Ctrl+-)")) perform(context, R"({"do":"scale","change":-1})");
   ImGui::End();
   ImGui::PopStyleVar();
 }

@@ -22,6 +22,10 @@ ImVec4 errorColor(render::Theme theme) {
   return theme == render::Theme::dark ? rgb(0xFF8C7A) : rgb(0xB3261E);
 }
 
+ImVec4 warningColor(render::Theme theme) {
+  return theme == render::Theme::dark ? rgb(0xF0B95A) : rgb(0x8A5A00);
+}
+
 ImVec4 stateColor(render::ControllerState state) {
   switch (state) {
     case render::ControllerState::busy:

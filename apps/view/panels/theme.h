@@ -23,5 +23,6 @@ ImVec4 emitterColor(scenario::EmitterKind kind, render::Theme theme);
 ImVec4 accentColor(render::Theme theme);
 ImVec4 mutedColor(render::Theme theme);
 ImVec4 errorColor(render::Theme theme);
+ImVec4 warningColor(render::Theme theme);
 
 }  // namespace emscape::view

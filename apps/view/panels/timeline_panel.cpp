@@ -14,8 +14,21 @@ namespace {
 // In pixels at scale 1
 constexpr float kGap = 6, kTransport = 34, kPadding = 10, kReach = 6;
 
-int rowsOf(const Session& session) {
-  return std::min(kMaxTimelineRows, static_cast<int>(session.timeline().bars().size()));
+float transportHeight(float scale) {
+  return (kPadding + kTransport + kGap) * scale;
+}
+
+/// Height of the axis with so many rows of emitters.
+float axisHeight(float scale, int rows) {
+  return (kTimelineMarks + kTimelineCached + 3 + kTimelineRow * static_cast<float>(rows)) * scale +
+         2 * ImGui::GetTextLineHeight();
+}
+
+/// Rows of emitters that fit; -1: not even the axis does.
+int rowsOf(const Session& session, float scale, float room) {
+  int rows = std::min(kMaxTimelineRows, static_cast<int>(session.timeline().bars().size()));
+  while (rows >= 0 && transportHeight(scale) + axisHeight(scale, rows) > room) --rows;
+  return rows;
 }
 
 /// The item that the mouse drags.
@@ -122,11 +135,10 @@ float namesWidth(const Session& session, float scale) {
   return bars.empty() ? 0 : std::min(widest + 10 * scale, 150 * scale);
 }
 
-void drawTracks(PanelContext& context) {
+void drawTracks(PanelContext& context, int rows) {
   constexpr ImGuiButtonFlags kButtons = ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle;
   Session& session = context.session;
   const float s = context.scale;
-  const int rows = rowsOf(session);
   const bool scrolls = static_cast<int>(session.timeline().bars().size()) > rows;
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float names = namesWidth(session, s);
@@ -169,10 +181,12 @@ void drawTracks(PanelContext& context) {
 
 }  // namespace
 
-float timelineHeight(const Session& session, float scale) {
-  const float axis =
-      kTimelineMarks + kTimelineCached + 3 + kTimelineRow * static_cast<float>(rowsOf(session));
-  return (kPadding + kTransport + kGap + axis + kGap) * scale + 2 * ImGui::GetTextLineHeight();
+float timelineHeight(const Session& session, float scale, float room) {
+  // Before the input is open, room is left for it.
+  const bool has_span = session.timeline().times_s().empty() || session.timeline().hasSpan();
+  if (!session.hasInput() || !session.panels.timeline || !has_span) return 0;
+  const int rows = rowsOf(session, scale, room);
+  return transportHeight(scale) + (rows < 0 ? 0 : axisHeight(scale, rows));
 }
 
 void drawTimeline(PanelContext& context, const Area& area) {
@@ -182,11 +196,11 @@ void drawTimeline(PanelContext& context, const Area& area) {
   ImGui::Begin("timeline", nullptr,
                kFixedPanel | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   drawTransport(context);
-  if (context.session.timeline().hasSpan()) {
+  constexpr float kRounding = 0.5F;
+  const int rows = rowsOf(context.session, context.scale, area.height + kRounding);
+  if (rows >= 0 && context.session.timeline().hasSpan()) {
     ImGui::Dummy({0, 0});
-    drawTracks(context);
-  } else {
-    ImGui::TextDisabled("one step");
+    drawTracks(context, rows);
   }
   ImGui::End();
 }

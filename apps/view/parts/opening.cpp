@@ -3,6 +3,7 @@
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/inputs.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "playback/series/series_scenario.h"
 #include "playback/view/view_file.h"
 
 namespace emscape::view {
@@ -77,6 +78,7 @@ Opening prepareOpening(const OpenRequest& request, const ViewOptions& present) {
       playback::setInput(options.view, present.view);
       if (options.view.open_panels.empty()) options.view.open_panels = present.view.open_panels;
       options.state = request.file;
+      options.fits_labels = false;
       options.offers_kept_view = false;
       break;
     case JsonContent::other:
@@ -88,11 +90,13 @@ Opening prepareOpening(const OpenRequest& request, const ViewOptions& present) {
       options.view.input = request.file;
       options.view.scenario = request.scenario;
       options.state.clear();
+      options.fits_labels = !request.view;
       options.offers_kept_view = !request.view;
       break;
   }
   options.view.transfer_file.clear();
   options.unsaved_edits = request.unsaved_edits;
+  playback::addOwnScenario(options.view);
   checkInput(options, opening);
   if (!opening.left_out.empty()) options.state.clear();
   return opening;

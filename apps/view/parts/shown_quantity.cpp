@@ -6,6 +6,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/emfield/solver/field_solver.h"
+#include "emscape/render/annotate/legend.h"
 #include "emscape/scenario/model/quantities.h"
 #include "scenario/file/quantity_needs.h"
 
@@ -38,6 +39,16 @@ std::string missingQuantity(const scenario::Scenario& scenario, const std::strin
   } catch (const Error& error) {
     return error.message();
   }
+}
+
+ShownQuantity titled(const std::string& name) {
+  std::string unit;
+  const std::string quantity = name.substr(0, name.find(':'));
+  for (const scenario::QuantityInfo& info : scenario::quantityTable()) {
+    if (info.name == quantity) unit = info.unit;
+  }
+  const std::string title = render::quantityTitle(name, unit);
+  return {name, unit.empty() ? title : title + ", " + render::unitText(unit)};
 }
 
 std::vector<std::string> quantitiesOf(const scenario::Scenario& scenario) {

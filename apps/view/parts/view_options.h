@@ -12,8 +12,10 @@ namespace emscape::view {
 struct ViewOptions {
   /// The first view; `size` is the size of the picture. Without an input the window asks for one.
   playback::ViewState view;
-  std::string state;             ///< file that `view` was read from; empty: none, or options changed it
-  bool unsaved_edits = false;    ///< the edits of `view` are not saved: they are from an autosave
+  std::string state;           ///< file that `view` was read from; empty: none, or options changed it
+  bool unsaved_edits = false;  ///< the edits of `view` are not saved: they are from an autosave
+  /// The picture's texts are as large as those of the panels; false: as the view says.
+  bool fits_labels = true;
   bool offers_kept_view = true;  ///< asks whether the autosave of the input is to be restored
   /// Empty: as large as the view's picture requires.
   std::optional<render::ImageSize> window_size = render::ImageSize{1200, 900};

@@ -90,7 +90,7 @@ std::optional<double> delayOf(const Json& object) {
 }  // namespace
 
 Script::Script(const std::string& file) {
-  std::istringstream text(readWholeText(file));
+  std::istringstream text(readTextOrPipe(file));
   int number = 0;
   for (std::string line; std::getline(text, line);) {
     ++number;

@@ -34,8 +34,11 @@ playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::
   return live;
 }
 
-playback::ViewState withoutSize(playback::ViewState view) {
+/// The first view. Its size is set when the window has one.
+playback::ViewState firstView(const ViewOptions& options, const WindowControl& window) {
+  playback::ViewState view = options.view;
   view.size = {};
+  if (options.fits_labels) view.label_scale = window.scale();
   return view;
 }
 
@@ -49,7 +52,7 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       target_(target),
       wake_(std::move(wake)),
       cache_limit_bytes_(cacheLimitOf(target)),
-      view_(withoutSize(options.view)),
+      view_(firstView(options, window)),
       live_(view_, liveOptionsOf(options, target, cache_limit_bytes_), wake_),
       edit_queue_(wake_),
       prober_(Prober::Detail::explained, wake_),
@@ -69,7 +72,7 @@ std::vector<Verb> Session::verbs() {
   for (const auto& topic : {programVerbs(), timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(),
                             itemVerbs(), selectionVerbs(), toolVerbs(), probeVerbs(), pictureVerbs(),
                             planeVerbs(), transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(),
-                            recordVerbs()}) {
+                            recordVerbs(), quitVerbs()}) {
     all.insert(all.end(), topic.begin(), topic.end());
   }
   return all;
@@ -122,6 +125,8 @@ void Session::takeScenario() {
       view_.edits = edits_->edits();
       shown_scenario_ = edits_->scenario();
       watchFiles();
+    } else if (std::exchange(panels.scenario, false)) {
+      panels.colors = true;  // there is nothing to change but the colours
     }
   }
   if (edits_) timeline_.setScenario(*edits_->scenario());
@@ -174,8 +179,14 @@ bool Session::update() {
     if (!reported_error_.empty()) tell(reported_error_, true);
   }
   revertRejected();
-  if (const auto recorded = files_->recorder.takeOutcome()) tell(recorded->text, recorded->is_error);
+  if (const auto recorded = files_->recorder.takeOutcome()) {
+    tell(recorded->text, recorded->is_error);
+    if (std::exchange(quits_when_recorded_, false) && !recorded->is_error) {
+      perform({"quit", {{"edits", quit_answers_.value("edits", "ask")}}});
+    }
+  }
   takeChangedFiles();
+  if (takeWarnings(now_s)) touched_ = true;
   writePendingPicture();
   keepEdits(now_s);
   const bool notice_ends = !notice_.text.empty() && now_s - notice_.since_s > (notice_.is_error ? 12 : 4);
@@ -202,6 +213,7 @@ std::optional<double> Session::nextUpdate_s() const {
   if (computing_from_s_) return kProgress_s;
   if (!notice_.text.empty()) return 0.5;
   if (files_->recorder.running() || files_->browser.reading()) return 0.1;
+  if (status_.warnings != joined_warnings_) return 0.5;
   if (keep_at_s_) return std::max(0.0, *keep_at_s_ - log_.now_s());
   return std::nullopt;
 }

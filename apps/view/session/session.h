@@ -20,6 +20,7 @@
 #include "apps/view/parts/prober.h"
 #include "apps/view/parts/program_state.h"
 #include "apps/view/parts/scene_objects.h"
+#include "apps/view/parts/shown_quantity.h"
 #include "apps/view/parts/undo_order.h"
 #include "apps/view/parts/value_summary.h"
 #include "apps/view/parts/view_options.h"
@@ -45,8 +46,11 @@ struct Rejection {
   std::string message;
 };
 
-/// The first emscape-NNNN.png that does not exist.
-std::string newPictureName();
+/// A command that waits for the answer whether an existing file may be replaced.
+struct Replacing {
+  Command command;
+  std::string file;
+};
 
 /// Runs commands on a LiveView and holds the requested state. For use by the window's thread.
 class Session {
@@ -89,6 +93,12 @@ class Session {
 
   // --- state on screen ---
   const playback::LivePicture* picture() const { return picture_.get(); }
+  /// True if the input is files, not a scenario whose field is computed.
+  bool showsFiles() const { return hasInput() && !status_.quantities.empty(); }
+  /// The quantities that can be shown. Computed again for another scenario.
+  const std::vector<ShownQuantity>& quantities();
+  /// The requested quantity, or the one that stands for none.
+  std::string chosenQuantity() const;
   const playback::LiveStatus& status() const { return status_; }
   /// What the program does, in words.
   ProgramState programState() const;
@@ -126,6 +136,21 @@ class Session {
   /// Changes the view; a notice reports settings that do not apply to the field on screen.
   void change(const std::function<void(playback::ViewState&)>& change);
   bool hasUnsavedEdits() const;
+  /// True if colours or opacities were changed and neither they nor the view were saved since.
+  bool hasUnsavedColors() const;
+  /// True if quitting would lose edits or colours.
+  bool isUnsaved() const { return hasUnsavedEdits() || hasUnsavedColors(); }
+  /// The answers given so far to the questions before the end: arguments of `quit`.
+  const Json& quitAnswers() const { return quit_answers_; }
+  /// True if the program ends as soon as the recording is complete.
+  bool quitsWhenRecorded() const { return quits_when_recorded_; }
+  const std::optional<Replacing>& replacing() const { return replacing_; }
+  /// The files that `save` and `save_transfer` write without a name.
+  std::string usualScenarioFile() const;
+  std::string usualColorsFile() const;
+  /// Warnings about models, files and scans: of the log since the input was opened, and of the field on
+  /// screen.
+  const std::vector<std::string>& warnings() const { return warnings_; }
   /// The autosave of an earlier run that did not end regularly.
   const std::optional<playback::AutosavedView>& keptView() const { return kept_view_; }
   /// Files of the input that have changed on the disk since they were read.
@@ -135,6 +160,8 @@ class Session {
   /// Called when the session is shown. @param left_out  edits that did not apply; may be empty
   void shown(const std::string& left_out);
   void record(const RecordRange& range, const std::string& output);
+  /// Opens the file browser. @param proposed  file name at first; may be empty
+  void browse(FileBrowser::Purpose purpose, const std::string& proposed = "");
 
   CameraControl& camera() { return camera_; }
   const CameraControl& camera() const { return camera_; }
@@ -201,6 +228,7 @@ class Session {
   static std::vector<Verb> stateVerbs();
   static std::vector<Verb> fileVerbs();
   static std::vector<Verb> recordVerbs();
+  static std::vector<Verb> quitVerbs();
 
   void switchPlanes(const Command& command);
   void changePlane(const Command& command);
@@ -214,13 +242,16 @@ class Session {
   void follow(const std::string& name, const std::string& mode);
   /// The scenario that the field is computed from; null for volumes.
   playback::ScenarioPtr computedScenario() const { return view_.scenario.empty() ? scenario() : nullptr; }
-  void browse(FileBrowser::Purpose purpose);
   void ask(OpenRequest request);
   /// @throws Error (bad_input) if nothing is open
   void requireInput() const;
   void showView(const playback::ViewState& view);
   void noteSavedView(const std::string& file);
-  void saveScenario(const std::string& file, bool then_quits);
+  void saveScenario(const std::string& file);
+  void quit(const Command& command);
+  /// True if the user is asked first, since the file exists and this window has not written it. With the
+  /// argument `replace`, which is the answer, and in scripts there is no question.
+  bool asksToReplace(const Command& command, const std::string& file);
   void saveView(const std::string& file);
   void copyCommand();
   void writePendingPicture();
@@ -231,6 +262,8 @@ class Session {
   void keepView();
   void dropKeptView();
   bool isPictureSettled() const;
+  /// @return true if they have changed
+  bool takeWarnings(double now_s);
   std::string recordTimes(const RecordRange& range) const;
   void finishJobs();
   void askTime();
@@ -278,7 +311,7 @@ class Session {
   /// @throws Error (bad_input) if there are no editable colours
   playback::TransferEditor& requireTransfer();
   void readTransfer(const std::string& file);
-  void saveTransfer(std::string file);
+  void saveTransfer(const std::string& file);
   Json transferReport() const;
 
   const ViewOptions options_;
@@ -327,20 +360,33 @@ class Session {
   bool dragging_ = false;  // the colours
   bool touched_ = false;   // by a command since the last update()
   std::shared_ptr<Files> files_;
-  std::string saved_file_;    // view file that ...
-  std::string saved_text_;    // ... holds this view
-  std::string copied_;        // the command that was copied last
-  std::string picture_file_;  // written when the picture is settled
-  bool opened_unsaved_;       // with unsaved edits
-  std::string kept_hash_;     // of the scenario in the autosave, or of one without unsaved edits
+  std::string saved_file_;                                // view file that ...
+  std::string saved_text_;                                // ... holds this view
+  std::string copied_;                                    // the command that was copied last
+  std::string picture_file_;                              // written when the picture is settled
+  std::optional<render::TransferFunction> saved_colors_;  // as fitted, read or written last
+  std::optional<Replacing> replacing_;
+  Json quit_answers_ = Json::object();
+  bool quits_when_recorded_ = false;
+  bool opened_unsaved_;    // with unsaved edits
+  std::string kept_hash_;  // of the scenario in the autosave, or of one without unsaved edits
   std::optional<double> keep_at_s_;
   bool has_kept_;  // true: there is an autosave; a regular end removes it
   std::optional<playback::AutosavedView> kept_view_;
   FileWatch file_watch_;
   std::vector<std::string> changed_files_;
+  std::vector<ShownQuantity> quantities_;
+  playback::ScenarioPtr quantities_of_;
+  std::vector<std::string> warnings_;
+  std::shared_ptr<const std::vector<std::string>> joined_warnings_;  // of the models, in warnings_
+  std::size_t joined_messages_ = 0;
+  double joined_at_s_ = -1e9;
   Notice notice_;
   BackgroundJobs jobs_;  // destroyed first
 };
+
+/// A file of the input's name with another ending, in its folder.
+std::string besideInput(const std::string& input, const std::string& ending);
 
 /// The edits that move a platform.
 /// @throws Error (bad_input) if there is no such platform, or it moves along a track

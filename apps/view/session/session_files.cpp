@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "apps/view/files/file_endings.h"
 #include "apps/view/files/recent_files.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "report/warnings.h"
 
 namespace emscape::view {
 namespace {
@@ -17,22 +19,14 @@ constexpr double kKeepAfter_s = 2;
 
 }  // namespace
 
-std::string newPictureName() {
-  for (int number = 1;; ++number) {
-    const std::string name = fmt::format("emscape-{:04d}.png", number);
-    std::error_code ignored;
-    if (!std::filesystem::exists(name, ignored)) return name;
-  }
-}
-
 // --- opening ---
 
 void Session::requireInput() const {
   if (!hasInput()) throw Error(ErrorCode::bad_input, "nothing is open: open a scenario or volumes first");
 }
 
-void Session::browse(FileBrowser::Purpose purpose) {
-  files_->browser.open(purpose, std::filesystem::path(options_.view.input).parent_path());
+void Session::browse(FileBrowser::Purpose purpose, const std::string& proposed) {
+  files_->browser.open(purpose, std::filesystem::path(options_.view.input).parent_path(), proposed);
   panels.open = true;
 }
 
@@ -46,8 +40,11 @@ void Session::ask(OpenRequest request) {
 void Session::shown(const std::string& left_out) {
   if (!left_out.empty()) tell("these edits do not apply any more: " + left_out, true);
   jobs_.run([this, input = options_.view.input]() -> BackgroundJobs::Finish {
-    return [this, recent = input.empty() ? readRecentFiles() : addRecentFile(input)] {
+    auto examples = input.empty() ? findExamples() : std::vector<Example>();
+    return [this, examples = std::move(examples),
+            recent = input.empty() ? readRecentFiles() : addRecentFile(input)] {
       files_->recent = recent;
+      if (!examples.empty()) files_->examples = examples;
     };
   });
   if (options_.offers_kept_view && hasInput()) lookForKeptView();
@@ -79,6 +76,26 @@ void Session::takeChangedFiles() {
   panels.changed = touched_ = true;
 }
 
+// --- warnings ---
+
+bool Session::takeWarnings(double now_s) {
+  constexpr double kInterval_s = 0.5;  // of a playing series, whose steps have different warnings
+  const std::vector<std::string> messages = files_->messages->lines();
+  if (status_.warnings == joined_warnings_ && messages.size() == joined_messages_) return false;
+  if (now_s - joined_at_s_ < kInterval_s) return false;
+  joined_at_s_ = now_s;
+  const bool is_same = status_.warnings && joined_warnings_ && *status_.warnings == *joined_warnings_ &&
+                       messages.size() == joined_messages_;
+  joined_warnings_ = status_.warnings;
+  joined_messages_ = messages.size();
+  if (is_same) return false;
+  std::vector<std::string> warnings = messages;
+  if (status_.warnings) {
+    for (const std::string& line : report::joinedWarnings(*status_.warnings)) warnings.push_back(line);
+  }
+  return std::exchange(warnings_, warnings) != warnings;
+}
+
 // --- edits ---
 
 bool Session::hasUnsavedEdits() const {
@@ -89,23 +106,21 @@ bool Session::working() const {
   return jobs_.busy() || !picture_file_.empty() || files_->is_opening || isAnswering();
 }
 
-void Session::saveScenario(const std::string& given_file, bool then_quits) {
-  if (!edits_) throw Error(ErrorCode::bad_input, "there is no scenario to save");
-  std::string file = given_file;
-  if (file.empty()) {
-    const std::filesystem::path input(scenario()->file);
-    file = (input.parent_path() / (input.stem().string() + ".edited" + input.extension().string())).string();
-  }
-  jobs_.run([this, file, saved = scenario(), then_quits]() -> BackgroundJobs::Finish {
+std::string Session::usualScenarioFile() const {
+  const std::filesystem::path input(scenario()->file);
+  return (input.parent_path() / (input.stem().string() + ".edited" + input.extension().string())).string();
+}
+
+void Session::saveScenario(const std::string& file) {
+  jobs_.run([this, file, saved = scenario()]() -> BackgroundJobs::Finish {
     scenario::saveScenario(*saved, file);
-    return [this, file, saved, then_quits] {
+    return [this, file, saved] {
       if (scenario() == saved) {
         edits_->markSaved();
         opened_unsaved_ = false;
       }
       keep_at_s_ = log_.now_s();  // the autosave is obsolete
       tell("written: " + file);
-      if (then_quits) window_.quit();
     };
   });
 }
@@ -198,9 +213,37 @@ std::vector<Verb> Session::fileVerbs() {
                       session.hasUnsavedEdits()});
        }},
       {"save",
-       {{"file", kText, false, {}, {}, requireScenarioEnding}},
-       "Writes the changed scenario; default: NAME.edited.yaml next to the input",
-       [](Session& session, const Command& command) { session.saveScenario(command.text("file"), false); }},
+       {{"file", kText, false, {}, {}, requireScenarioEnding}, {"replace", kBoolean, false}},
+       "Writes the changed scenario; default: NAME.edited.yaml next to the input. With `replace` an existing "
+       "file is replaced without a question, as in scripts; this also holds for the other verbs that write",
+       [](Session& session, const Command& command) {
+         if (!session.edits_) throw Error(ErrorCode::bad_input, "there is no scenario to save");
+         const std::string file = command.has("file") ? command.text("file") : session.usualScenarioFile();
+         if (session.asksToReplace(command, file)) return;
+         session.panels.open = false;  // the file browser that asked for the name
+         session.saveScenario(file);
+       }},
+      {"save_as",
+       {},
+       "Asks for the name under which the changed scenario is written",
+       [](Session& session, const Command&) {
+         if (!session.edits_) throw Error(ErrorCode::bad_input, "there is no scenario to save");
+         const std::filesystem::path file = session.usualScenarioFile();
+         session.browse(FileBrowser::Purpose::save_scenario, file.filename().string());
+       }},
+      {"add_scenario",
+       {{"file", kText, false}},
+       "Draws the ground and the emitters of a scenario with the volumes; without a file: asks for it",
+       [](Session& session, const Command& command) {
+         session.requireInput();
+         if (session.edits_ && session.view_.scenario.empty()) {
+           throw Error(ErrorCode::bad_input, "add_scenario: the input is a scenario");
+         }
+         if (!command.has("file")) return session.browse(FileBrowser::Purpose::scenario);
+         playback::ViewState view = session.viewState();
+         view.edits.clear();
+         session.ask({session.options_.view.input, command.text("file"), view, false});
+       }},
       {"restore",
        {},
        "Shows the view with its edits that was kept when the program did not exit normally",
@@ -218,22 +261,6 @@ std::vector<Verb> Session::fileVerbs() {
          session.kept_view_.reset();
          session.has_kept_ = true;
          session.dropKeptView();
-       }},
-      {"quit",
-       {{"edits", kText, false, {}, {"save", "discard", "ask"}}},
-       "Ends the program; `edits` that are not saved: save, discard or ask; default: ask, in scripts discard",
-       [](Session& session, const Command& command) {
-         const bool is_script = !session.options_.script.empty();
-         const std::string edits = command.has("edits") ? command.text("edits")
-                                   : is_script          ? "discard"
-                                                        : "ask";
-         session.panels.unsaved = edits == "ask" && session.hasUnsavedEdits();
-         if (session.panels.unsaved) return;
-         if (edits == "save" && session.hasUnsavedEdits()) {
-           session.saveScenario("", true);
-         } else {
-           session.window_.quit();
-         }
        }},
   };
 }

@@ -14,12 +14,13 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
   if (files_->request && !task_.active()) {
     OpenRequest request = *std::exchange(files_->request, std::nullopt);
     endBeside(std::move(next_));  // there is a newer request
+    files_->messages->clear();
     ViewOptions present = session->options();
     // A new input is shown with the options of the start, but with the present window.
     playback::ViewState fresh;
     playback::setInput(fresh, present.view);
     fresh.theme = session->theme();
-    fresh.open_panels = session->viewState().open_panels;
+    if (session->scenario()) fresh.open_panels = session->viewState().open_panels;  // else those for volumes
     present.view = fresh;
     task_.start([request = std::move(request), present] { return prepareOpening(request, present); });
   }

@@ -55,6 +55,25 @@ void Session::showQuantity(const std::string& name) {
   change([&](playback::ViewState& view) { playback::changeQuantity(view, name); });
 }
 
+const std::vector<ShownQuantity>& Session::quantities() {
+  const playback::ScenarioPtr computed = showsFiles() ? nullptr : computedScenario();
+  const bool is_known = !quantities_.empty() && computed == quantities_of_;
+  if (is_known) return quantities_;
+  quantities_of_ = computed;
+  quantities_.clear();
+  for (const std::string& name : computed ? quantitiesOf(*computed) : status_.quantities) {
+    quantities_.push_back(titled(name));
+  }
+  return quantities_;
+}
+
+std::string Session::chosenQuantity() const {
+  if (!view_.quantity.empty()) return view_.quantity;
+  const playback::ScenarioPtr computed = showsFiles() ? nullptr : computedScenario();
+  if (computed) return computed->output.quantities.front();
+  return status_.quantities.empty() ? "" : status_.quantities.front();
+}
+
 /// Returns from a quantity or comparison that cannot be shown to those of the last field.
 void Session::revertRejected() {
   if (!status_.failed) {
@@ -97,6 +116,25 @@ std::vector<Verb> Session::pictureVerbs() {
            settings.mode = shown && !command.has("value") ? session.fog_mode_ : render::CompositingMode::iso;
            if (command.has("value")) settings.iso_value = command.number("value");
          });
+       }},
+      {"reset_switches",
+       {},
+       "Sets all settings of the view that have a key or a verb as they were at the start, and removes "
+       "planes "
+       "and comparison; camera, quantity and colours stay",
+       [](Session& session, const Command&) {
+         const playback::ViewState& first = session.options_.view;
+         const bool compares = session.compares();
+         session.change([&](playback::ViewState& view) {
+           for (const playback::ViewSetting& setting : playback::viewSettings()) {
+             const bool is_size_of_texts = setting.key == "label_scale";
+             if (!setting.verb.empty() && !is_size_of_texts) setting.set(view, setting.get(first));
+           }
+           view.settings.planes = first.settings.planes;
+           view.pattern = first.pattern;
+         });
+         if (compares != !first.compare.empty()) session.perform({"compare", {{"on", !compares}}});
+         session.tell("all switches of the view are as they were at the start");
        }},
       {"quantity",
        {{"name", kText}},

@@ -7,12 +7,18 @@
 #include "emscape/base/error.h"
 
 namespace emscape::view {
+namespace {
+
+constexpr NumberLimits kSide_px{16, render::kMaxImageSide, true};
+
+}  // namespace
 
 void Session::record(const RecordRange& range, const std::string& output) {
   if (timeline_.times_s().empty()) throw Error(ErrorCode::bad_input, "record: there is nothing to see yet");
   if (output.empty()) throw Error(ErrorCode::bad_input, "record: name a folder, a .mp4 or a .png");
   RecordJob job;
   job.view = viewState();
+  if (range.size) job.view.size = *range.size;
   job.times = recordTimes(range);
   job.target = target_;
   job.frames_per_s = range.frames_per_s;
@@ -40,9 +46,12 @@ std::vector<Verb> Session::recordVerbs() {
         {"begin_s", kNumber, false},
         {"end_s", kNumber, false},
         {"step_s", kNumber, false},
-        {"frames_per_s", kNumber, false, {0.1, 240}}},
-       "Records the view over the series, or from `begin_s` to `end_s`, into a folder of pictures or a .mp4; "
-       "without a file: asks for it",
+        {"frames_per_s", kNumber, false, {0.1, 240}},
+        {"width", kNumber, false, kSide_px},
+        {"height", kNumber, false, kSide_px},
+        {"replace", kBoolean, false}},
+       "Records the view over the series, or from `begin_s` to `end_s`, into a folder of pictures or a .mp4, "
+       "of `width` x `height` pixels or as large as on screen; without a file: asks for it",
        [](Session& session, const Command& command) {
          if (!command.has("file")) {
            session.panels.record = true;
@@ -51,9 +60,19 @@ std::vector<Verb> Session::recordVerbs() {
          const auto given = [&command](const char* name) {
            return command.has(name) ? std::optional<double>(command.number(name)) : std::nullopt;
          };
-         const RecordRange range{given("begin_s"), given("end_s"), given("step_s"),
-                                 command.number("frames_per_s", 10)};
+         RecordRange range{given("begin_s"), given("end_s"), given("step_s"),
+                           command.number("frames_per_s", 10), std::nullopt};
+         if (command.has("width") != command.has("height")) {
+           throw Error(ErrorCode::bad_input, "record: expected width and height together");
+         }
+         if (command.has("width")) {
+           range.size = render::ImageSize{static_cast<int>(command.number("width")),
+                                          static_cast<int>(command.number("height"))};
+         }
+         const bool records = session.files_->recorder.running();  // refused below
+         if (!records && session.asksToReplace(command, command.text("file"))) return;
          session.record(range, command.text("file"));
+         session.panels.record = false;
        }},
       {"record_cancel",
        {},

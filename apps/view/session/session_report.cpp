@@ -75,6 +75,8 @@ Json Session::report() const {
               {"changed_on_disk", changed_files_.size()},
               {"copied", copied_},
               {"recording", files_->recorder.running()},
+              {"warnings", warnings_.size()},
+              {"unsaved_colors", hasUnsavedColors()},
               {"can_undo", canUndo()},
               {"can_redo", canRedo()},
               {"picture_width", picture_ ? picture_->size.width : 0},

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "apps/view/files/file_endings.h"
+#include "apps/view/files/picture_files.h"
 #include "apps/view/parts/render_command.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
@@ -22,13 +23,13 @@ std::string pictureText(playback::ViewState view) {
   return playback::viewStateText(view);
 }
 
+}  // namespace
+
 std::string besideInput(const std::string& input, const std::string& ending) {
   const std::filesystem::path path = std::filesystem::path(input).lexically_normal();
   const std::filesystem::path named = path.has_filename() ? path : path.parent_path();
   return (named.parent_path() / (named.stem().string() + ending)).string();
 }
-
-}  // namespace
 
 playback::ViewState Session::viewState() const {
   playback::ViewState view = view_;
@@ -85,14 +86,13 @@ void Session::noteSavedView(const std::string& file) {
   saved_text_ = pictureText(view);
 }
 
-void Session::saveView(const std::string& given_file) {
-  requireInput();
-  const std::string file = given_file.empty() ? besideInput(view_.input, ".view.json") : given_file;
+void Session::saveView(const std::string& file) {
   jobs_.run([this, file, view = viewState()]() -> BackgroundJobs::Finish {
     playback::writeViewState(file, view);
-    return [this, file, text = pictureText(view)] {
+    return [this, file, text = pictureText(view), colors = view.transfer] {
       saved_file_ = file;
       saved_text_ = text;
+      if (transfer_ && colors) saved_colors_ = colors;
       tell("written: " + file);
     };
   });
@@ -126,10 +126,15 @@ void Session::writePendingPicture() {
 std::vector<Verb> Session::stateVerbs() {
   return {
       {"save_state",
-       {{"file", kText, false, {}, {}, requireJsonEnding}},
+       {{"file", kText, false, {}, {}, requireJsonEnding}, {"replace", kBoolean, false}},
        "Writes the view: camera, colours, time, edits and the rest; default: NAME.view.json next to the "
        "input",
-       [](Session& session, const Command& command) { session.saveView(command.text("file")); }},
+       [](Session& session, const Command& command) {
+         session.requireInput();
+         const std::string given = command.text("file");
+         const std::string file = given.empty() ? besideInput(session.view_.input, ".view.json") : given;
+         if (!session.asksToReplace(command, file)) session.saveView(file);
+       }},
       {"load_state",
        {{"file", kText, false}},
        "Shows the view of a file; without one: asks for it",
@@ -141,12 +146,14 @@ std::vector<Verb> Session::stateVerbs() {
          }
        }},
       {"picture",
-       {{"file", kText, false, {}, {}, requirePictureEnding}},
+       {{"file", kText, false, {}, {}, requirePictureEnding}, {"replace", kBoolean, false}},
        "Writes the picture without panels, as `emscape render` draws it, as soon as it is exact; default: a "
-       "new emscape-NNNN.png",
+       "new emscape-NNNN.png, where `screenshot` writes it",
        [](Session& session, const Command& command) {
          session.requireInput();
-         session.picture_file_ = command.text("file").empty() ? newPictureName() : command.text("file");
+         const std::string given = command.text("file");
+         const std::string file = given.empty() ? newPictureFile(session.view_.input) : given;
+         if (!session.asksToReplace(command, file)) session.picture_file_ = file;
        }},
       {"copy_command",
        {},

@@ -50,11 +50,13 @@ void Session::takeColors() {
   const playback::OpacityAxis axis = transfer_ ? transfer_->axis : playback::OpacityAxis{};
   undo_order_.forget(History::transfer);
   transfer_.reset();
+  saved_colors_.reset();
   view_.transfer.reset();
   if (picture_->transfer.categorical) return;
   transfer_.emplace(picture_->transfer);
   transfer_->axis = axis;
   if (takes_colors_) return;
+  saved_colors_ = picture_->transfer;
   view_.transfer_file.clear();
   view_.transfer = picture_->transfer;
 }
@@ -139,16 +141,23 @@ void Session::readTransfer(const std::string& file) {
     const render::TransferFunction function = render::readTransferFunction(file, info);
     return [this, file, function] {
       changeTransfer([&](playback::TransferEditor& editor) { editor.setFunction(function); });
+      saved_colors_ = function;
       tell("colours read: " + file);
     };
   });
 }
 
-void Session::saveTransfer(std::string file) {
-  if (file.empty()) file = std::filesystem::path(view_.input).stem().string() + ".transfer.json";
+std::string Session::usualColorsFile() const {
+  return besideInput(view_.input, ".transfer.json");
+}
+
+void Session::saveTransfer(const std::string& file) {
   jobs_.run([this, file, function = requireTransfer().function()]() -> BackgroundJobs::Finish {
     render::writeTransferFunction(file, function);
-    return [this, file] { tell("written: " + file); };
+    return [this, file, function] {
+      saved_colors_ = function;
+      tell("written: " + file);
+    };
   });
 }
 
@@ -184,9 +193,14 @@ std::vector<Verb> Session::transferVerbs() {
          session.changeTransfer([&](TransferEditor& editor) { editor.setColorMap(command.text("colors")); });
        }},
       {"save_transfer",
-       {{"file", kText, false, {}, {}, requireJsonEnding}},
-       "Writes colours and opacities, for `--transfer`; default: NAME.transfer.json",
-       [](Session& session, const Command& command) { session.saveTransfer(command.text("file")); }},
+       {{"file", kText, false, {}, {}, requireJsonEnding}, {"replace", kBoolean, false}},
+       "Writes colours and opacities, for `--transfer`; default: NAME.transfer.json next to the input",
+       [](Session& session, const Command& command) {
+         session.requireTransfer();
+         const std::string given = command.text("file");
+         const std::string file = given.empty() ? session.usualColorsFile() : given;
+         if (!session.asksToReplace(command, file)) session.saveTransfer(file);
+       }},
       {"reset_transfer",
        {},
        "Fits colours and opacities to the histogram of the step on screen",

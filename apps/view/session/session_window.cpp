@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "apps/view/files/file_endings.h"
+#include "apps/view/files/picture_files.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 
@@ -29,6 +30,8 @@ const std::vector<PanelName>& panelNames() {
       {"record", &Panels::record, false},    {"restore", &Panels::restore, false},
       {"unsaved", &Panels::unsaved, false},  {"changed", &Panels::changed, false},
       {"menu", &Panels::menu, false},
+      {"replace", &Panels::replace, false},  {"warnings", &Panels::warnings, false},
+      {"side", &Panels::side, false},
   };
   return all;
 }
@@ -38,7 +41,8 @@ std::vector<Verb> Session::windowVerbs() {
       {"panel",
        {{"name", kText, true, {}, panelChoices()}, {"open", kBoolean, false}},
        "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, record, "
-       "restore, unsaved, changed, menu (of the selection), all",
+       "restore, unsaved, changed, replace, warnings, side (over the picture of a narrow window), menu (of "
+       "the selection), all",
        [](Session& session, const Command& command) {
          const std::string name = command.text("name");
          if (name == "all") {
@@ -49,12 +53,15 @@ std::vector<Verb> Session::windowVerbs() {
            if (name != panel.name) continue;
            bool& open = session.panels.*panel.open;
            open = command.boolean("open", session.panels.hidden || !open);
-           if (open) session.panels.hidden = false;
+           if (!open) continue;
+           session.panels.hidden = false;
+           if (panel.stays) session.panels.side = true;
          }
        }},
       {"scale",
        {{"factor", kNumber, false, {kMinScale, kMaxScale}}, {"change", kNumber, false, {-1, 1, true, true}}},
-       "Size of texts and controls, 0.5..4; or `change`, 1 or -1: a step larger or smaller",
+       "Size of texts and controls, 0.5..4, in the picture too; or `change`, 1 or -1: a step larger or "
+       "smaller",
        [](Session& session, const Command& command) {
          constexpr double kStep = 1.125;
          if (command.has("factor") == command.has("change")) {
@@ -63,6 +70,7 @@ std::vector<Verb> Session::windowVerbs() {
          const double change = command.number("change") < 0 ? 1 / kStep : kStep;
          session.window_.setScale(command.has("factor") ? command.number("factor")
                                                         : session.window_.scale() * change);
+         session.change([&](playback::ViewState& view) { view.label_scale = session.window_.scale(); });
        }},
       {"resize",
        {{"width", kNumber, true, kSize_px}, {"height", kNumber, true, kSize_px}},
@@ -72,9 +80,14 @@ std::vector<Verb> Session::windowVerbs() {
                                 static_cast<int>(command.number("height")));
        }},
       {"screenshot",
-       {{"file", kText, false, {}, {}, requirePictureEnding}},
-       "Writes the window as PNG; default: a new emscape-NNNN.png",
-       [](Session& session, const Command& command) { session.window_.screenshot(command.text("file")); }},
+       {{"file", kText, false, {}, {}, requirePictureEnding}, {"replace", kBoolean, false}},
+       "Writes the window as PNG; default: a new emscape-NNNN.png in the user's folder of pictures, else in "
+       "that of the input",
+       [](Session& session, const Command& command) {
+         const std::string given = command.text("file");
+         const std::string file = given.empty() ? newPictureFile(session.view_.input) : given;
+         if (!session.asksToReplace(command, file)) session.window_.screenshot(file);
+       }},
       {"back",
        {},
        "Closes what is open; if nothing is, cancels what is being computed or opened",
@@ -86,8 +99,12 @@ std::vector<Verb> Session::windowVerbs() {
            session.tool_ = {};
            return;
          }
+         Panels& panels = session.panels;
+         // A question or a file browser over another dialog is closed alone.
+         if (std::exchange(panels.replace, false)) return;
+         if (panels.record && std::exchange(panels.open, false)) return;
          for (const PanelName& panel : panelNames()) {
-           if (!panel.stays) was_open |= std::exchange(session.panels.*panel.open, false);
+           if (!panel.stays) was_open |= std::exchange(panels.*panel.open, false);
          }
          const ProgramState program = session.programState();
          const bool plays = program.activity == Activity::playing;

@@ -205,6 +205,18 @@ TEST(Overlay, TicksOfHorizontalAxesAreAtTheGroundsEdges) {
   }
 }
 
+TEST(Overlay, ScaleIsAMinimumOfTheSizeOfTextsThatSmallPicturesLimit) {
+  const auto heightAt = [](ImageSize size, double scale) {
+    Annotations annotations = everything(testing::fog(0.5));
+    annotations.scale = scale;
+    return legendHeading(size, annotations).height;
+  };
+  const ImageSize usual{1200, 900}, small{300, 225};
+  EXPECT_DOUBLE_EQ(heightAt(usual, 0.5), heightAt(usual, 0));
+  EXPECT_DOUBLE_EQ(heightAt(usual, 2), 2 * heightAt(usual, 0));
+  EXPECT_LT(heightAt(small, 4), 0.2 * small.height);
+}
+
 /// Whether pictures differ in columns from..to-1.
 bool differInColumns(const Image8& a, const Image8& b, int from, int to) {
   for (int y = 0; y < a.size.height; ++y) {

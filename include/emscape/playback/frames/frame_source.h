@@ -88,6 +88,8 @@ class FrameSource : public VolumeSeries {
   virtual std::string name() const = 0;
   /// The scenario that the pictures show; null without one.
   virtual const LoadedScenario* scene() const = 0;
+  /// The quantities that the input's files hold; empty if the field is computed.
+  virtual std::vector<std::string> quantities() const { return {}; }
 
   /// Changes the scenario to an edit of that of scene(). The number and times of frames may change. Called by
   /// the thread that calls frame(), while no other one uses the source.

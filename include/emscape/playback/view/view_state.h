@@ -85,6 +85,7 @@ struct ViewState : FieldChoice {
   bool show_terrain = true;
   bool show_emitters = true;
   Labels labels = Labels::all;
+  double label_scale = 0;  ///< as render::Annotations::scale
   render::ImageSize size{1280, 720};
   /// Pixels that are cast while the picture changes; none: as many as time allows.
   std::optional<render::Pattern> pattern;

@@ -59,10 +59,20 @@ struct Annotations {
   bool georeferenced = true;  ///< compass, axes in km and altitude; otherwise axes in the grid's unit
   bool axes = true;
   Theme theme = Theme::dark;
+  /// Minimum size of texts and symbols: 1 is that of a picture of 1200 x 900, 0 follows the picture's size.
+  /// Limited in small pictures.
+  double scale = 0;
 };
 
 /// Margins that the annotations need. Pass them to makeCamera(), so that annotations do not cover the box.
 FrameMargins overlayMargins(ImageSize size, const Annotations& annotations);
+
+/// A rectangle of a picture, from its upper left corner.
+struct PixelArea {
+  double x = 0, y = 0, width = 0, height = 0;
+};
+/// The heading of the legend: quantity and unit. The annotations must have a legend.
+PixelArea legendHeading(ImageSize size, const Annotations& annotations);
 
 /// Whether the ground hides a position (frame metres); empty: nothing is hidden.
 using HiddenTest = std::function<bool(const Vec3d& frame_m)>;

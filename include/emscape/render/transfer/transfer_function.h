@@ -72,7 +72,8 @@ inline volume::ValueRange colorRangeOf(const volume::VolumeInfo& info, const Col
 }
 
 /// The default function of a volume: that of its scale (volume::kScaleKey); the palette for categorical
-/// volumes; else viridis with opacity rising from 0, both fitted to the frequency of the values, so that the
+/// volumes; for values of other programs on both sides of 0 blue below and orange above it, symmetrical; else
+/// viridis with opacity rising from 0, both fitted to the frequency of the values, so that the
 /// common weak field is transparent and the rare strong field is visible. Both ends are round numbers. For a
 /// series use the function of one of its volumes, so that colours are comparable.
 /// @param range  of the colours, where they are not fitted to the frequency of values; none: that of the

@@ -1,0 +1,33 @@
+/// Warnings that the libraries log while an input is open.
+#pragma once
+
+#include <algorithm>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace emscape::view {
+
+/// Any thread may use it.
+class MessageLog {
+ public:
+  /// Keeps a line unless it is known already.
+  void add(const std::string& line) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (std::find(lines_.begin(), lines_.end(), line) == lines_.end()) lines_.push_back(line);
+  }
+  void clear() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    lines_.clear();
+  }
+  std::vector<std::string> lines() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return lines_;
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> lines_;
+};
+
+}  // namespace emscape::view

@@ -1,0 +1,86 @@
+/// Help: first steps, keys and mouse.
+#include "apps/view/panels/dialog.h"
+#include "apps/view/panels/panels.h"
+#include "apps/view/panels/theme.h"
+
+namespace emscape::view {
+namespace {
+
+constexpr const char* kFirstMinutes[]{
+    "Drag in the picture: left turns, middle moves, the wheel goes nearer. R brings the first view back.",
+    "Space plays the time; Left and Right step; drag the hand of the time line.",
+    "What if (W): change a power, a height, a pattern; the field follows. Ctrl+Z takes it back.",
+    "P locks the probe at the cursor: the value there, the path to each emitter, and why it is blocked.",
+    "T: colours and opacity. C: the difference to the scenario as it was opened. H: a cut.",
+    "Ctrl+S saves the changed scenario, Ctrl+M records a film, Ctrl+Shift+C copies the command for this "
+    "picture.",
+};
+
+void drawFirstMinutes(PanelContext& context) {
+  ImGui::TextColored(accentColor(context.session.theme()), "The first five minutes");
+  for (const char* line : kFirstMinutes) {
+    ImGui::Bullet();
+    ImGui::TextWrapped("%s", line);
+  }
+  ImGui::Spacing();
+}
+
+/// A row of keys, effect and command, if the search finds it.
+void drawRow(PanelContext& context, const ImGuiTextFilter& filter, const std::string& keys,
+             const std::string& does, const std::string& command_line) {
+  if (!filter.PassFilter((keys + " " + does + " " + command_line).c_str())) return;
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  ImGui::TextWrapped("%s", keys.c_str());
+  ImGui::TableNextColumn();
+  ImGui::TextWrapped("%s", does.c_str());
+  ImGui::TableNextColumn();
+  ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
+  ImGui::TextWrapped("%s", command_line.c_str());
+  ImGui::PopStyleColor();
+}
+
+void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
+  if (!ImGui::BeginTable("help", 3, ImGuiTableFlags_RowBg)) return;
+  ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.3F);
+  ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch, 0.34F);
+  ImGui::TableSetupColumn("command line", ImGuiTableColumnFlags_WidthStretch, 0.36F);
+  for (const Gesture& gesture : gestures()) drawRow(context, filter, gesture.gesture, gesture.does, "");
+  for (const std::string& menu : menuNames()) {
+    if (!filter.IsActive()) {
+      ImGui::TableNextRow();
+      ImGui::TableNextColumn();
+      ImGui::TextColored(accentColor(context.session.theme()), "%s", menu.c_str());
+    }
+    for (const Action& action : actions()) {
+      if (menu != action.menu) continue;
+      std::string keys;
+      for (const KeyChord& chord : chordsOf(action)) keys += (keys.empty() ? "" : ", ") + toString(chord);
+      drawRow(context, filter, keys, action.name, action.command_line);
+    }
+  }
+  ImGui::EndTable();
+}
+
+}  // namespace
+
+void drawHelp(PanelContext& context) {
+  static ImGuiTextFilter filter;
+  if (!beginDialog(context, "Help", context.session.panels.help, {780, 640}, Waits::no)) return;
+  if (ImGui::IsWindowAppearing()) {
+    filter.Clear();
+    ImGui::SetKeyboardFocusHere();
+  }
+  ImGui::SetNextItemWidth(-1);
+  if (ImGui::InputTextWithHint("##search", "search keys, actions and options", filter.InputBuf,
+                               IM_ARRAYSIZE(filter.InputBuf))) {
+    filter.Build();
+  }
+  ImGui::BeginChild("contents");
+  if (!filter.IsActive()) drawFirstMinutes(context);
+  drawKeys(context, filter);
+  ImGui::EndChild();
+  endDialog();
+}
+
+}  // namespace emscape::view

@@ -1,0 +1,70 @@
+/// Questions before a loss: at the end of the program, and before a file is replaced.
+#include <filesystem>
+
+#include "apps/view/session/session.h"
+#include "emscape/base/error.h"
+
+namespace emscape::view {
+namespace fs = std::filesystem;
+
+bool Session::hasUnsavedColors() const {
+  return transfer_ && saved_colors_ && !(transfer_->function() == *saved_colors_);
+}
+
+bool Session::asksToReplace(const Command& command, const std::string& file) {
+  std::error_code ignored;
+  const fs::path path = fs::absolute(file, ignored).lexically_normal();
+  const bool is_empty = fs::is_directory(path, ignored) && fs::is_empty(path, ignored);
+  const bool is_new = !fs::exists(path, ignored) || is_empty || files_->written.count(path.string()) > 0;
+  panels.replace = !is_new && !command.boolean("replace", !options_.script.empty());
+  if (panels.replace) {
+    replacing_ = {command, file};
+  } else {
+    files_->written.insert(path.string());
+  }
+  return panels.replace;
+}
+
+void Session::quit(const Command& command) {
+  const bool is_script = !options_.script.empty();
+  const auto answer = [&](const char* question, const char* of_scripts) {
+    return command.has(question) ? command.text(question) : is_script ? of_scripts : "ask";
+  };
+  const std::string edits = answer("edits", "discard"), recording = answer("recording", "cancel");
+  const bool records = files_->recorder.running();
+  quit_answers_ = command.arguments;
+  panels.unsaved = (records && recording == "ask") || (isUnsaved() && edits == "ask");
+  if (panels.unsaved) return;
+  if (edits == "save") {
+    if (hasUnsavedEdits()) saveScenario(usualScenarioFile());
+    if (hasUnsavedColors()) saveTransfer(usualColorsFile());
+    Command next{"quit", {{"edits", "ask"}, {"recording", recording}}};
+    // A file that could not be written is told, and asked for again.
+    return jobs_.run([this, next]() -> BackgroundJobs::Finish { return [this, next] { quit(next); }; });
+  }
+  quits_when_recorded_ = records && recording == "wait";
+  if (!quits_when_recorded_) window_.quit();
+}
+
+std::vector<Verb> Session::quitVerbs() {
+  return {
+      {"replace",
+       {},
+       "Answers the question whether an existing file is to be replaced: yes",
+       [](Session& session, const Command&) {
+         if (!session.replacing_) throw Error(ErrorCode::bad_input, "replace: no file is asked for");
+         Command command = std::exchange(session.replacing_, std::nullopt)->command;
+         command.arguments["replace"] = true;
+         session.panels.replace = false;
+         session.perform(command);
+       }},
+      {"quit",
+       {{"edits", kText, false, {}, {"save", "discard", "ask"}},
+        {"recording", kText, false, {}, {"wait", "cancel", "ask"}}},
+       "Ends the program; `edits` and colours that are not saved: save, discard or ask; a running "
+       "`recording`: wait for its end, cancel or ask; default: ask, in scripts discard and cancel",
+       [](Session& session, const Command& command) { session.quit(command); }},
+  };
+}
+
+}  // namespace emscape::view
