@@ -16,7 +16,7 @@ if(EMSCAPE_WITH_VIEW)
   install(FILES apps/view/desktop/emscape.xml DESTINATION "${CMAKE_INSTALL_DATADIR}/mime/packages" COMPONENT program)
 endif()
 # The documentation, and what it links to, at the same relative places as in the source folder.
-install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
+install(FILES README.md CHANGELOG.md CONTRIBUTING.md LICENSE LICENSE.military-symbol DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program)
 install(FILES "${share}/emscape.cdx.json" DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program OPTIONAL)
 install(DIRECTORY docs DESTINATION "${CMAKE_INSTALL_DOCDIR}" COMPONENT program
   FILES_MATCHING PATTERN "*.md" PATTERN "*.png" PATTERN "*.svg" PATTERN "*.gif" PATTERN "*.ipynb" PATTERN ".*" EXCLUDE)

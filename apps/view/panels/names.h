@@ -6,8 +6,11 @@
 // imgui.h first
 #include <imgui_internal.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
+
+#include "apps/view/panels/glyphs.h"
 
 namespace emscape::view {
 
@@ -21,22 +24,23 @@ inline void pushNameId(const std::string& name) {
 /// @param right  end of the control
 /// @return true if it is too long
 inline bool drawName(ImDrawList& list, const std::string& name, const ImVec2& at, float right) {
-  const ImVec2 size = ImGui::CalcTextSize(name.c_str());
-  ImGui::RenderTextEllipsis(&list, at, {right, at.y + size.y}, right, right, name.c_str(),
-                            name.c_str() + name.size(), &size);
+  const std::string text = drawable(name);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  ImGui::RenderTextEllipsis(&list, at, {right, at.y + size.y}, right, right, text.c_str(),
+                            text.c_str() + text.size(), &size);
   return at.x + size.x > right;
 }
 
 /// Shows the whole of a text that is too long while the mouse is over the item drawn last.
 inline void tooltipOfLongName(const std::string& name, bool is_long) {
-  if (is_long && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", name.c_str());
+  if (is_long && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", drawable(name).c_str());
 }
 
 /// An entry of a list. The identifiers of the scope must differ by entry.
 inline bool selectableName(const std::string& name, bool is_selected, ImGuiSelectableFlags flags = 0) {
   const bool is_chosen = ImGui::Selectable("##name", is_selected, flags);
   ImGui::SameLine(0, 0);
-  ImGui::TextUnformatted(name.c_str());
+  ImGui::TextUnformatted(drawable(name).c_str());
   return is_chosen;
 }
 

@@ -203,7 +203,7 @@ void drawNotice(PanelContext& context, const Area& picture) {
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(wrap + 16 * s);
-  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextUnformatted(drawable(text).c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
   ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());  // also over dialogs, which told it

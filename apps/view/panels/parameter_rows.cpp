@@ -114,7 +114,7 @@ void ParameterRows::label(const std::string& name, const std::string& tooltip, b
   if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) {
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(360 * context_.scale);
-    ImGui::TextUnformatted(tooltip.c_str());
+    ImGui::TextUnformatted(drawable(tooltip).c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
   }

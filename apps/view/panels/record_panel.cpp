@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "apps/view/panels/dialog.h"
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 #include "base/text/shell_word.h"
@@ -29,7 +30,7 @@ void drawProgress(PanelContext& context, const Area& picture) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::TextUnformatted(("recording " + progress.output).c_str());
+  ImGui::TextUnformatted(drawable("recording " + progress.output).c_str());
   if (session.quitsWhenRecorded()) ImGui::TextDisabled("the program ends when it is complete");
   const float part =
       progress.total > 0 ? static_cast<float>(progress.pictures) / static_cast<float>(progress.total) : 0;

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <utility>
 
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 
 namespace emscape::view {
@@ -128,6 +129,7 @@ std::optional<std::string> RowFocus::drawField(const std::string& row) {
       selects_ ? ImGuiInputTextFlags_AutoSelectAll : ImGuiInputTextFlags_CallbackAlways;
   static bool is_selection_pending = false;
   if (!is_open_) is_selection_pending = true;
+  Glyphs::ofWindow().need(text_.data());
   ImGui::InputText("##value", text_.data(), text_.size(), selection, leaveSelection, &is_selection_pending);
   const bool was_open = is_open_;
   is_open_ = is_open_ || ImGui::IsItemActive();

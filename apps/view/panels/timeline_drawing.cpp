@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
 
 namespace emscape::view {
@@ -94,11 +95,11 @@ void drawRows(ImDrawList& list, const TimeAxis& axis, const Session& session, fl
       list.AddRectFilled({names_left, y}, {axis.right(), y + row},
                          colorOf(accentColor(session.theme()), 0.3F), 2 * scale);
     }
-    list.PushClipRect({names_left, y}, {axis.left - 6 * scale, y + row}, true);
-    list.AddText({names_left, y + (row - ImGui::GetTextLineHeight()) / 2},
-                 is_selected ? colorOf(accentColor(session.theme())) : ImGui::GetColorU32(ImGuiCol_Text),
-                 bars[i].emitter.c_str());
-    list.PopClipRect();
+    ImGui::PushStyleColor(ImGuiCol_Text, is_selected ? accentColor(session.theme())
+                                                     : ImGui::GetStyleColorVec4(ImGuiCol_Text));
+    drawName(list, bars[i].emitter, {names_left, y + (row - ImGui::GetTextLineHeight()) / 2},
+             axis.left - 6 * scale);
+    ImGui::PopStyleColor();
     list.AddRectFilled({axis.left, y + scale}, {axis.right(), y + row - scale},
                        ImGui::GetColorU32(ImGuiCol_FrameBg), 2 * scale);
     const bool is_known = scenario && i < scenario->emitters.size();

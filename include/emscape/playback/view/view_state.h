@@ -36,11 +36,11 @@ struct CellStyle {
   render::ProjectionOptions projection;
 };
 
-/// What is drawn of an emitter beside its symbol.
+/// Labels of emitters and platforms.
 enum class Labels {
   off,
   names,
-  all  ///< name, beam, stem to the ground, and track
+  all  ///< also kind, frequency and height
 };
 constexpr auto namesOf(Labels) {
   return std::array{"off", "names", "all"};
@@ -64,6 +64,12 @@ constexpr auto namesOf(CameraPath) {
   return std::array{"fixed", "bookmarks"};
 }
 
+/// Sides of the emitters and platforms that are drawn.
+enum class ShownSides { all, friendly, hostile, neutral, unknown };
+constexpr auto namesOf(ShownSides) {
+  return std::array{"all", "friend", "hostile", "neutral", "unknown"};
+}
+
 /// A stored camera, and a time if that is stored too.
 struct Bookmark {
   std::string name;
@@ -84,7 +90,8 @@ struct ViewState : FieldChoice {
   render::Theme theme = render::Theme::dark;
   bool show_terrain = true;
   bool show_emitters = true;
-  Labels labels = Labels::all;
+  Labels labels = Labels::names;
+  ShownSides sides = ShownSides::all;
   double label_scale = 0;  ///< as render::Annotations::scale
   render::ImageSize size{1280, 720};
   /// Pixels that are cast while the picture changes; none: as many as time allows.

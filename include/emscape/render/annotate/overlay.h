@@ -19,11 +19,20 @@ namespace emscape::render {
 /// Symbol of a marker.
 enum class MarkerKind { radar, transmitter, jammer, receiver, platform };
 
+/// Side of a marker; none: the symbol has the colour of its kind and no frame.
+enum class Affiliation { none, friendly, hostile, neutral, unknown };
+
 /// An object with a position and a name.
 struct Marker {
   Vec3d position_m;  ///< frame metres
   std::string label;
+  std::string detail;  ///< a second line of the label, small; may be empty
   MarkerKind kind = MarkerKind::platform;
+  Affiliation side = Affiliation::none;
+  std::string sidc;          ///< MIL-STD-2525D or APP-6D, of its icon; empty: that of its kind
+  bool moves = false;        ///< labels of fixed objects keep their places beside moving ones
+  bool is_selected = false;  ///< its label is placed first
+  bool is_shown = true;
   bool active = true;              ///< false: drawn hollow
   std::optional<Vec3d> beam;       ///< unit vector east, north, up of the beam's axis (not exaggerated)
   std::optional<double> ground_m;  ///< height of the ground below it (frame z), at which the stem ends
@@ -32,6 +41,7 @@ struct Marker {
 /// The track of a moving object.
 struct Track {
   MarkerKind kind = MarkerKind::platform;
+  Affiliation side = Affiliation::none;
   std::vector<Vec3d> points_m;  ///< frame metres, in the order of time
   std::vector<double> times_s;  ///< of the points; empty: unknown
   /// Current position: 2.5 is half way from points_m[2] to points_m[3]. The part before it is drawn brighter.
