@@ -123,7 +123,7 @@ class ComputedFrames : public FrameSource {
     const std::size_t channel = channelOf(series_->channels(), selection_.quantity);
     Frame frame{mesh_.shown(volumes[channel]), {}, {}, series_->changed(), {}};
     const LoadedScenario& input = series_->input();
-    frame.markers = markersOf(series_->snapshot(index), input.terrain.get(), frame.grid());
+    frame.markers = markersOf(series_->snapshot(index), input.terrain, frame.grid());
     frame.tracks = tracks_.at(series_->time_s(index), input, frame.grid());
     return frame;
   }
@@ -185,7 +185,7 @@ class StoredFrames : public FrameSource {
       const double time_s = frame.info().time_s;
       const scenario::Snapshot snapshot =
           scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), time_s);
-      frame.markers = markersOf(snapshot, scene_->terrain.get(), frame.grid());
+      frame.markers = markersOf(snapshot, scene_->terrain, frame.grid());
       frame.tracks = tracks_.at(time_s, *scene_, frame.grid());
     }
     return frame;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "emscape/base/error.h"
+#include "emscape/base/units.h"
 #include "render/annotate/overlay_parts.h"
 
 namespace emscape::render {
@@ -47,13 +48,20 @@ struct BarTicks {
 
 BarTicks ticksOf(const Legend& legend, int count) {
   BarTicks ticks;
-  ticks.values = roundTicks(legend.function.lowest(), legend.function.highest(), count);
+  const FieldScale& scale = legend.scale;
+  const double lowest = scale.shown(legend.function.lowest()),
+               highest = scale.shown(legend.function.highest());
+  std::vector<double> shown =
+      scale.is_amplitude ? roundLogTicks(lowest, highest, count) : roundTicks(lowest, highest, count);
   if (legend.whole_numbers) {
     const auto broken = [](double value) { return value != std::round(value); };
-    ticks.values.erase(std::remove_if(ticks.values.begin(), ticks.values.end(), broken), ticks.values.end());
+    shown.erase(std::remove_if(shown.begin(), shown.end(), broken), shown.end());
   }
-  const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : 1;
-  for (double value : ticks.values) ticks.texts.push_back(tickText(value, step));
+  const double step = shown.size() > 1 ? shown[1] - shown[0] : 1;
+  for (double value : shown) {
+    ticks.values.push_back(scale.stored(value));
+    ticks.texts.push_back(scale.is_amplitude ? fmt::format("{:g}", value) : tickText(value, step));
+  }
   return ticks;
 }
 
@@ -241,6 +249,26 @@ std::vector<double> roundTicks(double lowest, double highest, int count) {
   return ticks;
 }
 
+std::vector<double> roundLogTicks(double lowest, double highest, int count) {
+  static const std::vector<double> kMantissas[] = {{1, 2, 5}, {1, 3}, {1}};
+  std::vector<double> ticks;
+  if (!(lowest > 0) || !(highest > lowest) || !std::isfinite(highest) || count < 1) return ticks;
+  constexpr double kSlack = 1e-9;
+  const int first = static_cast<int>(std::floor(std::log10(lowest)));
+  const int last = static_cast<int>(std::floor(std::log10(highest)));
+  for (const std::vector<double>& mantissas : kMantissas) {
+    ticks.clear();
+    for (int power = first; power <= last; ++power) {
+      for (double mantissa : mantissas) {
+        const double value = mantissa * std::pow(10.0, power);
+        if (value >= lowest * (1 - kSlack) && value <= highest * (1 + kSlack)) ticks.push_back(value);
+      }
+    }
+    if (ticks.size() <= static_cast<std::size_t>(count) + 2) break;
+  }
+  return ticks;
+}
+
 std::string tickText(double value, double step) {
   int decimals = 0;
   for (double scaled = step; decimals < 6 && std::abs(scaled - std::round(scaled)) > 1e-6 * std::abs(scaled);
@@ -275,10 +303,29 @@ std::string quantityTitle(const std::string& quantity, const std::string& unit) 
   return colon == std::string::npos ? name : name + " of " + quantity.substr(colon + 1);
 }
 
-Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function) {
+double FieldScale::shown(double stored) const {
+  const double decibels = stored + offset_db;
+  return is_amplitude ? std::pow(10.0, decibels / 20) : decibels;
+}
+
+double FieldScale::stored(double shown) const {
+  return (is_amplitude ? 20 * std::log10(shown) : shown) - offset_db;
+}
+
+FieldScale fieldScale(const std::string& stored_unit, FieldUnit unit) {
+  constexpr double kMilli_db = 30, kMicro_db = 120;
+  const bool is_density = stored_unit == "dBW/m2", is_strength = stored_unit == "dBuV/m";
+  if (unit == FieldUnit::stored || (!is_density && !is_strength)) return {stored_unit};
+  if (unit == FieldUnit::dbm)
+    return {"dBm/m2", kMilli_db - (is_strength ? kFieldStrengthOfPowerDensity_db : 0)};
+  return {"V/m", (is_density ? kFieldStrengthOfPowerDensity_db : 0) - kMicro_db, true};
+}
+
+Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function, FieldUnit unit) {
   Legend legend;
+  legend.scale = fieldScale(info.unit, unit);
   legend.quantity = quantityTitle(info.quantity, info.unit);
-  legend.unit = unitText(info.unit);
+  legend.unit = unitText(legend.scale.unit);
   legend.function = function;
   const auto note = info.extra.find(volume::kLegendNoteKey);
   if (note != info.extra.end()) legend.note = note->second;

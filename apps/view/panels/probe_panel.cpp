@@ -8,6 +8,8 @@
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/path_plot.h"
 #include "apps/view/panels/theme.h"
+#include "base/geodesy/position_text.h"
+#include "base/text/display_units.h"
 #include "emfield/link/path_report.h"
 #include "emscape/render/annotate/legend.h"
 
@@ -45,20 +47,30 @@ class Table {
   ImVec4 muted_;
 };
 
-std::string distanceText(double distance_m) {
-  return fmt::format("{:.1f} m", distance_m);
+std::string heightTextOf(double height_m, Units units) {
+  const DisplayUnit unit = heightUnit(units);
+  return fmt::format("{:.1f} {}", height_m / unit.factor, unit.name);
 }
 
-void drawPlace(const ProbeResult& result, render::Theme theme, float s) {
+/// The value of the volume in the unit in which fields are shown.
+std::string shownText(const playback::ProbeReading& reading, const volume::VolumeInfo& info, FieldUnit unit) {
+  const render::FieldScale scale = render::fieldScale(info.unit, unit);
+  const bool is_converted = reading.sample.kind == playback::VolumeSample::Kind::value && !info.categorical &&
+                            scale.unit != info.unit;
+  return render::unitText(
+      is_converted ? fmt::format("{:.4g} {}", scale.shown(reading.sample.value), scale.unit) : reading.text);
+}
+
+void drawPlace(const ProbeResult& result, const playback::ViewState& view, float s) {
   const playback::ProbeReading& reading = *result.reading;
-  const Table table("place", 96 * s, theme);
+  const Table table("place", 96 * s, view.theme);
   if (reading.position) {
-    table.row("position", fmt::format("{:.5f}°, {:.5f}°", reading.position->latitude_deg,
-                                      reading.position->longitude_deg));
-    table.row("height",
-              distanceText(*reading.height_msl_m) + " above sea level" +
-                  (reading.height_agl_m ? ", " + distanceText(*reading.height_agl_m) + " above ground"
-                                        : std::string()));
+    table.row("position",
+              positionText(reading.position->latitude_deg, reading.position->longitude_deg, view.positions));
+    table.row("height", heightTextOf(*reading.height_msl_m, view.units) + " above sea level" +
+                            (reading.height_agl_m
+                                 ? ", " + heightTextOf(*reading.height_agl_m, view.units) + " above ground"
+                                 : std::string()));
   } else {
     table.row("position", fmt::format("{:g}, {:g}, {:g}", reading.position_m.x, reading.position_m.y,
                                       reading.position_m.z));
@@ -160,12 +172,13 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
   ImGui::SetWindowFontScale(1.25F);
   ImGui::PushStyleColor(ImGuiCol_Text,
                         is_value ? accentColor(theme) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
-  ImGui::TextWrapped("%s", render::unitText(reading.text).c_str());
+  ImGui::TextWrapped(
+      "%s", shownText(reading, context.session.picture()->info(), context.session.view().field_unit).c_str());
   ImGui::PopStyleColor();
   ImGui::SetWindowFontScale(1);
   const std::string& unit = context.session.picture()->info().unit;
   ImGui::TextDisabled("%s", render::quantityTitle(result.quantity, unit).c_str());
-  drawPlace(result, theme, context.scale);
+  drawPlace(result, context.session.view(), context.scale);
   if (reading.emitters.empty()) return;
   ImGui::Spacing();
   drawEmitters(context, result);

@@ -206,6 +206,7 @@ class Session {
   std::vector<render::Marker> emittersOfPicture() const;
   void focusEmitter(const std::optional<std::string>& name);
   void focusGround(double x, double y);
+  void focusPosition(const std::string& text);
   /// Report of the probe for the log.
   Json probeReport() const;
   void tellRate();

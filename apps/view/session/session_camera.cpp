@@ -2,9 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/view/session/session.h"
+#include "base/geodesy/position_text.h"
 #include "emscape/base/error.h"
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/playback/frames/scene.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "playback/editing/pick.h"
@@ -31,7 +34,7 @@ std::vector<render::Marker> Session::emittersOfPicture() const {
   const playback::LivePicture& shown = *picture_;
   if (!shown.scenario || !shown.grid().georeferenced) return {};
   return playback::markersOf(scenario::snapshotAt(shown.scenario, shown.terrain.get(), shown.info().time_s),
-                             shown.terrain.get(), shown.grid());
+                             shown.terrain, shown.grid());
 }
 
 void Session::focusEmitter(const std::optional<std::string>& name) {
@@ -56,6 +59,26 @@ void Session::focusGround(double x, double y) {
   camera_.focus(*ground_m, std::min(kFocus_diagonals, camera_.spec().distance.value_or(kFocus_diagonals)),
                 *viewport());
   cameraMoved();
+}
+
+void Session::focusPosition(const std::string& text) {
+  const playback::LivePicture& picture = *picture_;
+  if (!picture.grid().georeferenced)
+    throw Error(ErrorCode::bad_input, "goto_position: the volume has no position on the earth");
+  const ParsedPosition position = parsePosition(text);
+  Vec3d target_m = GeoFrame(picture.grid().frame).toLocal({position.latitude_deg, position.longitude_deg, 0});
+  const Vec3d &lower = picture.box.lower_m, &upper = picture.box.upper_m;
+  if (!(target_m.x >= lower.x && target_m.x <= upper.x && target_m.y >= lower.y && target_m.y <= upper.y)) {
+    throw Error(ErrorCode::bad_input,
+                positionText(position.latitude_deg, position.longitude_deg, view_.positions) +
+                    " is outside of the volume");
+  }
+  const double ground_m = picture.ground ? heightAt_m(*picture.ground, target_m.x, target_m.y) : lower.z;
+  target_m.z = std::isnan(ground_m) ? lower.z : std::max(ground_m, lower.z);
+  camera_.focus(target_m, std::min(kFocus_diagonals, camera_.spec().distance.value_or(kFocus_diagonals)),
+                *viewport());
+  cameraMoved();
+  tell(positionText(position.latitude_deg, position.longitude_deg, view_.positions));
 }
 
 std::vector<Verb> Session::cameraVerbs() {
@@ -116,6 +139,12 @@ std::vector<Verb> Session::cameraVerbs() {
            session.focusEmitter(command.has("emitter") ? std::optional(command.text("emitter"))
                                                        : std::nullopt);
          }
+       }},
+      {"goto_position",
+       {{"position", kText, true, {}, {}, [](const std::string& text) { parsePosition(text); }}},
+       "Looks at the ground at a position: decimal degrees, degrees with minutes and seconds, UTM or MGRS",
+       [](Session& session, const Command& command) {
+         if (session.picture_) session.focusPosition(command.text("position"));
        }},
       {"bookmark",
        {{"number", kNumber, true, kBookmark}},

@@ -20,12 +20,13 @@ std::vector<const char*> panelChoices() {
 
 const std::vector<PanelName>& panelNames() {
   static const std::vector<PanelName> all{
-      {"scenario", &Panels::scenario, true}, {"colors", &Panels::colors, true},
-      {"planes", &Panels::planes, true},     {"probe", &Panels::probe, true},
-      {"timeline", &Panels::timeline, true}, {"help", &Panels::help, false},
-      {"time", &Panels::time, false},        {"open", &Panels::open, false},
-      {"record", &Panels::record, false},    {"restore", &Panels::restore, false},
-      {"unsaved", &Panels::unsaved, false},  {"changed", &Panels::changed, false},
+      {"scenario", &Panels::scenario, true},  {"colors", &Panels::colors, true},
+      {"planes", &Panels::planes, true},      {"probe", &Panels::probe, true},
+      {"timeline", &Panels::timeline, true},  {"help", &Panels::help, false},
+      {"time", &Panels::time, false},         {"open", &Panels::open, false},
+      {"position", &Panels::position, false}, {"map", &Panels::map, false},
+      {"record", &Panels::record, false},     {"restore", &Panels::restore, false},
+      {"unsaved", &Panels::unsaved, false},   {"changed", &Panels::changed, false},
   };
   return all;
 }
@@ -34,8 +35,8 @@ std::vector<Verb> Session::windowVerbs() {
   return {
       {"panel",
        {{"name", kText, true, {}, panelChoices()}, {"open", kBoolean, false}},
-       "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, record, "
-       "restore, unsaved, changed, all",
+       "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, position, map, "
+       "record, restore, unsaved, changed, all",
        [](Session& session, const Command& command) {
          const std::string name = command.text("name");
          if (name == "all") {
