@@ -64,8 +64,8 @@ TEST(FieldScale, FieldStrengthOfAPowerDensityIsThatOfAPlaneWave) {
 
 TEST(FieldScale, LevelsAreShiftedAndOtherQuantitiesStay) {
   EXPECT_NEAR(fieldScale("dBW/m2", FieldUnit::dbm).shown(-40), -10, 1e-12);
-  EXPECT_NEAR(fieldScale("dBuV/m", FieldUnit::dbm).shown(fieldScale("dBuV/m", FieldUnit::dbm).stored(-10)), -10,
-              1e-12);
+  EXPECT_NEAR(fieldScale("dBuV/m", FieldUnit::dbm).shown(fieldScale("dBuV/m", FieldUnit::dbm).stored(-10)),
+              -10, 1e-12);
   EXPECT_NEAR(fieldScale("dBuV/m", FieldUnit::dbm).shown(-40 + 145.760306), -10, 1e-4);
   for (const FieldUnit unit : {FieldUnit::dbm, FieldUnit::v_per_m}) {
     EXPECT_EQ(fieldScale("dB", unit).unit, "dB");
