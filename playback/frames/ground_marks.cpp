@@ -113,7 +113,8 @@ void GroundMarks::addLeg(std::vector<Vec3d>& line_m, const Vec3d& from_m, const 
 }
 
 void GroundMarks::addLine(const std::vector<Vec3d>& line_m, const GroundLine& like) {
-  GroundLine line = like;
+  const std::size_t first = lines.size();
+  GroundLine line{like.ink, {}, ""};
   const auto flush = [&] {
     if (line.points_m.size() > 1) lines.push_back(line);
     line.points_m.clear();
@@ -129,6 +130,12 @@ void GroundMarks::addLine(const std::vector<Vec3d>& line_m, const GroundLine& li
     if (!isInside(line_m[i + 1])) flush();
   }
   flush();
+  const auto hasFewerPoints = [](const GroundLine& a, const GroundLine& b) {
+    return a.points_m.size() < b.points_m.size();
+  };
+  const auto longest =
+      std::max_element(lines.begin() + static_cast<std::ptrdiff_t>(first), lines.end(), hasFewerPoints);
+  if (longest != lines.end()) longest->label = like.label;
 }
 
 void GroundMarks::addArea(std::vector<Vec3d> ring_m, const GroundLine& like) {

@@ -37,7 +37,7 @@ class GroundMarks {
   Vec3d onGround(double x_m, double y_m) const;
   bool isInside(const Vec3d& at_m) const;
   std::vector<Vec3d> localOf(const std::vector<GeodeticPosition>& positions) const;
-  /// @param like  its ink and label
+  /// @param like  its ink, and the label of its longest part
   void addLine(const std::vector<Vec3d>& line_m, const render::GroundLine& like);
   void addArea(std::vector<Vec3d> ring_m, const render::GroundLine& like);
   /// Adds the end of a leg to a line, after as many points as it needs.

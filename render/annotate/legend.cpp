@@ -325,6 +325,12 @@ Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function
   Legend legend;
   legend.scale = fieldScale(info.unit, unit);
   legend.quantity = quantityTitle(info.quantity, info.unit);
+  if (legend.scale.unit != info.unit) {  // that of the other quantity
+    const bool is_strength = legend.scale.is_amplitude;
+    replaceAll(legend.quantity, is_strength ? "Power density" : "Field strength",
+               is_strength ? "Field strength" : "Power density");
+    if (is_strength) replaceAll(legend.quantity, "power density", "field strength");
+  }
   legend.unit = unitText(legend.scale.unit);
   legend.function = function;
   const auto note = info.extra.find(volume::kLegendNoteKey);

@@ -99,7 +99,6 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
   }
   drawFooter(canvas, style, projector.box, annotations, taken);
   if (annotations.legend) {
-    drawLegend(canvas, style, *annotations.legend);
     const double width = legendWidth(style, *annotations.legend);
     taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
   }
@@ -109,6 +108,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     drawScaleBar(canvas, style, projector, annotations.units, at, taken);
   }
   drawGroundMarks(canvas, style, projector, annotations, hidden, taken);
+  if (annotations.legend) drawLegend(canvas, style, *annotations.legend);
   drawTracks(canvas, style, projector, annotations.tracks, hidden);
   drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
   drawTexts(canvas, style, annotations);

@@ -21,7 +21,7 @@ struct LineLook {
 LineLook lookOf(const Style& style, GroundInk ink) {
   switch (ink) {
     case GroundInk::graticule:
-      return {style.mutedInk(0.5), style.rimInk(0), style.mutedInk(), 1};
+      return {style.mutedInk(0.65), style.rimInk(0.2), style.mutedInk(), 1};
     case GroundInk::coast:
       return {{parseColor("#7fc4e8"), 0.85}, style.rimInk(0.35), style.mutedInk(), 1.3};
     case GroundInk::ring:
@@ -42,7 +42,8 @@ std::vector<Vertex> verticesOf(const GroundLine& line, const Projector& projecto
   std::vector<Vertex> vertices;
   for (const Vec3d& point_m : line.points_m) {
     Vertex& vertex = vertices.emplace_back();
-    vertex.is_visible = projector.project(point_m, vertex.at) && !(hidden && hidden(point_m));
+    const bool is_known = std::isfinite(point_m.z);  // no hole of the ground
+    vertex.is_visible = is_known && projector.project(point_m, vertex.at) && !(hidden && hidden(point_m));
   }
   if (line.is_area && !vertices.empty()) vertices.push_back(vertices.front());
   return vertices;
@@ -51,6 +52,7 @@ std::vector<Vertex> verticesOf(const GroundLine& line, const Projector& projecto
 void fillArea(Canvas& canvas, const GroundLine& line, const Projector& projector, const LineLook& look) {
   std::vector<Point2> corners;
   for (const Vec3d& point_m : line.points_m) {
+    if (!std::isfinite(point_m.z)) continue;
     if (!projector.project(point_m, corners.emplace_back())) return;
   }
   constexpr double kFill = 0.16;

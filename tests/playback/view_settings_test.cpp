@@ -67,8 +67,9 @@ TEST(ViewSettings, RangeRingsAreAnEmitterASpacingAndPerhapsACount) {
   EXPECT_EQ(rings.count, 3);
   EXPECT_EQ(toString(rings), "a: radar, 1:spacing_m=7500.5,count=3");
   EXPECT_EQ(toString(parseRangeRings("radar:spacing_m=1e4")), "radar:spacing_m=10000");
-  for (const char* const text : {"", "radar", ":spacing_m=5", "radar:spacing_m=", "radar:spacing_m=0", "radar:spacing_m=5x",
-                                 "radar:spacing_m=5,count=0", "radar:spacing_m=5,count=1.5", "radar:count=5"}) {
+  for (const char* const text :
+       {"", "radar", ":spacing_m=5", "radar:spacing_m=", "radar:spacing_m=0", "radar:spacing_m=5x",
+        "radar:spacing_m=5,count=0", "radar:spacing_m=5,count=1.5", "radar:count=5"}) {
     EXPECT_THAT(emscape::test::errorOf([&] { parseRangeRings(text); }, ErrorCode::usage),
                 testing::HasSubstr("expected EMITTER:spacing_m=..[,count=..]"))
         << text;

@@ -48,7 +48,8 @@ class RandomState {
     state.show_compass = coin();
     state.show_scale_bar = coin();
     for (unsigned i = below(3); i > 0; --i)
-      state.range_rings.push_back({"radar " + std::to_string(i), uniform(1, 1e5), static_cast<int>(below(4))});
+      state.range_rings.push_back(
+          {"radar " + std::to_string(i), uniform(1, 1e5), static_cast<int>(below(4))});
     state.units = coin() ? Units::metric : Units::nautical;
     state.field_unit = static_cast<FieldUnit>(below(3));
     state.positions = static_cast<PositionFormat>(below(3));
@@ -292,8 +293,9 @@ TEST(ViewState, PlacesAndThePictureOnTheGroundAreNamedRelativeToTheViewFile) {
   state.places = {"/elsewhere/a.geojson"};
   writeViewState(folder / "views/a.view.json", state);
   EXPECT_EQ(readViewState(folder / "views/a.view.json").drape, state.drape) << "an absolute name stays";
-  writeFile(folder / "views/b.view.json",
-            R"({"schema_version": 1, "drape": "../chart.tif", "places": ["b.geojson", "/elsewhere/a.geojson"]})");
+  writeFile(
+      folder / "views/b.view.json",
+      R"({"schema_version": 1, "drape": "../chart.tif", "places": ["b.geojson", "/elsewhere/a.geojson"]})");
   const ViewState read = readViewState(folder / "views/b.view.json");
   EXPECT_EQ(read.drape, folder / "chart.tif");
   EXPECT_EQ(read.places, (std::vector<std::string>{folder / "views/b.geojson", "/elsewhere/a.geojson"}));

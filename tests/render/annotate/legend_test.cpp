@@ -87,6 +87,8 @@ TEST(FieldScale, LegendsInVoltsPerMetreHaveRoundValuesAtTheirLevels) {
   info.quantity = "power_density_dbwm2";
   info.unit = "dBW/m2";
   EXPECT_EQ(legendOf(info, {}, FieldUnit::v_per_m).unit, "V/m");
+  EXPECT_EQ(legendOf(info, {}, FieldUnit::v_per_m).quantity, "Field strength");
+  EXPECT_EQ(legendOf(info, {}, FieldUnit::dbm).quantity, "Power density");
   EXPECT_EQ(legendOf(info, {}, FieldUnit::dbm).unit, "dBm/m²");
   EXPECT_EQ(legendOf(info, {}).unit, "dBW/m²");
 }
