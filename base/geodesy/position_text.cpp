@@ -108,9 +108,12 @@ std::string joinedCoordinates(std::string text) {
     const std::size_t next = text.find_first_not_of(" \t\r\n", i);
     if (next == std::string::npos) break;
     const char before = joined.empty() ? ' ' : joined.back(), after = text[next];
-    const bool ends_with_side = isHemisphere(after) && (next + 1 == text.size() || !isDigit(text[next + 1]));
+    const char first = joined.empty() ? ' ' : joined[joined.find_last_of(" ,") + 1];  // of this coordinate
+    const bool ends_with_side =
+        isHemisphere(after) && !isHemisphere(first) && (next + 1 == text.size() || !isDigit(text[next + 1]));
     const bool begins_with_side =
-        isHemisphere(before) && (joined.size() == 1 || isSpace(*(joined.end() - 2)));
+        isHemisphere(before) &&
+        (joined.size() == 1 || std::string(" ,").find(*(joined.end() - 2)) != std::string::npos);
     const bool is_within = (begins_with_side && isDigit(after)) || (before == 'd' && isDigit(after)) ||
                            (before == '\'' && isDigit(after)) ||
                            (ends_with_side && std::string("d'\"").find(before) != std::string::npos) ||
@@ -124,8 +127,11 @@ std::string joinedCoordinates(std::string text) {
 /// None if it is not a position.
 std::optional<ParsedPosition> parseHorizontal(const std::string& text) {
   const std::string reference = mgrsReference(text);
+  const std::string coordinates = reference.empty() ? joinedCoordinates(text) : reference;
+  // One word alone would be a zone of MGRS: an area of hundreds of kilometres.
+  if (reference.empty() && coordinates.find_first_of(" ,") == std::string::npos) return std::nullopt;
   try {
-    const GeographicLib::GeoCoords read(reference.empty() ? joinedCoordinates(text) : reference);
+    const GeographicLib::GeoCoords read(coordinates);
     if (!std::isfinite(read.Latitude()) || !std::isfinite(read.Longitude())) return std::nullopt;
     return ParsedPosition{read.Latitude(), wrapLongitude_deg(read.Longitude()), {}};
   } catch (const GeographicLib::GeographicErr&) {

@@ -242,7 +242,7 @@ void drape(render::HeightField& ground, const std::string& file, const volume::G
       positions.push_back(frame.toGeodetic({at.x, at.y, std::isnan(z) ? 0.0 : double{z}}));
     }
   }
-  ground.colors = scenario::readMapColors(file, positions, ground.columns);
+  ground.colors = scenario::readMapColors(file, positions);
 }
 
 }  // namespace emscape::playback

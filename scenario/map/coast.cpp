@@ -68,9 +68,9 @@ int pointsOf(int packed) {
 int levelOf(int packed) {
   return packed >> 6 & 7;
 }
-/// The level of the south-western corner, of those of the four corners.
+/// The level of the south-western corner; those of the others, counter-clockwise, are in lower bits.
 int cornerLevelOf(int packed) {
-  return packed & 7;
+  return packed >> 9 & 7;
 }
 
 std::string installedFile() {

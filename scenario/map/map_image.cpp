@@ -14,7 +14,7 @@
 namespace emscape::scenario {
 namespace {
 
-constexpr int kMaxSide = 4096;  // pixels of the part that is read
+constexpr int kMinSide = 512, kMaxSide = 4096;  // pixels of the part that is read
 
 struct Pixel {
   double x, y;
@@ -158,9 +158,10 @@ MapColors readMapColors(const std::string& file, const std::vector<GeodeticPosit
   const int x = static_cast<int>(west), y = static_cast<int>(north);
   const int width = std::min(static_cast<int>(east) + 1, image.width()) - x;
   const int height = std::min(static_cast<int>(south) + 1, image.height()) - y;
-  const int rows = columns < 1 ? 0 : static_cast<int>(positions.size()) / columns;
-  const int read_columns = std::min({width, 2 * columns, kMaxSide});
-  const int read_rows = std::min({height, 2 * rows, kMaxSide});
+  // Twice as fine as the positions, were they a square.
+  const int side =
+      std::clamp(static_cast<int>(2 * std::sqrt(static_cast<double>(positions.size()))), kMinSide, kMaxSide);
+  const int read_columns = std::min(width, side), read_rows = std::min(height, side);
   const MapColors read = image.read(x, y, width, height, read_columns, read_rows);
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const double column = std::floor((pixels[i].x - x) * read_columns / width);

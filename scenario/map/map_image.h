@@ -10,15 +10,15 @@
 
 namespace emscape::scenario {
 
-/// Colours of an image at the points of a grid, row by row: 0xAABBGGRR, 0 outside of the image.
+/// Colours of an image at positions: 0xAABBGGRR, 0 outside of the image.
 using MapColors = std::vector<std::uint32_t>;
 
 /// Reads a GeoTIFF or MBTiles of one grey or coloured band, or of red, green, blue and perhaps opacity, 8
 /// bits each.
-/// @param positions  of the grid, row by row; heights are not used. Longitudes in -180..180
-/// @param columns    of the grid; it has about the resolution at which the image is read
+/// @param positions  about evenly distributed; their number determines the resolution at which the image is
+/// read. Heights are not used; longitudes are in -180..180
 /// @throws Error (bad_input) that names the file and the reason, also for an image without a position on the
 /// earth
-MapColors readMapColors(const std::string& file, const std::vector<GeodeticPosition>& positions, int columns);
+MapColors readMapColors(const std::string& file, const std::vector<GeodeticPosition>& positions);
 
 }  // namespace emscape::scenario

@@ -287,7 +287,7 @@ TEST(ViewState, AComparedFileIsNamedRelativeToTheViewFile) {
 
 TEST(ViewState, PlacesAndThePictureOnTheGroundAreNamedRelativeToTheViewFile) {
   const TemporaryFolder folder;
-  fs::create_directories(folder / "views");
+  std::filesystem::create_directories(folder / "views");
   ViewState state;
   state.drape = folder / "chart.tif";
   state.places = {"/elsewhere/a.geojson"};

@@ -49,7 +49,8 @@ std::string writeCoast(const test::TemporaryFolder& folder) {
   CoastWriter writer(file);
   writer.add("N_bins_in_360_longitude_range", {4});
   writer.add("N_bins_in_180_degree_latitude_range", {2});
-  writer.add("Embedded_node_levels_in_a_bin", std::vector<int>(8, 0));
+  // Of the south-western corner sea; the lower bits are of other corners.
+  writer.add("Embedded_node_levels_in_a_bin", std::vector<int>(8, 0111));
   writer.add("N_segments_in_a_bin", {2, 0, 0, 0, 0, 0, 0, 0});
   writer.add("Id_of_first_segment_in_a_bin", std::vector<int>(8, 0));
   const auto packed = [](int points, int level) { return points << 9 | level << 6; };
@@ -57,7 +58,7 @@ std::string writeCoast(const test::TemporaryFolder& folder) {
   writer.add("Id_of_first_point_in_a_segment", {0, 5});
   // In 1/65535 of 90 degrees: 20 to 70 degrees, and 40 to 50. As 16 bits with sign.
   const auto unit = [](double degrees) {
-    return static_cast<int>(static_cast<short>(degrees / 90 * 65535 + 0.5));
+    return static_cast<int>(static_cast<short>(static_cast<int>(degrees / 90 * 65535 + 0.5)));
   };
   const int a = unit(20), b = unit(70), c = unit(40), d = unit(50);
   writer.add("Relative_longitude_from_SW_corner_of_bin", {a, b, b, a, a, c, d, d, c, c});

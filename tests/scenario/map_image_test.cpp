@@ -45,20 +45,20 @@ TEST(MapImage, ColoursAreThoseAtThePositions) {
   const test::TemporaryFolder folder;
   const std::vector<GeodeticPosition> positions{
       {51.975, 3.025, 0}, {51.975, 4.975, 0}, {51.025, 3.025, 0}, {53, 3.5, 0}, {51.5, -170, 0}};
-  const MapColors colors = readMapColors(writeImage(folder, 3), positions, 5);
+  const MapColors colors = readMapColors(writeImage(folder, 3), positions);
   EXPECT_EQ(colors[0], 0xFF640000U);
   EXPECT_EQ(colors[1], 0xFF640000U + 6 * 39);
   EXPECT_EQ(colors[2], 0xFF640000U + (12 * 19 << 8));
   EXPECT_EQ(colors[3], 0U) << "outside";
   EXPECT_EQ(colors[4], 0U) << "outside";
-  const MapColors grey = readMapColors(writeImage(folder, 1), positions, 5);
+  const MapColors grey = readMapColors(writeImage(folder, 1), positions);
   EXPECT_EQ(grey[1], 0xFF000000U + 6 * 39 * 0x10101);
 }
 
 TEST(MapImage, FaultsNameTheFile) {
   const test::TemporaryFolder folder;
   const auto faultOf = [](const std::string& file) {
-    return test::errorOf([&] { readMapColors(file, {{51.5, 4, 0}}, 1); }, ErrorCode::bad_input);
+    return test::errorOf([&] { readMapColors(file, {{51.5, 4, 0}}); }, ErrorCode::bad_input);
   };
   EXPECT_THAT(faultOf(folder / "missing.tif"), HasSubstr("missing.tif: no such file"));
   EXPECT_THAT(faultOf(folder.write("text.tif", "no image")), HasSubstr("text.tif: not a GeoTIFF or MBTiles"));
