@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <sstream>
+#include <optional>
 
 #include "apps/common/console.h"
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/subcommands.h"
+#include "base/geodesy/position_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -33,28 +34,26 @@ struct ProfileOptions {
   std::string size = "1400x800";
 };
 
-/// @throws Error (usage) unless the text has three numbers within their ranges
+/// @throws Error (usage) unless the text is a position with a height
 scenario::SitePosition parsePoint(const std::string& text, bool above_ground) {
-  std::vector<double> numbers;
-  std::istringstream parts(text);
-  for (std::string part; std::getline(parts, part, ',');) {
-    char* rest = nullptr;
-    const double value = std::strtod(part.c_str(), &rest);
-    if (part.empty() || *rest != '\0' || !std::isfinite(value)) break;
-    numbers.push_back(value);
+  constexpr double kMaxHeight_m = 100000;
+  std::optional<ParsedPosition> read;
+  try {
+    read = parsePosition(text);
+  } catch (const Error&) {
   }
-  const bool is_point = numbers.size() == 3 && std::count(text.begin(), text.end(), ',') == 2;
-  if (!is_point || std::abs(numbers[0]) > 90 || std::abs(numbers[1]) > 180 || std::abs(numbers[2]) > 100000) {
+  if (!read || !read->height_m || std::abs(*read->height_m) > kMaxHeight_m) {
     throw Error(
         ErrorCode::usage,
         fmt::format("--to '{}' is not LAT,LON,HEIGHT: latitude -90..90 deg, longitude -180..180 deg, height "
-                    "-100000..100000 m, such as 36.30,-84.25,1500",
+                    "-100000..100000 m, such as 36.30,-84.25,1500 or 36°18'N 84°15'W,1500 or "
+                    "16S GF 46874 20310,1500",
                     text));
   }
   scenario::SitePosition point;
-  point.latitude_deg = numbers[0];
-  point.longitude_deg = numbers[1];
-  (above_ground ? point.height_agl_m : point.height_msl_m) = numbers[2];
+  point.latitude_deg = read->latitude_deg;
+  point.longitude_deg = read->longitude_deg;
+  (above_ground ? point.height_agl_m : point.height_msl_m) = *read->height_m;
   return point;
 }
 
@@ -110,7 +109,10 @@ or a path over missing terrain.)");
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
   command->add_option("--emitter", options->emitter, "Name of the emitter")->required();
-  command->add_option("--to", options->to, "The point: LAT,LON,HEIGHT (deg, deg, m)")->required();
+  command
+      ->add_option("--to", options->to,
+                   "The point: LAT,LON,HEIGHT (deg, deg, m); also degrees with minutes and seconds, or MGRS")
+      ->required();
   command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
   command->add_flag("--agl", options->above_ground, "HEIGHT is above the ground");
   addListOption(*command, "--model", options->models, "Models to compare with the emitter's model")

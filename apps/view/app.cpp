@@ -356,6 +356,8 @@ void App::drawPanels(const Layout& layout) {
   if (!screenshot_) drawNotice(context, layout.picture);
   drawHelp(context);
   drawGoToTime(context);
+  drawGoToPosition(context);
+  drawMapDialog(context);
   drawFileBrowser(context);
   drawRecording(context, layout.picture);
   drawChangedFiles(context, layout.picture);

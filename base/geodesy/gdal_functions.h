@@ -39,13 +39,14 @@ const LoadedLibrary& library();
   F(GDALDatasetRasterIO) F(GDALDatasetStartTransaction) F(GDALDestroyApproxTransformer) \
   F(GDALDestroyColorTable) F(GDALDestroyRasterAttributeTable) F(GDALDimensionGetName) \
   F(GDALDimensionGetSize) F(GDALDimensionRelease) F(GDALExtendedDataTypeCreate) \
-  F(GDALExtendedDataTypeCreateString) F(GDALExtendedDataTypeRelease) F(GDALGetBlockSize) \
+  F(GDALExtendedDataTypeCreateString) F(GDALExtendedDataTypeRelease) F(GDALGetBlockSize) F(GDALGetColorEntryAsRGB) F(GDALGetColorEntryCount) \
   F(GDALGetDataTypeSizeBytes) F(GDALGetDatasetDriver) F(GDALGetDriverByName) F(GDALGetDriverShortName) \
   F(GDALGetFileList) F(GDALGetGeoTransform) F(GDALGetMaskBand) F(GDALGetMaskFlags) F(GDALGetMetadataItem) \
-  F(GDALGetRasterBand) F(GDALGetRasterCount) F(GDALGetRasterDataType) F(GDALGetRasterNoDataValue) \
+  F(GDALGetRasterBand) F(GDALGetRasterColorTable) F(GDALGetRasterCount) F(GDALGetRasterDataType) F(GDALGetRasterNoDataValue) \
   F(GDALGetRasterOffset) F(GDALGetRasterScale) F(GDALGetRasterUnitType) F(GDALGetRasterXSize) \
   F(GDALGetRasterYSize) F(GDALGetSpatialRef) F(GDALGroupCreateAttribute) F(GDALGroupCreateDimension) \
-  F(GDALGroupCreateMDArray) F(GDALGroupRelease) F(GDALIdentifyDriverEx) F(GDALMDArrayCreateAttribute) \
+  F(GDALGroupCreateMDArray) F(GDALGroupOpenMDArray) F(GDALGroupRelease) F(GDALIdentifyDriverEx) F(GDALInvGeoTransform) \
+  F(GDALMDArrayCreateAttribute) F(GDALMDArrayGetTotalElementsCount) F(GDALMDArrayRead) \
   F(GDALMDArrayRelease) F(GDALMDArraySetNoDataValueAsDouble) F(GDALMDArraySetRawNoDataValue) \
   F(GDALMDArraySetSpatialRef) F(GDALMDArraySetUnit) F(GDALMDArrayWrite) F(GDALOpenEx) F(GDALPolygonize) \
   F(GDALRATCreateColumn) F(GDALRATSetValueAsInt) F(GDALRATSetValueAsString) F(GDALRasterIO) \

@@ -125,7 +125,7 @@ class ComputedFrames : public FrameSource {
     const std::size_t channel = channelOf(series_->channels(), selection_.quantity);
     Frame frame{mesh_.shown(volumes[channel]), {}, {}, series_->changed(), {}};
     const LoadedScenario& input = series_->input();
-    frame.markers = markersOf(series_->snapshotAt(time_s), input.terrain.get(), frame.grid());
+    frame.markers = markersOf(series_->snapshotAt(time_s), input.terrain, frame.grid());
     frame.tracks = tracks_.at(time_s, input, frame.grid());
     return frame;
   }
@@ -188,7 +188,7 @@ class StoredFrames : public FrameSource {
       const double time_s = frame.info().time_s;
       const scenario::Snapshot snapshot =
           scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), time_s);
-      frame.markers = markersOf(snapshot, scene_->terrain.get(), frame.grid());
+      frame.markers = markersOf(snapshot, scene_->terrain, frame.grid());
       frame.tracks = tracks_.at(time_s, *scene_, frame.grid());
     }
     return frame;

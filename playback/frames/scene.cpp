@@ -8,34 +8,11 @@
 #include "base/text/quantity_text.h"
 #include "emfield/channels/categories.h"
 #include "emscape/base/geodesy/geo_frame.h"
-#include "emscape/base/geodesy/geoid.h"
-#include "emscape/base/parallel.h"
+#include "playback/frames/ground.h"
 #include "volume/labels.h"
 
 namespace emscape::playback {
 namespace {
-
-constexpr int kMaxPosts = 1500;
-
-int postsAlong(double size_m, double spacing_m) {
-  return std::clamp(static_cast<int>(std::ceil(size_m / spacing_m)) + 1, 2, kMaxPosts);
-}
-
-/// The ground (frame z, m) at a position of the frame; NaN over a hole.
-double groundZ_m(const scenario::Terrain& terrain, const GeoFrame& frame, double x_m, double y_m) {
-  // In a tangent frame the position on the earth also depends on z: repeated with the computed z.
-  double z_m = 0;
-  const int rounds = frame.origin().kind == FrameKind::enu ? 2 : 1;
-  for (int round = 0; round < rounds; ++round) {
-    GeodeticPosition position = frame.toGeodetic({x_m, y_m, z_m});
-    const double height_msl_m = terrain.heightMsl_m(position.latitude_deg, position.longitude_deg);
-    if (std::isnan(height_msl_m) || frame.origin().kind == FrameKind::altitude) return height_msl_m;
-    position.height_ellipsoid_m =
-        height_msl_m + geoidUndulation_m(position.latitude_deg, position.longitude_deg);
-    z_m = frame.toLocal(position).z;
-  }
-  return z_m;
-}
 
 /// Height of a mast above the ground if that is given, else above mean sea level.
 std::string heightText(const scenario::Platform& platform, double height_msl_m) {
@@ -73,34 +50,15 @@ render::Affiliation affiliationOf(const std::optional<scenario::Side>& side) {
   return render::Affiliation::unknown;
 }
 
-std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
+std::shared_ptr<const render::HeightField> heightFieldOf(const LoadedScenario& scene,
                                                          const volume::Grid& grid) {
-  const Vec3d lower_m = grid.lower_m();
-  const Vec3d size_m = grid.upper_m() - lower_m;
-  auto field = std::make_shared<render::HeightField>();
-  field->columns = postsAlong(size_m.x, terrain.postSpacing_m());
-  field->rows = postsAlong(size_m.y, terrain.postSpacing_m());
-  field->first_x_m = lower_m.x;
-  field->first_y_m = lower_m.y;
-  field->spacing_x_m = size_m.x / (field->columns - 1);
-  field->spacing_y_m = size_m.y / (field->rows - 1);
-  field->heights_m.resize(static_cast<std::size_t>(field->columns) * field->rows);
-  const GeoFrame frame(grid.frame);
-  parallelFor(field->rows, 8, [&](int begin, int end) {
-    for (int j = begin; j < end; ++j) {
-      for (int i = 0; i < field->columns; ++i) {
-        field->heights_m[static_cast<std::size_t>(j) * field->columns + i] =
-            static_cast<float>(groundZ_m(terrain, frame, field->first_x_m + i * field->spacing_x_m,
-                                         field->first_y_m + j * field->spacing_y_m));
-      }
-    }
-  });
-  return field;
+  return groundOf(scene, grid, nullptr, false).field;
 }
 
-std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
+std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::TerrainPtr& terrain,
                                       const volume::Grid& grid) {
   const GeoFrame frame(grid.frame);
+  const LoadedScenario scene{snapshot.scenario, terrain};
   const std::vector<scenario::Platform>& platforms = snapshot.scenario->platforms;
   std::vector<render::Marker> markers;
   std::vector<bool> has_emitter(platforms.size());
@@ -112,10 +70,8 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
     marker.side = affiliationOf(platform.side);
     marker.sidc = platform.sidc;
     marker.moves = platform.moves();
-    if (terrain) {
-      const double ground_m = groundZ_m(*terrain, frame, marker.position_m.x, marker.position_m.y);
-      if (!std::isnan(ground_m)) marker.ground_m = ground_m;
-    }
+    const double ground_m = groundHeight(scene, frame, marker.position_m.x, marker.position_m.y).z_m;
+    if (!std::isnan(ground_m)) marker.ground_m = ground_m;
     return marker;
   };
   for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {

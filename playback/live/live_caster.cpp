@@ -154,7 +154,7 @@ void LiveCaster::applyView(const ViewRequest& request) {
     });
   }
   apply(change.ground, SceneEvent::mode, [&] { painter_.setScenery(view); });
-  if (change.labels) painter_.setScenery(view);
+  if (change.labels) attempt([&] { painter_.setScenery(view); });
   if (change.labels || request.on_device != before.on_device) changeLabels();
   apply(change.pattern, SceneEvent::mode, [&] {
     controller_options_.pattern = view.pattern;

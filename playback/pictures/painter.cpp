@@ -11,6 +11,7 @@
 #include "emscape/playback/frames/scene.h"
 #include "playback/frames/difference_series.h"
 #include "playback/frames/platform_tracks.h"
+#include "playback/pictures/scenery.h"
 
 namespace emscape::playback {
 namespace {
@@ -48,12 +49,17 @@ Painter::Painter(const ViewState& view, const FrameSource& source, const Compute
 }
 
 Painter::Painter(const ViewState& view, const ComputeTarget& target, bool must_show_isosurface)
-    : view_(view), must_show_isosurface_(must_show_isosurface), renderer_(target.rendererOptions()) {
+    : view_(view),
+      must_show_isosurface_(must_show_isosurface),
+      scenery_(std::make_unique<Scenery>()),
+      renderer_(target.rendererOptions()) {
   renderer_.setSettings(view.settings);
   annotations_.theme = view.theme;
   annotations_.planes = view.settings.planes;
   annotations_.scale = view.label_scale;
 }
+
+Painter::~Painter() = default;
 
 void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
   annotations_.title = title;
@@ -98,7 +104,6 @@ void Painter::setFrame(const Frame& frame) {
   annotations_.georeferenced = frame.grid().georeferenced;
   setMarkers();
   setLegend();
-  if (is_other_grid) setGround(nullptr);
   setGround();
   if (is_other_grid || !view_.follow.empty()) fitCamera();
   if (is_first_of_colors && view_.settings.mode == render::CompositingMode::iso) {
@@ -107,6 +112,7 @@ void Painter::setFrame(const Frame& frame) {
     if (!missing.empty() && must_show_isosurface_) throw Error(ErrorCode::bad_input, missing);
     if (!missing.empty()) logWarning(missing + "; no surface is drawn");
   }
+  if (const std::optional<Error> fault = scenery_->takeFault()) throw Error(*fault);
 }
 
 void Painter::setAzimuth(double azimuth_deg) {
@@ -169,10 +175,22 @@ void Painter::setScenery(const ViewState& view) {
   view_.sides = view.sides;
   view_.theme = annotations_.theme = view.theme;
   view_.label_scale = annotations_.scale = view.label_scale;
+  view_.coast = view.coast;
+  view_.graticule = view.graticule;
+  view_.show_compass = view.show_compass;
+  view_.show_scale_bar = view.show_scale_bar;
+  view_.range_rings = view.range_rings;
+  view_.places = view.places;
+  view_.drape = view.drape;
+  view_.units = view.units;
+  view_.field_unit = view.field_unit;
+  view_.positions = view.positions;
   setMarkers();
-  if (!frame_) return;
-  setGround();
-  setLegend();
+  if (frame_) {
+    setGround();
+    setLegend();
+  }
+  if (const std::optional<Error> fault = scenery_->takeFault()) throw Error(*fault);
 }
 
 render::FrameReport Painter::drawCells(bool is_complete, const StopFlag* stop) {
@@ -323,14 +341,14 @@ void Painter::fitCamera() {
 }
 
 void Painter::setGround() {
-  setGround(view_.show_terrain && scene_ ? scene_->terrain : nullptr);
+  if (!frame_) return;
+  if (scenery_->update(view_, scene_ ? &*scene_ : nullptr, frame_->grid()))
+    onRenderer([&](auto& to) { to.setHeightField(scenery_->heightField()); });
+  scenery_->annotate(annotations_, view_, frame_->markers);
 }
 
-void Painter::setGround(const scenario::TerrainPtr& ground) {
-  if (ground == ground_) return;
-  height_field_ = ground ? heightFieldOf(*ground, frame_->grid()) : nullptr;
-  onRenderer([&](auto& to) { to.setHeightField(height_field_); });
-  ground_ = ground;
+const std::shared_ptr<const render::HeightField>& Painter::heightField() const {
+  return scenery_->heightField();
 }
 
 void Painter::setMarkers() {
@@ -357,7 +375,7 @@ void Painter::setMarkers() {
 
 void Painter::setLegend() {
   if (!frame_) return;
-  annotations_.legend = render::legendOf(frame_->info(), transferFunction());
+  annotations_.legend = render::legendOf(frame_->info(), transferFunction(), view_.field_unit);
   if (view_.settings.mode == render::CompositingMode::iso)
     annotations_.legend->iso_value = renderer_.isoValue();
   if (frame_->info().categorical) {

@@ -210,8 +210,15 @@ Json toJson(const ViewSetting& setting, const ViewState& view) {
   return json.is_number() && std::isnan(json.get<double>()) ? Json() : json;
 }
 
-bool isRelativeFile(const std::string& compare) {
-  return !compare.empty() && compare != kOriginal && fs::path(compare).is_relative();
+bool isRelativeFile(const std::string& name) {
+  return !name.empty() && name != kOriginal && fs::path(name).is_relative();
+}
+
+/// Changes the names of all files that a view names.
+void renameFiles(ViewState& view, const std::function<std::string(const std::string&)>& renamed) {
+  view.compare = renamed(view.compare);
+  view.drape = renamed(view.drape);
+  for (std::string& file : view.places) file = renamed(file);
 }
 
 /// Absolute and without symbolic links, as far as they can be resolved.
@@ -222,11 +229,11 @@ fs::path resolved(const fs::path& path) {
   return failure ? absolute.lexically_normal() : real;
 }
 
-/// The compared file as it is named in the view file `view`: relative to its folder, wherever symbolic links
+/// A file as it is named in the view file `view`: relative to its folder, wherever symbolic links
 /// to the folders are.
-std::string nameInView(const std::string& compare, const fs::path& view) {
-  if (!isRelativeFile(compare)) return compare;
-  const fs::path file = fs::absolute(compare);
+std::string nameInView(const std::string& named, const fs::path& view) {
+  if (!isRelativeFile(named)) return named;
+  const fs::path file = fs::absolute(named);
   const std::string name = (resolved(file.parent_path()) / file.filename())
                                .lexically_normal()
                                .lexically_relative(resolved(fs::absolute(view).parent_path()))
@@ -234,9 +241,9 @@ std::string nameInView(const std::string& compare, const fs::path& view) {
   return name == kOriginal ? "./" + name : name;
 }
 
-/// The compared file that the view file `view` names. If there is none, that of the working folder, to which
+/// The file that the view file `view` names. If there is none, that of the working folder, to which
 /// earlier versions of the program wrote the names.
-std::string comparedFile(const fs::path& view, const std::string& name) {
+std::string fileOfView(const fs::path& view, const std::string& name) {
   if (!isRelativeFile(name)) return name;
   const fs::path written = view.parent_path() / name, normal = written.lexically_normal();
   // If ".." follows a symbolic link, they are different files.
@@ -267,7 +274,7 @@ ViewState parseViewState(const std::string& text, const std::string& file) {
 
 ViewState readViewState(const std::string& file) {
   ViewState state = parseViewState(readWholeText(file, kMaxFileBytes), file);
-  state.compare = comparedFile(file, state.compare);
+  renameFiles(state, [&](const std::string& name) { return fileOfView(file, name); });
   return state;
 }
 
@@ -284,7 +291,7 @@ std::string viewStateText(const ViewState& state) {
 
 void writeViewState(const std::string& file, const ViewState& state) {
   ViewState stored = state;
-  stored.compare = nameInView(state.compare, file);
+  renameFiles(stored, [&](const std::string& name) { return nameInView(name, file); });
   const std::string text = viewStateText(stored);
   parseViewState(text, file);
   writeWhole(file, [&text](std::ostream& out) { out << text; });

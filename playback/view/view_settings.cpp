@@ -6,149 +6,25 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <type_traits>
 
 #include "emscape/base/error.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/volume/dense_volume.h"
+#include "playback/view/settings_table.h"
 
 namespace emscape::playback {
 namespace {
 
 using document::ValueSpec;
 using document::ValueType;
-using Texts = std::vector<std::string>;
+using Table = SettingsTable;
 namespace spec = document::spec;
 
 constexpr double kMaxRate = 1e4;
 constexpr double kMaxValue = 1e30;
 constexpr double kMaxLabelScale = 4;
 constexpr int kMaxItems = 10000;
-constexpr int kMaxText = 1 << 20;
 
-/// The table while it is made. Functions that begin with `with` complete the last setting.
-class Table {
- public:
-  std::vector<ViewSetting> rows;
-
-  /// A setting that is a member. @param member  returns it for a view: bool, number, text, list of texts, or
-  /// an enumeration in the order of the choices
-  template <class Member>
-  Table& member(const char* key, const ValueSpec& of, Member member, const char* meaning) {
-    using Value = std::decay_t<decltype(member(std::declval<ViewState&>()))>;
-    if constexpr (std::is_enum_v<Value>) {
-      return add(
-          key, of, meaning,
-          [member, names = of.choices](const ViewState& view) {
-            return names[static_cast<std::size_t>(member(view))];
-          },
-          [member, names = of.choices](ViewState& view, const SettingValue& value) {
-            const auto found = std::find(names.begin(), names.end(), std::get<std::string>(value));
-            member(view) = static_cast<Value>(found - names.begin());
-          });
-    } else {
-      return add(key, of, meaning, member, [member](ViewState& view, const SettingValue& value) {
-        member(view) = std::get<Value>(value);
-      });
-    }
-  }
-  /// A member that has a text.
-  template <class Member, class Parse, class Write>
-  Table& parsed(const char* key, const ValueSpec& of, Member member, Parse parse, Write write,
-                const char* meaning) {
-    return add(
-        key, of, meaning, [member, write](const ViewState& view) { return write(member(view)); },
-        [member, parse](ViewState& view, const SettingValue& value) {
-          member(view) = parse(std::get<std::string>(value));
-        });
-  }
-  /// A list whose items have texts.
-  template <class Member, class Parse>
-  Table& parsedList(const char* key, int max_items, Member member, Parse parse, const char* meaning) {
-    return add(
-        key, spec::listOf(textSpec(1), 0, max_items), meaning,
-        [member](const ViewState& view) {
-          Texts texts;
-          for (const auto& item : member(view)) texts.push_back(toString(item));
-          return texts;
-        },
-        [member, parse, max_items](ViewState& view, const SettingValue& value) {
-          const std::size_t count = std::get<Texts>(value).size();
-          if (count > static_cast<std::size_t>(max_items)) {
-            throw Error(ErrorCode::bad_input,
-                        fmt::format("{} values: expected at most {}", count, max_items));
-          }
-          std::decay_t<decltype(member(view))> items;
-          for (const std::string& text : std::get<Texts>(value)) items.push_back(parse(text));
-          member(view) = std::move(items);
-        });
-  }
-  /// A setting of view files alone, which view_file.cpp reads and writes.
-  Table& stored(const char* key, const char* meaning) {
-    return add(key, spec::simple(ValueType::object), meaning, {}, {});
-  }
-
-  Table& withEffect(bool ViewChange::*affects) {
-    rows.back().affects = affects;
-    return *this;
-  }
-  /// The texts of the documentation, if they do not follow from type and default.
-  Table& withTexts(const char* value, const char* of_default) {
-    rows.back().value_text = value;
-    rows.back().default_text = of_default;
-    return *this;
-  }
-  Table& withOption(const char* name, const char* help) {
-    rows.back().option = name;
-    rows.back().option_help = help;
-    return *this;
-  }
-  Table& withVerb(const char* verb, const char* argument, const char* help) {
-    rows.back().verb = verb;
-    rows.back().argument = argument;
-    rows.back().verb_help = help;
-    return *this;
-  }
-  Table& withAction(const char* name, const char* keys) {
-    rows.back().action = name;
-    rows.back().keys = keys;
-    return *this;
-  }
-  Table& withChange(void (*change)(ViewState& view, const std::string& text)) {
-    rows.back().change = [change](ViewState& view, const SettingValue& value) {
-      change(view, std::get<std::string>(value));
-    };
-    return *this;
-  }
-
-  static ValueSpec textSpec(int min_characters = 0) {
-    ValueSpec value = spec::textOf(ValueType::text, kMaxText);
-    value.min_items = min_characters;
-    return value;
-  }
-
- private:
-  Table& add(const char* key, const ValueSpec& of, const char* meaning,
-             std::function<SettingValue(const ViewState&)> get,
-             std::function<void(ViewState&, const SettingValue&)> set) {
-    ViewSetting& row = rows.emplace_back();
-    row.key = key;
-    row.spec = of;
-    row.meaning = meaning;
-    row.get = std::move(get);
-    row.set = row.change = std::move(set);
-    return *this;
-  }
-};
-
-ValueSpec switchSpec() {
-  return spec::simple(ValueType::boolean);
-}
-template <class Enum>
-ValueSpec choiceOf() {
-  const auto names = namesOf(Enum());
-  return spec::choice({names.begin(), names.end()});
-}
 ValueSpec valueSpec() {
   return spec::number().from(-kMaxValue).to(kMaxValue);
 }
@@ -346,8 +222,8 @@ void addScenery(Table& table) {
   table
       .member(
           "theme", choiceOf<render::Theme>(), [](auto& view) -> auto& { return view.theme; },
-          "background and labels")
-      .withEffect(&ViewChange::labels)
+          "background, labels and the ground")
+      .withEffect(&ViewChange::ground)
       .withOption("--theme", "Background and labels; default: dark")
       .withVerb("theme", "theme", "dark or light; without a name the other one")
       .withAction("Dark or light", "D");
@@ -376,6 +252,7 @@ void addScenery(Table& table) {
       .withVerb("labels", "labels",
                 "Labels of emitters and platforms: off, names or all; without a name the next one")
       .withAction("Labels", "N");
+  addReferences(table);
   table
       .member(
           "trail_s", spec::number("s").from(0).to(volume::kMaxTime_s),

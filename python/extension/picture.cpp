@@ -41,7 +41,7 @@ playback::Frame frameOf(const Field& field, std::size_t index,
   if (field.scene) {
     const scenario::TerrainPtr& terrain = field.scene->terrain;
     const auto snapshot = scenario::snapshotAt(field.scene->scenario, terrain.get(), field.time_s);
-    frame.markers = playback::markersOf(snapshot, terrain.get(), frame.volume.grid());
+    frame.markers = playback::markersOf(snapshot, terrain, frame.volume.grid());
     frame.tracks = playback::tracksOf(*field.scene, frame.volume.grid(), field.time_s);
   }
   return frame;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "emscape/base/error.h"
+#include "emscape/base/units.h"
 #include "render/annotate/overlay_parts.h"
 
 namespace emscape::render {
@@ -59,23 +60,28 @@ struct BarTick {
 /// @param count  of round values, about
 /// @param gap    smallest distance of numbers, a part of the bar
 std::vector<BarTick> ticksOf(const Legend& legend, int count, double gap) {
+  const FieldScale& scale = legend.scale;
   const double lowest = legend.function.lowest(), highest = legend.function.highest();
-  std::vector<double> values = roundTicks(lowest, highest, count);
+  const double first = scale.shown(lowest), last = scale.shown(highest);
+  std::vector<double> shown =
+      scale.is_amplitude ? roundLogTicks(first, last, count) : roundTicks(first, last, count);
   if (legend.whole_numbers) {
     const auto broken = [](double value) { return value != std::round(value); };
-    values.erase(std::remove_if(values.begin(), values.end(), broken), values.end());
+    shown.erase(std::remove_if(shown.begin(), shown.end(), broken), shown.end());
   }
-  const double step = values.size() > 1 ? values[1] - values[0] : highest - lowest;
+  const double step = shown.size() > 1 ? shown[1] - shown[0] : last - first;
   std::vector<BarTick> ticks;
   if (!(highest > lowest)) return ticks;
-  for (const double value : values) {
+  for (const double at : shown) {
+    const double value = scale.stored(at);
     const double to_end = std::min(value - lowest, highest - value) / (highest - lowest);
-    if (to_end >= gap) ticks.push_back({value, tickText(value, step)});
+    if (to_end >= gap) ticks.push_back({value, scale.is_amplitude ? fmt::format("{:g}", at) : tickText(at, step)});
   }
-  for (const double end : {lowest, highest}) {
+  for (const auto& [value, at] : {std::pair{lowest, first}, std::pair{highest, last}}) {
     const double unit = std::pow(10, -decimalsOf(step));
-    const bool is_close = std::abs(end - std::round(end / unit) * unit) < step / 20;
-    ticks.push_back({end, tickText(end, is_close ? step : step / 10)});
+    const bool is_close = std::abs(at - std::round(at / unit) * unit) < step / 20;
+    ticks.push_back(
+        {value, scale.is_amplitude ? fmt::format("{:.3g}", at) : tickText(at, is_close ? step : step / 10)});
   }
   return ticks;
 }
@@ -264,6 +270,26 @@ std::vector<double> roundTicks(double lowest, double highest, int count) {
   return ticks;
 }
 
+std::vector<double> roundLogTicks(double lowest, double highest, int count) {
+  static const std::vector<double> kMantissas[] = {{1, 2, 5}, {1, 3}, {1}};
+  std::vector<double> ticks;
+  if (!(lowest > 0) || !(highest > lowest) || !std::isfinite(highest) || count < 1) return ticks;
+  constexpr double kSlack = 1e-9;
+  const int first = static_cast<int>(std::floor(std::log10(lowest)));
+  const int last = static_cast<int>(std::floor(std::log10(highest)));
+  for (const std::vector<double>& mantissas : kMantissas) {
+    ticks.clear();
+    for (int power = first; power <= last; ++power) {
+      for (double mantissa : mantissas) {
+        const double value = mantissa * std::pow(10.0, power);
+        if (value >= lowest * (1 - kSlack) && value <= highest * (1 + kSlack)) ticks.push_back(value);
+      }
+    }
+    if (ticks.size() <= static_cast<std::size_t>(count) + 2) break;
+  }
+  return ticks;
+}
+
 std::string tickText(double value, double step) {
   std::string text = fmt::format("{:.{}f}", value, decimalsOf(step));
   if (!text.empty() && text[0] == '-') text.replace(0, 1, "−");
@@ -300,10 +326,35 @@ std::string quantityTitle(const std::string& quantity, const std::string& unit) 
   return colon == std::string::npos ? name : name + " of " + quantity.substr(colon + 1);
 }
 
-Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function) {
+double FieldScale::shown(double stored) const {
+  const double decibels = stored + offset_db;
+  return is_amplitude ? std::pow(10.0, decibels / 20) : decibels;
+}
+
+double FieldScale::stored(double shown) const {
+  return (is_amplitude ? 20 * std::log10(shown) : shown) - offset_db;
+}
+
+FieldScale fieldScale(const std::string& stored_unit, FieldUnit unit) {
+  constexpr double kMilli_db = 30, kMicro_db = 120;
+  const bool is_density = stored_unit == "dBW/m2", is_strength = stored_unit == "dBuV/m";
+  if (unit == FieldUnit::stored || (!is_density && !is_strength)) return {stored_unit};
+  if (unit == FieldUnit::dbm)
+    return {"dBm/m2", kMilli_db - (is_strength ? kFieldStrengthOfPowerDensity_db : 0)};
+  return {"V/m", (is_density ? kFieldStrengthOfPowerDensity_db : 0) - kMicro_db, true};
+}
+
+Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function, FieldUnit unit) {
   Legend legend;
+  legend.scale = fieldScale(info.unit, unit);
   legend.quantity = quantityTitle(info.quantity, info.unit);
-  legend.unit = unitText(info.unit);
+  if (legend.scale.unit != info.unit) {  // that of the other quantity
+    const bool is_strength = legend.scale.is_amplitude;
+    replaceAll(legend.quantity, is_strength ? "Power density" : "Field strength",
+               is_strength ? "Field strength" : "Power density");
+    if (is_strength) replaceAll(legend.quantity, "power density", "field strength");
+  }
+  legend.unit = unitText(legend.scale.unit);
   legend.function = function;
   const auto note = info.extra.find(volume::kLegendNoteKey);
   if (note != info.extra.end()) legend.note = note->second;

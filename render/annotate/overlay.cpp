@@ -100,7 +100,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
                  const Annotations& annotations, const HiddenTest& hidden) {
   std::vector<Rect> taken;
   if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
-  if (annotations.georeferenced) {
+  if (annotations.georeferenced && annotations.compass) {
     const double reach = (kMargin + kCompassRadius + 10) * style.unit;
     const Point2 center{reach, canvas.size().height - reach - 14 * style.unit};
     drawCompass(canvas, style, projector.camera, center, kCompassRadius * style.unit);
@@ -109,12 +109,18 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
   drawFooter(canvas, style, projector.box, annotations, taken);
   drawPlanes(canvas, style, projector, annotations.planes, taken);
   if (annotations.legend) {
-    drawLegend(canvas, style, *annotations.legend);
     const double width = legendWidth(style, *annotations.legend);
     taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
   }
   if (!annotations.title.empty() || !annotations.time.empty())
     taken.push_back({0, 0, static_cast<double>(canvas.size().width), headerHeight(style)});
+  if (annotations.georeferenced && annotations.scale_bar) {
+    const double left = (annotations.compass ? 2 * (kMargin + kCompassRadius) + 20 : kMargin) * style.unit;
+    const Point2 at{left, canvas.size().height - (kMargin + 30) * style.unit};
+    drawScaleBar(canvas, style, projector, annotations.units, at, taken);
+  }
+  drawGroundMarks(canvas, style, projector, annotations, hidden, taken);
+  if (annotations.legend) drawLegend(canvas, style, *annotations.legend);
   drawTracks(canvas, style, projector, annotations.tracks, hidden);
   drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
   drawTexts(canvas, style, annotations);

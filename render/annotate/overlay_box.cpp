@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "base/text/display_units.h"
 #include "emscape/base/units.h"
 #include "render/annotate/overlay_parts.h"
 
@@ -101,13 +102,21 @@ bool labelledEdge(const Projector& p, int axis, Edge& chosen) {
 }
 
 struct AxisWords {
-  const char* title;
-  double scale;  // frame metres per unit of the label
+  std::string title;
+  double scale = 1;  // frame metres per unit of the label
 };
-AxisWords wordsOf(int axis, bool georeferenced) {
-  if (!georeferenced) return {axis == 0 ? "x" : (axis == 1 ? "y" : "z"), 1};
-  if (axis == 2) return {"altitude, km", 1000};
-  return {axis == 0 ? "east, km" : "north, km", 1000};
+AxisWords wordsOf(int axis, const SceneBox& box, const Annotations& annotations) {
+  if (!annotations.georeferenced) return {axis == 0 ? "x" : (axis == 1 ? "y" : "z"), 1};
+  if (axis == 2) {
+    constexpr double kLow_m = 3000;
+    const bool in_km = annotations.units == Units::metric && box.upper_m.z > kLow_m;
+    const DisplayUnit unit = in_km ? distanceUnit(annotations.units) : heightUnit(annotations.units);
+    return {std::string("altitude, ") + unit.name, unit.factor};
+  }
+  const DisplayUnit unit = distanceUnit(annotations.units);
+  const std::string& origin = axis == 0 ? annotations.origin_longitude : annotations.origin_latitude;
+  const std::string of = origin.empty() ? "" : " of " + origin;
+  return {std::string(unit.name) + (axis == 0 ? " east" : " north") + of, unit.factor};
 }
 
 /// The unit vector in the picture that points away from the box at an edge.
@@ -159,8 +168,8 @@ std::vector<AxisTick> ticksOf(const Canvas& canvas, const Style& style, const Pr
   return ticks;
 }
 
-void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis, bool georeferenced,
-              std::vector<Rect>& taken) {
+void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis,
+              const Annotations& annotations, std::vector<Rect>& taken) {
   Edge edge;
   Point2 a;
   Point2 b;
@@ -170,7 +179,7 @@ void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis, 
   const double edge_px = length(b - a);
   if (edge_px < 40 * style.unit) return;  // seen end on
   const Point2 outward = outwardOf(a, b, center);
-  const AxisWords words = wordsOf(axis, georeferenced);
+  const AxisWords words = wordsOf(axis, p.box, annotations);
   const Align align = outward.x > 0.35 ? Align::left : (outward.x < -0.35 ? Align::right : Align::center);
   const std::vector<AxisTick> ticks = [&] {
     // One number alone would not give the scale.
@@ -222,8 +231,7 @@ void drawNearEdges(Canvas& canvas, const Style& style, const Projector& projecto
     if (seen == 0 || !ends(projector, edge, a, b)) continue;
     canvas.line(a, b, style.mutedInk(seen == 1 ? 0.75 : 0.35), style.unit);
   }
-  for (int axis = 0; axis < 3; ++axis)
-    drawAxis(canvas, style, projector, axis, annotations.georeferenced, taken);
+  for (int axis = 0; axis < 3; ++axis) drawAxis(canvas, style, projector, axis, annotations, taken);
 }
 
 void drawCompass(Canvas& canvas, const Style& style, const Camera& camera, const Point2& center,

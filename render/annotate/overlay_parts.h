@@ -57,6 +57,13 @@ void drawTracks(Canvas& canvas, const Style& style, const Projector& projector,
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
                  const std::vector<Marker>& markers, const HiddenTest& hidden,
                  const std::vector<Rect>& taken);
+/// Lines and points on the ground, where it does not hide them. Labels avoid `taken`; those that find no room
+/// are left out.
+void drawGroundMarks(Canvas& canvas, const Style& style, const Projector& projector,
+                     const Annotations& annotations, const HiddenTest& hidden, std::vector<Rect>& taken);
+/// A bar of a round length, as it is in the middle of the ground. @param left  its left end
+void drawScaleBar(Canvas& canvas, const Style& style, const Projector& projector, Units units,
+                  const Point2& left, std::vector<Rect>& taken);
 /// Colour of a symbol and of its parts.
 Rgb colorOf(MarkerKind kind);
 /// Radar: disc with a dish's arc; transmitter: triangle; jammer: diamond; receiver: square; platform: small

@@ -25,19 +25,46 @@ struct TintPoint {
   float at;
   Rgba color;
 };
-constexpr TintPoint kTints[] = {{0.0F, {0.33F, 0.37F, 0.34F, 1.0F}},
-                                {0.35F, {0.44F, 0.45F, 0.38F, 1.0F}},
-                                {0.7F, {0.56F, 0.52F, 0.45F, 1.0F}},
-                                {1.0F, {0.74F, 0.72F, 0.69F, 1.0F}}};
+struct Palette {
+  TintPoint land[4];
+  Rgba water, shore;
+  float wall_light, wall_rise;
+  float relief;  ///< part of the hill shade
+};
+constexpr Palette kDark{{{0.0F, {0.29F, 0.35F, 0.28F, 1.0F}},
+                         {0.3F, {0.40F, 0.42F, 0.32F, 1.0F}},
+                         {0.65F, {0.52F, 0.47F, 0.39F, 1.0F}},
+                         {1.0F, {0.74F, 0.72F, 0.69F, 1.0F}}},
+                        {0.12F, 0.20F, 0.30F, 1.0F},
+                        {0.27F, 0.42F, 0.53F, 1.0F},
+                        0.14F,
+                        0.16F,
+                        1.0F};
+constexpr Palette kLight{{{0.0F, {0.70F, 0.77F, 0.66F, 1.0F}},
+                          {0.3F, {0.80F, 0.81F, 0.68F, 1.0F}},
+                          {0.65F, {0.84F, 0.78F, 0.68F, 1.0F}},
+                          {1.0F, {0.95F, 0.94F, 0.92F, 1.0F}}},
+                         {0.66F, 0.78F, 0.87F, 1.0F},
+                         {0.47F, 0.64F, 0.77F, 1.0F},
+                         0.52F,
+                         0.16F,
+                         0.65F};
+/// Range of heights that has all tints at least: hills of a plain are no mountains.
+constexpr double kMinTintRange_m = 250;
 
-Rgba tintOf(float relative_height) {
-  const TintPoint* above = std::find_if(std::begin(kTints), std::end(kTints),
-                                        [&](const TintPoint& p) { return p.at >= relative_height; });
-  if (above == std::begin(kTints)) return above->color;
-  if (above == std::end(kTints)) return std::prev(above)->color;
+Rgba mixed(const Rgba& a, const Rgba& b, float part) {
+  return a * (1.0F - part) + b * part;
+}
+
+Rgba tintOf(const Palette& palette, float relative_height) {
+  const TintPoint* const begin = std::begin(palette.land);
+  const TintPoint* const end = std::end(palette.land);
+  const TintPoint* above =
+      std::find_if(begin, end, [&](const TintPoint& p) { return p.at >= relative_height; });
+  if (above == begin) return above->color;
+  if (above == end) return std::prev(above)->color;
   const TintPoint* below = above - 1;
-  const float part = (relative_height - below->at) / (above->at - below->at);
-  return below->color * (1.0F - part) + above->color * part;
+  return mixed(below->color, above->color, (relative_height - below->at) / (above->at - below->at));
 }
 
 /// Light falls from the north-west, as on maps.
@@ -47,6 +74,14 @@ float hillShade(float slope_x, float slope_y) {
   const float relative = std::max(0.0F, lit) / light.z;  // 1 on level ground
   return std::min(1.3F, 0.32F + 0.68F * relative);
 }
+
+/// A colour 0xAABBGGRR over another one.
+Rgba painted(std::uint32_t color, const Rgba& behind) {
+  const auto channel = [color](int shift) { return static_cast<float>(color >> shift & 0xFFU) / 255.0F; };
+  return mixed(behind, {channel(0), channel(8), channel(16), 1.0F}, channel(24));
+}
+
+constexpr std::size_t kNoPost = std::numeric_limits<std::size_t>::max();
 
 void check(const HeightField& field) {
   if (field.columns < 2 || field.rows < 2 || !(field.spacing_x_m > 0) || !(field.spacing_y_m > 0)) {
@@ -60,6 +95,13 @@ void check(const HeightField& field) {
   if (posts != static_cast<long long>(field.heights_m.size())) {
     throw Error(ErrorCode::bad_input, fmt::format("height field of {} x {} posts holds {} heights",
                                                   field.columns, field.rows, field.heights_m.size()));
+  }
+  const auto isComplete = [posts](std::size_t count) {
+    return count == 0 || static_cast<long long>(count) == posts;
+  };
+  if (!isComplete(field.kinds.size()) || !isComplete(field.colors.size())) {
+    throw Error(ErrorCode::bad_input, fmt::format("height field of {} posts holds {} kinds and {} colours",
+                                                  posts, field.kinds.size(), field.colors.size()));
   }
 }
 
@@ -88,12 +130,12 @@ int heldPost(int post, int count) {
 
 GroundSurface::GroundSurface(const HeightField& field, const volume::Grid& grid, const SceneBox& box) {
   check(field);
-  crop(field, grid);
-  shade(grid, box);
+  const std::vector<std::size_t> posts = crop(field, grid);
+  shade(field, posts, grid, box);
   buildHierarchy();
 }
 
-void GroundSurface::crop(const HeightField& field, const volume::Grid& grid) {
+std::vector<std::size_t> GroundSurface::crop(const HeightField& field, const volume::Grid& grid) {
   const Vec3d lower = grid.lower_m();
   const Vec3d upper = grid.upper_m();
   const PostRange x = cover(field.first_x_m, field.spacing_x_m, lower.x, upper.x);
@@ -110,6 +152,7 @@ void GroundSurface::crop(const HeightField& field, const volume::Grid& grid) {
   view_.first_x = (field.first_x_m + x.first * field.spacing_x_m - grid.first_center_m.x) / grid.spacing_m.x;
   view_.first_y = (field.first_y_m + y.first * field.spacing_y_m - grid.first_center_m.y) / grid.spacing_m.y;
   heights_.resize(static_cast<std::size_t>(x.count) * y.count, kNaN);
+  std::vector<std::size_t> posts(heights_.size(), kNoPost);
   float lowest = std::numeric_limits<float>::infinity();
   float highest = -lowest;
   for (int j = 0; j < y.count; ++j) {
@@ -117,9 +160,10 @@ void GroundSurface::crop(const HeightField& field, const volume::Grid& grid) {
     for (int i = 0; i < x.count; ++i) {
       const int from_column = heldPost(x.first + i, field.columns);
       if (from_row < 0 || from_column < 0) continue;
-      const float height_m =
-          field.heights_m[static_cast<std::size_t>(from_row) * field.columns + from_column];
+      const std::size_t from = static_cast<std::size_t>(from_row) * field.columns + from_column;
+      const float height_m = field.heights_m[from];
       if (!std::isfinite(height_m)) continue;
+      posts[static_cast<std::size_t>(j) * x.count + i] = from;
       const float z = static_cast<float>((height_m - grid.first_center_m.z) / grid.spacing_m.z);
       heights_[static_cast<std::size_t>(j) * x.count + i] = z;
       lowest = std::min(lowest, z);
@@ -131,36 +175,62 @@ void GroundSurface::crop(const HeightField& field, const volume::Grid& grid) {
   view_.lower = {-0.5, -0.5, base};
   view_.upper = {grid.dims.x - 0.5, grid.dims.y - 0.5, std::max(static_cast<double>(highest), bottom) + 1e-3};
   view_.hatch_period = static_cast<float>(std::max(x.count, y.count)) / kHatchLines;
+  return posts;
 }
 
-void GroundSurface::shade(const volume::Grid& grid, const SceneBox& box) {
+void GroundSurface::shade(const HeightField& field, const std::vector<std::size_t>& posts,
+                          const volume::Grid& grid, const SceneBox& box) {
   const int columns = view_.columns;
   const int rows = view_.rows;
+  const Palette& palette = field.light ? kLight : kDark;
+  view_.wall_light = palette.wall_light;
+  view_.wall_rise = palette.wall_rise;
   colors_.resize(heights_.size());
   // A post's spacing and a voxel's height, both as drawn.
   const double post_x_m = grid.spacing_m.x / view_.scale_x;
   const double post_y_m = grid.spacing_m.y / view_.scale_y;
   const double voxel_z_m = grid.spacing_m.z * box.vertical_exaggeration;
-  float lowest = std::numeric_limits<float>::infinity();
-  for (float z : heights_) lowest = z < lowest ? z : lowest;
-  const float range = std::max(static_cast<float>(view_.upper.z) - lowest, 1e-6F);
-  const auto height = [&](int i, int j) {
-    return heights_[static_cast<std::size_t>(std::clamp(j, 0, rows - 1)) * columns +
-                    std::clamp(i, 0, columns - 1)];
+  const auto at = [&](int i, int j) {
+    return static_cast<std::size_t>(std::clamp(j, 0, rows - 1)) * columns + std::clamp(i, 0, columns - 1);
   };
+  const auto isWater = [&](std::size_t post) {
+    return !field.kinds.empty() && posts[post] != kNoPost && field.kinds[posts[post]] == GroundKind::water;
+  };
+  float lowest = std::numeric_limits<float>::infinity();
+  for (std::size_t post = 0; post < heights_.size(); ++post) {
+    if (!isWater(post) && heights_[post] < lowest) lowest = heights_[post];
+  }
+  const float range = std::max(static_cast<float>(view_.upper.z) - lowest,
+                               static_cast<float>(kMinTintRange_m / grid.spacing_m.z));
   const auto slope = [](float before, float after, double spacing) {
     const float rise = after - before;
     return rise == rise ? static_cast<float>(rise / (2 * spacing)) : 0.0F;
   };
+  /// 1 at the shore, 1/2 one post further out.
+  const auto nearShore = [&](int i, int j) {
+    for (int reach = 1; reach <= 2; ++reach) {
+      for (int step = -reach; step <= reach; ++step) {
+        for (const std::size_t post : {at(i + step, j - reach), at(i + step, j + reach),
+                                       at(i - reach, j + step), at(i + reach, j + step)}) {
+          if (posts[post] != kNoPost && !isWater(post)) return 1.0F / static_cast<float>(reach);
+        }
+      }
+    }
+    return 0.0F;
+  };
   parallelFor(rows, kGroundGrain, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
       for (int i = 0; i < columns; ++i) {
-        const float slope_x = slope(height(i - 1, j), height(i + 1, j), post_x_m / voxel_z_m);
-        const float slope_y = slope(height(i, j - 1), height(i, j + 1), post_y_m / voxel_z_m);
-        const float relative = (height(i, j) - lowest) / range;
-        Rgba color = tintOf(relative == relative ? relative : 0.0F) * hillShade(slope_x, slope_y);
-        color.a = 1.0F;
-        colors_[static_cast<std::size_t>(j) * columns + i] = color;
+        const std::size_t post = at(i, j);
+        const float relative = (heights_[post] - lowest) / range;
+        Rgba color = isWater(post) ? mixed(palette.water, palette.shore, nearShore(i, j))
+                                   : tintOf(palette, relative == relative ? relative : 0.0F);
+        if (!field.colors.empty() && posts[post] != kNoPost)
+          color = painted(field.colors[posts[post]], color);
+        const float slope_x = slope(heights_[at(i - 1, j)], heights_[at(i + 1, j)], post_x_m / voxel_z_m);
+        const float slope_y = slope(heights_[at(i, j - 1)], heights_[at(i, j + 1)], post_y_m / voxel_z_m);
+        color = color * (1.0F + palette.relief * (hillShade(slope_x, slope_y) - 1.0F));
+        colors_[post] = {std::min(color.r, 1.0F), std::min(color.g, 1.0F), std::min(color.b, 1.0F), 1.0F};
       }
     }
   });

@@ -40,6 +40,8 @@ struct GroundView {
   double first_x = 0, first_y = 0;  ///< index space position of post (0, 0)
   Vec3d lower, upper;               ///< of the block, index space; lower.z is the base
   float hatch_period = 8;           ///< posts between the lines of a pit's hatching
+  float wall_light = 0.14F,
+        wall_rise = 0.16F;  ///< brightness of the sides at the base, and what the top adds
 
   /// The first point of the block on a ray between two distances.
   EMSCAPE_HD GroundHit firstHit(const Vec3d& origin, const Vec3d& direction, double begin, double end) const;
@@ -66,8 +68,10 @@ class GroundSurface {
   const std::vector<float>& level(int level) const { return highest_[static_cast<std::size_t>(level)]; }
 
  private:
-  void crop(const HeightField& field, const volume::Grid& grid);
-  void shade(const volume::Grid& grid, const SceneBox& box);
+  /// @return for each post that of the field from which it is, or kNoPost
+  std::vector<std::size_t> crop(const HeightField& field, const volume::Grid& grid);
+  void shade(const HeightField& field, const std::vector<std::size_t>& posts, const volume::Grid& grid,
+             const SceneBox& box);
   void buildHierarchy();
 
   GroundView view_;

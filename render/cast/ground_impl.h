@@ -58,7 +58,7 @@ EMSCAPE_HD inline Rgba GroundView::surfaceColor(int i, int j, float x, float y) 
 EMSCAPE_HD inline Rgba GroundView::wallColor(float z, float distance_x, float distance_y) const {
   const float height = (z - static_cast<float>(lower.z)) / static_cast<float>(upper.z - lower.z);
   const float face = distance_x < distance_y ? 0.82F : 1.0F;
-  const float level = (0.14F + 0.16F * ground_detail::held(height, 0.0F, 1.0F)) * face;
+  const float level = (wall_light + wall_rise * ground_detail::held(height, 0.0F, 1.0F)) * face;
   return {level * 1.08F, level, level * 0.92F, 1.0F};
 }
 

@@ -3,6 +3,9 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "emscape/base/error.h"
+#include "scenario/terrain/gdal_messages.h"
+
 namespace emscape::scenario {
 namespace {
 
@@ -35,6 +38,25 @@ bool hasSoundCodes(OGRSpatialReferenceH system) {
 gdal::Transformation newTransformation(OGRSpatialReferenceH from, OGRSpatialReferenceH to) {
   if (!hasSoundCodes(from) || !hasSoundCodes(to)) return nullptr;
   return gdal::Transformation(OCTNewCoordinateTransformation(from, to));
+}
+
+gdal::SpatialReference wgs84Reference() {
+  const GdalMessages messages;
+  gdal::SpatialReference reference(OSRNewSpatialReference(nullptr));
+  if (OSRImportFromEPSG(reference.get(), 4326) != OGRERR_NONE)
+    throw Error(ErrorCode::other, messages.explain("PROJ does not know EPSG:4326, longitude and latitude"));
+  OSRSetAxisMappingStrategy(reference.get(), OAMS_TRADITIONAL_GIS_ORDER);
+  return reference;
+}
+
+gdal::Transformation transformationBetween(const gdal::SpatialReference& from,
+                                           const gdal::SpatialReference& to) {
+  const GdalMessages messages;
+  gdal::Transformation transformation = newTransformation(from.get(), to.get());
+  if (transformation == nullptr) {
+    throw Error(ErrorCode::other, messages.explain("PROJ cannot transform between the coordinate systems"));
+  }
+  return transformation;
 }
 
 }  // namespace emscape::scenario

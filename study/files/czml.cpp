@@ -10,6 +10,7 @@
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/playback/frames/scene.h"
 #include "render/annotate/overlay_parts.h"
+#include "scenario/terrain/transformation.h"
 #include "study/files/map_objects.h"
 #include "study/files/map_shapes.h"
 #include "study/maps/gdal_support.h"
@@ -39,7 +40,7 @@ class Czml : public MapCollection {
     const double duration_s = study.scenarios.front()->clock.duration_s;
     begin_s_ = std::min(0.0, study.times_s.front());
     end_s_ = std::max(duration_s, endOf(study, study.times_s.back()));
-    to_earth_ = transformationBetween(referenceOf(*study.grid), wgs84Reference());
+    to_earth_ = scenario::transformationBetween(referenceOf(*study.grid), scenario::wgs84Reference());
     packets_.push_back({{"id", "document"},
                         {"name", study.title},
                         {"version", "1.0"},

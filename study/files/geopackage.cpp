@@ -10,6 +10,7 @@
 #include "base/files/unfinished_file.h"
 #include "emscape/playback/frames/scene.h"
 #include "render/annotate/overlay_parts.h"
+#include "scenario/terrain/transformation.h"
 #include "study/files/map_objects.h"
 #include "study/files/map_picture.h"
 #include "study/files/map_shapes.h"
@@ -148,7 +149,8 @@ class GeoPackage : public MapCollection {
     dataset_.reset(GDALCreate(driverOf("GPKG"), file_.temporary().c_str(), 0, 0, 0, GDT_Unknown, nullptr));
     check(scope, dataset_ != nullptr);
     GDALDatasetStartTransaction(dataset_.get(), FALSE);
-    const gdal::SpatialReference map_reference = referenceOf(*study_.grid), earth = wgs84Reference();
+    const gdal::SpatialReference map_reference = referenceOf(*study_.grid),
+                                 earth = scenario::wgs84Reference();
     bands_ = addLayer(scope, "bands", map_reference.get(), wkbMultiPolygon,
                       {{"product", OFTString},
                        {"height", OFTReal},

@@ -11,6 +11,7 @@
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "scenario/terrain/transformation.h"
 #include "study/maps/gdal_support.h"
 
 namespace emscape::study {
@@ -81,7 +82,7 @@ gdal::SpatialReference referenceOf(const std::string& crs, const Middle& middle,
 class Projection {
  public:
   Projection(const gdal::SpatialReference& from, const gdal::SpatialReference& to)
-      : transform_(transformationBetween(from, to)) {}
+      : transform_(scenario::transformationBetween(from, to)) {}
   /// @return false if a point has no image
   bool operator()(std::vector<double>& x, std::vector<double>& y) const {
     const scenario::GdalMessages messages;
@@ -384,7 +385,7 @@ void fillPositions(const Lattice& lattice, const MapArea& area, MapGrid& grid) {
 }  // namespace
 
 long long MapGrid::pixelAt(double latitude_deg, double longitude_deg) const {
-  const gdal::SpatialReference earth = wgs84Reference();
+  const gdal::SpatialReference earth = scenario::wgs84Reference();
   const gdal::SpatialReference reference = study::referenceOf(*this);
   std::vector<double> x{longitude_deg}, y{latitude_deg};
   if (!Projection(earth, reference)(x, y)) return -1;
@@ -400,7 +401,7 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   MapGrid grid;
   grid.cell_m = cell_m;
   grid.area = area;
-  const gdal::SpatialReference earth = wgs84Reference();
+  const gdal::SpatialReference earth = scenario::wgs84Reference();
   const gdal::SpatialReference reference = referenceOf(crs, middleOf(area), grid.crs);
   grid.wkt = wkt2Of(reference.get());
   std::vector<double> x, y;
@@ -451,7 +452,8 @@ MapGrid mapGridAt(const std::string& wkt, const std::string& crs, double cell_m,
                                                   width, height, cell_m));
   }
   const MapArea everywhere{{-90, 90, -180, 180}, {}};
-  fillPositions(latticeOf(Projection(study::referenceOf(grid), wgs84Reference()), grid), everywhere, grid);
+  fillPositions(latticeOf(Projection(study::referenceOf(grid), scenario::wgs84Reference()), grid), everywhere,
+                grid);
   return grid;
 }
 

@@ -259,7 +259,7 @@ TEST(Probe, HasHeightsOverRealGroundAndReportsPositionsBelowIt) {
   const std::string file = emscape::test::shippedScenario("jacksboro.yaml");
   const Solved solved = solve(file, {{"region.dims", "[40, 40, 20]"}});
   const volume::Grid& grid = solved.volume->grid;
-  const auto ground = heightFieldOf(*solved.input.terrain, grid);
+  const auto ground = heightFieldOf(solved.input, grid);
   const render::SceneBox box = render::sceneBoxOf(grid, 0);
   const render::Camera camera = cameraAt("orbit:elevation_deg=60", box, kSize);
   const auto picked = pick(camera, box, kSize, 160, 120, *solved.volume, ground.get());

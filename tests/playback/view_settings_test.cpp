@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/support/errors.h"
 #include "tests/support/files.h"
 
 namespace emscape::playback::test {
@@ -21,6 +22,7 @@ SettingValue otherValue(const ViewSetting& setting) {
   if (setting.key == "size") return std::string("3x4");
   if (setting.key == "range") return std::string("-1:2.5");
   if (setting.key == "planes") return std::vector<std::string>{"horizontal:altitude_m=5,keep=above"};
+  if (setting.key == "range_rings") return std::vector<std::string>{"a:b:spacing_m=5000,count=2"};
   if (setting.isListOfTexts()) return std::vector<std::string>{"a.b=1"};
   return std::string("other");
 }
@@ -55,6 +57,22 @@ TEST(ViewSettings, ValuesOfAChoiceFollowEachOtherInACircle) {
   for (const char* name : {"mida", "mip", "iso", "dvr"}) {
     mode.changeToNext(view);
     EXPECT_EQ(mode.text(view), name);
+  }
+}
+
+TEST(ViewSettings, RangeRingsAreAnEmitterASpacingAndPerhapsACount) {
+  const RangeRings rings = parseRangeRings("a: radar, 1:spacing_m=7500.5,count=3");
+  EXPECT_EQ(rings.emitter, "a: radar, 1");
+  EXPECT_EQ(rings.spacing_m, 7500.5);
+  EXPECT_EQ(rings.count, 3);
+  EXPECT_EQ(toString(rings), "a: radar, 1:spacing_m=7500.5,count=3");
+  EXPECT_EQ(toString(parseRangeRings("radar:spacing_m=1e4")), "radar:spacing_m=10000");
+  for (const char* const text :
+       {"", "radar", ":spacing_m=5", "radar:spacing_m=", "radar:spacing_m=0", "radar:spacing_m=5x",
+        "radar:spacing_m=5,count=0", "radar:spacing_m=5,count=1.5", "radar:count=5"}) {
+    EXPECT_THAT(emscape::test::errorOf([&] { parseRangeRings(text); }, ErrorCode::usage),
+                testing::HasSubstr("expected EMITTER:spacing_m=..[,count=..]"))
+        << text;
   }
 }
 

@@ -43,6 +43,16 @@ class RandomState {
     state.theme = coin() ? render::Theme::dark : render::Theme::light;
     state.show_terrain = coin();
     state.show_emitters = coin();
+    state.coast = coin() ? Shown::automatic : Shown::off;
+    state.graticule = coin() ? Shown::on : Shown::off;
+    state.show_compass = coin();
+    state.show_scale_bar = coin();
+    for (unsigned i = below(3); i > 0; --i)
+      state.range_rings.push_back(
+          {"radar " + std::to_string(i), uniform(1, 1e5), static_cast<int>(below(4))});
+    state.units = coin() ? Units::metric : Units::nautical;
+    state.field_unit = static_cast<FieldUnit>(below(3));
+    state.positions = static_cast<PositionFormat>(below(3));
     state.size = {static_cast<int>(1 + below(4000)), static_cast<int>(1 + below(4000))};
     for (unsigned i = below(4); i > 0; --i) state.edits.push_back({"emitters.\"a=b\".power_w", text()});
     if (coin()) state.compare = kOriginal;
@@ -156,6 +166,16 @@ TEST(ViewState, RandomStatesAreReadBackToTheBit) {
     ASSERT_EQ(read.theme, state.theme);
     ASSERT_EQ(read.show_terrain, state.show_terrain);
     ASSERT_EQ(read.show_emitters, state.show_emitters);
+    ASSERT_EQ(read.coast, state.coast);
+    ASSERT_EQ(read.graticule, state.graticule);
+    ASSERT_EQ(read.show_compass, state.show_compass);
+    ASSERT_EQ(read.show_scale_bar, state.show_scale_bar);
+    ASSERT_EQ(read.range_rings.size(), state.range_rings.size());
+    for (std::size_t r = 0; r < read.range_rings.size(); ++r)
+      ASSERT_EQ(toString(read.range_rings[r]), toString(state.range_rings[r]));
+    ASSERT_EQ(read.units, state.units);
+    ASSERT_EQ(read.field_unit, state.field_unit);
+    ASSERT_EQ(read.positions, state.positions);
     ASSERT_EQ(read.size, state.size);
     ASSERT_EQ(read.edits, state.edits);
     ASSERT_EQ(read.compare, state.compare);
@@ -263,6 +283,22 @@ TEST(ViewState, AComparedFileIsNamedRelativeToTheViewFile) {
   state.compare = "original";
   writeViewState("b.view.json", state);
   EXPECT_EQ(readViewState("b.view.json").compare, "original");
+}
+
+TEST(ViewState, PlacesAndThePictureOnTheGroundAreNamedRelativeToTheViewFile) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder / "views");
+  ViewState state;
+  state.drape = folder / "chart.tif";
+  state.places = {"/elsewhere/a.geojson"};
+  writeViewState(folder / "views/a.view.json", state);
+  EXPECT_EQ(readViewState(folder / "views/a.view.json").drape, state.drape) << "an absolute name stays";
+  writeFile(
+      folder / "views/b.view.json",
+      R"({"schema_version": 1, "drape": "../chart.tif", "places": ["b.geojson", "/elsewhere/a.geojson"]})");
+  const ViewState read = readViewState(folder / "views/b.view.json");
+  EXPECT_EQ(read.drape, folder / "chart.tif");
+  EXPECT_EQ(read.places, (std::vector<std::string>{folder / "views/b.geojson", "/elsewhere/a.geojson"}));
 }
 
 TEST(ViewState, AComparedFileIsFoundThroughASymbolicLinkToTheFolderOfTheView) {

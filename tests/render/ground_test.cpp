@@ -153,10 +153,59 @@ TEST(Ground, CoversTheBoxFromPostsAtVoxelCentresAndNoFurther) {
   EXPECT_NEAR(hitOf(half, {15, 10, 30}, {15, 10, 0}).distance, 30 - half.view().lower.z, 1e-3);
 }
 
+/// The colour of level ground at the centre of a grid, from above.
+Rgba colorAbove(HeightField field) {
+  const volume::Grid g = grid();
+  return hitOf(GroundSurface(field, g, sceneBoxOf(g, 1)), {9.5, 9.5, 30}, {9.5, 9.5, 0}).color;
+}
+
+TEST(Ground, WaterIsBluerThanLandAndPaleAtTheShore) {
+  HeightField field = *makeGround(grid(), 21, [](double, double) { return 100; });
+  const Rgba land = colorAbove(field);
+  field.kinds.assign(field.heights_m.size(), GroundKind::water);
+  const Rgba water = colorAbove(field);
+  EXPECT_GT(water.b, 1.3F * water.r);
+  EXPECT_GT(water.b - water.r, land.b - land.r + 0.1F);
+  field.kinds[10 * 21 + 11] = GroundKind::land;  // beside the centre
+  const Rgba shore = colorAbove(field);
+  EXPECT_GT(shore.r + shore.g + shore.b, water.r + water.g + water.b);
+  field.kinds.clear();
+  EXPECT_EQ(colorAbove(field).b, land.b) << "land without kinds";
+}
+
+TEST(Ground, IsLighterForPicturesOnALightBackground) {
+  HeightField field = *makeGround(grid(), 21, [](double, double) { return 100; });
+  for (const bool is_water : {false, true}) {
+    if (is_water) field.kinds.assign(field.heights_m.size(), GroundKind::water);
+    field.light = false;
+    const Rgba dark = colorAbove(field);
+    field.light = true;
+    const Rgba light = colorAbove(field);
+    EXPECT_GT(light.r + light.g + light.b, 1.3F * (dark.r + dark.g + dark.b));
+    EXPECT_LE(std::max({light.r, light.g, light.b}), 1);
+  }
+}
+
+TEST(Ground, APictureCoversItAsFarAsItIsOpaque) {
+  HeightField field = *makeGround(grid(), 21, [](double, double) { return 100; });
+  const Rgba land = colorAbove(field);
+  field.colors.assign(field.heights_m.size(), 0xFF0000FFU);
+  EXPECT_NEAR(colorAbove(field).r, 1, 0.01);
+  EXPECT_NEAR(colorAbove(field).g, 0, 0.01);
+  field.colors.assign(field.heights_m.size(), 0x000000FFU);
+  EXPECT_NEAR(colorAbove(field).r, land.r, 1e-6);
+}
+
 TEST(Ground, MalformedFieldsAreRefused) {
   const volume::Grid g = grid();
   HeightField field = *makeGround(g, 4, hills);
   field.heights_m.pop_back();
+  EXPECT_THROW(GroundSurface(field, g, sceneBoxOf(g, 1)), Error);
+  field = *makeGround(g, 4, hills);
+  field.kinds.resize(3);
+  EXPECT_THROW(GroundSurface(field, g, sceneBoxOf(g, 1)), Error);
+  field = *makeGround(g, 4, hills);
+  field.colors.resize(17);
   EXPECT_THROW(GroundSurface(field, g, sceneBoxOf(g, 1)), Error);
   field = *makeGround(g, 4, hills);
   field.spacing_x_m = 0;

@@ -57,6 +57,13 @@ class RandomView {
     if (flip()) view.settings.planes.push_back(render::parseCutPlane("horizontal:altitude_m=2000"));
     view.show_terrain = flip();
     view.show_emitters = flip();
+    view.graticule = flip() ? playback::Shown::on : playback::Shown::automatic;
+    view.show_scale_bar = flip();
+    view.show_compass = flip();
+    if (flip()) view.range_rings.push_back({emitters_.front(), number(1000, 9000), between(0, 3)});
+    view.units = flip() ? Units::nautical : Units::metric;
+    view.field_unit = static_cast<FieldUnit>(between(0, 2));
+    view.positions = static_cast<PositionFormat>(between(0, 2));
     if (flip()) view.range = volume::ValueRange{-110, static_cast<float>(number(-60, -10))};
     for (const std::string& emitter : emitters_) {
       if (flip())

@@ -92,6 +92,9 @@ void drawNotice(PanelContext& context, const Area& picture);
 void drawProbeMarker(const PanelContext& context, const Area& picture);
 void drawHelp(PanelContext& context);
 void drawGoToTime(PanelContext& context);
+/// map_panel.cpp.
+void drawGoToPosition(PanelContext& context);
+void drawMapDialog(PanelContext& context);
 void drawFileBrowser(PanelContext& context);
 /// The running recording, at the top of the picture, and the dialog of a new one.
 void drawRecording(PanelContext& context, const Area& picture);

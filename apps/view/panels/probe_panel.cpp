@@ -46,9 +46,18 @@ class Table {
   ImVec4 muted_;
 };
 
-void drawPlace(const ProbeResult& result, const playback::ViewState& view, render::Theme theme, float s) {
+/// The value of the volume in the unit in which fields are shown.
+std::string shownText(const playback::ProbeReading& reading, const volume::VolumeInfo& info, FieldUnit unit) {
+  const render::FieldScale scale = render::fieldScale(info.unit, unit);
+  const bool is_converted = reading.sample.kind == playback::VolumeSample::Kind::value && !info.categorical &&
+                            scale.unit != info.unit;
+  return render::unitText(
+      is_converted ? fmt::format("{:.4g} {}", scale.shown(reading.sample.value), scale.unit) : reading.text);
+}
+
+void drawPlace(const ProbeResult& result, const playback::ViewState& view, float s) {
   const playback::ProbeReading& reading = *result.reading;
-  const Table table("place", 96 * s, theme);
+  const Table table("place", 96 * s, view.theme);
   if (reading.position) {
     table.row("position", positionText(*reading.position, view));
     table.row("height",
@@ -156,12 +165,13 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
   ImGui::SetWindowFontScale(1.25F);
   ImGui::PushStyleColor(ImGuiCol_Text,
                         is_value ? accentColor(theme) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
-  ImGui::TextWrapped("%s", drawable(render::unitText(reading.text)).c_str());
+  const playback::ViewState& view = context.session.view();
+  const volume::VolumeInfo& info = context.session.picture()->info();
+  ImGui::TextWrapped("%s", drawable(shownText(reading, info, view.field_unit)).c_str());
   ImGui::PopStyleColor();
   ImGui::SetWindowFontScale(1);
-  const std::string& unit = context.session.picture()->info().unit;
-  ImGui::TextDisabled("%s", drawable(render::quantityTitle(result.quantity, unit)).c_str());
-  drawPlace(result, context.session.view(), theme, context.scale);
+  ImGui::TextDisabled("%s", drawable(render::quantityTitle(result.quantity, info.unit)).c_str());
+  drawPlace(result, view, context.scale);
   if (context.session.prober().isLocked()) drawHistory(context);
   if (reading.emitters.empty()) return;
   ImGui::Spacing();

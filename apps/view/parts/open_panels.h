@@ -12,10 +12,12 @@ struct Panels {
   bool open = false, record = false;                       ///< the file browser; the dialog of recording
   bool restore = false, unsaved = false, replace = false;  ///< questions
   bool warnings = false;
-  bool menu = false;     ///< of the selection
-  bool side = false;     ///< the side panel lies over the picture, in a window too narrow for both
-  bool changed = false;  ///< files of the input have changed on the disk
-  bool hidden = false;   ///< all of them, temporarily
+  bool position = false;  ///< go to a position
+  bool map = false;       ///< places, picture and range rings on the ground
+  bool menu = false;      ///< of the selection
+  bool side = false;      ///< the side panel lies over the picture, in a window too narrow for both
+  bool changed = false;   ///< files of the input have changed on the disk
+  bool hidden = false;    ///< all of them, temporarily
 };
 /// The panels, except `hidden`, by the names used in scripts and view files.
 struct PanelName {

@@ -4,29 +4,21 @@
 
 #include <cmath>
 
+#include "base/geodesy/position_text.h"
+#include "base/text/display_units.h"
+
 namespace emscape::view {
-namespace {
 
-/// With a minus sign in place of the hyphen.
-std::string signedText(std::string text) {
-  if (!text.empty() && text[0] == '-') text.replace(0, 1, "−");
-  return text;
+std::string positionText(const GeodeticPosition& position, const playback::ViewState& view) {
+  return emscape::positionText(position.latitude_deg, position.longitude_deg, view.positions);
 }
 
-}  // namespace
-
-std::string positionText(const GeodeticPosition& position, const playback::ViewState& /*view*/) {
-  return signedText(fmt::format("{:.5f}", position.latitude_deg)) + "°, " +
-         signedText(fmt::format("{:.5f}", position.longitude_deg)) + "°";
+std::string heightText(double height_m, const playback::ViewState& view) {
+  return emscape::heightText(height_m, view.units);
 }
 
-std::string heightText(double height_m, const playback::ViewState& /*view*/) {
-  return signedText(fmt::format("{:.0f}", height_m + 0.0)) + " m";
-}
-
-std::string distanceText(double distance_m, const playback::ViewState& /*view*/) {
-  return distance_m < 1000 ? fmt::format("{:.0f} m", distance_m)
-                           : fmt::format("{:.2f} km", distance_m / 1000);
+std::string distanceText(double distance_m, const playback::ViewState& view) {
+  return emscape::distanceText(distance_m, view.units);
 }
 
 std::string bearingText(double bearing_deg) {

@@ -282,6 +282,7 @@ class Session {
   void focusEmitter(const std::optional<std::string>& name);
   void focusObject(const SceneObject& object);
   void focusGround(double x, double y);
+  void focusPosition(const std::string& text);
   void select(const std::string& path);
   void selectNext(int change);
   const SceneObject& requireObject(const std::string& path) const;

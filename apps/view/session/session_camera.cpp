@@ -2,9 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "apps/view/session/session.h"
+#include "base/geodesy/position_text.h"
 #include "emscape/base/error.h"
+#include "emscape/base/geodesy/geo_frame.h"
+#include "playback/editing/pick.h"
 #include "scenario/file/named_items.h"
 
 namespace emscape::view {
@@ -43,6 +47,26 @@ void Session::focusGround(double x, double y) {
   camera_.focus(*ground_m, std::min(kFocus_diagonals, camera_.spec().distance.value_or(kFocus_diagonals)),
                 *viewport());
   cameraMoved();
+}
+
+void Session::focusPosition(const std::string& text) {
+  const playback::LivePicture& picture = *picture_;
+  if (!picture.grid().georeferenced)
+    throw Error(ErrorCode::bad_input, "goto_position: the volume has no position on the earth");
+  const ParsedPosition position = parsePosition(text);
+  Vec3d target_m = GeoFrame(picture.grid().frame).toLocal({position.latitude_deg, position.longitude_deg, 0});
+  const Vec3d &lower = picture.box.lower_m, &upper = picture.box.upper_m;
+  if (!(target_m.x >= lower.x && target_m.x <= upper.x && target_m.y >= lower.y && target_m.y <= upper.y)) {
+    throw Error(ErrorCode::bad_input,
+                positionText(position.latitude_deg, position.longitude_deg, view_.positions) +
+                    " is outside of the volume");
+  }
+  const double ground_m = picture.ground ? heightAt_m(*picture.ground, target_m.x, target_m.y) : lower.z;
+  target_m.z = std::isnan(ground_m) ? lower.z : std::max(ground_m, lower.z);
+  camera_.focus(target_m, std::min(kFocus_diagonals, camera_.spec().distance.value_or(kFocus_diagonals)),
+                *viewport());
+  cameraMoved();
+  tell(positionText(position.latitude_deg, position.longitude_deg, view_.positions));
 }
 
 std::vector<Verb> Session::cameraVerbs() {
@@ -118,6 +142,12 @@ std::vector<Verb> Session::cameraVerbs() {
            session.focusEmitter(command.has("emitter") ? std::optional(command.text("emitter"))
                                                        : std::nullopt);
          }
+       }},
+      {"goto_position",
+       {{"position", kText, true, {}, {}, [](const std::string& text) { parsePosition(text); }}},
+       "Looks at the ground at a position: decimal degrees, degrees with minutes and seconds, UTM or MGRS",
+       [](Session& session, const Command& command) {
+         if (session.picture_) session.focusPosition(command.text("position"));
        }},
       {"bookmark",
        {{"number", kNumber, true, kBookmark}},

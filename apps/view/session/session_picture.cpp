@@ -25,6 +25,10 @@ Argument argumentOf(const playback::ViewSetting& setting) {
     argument.type = kBoolean;
   } else if (setting.isNumber()) {
     argument = {setting.argument.c_str(), kNumber, true, {setting.spec.minimum, setting.spec.maximum}};
+  } else if (setting.isListOfTexts()) {
+    argument = {setting.argument.c_str(), ArgumentType::texts};
+  } else {
+    argument.required = !setting.isChoice();
   }
   for (const std::string& name : setting.spec.choices) argument.choices.push_back(name.c_str());
   return argument;
@@ -40,6 +44,8 @@ void Session::changeSetting(const Command& command) {
     if (!command.has(name)) return setting.changeToNext(view);
     if (setting.isSwitch()) return setting.change(view, command.boolean(name, false));
     if (setting.isNumber()) return setting.change(view, command.number(name));
+    if (setting.isListOfTexts())
+      return setting.change(view, command.arguments.at(name).get<std::vector<std::string>>());
     setting.change(view, command.text(name));
   });
 }

@@ -23,15 +23,15 @@ std::vector<const char*> panelChoices() {
 
 const std::vector<PanelName>& panelNames() {
   static const std::vector<PanelName> all{
-      {"scenario", &Panels::scenario, true}, {"colors", &Panels::colors, true},
-      {"planes", &Panels::planes, true},     {"probe", &Panels::probe, true},
-      {"timeline", &Panels::timeline, true}, {"help", &Panels::help, false},
-      {"time", &Panels::time, false},        {"open", &Panels::open, false},
-      {"record", &Panels::record, false},    {"restore", &Panels::restore, false},
-      {"unsaved", &Panels::unsaved, false},  {"changed", &Panels::changed, false},
-      {"menu", &Panels::menu, false},
-      {"replace", &Panels::replace, false},  {"warnings", &Panels::warnings, false},
-      {"side", &Panels::side, false},
+      {"scenario", &Panels::scenario, true},  {"colors", &Panels::colors, true},
+      {"planes", &Panels::planes, true},      {"probe", &Panels::probe, true},
+      {"timeline", &Panels::timeline, true},  {"help", &Panels::help, false},
+      {"time", &Panels::time, false},         {"open", &Panels::open, false},
+      {"position", &Panels::position, false}, {"map", &Panels::map, false},
+      {"record", &Panels::record, false},     {"restore", &Panels::restore, false},
+      {"unsaved", &Panels::unsaved, false},   {"changed", &Panels::changed, false},
+      {"menu", &Panels::menu, false},         {"replace", &Panels::replace, false},
+      {"warnings", &Panels::warnings, false}, {"side", &Panels::side, false},
   };
   return all;
 }
@@ -40,9 +40,9 @@ std::vector<Verb> Session::windowVerbs() {
   return {
       {"panel",
        {{"name", kText, true, {}, panelChoices()}, {"open", kBoolean, false}},
-       "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, record, "
-       "restore, unsaved, changed, replace, warnings, side (over the picture of a narrow window), menu (of "
-       "the selection), all",
+       "Opens or closes a panel: scenario, colors, planes, probe, timeline, help, time, open, position, map, "
+       "record, restore, unsaved, changed, replace, warnings, side (over the picture of a narrow window), "
+       "menu (of the selection), all",
        [](Session& session, const Command& command) {
          const std::string name = command.text("name");
          if (name == "all") {

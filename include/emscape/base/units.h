@@ -1,6 +1,7 @@
-/// Physical constants and unit conversions.
+/// Physical constants, unit conversions, and the units in which values are shown.
 #pragma once
 
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -43,6 +44,24 @@ inline double dbToRatio(double decibels) {
 /// Wavelength in vacuum (m); frequency_hz > 0.
 EMSCAPE_HD constexpr double wavelength_m(double frequency_hz) {
   return kSpeedOfLight / frequency_hz;
+}
+
+/// Units of shown lengths and speeds. metric: km, m, m/s. nautical: nautical miles, feet, knots.
+enum class Units { metric, nautical };
+constexpr auto namesOf(Units) {
+  return std::array{"metric", "nautical"};
+}
+
+/// Units of shown power densities and field strengths: as computed, dBm/m2, or V/m (RMS, of a plane wave).
+enum class FieldUnit { stored, dbm, v_per_m };
+constexpr auto namesOf(FieldUnit) {
+  return std::array{"stored", "dbm", "v_per_m"};
+}
+
+/// How positions are written: "36.50000°N 84.20000°W", "36°30'00.0\"N 84°12'00.0\"W", "16S GF 50729 42646".
+enum class PositionFormat { decimal, dms, mgrs };
+constexpr auto namesOf(PositionFormat) {
+  return std::array{"decimal", "dms", "mgrs"};
 }
 
 }  // namespace emscape

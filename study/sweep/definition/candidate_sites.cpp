@@ -8,9 +8,10 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
+#include "scenario/map/vector_file.h"
+#include "scenario/terrain/transformation.h"
 #include "study/maps/gdal_support.h"
 #include "study/sweep/definition/study_reading.h"
-#include "study/sweep/definition/vector_file.h"
 
 namespace emscape::study {
 namespace {
@@ -22,14 +23,14 @@ double rounded(double degrees) {
   return std::round(degrees * 1e7) / 1e7;
 }
 
-void addLayer(const VectorFile& points, OGRLayerH layer, const std::string& file,
+void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::string& file,
               std::vector<CandidateSite>& sites) {
-  const gdal::SpatialReference wgs84 = wgs84Reference();
+  const gdal::SpatialReference wgs84 = scenario::wgs84Reference();
   gdal::Transformation transformation;
   if (OGR_L_GetSpatialRef(layer) != nullptr) {
     const gdal::SpatialReference own(OSRClone(OGR_L_GetSpatialRef(layer)));
     OSRSetAxisMappingStrategy(own.get(), OAMS_TRADITIONAL_GIS_ORDER);
-    transformation = transformationBetween(own, wgs84);
+    transformation = scenario::transformationBetween(own, wgs84);
   }
   const int name_field = OGR_FD_GetFieldIndex(OGR_L_GetLayerDefn(layer), "name");
   points.eachFeature(layer, [&](OGRFeatureH feature) {
@@ -64,7 +65,7 @@ void addLayer(const VectorFile& points, OGRLayerH layer, const std::string& file
 }  // namespace
 
 std::vector<CandidateSite> readCandidates(const std::string& file) {
-  const VectorFile points(file);
+  const scenario::VectorFile points(file);
   const scenario::GdalMessages messages;
   std::vector<CandidateSite> sites;
   for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites);

@@ -9,9 +9,9 @@
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "scenario/map/vector_file.h"
 #include "scenario/terrain/transformation.h"
 #include "study/maps/gdal_support.h"
-#include "study/sweep/definition/vector_file.h"
 
 namespace emscape::study {
 namespace {
@@ -96,7 +96,7 @@ class LayerSystem {
       setGeographic(360, " of longitudes and latitudes: the file names no coordinate system");
       return;
     }
-    from_wgs84_ = scenario::newTransformation(wgs84Reference().get(), system);
+    from_wgs84_ = scenario::newTransformation(scenario::wgs84Reference().get(), system);
     if (from_wgs84_ == nullptr)
       throw Error(ErrorCode::bad_input, "the map cannot be brought to the coordinate system of its polygons");
     if (OSRIsGeographic(system) == 0) return;
@@ -234,7 +234,7 @@ void eachPolygon(OGRGeometryH geometry, const LayerSystem& system, const Visit& 
 }  // namespace
 
 std::vector<std::uint8_t> pixelsWithin(const std::string& file, const MapGrid& grid) {
-  const VectorFile polygons(file);
+  const scenario::VectorFile polygons(file);
   const scenario::GdalMessages messages;
   const auto fail = [&](const std::string& problem) {
     throw Error(ErrorCode::bad_input, {file, 0, 0}, messages.explain(problem));

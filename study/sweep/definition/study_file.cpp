@@ -12,9 +12,9 @@
 #include "document/schema_check.h"
 #include "document/text_file.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "scenario/map/vector_file.h"
 #include "study/sweep/definition/study_format.h"
 #include "study/sweep/definition/study_reading.h"
-#include "study/sweep/definition/vector_file.h"
 
 namespace emscape::study {
 namespace {
@@ -51,7 +51,7 @@ bool hasControlCharacter(const std::string& text) {
 }
 
 void StudyReading::addVectors(const std::string& name) {
-  for (const std::string& part : VectorFile(name).files()) {
+  for (const std::string& part : scenario::VectorFile(name).files()) {
     if (std::count(spec.files.begin(), spec.files.end(), part) == 0) spec.files.push_back(part);
   }
 }

@@ -15,8 +15,9 @@
 
 namespace emscape::playback {
 
-/// The ground below a grid, at about the spacing of the elevation posts (at most 1500 posts per side).
-std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
+/// The ground below a grid: terrain at about the spacing of the elevation posts (at most 1500 posts per
+/// side), or the smooth earth.
+std::shared_ptr<const render::HeightField> heightFieldOf(const LoadedScenario& scene,
                                                          const volume::Grid& grid);
 
 render::MarkerKind markerKindOf(scenario::EmitterKind kind);
@@ -24,7 +25,8 @@ render::Affiliation affiliationOf(const std::optional<scenario::Side>& side);
 
 /// The emitters of an instant, in the scenario's order, and then the platforms that have a side but no
 /// emitter, in the grid's frame.
-std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
+/// @param terrain  null: the smooth earth
+std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::TerrainPtr& terrain,
                                       const volume::Grid& grid);
 
 /// The tracks of the scenario's moving platforms, in the grid's frame. Frame sources compute them once for

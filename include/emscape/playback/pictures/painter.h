@@ -17,6 +17,8 @@
 
 namespace emscape::playback {
 
+class Scenery;
+
 /// Method and cost of the last picture of a field on tetrahedra.
 struct CellPicture {
   bool projected = false;
@@ -45,13 +47,15 @@ class Painter {
           bool must_show_isosurface = true);
   /// A painter without title and scene, until setScene(). @throws Error (bad_input, device) as above
   Painter(const ViewState& view, const ComputeTarget& target, bool must_show_isosurface = true);
+  ~Painter();
 
   /// Sets the scene of the next frames. A different terrain object is treated as a different ground.
   /// @param scene  null: volumes without a scenario
   void setScene(const std::string& title, const LoadedScenario* scene);
   /// Sets the frame of the next pictures.
   /// @throws Error (bad_input) for the transfer file, after which nothing is changed; or if the isosurface
-  /// shows nothing of the first frame (must_show_isosurface), which is set all the same. Error
+  /// shows nothing of the first frame (must_show_isosurface), or for a file of places or of a picture on the
+  /// ground; the frame is set all the same. Error
   /// (usage) for settings that tetrahedra do not have (render::checkCellSettings()), after which nothing is
   /// changed. Error (device)
   void setFrame(const Frame& frame);
@@ -83,7 +87,8 @@ class Painter {
   bool setColors(const ViewState& view);
   /// True if colours have been fitted, read or set.
   bool hasColors() const { return has_colors_; }
-  /// Takes over what a view shows besides the field: ground, emitters, labels, theme.
+  /// Takes over what a view shows besides the field: ground, emitters, labels, references, units, theme.
+  /// @throws Error (bad_input) for a file of places or of a picture on the ground; it is left out
   void setScenery(const ViewState& view);
 
   render::FrameReport draw(const render::FramePlan& plan, const StopFlag* stop = nullptr);
@@ -97,7 +102,7 @@ class Painter {
   render::Image fullCast();
 
   /// The drawn ground; null if there is none.
-  const std::shared_ptr<const render::HeightField>& heightField() const { return height_field_; }
+  const std::shared_ptr<const render::HeightField>& heightField() const;
   /// The annotations of a picture of the frame.
   const render::Annotations& annotations() const { return annotations_; }
   // Of the picture.
@@ -137,9 +142,8 @@ class Painter {
   }
   /// Draws the tetrahedra into image_.
   render::FrameReport drawCells(bool is_complete, const StopFlag* stop);
-  /// Sets the ground of the scene below the grid of the frame, if it is shown.
+  /// Sets the ground of the scene below the grid of the frame, and what is drawn on it.
   void setGround();
-  void setGround(const scenario::TerrainPtr& ground);
   void setMarkers();
   void setTransferFunction(const render::TransferFunction& function);
   void setLegend();
@@ -152,8 +156,7 @@ class Painter {
   const bool must_show_isosurface_;
   std::optional<LoadedScenario> scene_;
   std::optional<Frame> frame_;
-  scenario::TerrainPtr ground_;  // whose height field the renderer has
-  std::shared_ptr<const render::HeightField> height_field_;
+  std::unique_ptr<Scenery> scenery_;
   render::Renderer renderer_;                    ///< of volumes
   std::unique_ptr<render::CellRenderer> cells_;  ///< of tetrahedra; null if the frames are volumes
   bool projects_ = false;                        ///< as projectsCells(), if there are tetrahedra

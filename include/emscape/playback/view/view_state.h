@@ -70,6 +70,23 @@ constexpr auto namesOf(ShownSides) {
   return std::array{"all", "friend", "hostile", "neutral", "unknown"};
 }
 
+/// Whether something is drawn; automatic: where it helps.
+enum class Shown { automatic, on, off };
+constexpr auto namesOf(Shown) {
+  return std::array{"auto", "on", "off"};
+}
+
+/// Circles on the ground about an emitter.
+struct RangeRings {
+  std::string emitter;
+  double spacing_m = 10000;  ///< > 0
+  int count = 0;             ///< 0: up to the edge of the volume
+};
+/// Parses "EMITTER:spacing_m=..[,count=..]". @throws Error (usage)
+RangeRings parseRangeRings(const std::string& text);
+/// parseRangeRings() reads it back exactly.
+std::string toString(const RangeRings& rings);
+
 /// A stored camera, and a time if that is stored too.
 struct Bookmark {
   std::string name;
@@ -93,6 +110,18 @@ struct ViewState : FieldChoice {
   Labels labels = Labels::names;
   ShownSides sides = ShownSides::all;
   double label_scale = 0;  ///< as render::Annotations::scale
+  /// Coasts of GSHHG, if it is installed; automatic: where no terrain is a sea by its heights.
+  Shown coast = Shown::automatic;
+  /// Lines of latitude and longitude; automatic: on the smooth earth.
+  Shown graticule = Shown::automatic;
+  bool show_compass = true;
+  bool show_scale_bar = false;
+  std::vector<RangeRings> range_rings;
+  std::vector<std::string> places;  ///< vector files of named points, lines and areas
+  std::string drape;                ///< picture on the ground: GeoTIFF or MBTiles; may be empty
+  Units units = Units::metric;
+  FieldUnit field_unit = FieldUnit::stored;
+  PositionFormat positions = PositionFormat::decimal;
   render::ImageSize size{1280, 720};
   /// Pixels that are cast while the picture changes; none: as many as time allows.
   std::optional<render::Pattern> pattern;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emscape/base/enum_names.h"
+#include "emscape/base/units.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/render/picture/device_picture.h"
 #include "emscape/render/picture/image.h"
@@ -48,6 +49,23 @@ struct Track {
   double travelled = 0;
 };
 
+/// Kind of a line on the ground.
+enum class GroundInk { graticule, coast, ring, place };
+
+/// A line on the ground, or the edge of an area.
+struct GroundLine {
+  GroundInk ink = GroundInk::place;
+  std::vector<Vec3d> points_m;  ///< frame metres, on the ground
+  std::string label;     ///< of graticules and rings at the point nearest to the viewer, else in the middle
+  bool is_area = false;  ///< filled; the last point is joined to the first
+};
+
+/// A named point on the ground.
+struct GroundPoint {
+  Vec3d position_m;
+  std::string label;
+};
+
 enum class Theme { dark, light };
 constexpr auto namesOf(Theme) {
   return std::array{"dark", "light"};
@@ -65,9 +83,16 @@ struct Annotations {
   std::vector<Marker> markers;
   std::vector<Track> tracks;
   std::vector<CutPlane> planes;  ///< framed, with captions
+  std::vector<GroundLine> ground_lines;
+  std::vector<GroundPoint> ground_points;
   std::optional<Legend> legend;
   bool georeferenced = true;  ///< compass, axes in km and altitude; otherwise axes in the grid's unit
   bool axes = true;
+  /// Position of the frame's origin, from which the axes count: "84.15000°W" and "36.30000°N"; may be empty.
+  std::string origin_longitude, origin_latitude;
+  bool compass = true;     ///< of georeferenced pictures
+  bool scale_bar = false;  ///< the same
+  Units units = Units::metric;
   Theme theme = Theme::dark;
   /// Minimum size of texts and symbols: 1 is that of a picture of 1200 x 900, 0 follows the picture's size.
   /// Limited in small pictures.

@@ -1,4 +1,4 @@
-#include "study/sweep/definition/vector_file.h"
+#include "scenario/map/vector_file.h"
 
 #include <fmt/format.h>
 
@@ -7,15 +7,30 @@
 
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
-#include "study/maps/gdal_support.h"
 
-namespace emscape::study {
+namespace emscape::scenario {
 namespace {
+
+gdal::Dataset openVectors(const GdalMessages& messages, const std::string& file) {
+  static const char* const kDrivers[] = {"GPKG", "GeoJSON", "ESRI Shapefile", "FlatGeobuf", "KML", "LIBKML",
+                                         "GML",  "CSV",     nullptr};
+  // GML: no NAME.gfs beside the file. The @ is for the other drivers, which do not have the option.
+  static const char* const kOptions[] = {"@WRITE_GFS=NO", nullptr};
+  if (const std::string fault = gdal::faultOfName(file); !fault.empty()) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0}, fault);
+  }
+  gdal::Dataset dataset = gdal::openFile(file, GDAL_OF_VECTOR, kDrivers, kOptions);
+  if (dataset == nullptr) {
+    throw Error(ErrorCode::bad_input, {file, 0, 0},
+                messages.explain("not a file of points or polygons that can be read"));
+  }
+  return dataset;
+}
 
 /// Longest text (bytes) that a message repeats.
 constexpr std::size_t kMaxShown = 80;
 
-[[noreturn]] void failIncomplete(const std::string& file, const scenario::GdalMessages& messages) {
+[[noreturn]] void failIncomplete(const std::string& file, const GdalMessages& messages) {
   throw Error(ErrorCode::bad_input, {file, 0, 0}, messages.explain("cannot be read completely"));
 }
 
@@ -60,7 +75,7 @@ std::vector<OGRLayerH> VectorFile::layers() const {
 }
 
 gdal::Feature VectorFile::next(OGRLayerH layer) const {
-  const scenario::GdalMessages messages;
+  const GdalMessages messages;
   gdal::Feature feature(OGR_L_GetNextFeature(layer));
   if (messages.hasFailure()) failIncomplete(file_, messages);
   if (feature != nullptr) requireGeometry(layer, feature.get());
@@ -82,4 +97,4 @@ void VectorFile::requireGeometry(OGRLayerH layer, OGRFeatureH feature) const {
                           text.size() > kMaxShown ? "" : ": '" + text + "'"));
 }
 
-}  // namespace emscape::study
+}  // namespace emscape::scenario

@@ -1,4 +1,4 @@
-/// Files of points or polygons that a study names.
+/// Files of points, lines or polygons that a study or a picture names.
 #pragma once
 
 #include <string>
@@ -7,10 +7,11 @@
 #include "base/geodesy/gdal.h"
 #include "scenario/terrain/gdal_messages.h"
 
-namespace emscape::study {
+namespace emscape::scenario {
 
-/// A file as of openVectors(). What GDAL reports as unreadable is an error. Use it in the thread and scope
-/// that made it, as GdalMessages.
+/// A GeoPackage, GeoJSON, shapefile, FlatGeobuf, KML, GML or CSV. No other format and none of GDAL's virtual
+/// file systems: they read further files, databases and network services. What GDAL reports as unreadable is
+/// an error. Use it in the thread and scope that made it, as GdalMessages.
 class VectorFile {
  public:
   /// @throws Error (bad_input) that names the file and GDAL's reason
@@ -37,8 +38,8 @@ class VectorFile {
   void requireGeometry(OGRLayerH layer, OGRFeatureH feature) const;
 
   const std::string file_;
-  const scenario::GdalMessages messages_;
+  const GdalMessages messages_;
   const gdal::Dataset dataset_;
 };
 
-}  // namespace emscape::study
+}  // namespace emscape::scenario

@@ -1,0 +1,152 @@
+/// Dialogs of the map: go to a position; places, a picture and range rings on the ground.
+#include <fmt/format.h>
+
+#include <array>
+
+#include "apps/view/panels/names.h"
+#include "apps/view/panels/panels.h"
+#include "apps/view/panels/theme.h"
+#include "base/text/display_units.h"
+
+namespace emscape::view {
+namespace {
+
+constexpr float kFieldWidth = 360;
+
+/// Text of a field.
+using Typed = std::array<char, 4096>;
+
+bool beginMapDialog(PanelContext& context, const char* title, bool& is_open) {
+  const ImVec2 screen = ImGui::GetIO().DisplaySize;
+  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * context.scale);
+  return ImGui::Begin(
+      title, &is_open,
+      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+}
+
+void endMapDialog() {
+  ImGui::End();
+  ImGui::PopStyleVar();
+}
+
+/// A text field with a button. @return true if Enter or the button took the text
+bool textAndButton(PanelContext& context, const char* id, const char* hint, Typed& typed,
+                   const char* button) {
+  ImGui::PushID(id);
+  ImGui::SetNextItemWidth(kFieldWidth * context.scale);
+  const bool entered = ImGui::InputTextWithHint("##text", hint, typed.data(), typed.size(),
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
+  ImGui::SameLine();
+  const bool pressed = ImGui::Button(button);
+  ImGui::PopID();
+  return entered || pressed;
+}
+
+/// Runs a command. @return true if it did not fail
+bool performed(Session& session, const Command& command) {
+  const double told_s = session.notice().since_s;
+  session.perform(command);
+  return !session.notice().is_error || session.notice().since_s == told_s;
+}
+
+/// Texts, each with a button. @return the index of the one to be removed; its size: none
+std::size_t listToRemove(const std::vector<std::string>& texts) {
+  std::size_t removed = texts.size();
+  for (std::size_t i = 0; i < texts.size(); ++i) {
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::SmallButton("remove")) removed = i;
+    ImGui::SameLine();
+    ImGui::TextUnformatted(texts[i].c_str());
+    ImGui::PopID();
+  }
+  return removed;
+}
+
+void drawDrape(PanelContext& context) {
+  static Typed typed{};
+  Session& session = context.session;
+  ImGui::TextDisabled("Picture on the ground (GeoTIFF, MBTiles)");
+  if (!session.view().drape.empty() && listToRemove({session.view().drape}) == 0)
+    performed(session, {"drape", {{"file", ""}}});
+  if (textAndButton(context, "drape", "file", typed, "Show") && typed[0] != '\0')
+    performed(session, {"drape", {{"file", typed.data()}}});
+}
+
+void drawPlaces(PanelContext& context) {
+  static Typed typed{};
+  Session& session = context.session;
+  ImGui::TextDisabled("Places (GeoJSON, GeoPackage, ...)");
+  std::vector<std::string> files = session.view().places;
+  const std::size_t removed = listToRemove(files);
+  if (removed < files.size()) {
+    files.erase(files.begin() + static_cast<std::ptrdiff_t>(removed));
+    performed(session, {"places", {{"files", files}}});
+  }
+  if (textAndButton(context, "places", "file", typed, "Add") && typed[0] != '\0') {
+    files.emplace_back(typed.data());
+    performed(session, {"places", {{"files", files}}});
+  }
+}
+
+void drawRings(PanelContext& context) {
+  static double spacing = 10;
+  static std::string emitter;
+  Session& session = context.session;
+  const playback::ScenarioPtr scenario = session.scenario();
+  if (!scenario || scenario->emitters.empty()) return;
+  ImGui::TextDisabled("Range rings");
+  std::vector<std::string> texts;
+  for (const playback::RangeRings& rings : session.view().range_rings) texts.push_back(toString(rings));
+  const std::size_t removed = listToRemove(texts);
+  if (removed < texts.size()) {
+    texts.erase(texts.begin() + static_cast<std::ptrdiff_t>(removed));
+    performed(session, {"range_rings", {{"rings", texts}}});
+  }
+  const DisplayUnit unit = distanceUnit(session.view().units);
+  if (emitter.empty()) emitter = scenario->emitters.front().name;
+  ImGui::SetNextItemWidth(0.5F * kFieldWidth * context.scale);
+  if (beginComboOfName("##emitter", emitter)) {
+    for (const scenario::Emitter& each : scenario->emitters) {
+      pushNameId(each.name);
+      if (selectableName(each.name, each.name == emitter)) emitter = each.name;
+      ImGui::PopID();
+    }
+    ImGui::EndCombo();
+  }
+  ImGui::SameLine();
+  ImGui::SetNextItemWidth(0.3F * kFieldWidth * context.scale);
+  ImGui::InputDouble("##spacing", &spacing, 0, 0, fmt::format("every %g {}", unit.name).c_str());
+  ImGui::SameLine();
+  if (ImGui::Button("Add") && spacing > 0) {
+    texts.push_back(toString(playback::RangeRings{emitter, spacing * unit.factor, 0}));
+    performed(session, {"range_rings", {{"rings", texts}}});
+  }
+}
+
+}  // namespace
+
+void drawGoToPosition(PanelContext& context) {
+  Session& session = context.session;
+  if (!session.panels.position) return;
+  static Typed typed{};
+  beginMapDialog(context, "Go to position", session.panels.position);
+  if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
+  if (textAndButton(context, "position", "36.3N 84.2W, 36°30'12\"N 84°12'W, 16S GF 12345 67890", typed, "Go"))
+    session.panels.position = !performed(session, {"goto_position", {{"position", typed.data()}}});
+  endMapDialog();
+}
+
+void drawMapDialog(PanelContext& context) {
+  Session& session = context.session;
+  if (!session.panels.map) return;
+  beginMapDialog(context, "Map", session.panels.map);
+  drawDrape(context);
+  ImGui::Spacing();
+  drawPlaces(context);
+  ImGui::Spacing();
+  drawRings(context);
+  endMapDialog();
+}
+
+}  // namespace emscape::view

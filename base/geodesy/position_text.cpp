@@ -1,0 +1,201 @@
+#include "base/geodesy/position_text.h"
+
+#include <fmt/format.h>
+
+#include <GeographicLib/GeoCoords.hpp>
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+
+#include "emscape/base/error.h"
+#include "emscape/base/geodesy/geo_frame.h"
+
+namespace emscape {
+namespace {
+
+constexpr std::size_t kMaxText = 200;
+constexpr double kMaxHeight_m = 1e6;
+
+bool isSpace(char c) {
+  return std::isspace(static_cast<unsigned char>(c)) != 0;
+}
+bool isDigit(char c) {
+  return std::isdigit(static_cast<unsigned char>(c)) != 0;
+}
+
+const char* hemisphereOf(double degrees, bool is_latitude) {
+  if (is_latitude) return degrees < 0 ? "S" : "N";
+  return degrees < 0 ? "W" : "E";
+}
+
+/// Degrees, minutes and seconds, rounded to units of 1 / parts_per_degree.
+std::string sexagesimal(double degrees, bool is_latitude, long long parts_per_degree) {
+  const long long parts = std::llround(std::abs(degrees) * static_cast<double>(parts_per_degree));
+  const long long whole = parts / parts_per_degree, rest = parts % parts_per_degree;
+  const char* const side = hemisphereOf(parts == 0 ? 0 : degrees, is_latitude);
+  if (parts_per_degree == 1) return fmt::format("{}°{}", whole, side);
+  const long long per_minute = parts_per_degree / 60;
+  std::string text = fmt::format("{}°{:02}'", whole, rest / per_minute);
+  if (per_minute == 60) text += fmt::format("{:02}\"", rest % per_minute);
+  if (per_minute == 600) text += fmt::format("{:04.1f}\"", static_cast<double>(rest % per_minute) / 10);
+  return text + side;
+}
+
+std::string decimalText(double degrees, bool is_latitude, int decimals) {
+  const double scale = std::pow(10.0, decimals);
+  const double rounded = std::round(degrees * scale) / scale;
+  return fmt::format("{:.{}f}°{}", std::abs(rounded), decimals, hemisphereOf(rounded, is_latitude));
+}
+
+std::string mgrsText(double latitude_deg, double longitude_deg) {
+  constexpr int kMetres = 0;  // precision of MGRSRepresentation()
+  std::string text = GeographicLib::GeoCoords(latitude_deg, longitude_deg).MGRSRepresentation(kMetres);
+  constexpr std::size_t kDigits = 5;
+  if (text.size() < 2 * kDigits) return text;
+  text.insert(text.size() - kDigits, " ");
+  text.insert(text.size() - 2 * kDigits - 1, " ");
+  constexpr std::size_t kSquare = 2;  // letters
+  if (isDigit(text[0])) text.insert(text.find(' ') - kSquare, " ");
+  return text;
+}
+
+std::string trimmed(const std::string& text) {
+  const auto begin = std::find_if_not(text.begin(), text.end(), isSpace);
+  const auto end = std::find_if_not(text.rbegin(), text.rend(), isSpace).base();
+  return begin < end ? std::string(begin, end) : "";
+}
+
+void replaceAll(std::string& text, const std::string& from, const std::string& to) {
+  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    text.replace(at, from.size(), to);
+}
+
+/// The text without spaces, if it is a reference of MGRS: zone, band, square, and digits, or of the poles. A
+/// reference to a square of less than 1 km is not meant by "16S".
+std::string mgrsReference(const std::string& text) {
+  std::string joined;
+  for (const char c : text) {
+    if (!isSpace(c)) joined += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  }
+  std::size_t at = 0;
+  while (at < joined.size() && at < 2 && isDigit(joined[at])) ++at;
+  const std::size_t letters = at;
+  while (at < joined.size() && std::isalpha(static_cast<unsigned char>(joined[at])) != 0) ++at;
+  if (at - letters != 3) return "";
+  const bool are_digits =
+      std::all_of(joined.begin() + static_cast<std::ptrdiff_t>(at), joined.end(), isDigit);
+  return are_digits && at < joined.size() ? joined : "";
+}
+
+bool isHemisphere(char c) {
+  return std::string("NSEW").find(static_cast<char>(std::toupper(static_cast<unsigned char>(c)))) !=
+         std::string::npos;
+}
+
+/// Latitude and longitude as GeographicLib reads them: spaces only between the two.
+std::string joinedCoordinates(std::string text) {
+  for (const char* const sign : {"′", "’", "´"}) replaceAll(text, sign, "'");
+  for (const char* const sign : {"″", "”", "''"}) replaceAll(text, sign, "\"");
+  for (const char* const sign : {"°", "º", "˚"}) replaceAll(text, sign, "d");
+  replaceAll(text, "−", "-");
+  std::string joined;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (!isSpace(text[i])) {
+      joined += text[i];
+      continue;
+    }
+    const std::size_t next = text.find_first_not_of(" \t\r\n", i);
+    if (next == std::string::npos) break;
+    const char before = joined.empty() ? ' ' : joined.back(), after = text[next];
+    const char first = joined.empty() ? ' ' : joined[joined.find_last_of(" ,") + 1];  // of this coordinate
+    const bool ends_with_side =
+        isHemisphere(after) && !isHemisphere(first) && (next + 1 == text.size() || !isDigit(text[next + 1]));
+    const bool begins_with_side =
+        isHemisphere(before) &&
+        (joined.size() == 1 || std::string(" ,").find(*(joined.end() - 2)) != std::string::npos);
+    const bool is_within = (begins_with_side && isDigit(after)) || (before == 'd' && isDigit(after)) ||
+                           (before == '\'' && isDigit(after)) ||
+                           (ends_with_side && std::string("d'\"").find(before) != std::string::npos) ||
+                           (ends_with_side && isDigit(before));
+    if (!is_within) joined += ' ';
+    i = next - 1;
+  }
+  return joined;
+}
+
+/// None if it is not a position.
+std::optional<ParsedPosition> parseHorizontal(const std::string& text) {
+  const std::string reference = mgrsReference(text);
+  const std::string coordinates = reference.empty() ? joinedCoordinates(text) : reference;
+  // One word alone would be a zone of MGRS: an area of hundreds of kilometres.
+  if (reference.empty() && coordinates.find_first_of(" ,") == std::string::npos) return std::nullopt;
+  try {
+    const GeographicLib::GeoCoords read(coordinates);
+    if (!std::isfinite(read.Latitude()) || !std::isfinite(read.Longitude())) return std::nullopt;
+    return ParsedPosition{read.Latitude(), wrapLongitude_deg(read.Longitude()), {}};
+  } catch (const GeographicLib::GeographicErr&) {
+    return std::nullopt;
+  }
+}
+
+std::optional<double> parseHeight(const std::string& text) {
+  const std::string number = trimmed(text);
+  char* end = nullptr;
+  const double value = std::strtod(number.c_str(), &end);
+  const bool is_height = !number.empty() && *end == '\0' && std::abs(value) <= kMaxHeight_m;
+  return is_height ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+std::string positionText(double latitude_deg, double longitude_deg, PositionFormat format) {
+  if (!(std::abs(latitude_deg) <= 90) || !std::isfinite(longitude_deg)) return "invalid position";
+  const double longitude = wrapLongitude_deg(longitude_deg);
+  constexpr int kDecimals = 5;
+  constexpr long long kTenthsOfSeconds = 36000;
+  switch (format) {
+    case PositionFormat::mgrs:
+      return mgrsText(latitude_deg, longitude);
+    case PositionFormat::dms:
+      return sexagesimal(latitude_deg, true, kTenthsOfSeconds) + " " +
+             sexagesimal(longitude, false, kTenthsOfSeconds);
+    case PositionFormat::decimal:
+      break;
+  }
+  return decimalText(latitude_deg, true, kDecimals) + " " + decimalText(longitude, false, kDecimals);
+}
+
+std::string coordinateText(double degrees, bool is_latitude, PositionFormat format, double step_deg) {
+  const auto isMultiple = [step_deg](double unit_deg) {
+    const double units = step_deg / unit_deg;
+    return std::abs(units - std::round(units)) < 1e-6 && units > 0.5;
+  };
+  if (format == PositionFormat::dms)
+    return sexagesimal(degrees, is_latitude, isMultiple(1) ? 1 : (isMultiple(1.0 / 60) ? 60 : 3600));
+  int decimals = 0;
+  while (decimals < 6 && !isMultiple(std::pow(10.0, -decimals))) ++decimals;
+  return decimalText(degrees, is_latitude, decimals);
+}
+
+ParsedPosition parsePosition(const std::string& text) {
+  const std::string whole = trimmed(text);
+  if (!whole.empty() && whole.size() <= kMaxText) {
+    const std::size_t comma = whole.rfind(',');
+    if (comma != std::string::npos) {
+      const std::optional<double> height_m = parseHeight(whole.substr(comma + 1));
+      std::optional<ParsedPosition> position =
+          height_m ? parseHorizontal(trimmed(whole.substr(0, comma))) : std::nullopt;
+      if (position) {
+        position->height_m = height_m;
+        return *position;
+      }
+    }
+    if (const std::optional<ParsedPosition> position = parseHorizontal(whole)) return *position;
+  }
+  throw Error(ErrorCode::usage, "'" + whole.substr(0, kMaxText) +
+                                    "' is not a position such as 36.5,-84.2 or 36.5N 84.2W or "
+                                    "36°30'12\"N 84°12'W or 16S GF 12345 67890");
+}
+
+}  // namespace emscape

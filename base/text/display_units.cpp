@@ -1,0 +1,50 @@
+#include "base/text/display_units.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace emscape {
+namespace {
+
+/// Three digits, all of those before the decimal point.
+std::string threeDigits(double value) {
+  const double size = std::abs(value);
+  return fmt::format("{:.{}f}", value, size >= 99.95 ? 0 : (size >= 9.995 ? 1 : 2));
+}
+
+}  // namespace
+
+DisplayUnit distanceUnit(Units units) {
+  return units == Units::metric ? DisplayUnit{"km", 1000} : DisplayUnit{"nm", 1852};
+}
+DisplayUnit heightUnit(Units units) {
+  return units == Units::metric ? DisplayUnit{"m", 1} : DisplayUnit{"ft", 0.3048};
+}
+DisplayUnit speedUnit(Units units) {
+  return units == Units::metric ? DisplayUnit{"m/s", 1} : DisplayUnit{"kt", 1852.0 / 3600};
+}
+
+std::string distanceText(double distance_m, Units units) {
+  if (units == Units::metric && std::abs(distance_m) < 999.5) return fmt::format("{:.0f} m", distance_m);
+  const DisplayUnit unit = distanceUnit(units);
+  return threeDigits(distance_m / unit.factor) + " " + unit.name;
+}
+
+std::string roundDistanceText(double distance_m, Units units) {
+  if (units == Units::metric && std::abs(distance_m) < 1000) return fmt::format("{:g} m", distance_m);
+  const DisplayUnit unit = distanceUnit(units);
+  return fmt::format("{:.4g} {}", distance_m / unit.factor, unit.name);
+}
+
+std::string heightText(double height_m, Units units) {
+  const DisplayUnit unit = heightUnit(units);
+  return fmt::format("{:.0f} {}", height_m / unit.factor, unit.name);
+}
+
+std::string speedText(double speed_m_s, Units units) {
+  const DisplayUnit unit = speedUnit(units);
+  return fmt::format("{:.0f} {}", speed_m_s / unit.factor, unit.name);
+}
+
+}  // namespace emscape

@@ -1,0 +1,248 @@
+#include "playback/frames/ground.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/base/parallel.h"
+#include "scenario/map/map_image.h"
+
+namespace emscape::playback {
+namespace {
+
+using render::GroundKind;
+using render::HeightField;
+
+constexpr int kMaxPosts = 1500;
+/// Posts along a side of the smooth earth: for its curvature, and for the shape of coasts.
+constexpr int kSmoothPosts = 65, kCoastPosts = 900;
+
+int postsAlong(double size_m, double spacing_m) {
+  return std::clamp(static_cast<int>(std::ceil(size_m / spacing_m)) + 1, 2, kMaxPosts);
+}
+
+Vec3d postPosition(const HeightField& field, int i, int j) {
+  return {field.first_x_m + i * field.spacing_x_m, field.first_y_m + j * field.spacing_y_m, 0};
+}
+
+/// Heights above sea level of all posts; fills the field's heights.
+std::vector<float> fillHeights(HeightField& field, const LoadedScenario& scene, const GeoFrame& frame) {
+  const std::size_t posts = static_cast<std::size_t>(field.columns) * field.rows;
+  std::vector<float> msl_m(posts);
+  field.heights_m.resize(posts);
+  parallelFor(field.rows, 8, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      for (int i = 0; i < field.columns; ++i) {
+        const Vec3d at = postPosition(field, i, j);
+        const GroundHeight height = groundHeight(scene, frame, at.x, at.y);
+        const std::size_t post = static_cast<std::size_t>(j) * field.columns + i;
+        field.heights_m[post] = static_cast<float>(height.z_m);
+        msl_m[post] = static_cast<float>(height.msl_m);
+      }
+    }
+  });
+  return msl_m;
+}
+
+/// Water by the coasts, for each post. Along a row, water and land change where it crosses a shore.
+std::vector<GroundKind> kindsByCoast(const HeightField& field, const scenario::Coast& coast,
+                                     const GeoFrame& frame) {
+  std::vector<std::vector<double>> crossings(static_cast<std::size_t>(field.rows));
+  for (const scenario::CoastLine& line : coast.lines()) {
+    if (line.level != 1) continue;
+    Vec3d before{};
+    for (std::size_t n = 0; n < line.points.size(); ++n) {
+      const Vec3d at = frame.toLocal(line.points[n]);
+      if (n > 0) {
+        const double row0 = (before.y - field.first_y_m) / field.spacing_y_m;
+        const double row1 = (at.y - field.first_y_m) / field.spacing_y_m;
+        const int first = std::max(static_cast<int>(std::ceil(std::min(row0, row1))), 0);
+        for (int row = first; row < std::max(row0, row1) && row < field.rows; ++row)
+          crossings[static_cast<std::size_t>(row)].push_back(before.x + (at.x - before.x) * (row - row0) /
+                                                                            (row1 - row0));
+      }
+      before = at;
+    }
+  }
+  std::vector<GroundKind> kinds(static_cast<std::size_t>(field.columns) * field.rows, GroundKind::land);
+  parallelFor(field.rows, 8, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      std::vector<double>& row = crossings[static_cast<std::size_t>(j)];
+      std::sort(row.begin(), row.end());
+      const GeodeticPosition begin_of_row = frame.toGeodetic(postPosition(field, 0, j));
+      auto next = std::upper_bound(row.begin(), row.end(), field.first_x_m);
+      bool is_water = coast.isWater(begin_of_row.latitude_deg, begin_of_row.longitude_deg);
+      for (int i = 0; i < field.columns; ++i) {
+        for (; next != row.end() && *next <= postPosition(field, i, j).x; ++next) is_water = !is_water;
+        if (is_water) kinds[static_cast<std::size_t>(j) * field.columns + i] = GroundKind::water;
+      }
+    }
+  });
+  return kinds;
+}
+
+/// Sea in the terrain itself: components of flat posts at sea level.
+std::vector<GroundKind> kindsByHeights(const HeightField& field, const std::vector<float>& msl_m,
+                                       const std::vector<GroundKind>& by_coast) {
+  constexpr float kSeaLevel_m = 0.5F, kFlat_m = 0.02F;
+  constexpr std::size_t kMinPosts = 30;
+  const int columns = field.columns, rows = field.rows;
+  const auto postAt = [columns](int i, int j) { return static_cast<std::size_t>(j) * columns + i; };
+  const auto eachNeighbour = [&](int i, int j, const auto& visit) {
+    for (int y = std::max(j - 1, 0); y <= std::min(j + 1, rows - 1); ++y) {
+      for (int x = std::max(i - 1, 0); x <= std::min(i + 1, columns - 1); ++x) visit(x, y);
+    }
+  };
+  std::vector<std::uint8_t> flat(msl_m.size());
+  parallelFor(rows, 16, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      for (int i = 0; i < columns; ++i) {
+        const float own = msl_m[postAt(i, j)];
+        bool is_flat = std::abs(own) <= kSeaLevel_m;
+        if (is_flat) {
+          eachNeighbour(i, j, [&](int x, int y) {
+            if (!(std::abs(msl_m[postAt(x, y)] - own) <= kFlat_m)) is_flat = false;
+          });
+        }
+        flat[postAt(i, j)] = is_flat ? 1 : 0;
+      }
+    }
+  });
+  std::vector<GroundKind> kinds(msl_m.size(), GroundKind::land);
+  std::vector<std::size_t> component;
+  for (std::size_t start = 0; start < flat.size(); ++start) {
+    if (flat[start] != 1) continue;
+    component = {start};
+    flat[start] = 2;
+    bool is_sea = by_coast.empty();
+    for (std::size_t n = 0; n < component.size(); ++n) {
+      const std::size_t post = component[n];
+      is_sea = is_sea || by_coast[post] == GroundKind::water;
+      eachNeighbour(static_cast<int>(post % columns), static_cast<int>(post / columns), [&](int x, int y) {
+        if (flat[postAt(x, y)] != 1) return;
+        flat[postAt(x, y)] = 2;
+        component.push_back(postAt(x, y));
+      });
+    }
+    if (!is_sea || component.size() < kMinPosts) continue;
+    for (const std::size_t post : component) {  // with the posts at its edge, which rise on one side only
+      eachNeighbour(static_cast<int>(post % columns), static_cast<int>(post / columns), [&](int x, int y) {
+        if (std::abs(msl_m[postAt(x, y)] - msl_m[post]) <= kFlat_m) kinds[postAt(x, y)] = GroundKind::water;
+      });
+    }
+  }
+  return kinds;
+}
+
+bool hasWater(const std::vector<GroundKind>& kinds) {
+  return std::find(kinds.begin(), kinds.end(), GroundKind::water) != kinds.end();
+}
+
+/// Water by the coasts where the terrain is low.
+std::vector<GroundKind> lowWater(std::vector<GroundKind> by_coast, const std::vector<float>& msl_m) {
+  constexpr float kMaxShore_m = 2;
+  for (std::size_t post = 0; post < by_coast.size(); ++post) {
+    if (!(msl_m[post] < kMaxShore_m)) by_coast[post] = GroundKind::land;
+  }
+  return by_coast;
+}
+
+}  // namespace
+
+GroundHeight groundHeight(const LoadedScenario& scene, const GeoFrame& frame, double x_m, double y_m) {
+  // In a tangent frame the position on the earth also depends on z: repeated with the computed z.
+  GroundHeight height;
+  const int rounds = frame.origin().kind == FrameKind::enu ? 2 : 1;
+  for (int round = 0; round < rounds; ++round) {
+    GeodeticPosition position = frame.toGeodetic({x_m, y_m, height.z_m});
+    height.msl_m = scene.terrain ? scene.terrain->heightMsl_m(position.latitude_deg, position.longitude_deg)
+                                 : scene.scenario->ground.surface_msl_m.value_or(0);
+    if (std::isnan(height.msl_m) || frame.origin().kind == FrameKind::altitude) {
+      height.z_m = height.msl_m;
+      return height;
+    }
+    position.height_ellipsoid_m =
+        height.msl_m + geoidUndulation_m(position.latitude_deg, position.longitude_deg);
+    height.z_m = frame.toLocal(position).z;
+  }
+  return height;
+}
+
+scenario::GeoBox boxOf(const volume::Grid& grid) {
+  const GeoFrame frame(grid.frame);
+  const Vec3d lower = grid.lower_m(), upper = grid.upper_m();
+  const double middle_deg = grid.frame.longitude_deg;
+  scenario::GeoBox box{90, -90, middle_deg, middle_deg};
+  constexpr int kParts = 16;
+  for (int i = 0; i <= kParts; ++i) {
+    for (int j = 0; j <= kParts; ++j) {
+      const GeodeticPosition at = frame.toGeodetic(
+          {lower.x + (upper.x - lower.x) * i / kParts, lower.y + (upper.y - lower.y) * j / kParts, 0});
+      const double longitude_deg = middle_deg + wrapLongitude_deg(at.longitude_deg - middle_deg);
+      box.south_deg = std::min(box.south_deg, at.latitude_deg);
+      box.north_deg = std::max(box.north_deg, at.latitude_deg);
+      box.west_deg = std::min(box.west_deg, longitude_deg);
+      box.east_deg = std::max(box.east_deg, longitude_deg);
+    }
+  }
+  return box;
+}
+
+Ground groundOf(const LoadedScenario& scene, const volume::Grid& grid, const scenario::Coast* coast,
+                bool fine) {
+  const Vec3d lower_m = grid.lower_m();
+  const Vec3d size_m = grid.upper_m() - lower_m;
+  const double longest_m = std::max(size_m.x, size_m.y);
+  double spacing_m = scene.terrain ? scene.terrain->postSpacing_m()
+                                   : longest_m / ((coast != nullptr ? kCoastPosts : kSmoothPosts) - 1);
+  if (fine) spacing_m = std::min(spacing_m, longest_m / (kMaxPosts - 1));
+  Ground ground{std::make_shared<HeightField>()};
+  HeightField* const field = ground.field.get();
+  field->columns = postsAlong(size_m.x, spacing_m);
+  field->rows = postsAlong(size_m.y, spacing_m);
+  field->first_x_m = lower_m.x;
+  field->first_y_m = lower_m.y;
+  field->spacing_x_m = size_m.x / (field->columns - 1);
+  field->spacing_y_m = size_m.y / (field->rows - 1);
+  const GeoFrame frame(grid.frame);
+  const std::vector<float> msl_m = fillHeights(*field, scene, frame);
+  std::vector<GroundKind> by_coast;
+  if (coast != nullptr) by_coast = kindsByCoast(*field, *coast, frame);
+  if (scene.terrain) {
+    field->kinds = kindsByHeights(*field, msl_m, by_coast);
+    ground.is_sea_by_heights = hasWater(field->kinds);
+    if (!ground.is_sea_by_heights && !by_coast.empty()) field->kinds = lowWater(std::move(by_coast), msl_m);
+  } else if (coast != nullptr) {
+    field->kinds = std::move(by_coast);
+  } else {
+    const propagation::GroundKind kind = scene.scenario->ground.kind;
+    const bool is_water =
+        kind == propagation::GroundKind::sea || kind == propagation::GroundKind::fresh_water;
+    field->kinds.assign(msl_m.size(), is_water ? GroundKind::water : GroundKind::land);
+  }
+  return ground;
+}
+
+bool drawsSmoothEarth(const LoadedScenario& scene, const volume::Grid& grid) {
+  if (scene.terrain || !scene.scenario || !grid.georeferenced) return false;
+  constexpr double kMaxBelow = 0.25;  // of the volume's height
+  const Vec3d lower = grid.lower_m(), upper = grid.upper_m(), middle = (lower + upper) * 0.5;
+  const double z_m = groundHeight(scene, GeoFrame(grid.frame), middle.x, middle.y).z_m;
+  return z_m > lower.z - kMaxBelow * (upper.z - lower.z) && z_m < upper.z;
+}
+
+void drape(render::HeightField& ground, const std::string& file, const volume::Grid& grid) {
+  const GeoFrame frame(grid.frame);
+  std::vector<GeodeticPosition> positions;
+  positions.reserve(ground.heights_m.size());
+  for (int j = 0; j < ground.rows; ++j) {
+    for (int i = 0; i < ground.columns; ++i) {
+      const Vec3d at = postPosition(ground, i, j);
+      const float z = ground.heights_m[positions.size()];
+      positions.push_back(frame.toGeodetic({at.x, at.y, std::isnan(z) ? 0.0 : double{z}}));
+    }
+  }
+  ground.colors = scenario::readMapColors(file, positions);
+}
+
+}  // namespace emscape::playback

@@ -1,0 +1,134 @@
+#include "playback/frames/ground.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/emfield/solver/field_solver.h"
+#include "playback/frames/ground_marks.h"
+#include "scenario/map/coast.h"
+#include "tests/playback/playback_samples.h"
+#include "tests/scenario/dem_file.h"
+
+namespace emscape::playback::test {
+namespace {
+
+using render::GroundKind;
+
+/// quick.yaml over a terrain of 0.5 x 0.5 degrees.
+LoadedScenario overTerrain(const TemporaryFolder& folder,
+                           const std::function<double(double latitude_deg, double longitude_deg)>& height) {
+  emscape::test::geographicDem(4.75, 52.25, 0.002, 250, 250, height).write(folder / "dem.tif");
+  return loadScenarioWithTerrain(
+      quickScenario(folder, {{"platforms:", "terrain: {files: [dem.tif]}\nplatforms:"}}));
+}
+
+volume::Grid gridOf(const LoadedScenario& scene) {
+  return emfield::gridOf(scene.scenario->region);
+}
+
+double waterPart(const render::HeightField& ground) {
+  return static_cast<double>(std::count(ground.kinds.begin(), ground.kinds.end(), GroundKind::water)) /
+         static_cast<double>(ground.kinds.size());
+}
+
+TEST(GroundOf, TerrainIsSeaWhereItIsFlatAtSeaLevel) {
+  const TemporaryFolder folder;
+  // Sea in the west; land that rises to the east, with a flat pond at sea level that is too small, and a flat
+  // plain at 3 m.
+  const LoadedScenario scene = overTerrain(folder, [](double latitude_deg, double longitude_deg) {
+    if (longitude_deg < 5) return 0.0;
+    if (std::hypot(latitude_deg - 52, longitude_deg - 5.06) < 0.006) return 0.0;
+    if (latitude_deg > 52.04) return 3.0;
+    return 1 + 4000 * (longitude_deg - 5);
+  });
+  const Ground ground = groundOf(scene, gridOf(scene), nullptr, false);
+  EXPECT_TRUE(ground.is_sea_by_heights);
+  EXPECT_NEAR(waterPart(*ground.field), 0.5, 0.02);
+  const int middle = ground.field->rows / 2 * ground.field->columns;
+  EXPECT_EQ(ground.field->kinds[static_cast<std::size_t>(middle)], GroundKind::water);
+  EXPECT_EQ(ground.field->kinds[static_cast<std::size_t>(middle + ground.field->columns - 1)],
+            GroundKind::land);
+}
+
+TEST(GroundOf, LandBelowSeaLevelIsNoSea) {
+  const TemporaryFolder folder;
+  const LoadedScenario scene =
+      overTerrain(folder, [](double latitude_deg, double) { return -4 + 10 * (latitude_deg - 52); });
+  EXPECT_EQ(waterPart(*groundOf(scene, gridOf(scene), nullptr, false).field), 0);
+}
+
+TEST(GroundOf, FlatTerrainThatIsLandByTheCoastsIsNoSeaAndDepthsAreWater) {
+  const TemporaryFolder folder;
+  const auto nowhere = scenario::Coast();  // all land
+  const LoadedScenario polder = overTerrain(folder, [](double, double) { return 0.0; });
+  EXPECT_EQ(waterPart(*groundOf(polder, gridOf(polder), nullptr, false).field), 1);
+  EXPECT_EQ(waterPart(*groundOf(polder, gridOf(polder), &nowhere, false).field), 0);
+}
+
+TEST(GroundOf, TheSmoothEarthIsSeaOrLandAsTheScenarioSays) {
+  const TemporaryFolder folder;
+  LoadedScenario scene = loadScenarioWithTerrain(quickScenario(folder));
+  const volume::Grid grid = gridOf(scene);
+  EXPECT_TRUE(drawsSmoothEarth(scene, grid));
+  const Ground land = groundOf(scene, grid, nullptr, false);
+  EXPECT_EQ(waterPart(*land.field), 0);
+  EXPECT_FALSE(land.is_sea_by_heights);
+  for (const float height_m : land.field->heights_m) ASSERT_EQ(height_m, 0);
+  scene = loadScenarioWithTerrain(quickScenario(folder, {{"platforms:", "ground: {kind: sea}\nplatforms:"}}));
+  EXPECT_EQ(waterPart(*groundOf(scene, grid, nullptr, false).field), 1);
+  volume::Grid high = grid;
+  high.first_center_m.z += 20000;
+  EXPECT_FALSE(drawsSmoothEarth(scene, high)) << "far below the volume";
+}
+
+TEST(GroundMarks, LieOnTheGroundWithinTheBox) {
+  const TemporaryFolder folder;
+  const LoadedScenario scene =
+      overTerrain(folder, [](double latitude_deg, double) { return 500 + 3000 * (latitude_deg - 52); });
+  const volume::Grid grid = gridOf(scene);
+  const Ground ground = groundOf(scene, grid, nullptr, false);
+  GroundMarks marks(grid, ground.field.get(), &scene);
+  marks.addGraticule(PositionFormat::decimal);
+  const std::size_t graticule = marks.lines.size();
+  EXPECT_GE(graticule, 6U);
+  EXPECT_LE(graticule, 24U);
+  render::Marker marker;
+  marker.label = "radar: 1";
+  marker.position_m = {2000, 1000, 700};
+  marks.addRings({{"radar: 1", 3000, 2}, {"other", 1000, 1}}, {marker}, Units::metric);
+  ASSERT_EQ(marks.lines.size(), graticule + 2);
+  EXPECT_EQ(marks.lines[graticule].label, "3 km");
+  const Vec3d lower = grid.lower_m(), upper = grid.upper_m();
+  for (const render::GroundLine& line : marks.lines) {
+    for (const Vec3d& point : line.points_m) {
+      EXPECT_TRUE(point.x >= lower.x - 1e-6 && point.x <= upper.x + 1e-6 && point.y >= lower.y - 1e-6 &&
+                  point.y <= upper.y + 1e-6);
+      EXPECT_NEAR(point.z, heightAt_m(*ground.field, point.x, point.y), 1e-6);
+    }
+  }
+  for (const Vec3d& point : marks.lines[graticule + 1].points_m)
+    EXPECT_NEAR(std::hypot(point.x - 2000, point.y - 1000), 6000, 10);
+}
+
+TEST(GroundMarks, PlacesAreCutAtTheSidesOfTheBox) {
+  const TemporaryFolder folder;
+  const LoadedScenario scene = loadScenarioWithTerrain(quickScenario(folder));
+  const volume::Grid grid = gridOf(scene);
+  GroundMarks marks(grid, nullptr, &scene);
+  using Place = scenario::Place;
+  marks.addPlaces({{Place::Kind::point, "inside", {{{52, 5, 0}}}},
+                   {Place::Kind::point, "outside", {{{53, 5, 0}}}},
+                   {Place::Kind::line, "through", {{{52, 4, 0}, {52, 6, 0}}}},
+                   {Place::Kind::area, "everywhere", {{{51, 4, 0}, {51, 6, 0}, {53, 6, 0}, {53, 4, 0}}}}});
+  ASSERT_EQ(marks.points.size(), 1U);
+  EXPECT_EQ(marks.points[0].label, "inside");
+  ASSERT_EQ(marks.lines.size(), 2U);
+  EXPECT_NEAR(marks.lines[0].points_m.front().x, -10000, 1e-6);
+  EXPECT_NEAR(marks.lines[0].points_m.back().x, 10000, 1e-6);
+  EXPECT_TRUE(marks.lines[1].is_area);
+}
+
+}  // namespace
+}  // namespace emscape::playback::test
