@@ -247,8 +247,9 @@ void App::frame() {
   ImGuiIO& io = ImGui::GetIO();
   io.KeyMap[ImGuiKey_Tab] = scenarioPanelTakesTab(*session_) ? -1 : GLFW_KEY_TAB;
   // The keys walk through menus and lists while one is open, else they are for the picture or the panel.
-  io.ConfigFlags = isPopupOpen() ? io.ConfigFlags | ImGuiConfigFlags_NavEnableKeyboard
-                                 : io.ConfigFlags & ~ImGuiConfigFlags_NavEnableKeyboard;
+  was_popup_open_ = isPopupOpen();  // Esc closes it when the frame begins
+  io.ConfigFlags = was_popup_open_ ? io.ConfigFlags | ImGuiConfigFlags_NavEnableKeyboard
+                                   : io.ConfigFlags & ~ImGuiConfigFlags_NavEnableKeyboard;
   const std::vector<InputEvent> events = window_.beginFrame();
   const auto scale = static_cast<float>(window_.scale());
   const Layout layout =
@@ -317,7 +318,7 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
   const bool dialog =
       panels.record || panels.restore || panels.unsaved || panels.time || panels.replace || panels.warnings;
   const bool typing = ImGui::GetIO().WantTextInput && !panels.open;
-  const bool in_panel = scenarioPanelHasKeyboard() || isPopupOpen();
+  const bool in_panel = scenarioPanelHasKeyboard() || was_popup_open_;
   for (const InputEvent& event : events) {
     if (event.kind != InputEvent::Kind::key || event.action == GLFW_RELEASE) continue;
     const KeyChord chord = chordOf(event);

@@ -77,6 +77,7 @@ class App : private WindowControl {
   long long shown_picture_ = 0;  // number of the picture in texture_; 0: none
   std::optional<std::string> screenshot_;
   std::string open_panels_;
+  bool was_popup_open_ = false;           // before this frame
   const void* drawn_scenario_ = nullptr;  // only compared
   std::string title_;
   int window_fits_;            // remaining attempts to give the picture the size of the first view

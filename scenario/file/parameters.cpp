@@ -161,8 +161,9 @@ class GroupBuilder {
     result.choices = row.value.type == ValueType::list ? row.value.item->choices : row.value.choices;
     result.required = row.required;
     result.is_given = node != nullptr;
+    result.default_value = textOf(row.default_value);
     if (node == nullptr) {
-      result.value = textOf(row.default_value);
+      result.value = result.default_value;
     } else {
       result.value = node->kind == NodeKind::scalar ? node->text : document::flowText(*node, /*json=*/false);
       // Keys instead of a number.

@@ -25,6 +25,7 @@ struct Parameter {
   bool is_given = false;             ///< in the text of the scenario
   /// The given text on one line; else the default; empty if there is none.
   std::string value;
+  std::string default_value;  ///< empty if there is none
 };
 
 /// The values of an object and of its nested objects.

@@ -61,8 +61,7 @@ std::size_t lastEditOf(const std::string& path, const std::vector<MadeEdit>& edi
 /// it. @return false if there is none
 bool forgetAddedItem(std::vector<MadeEdit>& edits, const std::string& path) {
   std::size_t i = edits.size();
-  while (i > 0 && !edits[i - 1].moves_paths && !(edits[i - 1].adds_item && edits[i - 1].edit.path == path))
-    --i;
+  while (i > 0 && !edits[i - 1].moves_paths && !(edits[i - 1].adds && edits[i - 1].edit.path == path)) --i;
   if (i == 0 || edits[i - 1].moves_paths) return false;
   const auto added = edits.begin() + static_cast<std::ptrdiff_t>(i - 1);
   edits.erase(std::remove_if(added, edits.end(),
@@ -83,7 +82,10 @@ void remember(std::vector<MadeEdit>& edits, MadeEdit made) {
   }
   const bool was_removed = isNull(edits[last].edit.value), is_removed = isNull(made.edit.value);
   if (!was_removed && !is_removed) {
+    made.adds = edits[last].adds;
     edits[last] = std::move(made);
+  } else if (is_removed && edits[last].adds) {
+    edits.erase(edits.begin() + static_cast<std::ptrdiff_t>(last));
   } else if (was_removed != is_removed) {
     const std::size_t before = is_removed ? lastEditOf(made.edit.path, edits, last) : std::string::npos;
     if (before != std::string::npos && isNull(edits[before].edit.value)) {
@@ -156,7 +158,11 @@ void apply(ScenarioSource& source, const Edit& edit) {
     edited.root = source.root;
   }
   const bool is_name = !is_item && std::get<std::string>(path.steps.back()) == "name";
-  remember(source.edits, {made, is_name || (is_item && !value), !path.missing.empty()});
+  const DocumentNodePtr parent =
+      document::valueAt(source.root, document::NodePath(path.steps.begin(), path.steps.end() - 1));
+  const bool adds =
+      !path.missing.empty() || (!path.exists && parent && parent->kind == document::NodeKind::map);
+  remember(source.edits, {made, is_name || (is_item && !value), adds});
   source.text = std::move(edited.text);
   source.root = std::move(edited.root);
 }

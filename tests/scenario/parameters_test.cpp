@@ -94,8 +94,9 @@ TEST(Parameters, HaveNamesInWords) {
           EXPECT_EQ(words.find(wrong), std::string::npos) << parameter.path << ": " << parameter.name;
         }
         EXPECT_EQ(parameter.titles.size(), parameter.choices.size()) << parameter.path;
+        if (parameter.key == "platform") return;
         for (const std::string& title : parameter.titles)
-          if (parameter.key != "platform") EXPECT_EQ(title.find('_'), std::string::npos) << title;
+          EXPECT_EQ(title.find('_'), std::string::npos) << title;
       });
     }
   }

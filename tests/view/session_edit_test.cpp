@@ -77,9 +77,7 @@ TEST(SessionEdits, ItemsAreSwitchedAddedCopiedAndRemovedWithUndo) {
   sample.perform(R"({"do":"undo"})");
   sample.perform(R"({"do":"undo"})");
   EXPECT_EQ(emitters().size(), 2U);
-  EXPECT_EQ(
-      sample.perform(R"({"do":"track","platform":"mast","points":["52,5","52.01,5.01,70"],"speed_m_s":100})"),
-      "");
+  sample.perform(R"({"do":"track","platform":"mast","points":["52,5","52.01,5.01,70"],"speed_m_s":100})");
   EXPECT_EQ(sample->scenario()->platforms[1].track.size(), 2U);
   EXPECT_THAT(sample.perform(R"({"do":"track","platform":"mast","points":["52,5","52"]})"),
               HasSubstr("point '52': expected LAT,LON"));

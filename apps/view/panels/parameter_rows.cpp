@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/view/panels/names.h"
+#include "apps/view/panels/slider_field.h"
 #include "apps/view/panels/theme.h"
 #include "base/files/json_writing.h"
 #include "base/text/quantity_text.h"
@@ -57,7 +58,9 @@ std::string shownText(const Parameter& parameter, int digits) {
   if (*rest != '\0') return parameter.value;
   std::string text = quantityText(value, parameter.unit, digits);
   const std::string signs = unitSigns(parameter.unit);
-  if (signs != parameter.unit) text.replace(text.size() - parameter.unit.size(), std::string::npos, signs);
+  if (signs == parameter.unit) return text;
+  const bool is_angle = signs == "°";  // written without a blank
+  text.replace(text.size() - parameter.unit.size() - (is_angle ? 1 : 0), std::string::npos, signs);
   return text;
 }
 
@@ -230,7 +233,7 @@ void ParameterRows::drawValue(const Parameter& parameter) {
   const bool is_refused = refused.path == path && !refused.text.empty();
   const std::string typed_text = is_refused ? refused.text : shownText(parameter, kTypedDigits);
   if (focus_.isTyping(path)) {
-    const std::optional<std::string> text = focus_.drawField(path);
+    const std::optional<std::string> text = focus_.drawField();
     if (text) enter(parameter, *text);
     const bool is_taken_back = !text && !focus_.isTyping(path) && isKeyPressed(ImGuiKey_Escape);
     if (is_taken_back && refused.path == path) state_.refused = {};
@@ -243,43 +246,14 @@ void ParameterRows::drawValue(const Parameter& parameter) {
     value = std::strtod(parameter.value.c_str(), &rest);
     if (*rest == '\0') slider = sliderOf(parameter, value);
   }
-  const ImVec2 at = ImGui::GetCursorScreenPos(), padding = ImGui::GetStyle().FramePadding;
-  const ImVec2 size{std::max(1.0F, ImGui::GetContentRegionAvail().x), ImGui::GetFrameHeight()};
-  ImGui::InvisibleButton("##value", size);
-  const bool is_hovered = ImGui::IsItemHovered(), is_active = ImGui::IsItemActive();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImVec2 end{at.x + size.x, at.y + size.y};
-  const float s = context_.scale, rounding = ImGui::GetStyle().FrameRounding;
-  list.AddRectFilled(at, end,
-                     ImGui::GetColorU32(is_active    ? ImGuiCol_FrameBgActive
-                                        : is_hovered ? ImGuiCol_FrameBgHovered
-                                                     : ImGuiCol_FrameBg),
-                     rounding);
-  ImGui::RenderFrameBorder(at, end, rounding);
-  if (slider) {
-    const auto position = static_cast<float>(std::clamp(slider->positionOf(value), 0.0, 1.0));
-    const float left = at.x + 5 * s, right = end.x - 5 * s, y = end.y - 3.5F * s;
-    const float grip = left + position * (right - left);
-    list.AddLine({left, y}, {right, y}, ImGui::GetColorU32(ImGuiCol_Border), 1.5F * s);
-    const ImU32 color =
-        ImGui::GetColorU32(is_hovered || is_active ? ImGuiCol_SliderGrabActive : ImGuiCol_SliderGrab);
-    list.AddLine({left, y}, {grip, y}, color, 2.5F * s);
-    list.AddCircleFilled({grip, y}, 3 * s, color);
-  }
-  const bool is_default = !is_refused && !parameter.is_given;
   const std::string shown = is_refused ? refused.text : shownText(parameter, kShownDigits);
-  const ImVec4 ink = is_refused   ? errorColor(context_.session.theme())
-                     : is_default ? mutedColor(context_.session.theme())
-                                  : ImGui::GetStyleColorVec4(ImGuiCol_Text);
-  ImGui::PushStyleColor(ImGuiCol_Text, ink);
-  const bool is_long = drawName(list, shown.empty() ? kByDefault : shown,
-                                {at.x + padding.x, at.y + padding.y - (slider ? s : 0)}, end.x - padding.x);
-  ImGui::PopStyleColor();
-  tooltipOfLongName(shown, is_long && !is_active);
-
-  const bool types = (is_hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) ||
-                     (ImGui::IsItemClicked() && (ImGui::GetIO().KeyCtrl || !slider)) ||
-                     focus_.isEntered(path);
+  ValueFrame frame{shown.empty() ? kByDefault : shown, ImGui::GetStyleColorVec4(ImGuiCol_Text), {}};
+  if (is_refused) frame.ink = errorColor(context_.session.theme());
+  if (!is_refused && !parameter.is_given) frame.ink = mutedColor(context_.session.theme());
+  if (slider) frame.position = slider->positionOf(value);
+  const bool is_long = drawValueFrame("##value", frame, ImGui::GetContentRegionAvail().x, context_.scale);
+  tooltipOfLongName(shown, is_long && !ImGui::IsItemActive());
+  const bool types = wantsTyping() || (ImGui::IsItemClicked() && !slider) || focus_.isEntered(path);
   const std::string characters = focus_.typed(path);
   if (types || !characters.empty()) {
     if (std::exchange(state_.drag.is_moved, false)) context_.session.endDrag();
@@ -291,32 +265,25 @@ void ParameterRows::drawValue(const Parameter& parameter) {
 }
 
 void ParameterRows::handleSlider(const Parameter& parameter, const ValueSlider& slider, double value) {
-  const ImGuiIO& io = ImGui::GetIO();
-  const double width = std::max(1.0F, ImGui::GetItemRectSize().x - 10 * context_.scale);
+  const double pixel = 1 / std::max(1.0, static_cast<double>(ImGui::GetItemRectSize().x));
   auto& drag_state = state_.drag;
   if (const int steps = focus_.steps(parameter.path)) {
-    const double step = slider.stepAt(value, 1 / width);
-    set(parameter.path, numberText(std::clamp((std::round(value / step) + steps) * step, parameter.minimum,
-                                              parameter.maximum)));
+    const double step = slider.stepAt(value, pixel);
+    const double next = (std::round(value / step) + steps) * step;
+    set(parameter.path, numberText(std::clamp(next, parameter.minimum, parameter.maximum)));
   }
   if (ImGui::IsItemActivated())
     drag_state = {parameter.path, numberText(value), slider.positionOf(value), false};
   if (drag_state.path != parameter.path) return;
-  if (ImGui::IsItemActive() && ImGui::IsMouseDragging(ImGuiMouseButton_Left, drag_state.is_moved ? 0 : -1)) {
-    constexpr double kFine = 0.1;
-    const double fine = io.KeyShift ? kFine : 1;
-    const double moved_px =
-        drag_state.is_moved ? io.MouseDelta.x : ImGui::GetMouseDragDelta(ImGuiMouseButton_Left).x;
-    drag_state.is_moved = true;
-    drag_state.position = std::clamp(drag_state.position + fine * moved_px / width, 0.0, 1.0);
-    drag(parameter, numberText(slider.steppedValueAt(drag_state.position, fine / width)));
-    if (isKeyPressed(ImGuiKey_Escape)) {
-      context_.session.cancelDrag();
-      drag_state.path.clear();
-      ImGui::ClearActiveID();
-    }
+  if (dragPosition(drag_state.position, drag_state.is_moved, context_.scale)) {
+    const double fine = ImGui::GetIO().KeyShift ? 0.1 : 1;
+    drag(parameter, numberText(slider.steppedValueAt(drag_state.position, fine * pixel)));
   }
-  if (ImGui::IsItemDeactivated()) {
+  if (drag_state.is_moved && isKeyPressed(ImGuiKey_Escape)) {
+    context_.session.cancelDrag();
+    drag_state.path.clear();
+    ImGui::ClearActiveID();
+  } else if (ImGui::IsItemDeactivated()) {
     if (drag_state.is_moved) context_.session.endDrag();
     drag_state.path.clear();
   }
@@ -348,15 +315,16 @@ void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
   const auto refuse = [&](const std::string& why) { state_.refused = {path, text, why}; };
   const bool is_word = !number && text.find_first_of("0123456789") == std::string::npos;
   if (number && !(*number >= parameter.minimum && *number <= parameter.maximum)) {
-    return refuse(fmt::format("{}: {} is outside of {}", parameter.name, text, rangeOf(parameter)));
+    return refuse(fmt::format("{}: {} is not allowed; {}", parameter.name, text, rangeOf(parameter)));
   }
   if (number && parameter.type == Type::integer && *number != std::round(*number)) {
-    return refuse(fmt::format("{}: a whole number, {}", parameter.name, rangeOf(parameter)));
+    return refuse(
+        fmt::format("{}: a whole number is needed; allowed: {}", parameter.name, rangeOf(parameter)));
   }
   if (!number && !(is_word && !parameter.choices.empty())) {
     const std::string unit = parameter.unit.empty() ? "" : fmt::format(" in {}", unitSigns(parameter.unit));
-    return refuse(
-        fmt::format("{}: '{}' is not a number{}; {}", parameter.name, text, unit, rangeOf(parameter)));
+    return refuse(fmt::format("{}: '{}' is not a number{}; allowed: {}", parameter.name, text, unit,
+                              rangeOf(parameter)));
   }
   const std::string next = number ? numberText(*number) : text;
   if (next == numberText(value) && parameter.is_given) return;
@@ -369,7 +337,9 @@ void ParameterRows::drawBoolean(const Parameter& parameter) {
   bool on = parameter.value == "true";
   const bool is_switched = ImGui::Checkbox("##value", &on);
   if (focus_.isEntered(parameter.path) || focus_.isSpaced(parameter.path)) on = !on;
-  if (is_switched || on != (parameter.value == "true")) set(parameter.path, on ? "true" : "false");
+  if (!is_switched && on == (parameter.value == "true")) return;
+  const std::string next = on ? "true" : "false";
+  set(parameter.path, next == parameter.default_value ? "null" : next);
 }
 
 void ParameterRows::drawChoice(const Parameter& parameter) {

@@ -122,7 +122,7 @@ void RowFocus::type(const std::string& row, const std::string& text, bool select
   selects_ = selects;
 }
 
-std::optional<std::string> RowFocus::drawField(const std::string& row) {
+std::optional<std::string> RowFocus::drawField() {
   drawn_field_frame_ = ImGui::GetFrameCount();
   if (!is_open_) ImGui::SetKeyboardFocusHere();
   const ImGuiInputTextFlags selection =

@@ -22,6 +22,8 @@ class RowFocus {
   void add(const std::string& row) { rows_.push_back(row); }
   bool has(const std::string& row) const { return row == focused_; }
   void take(const std::string& row) { focused_ = row; }
+  /// Lets Tab begin at a row that does not take the focus.
+  void startAt(const std::string& row) { last_ = row; }
   /// True in the frame in which the focus came to a row by a key: the row must become visible.
   bool arrives(const std::string& row) const { return moved_ && has(row); }
   /// True in the frame in which Enter was pressed in a row.
@@ -43,7 +45,7 @@ class RowFocus {
   bool isTyping(const std::string& row) const { return row == typing_; }
   /// Draws the field. @return the text when Enter or Tab is pressed or another item is clicked; empty
   /// optional while it is typed, and if it is taken back by Esc or not changed
-  std::optional<std::string> drawField(const std::string& row);
+  std::optional<std::string> drawField();
 
  private:
   enum class Key { none, enter, space, left, right };

@@ -160,7 +160,10 @@ void drawHeading(PanelContext& context, PanelState& state, const Section& sectio
   headingOfName("section", section.name, ImGuiTreeNodeFlags_AllowItemOverlap, reserved);
   if (is_off) ImGui::PopStyleColor();
   // A heading that is clipped reports that it is closed.
-  if (ImGui::IsItemToggledOpen()) open = !was_open;
+  if (ImGui::IsItemToggledOpen()) {
+    open = !was_open;
+    focus.startAt(section.path);
+  }
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   const float middle = (low.y + high.y) / 2;
   if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) ImGui::OpenPopup("menu");
