@@ -82,6 +82,7 @@ void MouseControl::move(const Area& picture, const Viewport& viewport, double ri
 void MouseControl::release(const Area& picture, Session& session) {
   const Drag drag = std::exchange(drag_, Drag::none);
   if (drag == Drag::platform && is_moved_) session.endDrag();
+  if (drag == Drag::plane && is_moved_) plane_->finish(session);
   if (is_moved_) return;
   const double x = pressed_x_ - picture.x, y = pressed_y_ - picture.y;
   const SceneObject* const object = objectUnder(session, x, y);

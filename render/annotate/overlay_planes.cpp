@@ -23,8 +23,8 @@ void drawPlanes(Canvas& canvas, const Style& style, const Projector& projector,
       is_in_front = projector.project(frame->corners_m[i], corners[i]) && is_in_front;
     }
     if (!is_in_front) continue;
-    canvas.outline(corners, style.rimInk(0.6), (kWidth + 2) * style.unit, true);
-    canvas.outline(corners, style.textInk(0.85), kWidth * style.unit, true);
+    canvas.outline(corners, style.rimInk(1), (kWidth + 2) * style.unit, true);
+    canvas.outline(corners, style.textInk(), kWidth * style.unit, true);
     // At the left end of the uppermost edge, where a section seen from above hides least.
     const auto higher = [](const Point2& a, const Point2& b) { return a.y < b.y; };
     std::sort(corners.begin(), corners.end(), higher);

@@ -79,6 +79,9 @@ TEST_F(Planes, HandleMovesAPlaneAlongItsNormalWithTheCursor) {
   EXPECT_NEAR(handleOf()->y, before->y - 10, 0.5);
   drag.moveTo(before->x, -10000, *session);
   EXPECT_EQ(session->settings().planes[0].altitude_m, 5000) << "the top of the box";
+  drag.finish(*session);
+  EXPECT_EQ(session->settings().planes[0].altitude_m, 5000);
+  EXPECT_EQ(error(), "");
 }
 
 TEST_F(Planes, HandleIsMissingWhereThePlaneCannotBeMovedInThePicture) {

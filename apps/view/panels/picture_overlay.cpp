@@ -10,6 +10,7 @@
 #include "apps/view/parts/position_text.h"
 #include "apps/view/session/plane_drag.h"
 #include "emscape/render/annotate/legend.h"
+#include "playback/view/view_settings.h"
 
 namespace emscape::view {
 namespace {
@@ -122,6 +123,27 @@ void entry(PanelContext& context, const char* label, const Command& command) {
   if (hasVerb(command.verb.c_str()) && ImGui::MenuItem(label)) context.session.perform(command);
 }
 
+/// Shows or hides the range rings of an emitter, whose setting is a list of texts EMITTER:KEY=VALUE,...
+void ringsEntry(PanelContext& context, const std::string& emitter) {
+  const playback::ViewSetting* const setting = playback::settingOfVerb("range_rings");
+  if (setting == nullptr || !setting->isListOfTexts()) return;
+  auto rings = std::get<std::vector<std::string>>(setting->get(context.session.view()));
+  const auto isOfEmitter = [&](const std::string& text) {
+    return text.compare(0, emitter.size() + 1, emitter + ":") == 0;
+  };
+  const auto end = std::remove_if(rings.begin(), rings.end(), isOfEmitter);
+  const bool has_rings = end != rings.end();
+  rings.erase(end, rings.end());
+  if (!ImGui::MenuItem("Range rings", nullptr, has_rings)) return;
+  if (!has_rings) {
+    const render::SceneBox& box = context.session.picture()->box;
+    const std::vector<double> radii_m = render::roundTicks(0, 0.5 * (box.upper_m.x - box.lower_m.x), 3);
+    rings.push_back(
+        fmt::format("{}:spacing_m={:g},count=3", emitter, radii_m.size() > 1 ? radii_m[1] : 1000));
+  }
+  context.session.perform({"range_rings", {{setting->argument, rings}}});
+}
+
 void drawMenuOfObject(PanelContext& context, const SceneObject& object) {
   Session& session = context.session;
   const bool is_emitter = object.path.compare(0, 9, "emitters.") == 0;
@@ -140,6 +162,7 @@ void drawMenuOfObject(PanelContext& context, const SceneObject& object) {
          {{"latitude_deg", object.position.latitude_deg},
           {"longitude_deg", object.position.longitude_deg},
           {"height_msl_m", object.height_msl_m}}});
+  if (is_emitter) ringsEntry(context, object.name);
   entry(context, "Copy the position", {"copy_position", {{"path", object.path}}});
   ImGui::Separator();
   if (has_platform && hasVerb("track"))

@@ -87,4 +87,14 @@ void PlaneDrag::moveTo(double x, double y, Session& session) const {
   session.setPlanes(planes);
 }
 
+void PlaneDrag::finish(Session& session) const {
+  if (index_ >= session.settings().planes.size()) return;
+  const render::CutPlane& plane = session.settings().planes[index_];
+  const bool is_horizontal = plane.kind == render::CutPlane::Kind::horizontal;
+  session.perform(
+      {"plane",
+       {{"index", index_ + 1},
+        {is_horizontal ? "altitude_m" : "offset_m", is_horizontal ? plane.altitude_m : plane.offset_m}}});
+}
+
 }  // namespace emscape::view

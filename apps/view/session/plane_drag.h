@@ -23,6 +23,8 @@ class PlaneDrag {
   PlaneDrag(const Session& session, std::size_t index, double x, double y);
 
   void moveTo(double x, double y, Session& session) const;
+  /// Ends the drag with the command of its result.
+  void finish(Session& session) const;
 
  private:
   std::size_t index_;
