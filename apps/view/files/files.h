@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/view/files/file_browser.h"
+#include "apps/view/files/opening_progress.h"
 #include "apps/view/files/recorder.h"
-#include "apps/view/parts/program_state.h"
 #include "emscape/playback/view/view_state.h"
 #include "playback/editing/autosave.h"
 
