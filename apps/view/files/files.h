@@ -10,8 +10,8 @@
 #include "apps/view/files/examples.h"
 #include "apps/view/files/file_browser.h"
 #include "apps/view/files/message_log.h"
+#include "apps/view/files/opening_progress.h"
 #include "apps/view/files/recorder.h"
-#include "apps/view/parts/program_state.h"
 #include "emscape/playback/view/view_state.h"
 #include "playback/editing/autosave.h"
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "apps/view/files/opening_progress.h"
 #include "playback/live/live_view.h"
 
 namespace emscape::view {
@@ -21,12 +22,6 @@ enum class Activity {
 constexpr auto namesOf(Activity) {
   return std::array{"EMPTY", "OPENING", "COMPUTING", "PLAYING", "BUSY", "RESTORE", "IDLE"};
 }
-
-/// An input that is opened beside the one on screen.
-struct OpeningProgress {
-  std::string file;
-  WorkProgress progress;
-};
 
 /// What the state depends on.
 struct ProgramFacts {
