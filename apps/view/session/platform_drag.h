@@ -11,7 +11,8 @@
 
 namespace emscape::view {
 
-/// Index of the marker under a pixel: of its emitter, or of a platform after them; empty if there is no marker nearby.
+/// Index of the marker under a pixel: of its emitter, or of a platform after them; empty if there is no
+/// marker nearby.
 std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double x, double y);
 
 /// Starts a drag. A platform whose height is given above the ground follows the ground under the cursor; any
