@@ -209,6 +209,12 @@ void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis,
       (a + b) * 0.5 + outward * ((kTick + kTickToLabel + kTitleBeyondLabels) * style.unit + widest);
   canvas.textWithRim(words.title, middle, style.small_px, style.mutedInk(), style.rimInk(), Align::center,
                      Weight::normal, angle);
+  const Rect title = canvas.textBox(words.title, style.small_px);
+  const double across = std::abs(std::cos(angle)), along = std::abs(std::sin(angle));
+  const Rect covered{0, 0, across * title.width + along * title.height,
+                     along * title.width + across * title.height};
+  taken.push_back(
+      {middle.x - covered.width / 2, middle.y - covered.height / 2, covered.width, covered.height});
 }
 
 }  // namespace

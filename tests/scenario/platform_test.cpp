@@ -141,10 +141,12 @@ TEST(Platform, HasTheSideOfItsSymbol) {
 name: sides
 region: {origin: {latitude_deg: 50, longitude_deg: 8}, size_m: [10000, 10000, 1000], dims: [10, 10, 10]}
 platforms:
-  - {name: mast, position: {latitude_deg: 50, longitude_deg: 8, height_agl_m: 5}, )" + keys + R"(}
+  - {name: mast, position: {latitude_deg: 50, longitude_deg: 8, height_agl_m: 5}, )" +
+                                                        keys + R"(}
 emitters:
   - {name: beacon, platform: mast, kind: transmitter, frequency_hz: 1.0e9, power_w: 1, antenna: {pattern: isotropic}}
-)")).scenario->platforms.at(0);
+)"))
+        .scenario->platforms.at(0);
   };
   EXPECT_EQ(platformWith("side: neutral").side, Side::neutral);
   EXPECT_EQ(platformWith(R"(sidc: "10031500002203000000")").side, Side::friendly);
