@@ -1,6 +1,7 @@
 /// emscape import: makes a scenario of a recording of another program.
 #include <fmt/core.h>
 
+#include <cmath>
 #include <memory>
 
 #include "apps/common/console.h"
@@ -28,14 +29,15 @@ struct ImportArguments {
 /// "B:E". @throws Error (usage)
 interop::TimeSpan parseSpan(const std::string& text) {
   const std::size_t at = text.find(':');
-  const auto begin = document::numberOf(text.substr(0, at));
-  const auto end = at == std::string::npos ? std::nullopt : document::numberOf(text.substr(at + 1));
-  if (!begin || !end || !(*begin < *end) || !(std::abs(*begin) <= 1e9) || !(std::abs(*end) <= 1e9)) {
+  const double nan = std::nan("");
+  const double begin = document::numberOf(text.substr(0, at)).value_or(nan);
+  const double end = at == std::string::npos ? nan : document::numberOf(text.substr(at + 1)).value_or(nan);
+  if (!(begin < end) || !(std::abs(begin) <= 1e9) || !(std::abs(end) <= 1e9)) {
     throw Error(ErrorCode::usage,
                 fmt::format("--times '{}' is not BEGIN:END in seconds of the recording, BEGIN below END, such as 0:120",
                             text));
   }
-  return {*begin, *end};
+  return {begin, end};
 }
 
 /// @throws Error (bad_input) if the written scenario has faults

@@ -23,6 +23,7 @@
 #include "emscape/emfield/link/path_excess.h"
 #include "emscape/emfield/link/path_profile.h"
 #include "emscape/emfield/solver/field_solver.h"
+#include "emscape/interop/export_scenario.h"
 #include "emscape/interop/import_scenario.h"
 #include "emscape/interop/read_recording.h"
 #include "emscape/interop/recording.h"

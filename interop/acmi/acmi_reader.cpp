@@ -318,7 +318,8 @@ void AcmiReader::nameCarriedBeams() {
     if (!isBeam(object.type) || found == by_id.end() || found->second == index) continue;
     const RecordedObject& parent = recording_.objects[found->second];
     object.name = parent.name + " " + (object.name.empty() ? "beam" : object.name);
-    object.keys = parent.keys;
+    if (object.keys.acmi_name.empty()) object.keys.acmi_name = parent.keys.acmi_name;
+    object.keys.acmi_type = parent.keys.acmi_type;
     object.side = parent.side;
   }
 }

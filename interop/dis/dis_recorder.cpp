@@ -311,6 +311,7 @@ void DisRecorder::takeTransmitter(const Transmitter& transmitter, double time_s)
   RecordedBeam& record = recording_.beams[beam.beam];
   record.name = fmt::format("radio {}", transmitter.radio);
   record.kind = BeamKind::transmitter;
+  record.keys.dis_radio = transmitter.radio;
   if (std::isfinite(transmitter.relative_antenna_m.z))
     record.height_m = std::clamp(-transmitter.relative_antenna_m.z, -100.0, 100.0);
   BeamState state;
@@ -318,7 +319,7 @@ void DisRecorder::takeTransmitter(const Transmitter& transmitter, double time_s)
   state.is_on = transmitter.state == 2;
   state.frequency_hz = known(static_cast<double>(transmitter.frequency_hz));
   state.bandwidth_hz = known(transmitter.bandwidth_hz);
-  if (std::isfinite(transmitter.power_dbm) && transmitter.power_dbm != 0) state.erp_dbm = transmitter.power_dbm;
+  if (std::isfinite(transmitter.power_dbm) && transmitter.power_dbm != 0) state.power_dbm = transmitter.power_dbm;
   setState(beam, state);
 }
 

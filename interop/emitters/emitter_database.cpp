@@ -26,6 +26,7 @@ std::vector<int> wholeNumbers(const Section& section, const std::string& key) {
 EmitterMatch matchOf(const Section& section) {
   EmitterMatch match;
   if (section.has("dis_name")) match.dis_name = section.integer("dis_name");
+  if (section.has("dis_radio")) match.dis_radio = section.integer("dis_radio");
   if (section.has("function")) match.function = section.integer("function");
   match.beam_function = wholeNumbers(section, "beam_function");
   match.index = wholeNumbers(section, "index");
@@ -53,6 +54,7 @@ bool matches(const EmitterMatch& match, const BeamKeys& keys) {
     return allowed.empty() || (value && std::find(allowed.begin(), allowed.end(), *value) != allowed.end());
   };
   return (!match.dis_name || match.dis_name == keys.dis_name) &&
+         (!match.dis_radio || match.dis_radio == keys.dis_radio) &&
          (!match.function || match.function == keys.dis_function) &&
          isOneOf(match.beam_function, keys.dis_beam_function) && isOneOf(match.index, keys.dis_index);
 }

@@ -55,6 +55,7 @@ const ObjectSpec& matchSpec() {
       "",
       {
           optional("dis_name", scenario::kInteger.from(0).to(65535), "DIS: emitter name (SISO-REF-010, UID 75)"),
+          optional("dis_radio", scenario::kInteger.from(0).to(65535), "DIS: number of the radio of a transmitter"),
           optional("function", code, "DIS: function of the emitter system (UID 76)"),
           optional("beam_function", listOf(code, 1, 256), "DIS: functions of the beam (UID 78), one of them"),
           optional("index", listOf(scenario::kInteger.from(0).to(65535), 1, 1000),

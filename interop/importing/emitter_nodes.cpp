@@ -156,6 +156,13 @@ void EmitterMaker::setPower(MapBuilder& emitter, const Origin& origin, const Bea
       return;
     }
   }
+  if (piece != nullptr && known(piece->state.power_dbm)) {
+    const double power_w = dbToRatio(piece->state.power_dbm - 30);
+    if (power_w > 0 && power_w <= 1e12) {
+      emitter.set("power_w", numberNode(power_w, 7));
+      return;
+    }
+  }
   if (!emitter.find("power_w")) fault = "neither the recording nor the database has a power";
 }
 
@@ -227,7 +234,7 @@ DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece*
   emitter.set("name", textNode(name)).set("platform", textNode(platform));
   for (const char* key : {"kind", "frequency_hz", "bandwidth_hz", "power_w"}) emitter.set(key, source.find(key));
   if (!emitter.find("kind")) emitter.set("kind", textNode("transmitter"));
-  for (const document::MapEntry& entry : source.node()->entries) {
+  for (const document::MapEntry& entry : source.entries()) {
     if (!emitter.find(entry.key)) emitter.set(entry.key, entry.value);
   }
   if (!emitter.find("antenna") && piece != nullptr) emitter.set("antenna", antennaOfSweep(piece->state));

@@ -37,6 +37,7 @@ class MapBuilder {
   /// The value of a key as a number; NaN if it is missing or no number.
   double numberOf(const std::string& key) const;
   DocumentNodePtr node() const;
+  const std::vector<document::MapEntry>& entries() const { return node_.entries; }
   bool isEmpty() const { return node_.entries.empty(); }
 
  private:

@@ -77,6 +77,7 @@ struct BeamState {
   double frequency_hz = kUnknown;
   double bandwidth_hz = kUnknown;
   double erp_dbm = kUnknown;  ///< power of the transmitter with antenna gain and losses
+  double power_dbm = kUnknown;  ///< at the transmitter's output, where that is told instead
   double prf_hz = kUnknown;
   double pulse_width_s = kUnknown;
   double azimuth_deg = kUnknown;              ///< of the beam or of the middle of its sweep, clockwise
@@ -96,6 +97,7 @@ struct BeamKeys {
   std::optional<int> dis_function;       ///< function of the system, UID 76
   std::optional<int> dis_beam_function;  ///< function of the beam, UID 78
   std::optional<int> dis_index;          ///< beam parameter index
+  std::optional<int> dis_radio;          ///< number of the radio, of a transmitter
 };
 
 struct RecordedBeam {
