@@ -283,7 +283,7 @@ void DisRecorder::takeEmission(const Emission& emission, double time_s, int vers
       RecordedBeam& record = recording_.beams[beam.beam];
       record.name = fmt::format("emitter {}, beam {}", system.name, told.number);
       record.kind = kindOf(told.function);
-      record.keys = {system.name, system.function, told.function, told.parameter_index};
+      record.keys = {system.name, system.function, told.function, told.parameter_index, std::nullopt};
       if (std::isfinite(system.location_m.z)) record.height_m = std::clamp(-system.location_m.z, -100.0, 100.0);
       BeamState state = stateOf(told, time_s);
       if (std::isfinite(told.erp_dbm) && told.erp_dbm > kMaxErp_dbm) {

@@ -10,7 +10,7 @@ namespace emscape::render {
 namespace {
 
 constexpr double kDot = 3.2;  // radius, lengths at 1200 x 900
-constexpr double kLabelGap = 7;
+constexpr double kPlaceGap = 7;
 constexpr double kScaleBar = 150;  // longest
 
 struct LineLook {
@@ -143,7 +143,7 @@ void drawGroundMarks(Canvas& canvas, const Style& style, const Projector& projec
     if (!projector.project(point.position_m, at) || (hidden && hidden(point.position_m))) continue;
     canvas.disc(at, kDot * style.unit, look.line);
     canvas.circle(at, kDot * style.unit, style.rimInk(0.9), style.unit);
-    drawIfFree(canvas, style, point.label, at + Point2{kLabelGap * style.unit, 0}, look.text, Align::left,
+    drawIfFree(canvas, style, point.label, at + Point2{kPlaceGap * style.unit, 0}, look.text, Align::left,
                taken);
   }
 }
