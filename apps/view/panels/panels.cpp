@@ -94,8 +94,9 @@ void drawSideButton(PanelContext& context) {
   const Layout layout =
       layoutOf(context.session, ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y, context.scale);
   if (!layout.side_is_over) return;
-  const char* const text = context.session.panels.side ? "Picture" : "Panels";
-  ImGui::SameLine(ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text).x - 24 * context.scale);
+  const char* const text = context.session.panels.side ? "Picture##side" : "Side##side";
+  const float width = ImGui::CalcTextSize(text, nullptr, /*hide_text_after_double_hash=*/true).x;
+  ImGui::SameLine(ImGui::GetIO().DisplaySize.x - width - 24 * context.scale);
   if (ImGui::SmallButton(text)) perform(context, R"({"do":"panel","name":"side"})");
 }
 
