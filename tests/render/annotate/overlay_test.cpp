@@ -37,7 +37,7 @@ Annotations everything(const TransferFunction& function) {
     annotations.markers.push_back(marker);
   }
   annotations.tracks.push_back(
-      {MarkerKind::jammer, Affiliation::none, {{-9000, 4000, 2500}, {0, 7000, 2500}, {40000, 7000, 2500}}, 0.5});
+      {MarkerKind::jammer, {{-9000, 4000, 2500}, {0, 7000, 2500}, {40000, 7000, 2500}}, 0.5});
   return annotations;
 }
 
