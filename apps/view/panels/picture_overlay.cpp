@@ -289,13 +289,13 @@ std::string cursorText(const Session& session) {
   const playback::ViewState& view = session.view();
   if (!reading.position) {
     return fmt::format("{:g}, {:g}, {:g}   ·   {}", reading.position_m.x, reading.position_m.y,
-                       reading.position_m.z, render::unitText(reading.text));
+                       reading.position_m.z, valueText(reading, session.picture()->info(), view));
   }
   std::string text = positionText(*reading.position, view);
   if (reading.height_agl_m)
     text += "   ground " + heightText(*reading.height_msl_m - *reading.height_agl_m, view);
   return text + "   ·   at " + heightText(*reading.height_msl_m, view) + ": " +
-         render::unitText(reading.text);
+         valueText(reading, session.picture()->info(), view);
 }
 
 }  // namespace emscape::view

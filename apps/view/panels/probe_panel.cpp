@@ -46,15 +46,6 @@ class Table {
   ImVec4 muted_;
 };
 
-/// The value of the volume in the unit in which fields are shown.
-std::string shownText(const playback::ProbeReading& reading, const volume::VolumeInfo& info, FieldUnit unit) {
-  const render::FieldScale scale = render::fieldScale(info.unit, unit);
-  const bool is_converted = reading.sample.kind == playback::VolumeSample::Kind::value && !info.categorical &&
-                            scale.unit != info.unit;
-  return render::unitText(
-      is_converted ? fmt::format("{:.4g} {}", scale.shown(reading.sample.value), scale.unit) : reading.text);
-}
-
 void drawPlace(const ProbeResult& result, const playback::ViewState& view, float s) {
   const playback::ProbeReading& reading = *result.reading;
   const Table table("place", 96 * s, view.theme);
@@ -167,7 +158,7 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
                         is_value ? accentColor(theme) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
   const playback::ViewState& view = context.session.view();
   const volume::VolumeInfo& info = context.session.picture()->info();
-  ImGui::TextWrapped("%s", drawable(shownText(reading, info, view.field_unit)).c_str());
+  ImGui::TextWrapped("%s", drawable(valueText(reading, info, view)).c_str());
   ImGui::PopStyleColor();
   ImGui::SetWindowFontScale(1);
   ImGui::TextDisabled("%s", drawable(render::quantityTitle(result.quantity, info.unit)).c_str());

@@ -42,6 +42,8 @@ struct PanelState {
   std::set<std::string> edited;
   std::size_t disabled_count = 0;
   std::unordered_set<std::string> open;  // paths of sections
+  std::string selected;                  // path of the section that is marked
+  bool arrives = false;                  // it is scrolled to
   bool is_new = true;
   ImGuiTextFilter filter;
   RowState rows;
@@ -79,6 +81,14 @@ struct PanelState {
             {{"Air", "atmosphere"}, {"Ground", "ground"}, {"Output", "output"}, {"Region", "region"}}}};
     if (std::exchange(is_new, false) && !emitters.sections.empty())
       open.insert(emitters.sections.front().path);
+  }
+
+  /// Opens the section of what is selected, once.
+  void follow(const std::string& path) {
+    if (path == selected) return;
+    selected = path;
+    arrives = !path.empty();
+    if (arrives) open.insert(path);
   }
 
   const ParameterGroup& groupAt(const std::string& path) {
@@ -163,11 +173,20 @@ void drawHeading(PanelContext& context, PanelState& state, const Section& sectio
   if (ImGui::IsItemToggledOpen()) {
     open = !was_open;
     focus.startAt(section.path);
+    if (is_item && open && section.path != state.selected) {
+      state.selected = section.path;  // it is in sight
+      context.session.perform({"select", {{"path", section.path}}});
+    }
   }
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   const float middle = (low.y + high.y) / 2;
   if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) ImGui::OpenPopup("menu");
   ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (section.path == state.selected) {
+    if (std::exchange(state.arrives, false)) ImGui::SetScrollHereY(0);
+    list.AddRectFilled({low.x, low.y}, {low.x + 3 * s, high.y},
+                       ImGui::ColorConvertFloat4ToU32(accentColor(theme)));
+  }
   if (focus.has(section.path)) {
     list.AddRect(low, high, ImGui::ColorConvertFloat4ToU32(accentColor(theme)),
                  ImGui::GetStyle().FrameRounding, 0, 1.5F * s);
@@ -342,6 +361,7 @@ void drawScenarioPanel(PanelContext& context) {
     return;
   }
   state.take(scenario);
+  state.follow(context.session.selected());
   drawHead(context, state);
   RowFocus& focus = scenarioFocus();
   focus.beginFrame();

@@ -6,6 +6,7 @@
 
 #include "base/geodesy/position_text.h"
 #include "base/text/display_units.h"
+#include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {
 
@@ -19,6 +20,15 @@ std::string heightText(double height_m, const playback::ViewState& view) {
 
 std::string distanceText(double distance_m, const playback::ViewState& view) {
   return emscape::distanceText(distance_m, view.units);
+}
+
+std::string valueText(const playback::ProbeReading& reading, const volume::VolumeInfo& info,
+                      const playback::ViewState& view) {
+  const render::FieldScale scale = render::fieldScale(info.unit, view.field_unit);
+  const bool is_converted = reading.sample.kind == playback::VolumeSample::Kind::value && !info.categorical &&
+                            scale.unit != info.unit;
+  return render::unitText(
+      is_converted ? fmt::format("{:.4g} {}", scale.shown(reading.sample.value), scale.unit) : reading.text);
 }
 
 std::string bearingText(double bearing_deg) {

@@ -1,10 +1,11 @@
-/// Positions and lengths as the window's panels show them.
+/// Positions, lengths and values as the window's panels show them.
 #pragma once
 
 #include <string>
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/playback/view/view_state.h"
+#include "playback/editing/probe.h"
 
 namespace emscape::view {
 
@@ -14,6 +15,9 @@ std::string positionText(const GeodeticPosition& position, const playback::ViewS
 std::string heightText(double height_m, const playback::ViewState& view);
 /// "840 m", "12.34 km".
 std::string distanceText(double distance_m, const playback::ViewState& view);
+/// The value of the volume in the unit in which fields are shown, or the reason for a missing one.
+std::string valueText(const playback::ProbeReading& reading, const volume::VolumeInfo& info,
+                      const playback::ViewState& view);
 /// "087.5°". @param bearing_deg  any angle, clockwise from north
 std::string bearingText(double bearing_deg);
 
