@@ -42,7 +42,7 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
   layout.side_is_over = layout.has_side && is_narrow;
   const float side_width = !layout.has_side ? 0
                            : is_narrow      ? panels.side ? std::min(340 * scale, 0.85F * width) : 0
-                                            : std::min(340 * scale, std::max(270 * scale, 0.36F * width));
+                                            : std::min(340 * scale, std::max(310 * scale, 0.36F * width));
   layout.menu_height = ImGui::GetFrameHeight();
   const float room = std::max(1.0F, height - status_height - layout.menu_height);
   const float timeline_height = timelineHeight(session, scale, is_low ? 0 : 0.3F * room);
