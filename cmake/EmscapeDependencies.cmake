@@ -13,6 +13,6 @@ macro(emscape_find_dependencies command)
   set(CMAKE_MESSAGE_LOG_LEVEL "${_emscape_log_level}")
   set(BUILD_SHARED_LIBS "${_emscape_shared_libs}")  # Debian's FindOpenVDB sets it
   pkg_check_modules(HWY REQUIRED QUIET IMPORTED_TARGET libhwy)
-  pkg_check_modules(CAIRO REQUIRED QUIET IMPORTED_TARGET cairo)
+  pkg_check_modules(PANGOCAIRO REQUIRED QUIET IMPORTED_TARGET pangocairo cairo-svg)
   pkg_check_modules(EPOXY QUIET IMPORTED_TARGET epoxy)
 endmacro()

@@ -12,13 +12,21 @@
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "render/annotate/text_setter.h"
 #include "render/picture/bytes_over.h"
 
 namespace emscape::render {
 namespace {
 
-constexpr const char* kFont = "DejaVu Sans";
 constexpr int kRowsAtOnce = 32;
+
+/// Left end of the baseline of a text that is aligned to (0, 0): half the height of capitals lower, so that
+/// it is centred there.
+Point2 beginOf(const std::string& text, double size_px, Weight weight, Align align) {
+  constexpr double kBaseline = 0.36;
+  const double shift = align == Align::left ? 0.0 : (align == Align::center ? 0.5 : 1.0);
+  return {shift > 0 ? -shift * lineWidth(text, size_px, weight) : 0.0, kBaseline * size_px};
+}
 
 cairo_status_t append(void* text, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
@@ -59,13 +67,6 @@ Canvas::Canvas(ImageSize size, cairo_surface_t* surface)
                                       std::to_string(size.height) +
                                       " pixels: " + cairo_status_to_string(cairo_status(cairo_.get())));
   }
-  // Glyphs are not aligned to whole pixels, for uniform spacing at small sizes.
-  const std::unique_ptr<cairo_font_options_t, void (*)(cairo_font_options_t*)> font(
-      cairo_font_options_create(), cairo_font_options_destroy);
-  cairo_font_options_set_hint_metrics(font.get(), CAIRO_HINT_METRICS_OFF);
-  cairo_font_options_set_hint_style(font.get(), CAIRO_HINT_STYLE_SLIGHT);
-  cairo_font_options_set_antialias(font.get(), CAIRO_ANTIALIAS_GRAY);
-  cairo_set_font_options(cairo_.get(), font.get());
   cairo_set_line_cap(cairo_.get(), CAIRO_LINE_CAP_ROUND);
   cairo_set_line_join(cairo_.get(), CAIRO_LINE_JOIN_ROUND);
 }
@@ -184,52 +185,32 @@ void Canvas::gradient(const Rgb& top, const Rgb& bottom) {
   cairo_paint(cairo_.get());
 }
 
-void Canvas::setFont(double size_px, Weight weight) const {
-  cairo_select_font_face(cairo_.get(), kFont, CAIRO_FONT_SLANT_NORMAL,
-                         weight == Weight::bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-  cairo_set_font_size(cairo_.get(), size_px);
-}
-
 Rect Canvas::textBox(const std::string& text, double size_px, Weight weight) const {
-  setFont(size_px, weight);
-  cairo_text_extents_t extents;
-  cairo_text_extents(cairo_.get(), text.c_str(), &extents);
-  return {0, 0, extents.x_advance, 1.2 * size_px};
+  return {0, 0, lineWidth(text, size_px, weight), 1.2 * size_px};
 }
 
-void Canvas::moveTo(const std::string& text, const Point2& at, Align align, double angle_rad) const {
-  // Half the height of capitals, so that a text is centred at the point.
-  constexpr double kBaseline = 0.36;
-  cairo_matrix_t font;
-  cairo_get_font_matrix(cairo_.get(), &font);
-  cairo_text_extents_t extents;
-  cairo_text_extents(cairo_.get(), text.c_str(), &extents);
-  const double shift = align == Align::left ? 0.0 : (align == Align::center ? 0.5 : 1.0);
+void Canvas::turnTo(const Point2& at, double angle_rad) const {
+  cairo_new_path(cairo_.get());
   cairo_translate(cairo_.get(), at.x, at.y);
   cairo_rotate(cairo_.get(), angle_rad);
-  cairo_move_to(cairo_.get(), -shift * extents.x_advance, kBaseline * font.yy);
 }
 
 void Canvas::text(const std::string& text, const Point2& at, double size_px, const Ink& ink, Align align,
                   Weight weight, double angle_rad) {
-  setFont(size_px, weight);
   setInk(ink);
   cairo_save(cairo_.get());
-  cairo_new_path(cairo_.get());
-  moveTo(text, at, align, angle_rad);
-  cairo_show_text(cairo_.get(), text.c_str());
+  turnTo(at, angle_rad);
+  fillLine(cairo_.get(), text, size_px, weight, beginOf(text, size_px, weight, align));
   cairo_restore(cairo_.get());
 }
 
 void Canvas::textWithRim(const std::string& words, const Point2& at, double size_px, const Ink& ink,
                          const Ink& rim, Align align, Weight weight, double angle_rad) {
-  setFont(size_px, weight);
   setInk(rim);
   cairo_set_line_width(cairo_.get(), 0.22 * size_px);
   cairo_save(cairo_.get());
-  cairo_new_path(cairo_.get());
-  moveTo(words, at, align, angle_rad);
-  cairo_text_path(cairo_.get(), words.c_str());
+  turnTo(at, angle_rad);
+  addLineToPath(cairo_.get(), words, size_px, weight, beginOf(words, size_px, weight, align));
   cairo_stroke(cairo_.get());
   cairo_restore(cairo_.get());
   text(words, at, size_px, ink, align, weight, angle_rad);

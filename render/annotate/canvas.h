@@ -1,10 +1,11 @@
-/// Drawing of lines, shapes and text on a picture: a thin wrapper of Cairo.
+/// Drawing of lines, shapes and text on a picture: a thin wrapper of Cairo and Pango.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "emscape/render/picture/image.h"
 #include "emscape/render/transfer/transfer_function.h"
@@ -90,11 +91,9 @@ class Canvas {
  private:
   Canvas(ImageSize size, _cairo_surface* surface);
   void setInk(const Ink& ink) const;
-  void setFont(double size_px, Weight weight) const;
   void path(const std::vector<Point2>& points, bool closed) const;
-  /// Sets the current point for a text with this alignment, in rotated coordinates; call between save and
-  /// restore.
-  void moveTo(const std::string& text, const Point2& at, Align align, double angle_rad) const;
+  /// Moves the origin to a point and turns the axes; call between save and restore.
+  void turnTo(const Point2& at, double angle_rad) const;
 
   ImageSize size_;
   std::shared_ptr<std::string> svg_;  ///< output of the surface so far; null with pixels
