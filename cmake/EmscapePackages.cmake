@@ -59,6 +59,7 @@ string(REGEX REPLACE ":.*" "" gdal_package "${gdal_package}")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "${gdal_package}, proj-data, fonts-dejavu-core")
 # Videos; OpenGL for the window, which loads it when it starts.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "ffmpeg, libgl1, libegl1, libgl1-mesa-dri")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "fonts-noto-core, fonts-noto-cjk")  # names in more scripts
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Computes the field of radars, transmitters and jammers on moving platforms over
 real terrain as a volume that changes with time, and draws it: pictures, videos,
 a window, maps of coverage, links, what-if studies.")

@@ -72,16 +72,17 @@ std::vector<render::Track> PlatformTracks::at(double time_s, const LoadedScenari
     lines_.clear();
     const GeoFrame frame(grid.frame);
     const std::vector<scenario::Platform>& platforms = scene.scenario->platforms;
-    const auto moving = static_cast<int>(
-        std::count_if(platforms.begin(), platforms.end(),
-                      [](const scenario::Platform& platform) { return platform.track.size() > 1; }));
+    const auto moving =
+        static_cast<int>(std::count_if(platforms.begin(), platforms.end(),
+                                       [](const scenario::Platform& platform) { return platform.moves(); }));
     for (std::size_t p = 0; p < platforms.size(); ++p) {
-      if (platforms[p].track.size() < 2) continue;
+      if (!platforms[p].moves()) continue;
       Line line = lineOf(platforms[p], scene.scenario->clock.duration_s,
                          std::clamp(kMaxPointsOfAll / moving, 2, kMaxPoints), scene.terrain.get(), frame);
       for (const scenario::Emitter& emitter : scene.scenario->emitters) {
         if (emitter.platform == static_cast<int>(p)) line.track.kind = markerKindOf(emitter.kind);
       }
+      line.track.side = affiliationOf(platforms[p].side);
       if (line.times_s.size() > 1) lines_.push_back(std::move(line));
     }
     scenario_ = scene.scenario;

@@ -1,8 +1,11 @@
 #include "emscape/playback/frames/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/quantity_text.h"
 #include "emfield/channels/categories.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
@@ -34,6 +37,13 @@ double groundZ_m(const scenario::Terrain& terrain, const GeoFrame& frame, double
   return z_m;
 }
 
+/// Height of a mast above the ground if that is given, else above mean sea level.
+std::string heightText(const scenario::Platform& platform, double height_msl_m) {
+  const std::optional<double>& above_ground_m = platform.track.front().position.height_agl_m;
+  return above_ground_m && !platform.moves() ? fmt::format("{:.0f} m above ground", *above_ground_m)
+                                             : fmt::format("{:.0f} m above sea", height_msl_m);
+}
+
 }  // namespace
 
 render::MarkerKind markerKindOf(scenario::EmitterKind kind) {
@@ -46,6 +56,21 @@ render::MarkerKind markerKindOf(scenario::EmitterKind kind) {
       break;
   }
   return render::MarkerKind::transmitter;
+}
+
+render::Affiliation affiliationOf(const std::optional<scenario::Side>& side) {
+  if (!side) return render::Affiliation::none;
+  switch (*side) {
+    case scenario::Side::friendly:
+      return render::Affiliation::friendly;
+    case scenario::Side::hostile:
+      return render::Affiliation::hostile;
+    case scenario::Side::neutral:
+      return render::Affiliation::neutral;
+    case scenario::Side::unknown:
+      break;
+  }
+  return render::Affiliation::unknown;
 }
 
 std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain& terrain,
@@ -76,21 +101,41 @@ std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain
 std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
                                       const volume::Grid& grid) {
   const GeoFrame frame(grid.frame);
+  const std::vector<scenario::Platform>& platforms = snapshot.scenario->platforms;
   std::vector<render::Marker> markers;
-  for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
-    const scenario::Emitter& emitter = snapshot.scenario->emitters[e];
-    const scenario::EmitterState& state = snapshot.emitters[e];
-    render::Marker marker;
-    marker.position_m = frame.toLocal(state.position);
-    marker.label = emitter.name;
-    marker.kind = markerKindOf(emitter.kind);
-    marker.active = state.active;
-    if (emitter.antenna->view().kind != scenario::PatternKind::isotropic) marker.beam = state.beam.forward;
+  std::vector<bool> has_emitter(platforms.size());
+  const auto add = [&](std::size_t p, const GeodeticPosition& position) -> render::Marker& {
+    const scenario::Platform& platform = platforms[p];
+    render::Marker& marker = markers.emplace_back();
+    marker.position_m = frame.toLocal(position);
+    marker.label = platform.name;
+    marker.side = affiliationOf(platform.side);
+    marker.sidc = platform.sidc;
+    marker.moves = platform.moves();
     if (terrain) {
       const double ground_m = groundZ_m(*terrain, frame, marker.position_m.x, marker.position_m.y);
       if (!std::isnan(ground_m)) marker.ground_m = ground_m;
     }
-    markers.push_back(std::move(marker));
+    return marker;
+  };
+  for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
+    const scenario::Emitter& emitter = snapshot.scenario->emitters[e];
+    const scenario::EmitterState& state = snapshot.emitters[e];
+    const auto platform = static_cast<std::size_t>(emitter.platform);
+    has_emitter[platform] = true;
+    render::Marker& marker = add(platform, state.position);
+    marker.label = emitter.name;
+    marker.kind = markerKindOf(emitter.kind);
+    marker.detail =
+        fmt::format("{} {}, {}", toString(emitter.kind), quantityText(emitter.frequency_hz, "Hz", 4),
+                    heightText(platforms[platform], state.height_msl_m));
+    marker.active = state.active;
+    if (emitter.antenna->view().kind != scenario::PatternKind::isotropic) marker.beam = state.beam.forward;
+  }
+  for (std::size_t p = 0; p < platforms.size(); ++p) {
+    if (has_emitter[p] || !platforms[p].side) continue;
+    const scenario::PlatformState& state = snapshot.platforms[p];
+    add(p, state.position).detail = heightText(platforms[p], state.height_msl_m);
   }
   return markers;
 }

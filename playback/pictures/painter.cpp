@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "emscape/base/error.h"
@@ -16,6 +17,20 @@ namespace {
 std::string subtitleOf(const volume::VolumeInfo& info) {
   const auto reference = info.extra.find(kDifferenceToKey);
   return reference == info.extra.end() ? "" : "difference to " + reference->second;
+}
+
+const char* wordsOf(render::CompositingMode mode) {
+  switch (mode) {
+    case render::CompositingMode::dvr:
+      return "translucent";
+    case render::CompositingMode::mida:
+      return "translucent, maxima stressed";
+    case render::CompositingMode::mip:
+      return "maximum along each ray";
+    case render::CompositingMode::iso:
+      break;
+  }
+  return "surface of equal value";
 }
 
 }  // namespace
@@ -137,6 +152,7 @@ void Painter::setScenery(const ViewState& view) {
   view_.show_terrain = view.show_terrain;
   view_.show_emitters = view.show_emitters;
   view_.labels = view.labels;
+  view_.sides = view.sides;
   view_.theme = annotations_.theme = view.theme;
   setMarkers();
   if (frame_) setGround();
@@ -251,13 +267,16 @@ bool Painter::isHidden(const Vec3d& frame_m) const {
 }
 
 std::string Painter::note(render::Pattern pattern) const {
-  const char* const mode = render::toString(view_.settings.mode);
+  const char* const mode = wordsOf(view_.settings.mode);
   if (frame_ && frame_->cells) {
     return fmt::format("{}, {} tetrahedra{}", mode, frame_->cells->field.mesh->cells.size(),
                        cell_picture_ ? ", " + cell_picture_->text() : "");
   }
-  return fmt::format("{}, {} rays, step {:g} voxel", mode, render::toString(pattern),
-                     view_.settings.step_voxels);
+  std::string text =
+      fmt::format("{}, {}", mode, pattern == render::Pattern::full ? "every pixel computed" : "preview");
+  if (view_.settings.step_voxels != render::RenderSettings().step_voxels)
+    text += fmt::format(", a sample every {:g} voxels", view_.settings.step_voxels);
+  return text;
 }
 
 render::Camera Painter::cameraOf(const render::CameraSpec& spec) const {
@@ -283,13 +302,18 @@ void Painter::setMarkers() {
   const bool shows = view_.show_emitters && frame_;
   annotations_.markers = shows ? frame_->markers : std::vector<render::Marker>{};
   annotations_.tracks = shows ? frame_->tracks : std::vector<render::Track>{};
-  if (view_.labels == Labels::all) return;
-  annotations_.tracks.clear();
+  const auto isShown = [this](render::Affiliation side) {
+    return view_.sides == ShownSides::all || static_cast<int>(view_.sides) == static_cast<int>(side);
+  };
   for (render::Marker& marker : annotations_.markers) {
-    marker.beam.reset();
-    marker.ground_m.reset();
+    marker.is_shown = isShown(marker.side);
+    if (view_.labels != Labels::all) marker.detail.clear();
     if (view_.labels == Labels::off) marker.label.clear();
   }
+  std::vector<render::Track>& tracks = annotations_.tracks;
+  tracks.erase(
+      std::remove_if(tracks.begin(), tracks.end(), [&](const auto& track) { return !isShown(track.side); }),
+      tracks.end());
 }
 
 void Painter::setLegend() {

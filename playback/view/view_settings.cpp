@@ -334,11 +334,21 @@ void addScenery(Table& table) {
   table
       .member(
           "labels", choiceOf<Labels>(), [](auto& view) -> auto& { return view.labels; },
-          "labels of the emitters: none; names; or names, beams, stems and tracks")
+          "labels of emitters and platforms: none; names; or name, kind, frequency and height")
       .withEffect(&ViewChange::labels)
-      .withOption("--labels", "Labels of the emitters; default: all")
-      .withVerb("labels", "labels", "Labels of the emitters: off, names or all; without a name the next one")
+      .withOption("--labels", "Labels of emitters and platforms; default: names")
+      .withVerb("labels", "labels",
+                "Labels of emitters and platforms: off, names or all; without a name the next one")
       .withAction("Labels", "N");
+  table
+      .member(
+          "sides", choiceOf<ShownSides>(), [](auto& view) -> auto& { return view.sides; },
+          "draw all emitters and platforms, or those of one side")
+      .withEffect(&ViewChange::labels)
+      .withOption("--sides", "Draw all emitters and platforms, or those of one side; default: all")
+      .withVerb("sides", "sides",
+                "Draws all emitters and platforms, or those of one side; without a name the next one")
+      .withAction("Next side", "Shift+N");
   table
       .parsed(
           "size", spec::listOf(spec::simple(ValueType::integer).from(1).to(render::kMaxImageSide), 2, 2),

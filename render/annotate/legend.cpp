@@ -21,7 +21,6 @@ constexpr double kPixelsPerTick = 60;
 constexpr double kSwatch = 15;
 constexpr double kSwatchGap = 8;
 constexpr double kRowHeight = 25;
-constexpr double kNote = 0.85;   // size of small texts, in small_px
 constexpr double kBarTop = 0.2;  // fraction of the picture's height
 constexpr double kBarBottom = 0.8;
 
@@ -40,20 +39,43 @@ void replaceAll(std::string& text, const std::string& from, const std::string& t
   }
 }
 
-struct BarTicks {
-  std::vector<std::string> texts;
-  std::vector<double> values;
+/// Decimals that multiples of a step need, at most 6.
+int decimalsOf(double step) {
+  int decimals = 0;
+  for (double scaled = step; decimals < 6 && std::abs(scaled - std::round(scaled)) > 1e-6 * std::abs(scaled);
+       scaled *= 10) {
+    ++decimals;
+  }
+  return decimals;
+}
+
+struct BarTick {
+  double value = 0;
+  std::string text;
 };
 
-BarTicks ticksOf(const Legend& legend, int count) {
-  BarTicks ticks;
-  ticks.values = roundTicks(legend.function.lowest(), legend.function.highest(), count);
+/// Ticks at round values and at both ends, which take the places of round values near them.
+/// @param count  of round values, about
+/// @param gap    smallest distance of numbers, a part of the bar
+std::vector<BarTick> ticksOf(const Legend& legend, int count, double gap) {
+  const double lowest = legend.function.lowest(), highest = legend.function.highest();
+  std::vector<double> values = roundTicks(lowest, highest, count);
   if (legend.whole_numbers) {
     const auto broken = [](double value) { return value != std::round(value); };
-    ticks.values.erase(std::remove_if(ticks.values.begin(), ticks.values.end(), broken), ticks.values.end());
+    values.erase(std::remove_if(values.begin(), values.end(), broken), values.end());
   }
-  const double step = ticks.values.size() > 1 ? ticks.values[1] - ticks.values[0] : 1;
-  for (double value : ticks.values) ticks.texts.push_back(tickText(value, step));
+  const double step = values.size() > 1 ? values[1] - values[0] : highest - lowest;
+  std::vector<BarTick> ticks;
+  if (!(highest > lowest)) return ticks;
+  for (const double value : values) {
+    const double to_end = std::min(value - lowest, highest - value) / (highest - lowest);
+    if (to_end >= gap) ticks.push_back({value, tickText(value, step)});
+  }
+  for (const double end : {lowest, highest}) {
+    const double unit = std::pow(10, -decimalsOf(step));
+    const bool is_close = std::abs(end - std::round(end / unit) * unit) < step / 20;
+    ticks.push_back({end, tickText(end, is_close ? step : step / 10)});
+  }
   return ticks;
 }
 
@@ -130,18 +152,19 @@ double contentWidth(const Style& style, const Legend& legend) {
     content =
         (kSwatch + kSwatchGap) * style.unit + std::min(widestText(names, style.small_px), nameRoom(style));
   } else {
-    content =
-        (kOpacityWidth + kBarWidth + 14) * style.unit + widestText(ticksOf(legend, 8).texts, style.small_px);
+    std::vector<std::string> numbers;
+    for (const BarTick& tick : ticksOf(legend, 8, 0)) numbers.push_back(tick.text);
+    content = (kOpacityWidth + kBarWidth + 14) * style.unit + widestText(numbers, style.small_px);
   }
   const double heading = widestText(headingOf(legend), style.text_px) * 1.08;
-  const double note = widestText({legend.note}, kNote * style.small_px);
+  const double note = widestText({legend.note}, style.small_px);
   return std::max(content, std::min(std::max(heading, note), style.name_px));
 }
 
 void drawNote(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
-  const double size_px = kNote * style.small_px;
+  const double size_px = style.small_px;
   canvas.textWithRim(shortenedText(canvas, legend.note, size_px, style.name_px), {left, y}, size_px,
-                     style.mutedInk(0.9), style.rimInk());
+                     style.mutedInk(), style.rimInk());
 }
 
 /// A line across the bar with an arrowhead at its left end.
@@ -159,9 +182,9 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
   const double bar_left = left + kOpacityWidth * style.unit;
   const double bar_width = kBarWidth * style.unit;
   const double range = function.highest() - function.lowest();
-  double largest = 0;
+  double largest = 0;  // an isosurface has one opacity
   for (const TransferFunction::OpacityPoint& point : function.opacities)
-    largest = std::max(largest, point.opacity);
+    largest = legend.iso_value ? 0 : std::max(largest, point.opacity);
   const auto yOf = [&](double value) {
     return bottom - (value - function.lowest()) / range * (bottom - top);
   };
@@ -182,13 +205,12 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
   canvas.outline(
       {{bar_left, top}, {bar_left + bar_width, top}, {bar_left + bar_width, bottom}, {bar_left, bottom}},
       style.mutedInk(0.8), style.unit, true);
-  const BarTicks ticks =
-      ticksOf(legend, std::max(2, static_cast<int>((bottom - top) / (kPixelsPerTick * style.unit))));
-  for (std::size_t i = 0; i < ticks.values.size(); ++i) {
-    const double y = yOf(ticks.values[i]);
+  const int count = std::max(2, static_cast<int>((bottom - top) / (kPixelsPerTick * style.unit)));
+  for (const BarTick& tick : ticksOf(legend, count, 1.4 * style.small_px / (bottom - top))) {
+    const double y = yOf(tick.value);
     const double right = bar_left + bar_width;
     canvas.line({right, y}, {right + 5 * style.unit, y}, style.textInk(0.9), 1.2 * style.unit);
-    canvas.textWithRim(ticks.texts[i], {right + 9 * style.unit, y}, style.small_px, style.textInk(),
+    canvas.textWithRim(tick.text, {right + 9 * style.unit, y}, style.small_px, style.textInk(),
                        style.rimInk());
   }
   if (legend.iso_value) {
@@ -198,10 +220,10 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
   }
   drawHeading(canvas, style, legend, left, top - 10 * style.unit);
   if (largest > 0) {
-    canvas.textWithRim("opacity", {left, bottom + 12 * style.unit}, kNote * style.small_px,
-                       style.mutedInk(0.9), style.rimInk());
+    canvas.textWithRim("opacity", {left, bottom + 10 * style.unit + 0.6 * style.small_px}, style.small_px,
+                       style.mutedInk(), style.rimInk());
   }
-  drawNote(canvas, style, legend, left, bottom + 32 * style.unit);
+  drawNote(canvas, style, legend, left, bottom + 14 * style.unit + 1.9 * style.small_px);
 }
 
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
@@ -242,12 +264,7 @@ std::vector<double> roundTicks(double lowest, double highest, int count) {
 }
 
 std::string tickText(double value, double step) {
-  int decimals = 0;
-  for (double scaled = step; decimals < 6 && std::abs(scaled - std::round(scaled)) > 1e-6 * std::abs(scaled);
-       scaled *= 10) {
-    ++decimals;
-  }
-  std::string text = fmt::format("{:.{}f}", value, decimals);
+  std::string text = fmt::format("{:.{}f}", value, decimalsOf(step));
   if (!text.empty() && text[0] == '-') text.replace(0, 1, "−");
   return text;
 }

@@ -22,6 +22,8 @@ constexpr double kCompassRadius = 40;
 constexpr double kMinUnit = 0.62;
 constexpr double kNamePart = 1.0 / 3;  // maximum width of a name, of the picture's
 constexpr double kMinName = 160;
+constexpr double kLabelPart = 0.2;  // maximum width of a label
+constexpr double kMinText_px = 12, kMinSmall_px = 11;
 
 /// Composites a cast picture over the drawing; the only quantisation of the cast picture.
 void drawCast(Canvas& canvas, const Image& cast) {
@@ -69,16 +71,18 @@ void drawTexts(Canvas& canvas, const Style& style, const Annotations& annotation
                  style.mutedInk(), Weight::normal);
 }
 
+/// The line at the bottom. Labels stay off the whole line, as its text changes with the state of the picture.
 void drawFooter(Canvas& canvas, const Style& style, const SceneBox& box, const Annotations& annotations,
                 std::vector<Rect>& taken) {
   const double bottom = canvas.size().height - 0.7 * kMargin * style.unit;
-  double left = kMargin * style.unit;
+  const double left = kMargin * style.unit;
   std::string text;
   if (box.vertical_exaggeration != 1) text = fmt::format("heights × {:g}", box.vertical_exaggeration);
   if (!annotations.note.empty()) text += (text.empty() ? "" : "   ·   ") + annotations.note;
-  canvas.textWithRim(text, {left, bottom}, style.small_px, style.mutedInk(), style.rimInk());
-  const Rect extent = canvas.textBox(text, style.small_px);
-  taken.push_back({left, bottom - extent.height / 2, extent.width, extent.height});
+  canvas.textWithRim(shortenedText(canvas, text, style.small_px, canvas.size().width - 2 * left),
+                     {left, bottom}, style.small_px, style.mutedInk(), style.rimInk());
+  const double height = 1.2 * style.small_px;
+  taken.push_back({0, bottom - height / 2, static_cast<double>(canvas.size().width), height});
 }
 
 void drawBehind(Canvas& canvas, const Style& style, const Projector& projector,
@@ -103,6 +107,8 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     const double width = legendWidth(style, *annotations.legend);
     taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
   }
+  if (!annotations.title.empty() || !annotations.time.empty())
+    taken.push_back({0, 0, static_cast<double>(canvas.size().width), headerHeight(style)});
   drawTracks(canvas, style, projector, annotations.tracks, hidden);
   drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
   drawTexts(canvas, style, annotations);
@@ -136,9 +142,10 @@ Theme parseTheme(const std::string& name) {
 
 Style::Style(ImageSize size, Theme theme) {
   unit = std::max(kMinUnit, std::min(size.width / 1200.0, size.height / 900.0));
-  text_px *= unit;
-  small_px *= unit;
+  text_px = std::max(text_px * unit, kMinText_px);
+  small_px = std::max(small_px * unit, kMinSmall_px);
   name_px = std::max(kNamePart * size.width, kMinName * unit);
+  label_px = std::max(kLabelPart * size.width, kMinName * unit);
   if (theme == Theme::dark) {
     background_top = parseColor("#10141b");
     background_bottom = parseColor("#1d242f");

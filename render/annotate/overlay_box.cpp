@@ -15,6 +15,7 @@ constexpr double kTick = 6;  // lengths at 1200 x 900
 constexpr double kTickToLabel = 6;
 constexpr double kTitleBeyondLabels = 13;
 constexpr double kPixelsPerEdgeTick = 85;
+constexpr double kNumberGap = 9;
 
 /// An edge of the box along one axis; the other two coordinates are at their lower (0) or upper (1) ends.
 struct Edge {
@@ -122,6 +123,39 @@ Rect rectOf(const Point2& at, const Rect& extent, Align align) {
   return {at.x - shift * extent.width, at.y - extent.height / 2, extent.width, extent.height};
 }
 
+/// A tick of an axis and its number.
+struct AxisTick {
+  Point2 at, label;
+  std::string text;
+  Rect covered;
+  bool is_free = true;  ///< false: two axes meet there, and the other one has its number there
+};
+
+std::vector<AxisTick> ticksOf(const Canvas& canvas, const Style& style, const Projector& p, const Edge& edge,
+                              double scale, int count, const Point2& outward, Align align,
+                              const std::vector<Rect>& taken) {
+  const std::vector<double> values = roundTicks(component(p.box.lower_m, edge.axis) / scale,
+                                                component(p.box.upper_m, edge.axis) / scale, count);
+  const double step = values.size() > 1 ? values[1] - values[0] : 1;
+  std::vector<AxisTick> ticks;
+  for (const double value : values) {
+    AxisTick tick;
+    p.project(pointOf(edge, p.box, value * scale), tick.at);
+    tick.text = tickText(value, step);
+    const Rect extent = canvas.textBox(tick.text, style.small_px);
+    tick.label =
+        tick.at + outward * ((kTick + kTickToLabel) * style.unit + std::abs(outward.y) * extent.height * 0.4);
+    tick.covered = rectOf(tick.label, extent, align);
+    const double gap = kNumberGap * style.unit;
+    const Rect with_gap{tick.covered.x - gap, tick.covered.y, tick.covered.width + 2 * gap,
+                        tick.covered.height};
+    tick.is_free =
+        std::none_of(taken.begin(), taken.end(), [&](const Rect& other) { return overlap(with_gap, other); });
+    ticks.push_back(tick);
+  }
+  return ticks;
+}
+
 void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis, bool georeferenced,
               std::vector<Rect>& taken) {
   Edge edge;
@@ -134,27 +168,26 @@ void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis, 
   if (edge_px < 40 * style.unit) return;  // seen end on
   const Point2 outward = outwardOf(a, b, center);
   const AxisWords words = wordsOf(axis, georeferenced);
-  const double lowest = component(p.box.lower_m, axis) / words.scale;
-  const double highest = component(p.box.upper_m, axis) / words.scale;
-  const int count = std::max(2, static_cast<int>(edge_px / (kPixelsPerEdgeTick * style.unit)));
-  const std::vector<double> ticks = roundTicks(lowest, highest, count);
-  const double step = ticks.size() > 1 ? ticks[1] - ticks[0] : 1;
   const Align align = outward.x > 0.35 ? Align::left : (outward.x < -0.35 ? Align::right : Align::center);
+  const std::vector<AxisTick> ticks = [&] {
+    // One number alone would not give the scale.
+    const int count = std::max(2, static_cast<int>(edge_px / (kPixelsPerEdgeTick * style.unit)));
+    std::vector<AxisTick> of_axis;
+    for (int more = 0; more <= 3; ++more) {
+      of_axis = ticksOf(canvas, style, p, edge, words.scale, count + more, outward, align, taken);
+      const auto is_free = [](const AxisTick& tick) { return tick.is_free; };
+      if (std::count_if(of_axis.begin(), of_axis.end(), is_free) > 1) break;
+    }
+    return of_axis;
+  }();
   double widest = 0;
-  for (double value : ticks) {
-    Point2 at;
-    p.project(pointOf(edge, p.box, value * words.scale), at);
-    const std::string text = tickText(value, step);
-    const Rect extent = canvas.textBox(text, style.small_px);
-    widest = std::max(widest, std::abs(outward.x) * extent.width + std::abs(outward.y) * extent.height);
-    canvas.line(at, at + outward * (kTick * style.unit), style.textInk(0.8), 1.2 * style.unit);
-    const Point2 label =
-        at + outward * ((kTick + kTickToLabel) * style.unit + std::abs(outward.y) * extent.height * 0.4);
-    const Rect covered = rectOf(label, extent, align);
-    const auto hits = [&](const Rect& other) { return overlap(covered, other); };
-    if (std::any_of(taken.begin(), taken.end(), hits)) continue;  // two axes meet here
-    taken.push_back(covered);
-    canvas.textWithRim(text, label, style.small_px, style.textInk(0.92), style.rimInk(), align);
+  for (const AxisTick& tick : ticks) {
+    widest = std::max(widest,
+                      std::abs(outward.x) * tick.covered.width + std::abs(outward.y) * tick.covered.height);
+    canvas.line(tick.at, tick.at + outward * (kTick * style.unit), style.textInk(0.8), 1.2 * style.unit);
+    if (!tick.is_free) continue;
+    taken.push_back(tick.covered);
+    canvas.textWithRim(tick.text, tick.label, style.small_px, style.textInk(0.92), style.rimInk(), align);
   }
   double angle = std::atan2(b.y - a.y, b.x - a.x);
   if (angle > kPi / 2 + 0.01) angle -= kPi;
@@ -164,6 +197,12 @@ void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis, 
       (a + b) * 0.5 + outward * ((kTick + kTickToLabel + kTitleBeyondLabels) * style.unit + widest);
   canvas.textWithRim(words.title, middle, style.small_px, style.mutedInk(), style.rimInk(), Align::center,
                      Weight::normal, angle);
+  const Rect title = canvas.textBox(words.title, style.small_px);
+  const double across = std::abs(std::cos(angle)), along = std::abs(std::sin(angle));
+  const Rect covered{0, 0, across * title.width + along * title.height,
+                     along * title.width + across * title.height};
+  taken.push_back(
+      {middle.x - covered.width / 2, middle.y - covered.height / 2, covered.width, covered.height});
 }
 
 }  // namespace
@@ -193,11 +232,17 @@ void drawNearEdges(Canvas& canvas, const Style& style, const Projector& projecto
 void drawCompass(Canvas& canvas, const Style& style, const Camera& camera, const Point2& center,
                  double radius) {
   // Projection of a point of the ground plane, east and north in radii, by an orthographic camera with the
-  // same axes.
+  // same axes. A low camera sees the rose from somewhat above, so that its letters stay apart.
+  constexpr double kMinTilt = 0.42;
+  const double tilt = std::hypot(camera.up.x, camera.up.y);
+  Point2 up{camera.up.x, camera.up.y};
+  if (tilt < kMinTilt) {
+    const double ahead = std::hypot(camera.forward.x, camera.forward.y);
+    up = Point2{camera.forward.x, camera.forward.y} * ((camera.forward.z > 0 ? -kMinTilt : kMinTilt) / ahead);
+  }
   const auto at = [&](double east, double north) {
-    return center + Point2{east * camera.right.x + north * camera.right.y,
-                           -(east * camera.up.x + north * camera.up.y)} *
-                        radius;
+    return center +
+           Point2{east * camera.right.x + north * camera.right.y, -(east * up.x + north * up.y)} * radius;
   };
   std::vector<Point2> ring;
   for (int i = 0; i < 72; ++i)

@@ -1,173 +1,147 @@
-/// Markers of emitters and platforms: positions, beams and names.
+/// Markers of emitters and platforms: positions, beams and labels.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
-#include "emscape/base/units.h"
+#include "render/annotate/label_placement.h"
 #include "render/annotate/overlay_parts.h"
 
 namespace emscape::render {
 namespace {
 
-constexpr double kRadius = 8;         // of a symbol, at 1200 x 900
-constexpr double kBeamLength = 0.14;  // in diagonals of the drawn box
+// Lengths at 1200 x 900.
+constexpr double kRadius = 8;  // of a symbol
+constexpr double kBeamLength = 38;
+constexpr double kLabelGap = 5, kLabelPadding = 4;
 constexpr double kHiddenAlpha = 0.5;
-
-std::vector<Point2> turned(const std::vector<Point2>& shape, const Point2& center, double radius) {
-  std::vector<Point2> points;
-  for (const Point2& p : shape) points.push_back(center + p * radius);
-  return points;
-}
-
-/// Radar: disc with a dish's arc; transmitter: triangle; jammer: diamond; receiver: square; platform: small
-/// disc.
-void drawSymbol(Canvas& canvas, const Style& style, const Marker& marker, const Point2& at, double alpha) {
-  const double radius = kRadius * style.unit;
-  const Ink fill{colorOf(marker.kind), marker.active ? alpha : 0.15 * alpha};
-  const Ink line{marker.active ? parseColor("#10141b") : colorOf(marker.kind), alpha};
-  const double width = 1.6 * style.unit;
-  std::vector<Point2> shape;
-  switch (marker.kind) {
-    case MarkerKind::transmitter:
-      shape = {{0, -1.15}, {1.05, 0.75}, {-1.05, 0.75}};
-      break;
-    case MarkerKind::jammer:
-      shape = {{0, -1.2}, {1.2, 0}, {0, 1.2}, {-1.2, 0}};
-      break;
-    case MarkerKind::receiver:
-      shape = {{-0.85, -0.85}, {0.85, -0.85}, {0.85, 0.85}, {-0.85, 0.85}};
-      break;
-    case MarkerKind::radar:
-    case MarkerKind::platform: {
-      const double part = marker.kind == MarkerKind::radar ? 1.0 : 0.6;
-      canvas.disc(at, part * radius, fill);
-      canvas.circle(at, part * radius, line, width);
-      if (marker.kind == MarkerKind::radar) {
-        canvas.arc(at, 0.45 * radius, -kPi, 0, line, width);
-        canvas.line(at, at + Point2{0, 0.55 * radius}, line, width);
-      }
-      return;
-    }
-  }
-  const std::vector<Point2> points = turned(shape, at, radius);
-  canvas.polygon(points, fill);
-  canvas.outline(points, line, width, true);
-}
-
-void drawStem(Canvas& canvas, const Style& style, const Projector& p, const Marker& marker, const Point2& at,
-              double alpha) {
-  if (!marker.ground_m) return;
-  Point2 foot;
-  if (!p.project({marker.position_m.x, marker.position_m.y, *marker.ground_m}, foot)) return;
-  if (length(foot - at) < kRadius * style.unit) return;
-  canvas.line(at, foot, style.rimInk(0.5 * alpha), 3 * style.unit);
-  canvas.line(at, foot, {colorOf(marker.kind), 0.9 * alpha}, 1.2 * style.unit);
-  canvas.disc(foot, 2.5 * style.unit, {colorOf(marker.kind), alpha});
-}
-
-void drawBeam(Canvas& canvas, const Style& style, const Projector& p, const Marker& marker, const Point2& at,
-              double alpha, std::vector<Rect>& taken) {
-  if (!marker.beam || !marker.active) return;
-  const double reach_m = kBeamLength * p.box.drawnDiagonal_m();
-  const Vec3d drawn{marker.beam->x, marker.beam->y, marker.beam->z * p.box.vertical_exaggeration};
-  Point2 tip;
-  if (!p.project(marker.position_m + *marker.beam * (reach_m / length(drawn)), tip)) return;
-  const Point2 along = tip - at;
-  const double size = length(along);
-  if (size < 2 * kRadius * style.unit) return;  // towards the camera or away
-  const Ink ink{colorOf(marker.kind), 0.95 * alpha};
-  const Point2 forward = along * (1 / size);
-  const Point2 side{-forward.y, forward.x};
-  const double head = 9 * style.unit;
-  const Point2 neck = tip - forward * head;
-  for (double d = 0; d < size; d += head) {
-    const Point2 center = at + forward * d;
-    taken.push_back({center.x - head / 2, center.y - head / 2, head, head});
-  }
-  canvas.line(at, neck, style.rimInk(0.55 * alpha), 4 * style.unit);
-  canvas.line(at, neck, ink, 1.8 * style.unit);
-  canvas.polygon({tip, neck + side * (0.45 * head), neck - side * (0.45 * head)}, ink);
-}
-
-/// Tries positions for a name, best first: beside, above, below, then further out.
-Rect placeLabel(const Point2& at, const Rect& extent, double gap, ImageSize size,
-                const std::vector<Rect>& taken) {
-  Rect best{at.x + gap, at.y - extent.height / 2, extent.width, extent.height};
-  for (double reach : {1.0, 2.2, 3.6, 6.0}) {
-    const double d = gap * reach;
-    const std::array<Point2, 8> corners{{{at.x + d, at.y - extent.height / 2},
-                                         {at.x - d - extent.width, at.y - extent.height / 2},
-                                         {at.x - extent.width / 2, at.y - d - extent.height},
-                                         {at.x - extent.width / 2, at.y + d},
-                                         {at.x + 0.7 * d, at.y - 0.7 * d - extent.height},
-                                         {at.x - 0.7 * d - extent.width, at.y - 0.7 * d - extent.height},
-                                         {at.x + 0.7 * d, at.y + 0.7 * d},
-                                         {at.x - 0.7 * d - extent.width, at.y + 0.7 * d}}};
-    for (const Point2& corner : corners) {
-      const Rect candidate{corner.x, corner.y, extent.width, extent.height};
-      const bool inside = candidate.x >= 0 && candidate.y >= 0 &&
-                          candidate.x + candidate.width <= size.width &&
-                          candidate.y + candidate.height <= size.height;
-      const auto hits = [&](const Rect& other) { return overlap(candidate, other); };
-      if (inside && std::none_of(taken.begin(), taken.end(), hits)) return candidate;
-    }
-  }
-  return best;
-}
 
 struct PlacedMarker {
   const Marker* marker;
   Point2 at;
+  double radius;  ///< of the symbol
+  double depth;   ///< of the camera
   double alpha;
 };
 
-void drawLabel(Canvas& canvas, const Style& style, const PlacedMarker& placed, std::vector<Rect>& taken) {
-  if (placed.marker->label.empty()) return;
-  const std::string label = shortenedText(canvas, placed.marker->label, style.text_px, style.name_px);
-  Rect extent = canvas.textBox(label, style.text_px);
-  const double padding = 4 * style.unit;
-  extent.width += 2 * padding;
-  extent.height += padding;
-  const Rect rect = placeLabel(placed.at, extent, 1.6 * kRadius * style.unit, canvas.size(), taken);
-  taken.push_back(rect);
+void drawStem(Canvas& canvas, const Style& style, const Projector& p, const PlacedMarker& placed) {
+  const Marker& marker = *placed.marker;
+  Point2 foot;
+  if (!marker.ground_m) return;
+  if (!p.project({marker.position_m.x, marker.position_m.y, *marker.ground_m}, foot)) return;
+  if (length(foot - placed.at) < placed.radius) return;
+  canvas.line(placed.at, foot, style.rimInk(0.5 * placed.alpha), 3 * style.unit);
+  canvas.line(placed.at, foot, {colorOf(marker.kind, marker.side), 0.9 * placed.alpha}, 1.2 * style.unit);
+  canvas.disc(foot, 2.5 * style.unit, {colorOf(marker.kind, marker.side), placed.alpha});
+}
+
+/// A short arrow in the direction of the beam. Its length is in pixels, shorter only where the beam points
+/// towards the camera or away from it: it is not a range.
+void drawBeam(Canvas& canvas, const Style& style, const Projector& p, const PlacedMarker& placed) {
+  const Marker& marker = *placed.marker;
+  if (!marker.beam || !marker.active) return;
+  const double step_m = 1e-3 * p.box.drawnDiagonal_m();
+  const auto pixelsAlong = [&](const Vec3d& drawn) {
+    const Vec3d frame{drawn.x, drawn.y, drawn.z / p.box.vertical_exaggeration};
+    Point2 tip;
+    return p.project(marker.position_m + frame * (step_m / length(drawn)), tip) ? tip - placed.at : Point2{};
+  };
+  const Point2 along =
+      pixelsAlong({marker.beam->x, marker.beam->y, marker.beam->z * p.box.vertical_exaggeration});
+  const double across = length(pixelsAlong(p.camera.right));
+  const double foreshortening = across > 0 ? length(along) / across : 0;
+  if (foreshortening < 0.15) return;
+  const double head = 9 * style.unit;
+  const double size =
+      placed.radius + (kBeamLength - kRadius) * style.unit * std::clamp(foreshortening, 0.5, 1.0);
+  const Point2 forward = along * (1 / length(along));
+  const Point2 side{-forward.y, forward.x};
+  const Point2 tip = placed.at + forward * size, neck = tip - forward * head;
+  const Ink ink{colorOf(marker.kind, marker.side), 0.95 * placed.alpha};
+  canvas.line(placed.at, neck, style.rimInk(0.55 * placed.alpha), 4 * style.unit);
+  canvas.line(placed.at, neck, ink, 1.8 * style.unit);
+  canvas.polygon({tip, neck + side * (0.45 * head), neck - side * (0.45 * head)}, ink);
+}
+
+/// Emitters first, then receivers and platforms.
+int rankOf(const Marker& marker) {
+  if (marker.kind == MarkerKind::platform) return 3;
+  return marker.kind == MarkerKind::receiver ? 2 : 1;
+}
+
+/// Lines of a label, with their sizes.
+struct LabelText {
+  std::string name, detail;
+  double width = 0, height = 0;
+};
+
+LabelText textOf(const Canvas& canvas, const Style& style, const Marker& marker) {
+  LabelText text;
+  if (marker.label.empty()) return text;
+  text.name = shortenedText(canvas, marker.label, style.text_px, style.label_px);
+  const Rect name = canvas.textBox(text.name, style.text_px);
+  text.width = name.width;
+  text.height = name.height;
+  if (!marker.detail.empty()) {
+    text.detail = shortenedText(canvas, marker.detail, style.small_px, style.label_px);
+    const Rect detail = canvas.textBox(text.detail, style.small_px);
+    text.width = std::max(text.width, detail.width);
+    text.height += detail.height;
+  }
+  text.width += 2 * kLabelPadding * style.unit;
+  text.height += kLabelPadding * style.unit;
+  return text;
+}
+
+void drawLabel(Canvas& canvas, const Style& style, const PlacedMarker& placed, const LabelText& text,
+               const LabelPlace& place) {
+  const Rect& rect = place.rect;
+  const double padding = kLabelPadding * style.unit;
+  const double alpha = placed.marker->active ? placed.alpha : 0.6 * placed.alpha;
+  if (place.is_away) {
+    const Point2 end = nearestIn(rect, placed.at);
+    canvas.line(placed.at, end, style.rimInk(0.6 * placed.alpha), 3 * style.unit);
+    canvas.line(placed.at, end, style.mutedInk(0.9 * placed.alpha), style.unit);
+  }
   canvas.rectangle(rect, style.rimInk(0.62 * placed.alpha), 3 * style.unit);
-  canvas.text(label, {rect.x + padding, rect.y + rect.height / 2}, style.text_px,
-              style.textInk(placed.marker->active ? placed.alpha : 0.6 * placed.alpha));
+  double y = rect.y + padding / 2 + 0.6 * style.text_px;
+  canvas.text(text.name, {rect.x + padding, y}, style.text_px, style.textInk(alpha));
+  y += 0.6 * (style.text_px + style.small_px);
+  if (!text.detail.empty())
+    canvas.text(text.detail, {rect.x + padding, y}, style.small_px, style.mutedInk(alpha));
+}
+
+void drawLabels(Canvas& canvas, const Style& style, const std::vector<PlacedMarker>& placed,
+                const std::vector<Rect>& taken) {
+  std::vector<LabelText> texts;
+  std::vector<LabelRequest> requests;
+  for (const PlacedMarker& p : placed) {
+    const LabelText& text = texts.emplace_back(textOf(canvas, style, *p.marker));
+    requests.push_back(
+        {p.at, p.radius, text.width, text.height, rankOf(*p.marker), p.depth, p.marker->moves});
+  }
+  const auto places = placeLabels(requests, canvas.size(), kLabelGap * style.unit, taken);
+  for (std::size_t i = 0; i < placed.size(); ++i) {
+    if (places[i]) drawLabel(canvas, style, placed[i], texts[i], *places[i]);
+  }
 }
 
 }  // namespace
 
-Rgb colorOf(MarkerKind kind) {
-  switch (kind) {
-    case MarkerKind::radar:
-      return parseColor("#ffffff");
-    case MarkerKind::transmitter:
-      return parseColor("#9fe0ff");
-    case MarkerKind::jammer:
-      return parseColor("#ff6b6b");
-    case MarkerKind::receiver:
-      return parseColor("#ffd166");
-    case MarkerKind::platform:
-      break;
-  }
-  return parseColor("#d0d7de");
-}
-
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
-                 const std::vector<Marker>& markers, const HiddenTest& hidden, std::vector<Rect>& taken) {
+                 const std::vector<Marker>& markers, const HiddenTest& hidden,
+                 const std::vector<Rect>& taken) {
   std::vector<PlacedMarker> placed;
   for (const Marker& marker : markers) {
     Point2 at;
-    if (!projector.project(marker.position_m, at)) continue;
-    const double alpha = hidden && hidden(marker.position_m) ? kHiddenAlpha : 1.0;
-    placed.push_back({&marker, at, alpha});
-    const double reach = 1.3 * kRadius * style.unit;
-    taken.push_back({at.x - reach, at.y - reach, 2 * reach, 2 * reach});
+    if (!marker.is_shown || !projector.project(marker.position_m, at)) continue;
+    const double depth =
+        dot(projector.box.toDrawn(marker.position_m) - projector.camera.eye_m, projector.camera.forward);
+    placed.push_back({&marker, at, symbolSize(marker) * kRadius * style.unit, depth,
+                      hidden && hidden(marker.position_m) ? kHiddenAlpha : 1.0});
   }
-  for (const PlacedMarker& p : placed) drawStem(canvas, style, projector, *p.marker, p.at, p.alpha);
-  for (const PlacedMarker& p : placed) drawBeam(canvas, style, projector, *p.marker, p.at, p.alpha, taken);
-  for (const PlacedMarker& p : placed) drawSymbol(canvas, style, *p.marker, p.at, p.alpha);
-  for (const PlacedMarker& p : placed) drawLabel(canvas, style, p, taken);
+  for (const PlacedMarker& p : placed) drawStem(canvas, style, projector, p);
+  for (const PlacedMarker& p : placed) drawBeam(canvas, style, projector, p);
+  drawLabels(canvas, style, placed, taken);
+  for (const PlacedMarker& p : placed) drawMark(canvas, *p.marker, p.at, kRadius * style.unit, p.alpha);
 }
 
 }  // namespace emscape::render

@@ -13,7 +13,8 @@ struct Style {
   double unit = 1;  ///< pixels per unit of length at 1200 x 900
   double text_px = 15;
   double small_px = 12.5;
-  double name_px = 400;  ///< maximum width of names in the legend and at markers; longer ones are shortened
+  double name_px = 400;   ///< maximum width of names in the legend; longer ones are shortened
+  double label_px = 200;  ///< maximum width of labels
   Rgb background_top, background_bottom;
   Rgb text, muted, rim;
 
@@ -48,11 +49,23 @@ void drawLegend(Canvas& canvas, const Style& style, const Legend& legend);
 /// Tracks, within the sides of the box and above its bottom face.
 void drawTracks(Canvas& canvas, const Style& style, const Projector& projector,
                 const std::vector<Track>& tracks, const HiddenTest& hidden);
-/// Stems, beams, symbols and names. Names avoid `taken`.
+/// Stems, beams, symbols and labels. Labels avoid `taken`, as many as fit.
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
-                 const std::vector<Marker>& markers, const HiddenTest& hidden, std::vector<Rect>& taken);
+                 const std::vector<Marker>& markers, const HiddenTest& hidden,
+                 const std::vector<Rect>& taken);
 /// Colour of a symbol and of its parts.
 Rgb colorOf(MarkerKind kind);
+/// Radar: disc with a dish's arc; transmitter: triangle; jammer: diamond; receiver: square; platform: small
+/// disc.
+/// @param is_active  false: hollow  @param radius  pixels
+void drawSymbol(Canvas& canvas, MarkerKind kind, bool is_active, const Point2& at, double radius,
+                double alpha = 1);
+/// The symbol of a marker, with a frame if it has a side. @param radius  of one without a side (pixels)
+void drawMark(Canvas& canvas, const Marker& marker, const Point2& at, double radius, double alpha = 1);
+/// Size of that symbol; 1 is about a radius.
+double symbolSize(const Marker& marker);
+/// Colour of stems, beams and tracks: that of the side, else of the kind.
+Rgb colorOf(MarkerKind kind, Affiliation side);
 /// A compass rose on the ground in the camera's perspective, centred at a point.
 void drawCompass(Canvas& canvas, const Style& style, const Camera& camera, const Point2& center,
                  double radius);

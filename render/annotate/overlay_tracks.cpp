@@ -72,7 +72,7 @@ class TrackLine {
     const double width = (is_travelled_ ? 2.6 : 1.8) * style_.unit;
     if (line_.size() > 1) {
       canvas_.outline(line_, style_.rimInk(0.5 * alpha), width + 1.6 * style_.unit, false);
-      canvas_.outline(line_, {colorOf(track_.kind), alpha}, width, false);
+      canvas_.outline(line_, {colorOf(track_.kind, track_.side), alpha}, width, false);
     }
     line_.clear();
   }

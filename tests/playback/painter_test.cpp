@@ -133,6 +133,7 @@ TEST(Painter, LabelsOfEmittersAreNoneNamesOrAll) {
   Frame frame = source.frame(0);
   render::Marker& marker = frame.markers.emplace_back();
   marker.label = "radar";
+  marker.detail = "radar 3 GHz, 20 m above ground";
   marker.beam = Vec3d{0, 1, 0};
   marker.ground_m = 0;
   frame.tracks.resize(1);
@@ -140,18 +141,41 @@ TEST(Painter, LabelsOfEmittersAreNoneNamesOrAll) {
   view.size = {160, 120};
   Painter painter(view, source, {});
   painter.setFrame(frame);
-  EXPECT_EQ(painter.annotations().markers[0].label, "radar");
-  EXPECT_TRUE(painter.annotations().markers[0].beam);
-  EXPECT_EQ(painter.annotations().tracks.size(), 1U);
-  for (const Labels labels : {Labels::names, Labels::off}) {
+  for (const Labels labels : {Labels::names, Labels::off, Labels::all}) {
     view.labels = labels;
     painter.setScenery(view);
-    ASSERT_EQ(painter.annotations().markers.size(), 1U) << "the symbol stays";
-    EXPECT_EQ(painter.annotations().markers[0].label, labels == Labels::names ? "radar" : "");
-    EXPECT_FALSE(painter.annotations().markers[0].beam);
-    EXPECT_FALSE(painter.annotations().markers[0].ground_m);
-    EXPECT_TRUE(painter.annotations().tracks.empty());
+    const std::vector<render::Marker>& markers = painter.annotations().markers;
+    ASSERT_EQ(markers.size(), 1U) << "the symbol stays";
+    EXPECT_EQ(markers[0].label, labels == Labels::off ? "" : "radar");
+    EXPECT_EQ(markers[0].detail.empty(), labels != Labels::all);
+    EXPECT_TRUE(markers[0].beam);
+    EXPECT_EQ(painter.annotations().tracks.size(), 1U);
   }
+}
+
+TEST(Painter, SidesAreFiltered) {
+  MadeFrames source(seconds(1));
+  Frame frame = source.frame(0);
+  for (const render::Affiliation side : {render::Affiliation::none, render::Affiliation::friendly,
+                                         render::Affiliation::hostile, render::Affiliation::unknown}) {
+    frame.markers.emplace_back().side = side;
+    frame.tracks.emplace_back().side = side;
+  }
+  ViewState view;
+  view.size = {160, 120};
+  Painter painter(view, source, {});
+  painter.setFrame(frame);
+  const auto shown = [&] {
+    std::vector<bool> of_marker;
+    for (const render::Marker& marker : painter.annotations().markers) of_marker.push_back(marker.is_shown);
+    return of_marker;
+  };
+  EXPECT_THAT(shown(), testing::ElementsAre(true, true, true, true));
+  view.sides = ShownSides::hostile;
+  painter.setScenery(view);
+  EXPECT_THAT(shown(), testing::ElementsAre(false, false, true, false));
+  ASSERT_EQ(painter.annotations().tracks.size(), 1U);
+  EXPECT_EQ(painter.annotations().tracks[0].side, render::Affiliation::hostile);
 }
 
 TEST(Painter, EmptyIsosurfaceIsAnErrorOrAWarning) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "emscape/playback/frames/inputs.h"
@@ -19,8 +20,10 @@ std::shared_ptr<const render::HeightField> heightFieldOf(const scenario::Terrain
                                                          const volume::Grid& grid);
 
 render::MarkerKind markerKindOf(scenario::EmitterKind kind);
+render::Affiliation affiliationOf(const std::optional<scenario::Side>& side);
 
-/// The emitters of an instant, in the grid's frame.
+/// The emitters of an instant, in the scenario's order, and then the platforms that have a side but no
+/// emitter, in the grid's frame.
 std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const scenario::Terrain* terrain,
                                       const volume::Grid& grid);
 

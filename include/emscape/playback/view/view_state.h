@@ -36,14 +36,20 @@ struct CellStyle {
   render::ProjectionOptions projection;
 };
 
-/// What is drawn of an emitter beside its symbol.
+/// Labels of emitters and platforms.
 enum class Labels {
   off,
   names,
-  all  ///< name, beam, stem to the ground, and track
+  all  ///< also kind, frequency and height
 };
 constexpr auto namesOf(Labels) {
   return std::array{"off", "names", "all"};
+}
+
+/// Sides of the emitters and platforms that are drawn.
+enum class ShownSides { all, friendly, hostile, neutral, unknown };
+constexpr auto namesOf(ShownSides) {
+  return std::array{"all", "friend", "hostile", "neutral", "unknown"};
 }
 
 /// A stored camera, and a time if that is stored too.
@@ -66,7 +72,8 @@ struct ViewState : FieldChoice {
   render::Theme theme = render::Theme::dark;
   bool show_terrain = true;
   bool show_emitters = true;
-  Labels labels = Labels::all;
+  Labels labels = Labels::names;
+  ShownSides sides = ShownSides::all;
   render::ImageSize size{1280, 720};
   /// Pixels that are cast while the picture changes; none: as many as time allows.
   std::optional<render::Pattern> pattern;

@@ -18,11 +18,19 @@ namespace emscape::render {
 /// Symbol of a marker.
 enum class MarkerKind { radar, transmitter, jammer, receiver, platform };
 
+/// Side of a marker; none: the symbol has the colour of its kind and no frame.
+enum class Affiliation { none, friendly, hostile, neutral, unknown };
+
 /// An object with a position and a name.
 struct Marker {
   Vec3d position_m;  ///< frame metres
   std::string label;
+  std::string detail;  ///< a second line of the label, small; may be empty
   MarkerKind kind = MarkerKind::platform;
+  Affiliation side = Affiliation::none;
+  std::string sidc;                ///< MIL-STD-2525D or APP-6D, of its icon; empty: that of its kind
+  bool moves = false;              ///< labels of fixed objects keep their places beside moving ones
+  bool is_shown = true;            ///< false: neither drawn nor under the mouse
   bool active = true;              ///< false: drawn hollow
   std::optional<Vec3d> beam;       ///< unit vector east, north, up of the beam's axis (not exaggerated)
   std::optional<double> ground_m;  ///< height of the ground below it (frame z), at which the stem ends
@@ -34,6 +42,7 @@ struct Track {
   std::vector<Vec3d> points_m;  ///< frame metres, in the order of time
   /// Current position: 2.5 is half way from points_m[2] to points_m[3]. The part before it is drawn brighter.
   double travelled = 0;
+  Affiliation side = Affiliation::none;
 };
 
 enum class Theme { dark, light };

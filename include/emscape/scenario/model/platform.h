@@ -1,6 +1,7 @@
 /// Platforms: a fixed site or a track.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -36,14 +37,24 @@ struct TrackPoint {
   std::optional<double> roll_deg;
 };
 
+/// Side of a platform, as the standard identities of MIL-STD-2525 and APP-6.
+enum class Side { friendly, hostile, neutral, unknown };
+constexpr auto namesOf(Side) {
+  return std::array{"friend", "hostile", "neutral", "unknown"};
+}
+
 struct Platform {
   std::string name;
   /// One point: a fixed site. Several: strictly increasing t_s; outside the track's time the platform stays
   /// at its ends.
   std::vector<TrackPoint> track;
-  Attitude attitude;        ///< of a fixed site
-  std::string track_file;   ///< empty for a fixed site
-  SourceLocation location;  ///< in the scenario
+  Attitude attitude;         ///< of a fixed site
+  std::string track_file;    ///< empty for a fixed site
+  std::optional<Side> side;  ///< as given, else that of the symbol
+  std::string sidc;          ///< of its symbol, 20 or 30 digits (MIL-STD-2525D, APP-6D); may be empty
+  SourceLocation location;   ///< in the scenario
+
+  bool moves() const { return track.size() > 1; }
 };
 
 /// Index of the first point of a track's leg at t_s: the leg that begins at or before t_s; before the track

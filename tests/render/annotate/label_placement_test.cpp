@@ -1,0 +1,76 @@
+#include "render/annotate/label_placement.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace emscape::render {
+namespace {
+
+constexpr ImageSize kSize{1200, 900};
+constexpr double kGap = 5;
+
+std::vector<LabelRequest> crowd(int count, bool moves, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> x(100, 1100), y(100, 800), width(40, 220);
+  std::vector<LabelRequest> requests;
+  for (int i = 0; i < count; ++i)
+    requests.push_back({{x(random), y(random)}, 9, width(random), 22, 1, double(i), moves});
+  return requests;
+}
+
+TEST(LabelPlacement, LabelsOfManyMarkersDoNotOverlapAndLeaveThePictureFree) {
+  const std::vector<Rect> taken{{0, 0, 1200, 80}, {1000, 0, 200, 900}};
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    std::vector<LabelRequest> requests = crowd(250, false, seed);
+    for (const LabelRequest& request : crowd(50, true, seed + 10)) requests.push_back(request);
+    const auto places = placeLabels(requests, kSize, kGap, taken);
+    double covered = 0;
+    int count = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (!places[i]) continue;
+      const Rect& rect = places[i]->rect;
+      ++count;
+      covered += rect.width * rect.height;
+      for (std::size_t j = 0; j < i; ++j) EXPECT_FALSE(places[j] && overlap(rect, places[j]->rect));
+      for (const Rect& other : taken) EXPECT_FALSE(overlap(rect, other));
+      EXPECT_GE(rect.x, 0);
+      EXPECT_LE(rect.y + rect.height, kSize.height);
+      const double away = length(nearestIn(rect, requests[i].at) - requests[i].at);
+      EXPECT_EQ(places[i]->is_away, away > requests[i].radius + 2 * kGap);
+    }
+    EXPECT_LE(covered, 0.1 * static_cast<double>(kSize.count()));
+    EXPECT_GT(count, 20);
+  }
+}
+
+TEST(LabelPlacement, MovingObjectsDoNotMoveLabelsOfFixedOnes) {
+  std::vector<LabelRequest> requests = crowd(40, false, 5);
+  const std::size_t fixed = requests.size();
+  const auto alone = placeLabels(requests, kSize, kGap, {});
+  for (const unsigned seed : {6U, 7U}) {
+    requests.resize(fixed);
+    for (const LabelRequest& request : crowd(30, true, seed)) requests.push_back(request);
+    const auto places = placeLabels(requests, kSize, kGap, {});
+    for (std::size_t i = 0; i < fixed; ++i) {
+      ASSERT_EQ(places[i].has_value(), alone[i].has_value());
+      if (!places[i]) continue;
+      EXPECT_EQ(places[i]->rect.x, alone[i]->rect.x);
+      EXPECT_EQ(places[i]->rect.y, alone[i]->rect.y);
+    }
+  }
+}
+
+TEST(LabelPlacement, TheFirstRankAndTheNearestComeFirst) {
+  // All at one point: only some places are free.
+  std::vector<LabelRequest> requests(60, {{600, 450}, 9, 300, 60, 1, 0, false});
+  for (std::size_t i = 0; i < requests.size(); ++i) requests[i].depth = static_cast<double>(60 - i);
+  requests[0].rank = 0;
+  const auto places = placeLabels(requests, kSize, kGap, {});
+  ASSERT_TRUE(places[0] && places[59]);
+  EXPECT_FALSE(places[0]->is_away);
+  EXPECT_FALSE(places[1]);
+}
+
+}  // namespace
+}  // namespace emscape::render
