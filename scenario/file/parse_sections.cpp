@@ -273,10 +273,66 @@ ScanSpec parseScan(const Section& section, bool steers_electronically, ParseCont
   return scan;
 }
 
+namespace {
+
+/// Side of a symbol, its 4th digit. @return none if the digit is that of no side
+std::optional<Side> sideOfSymbol(const std::string& sidc) {
+  switch (sidc[3]) {
+    case '0':  // pending
+    case '1':
+      return Side::unknown;
+    case '2':  // assumed friend
+    case '3':
+      return Side::friendly;
+    case '4':
+      return Side::neutral;
+    case '5':  // suspect
+    case '6':
+      return Side::hostile;
+    default:
+      return std::nullopt;
+  }
+}
+
+void parseSymbol(const Section& section, Platform& platform, ParseContext& context) {
+  if (section.has("side")) platform.side = section.choice<Side>("side");
+  if (!section.has("sidc")) return;
+  const std::string sidc = section.text("sidc");
+  const bool has_digits = sidc.find_first_not_of("0123456789") == std::string::npos;
+  if (!has_digits || (sidc.size() != 20 && sidc.size() != 30)) {
+    context.problems.addError(
+        section.locationOf("sidc"),
+        fmt::format(
+            "'sidc' is '{}': expected 20 or 30 digits, as MIL-STD-2525D and APP-6D have them, such as "
+            "\"10031500002203000000\" for a friendly radar. For a frame without an icon, give 'side' instead",
+            sidc));
+    return;
+  }
+  const std::optional<Side> side = sideOfSymbol(sidc);
+  if (!side) {
+    context.problems.addError(
+        section.locationOf("sidc"),
+        fmt::format("the 4th digit of 'sidc' is {}: expected 0 or 1 (unknown), 2 or 3 (friend), 4 "
+                    "(neutral), 5 or 6 (hostile)",
+                    sidc[3]));
+  } else if (platform.side && *platform.side != *side) {
+    context.problems.addError(
+        section.locationOf("side"),
+        fmt::format("'side' is {}, but the 4th digit of 'sidc', {}, is that of {}: remove 'side', "
+                    "or change the digit",
+                    toString(*platform.side), sidc[3], toString(*side)));
+  }
+  platform.side = side;
+  platform.sidc = sidc;
+}
+
+}  // namespace
+
 Platform parsePlatform(const Section& section, ParseContext& context) {
   Platform platform;
   platform.name = section.text("name");
   platform.location = section.location();
+  parseSymbol(section, platform, context);
   if (section.has("track")) {
     const Section track = section.section("track");
     platform.track = trackOf(track, context);

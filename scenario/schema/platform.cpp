@@ -1,4 +1,6 @@
 // Section of a platform, and the row of a track file.
+#include "emscape/scenario/model/platform.h"
+
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"
 
@@ -20,6 +22,8 @@ KeySpec heightAglKey() {
   return optional("height_agl_m", kHeightAboveGround,
                   "above the ground; above mean sea level without terrain");
 }
+
+const ValueSpec kSymbolCode = document::spec::textOf(document::ValueType::text, 30);
 
 const ObjectSpec& positionSpec() {
   static const ObjectSpec spec{"position",
@@ -76,6 +80,9 @@ const ObjectSpec& platformSpec() {
           optional("position", object(positionSpec()), "of a fixed site"),
           optional("attitude", object(attitudeSpec()), "of a fixed site; level and north by default"),
           optional("track", object(trackSpec()), "of a moving platform"),
+          optional("side", choiceOf<Side>(), "colour and frame of its symbol; by default that of `sidc`"),
+          optional("sidc", kSymbolCode,
+                   "symbol, 20 or 30 digits of MIL-STD-2525D or APP-6D, in quotes: \"10031500002203000000\""),
       },
       {{"position", "track"}},
       {{"attitude", "position"}}};

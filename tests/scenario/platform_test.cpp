@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "emscape/base/units.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "tests/scenario/scenario_files.h"
 
 namespace emscape::scenario {
 namespace {
@@ -130,6 +132,27 @@ TEST(Platform, KeepsLastCourseWhileStationary) {
   EXPECT_EQ(*pointAt(moving({point(0, 5, 5, 0), point(1, 5, 5, 9)}), 0.5).heading_deg, 0)
       << "no course at all";
   EXPECT_NEAR(*pointAt(hover, 0.5).position.height_msl_m, 2.5, 1e-12) << "it still climbs";
+}
+
+TEST(Platform, HasTheSideOfItsSymbol) {
+  const test::TemporaryFolder folder;
+  const auto platformWith = [&](const std::string& keys) {
+    return parseScenario(folder.write("sides.yaml", R"(schema_version: 1
+name: sides
+region: {origin: {latitude_deg: 50, longitude_deg: 8}, size_m: [10000, 10000, 1000], dims: [10, 10, 10]}
+platforms:
+  - {name: mast, position: {latitude_deg: 50, longitude_deg: 8, height_agl_m: 5}, )" +
+                                                        keys + R"(}
+emitters:
+  - {name: beacon, platform: mast, kind: transmitter, frequency_hz: 1.0e9, power_w: 1, antenna: {pattern: isotropic}}
+)"))
+        .scenario->platforms.at(0);
+  };
+  EXPECT_EQ(platformWith("side: neutral").side, Side::neutral);
+  EXPECT_EQ(platformWith(R"(sidc: "10031500002203000000")").side, Side::friendly);
+  EXPECT_EQ(platformWith(R"(sidc: "10051500002203000000")").side, Side::hostile) << "suspect";
+  EXPECT_EQ(platformWith(R"(sidc: "10001500002203000000")").side, Side::unknown) << "pending";
+  EXPECT_EQ(platformWith(R"(side: friend, sidc: "10021500002203000000")").sidc, "10021500002203000000");
 }
 
 }  // namespace
