@@ -17,6 +17,7 @@
 #include <mutex>
 #include <utility>
 
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/theme.h"
 #include "emscape/base/error.h"
 
@@ -25,6 +26,8 @@ namespace {
 
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr float kFont_px = 14.5F;
+constexpr ImWchar kMissing = 0x25A1;  // a box
+constexpr int kAtlasWidth = 2048;
 
 std::string last_error;
 std::mutex alive_mutex;
@@ -220,19 +223,22 @@ void Window::applyStyle() {
   style_changed_ = false;
   ImGuiIO& io = ImGui::GetIO();
   ImGui::GetStyle() = styleOf(theme_, static_cast<float>(scale_));
-  static const ImWchar kGlyphs[] = {0x20,   0xFF,   0x370,  0x3FF,  0x2010, 0x2044, 0x2070, 0x209F, 0x2190,
-                                    0x21FF, 0x2200, 0x22FF, 0x2300, 0x23FF, 0x25A0, 0x25FF, 0};
   io.Fonts->Clear();
   const float size_px = std::max(8.0F, std::round(kFont_px * static_cast<float>(scale_)));
   std::error_code ignored;
+  ImFont* font = nullptr;
   if (std::filesystem::exists(kFont, ignored)) {
-    io.Fonts->AddFontFromFileTTF(kFont, size_px, nullptr, kGlyphs);
+    font = io.Fonts->AddFontFromFileTTF(kFont, size_px, nullptr, Glyphs::ranges());
   } else {
     ImFontConfig config;
     config.SizePixels = size_px;
-    io.Fonts->AddFontDefault(&config);
+    font = io.Fonts->AddFontDefault(&config);
   }
+  font->FallbackChar = kMissing;
+  io.Fonts->TexDesiredWidth = kAtlasWidth;
+  Glyphs::ofWindow().addTo(*io.Fonts, font, size_px);
   io.Fonts->Build();
+  Glyphs::ofWindow().drawInto(*io.Fonts);
   ImGui_ImplOpenGL3_DestroyFontsTexture();
   ImGui_ImplOpenGL3_CreateFontsTexture();
 }
@@ -245,6 +251,7 @@ void Window::forward(const InputEvent& event) {
       setModifiers(event.modifiers);  // the backend knows only those whose keys it has seen
       break;
     case InputEvent::Kind::text:
+      Glyphs::ofWindow().need(static_cast<char32_t>(event.code));
       ImGui_ImplGlfw_CharCallback(window_, static_cast<unsigned>(event.code));
       break;
     case InputEvent::Kind::button:
@@ -264,7 +271,7 @@ void Window::forward(const InputEvent& event) {
 }
 
 std::vector<InputEvent> Window::beginFrame() {
-  if (style_changed_) applyStyle();
+  if (style_changed_ || Glyphs::ofWindow().hasNew()) applyStyle();
   std::vector<InputEvent> events = input_.takeFrame(ImGui::GetIO().WantTextInput);
   for (const InputEvent& event : events) forward(event);
   ImGui_ImplOpenGL3_NewFrame();
@@ -282,6 +289,7 @@ void Window::endFrame() {
   const render::ImageSize size = framebufferSize();
   glViewport(0, 0, size.width, size.height);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  if (Glyphs::ofWindow().hasNew()) dirty_ = true;  // drawn as boxes in this frame
 }
 
 void Window::dropFrame() {

@@ -89,7 +89,7 @@ void drawEntries(PanelContext& context) {
     ImGui::PopID();
   }
   if (!browser.error().empty()) {
-    ImGui::TextColored(errorColor(session.theme()), "%s", browser.error().c_str());
+    ImGui::TextColored(errorColor(session.theme()), "%s", drawable(browser.error()).c_str());
   } else if (entries.empty()) {
     ImGui::TextDisabled(browser.reading() ? "reading ..." : "nothing here that can be opened");
   }
@@ -100,7 +100,7 @@ void drawPathBar(PanelContext& context) {
   if (ImGui::Button("Up")) browser.goUp();
   ImGui::SameLine();
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(browser.folder().c_str());
+  ImGui::TextUnformatted(drawable(browser.folder()).c_str());
 }
 
 /// Draws the path field and its button. The field has the focus while the dialog has it.

@@ -4,8 +4,11 @@
 
 #include <imgui.h>
 
+#include <algorithm>
 #include <functional>
 #include <string>
+
+#include "apps/view/panels/glyphs.h"
 
 namespace emscape::view {
 
@@ -14,12 +17,21 @@ inline void pushNameId(const std::string& name) {
   ImGui::PushID(static_cast<int>(std::hash<std::string>()(name)));
 }
 
-/// Text in a control of one line.
+/// As much of a text as fits into a width, with an ellipsis if that is not all.
+inline std::string shortened(const std::string& text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+  const float room = width - ImGui::CalcTextSize("…").x;
+  const char* end = nullptr;
+  ImGui::GetFont()->CalcTextSizeA(ImGui::GetFontSize(), std::max(room, 0.0F), 0, text.c_str(), nullptr, &end);
+  return text.substr(0, static_cast<std::size_t>(end - text.c_str())) + "…";
+}
+
+/// Text in a control of one line, shortened where the control ends.
 /// @param at     upper left corner of the text
-/// @param right  end of the control; the text is clipped there
+/// @param right  end of the control
 inline void drawName(ImDrawList& list, const std::string& name, const ImVec2& at, float right) {
   list.PushClipRect(at, {right, at.y + ImGui::GetTextLineHeight()}, true);
-  list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), name.c_str());
+  list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), shortened(drawable(name), right - at.x).c_str());
   list.PopClipRect();
 }
 
@@ -27,7 +39,7 @@ inline void drawName(ImDrawList& list, const std::string& name, const ImVec2& at
 inline bool selectableName(const std::string& name, bool is_selected, ImGuiSelectableFlags flags = 0) {
   const bool is_chosen = ImGui::Selectable("##name", is_selected, flags);
   ImGui::SameLine(0, 0);
-  ImGui::TextUnformatted(name.c_str());
+  ImGui::TextUnformatted(drawable(name).c_str());
   return is_chosen;
 }
 

@@ -218,14 +218,14 @@ void drawStatusBar(PanelContext& context, const Area& area) {
     const float room = right_x - ImGui::GetCursorPosX() - 12 * s;
     const std::string left = statusText(session, room);
     if (ImGui::CalcTextSize(left.c_str()).x <= room) {
-      ImGui::TextUnformatted(left.c_str());
+      ImGui::TextUnformatted(drawable(left).c_str());
       ImGui::SameLine();
     }
     ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), right_x));
     if (status.shown_s == status.asked_s) {
-      ImGui::TextUnformatted(right.c_str());
+      ImGui::TextUnformatted(drawable(right).c_str());
     } else {
-      ImGui::TextColored(stateColor(render::ControllerState::busy), "%s", right.c_str());
+      ImGui::TextColored(stateColor(render::ControllerState::busy), "%s", drawable(right).c_str());
     }
   }
   ImGui::End();
@@ -256,7 +256,7 @@ void drawNotice(PanelContext& context, const Area& picture) {
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoNav);
   ImGui::PushStyleColor(ImGuiCol_Text, color);
   ImGui::PushTextWrapPos(wrap + 16 * s);
-  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextUnformatted(drawable(text).c_str());
   ImGui::PopTextWrapPos();
   ImGui::PopStyleColor();
   ImGui::End();
@@ -288,19 +288,19 @@ void drawHelp(PanelContext& context) {
       for (const std::string& menu : menuNames()) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();
-        ImGui::TextColored(accentColor(context.session.theme()), "%s", menu.c_str());
+        ImGui::TextColored(accentColor(context.session.theme()), "%s", drawable(menu).c_str());
         for (const Action& action : actions()) {
           if (menu != action.menu) continue;
           std::string keys;
           for (const KeyChord& chord : chordsOf(action)) keys += (keys.empty() ? "" : ", ") + toString(chord);
           ImGui::TableNextRow();
           ImGui::TableNextColumn();
-          ImGui::TextWrapped("%s", keys.c_str());
+          ImGui::TextWrapped("%s", drawable(keys).c_str());
           ImGui::TableNextColumn();
           ImGui::TextWrapped("%s", action.name);
           ImGui::TableNextColumn();
           ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
-          ImGui::TextWrapped("%s", action.command_line.c_str());
+          ImGui::TextWrapped("%s", drawable(action.command_line).c_str());
           ImGui::PopStyleColor();
         }
       }

@@ -97,6 +97,15 @@ bool isGiven(const ParameterGroup& group) {
                      [](const Parameter& parameter) { return parameter.is_given; });
 }
 
+/// Covers the text of a field that is not edited, if Dear ImGui cannot draw it.
+void drawOverField(const std::string& text, const ImVec2& at) {
+  if (ImGui::IsItemActive() || drawable(text) == text) return;
+  const ImVec2 padding = ImGui::GetStyle().FramePadding, end = ImGui::GetItemRectMax();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled({at.x + 1, at.y + 1}, {end.x - 1, end.y - 1}, ImGui::GetColorU32(ImGuiCol_FrameBg));
+  drawName(list, text, {at.x + padding.x, at.y + padding.y}, end.x - padding.x);
+}
+
 }  // namespace
 
 bool ParameterRows::begin(const char* id) {
@@ -116,11 +125,11 @@ void ParameterRows::label(const std::string& name, const std::string& tooltip, b
   ImGui::AlignTextToFramePadding();
   const ImVec4 color =
       is_edited ? accentColor(context_.session.theme()) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
-  ImGui::TextColored(color, "%s%s", name.c_str(), is_edited ? " •" : "");
+  ImGui::TextColored(color, "%s%s", drawable(name).c_str(), is_edited ? " •" : "");
   if (ImGui::IsItemHovered()) {
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(360 * context_.scale);
-    ImGui::TextUnformatted(tooltip.c_str());
+    ImGui::TextUnformatted(drawable(tooltip).c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
   }
@@ -227,7 +236,10 @@ std::optional<std::string> ParameterRows::drawField(const Parameter& parameter, 
                                                     const char* hint) {
   std::array<char, 1024> text{};
   std::strncpy(text.data(), shown.c_str(), text.size() - 1);
+  Glyphs::ofWindow().need(shown);
+  const ImVec2 at = ImGui::GetCursorScreenPos();
   ImGui::InputTextWithHint("##value", hint, text.data(), text.size());
+  drawOverField(shown, at);
   const std::optional<std::string> typed = takeTyped(parameter.path, true, text.data());
   return typed == shown ? std::nullopt : typed;
 }

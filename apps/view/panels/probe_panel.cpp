@@ -35,9 +35,9 @@ class Table {
     if (!open_) return;
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextColored(muted_, "%s", name.c_str());
+    ImGui::TextColored(muted_, "%s", drawable(name).c_str());
     ImGui::TableNextColumn();
-    ImGui::TextWrapped("%s", text.c_str());
+    ImGui::TextWrapped("%s", drawable(text).c_str());
   }
 
  private:
@@ -77,8 +77,8 @@ void drawTerms(const emfield::PathBudget& budget, render::Theme theme, float s) 
         (term.unit.empty() || std::isinf(term.value) ? "" : " " + render::unitText(term.unit));
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextWrapped("%s%s", is_sum ? "= " : "", term.label.c_str());
-    if (!term.note.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", term.note.c_str());
+    ImGui::TextWrapped("%s%s", is_sum ? "= " : "", drawable(term.label).c_str());
+    if (!term.note.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", drawable(term.note).c_str());
     ImGui::TableNextColumn();
     const float free = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(value.c_str()).x;
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(free, 0.0F));
@@ -103,12 +103,12 @@ void drawObstacles(const emfield::PathBudget& budget, render::Theme theme, float
 void drawPath(PanelContext& context, const emfield::PathBudget& budget) {
   const render::Theme theme = context.session.theme();
   const float s = context.scale;
-  ImGui::TextWrapped("%s", budget.verdict.c_str());
+  ImGui::TextWrapped("%s", drawable(budget.verdict).c_str());
   drawPathPlot(budget, {ImGui::GetContentRegionAvail().x, 150 * s}, theme, s);
   drawTerms(budget, theme, s);
   ImGui::TextDisabled("%s:", toString(budget.model));
   ImGui::SameLine();
-  ImGui::TextWrapped("%s", budget.excess.why.c_str());
+  ImGui::TextWrapped("%s", drawable(budget.excess.why).c_str());
   drawObstacles(budget, theme, s);
   {
     const Table table("geometry", 96 * s, theme);
@@ -117,7 +117,7 @@ void drawPath(PanelContext& context, const emfield::PathBudget& budget) {
   for (const std::string& warning : budget.warnings) {
     ImGui::TextColored(stateColor(render::ControllerState::busy), "Warning:");
     ImGui::SameLine();
-    ImGui::TextWrapped("%s", warning.c_str());
+    ImGui::TextWrapped("%s", drawable(warning).c_str());
   }
   if (ImGui::SmallButton("copy as command")) {
     context.session.perform({"copy_profile", {{"emitter", budget.emitter}}});
@@ -142,10 +142,10 @@ void drawEmitters(PanelContext& context, const ProbeResult& result) {
           {high.x - text.x - 8 * context.scale, (low.y + high.y - text.y) / 2},
           ImGui::ColorConvertFloat4ToU32(accentColor(context.session.theme())), value.c_str());
     } else if (!is_open) {
-      ImGui::TextWrapped("%s", value.c_str());
+      ImGui::TextWrapped("%s", drawable(value).c_str());
     }
     if (is_open && emitter.budget) drawPath(context, *emitter.budget);
-    if (is_open && !emitter.budget) ImGui::TextWrapped("%s", emitter.refusal.c_str());
+    if (is_open && !emitter.budget) ImGui::TextWrapped("%s", drawable(emitter.refusal).c_str());
     ImGui::PopID();
   }
   if (shown < result.contributions.size()) {
@@ -160,11 +160,11 @@ void drawReading(PanelContext& context, const ProbeResult& result) {
   ImGui::SetWindowFontScale(1.25F);
   ImGui::PushStyleColor(ImGuiCol_Text,
                         is_value ? accentColor(theme) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
-  ImGui::TextWrapped("%s", render::unitText(reading.text).c_str());
+  ImGui::TextWrapped("%s", drawable(render::unitText(reading.text)).c_str());
   ImGui::PopStyleColor();
   ImGui::SetWindowFontScale(1);
   const std::string& unit = context.session.picture()->info().unit;
-  ImGui::TextDisabled("%s", render::quantityTitle(result.quantity, unit).c_str());
+  ImGui::TextDisabled("%s", drawable(render::quantityTitle(result.quantity, unit)).c_str());
   drawPlace(result, theme, context.scale);
   if (reading.emitters.empty()) return;
   ImGui::Spacing();

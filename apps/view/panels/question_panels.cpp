@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 
@@ -85,7 +86,7 @@ void drawChangedFiles(PanelContext& context, const Area& picture) {
                ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoDecoration |
                    ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoFocusOnAppearing);
   ImGui::AlignTextToFramePadding();
-  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextUnformatted(drawable(text).c_str());
   ImGui::SameLine(0, 16 * s);
   if (ImGui::Button("Reload (F5)")) perform(context, R"({"do":"reload"})");
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("Edits that still apply are kept");

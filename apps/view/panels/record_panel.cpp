@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 
@@ -22,7 +23,7 @@ void drawProgress(PanelContext& context, const Area& picture) {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_NoFocusOnAppearing | ImGuiWindowFlags_NoMove |
                    ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::TextUnformatted(("recording " + progress.output).c_str());
+  ImGui::TextUnformatted(drawable(("recording " + progress.output)).c_str());
   const float part =
       progress.total > 0 ? static_cast<float>(progress.pictures) / static_cast<float>(progress.total) : 0;
   const std::string text =

@@ -128,7 +128,7 @@ void drawBody(PanelContext& context, PanelState& state, const Section& section) 
     if (section.path == "output") drawQuantity(context, rows, *state.scenario);
     rows.draw(state.groupAt(section.path));
   } catch (const Error& error) {
-    ImGui::TextWrapped("%s", error.message().c_str());
+    ImGui::TextWrapped("%s", drawable(error.message()).c_str());
   }
   ImGui::PopID();
 }

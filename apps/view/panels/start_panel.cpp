@@ -18,7 +18,7 @@ void drawRecentFiles(PanelContext& context, std::size_t max_count) {
       session.perform({"open_recent", {{"number", i + 1}}});
     }
     ImGui::SameLine(0, 12 * context.scale);
-    ImGui::TextDisabled("%s", file.parent_path().c_str());
+    ImGui::TextDisabled("%s", drawable(file.parent_path()).c_str());
     ImGui::PopID();
   }
 }

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "apps/view/panels/names.h"
 #include "apps/view/panels/theme.h"
 
 namespace emscape::view {
@@ -90,10 +91,8 @@ void drawRows(ImDrawList& list, const TimeAxis& axis, const Session& session, fl
   const std::size_t visible_to = std::min(bars.size(), visible_from + kMaxTimelineRows + 1);
   for (std::size_t i = visible_from; i < visible_to; ++i) {
     const float y = at.y + row * static_cast<float>(i);
-    list.PushClipRect({names_left, y}, {axis.left - 6 * scale, y + row}, true);
-    list.AddText({names_left, y + (row - ImGui::GetTextLineHeight()) / 2}, ImGui::GetColorU32(ImGuiCol_Text),
-                 bars[i].emitter.c_str());
-    list.PopClipRect();
+    drawName(list, bars[i].emitter, {names_left, y + (row - ImGui::GetTextLineHeight()) / 2},
+             axis.left - 6 * scale);
     list.AddRectFilled({axis.left, y + scale}, {axis.right(), y + row - scale},
                        ImGui::GetColorU32(ImGuiCol_FrameBg), 2 * scale);
     const bool is_known = scenario && i < scenario->emitters.size();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 #include "emscape/scenario/model/clock.h"
@@ -110,7 +111,7 @@ void drawTimes(const PanelContext& context) {
   const auto draw = [&](const std::string& text, const ImVec4& color) {
     if (roomInLine(spacing) < ImGui::CalcTextSize(text.c_str()).x) return;
     ImGui::SameLine(0, spacing);
-    ImGui::TextColored(color, "%s", text.c_str());
+    ImGui::TextColored(color, "%s", drawable(text).c_str());
   };
   const ImVec4 ink = ImGui::GetStyleColorVec4(ImGuiCol_Text), muted = mutedColor(session.theme());
   draw(fmt::format("t = {:g} s", asked_s), ink);

@@ -5,6 +5,7 @@
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 #include "playback/editing/pick.h"
+#include "scenario/file/named_items.h"
 
 namespace emscape::view {
 
@@ -13,8 +14,10 @@ std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double
   std::optional<std::size_t> nearest;
   double nearest_px = kReach_px;
   for (std::size_t i = 0; i < picture.annotations.markers.size(); ++i) {
-    const render::Projected at = render::project(
-        picture.camera, picture.size, picture.box.toDrawn(picture.annotations.markers[i].position_m));
+    const render::Marker& marker = picture.annotations.markers[i];
+    if (!marker.is_shown) continue;
+    const render::Projected at =
+        render::project(picture.camera, picture.size, picture.box.toDrawn(marker.position_m));
     const double away_px = std::hypot(at.x - x, at.y - y);
     if (!at.in_front || away_px > nearest_px) continue;
     nearest = i;
@@ -23,16 +26,19 @@ std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double
   return nearest;
 }
 
-PlatformDrag::PlatformDrag(const playback::LivePicture& picture, std::size_t emitter, double x, double y) {
-  if (!picture.scenario || emitter >= picture.scenario->emitters.size()) {
+PlatformDrag::PlatformDrag(const playback::LivePicture& picture, std::size_t index, double x, double y) {
+  const std::vector<render::Marker>& markers = picture.annotations.markers;
+  if (!picture.scenario || index >= markers.size())
     throw Error(ErrorCode::bad_input, "there is no scenario to change");
-  }
   const scenario::Scenario& scenario = *picture.scenario;
-  const auto index = static_cast<std::size_t>(scenario.emitters[emitter].platform);
-  const scenario::Platform& platform = scenario.platforms[index];
+  const render::Marker& marker = markers[index];
+  // The markers of emitters are followed by those of platforms without emitters.
+  const std::size_t carrier = index < scenario.emitters.size()
+                                  ? static_cast<std::size_t>(scenario.emitters[index].platform)
+                                  : scenario::indexOfNamed(scenario.platforms, marker.label, "platform");
+  const scenario::Platform& platform = scenario.platforms[carrier];
   platform_ = platform.name;
   movesOf(scenario, platform_, 0, 0);  // throws for a platform with a track
-  const render::Marker& marker = picture.annotations.markers[emitter];
   grip_m_ = marker.position_m;
   follows_ground_ = platform.track.front().position.height_agl_m && picture.ground && marker.ground_m;
   if (follows_ground_) grip_m_.z = *marker.ground_m;

@@ -11,16 +11,17 @@
 
 namespace emscape::view {
 
-/// Index of the marker under a pixel, equal to the emitter's index; empty if there is no marker nearby.
+/// Index of the marker under a pixel: of its emitter, or of a platform after them; empty if there is no
+/// marker nearby.
 std::optional<std::size_t> markerAt(const playback::LivePicture& picture, double x, double y);
 
 /// Starts a drag. A platform whose height is given above the ground follows the ground under the cursor; any
 /// other platform keeps its height. The cursor keeps its distance from the marker.
 class PlatformDrag {
  public:
-  /// @param emitter  index of its marker
+  /// @param index  of its marker
   /// @throws Error (bad_input) if the picture has no scenario, or the platform moves along a track
-  PlatformDrag(const playback::LivePicture& picture, std::size_t emitter, double x, double y);
+  PlatformDrag(const playback::LivePicture& picture, std::size_t index, double x, double y);
 
   const std::string& platform() const { return platform_; }
   /// The edits that move the platform to the cursor; empty if there is no position under it.
