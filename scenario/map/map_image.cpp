@@ -140,8 +140,7 @@ class MapImage {
 
 }  // namespace
 
-MapColors readMapColors(const std::string& file, const std::vector<GeodeticPosition>& positions,
-                        int columns) {
+MapColors readMapColors(const std::string& file, const std::vector<GeodeticPosition>& positions) {
   const MapImage image(file);
   const std::vector<Pixel> pixels = image.pixelsOf(positions);
   // The part of the image that is needed.
