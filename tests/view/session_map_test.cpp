@@ -16,7 +16,7 @@ long long linesOf(const Session& session, render::GroundInk ink) {
 
 TEST(SessionMap, GoingToAPositionLooksAtTheGroundThere) {
   const SessionSample sample("quick.yaml");
-  for (const char* const text : {"52.05, 5.06", "52°03'N 5°03'36\"E", "31U FT 41248 69177"}) {
+  for (const char* const text : {"52.05, 5.06", "52°03'N 5°03'36\"E", "31U FT 41255 68602"}) {
     sample->perform({"reset_view", {}});
     sample->perform({"goto_position", {{"position", text}}});
     ASSERT_FALSE(sample->notice().is_error) << sample->notice().text;
