@@ -39,7 +39,7 @@ void addReferences(SettingsTable& table) {
       .withEffect(&ViewChange::labels)
       .withOption("--compass", "Draw the compass: on or off")
       .withVerb("compass", "on", "Draws the compass")
-      .withAction("Compass", "Shift+N");
+      .withAction("Compass", "Ctrl+Shift+N");
   table
       .member(
           "show_scale_bar", switchSpec(), [](auto& view) -> auto& { return view.show_scale_bar; },
