@@ -42,7 +42,7 @@ emscape_component(libpng LICENCE libpng-2.0 SHARED libpng16 MODULE libpng PACKAG
 emscape_component(zlib LICENCE Zlib SHARED libz MODULE zlib PACKAGE zlib1g-dev)
 emscape_component(Cairo LICENCE "LGPL-2.1-only OR MPL-1.1" SHARED libcairo MODULE cairo PACKAGE libcairo2-dev)
 emscape_component(Pango LICENCE LGPL-2.0-or-later SHARED libpango MODULE pango PACKAGE libpango1.0-dev)
-emscape_component(HarfBuzz LICENCE MIT SHARED libharfbuzz MODULE harfbuzz PACKAGE libharfbuzz-dev)
+emscape_component(PangoCairo LICENCE LGPL-2.0-or-later SHARED libpangocairo MODULE pangocairo PACKAGE libpango1.0-dev)
 emscape_component(GLib LICENCE LGPL-2.1-or-later SHARED libgobject MODULE gobject-2.0 PACKAGE libglib2.0-dev)
 emscape_component(CLI11 LICENCE BSD-3-Clause HEADERS MODULE CLI11 PACKAGE libcli11-dev PROGRAM)
 emscape_component(military-symbol LICENCE MIT HEADERS VERSION 2.0.2)

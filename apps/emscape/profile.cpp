@@ -47,7 +47,7 @@ scenario::SitePosition parsePoint(const std::string& text, bool above_ground) {
         ErrorCode::usage,
         fmt::format("--to '{}' is not LAT,LON,HEIGHT: latitude -90..90 deg, longitude -180..180 deg, height "
                     "-100000..100000 m, such as 36.30,-84.25,1500 or 36°18'N 84°15'W,1500 or "
-                    "16S GF 46874 20310,1500",
+                    "16S GF 46937 20733,1500",
                     text));
   }
   scenario::SitePosition point;

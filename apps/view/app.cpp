@@ -5,6 +5,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <cmath>
@@ -323,6 +324,10 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
     if (event.kind != InputEvent::Kind::key || event.action == GLFW_RELEASE) continue;
     const KeyChord chord = chordOf(event);
     if (chord.key.empty()) continue;
+    if (chord.key == "Esc" && ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup)) {
+      ImGui::ClosePopupToLevel(0, /*restore_focus_to_window_under_popup=*/true);  // menus and lists
+      continue;
+    }
     const bool is_for_panel = dialog || typing || (panels.open && editsText(chord)) ||
                               (in_panel && !chord.control && !isFunctionKey(chord));
     const bool is_global = chord.key == "F1" || chord.key == "F10" || chord.key == "F12" ||

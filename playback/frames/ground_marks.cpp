@@ -15,8 +15,8 @@ namespace {
 using render::GroundInk;
 using render::GroundLine;
 
-/// Points of a line that crosses the ground, so that it follows hills.
-constexpr int kPointsAcross = 96;
+/// Points of a line that crosses the ground, so that it follows hills, or curves.
+constexpr int kPointsOnTerrain = 96, kPointsOnSmoothEarth = 20;
 constexpr int kLinesAcross = 5;  // about so many lines of a graticule
 constexpr int kMaxRings = 12;
 constexpr int kRingCorners = 120;
@@ -103,7 +103,9 @@ std::vector<Vec3d> GroundMarks::localOf(const std::vector<GeodeticPosition>& pos
 }
 
 void GroundMarks::addLeg(std::vector<Vec3d>& line_m, const Vec3d& from_m, const Vec3d& to_m) const {
-  const double longest_m = std::max(upper_.x - lower_.x, upper_.y - lower_.y) / kPointsAcross;
+  const bool is_smooth = scene_ == nullptr || !scene_->terrain;
+  const double longest_m = std::max(upper_.x - lower_.x, upper_.y - lower_.y) /
+                           (is_smooth ? kPointsOnSmoothEarth : kPointsOnTerrain);
   const int parts =
       std::max(1, static_cast<int>(std::ceil(std::hypot(to_m.x - from_m.x, to_m.y - from_m.y) / longest_m)));
   for (int part = line_m.empty() ? 0 : 1; part <= parts; ++part) {
@@ -161,7 +163,7 @@ void GroundMarks::addGraticule(PositionFormat format) {
                             double begin_deg, double end_deg) {
     for (double n = std::ceil(first_deg / step_deg); n * step_deg <= last_deg; ++n) {
       std::vector<GeodeticPosition> line;
-      constexpr int kParts = 48;
+      constexpr int kParts = 20;
       for (int i = 0; i <= kParts; ++i) {
         const double along_deg = begin_deg + (end_deg - begin_deg) * i / kParts;
         line.push_back(is_latitude ? GeodeticPosition{n * step_deg, along_deg, 0}

@@ -171,6 +171,7 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
   const scenario::TerrainPtr ground = field_ && field_->scene ? field_->scene->terrain : nullptr;
   const bool is_other_ground = ground != (delivery.scene ? delivery.scene->terrain : nullptr);
   const bool is_same_field = !is_first && !is_other_ground && sameValues(field_->frame, delivery.frame);
+  const render::Camera before = is_first ? render::Camera{} : painter_.camera();
   painter_.setScene(delivery.title, delivery.scene ? &*delivery.scene : nullptr);
   field_ = delivery;
   changeLabels();
@@ -187,8 +188,8 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
   if (is_first && delivery.frame.cells) controller_.setOptions(controllerOptions(), now_ms());
   if (!is_same_field) {
     raise(is_other_grid ? SceneEvent::resized : SceneEvent::field);
-  } else if (!request_.view.follow.empty()) {
-    raise(SceneEvent::view);
+  } else if (before.eye_m != painter_.camera().eye_m || before.forward != painter_.camera().forward) {
+    raise(SceneEvent::view);  // it follows a platform
   }
   if (is_other_quantity) painter_.setColors({});
   if (refused) std::rethrow_exception(refused);

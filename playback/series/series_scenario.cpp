@@ -34,10 +34,12 @@ std::string obstacleOf(const std::string& file, const std::vector<scenario::Edit
 }  // namespace
 
 void addOwnScenario(ViewState& view) {
-  if (!view.scenario.empty() || !view.edits.empty()) return;
   std::error_code ignored;
   const fs::path input = view.input;
   const fs::path folder = fs::is_directory(input, ignored) ? input : input.parent_path();
+  const bool is_candidate = view.scenario.empty() && view.edits.empty() && fs::exists(input, ignored) &&
+                            fs::exists(folder / "series.json", ignored);
+  if (!is_candidate) return;
   try {
     if (inputKindOf(view.input) != InputKind::volume && inputKindOf(view.input) != InputKind::mesh) return;
     const auto state = readSeriesState(folder.empty() ? "." : folder);

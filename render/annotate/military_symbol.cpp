@@ -15,11 +15,16 @@ constexpr double kCenter = 100, kHalf = 72;  // of the drawings; half the side o
 constexpr double kLineWidth = 5;
 constexpr const char* kLandUnits = "10";
 
+/// The tables are sorted by set and code.
 const char* find(const SymbolDrawing* drawings, int count, const std::string& set, const std::string& code) {
-  const auto* const end = drawings + count;
-  const auto* const found = std::find_if(
-      drawings, end, [&](const SymbolDrawing& row) { return row.set == set && row.code == code; });
-  return found == end ? nullptr : found->drawing;
+  const auto order = [&](const SymbolDrawing& row) {
+    const int by_set = set.compare(row.set);
+    return by_set != 0 ? by_set : code.compare(row.code);
+  };
+  const SymbolDrawing* const end = drawings + count;
+  const SymbolDrawing* const found =
+      std::partition_point(drawings, end, [&](const SymbolDrawing& row) { return order(row) > 0; });
+  return found == end || order(*found) != 0 ? nullptr : found->drawing;
 }
 
 char letterOf(Affiliation side) {

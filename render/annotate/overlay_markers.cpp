@@ -61,9 +61,8 @@ void drawBeam(Canvas& canvas, const Style& style, const Projector& p, const Plac
   canvas.polygon({tip, neck + side * (0.45 * head), neck - side * (0.45 * head)}, ink);
 }
 
-/// Selected ones first, then emitters, receivers and platforms.
+/// Emitters first, then receivers and platforms.
 int rankOf(const Marker& marker) {
-  if (marker.is_selected) return 0;
   if (marker.kind == MarkerKind::platform) return 3;
   return marker.kind == MarkerKind::receiver ? 2 : 1;
 }
@@ -104,8 +103,7 @@ void drawLabel(Canvas& canvas, const Style& style, const PlacedMarker& placed, c
   }
   canvas.rectangle(rect, style.rimInk(0.62 * placed.alpha), 3 * style.unit);
   double y = rect.y + padding / 2 + 0.6 * style.text_px;
-  canvas.text(text.name, {rect.x + padding, y}, style.text_px, style.textInk(alpha), Align::left,
-              placed.marker->is_selected ? Weight::bold : Weight::normal);
+  canvas.text(text.name, {rect.x + padding, y}, style.text_px, style.textInk(alpha));
   y += 0.6 * (style.text_px + style.small_px);
   if (!text.detail.empty())
     canvas.text(text.detail, {rect.x + padding, y}, style.small_px, style.mutedInk(alpha));

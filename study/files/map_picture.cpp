@@ -39,7 +39,9 @@ class MapPicture {
         options_(options),
         legend_(legendOf(map)),
         style_({options.width, options.width * 3 / 4}, render::Theme::light),
-        sea_(seaOf(grid, options.ground_msl_m)) {
+        relief_{grid.width * options.refinement, grid.height * options.refinement,
+                grid.cell_m / options.refinement, options.ground_msl_m},
+        sea_(seaOf(relief_)) {
     const std::string unknown = hasUnknown() ? "no value" : "";
     if (!unknown.empty()) legend_.note += (legend_.note.empty() ? "no colour: " : ", or ") + unknown;
     const double left = 84 * style_.unit, top = 96 * style_.unit;
@@ -90,16 +92,19 @@ class MapPicture {
   }
 
   void drawPixels(Canvas& canvas) const {
-    const std::vector<float> shades = shadesOf(grid_, options_.ground_msl_m);
+    const std::vector<float> shades = shadesOf(relief_);
+    const int parts = options_.refinement;
+    const double square = scale_ / parts;
     canvas.changeRows([&](int y, std::uint32_t* row) {
-      const int j = static_cast<int>(std::floor((y + 0.5 - rect_.y) / scale_));
-      if (j < 0 || j >= grid_.height) return;
+      const int j = static_cast<int>(std::floor((y + 0.5 - rect_.y) / square));
+      if (j < 0 || j >= relief_.height) return;
       int last = -1;
       std::uint32_t color = 0;
       for (int x = 0; x < size_.width; ++x) {
-        const int i = static_cast<int>(std::floor((x + 0.5 - rect_.x) / scale_));
-        if (i < 0 || i >= grid_.width) continue;
-        if (i != last) color = pixelAt(shownAt(i, j), shades);
+        const int i = static_cast<int>(std::floor((x + 0.5 - rect_.x) / square));
+        if (i < 0 || i >= relief_.width) continue;
+        const std::size_t post = static_cast<std::size_t>(j) * relief_.width + i;
+        if (i != last) color = pixelAt(shownAt(i / parts, j / parts), shades[post], sea_[post] != 0);
         last = i;
         row[x] = color;
       }
@@ -121,11 +126,11 @@ class MapPicture {
     return here;
   }
 
-  std::uint32_t pixelAt(std::size_t p, const std::vector<float>& shades) const {
+  std::uint32_t pixelAt(std::size_t p, float shade, bool is_sea) const {
     const std::optional<Rgb> of_value = colorOf(map_, legend_, map_.values[p]);
     const Rgb color = isLeftOut(p) ? Rgb{1, 1, 1}
-                      : of_value   ? shadedColor(*of_value, shades[p])
-                                   : groundColor(shades[p], sea_[p] != 0);
+                      : of_value   ? shadedColor(*of_value, shade)
+                                   : groundColor(shade, is_sea);
     const auto level = [](float part) {
       return static_cast<std::uint32_t>(std::lround(255 * std::clamp(part, 0.0F, 1.0F)));
     };
@@ -135,13 +140,12 @@ class MapPicture {
   /// The line between sea and land.
   void drawShore(Canvas& canvas, const MapFrame& frame) const {
     if (std::find(sea_.begin(), sea_.end(), 1) == sea_.end()) return;
-    std::vector<float> levels(sea_.begin(), sea_.end());
-    for (std::size_t p = 0; p < levels.size(); ++p)
-      if (isLeftOut(p)) levels[p] = NAN;
-    for (const GridLine& line : contourLines(levels, grid_.width, grid_.height, 0.5F)) {
+    const std::vector<float> levels(sea_.begin(), sea_.end());
+    const double square = scale_ / options_.refinement;
+    for (const GridLine& line : contourLines(levels, relief_.width, relief_.height, 0.5F)) {
       std::vector<Point2> points;
       for (const GridPoint& point : line)
-        points.push_back({rect_.x + (point.x + 0.5) * scale_, rect_.y + (point.y + 0.5) * scale_});
+        points.push_back({rect_.x + (point.x + 0.5) * square, rect_.y + (point.y + 0.5) * square});
       frame.drawLine(canvas, points, kCoast, 1.3 * style_.unit);
     }
   }
@@ -196,9 +200,10 @@ class MapPicture {
   const MapPictureOptions& options_;
   render::Legend legend_;
   render::Style style_;
-  std::vector<std::uint8_t> sea_;
-  Rect rect_;         ///< of the map in the picture
-  double scale_ = 1;  ///< pixels of the picture in one of the map
+  Relief relief_;
+  std::vector<std::uint8_t> sea_;  ///< of the relief's squares
+  Rect rect_;                      ///< of the map in the picture
+  double scale_ = 1;               ///< pixels of the picture in one of the map
   render::ImageSize size_;
 };
 
@@ -214,6 +219,11 @@ std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot) {
                        playback::markerKindOf(emitter.kind)});
   }
   return markers;
+}
+
+int refinementOf(const MapGrid& grid, int picture_width) {
+  constexpr double kSquare_px = 2;  // a smaller one is not seen
+  return std::clamp(static_cast<int>(picture_width / kSquare_px / std::max(grid.width, grid.height)), 1, 16);
 }
 
 std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrain) {

@@ -22,11 +22,15 @@ struct MapPictureOptions {
   int width = 1200;  ///< pixels; the height follows from the map
   std::string title, subtitle;
   std::vector<MapMarker> markers;
-  std::vector<float> ground_msl_m;  ///< of the map's pixels, for shading; empty: none
+  int refinement = 1;               ///< squares of the ground along a pixel of the map
+  std::vector<float> ground_msl_m;  ///< of these squares, for shading; empty: none
 };
 
 /// The active emitters of an instant.
 std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot);
+
+/// Squares of the ground along a pixel with which a picture of this width has as much relief as it can show.
+int refinementOf(const MapGrid& grid, int picture_width);
 
 /// Heights of the ground below the pixels (m); NaN where there is none.
 std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrain);

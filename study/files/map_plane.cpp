@@ -9,6 +9,7 @@
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
 #include "emscape/render/annotate/legend.h"
+#include "scenario/terrain/transformation.h"
 #include "study/maps/gdal_support.h"
 
 namespace emscape::study {
@@ -17,7 +18,7 @@ namespace {
 /// Transforms points one by one; those without an image become NaN.
 void transform(const gdal::SpatialReference& from, const gdal::SpatialReference& to, std::vector<double>& x,
                std::vector<double>& y) {
-  const gdal::Transformation transformation = transformationBetween(from, to);
+  const gdal::Transformation transformation = scenario::transformationBetween(from, to);
   const scenario::GdalMessages messages;
   std::vector<int> done(x.size());
   OCTTransformEx(transformation.get(), static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
@@ -66,7 +67,7 @@ std::vector<PlanePoint> MapPlane::pointsAt(const std::vector<GeoPoint>& position
     x.push_back(position.longitude_deg);
     y.push_back(position.latitude_deg);
   }
-  transform(wgs84Reference(), referenceOf(grid_), x, y);
+  transform(scenario::wgs84Reference(), referenceOf(grid_), x, y);
   std::vector<PlanePoint> points;
   for (std::size_t i = 0; i < x.size(); ++i) points.push_back({x[i], y[i]});
   return points;
@@ -79,7 +80,7 @@ std::vector<GeoPoint> MapPlane::positionsAt(const std::vector<PlanePoint>& point
     x.push_back(point.east_m);
     y.push_back(point.north_m);
   }
-  transform(referenceOf(grid_), wgs84Reference(), x, y);
+  transform(referenceOf(grid_), scenario::wgs84Reference(), x, y);
   std::vector<GeoPoint> positions;
   for (std::size_t i = 0; i < x.size(); ++i) positions.push_back({y[i], x[i]});
   return positions;

@@ -18,70 +18,60 @@ float slopeOf(float before, float here, float after, float cell_m) {
   return (after - before) / (2 * cell_m);
 }
 
-/// Values of a map's pixels; NaN beyond its edges.
-class Posts {
- public:
-  Posts(const MapGrid& grid, const std::vector<float>& values) : grid_(grid), values_(values) {}
-  float at(int i, int j) const {
-    const bool is_inside = i >= 0 && i < grid_.width && j >= 0 && j < grid_.height;
-    return is_inside ? values_[static_cast<std::size_t>(j) * grid_.width + i] : NAN;
-  }
-
- private:
-  const MapGrid& grid_;
-  const std::vector<float>& values_;
-};
+/// Height of a square; NaN beyond the edges.
+float heightAt(const Relief& relief, int i, int j) {
+  const bool is_inside = i >= 0 && i < relief.width && j >= 0 && j < relief.height;
+  return is_inside ? relief.ground_msl_m[static_cast<std::size_t>(j) * relief.width + i] : NAN;
+}
 
 template <class Change>
-void forPixels(const MapGrid& grid, const Change& change) {
-  parallelFor(grid.height, 16, [&](int begin, int end) {
+void forSquares(const Relief& relief, const Change& change) {
+  parallelFor(relief.height, 16, [&](int begin, int end) {
     for (int j = begin; j < end; ++j) {
-      for (int i = 0; i < grid.width; ++i) change(i, j, static_cast<std::size_t>(j) * grid.width + i);
+      for (int i = 0; i < relief.width; ++i) change(i, j, static_cast<std::size_t>(j) * relief.width + i);
     }
   });
 }
 
-/// Whether a test holds of the 3 x 3 pixels around one, as far as they are on the map.
+/// Whether a test holds of the 3 x 3 squares around one, as far as they are on the map.
 template <class Test>
-bool allAround(const MapGrid& grid, int i, int j, const Test& test) {
-  for (int y = std::max(j - 1, 0); y <= std::min(j + 1, grid.height - 1); ++y) {
-    for (int x = std::max(i - 1, 0); x <= std::min(i + 1, grid.width - 1); ++x)
-      if (!test(static_cast<std::size_t>(y) * grid.width + x)) return false;
+bool allAround(const Relief& relief, int i, int j, const Test& test) {
+  for (int y = std::max(j - 1, 0); y <= std::min(j + 1, relief.height - 1); ++y) {
+    for (int x = std::max(i - 1, 0); x <= std::min(i + 1, relief.width - 1); ++x)
+      if (!test(static_cast<std::size_t>(y) * relief.width + x)) return false;
   }
   return true;
 }
 
 }  // namespace
 
-std::vector<float> shadesOf(const MapGrid& grid, const std::vector<float>& ground_msl_m) {
-  std::vector<float> shades(grid.pixels(), 0.0F);
-  if (ground_msl_m.empty()) return shades;
-  const Posts ground(grid, ground_msl_m);
-  const auto cell_m = static_cast<float>(grid.cell_m);
-  forPixels(grid, [&](int i, int j, std::size_t p) {
-    const float here = ground_msl_m[p];
-    const float east = slopeOf(ground.at(i - 1, j), here, ground.at(i + 1, j), cell_m);
-    const float south = slopeOf(ground.at(i, j - 1), here, ground.at(i, j + 1), cell_m);
+std::vector<float> shadesOf(const Relief& relief) {
+  std::vector<float> shades(relief.posts(), 0.0F);
+  if (relief.ground_msl_m.empty()) return shades;
+  const auto cell_m = static_cast<float>(relief.cell_m);
+  forSquares(relief, [&](int i, int j, std::size_t p) {
+    const float here = relief.ground_msl_m[p];
+    const float east = slopeOf(heightAt(relief, i - 1, j), here, heightAt(relief, i + 1, j), cell_m);
+    const float south = slopeOf(heightAt(relief, i, j - 1), here, heightAt(relief, i, j + 1), cell_m);
     const float toward = (0.5F * (east + south) + kLevel) / std::sqrt(1 + east * east + south * south);
     if (!std::isnan(toward)) shades[p] = toward - kLevel;
   });
   return shades;
 }
 
-std::vector<std::uint8_t> seaOf(const MapGrid& grid, const std::vector<float>& ground_msl_m) {
+std::vector<std::uint8_t> seaOf(const Relief& relief) {
   constexpr float kSea_m = 0.5F;
-  std::vector<std::uint8_t> sea(grid.pixels(), 0);
-  if (ground_msl_m.empty()) return sea;
-  const auto isLevel = [&](std::size_t p) {
-    return std::isnan(grid.positions[p].latitude_deg) || std::abs(ground_msl_m[p]) <= kSea_m;
-  };
-  std::vector<std::uint8_t> open(grid.pixels(), 0);  // sea on all sides
-  forPixels(grid, [&](int i, int j, std::size_t p) {
-    open[p] = std::abs(ground_msl_m[p]) <= kSea_m && allAround(grid, i, j, isLevel) ? 1 : 0;
+  std::vector<std::uint8_t> sea(relief.posts(), 0);
+  if (relief.ground_msl_m.empty()) return sea;
+  const auto isLevel = [&](std::size_t p) { return std::abs(relief.ground_msl_m[p]) <= kSea_m; };
+  const auto mayBeLevel = [&](std::size_t p) { return std::isnan(relief.ground_msl_m[p]) || isLevel(p); };
+  std::vector<std::uint8_t> open(relief.posts(), 0);  // sea on all sides
+  forSquares(relief, [&](int i, int j, std::size_t p) {
+    open[p] = isLevel(p) && allAround(relief, i, j, mayBeLevel) ? 1 : 0;
   });
-  forPixels(grid, [&](int i, int j, std::size_t p) {
-    const bool is_near_open = !allAround(grid, i, j, [&](std::size_t near) { return open[near] == 0; });
-    sea[p] = std::abs(ground_msl_m[p]) <= kSea_m && is_near_open ? 1 : 0;
+  forSquares(relief, [&](int i, int j, std::size_t p) {
+    const bool is_near_open = !allAround(relief, i, j, [&](std::size_t near) { return open[near] == 0; });
+    sea[p] = isLevel(p) && is_near_open ? 1 : 0;
   });
   return sea;
 }

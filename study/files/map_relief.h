@@ -5,17 +5,24 @@
 #include <vector>
 
 #include "emscape/render/transfer/transfer_function.h"
-#include "emscape/study/maps/map_grid.h"
 
 namespace emscape::study {
 
-/// Shading of a map's pixels by light from the north-west at an elevation of 45 degrees: 0 on level ground,
-/// up to 0.3 on slopes towards the light, down to -1.7 on slopes away from it; 0 where the slope is unknown.
-/// @param ground_msl_m  of the map's pixels; NaN: unknown; empty: all 0
-std::vector<float> shadesOf(const MapGrid& grid, const std::vector<float>& ground_msl_m);
+/// Heights of the ground of a map, at the middles of squares; rows from north to south.
+struct Relief {
+  int width = 0, height = 0;
+  double cell_m = 0;                ///< side of a square in the projection
+  std::vector<float> ground_msl_m;  ///< NaN: unknown; empty: all
 
-/// Pixels of the sea: level ground at mean sea level, wider than a pixel. 1 sea, 0 land or unknown.
-std::vector<std::uint8_t> seaOf(const MapGrid& grid, const std::vector<float>& ground_msl_m);
+  std::size_t posts() const { return static_cast<std::size_t>(width) * height; }
+};
+
+/// Shading by light from the north-west at an elevation of 45 degrees: 0 on level ground, up to 0.3 on slopes
+/// towards the light, down to -1.7 on slopes away from it; 0 where the slope is unknown.
+std::vector<float> shadesOf(const Relief& relief);
+
+/// The sea: level ground at mean sea level, wider than a square. 1 sea, 0 land or unknown.
+std::vector<std::uint8_t> seaOf(const Relief& relief);
 
 /// Largest change of the lightness of a map's colours (OKLab, where black is 0 and white 1) by the relief.
 constexpr double kMaxRelief = 0.07;

@@ -101,7 +101,8 @@ struct MapFolder::State {
   EarlierOutputs earlier_outputs;
   MapStudy study;
   bool has_cog = false, has_png = false;
-  std::vector<float> ground_msl_m;
+  int refinement = 1;               ///< of the ground over the map's pixels
+  std::vector<float> ground_msl_m;  ///< for pictures
   std::vector<Collection> collections;
   std::vector<MapRecord> records;
   std::vector<Picture> pictures;
@@ -114,7 +115,14 @@ struct MapFolder::State {
         earlier_outputs(path),
         study(std::move(of)) {
     for (const std::filesystem::path& written : {path, path / "maps"}) removeAbandonedFiles(written);
-    if (study.terrain != nullptr) ground_msl_m = groundOf(*study.grid, *study.terrain);
+    if (study.terrain == nullptr) return;
+    const MapGrid& grid = *study.grid;
+    refinement = refinementOf(grid, MapPictureOptions{}.width);
+    ground_msl_m =
+        groundOf(refinement == 1 ? grid
+                                 : mapGridAt(grid.wkt, grid.crs, grid.cell_m / refinement, grid.left_m,
+                                             grid.top_m, grid.width * refinement, grid.height * refinement),
+                 *study.terrain);
   }
 
   void addFormat(const std::string& name) {
@@ -154,6 +162,7 @@ struct MapFolder::State {
     options.title = fmt::format("{}: {}", scenario.name, render::displayText(map.description));
     options.subtitle = timesText(map);
     options.markers = markersOf(scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), time_s));
+    options.refinement = refinement;
     options.ground_msl_m = ground_msl_m;
     return drawMap(*study.grid, map, options);
   }

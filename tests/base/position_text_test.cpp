@@ -59,7 +59,7 @@ TEST(ParsePosition, ReadsTheUsualForms) {
 
 TEST(ParsePosition, ReadsAHeightAfterAnyForm) {
   for (const char* const text :
-       {"36.5,-84.2,150", "36.5N 84.2W, 150", "36°30'N 84°12'W,150.0", "16S GF 50729 42646,150"}) {
+       {"36.5,-84.2,150", "36.5N 84.2W, 150", "36°30'N 84°12'W,150.0", "16S GF 50784 43054,150"}) {
     EXPECT_EQ(parsePosition(text).height_m, 150) << text;
   }
 }

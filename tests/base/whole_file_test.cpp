@@ -171,5 +171,16 @@ TEST_F(WholeFile, ReadErrorNamesTheCause) {
   EXPECT_THROW(readWhole(folder_.path()), Error);
 }
 
+TEST_F(WholeFile, APipeIsReadToItsEnd) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(write(ends[1], "script", 6), 6);
+  close(ends[1]);
+  EXPECT_EQ(readTextOrPipe("/dev/fd/" + std::to_string(ends[0])), "script");
+  close(ends[0]);
+  EXPECT_THAT(test::errorOf([&] { readTextOrPipe(folder_ / "none"); }, ErrorCode::bad_input),
+              HasSubstr("none: there is no such file"));
+}
+
 }  // namespace
 }  // namespace emscape

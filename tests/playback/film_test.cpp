@@ -1,5 +1,6 @@
 #include "playback/pictures/film.h"
 
+#include "emscape/base/units.h"
 #include "emscape/playback/frames/scene.h"
 #include "emscape/playback/pictures/painter.h"
 #include "playback/frames/platform_tracks.h"
@@ -91,7 +92,7 @@ TEST(Painter, CameraFollowsAPlatform) {
   const scenario::TrackPoint pose = scenario::pointAt(source->scene()->scenario->platforms[3], 33.3);
   const Vec3d forward = painter.camera().forward;
   EXPECT_GT(length(forward - followed), 0.01);
-  const double bearing_deg = std::atan2(forward.x, forward.y) * 180 / kPi;
+  const double bearing_deg = radToDeg(std::atan2(forward.x, forward.y));
   EXPECT_NEAR(std::remainder(bearing_deg - *pose.heading_deg, 360), 0, 1) << "from behind";
 }
 

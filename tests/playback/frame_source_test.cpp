@@ -50,6 +50,29 @@ TEST(FrameSource, ComputesAScenariosStepsWithOneRange) {
   EXPECT_FALSE(source->frame(3).changed);
 }
 
+TEST(FrameSource, MarkersAreEmittersAndPlatformsWithASide) {
+  const TemporaryFolder folder;
+  FrameSelection selection;
+  selection.input = quickScenario(
+      folder,
+      {{"[40, 40, 20]", "[8, 8, 6]"},
+       {"  - {name: mast, ",
+        "  - {name: ship, sidc: \"10043000001201000000\", position: {latitude_deg: 52.03, longitude_deg: 5, "
+        "height_msl_m: 20}}\n"
+        "  - {name: hill, position: {latitude_deg: 52.03, longitude_deg: 5.01, height_agl_m: 2}}\n"
+        "  - {name: mast, side: hostile, "}});
+  const std::vector<render::Marker> markers = openFrameSource(selection, {})->frame(0).markers;
+  ASSERT_EQ(markers.size(), 3U);
+  EXPECT_EQ(markers[0].side, render::Affiliation::none);
+  EXPECT_EQ(markers[0].detail, "radar 3 GHz, 20 m above ground");
+  EXPECT_EQ(markers[1].label, "transmitter");
+  EXPECT_EQ(markers[1].side, render::Affiliation::hostile);
+  EXPECT_EQ(markers[2].label, "ship");
+  EXPECT_EQ(markers[2].side, render::Affiliation::neutral);
+  EXPECT_EQ(markers[2].sidc, "10043000001201000000");
+  EXPECT_EQ(markers[2].detail, "20 m above sea");
+}
+
 TEST(FrameSource, TracksPassThroughMarkersOfTheirEmitters) {
   const TemporaryFolder folder;
   writeFile(folder / "track.csv",

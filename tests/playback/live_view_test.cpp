@@ -147,7 +147,7 @@ struct Expected {
     selection.independent = true;
     const auto source = openFrameSource(selection, {});
     Painter painter(view, *source, {});
-    painter.setFrame(source->frame(source->nearestIndex(view.time_s)));
+    painter.setFrame(source->frameAt(view.time_s));
     painter.draw({});
     render::Image8 image;
     painter.fetch(image);
@@ -266,9 +266,9 @@ TEST(LiveView, EveryKindOfEventSettlesOnFullCast) {
   expected.view.transfer = first->transfer;
 
   live.seek(2.2);
-  expected.view.time_s = 2;
+  expected.view.time_s = 2.2;
   expectSettled("seek");
-  EXPECT_EQ(live.view->picture()->annotations.time, "t = 2 s");
+  EXPECT_EQ(live.view->picture()->annotations.time, "t = 2.2 s");
 
   live.edit("emitters.radar.power_w", "900");
   expected.view.edits = {{"emitters.radar.power_w", "900"}};

@@ -222,11 +222,11 @@ TEST(Timeline, RatesSnapAndGoUpAndDownInEitherDirection) {
   }
   timeline.changeRate(1);
   EXPECT_EQ(timeline.rate(), -0.25);
-  timeline.setRate(-500);
+  timeline.setRate(-5000);
   timeline.changeRate(-1);
-  EXPECT_EQ(timeline.rate(), -500);
+  EXPECT_EQ(timeline.rate(), -5000);
   timeline.setRate(0);
-  EXPECT_EQ(timeline.rate(), -500);
+  EXPECT_EQ(timeline.rate(), -5000);
 }
 
 TEST(Timeline, WithoutStepsTimeIsConstant) {

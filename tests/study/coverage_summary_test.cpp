@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/terrain/terrain.h"
 #include "tests/support/files.h"
 
 namespace emscape::study {
@@ -13,14 +14,15 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-/// A study of 100 km2 of jamming.yaml at 150 m above ground.
+/// A study of 100 km2 of jacksboro.yaml at 150 m above ground.
 MapStudy smallStudy() {
   MapStudy study;
-  study.scenarios = {scenario::loadScenario(test::shippedScenario("jamming.yaml"))};
+  study.scenarios = {scenario::loadScenario(test::shippedScenario("jacksboro.yaml"))};
+  study.terrain = scenario::loadTerrain(*study.scenarios.front());
   auto grid = std::make_shared<MapGrid>();
   grid->areas_m2.assign(100, 1e6F);
   study.grid = grid;
-  study.times_s = {0};
+  study.times_s = {80};
   study.heights = {{emfield::HeightReference::ground, 150}};
   return study;
 }
@@ -30,7 +32,7 @@ MapRecord recordOf(const std::string& product, double class_km2, double known_km
   MapRecord record;
   record.map.name = product;
   record.map.height = MapHeight{emfield::HeightReference::ground, 150};
-  record.map.time_s = 0;
+  record.map.time_s = 80;
   record.summary.class_area_m2 = class_km2 * 1e6;
   record.summary.known_area_m2 = known_km2 * 1e6;
   record.summary.label_areas_m2 = std::move(labels_m2);
@@ -41,7 +43,7 @@ TEST(CoverageSummary, NamesShareTargetThresholdAndTheUnknownPixels) {
   const MapStudy study = smallStudy();
   const std::vector<std::string> sentences = coverageSummary(study, {recordOf("covered", 40, 80)});
   ASSERT_EQ(sentences.size(), 2u);
-  EXPECT_THAT(sentences[0], HasSubstr("At 150 m above ground, t = 0 s: '"));
+  EXPECT_THAT(sentences[0], HasSubstr("At 150 m above ground, t = 80 s: '"));
   EXPECT_THAT(sentences[0], HasSubstr("detects a target of "));
   EXPECT_THAT(sentences[0],
               HasSubstr(" m² with a probability of at least 0.5 on 50.0 % of the area (40 km²)."));

@@ -234,9 +234,10 @@ TEST(MapPicture, SeaIsLevelGroundAtMeanSeaLevel) {
   for (std::size_t p = 0; p < grid.pixels(); ++p)
     if (p % grid.width >= 10) ground_m[p] = 5.0F + static_cast<float>(p % 7);
   ground_m[3 * 20 + 15] = 0;  // a well, no sea
-  const std::vector<std::uint8_t> sea = seaOf(grid, ground_m);
+  const std::vector<std::uint8_t> sea = seaOf({grid.width, grid.height, grid.cell_m, ground_m});
   for (std::size_t p = 0; p < grid.pixels(); ++p) EXPECT_EQ(sea[p], p % grid.width < 10 ? 1 : 0) << p;
-  EXPECT_EQ(seaOf(grid, {}), std::vector<std::uint8_t>(grid.pixels(), 0)) << "unknown ground is no sea";
+  EXPECT_EQ(seaOf({grid.width, grid.height, grid.cell_m, {}}), std::vector<std::uint8_t>(grid.pixels(), 0))
+      << "unknown ground is no sea";
 }
 
 TEST(MapPicture, DegreesGoOnAcrossTheAntimeridian) {

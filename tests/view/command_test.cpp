@@ -66,7 +66,7 @@ TEST(Command, TextsHaveChoicesOrASyntax) {
   };
   EXPECT_EQ(fault(R"({"do":"panel","name":"nothing"})"),
             "panel: name 'nothing': expected scenario, colors, planes, probe, timeline, help, time, open, "
-            "record, restore, unsaved, changed, menu, all");
+            "position, map, record, restore, unsaved, changed, menu, replace, warnings, side, all");
   EXPECT_EQ(fault(R"({"do":"quit","edits":"xx"})"), "quit: edits 'xx': expected save, discard, ask");
   EXPECT_EQ(fault(R"({"do":"opacity_preset","name":"xx"})"),
             "opacity_preset: name 'xx': expected ramp, late ramp, threshold, shell, bands, opaque");

@@ -326,6 +326,21 @@ TEST_F(RealInput, AMovingCursorShowsTheValueBelowIt) {
   EXPECT_TRUE(reports("cursor_latitude_deg", [](const Json& value) { return value.is_number(); }));
 }
 
+TEST_F(RealInput, ClassIsThatOfTheDesktopEntryAndTheTitleMarksUnsavedEdits) {
+  open(quick());
+  EXPECT_TRUE(xdotool("search --class '^emscape$'"));
+  EXPECT_FALSE(xdotool("search --name '^[*] quick.yaml'"));
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Return"));
+  ASSERT_TRUE(comesToLog("edit"));
+  EXPECT_TRUE(comes([&] { return xdotool("search --name '^[*] quick.yaml'"); }));
+}
+
+TEST_F(RealInput, EscapeClosesAMenuAndNothingElse) {
+  open(quick());
+  ASSERT_TRUE(xdotool(click(kFileMenu) + " sleep 0.5 key Escape sleep 0.5" + at(kPicture) + " key g"));
+  EXPECT_TRUE(commandsBecome("panel")) << commands();
+}
+
 TEST_F(RealInput, KeysAfterGoToTimeAreItsNumber) {
   open(quick());
   ASSERT_TRUE(xdotool("key g 3 Return"));

@@ -21,16 +21,17 @@ fs::path scenarioFolder() {
   return {};
 }
 
-/// The first sentence of the comment at the beginning of a file.
+/// The first sentence of the comment at the beginning of a file, shortened to whole words.
 std::string firstSentence(const fs::path& file) {
+  constexpr std::size_t kMaxCharacters = 110;
   std::ifstream lines(file);
   std::string text;
   for (std::string line; std::getline(lines, line) && line.rfind("# ", 0) == 0;) {
     text += (text.empty() ? "" : " ") + line.substr(2);
-    const std::size_t end = std::min(text.find(". "), text.find(": "));
-    if (end != std::string::npos) return text.substr(0, end);
   }
-  return text.substr(0, text.find_last_not_of('.') + 1);
+  text = text.substr(0, text.find(". "));
+  if (text.size() <= kMaxCharacters) return text.substr(0, text.find_last_not_of('.') + 1);
+  return text.substr(0, text.rfind(' ', kMaxCharacters)) + " …";
 }
 
 }  // namespace

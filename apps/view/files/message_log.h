@@ -16,6 +16,14 @@ class MessageLog {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (std::find(lines_.begin(), lines_.end(), line) == lines_.end()) lines_.push_back(line);
   }
+  void remove(const std::vector<std::string>& lines) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    lines_.erase(std::remove_if(lines_.begin(), lines_.end(),
+                                [&lines](const std::string& line) {
+                                  return std::find(lines.begin(), lines.end(), line) != lines.end();
+                                }),
+                 lines_.end());
+  }
   void clear() {
     const std::lock_guard<std::mutex> lock(mutex_);
     lines_.clear();

@@ -61,8 +61,11 @@ void openFile(Session& session, const std::optional<std::string>& file) {
       return session.perform({"load_state", {{"file", *file}}});
     case Purpose::scenario:
       return session.perform({"add_scenario", {{"file", *file}}});
-    case Purpose::save_scenario:
-      return session.perform({"save", {{"file", *file}}});
+    case Purpose::save_scenario: {
+      const bool has_ending = std::filesystem::path(*file).has_extension();
+      const std::string ending = std::filesystem::path(session.usualScenarioFile()).extension().string();
+      return session.perform({"save", {{"file", has_ending ? *file : *file + ending}}});
+    }
     case Purpose::record:
       session.files().record_output = *file;
       session.panels.open = false;

@@ -14,7 +14,7 @@ namespace {
 constexpr float kFieldWidth = 360;
 
 /// Text of a field.
-using Typed = std::array<char, 4096>;
+using TypedMapText = std::array<char, 4096>;
 
 bool beginMapDialog(PanelContext& context, const char* title, bool& is_open) {
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
@@ -31,7 +31,7 @@ void endMapDialog() {
 }
 
 /// A text field with a button. @return true if Enter or the button took the text
-bool textAndButton(PanelContext& context, const char* id, const char* hint, Typed& typed,
+bool textAndButton(PanelContext& context, const char* id, const char* hint, TypedMapText& typed,
                    const char* button) {
   ImGui::PushID(id);
   ImGui::SetNextItemWidth(kFieldWidth * context.scale);
@@ -64,7 +64,7 @@ std::size_t listToRemove(const std::vector<std::string>& texts) {
 }
 
 void drawDrape(PanelContext& context) {
-  static Typed typed{};
+  static TypedMapText typed{};
   Session& session = context.session;
   ImGui::TextDisabled("Picture on the ground (GeoTIFF, MBTiles)");
   if (!session.view().drape.empty() && listToRemove({session.view().drape}) == 0)
@@ -74,7 +74,7 @@ void drawDrape(PanelContext& context) {
 }
 
 void drawPlaces(PanelContext& context) {
-  static Typed typed{};
+  static TypedMapText typed{};
   Session& session = context.session;
   ImGui::TextDisabled("Places (GeoJSON, GeoPackage, ...)");
   std::vector<std::string> files = session.view().places;
@@ -129,7 +129,7 @@ void drawRings(PanelContext& context) {
 void drawGoToPosition(PanelContext& context) {
   Session& session = context.session;
   if (!session.panels.position) return;
-  static Typed typed{};
+  static TypedMapText typed{};
   beginMapDialog(context, "Go to position", session.panels.position);
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   if (textAndButton(context, "position", "36.3N 84.2W, 36°30'12\"N 84°12'W, 16S GF 12345 67890", typed, "Go"))

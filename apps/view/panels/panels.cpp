@@ -42,7 +42,7 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
   layout.side_is_over = layout.has_side && is_narrow;
   const float side_width = !layout.has_side ? 0
                            : is_narrow      ? panels.side ? std::min(340 * scale, 0.85F * width) : 0
-                                            : std::min(340 * scale, std::max(270 * scale, 0.36F * width));
+                                            : std::min(340 * scale, std::max(310 * scale, 0.36F * width));
   layout.menu_height = ImGui::GetFrameHeight();
   const float room = std::max(1.0F, height - status_height - layout.menu_height);
   const float timeline_height = timelineHeight(session, scale, is_low ? 0 : 0.3F * room);
@@ -94,8 +94,9 @@ void drawSideButton(PanelContext& context) {
   const Layout layout =
       layoutOf(context.session, ImGui::GetIO().DisplaySize.x, ImGui::GetIO().DisplaySize.y, context.scale);
   if (!layout.side_is_over) return;
-  const char* const text = context.session.panels.side ? "Picture" : "Panels";
-  ImGui::SameLine(ImGui::GetIO().DisplaySize.x - ImGui::CalcTextSize(text).x - 24 * context.scale);
+  const char* const text = context.session.panels.side ? "Picture##side" : "Side##side";
+  const float width = ImGui::CalcTextSize(text, nullptr, /*hide_text_after_double_hash=*/true).x;
+  ImGui::SameLine(ImGui::GetIO().DisplaySize.x - width - 24 * context.scale);
   if (ImGui::SmallButton(text)) perform(context, R"({"do":"panel","name":"side"})");
 }
 

@@ -29,8 +29,9 @@ namespace {
 void drawExamples(PanelContext& context) {
   Session& session = context.session;
   ImGui::TextColored(accentColor(session.theme()), "Examples");
-  const float height = std::min(9.5F, static_cast<float>(session.files().examples.size())) *
-                       ImGui::GetTextLineHeightWithSpacing();
+  const float wanted =
+      1.6F * static_cast<float>(session.files().examples.size()) * ImGui::GetTextLineHeightWithSpacing();
+  const float height = std::min(wanted, 0.4F * ImGui::GetIO().DisplaySize.y);
   ImGui::BeginChild("examples", {0, height});
   if (ImGui::BeginTable("examples", 2)) {
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed);

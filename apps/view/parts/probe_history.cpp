@@ -11,7 +11,7 @@
 #include "base/thread_arena.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/field_series.h"
-#include "emscape/playback/stop.h"
+#include "emscape/base/work.h"
 
 namespace emscape::view {
 namespace {
@@ -118,7 +118,7 @@ void ProbeHistory::compute(const HistoryQuestion& question, Work& work, const st
         if (wake) wake();
       }
     });
-  } catch (const playback::Stopped&) {
+  } catch (const Stopped&) {
     return;
   } catch (const std::exception& error) {
     fail(failureText(error));

@@ -264,6 +264,8 @@ class Session {
   bool isPictureSettled() const;
   /// @return true if they have changed
   bool takeWarnings(double now_s);
+  void checkScenario();
+  void joinModelWarnings(double now_s);
   std::string recordTimes(const RecordRange& range) const;
   void finishJobs();
   void askTime();
@@ -379,8 +381,10 @@ class Session {
   std::vector<ShownQuantity> quantities_;
   playback::ScenarioPtr quantities_of_;
   std::vector<std::string> warnings_;
-  std::shared_ptr<const std::vector<std::string>> joined_warnings_;  // of the models, in warnings_
-  std::size_t joined_messages_ = 0;
+  playback::ScenarioPtr checked_scenario_;
+  std::vector<std::string> scenario_warnings_;                       // of that scenario
+  std::shared_ptr<const std::vector<std::string>> joined_warnings_;  // of the models, ...
+  std::vector<std::string> model_warnings_;                          // ... joined
   double joined_at_s_ = -1e9;
   Notice notice_;
   BackgroundJobs jobs_;  // destroyed first

@@ -10,7 +10,6 @@
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "report/warnings.h"
 
 namespace emscape::view {
 namespace {
@@ -74,26 +73,6 @@ void Session::takeChangedFiles() {
     log_.write("changed_on_disk", {{"file", file}});
   }
   panels.changed = touched_ = true;
-}
-
-// --- warnings ---
-
-bool Session::takeWarnings(double now_s) {
-  constexpr double kInterval_s = 0.5;  // of a playing series, whose steps have different warnings
-  const std::vector<std::string> messages = files_->messages->lines();
-  if (status_.warnings == joined_warnings_ && messages.size() == joined_messages_) return false;
-  if (now_s - joined_at_s_ < kInterval_s) return false;
-  joined_at_s_ = now_s;
-  const bool is_same = status_.warnings && joined_warnings_ && *status_.warnings == *joined_warnings_ &&
-                       messages.size() == joined_messages_;
-  joined_warnings_ = status_.warnings;
-  joined_messages_ = messages.size();
-  if (is_same) return false;
-  std::vector<std::string> warnings = messages;
-  if (status_.warnings) {
-    for (const std::string& line : report::joinedWarnings(*status_.warnings)) warnings.push_back(line);
-  }
-  return std::exchange(warnings_, warnings) != warnings;
 }
 
 // --- edits ---

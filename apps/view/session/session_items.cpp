@@ -12,7 +12,7 @@ namespace emscape::view {
 namespace {
 
 /// Of "LAT,LON" or "LAT,LON,HEIGHT".
-scenario::DrawnPoint pointOf(const std::string& text) {
+scenario::DrawnPoint drawnPointOf(const std::string& text) {
   std::vector<double> numbers;
   const char* at = text.c_str();
   for (char* rest = nullptr; numbers.size() < 3; at = rest + 1) {
@@ -116,7 +116,7 @@ std::vector<Verb> Session::itemVerbs() {
        [](Session& session, const Command& command) {
          std::vector<scenario::DrawnPoint> points;
          for (const Json& text : command.arguments["points"])
-           points.push_back(pointOf(text.get<std::string>()));
+           points.push_back(drawnPointOf(text.get<std::string>()));
          session.changeScenario(editsForTrack(session.requireScenario(), command.text("platform"), points,
                                               command.number("begin_s"),
                                               optionalNumber(command, "speed_m_s")));

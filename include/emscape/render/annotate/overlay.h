@@ -30,10 +30,9 @@ struct Marker {
   std::string detail;  ///< a second line of the label, small; may be empty
   MarkerKind kind = MarkerKind::platform;
   Affiliation side = Affiliation::none;
-  std::string sidc;          ///< MIL-STD-2525D or APP-6D, of its icon; empty: that of its kind
-  bool moves = false;        ///< labels of fixed objects keep their places beside moving ones
-  bool is_selected = false;  ///< its label is placed first
-  bool is_shown = true;
+  std::string sidc;                ///< MIL-STD-2525D or APP-6D, of its icon; empty: that of its kind
+  bool moves = false;              ///< labels of fixed objects keep their places beside moving ones
+  bool is_shown = true;            ///< false: neither drawn nor under the mouse
   bool active = true;              ///< false: drawn hollow
   std::optional<Vec3d> beam;       ///< unit vector east, north, up of the beam's axis (not exaggerated)
   std::optional<double> ground_m;  ///< height of the ground below it (frame z), at which the stem ends
@@ -42,11 +41,11 @@ struct Marker {
 /// The track of a moving object.
 struct Track {
   MarkerKind kind = MarkerKind::platform;
-  Affiliation side = Affiliation::none;
   std::vector<Vec3d> points_m;  ///< frame metres, in the order of time
   std::vector<double> times_s;  ///< of the points; empty: unknown
   /// Current position: 2.5 is half way from points_m[2] to points_m[3]. The part before it is drawn brighter.
   double travelled = 0;
+  Affiliation side = Affiliation::none;
 };
 
 /// Kind of a line on the ground.

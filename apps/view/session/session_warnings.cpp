@@ -1,0 +1,50 @@
+/// The warnings about files, the scenario and the models of the field on screen.
+#include <utility>
+
+#include "apps/view/session/session.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "report/warnings.h"
+
+namespace emscape::view {
+
+/// Finds the warnings of the edited scenario, in the background.
+void Session::checkScenario() {
+  if (!edits_ || isDragging() || edits_->scenario() == checked_scenario_) return;
+  checked_scenario_ = edits_->scenario();
+  jobs_.run([this, checked = checked_scenario_]() -> BackgroundJobs::Finish {
+    std::vector<std::string> warnings;
+    for (const scenario::Problem& problem : scenario::editScenario(*checked, {}).problems) {
+      if (problem.severity == scenario::Severity::warning) {
+        warnings.push_back(toString(problem.location) + ": " + problem.message);
+      }
+    }
+    return [this, warnings] {
+      scenario_warnings_ = warnings;
+      files_->messages->remove(warnings);  // of the scenario as it was opened, which may be edited
+    };
+  });
+}
+
+/// Joins the warnings of the models of many emitters, in the background.
+void Session::joinModelWarnings(double now_s) {
+  constexpr double kInterval_s = 0.5;  // of a playing series, whose fields have different warnings
+  if (status_.warnings == joined_warnings_ || now_s - joined_at_s_ < kInterval_s) return;
+  joined_at_s_ = now_s;
+  const auto before = std::exchange(joined_warnings_, status_.warnings);
+  if (before && joined_warnings_ && *before == *joined_warnings_) return;
+  jobs_.run([this, warnings = joined_warnings_]() -> BackgroundJobs::Finish {
+    auto lines = warnings ? report::joinedWarnings(*warnings) : std::vector<std::string>();
+    return [this, lines = std::move(lines)] { model_warnings_ = lines; };
+  });
+}
+
+bool Session::takeWarnings(double now_s) {
+  checkScenario();
+  joinModelWarnings(now_s);
+  std::vector<std::string> warnings = files_->messages->lines();
+  warnings.insert(warnings.end(), scenario_warnings_.begin(), scenario_warnings_.end());
+  warnings.insert(warnings.end(), model_warnings_.begin(), model_warnings_.end());
+  return std::exchange(warnings_, warnings) != warnings;
+}
+
+}  // namespace emscape::view
