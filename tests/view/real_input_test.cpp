@@ -303,7 +303,7 @@ TEST_F(Selecting, ARightClickOpensTheMenuAndARightDragLooksAround) {
   const Place radar = select();
   const Json before = log("frame").back();
   // The second entry is "Look at it".
-  ASSERT_TRUE(xdotool(at(radar) + " click 3" + at({radar.x + 40, radar.y + 44}) + " sleep 0.5 click 1"));
+  ASSERT_TRUE(xdotool(at(radar) + " click 3" + at({radar.x + 40, radar.y + 68}) + " sleep 0.5 click 1"));
   EXPECT_TRUE(comes([&] { return commands().find("focus") != std::string::npos; })) << commands();
   const std::string until_drag = commands();
   ASSERT_TRUE(xdotool(at(kPicture) + " mousedown 3" + at({kPicture.x + 40, kPicture.y}) + " mouseup 3"));

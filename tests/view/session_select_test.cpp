@@ -70,7 +70,7 @@ TEST_F(Selection, ItsPositionIsCopiedAndLookedAt) {
   perform(R"({"do":"copy_position"})");
   EXPECT_EQ(error(), "nothing is selected");
   perform(R"({"do":"copy_position","path":"emitters.radar"})");
-  EXPECT_THAT(window.clipboard, StartsWith("52.00000°, 5.00000°"));
+  EXPECT_THAT(window.clipboard, StartsWith("52.00000°N 5.00000°E"));
   perform(R"({"do":"focus","path":"platforms.nowhere"})");
   EXPECT_EQ(error(), "there is no 'platforms.nowhere' in the picture");
   perform(R"({"do":"focus","path":")" + session->objects().back().path + R"("})");

@@ -14,10 +14,10 @@ namespace emscape::view {
 struct SceneObject {
   std::string path;  ///< "emitters.search radar", of edits
   std::string name;
-  std::string kind;        ///< "radar", "receiver", ...
-  std::string details;     ///< frequency and power of an emitter; may be empty
-  int platform = -1;       ///< index into Scenario::platforms
-  Vec3d position_m;        ///< frame metres
+  std::string kind;     ///< "radar", "receiver", ...
+  std::string details;  ///< frequency and power of an emitter; may be empty
+  int platform = -1;    ///< index into Scenario::platforms
+  Vec3d position_m;     ///< frame metres
   GeodeticPosition position;
   double height_msl_m = 0;
   std::optional<double> height_agl_m;  ///< none if the ground is not known
