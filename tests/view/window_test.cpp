@@ -431,6 +431,8 @@ TEST_F(Window, WithoutAnInputItAsksForOne) {
 {"do":"expect","key":"computing","op":"==","value":false}
 {"do":"reload"}
 {"do":"expect","key":"error","op":"==","value":"nothing is open: open a scenario or volumes first"}
+{"do":"key","key":"Ctrl+O"}
+{"do":"wait_s","seconds":0.5}
 {"do":"key","key":"Enter"}
 {"do":"wait_s","seconds":0.5}
 {"do":"key","key":"Enter"}

@@ -3,12 +3,32 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 
 #include "emscape/base/error.h"
 #include "playback/view/view_settings.h"
 
 namespace emscape::view {
+namespace {
+
+/// The submenu of View of a setting; empty: none.
+const char* submenuOf(const std::string& key) {
+  static const std::map<std::string, const char*> kSubmenus{{"coast", "Map"},
+                                                            {"graticule", "Map"},
+                                                            {"scale_bar", "Map"},
+                                                            {"compass", "Map"},
+                                                            {"units", "Units"},
+                                                            {"field_unit", "Units"},
+                                                            {"positions", "Units"},
+                                                            {"sides", "Emitters and labels"},
+                                                            {"show_emitters", "Emitters and labels"},
+                                                            {"labels", "Emitters and labels"}};
+  const auto found = kSubmenus.find(key);
+  return found == kSubmenus.end() ? "" : found->second;
+}
+
+}  // namespace
 
 const std::vector<Action>& actions() {
   static const std::vector<Action> all = [] {
@@ -97,7 +117,8 @@ const std::vector<Action>& actions() {
     for (const playback::ViewSetting& setting : playback::viewSettings()) {
       if (setting.action.empty()) continue;
       list.push_back({"View", setting.action.c_str(), setting.keys.c_str(),
-                      fmt::format(R"({{"do":"{}"}})", setting.verb), setting.optionText()});
+                      fmt::format(R"({{"do":"{}"}})", setting.verb), setting.optionText(),
+                      submenuOf(setting.key)});
     }
     const std::vector<Action> others{
         {"View", "Isosurface", "I", R"({"do":"iso"})", "--mode iso"},

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "apps/view/panels/names.h"
@@ -81,6 +82,15 @@ void drawChoices(const std::string& title, const std::string& key, const std::ve
   ImGui::EndMenu();
 }
 
+/// "Side" of "Next side": the menu lists them.
+std::string titleOf(const std::string& action) {
+  const std::string next = "Next ";
+  if (action.compare(0, next.size(), next) != 0) return action;
+  std::string title = action.substr(next.size());
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return title;
+}
+
 /// The choices of an action that changes a value to its next one. @return false if it is no such action
 bool drawChoicesOf(PanelContext& context, const Action& action) {
   Session& session = context.session;
@@ -97,7 +107,7 @@ bool drawChoicesOf(PanelContext& context, const Action& action) {
   }
   for (const playback::ViewSetting& setting : playback::viewSettings()) {
     if (setting.action != action.name || !setting.isChoice()) continue;
-    drawChoices(setting.action, keyOf(action), setting.spec.choices, setting.text(session.view()),
+    drawChoices(titleOf(setting.action), keyOf(action), setting.spec.choices, setting.text(session.view()),
                 [&](const std::string& name) {
                   session.perform({setting.verb, {{setting.argument, name}}});
                 });
@@ -138,7 +148,8 @@ void drawViewMenu(PanelContext& context) {
       was_item = false;
       if (!ImGui::BeginMenu(action.section)) continue;
       for (const Action& other : actions()) {
-        if (other.menu == std::string("View") && other.section == section) drawAction(context, other);
+        if (other.menu != std::string("View") || other.section != section) continue;
+        if (!drawChoicesOf(context, other)) drawAction(context, other);
       }
       ImGui::EndMenu();
     }

@@ -127,10 +127,6 @@ void drawUnsavedQuestion(PanelContext& context) {
   Session& session = context.session;
   if (!beginDialog(context, "Quit", session.panels.unsaved)) return;
   const Json answers = session.quitAnswers();
-  if (!session.files().recorder.running() &&
-      !session.isUnsaved()) {  // it has ended meanwhile: nothing is lost
-    session.perform({"quit", answers});
-  }
   const bool asks_recording =
       session.files().recorder.running() && answers.value("recording", "ask") == "ask";
   if (asks_recording) {

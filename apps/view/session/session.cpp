@@ -181,7 +181,8 @@ bool Session::update() {
   revertRejected();
   if (const auto recorded = files_->recorder.takeOutcome()) {
     tell(recorded->text, recorded->is_error);
-    if (std::exchange(quits_when_recorded_, false) && !recorded->is_error) {
+    const bool is_asked = panels.unsaved && !isUnsaved();  // only about the recording
+    if ((std::exchange(quits_when_recorded_, false) || is_asked) && !recorded->is_error) {
       perform({"quit", {{"edits", quit_answers_.value("edits", "ask")}}});
     }
   }
