@@ -17,7 +17,7 @@ long long linesOf(const Session& session, render::GroundInk ink) {
 TEST(SessionMap, GoingToAPositionLooksAtTheGroundThere) {
   const SessionSample sample("quick.yaml");
   for (const char* const text : {"52.05, 5.06", "52°03'N 5°03'36\"E", "31U FT 41255 68602"}) {
-    sample->perform({"reset_view", {}});
+    sample->perform({"reset_view", Json::object()});
     sample->perform({"goto_position", {{"position", text}}});
     ASSERT_FALSE(sample->notice().is_error) << sample->notice().text;
     const std::optional<Vec3d> target_m = sample->view().camera.target_m;
@@ -29,7 +29,9 @@ TEST(SessionMap, GoingToAPositionLooksAtTheGroundThere) {
   sample->perform({"goto_position", {{"position", "53, 5"}}});
   EXPECT_TRUE(sample->notice().is_error);
   EXPECT_THAT(sample->notice().text, HasSubstr("53.00000°N 5.00000°E is outside of the volume"));
-  EXPECT_THAT(errorOf([&] { sample->perform(parseCommand(std::string(R"({"do":"goto_position","position":"there"})"))); }),
+  EXPECT_THAT(errorOf([&] {
+                sample->perform(parseCommand(std::string(R"({"do":"goto_position","position":"there"})")));
+              }),
               HasSubstr("is not a position"));
 }
 
