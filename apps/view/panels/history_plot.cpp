@@ -15,13 +15,25 @@ bool isField(const ValueHistory& history, std::size_t i) {
   return std::isfinite(history.values[i]) && history.values[i] > history.floor;
 }
 
+/// The values in the unit in which fields are shown; NaN without a field.
+ValueHistory shownOf(ValueHistory history, FieldUnit unit) {
+  const render::FieldScale scale = render::fieldScale(history.unit, unit);
+  for (std::size_t i = 0; i < history.computed; ++i) {
+    history.values[i] =
+        isField(history, i) ? static_cast<float>(scale.shown(double{history.values[i]})) : NAN;
+  }
+  history.unit = scale.unit;
+  history.floor = -HUGE_VALF;
+  return history;
+}
+
 /// Maps times and values to the screen.
 struct Chart {
-  ImVec2 low, high;  // corners
+  ImVec2 low, high;  // lower left and upper right corner
   double begin_s, end_s, min, max;
 
   ImVec2 at(double time_s, double value) const {
-    return {x(time_s), high.y + static_cast<float>((value - min) / (max - min)) * (low.y - high.y)};
+    return {x(time_s), low.y + static_cast<float>((value - min) / (max - min)) * (high.y - low.y)};
   }
   float x(double time_s) const {
     return low.x + static_cast<float>((time_s - begin_s) / (end_s - begin_s)) * (high.x - low.x);
@@ -44,7 +56,7 @@ void drawCurve(ImDrawList& list, const Chart& chart, const ValueHistory& history
 
 void drawHistory(PanelContext& context) {
   Session& session = context.session;
-  const ValueHistory& history = session.history();
+  const ValueHistory history = shownOf(session.history(), session.view().field_unit);
   if (!history.error.empty()) {
     ImGui::TextDisabled("over time: %s", history.error.c_str());
     return;
