@@ -64,9 +64,9 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
 
 std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;
-  for (const auto& topic : {programVerbs(), timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(),
-                            probeVerbs(), pictureVerbs(), planeVerbs(), transferVerbs(), windowVerbs(),
-                            stateVerbs(), fileVerbs(), recordVerbs()}) {
+  for (const auto& topic : {timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(), probeVerbs(),
+                            pictureVerbs(), planeVerbs(), transferVerbs(), windowVerbs(), stateVerbs(),
+                            fileVerbs(), recordVerbs(), programVerbs()}) {
     all.insert(all.end(), topic.begin(), topic.end());
   }
   return all;
