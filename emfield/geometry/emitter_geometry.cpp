@@ -24,13 +24,13 @@ bool isSameColumn(const ColumnsView& columns, int a, int b) {
 }
 
 /// Gives an empty array its size, with checkpoints: the memory of a large one takes a tenth of a second.
-template <class Item>
-void allocate(std::vector<Item>& array, std::size_t size) {
-  constexpr std::size_t kPart = std::size_t{1} << 20;
+template <class Array>
+void allocate(Array& array, std::size_t size) {
+  constexpr std::size_t kItemsAtOnce = std::size_t{1} << 20;
   array.reserve(size);
   while (array.size() < size) {
     checkpoint();
-    array.resize(std::min(size, array.size() + kPart));
+    array.resize(std::min(size, array.size() + kItemsAtOnce));
   }
 }
 
@@ -69,7 +69,7 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
     times.march_ms += watch.lap_ms();
     const std::size_t voxels = column_count_ * columns.t_m.size();
     allocate(excess_, columns.every_height ? 0 : voxels);
-    allocate(excess_db_, columns.every_height ? voxels : 0);
+    excess_db_.resize(columns.every_height ? voxels : 0);
     if (model.has_reflected_ray) allocate(reflected_, voxels);
     if (needs.mechanisms && hasMechanisms(model)) allocate(mechanisms_, voxels);
     const ExcessStore store{excess_.empty() ? nullptr : excess_.data(),
