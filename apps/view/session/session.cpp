@@ -69,10 +69,10 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
 
 std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;
-  for (const auto& topic : {programVerbs(), timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(),
-                            itemVerbs(), selectionVerbs(), toolVerbs(), probeVerbs(), pictureVerbs(),
-                            planeVerbs(), transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(),
-                            recordVerbs(), quitVerbs()}) {
+  for (const auto& topic : {timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(), itemVerbs(),
+                            selectionVerbs(), toolVerbs(), probeVerbs(), pictureVerbs(), planeVerbs(),
+                            transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(), recordVerbs(),
+                            programVerbs(), quitVerbs()}) {
     all.insert(all.end(), topic.begin(), topic.end());
   }
   return all;
