@@ -29,6 +29,7 @@ constexpr double kNamePart = 1.0 / 3;  // maximum width of a name, of the pictur
 constexpr double kMinName = 160;
 constexpr double kLabelPart = 0.2;  // maximum width of a label
 constexpr double kMinText_px = 12, kMinSmall_px = 11;
+constexpr double kThumbnail_px = 360;  // smaller pictures have smaller texts
 
 /// Composites a cast picture over the drawing; the only quantisation of the cast picture.
 void drawCast(Canvas& canvas, const Image& cast) {
@@ -155,8 +156,9 @@ Theme parseTheme(const std::string& name) {
 Style::Style(ImageSize size, Theme theme, double scale) {
   const double by_size = std::min(size.width / 1200.0, size.height / 900.0);
   unit = std::max({kMinUnit, by_size, std::min(scale, kMaxOfSize * by_size)});
-  text_px = std::max(text_px * unit, kMinText_px);
-  small_px = std::max(small_px * unit, kMinSmall_px);
+  const double legible = std::min(1.0, std::min(size.width, size.height) / kThumbnail_px);
+  text_px = std::max(text_px * unit, kMinText_px * legible);
+  small_px = std::max(small_px * unit, kMinSmall_px * legible);
   name_px = std::max(kNamePart * size.width, kMinName * unit);
   label_px = std::max(kLabelPart * size.width, kMinName * unit);
   if (theme == Theme::dark) {

@@ -172,18 +172,29 @@ class MapPicture {
                                             std::min(style_.name_px, 0.6 * rect_.width)));
       extents.push_back({0, 0, canvas.textBox(names.back(), style_.small_px).width, 1.2 * style_.small_px});
     }
-    const auto places = placeLabels(at, radius, extents, rect_);
+    double reach = 1;  // of the largest symbol, in radii
+    for (const MapMarker* marker : shown)
+      reach = std::max(reach, render::symbolSize(symbolOf(*marker)) - 0.2);
+    const auto places = placeLabels(at, reach * radius, extents, rect_);
     for (std::size_t m = 0; m < shown.size(); ++m) {
       if (places[m]) drawLeader(canvas, at[m], *places[m], 2 * radius);
     }
     for (std::size_t m = 0; m < shown.size(); ++m)
-      render::drawSymbol(canvas, shown[m]->kind, true, at[m], radius);
+      render::drawMark(canvas, symbolOf(*shown[m]), at[m], radius);
     for (std::size_t m = 0; m < shown.size(); ++m) {
       if (!places[m]) continue;
       canvas.textWithRim(names[m], {places[m]->x, places[m]->y + places[m]->height / 2}, style_.small_px,
                          kNameInk, kNameRim);
     }
     return static_cast<std::size_t>(std::count(places.begin(), places.end(), std::nullopt));
+  }
+
+  static render::Marker symbolOf(const MapMarker& marker) {
+    render::Marker symbol;
+    symbol.kind = marker.kind;
+    symbol.side = marker.side;
+    symbol.sidc = marker.sidc;
+    return symbol;
   }
 
   /// From a symbol to a name that is not beside it.
@@ -210,13 +221,22 @@ class MapPicture {
 }  // namespace
 
 std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot) {
+  const std::vector<scenario::Platform>& platforms = snapshot.scenario->platforms;
   std::vector<MapMarker> markers;
+  std::vector<bool> has_emitter(platforms.size());
+  const auto add = [&](std::size_t p, const std::string& label, render::MarkerKind kind) {
+    const GeodeticPosition& position = snapshot.platforms[p].position;
+    markers.push_back({position.latitude_deg, position.longitude_deg, label, kind,
+                       playback::affiliationOf(platforms[p].side), platforms[p].sidc});
+  };
   for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
-    const scenario::EmitterState& state = snapshot.emitters[e];
     const scenario::Emitter& emitter = snapshot.scenario->emitters[e];
-    if (!state.active) continue;
-    markers.push_back({state.position.latitude_deg, state.position.longitude_deg, emitter.name,
-                       playback::markerKindOf(emitter.kind)});
+    const auto platform = static_cast<std::size_t>(emitter.platform);
+    has_emitter[platform] = true;
+    if (snapshot.emitters[e].active) add(platform, emitter.name, playback::markerKindOf(emitter.kind));
+  }
+  for (std::size_t p = 0; p < platforms.size(); ++p) {
+    if (!has_emitter[p] && platforms[p].side) add(p, platforms[p].name, render::MarkerKind::platform);
   }
   return markers;
 }

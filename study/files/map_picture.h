@@ -11,11 +11,13 @@
 
 namespace emscape::study {
 
-/// An emitter on the map.
+/// An emitter on the map, or a platform with a side and without an emitter.
 struct MapMarker {
   double latitude_deg = 0, longitude_deg = 0;
   std::string label;
   render::MarkerKind kind = render::MarkerKind::platform;
+  render::Affiliation side = render::Affiliation::none;
+  std::string sidc;  ///< as render::Marker::sidc
 };
 
 struct MapPictureOptions {
@@ -26,7 +28,7 @@ struct MapPictureOptions {
   std::vector<float> ground_msl_m;  ///< of these squares, for shading; empty: none
 };
 
-/// The active emitters of an instant.
+/// The active emitters of an instant, and the platforms that have a side but no emitter.
 std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot);
 
 /// Squares of the ground along a pixel with which a picture of this width has as much relief as it can show.

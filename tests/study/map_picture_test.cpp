@@ -280,7 +280,8 @@ TEST(MapPicture, LabelsStayOnTheMap) {
   Map map = jamLoss(grid);
   MapPictureOptions options;
   const render::Image8 without = drawMap(grid, map, options);
-  options.markers = {{10, 20.04, "a radar at the eastern edge of the map", render::MarkerKind::radar}};
+  options.markers = {{10, 20.04, "a radar at the eastern edge of the map", render::MarkerKind::radar,
+                      render::Affiliation::none, ""}};
   const render::Image8 with = drawMap(grid, map, options);
   ASSERT_EQ(with.size, without.size);
   const int edge = 84 + static_cast<int>((1200 - 84 - 190)) + 12;  // the frame of the map

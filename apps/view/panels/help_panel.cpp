@@ -1,5 +1,6 @@
 /// Help: first steps, keys and mouse.
 #include "apps/view/panels/dialog.h"
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 
@@ -31,12 +32,12 @@ void drawRow(PanelContext& context, const ImGuiTextFilter& filter, const std::st
   if (!filter.PassFilter((keys + " " + does + " " + command_line).c_str())) return;
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  ImGui::TextWrapped("%s", keys.c_str());
+  ImGui::TextWrapped("%s", drawable(keys).c_str());
   ImGui::TableNextColumn();
-  ImGui::TextWrapped("%s", does.c_str());
+  ImGui::TextWrapped("%s", drawable(does).c_str());
   ImGui::TableNextColumn();
   ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
-  ImGui::TextWrapped("%s", command_line.c_str());
+  ImGui::TextWrapped("%s", drawable(command_line).c_str());
   ImGui::PopStyleColor();
 }
 
@@ -50,7 +51,7 @@ void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
     if (!filter.IsActive()) {
       ImGui::TableNextRow();
       ImGui::TableNextColumn();
-      ImGui::TextColored(accentColor(context.session.theme()), "%s", menu.c_str());
+      ImGui::TextColored(accentColor(context.session.theme()), "%s", drawable(menu).c_str());
     }
     for (const Action& action : actions()) {
       if (menu != action.menu) continue;

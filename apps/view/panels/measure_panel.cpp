@@ -1,4 +1,5 @@
 /// The result of a measurement.
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/path_plot.h"
 #include "apps/view/panels/theme.h"
@@ -25,7 +26,7 @@ void drawMeasurePanel(PanelContext& context) {
     ImGui::TextWrapped("%s, %s above sea level", positionText(end->position, view).c_str(),
                        heightText(end->height_msl_m, view).c_str());
   }
-  ImGui::TextWrapped("%s", measured.verdict.c_str());
+  ImGui::TextWrapped("%s", drawable(measured.verdict).c_str());
   drawPathPlot(measured.path, {ImGui::GetContentRegionAvail().x, 150 * context.scale}, session.theme(),
                context.scale);
 }

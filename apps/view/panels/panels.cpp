@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "apps/view/panels/dialog.h"
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/picture_overlay.h"
 #include "apps/view/panels/theme.h"
 #include "base/text/time_text.h"
@@ -164,12 +165,12 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   if (!under.empty() && under_x >= ImGui::GetCursorPosX()) {
     ImGui::SameLine();
     ImGui::SetCursorPosX(under_x);
-    ImGui::TextUnformatted(under.c_str());
+    ImGui::TextUnformatted(drawable(under).c_str());
   }
   if (!right.empty()) {
     ImGui::SameLine();
     ImGui::SetCursorPosX(std::max(ImGui::GetCursorPosX(), right_x));
-    ImGui::TextUnformatted(right.c_str());
+    ImGui::TextUnformatted(drawable(right).c_str());
   }
   ImGui::End();
   ImGui::PopStyleVar();

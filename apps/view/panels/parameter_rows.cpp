@@ -164,7 +164,7 @@ bool ParameterRows::drawSubheading(const std::string& id, const std::string& nam
       ("##" + id).c_str(), ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen);
   ImGui::PopStyleColor();
   ImGui::SameLine();
-  ImGui::TextColored(accentColor(context_.session.theme()), "%s", name.c_str());
+  ImGui::TextColored(accentColor(context_.session.theme()), "%s", drawable(name).c_str());
   *open = is_open ? 1 : 0;
   showFocus(id);
   return is_open;
@@ -414,7 +414,7 @@ void ParameterRows::drawRefusal(const std::string& path) {
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_AlwaysAutoResize);
   ImGui::PushTextWrapPos(300 * s);
-  ImGui::TextColored(errorColor(context_.session.theme()), "%s", state_.refused.why.c_str());
+  ImGui::TextColored(errorColor(context_.session.theme()), "%s", drawable(state_.refused.why).c_str());
   ImGui::PopTextWrapPos();
   ImGui::End();
   ImGui::PopStyleVar();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/theme.h"
 #include "apps/view/parts/position_text.h"
 #include "apps/view/session/plane_drag.h"
@@ -147,9 +148,9 @@ void ringsEntry(PanelContext& context, const std::string& emitter) {
 void drawMenuOfObject(PanelContext& context, const SceneObject& object) {
   Session& session = context.session;
   const bool is_emitter = object.path.compare(0, 9, "emitters.") == 0;
-  ImGui::TextColored(accentColor(session.theme()), "%s", object.name.c_str());
+  ImGui::TextColored(accentColor(session.theme()), "%s", drawable(object.name).c_str());
   ImGui::SameLine();
-  ImGui::TextDisabled("%s", object.kind.c_str());
+  ImGui::TextDisabled("%s", drawable(object.kind).c_str());
   ImGui::Separator();
   if (is_emitter) entry(context, "Switch on or off", {"enable", {{"emitter", object.name}}});
   entry(context, "Look at it", {"focus", {{"path", object.path}}});

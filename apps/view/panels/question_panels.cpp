@@ -81,7 +81,7 @@ void drawRecordingQuestion(PanelContext& context, const Json& answers) {
   ImGui::TextUnformatted(
       progress.total > 0 ? fmt::format("A recording is {} of {}:", progress.pictures, progress.total).c_str()
                          : "A recording is being opened:");
-  ImGui::TextDisabled("%s", progress.output.c_str());
+  ImGui::TextDisabled("%s", drawable(progress.output).c_str());
   ImGui::Spacing();
   const auto answer = [&](const char* recording) {
     Json all = answers;
@@ -147,7 +147,7 @@ void drawReplaceQuestion(PanelContext& context) {
   ImGui::TextUnformatted(std::filesystem::is_directory(file, ignored)
                              ? "This folder exists and has files in it:"
                              : "This file exists already:");
-  ImGui::TextDisabled("%s", file.c_str());
+  ImGui::TextDisabled("%s", drawable(file).c_str());
   ImGui::Spacing();
   if (ImGui::Button("Replace")) perform(context, R"({"do":"replace"})");
   ImGui::SameLine();

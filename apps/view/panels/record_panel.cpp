@@ -137,7 +137,7 @@ void drawEstimate(const PanelContext& context, const Typed& typed) {
     text += fmt::format(", a film of {}; one second shows {} of the scenario", timeText(estimate.film_s),
                         timeText(estimate.speed));
   }
-  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextUnformatted(drawable(text).c_str());
   ImGui::TextDisabled("about %s to record, %s", timeText(std::max(1.0, std::round(estimate.work_s))).c_str(),
                       bytesText(estimate.bytes).c_str());
 }
@@ -172,7 +172,7 @@ void drawRecording(PanelContext& context, const Area& picture) {
   drawEstimate(context, typed);
   ImGui::TextDisabled("%s", "the same on the command line, with the view saved as VIEW.json (Ctrl+Shift+V):");
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 520 * context.scale);
-  ImGui::TextDisabled("%s", commandLine(session, typed).c_str());
+  ImGui::TextDisabled("%s", drawable(commandLine(session, typed)).c_str());
   ImGui::PopTextWrapPos();
   ImGui::Spacing();
   if (defaultButton("Record")) session.perform(typed.command());

@@ -46,7 +46,7 @@ void drawExamples(PanelContext& context) {
       ImGui::PopID();
       ImGui::TableNextColumn();
       ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(session.theme()));
-      ImGui::TextWrapped("%s", example.text.c_str());
+      ImGui::TextWrapped("%s", drawable(example.text).c_str());
       ImGui::PopStyleColor();
     }
     ImGui::EndTable();

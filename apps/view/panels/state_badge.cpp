@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 #include "volume/difference.h"
@@ -73,7 +74,7 @@ void drawStateBadge(PanelContext& context, float right_x) {
     if (fits) text = longer;
   }
   ImGui::SameLine(0, 12 * s);
-  ImGui::TextUnformatted(text.c_str());
+  ImGui::TextUnformatted(drawable(text).c_str());
   ImGui::EndGroup();
   if (!ImGui::IsItemHovered() || !session.picture()) return;
   ImGui::SetTooltip("%s", fmt::format("{}\ncache {:.0f} of {:.0f} MiB", all,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/timeline_drawing.h"
 #include "base/text/time_text.h"
 #include "emscape/scenario/model/clock.h"
@@ -80,7 +81,7 @@ void showTime(const PanelContext& context, double time_s) {
     text += "\n" + scenario::utcAt(scenario->clock, time_s);
   // The child window of the rows has none of its own.
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10 * context.scale, 7 * context.scale));
-  ImGui::SetTooltip("%s", text.c_str());
+  ImGui::SetTooltip("%s", drawable(text).c_str());
   ImGui::PopStyleVar();
 }
 

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "apps/view/panels/dialog.h"
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 
@@ -31,7 +32,7 @@ void drawWarnings(PanelContext& context) {
   if (session.warnings().empty()) ImGui::TextDisabled("There are none.");
   for (const std::string& warning : session.warnings()) {
     ImGui::Bullet();
-    ImGui::TextWrapped("%s", warning.c_str());
+    ImGui::TextWrapped("%s", drawable(warning).c_str());
   }
   ImGui::EndChild();
   if (defaultButton("Close")) session.panels.warnings = false;
