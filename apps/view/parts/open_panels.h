@@ -9,8 +9,8 @@ namespace emscape::view {
 struct Panels {
   bool scenario = true, colors = false, timeline = true, help = false, time = false, probe = false;
   bool planes = false;
-  bool position = false;  ///< go to a position
-  bool map = false;       ///< places, picture and range rings on the ground
+  bool position = false;                  ///< go to a position
+  bool map = false;                       ///< places, picture and range rings on the ground
   bool open = false, record = false;      ///< the file browser; the dialog of recording
   bool restore = false, unsaved = false;  ///< questions
   bool changed = false;                   ///< files of the input have changed on the disk
