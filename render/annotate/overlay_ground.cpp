@@ -1,7 +1,6 @@
 /// Lines and points on the ground, and the scale bar.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "base/text/display_units.h"
 #include "render/annotate/overlay_parts.h"
@@ -11,6 +10,7 @@ namespace {
 
 constexpr double kDot = 3.2;  // radius, lengths at 1200 x 900
 constexpr double kPlaceGap = 7;
+constexpr double kSymbol = 11;     // half the size of an emitter's symbol
 constexpr double kScaleBar = 150;  // longest
 
 struct LineLook {
@@ -80,37 +80,42 @@ void drawVisible(Canvas& canvas, const Style& style, const std::vector<Vertex>& 
   flush();
 }
 
-/// The place of a line's label; none if it is not visible.
-std::optional<Point2> labelPoint(const Style& style, const GroundLine& line,
-                                 const std::vector<Vertex>& vertices) {
-  if (vertices.empty()) return std::nullopt;
+/// Places for a line's label, the best first; none if they are not visible.
+std::vector<Point2> labelPoints(const Style& style, const GroundLine& line,
+                                const std::vector<Vertex>& vertices) {
+  if (vertices.empty()) return {};
+  const auto visible = [](const Vertex& vertex) {
+    return vertex.is_visible ? std::vector<Point2>{vertex.at} : std::vector<Point2>{};
+  };
   if (line.is_area) {
     Point2 sum;
     for (const Vertex& vertex : vertices) {
-      if (!vertex.is_visible) return std::nullopt;
+      if (!vertex.is_visible) return {};
       sum = sum + vertex.at;
     }
-    return sum * (1.0 / static_cast<double>(vertices.size()));
+    return {sum * (1.0 / static_cast<double>(vertices.size()))};
   }
   const auto isLower = [](const Vertex& a, const Vertex& b) { return a.at.y < b.at.y; };
-  if (line.ink == GroundInk::ring) {
-    const Vertex& lowest = *std::max_element(vertices.begin(), vertices.end(), isLower);
-    return lowest.is_visible ? std::optional(lowest.at) : std::nullopt;
-  }
+  if (line.ink == GroundInk::ring)
+    return visible(*std::max_element(vertices.begin(), vertices.end(), isLower));
   if (line.ink == GroundInk::graticule) {  // inside the end nearer to the viewer
     const bool at_front = isLower(vertices.back(), vertices.front());
     const Vertex& end = at_front ? vertices.front() : vertices.back();
     const Vertex& other = at_front ? vertices.back() : vertices.front();
     const double size = length(other.at - end.at);
-    if (!end.is_visible || size < 60 * style.unit) return std::nullopt;
-    return end.at + (other.at - end.at) * (24 * style.unit / size);
+    if (!end.is_visible || size < 60 * style.unit) return {};
+    return {end.at + (other.at - end.at) * (24 * style.unit / size)};
   }
-  const Vertex& middle = vertices[vertices.size() / 2];
-  return middle.is_visible ? std::optional(middle.at) : std::nullopt;
+  std::vector<Point2> points;
+  for (const double part : {0.5, 0.33, 0.67, 0.2, 0.8}) {
+    const Vertex& vertex = vertices[static_cast<std::size_t>(part * static_cast<double>(vertices.size()))];
+    if (vertex.is_visible) points.push_back(vertex.at);
+  }
+  return points;
 }
 
-/// Draws a text unless it meets another one or the picture's edge.
-void drawIfFree(Canvas& canvas, const Style& style, const std::string& label, const Point2& at,
+/// Draws a text unless it meets another one or the picture's edge. @return true if it was drawn
+bool drawIfFree(Canvas& canvas, const Style& style, const std::string& label, const Point2& at,
                 const Ink& ink, Align align, std::vector<Rect>& taken) {
   const std::string text = shortenedText(canvas, label, style.small_px, style.name_px);
   const Rect extent = canvas.textBox(text, style.small_px);
@@ -120,22 +125,48 @@ void drawIfFree(Canvas& canvas, const Style& style, const std::string& label, co
                          covered.x + covered.width <= canvas.size().width &&
                          covered.y + covered.height <= canvas.size().height;
   const auto hits = [&](const Rect& other) { return overlap(covered, other); };
-  if (!is_inside || std::any_of(taken.begin(), taken.end(), hits)) return;
+  if (!is_inside || std::any_of(taken.begin(), taken.end(), hits)) return false;
   taken.push_back(covered);
   canvas.textWithRim(text, at, style.small_px, ink, style.rimInk(), align);
+  return true;
+}
+
+/// The name of a point: beside it, above or below.
+void drawPointName(Canvas& canvas, const Style& style, const std::string& name, const Point2& at,
+                   const Ink& ink, std::vector<Rect>& taken) {
+  if (name.empty()) return;
+  const Rect extent =
+      canvas.textBox(shortenedText(canvas, name, style.small_px, style.name_px), style.small_px);
+  const double gap = kPlaceGap * style.unit;
+  const double rise = gap + extent.height / 2;
+  for (const Point2& left : {Point2{gap, 0}, Point2{-gap - extent.width, 0}, Point2{-extent.width / 2, -rise},
+                             Point2{-extent.width / 2, rise}}) {
+    if (drawIfFree(canvas, style, name, at + left, ink, Align::left, taken)) return;
+  }
 }
 
 }  // namespace
 
 void drawGroundMarks(Canvas& canvas, const Style& style, const Projector& projector,
                      const Annotations& annotations, const HiddenTest& hidden, std::vector<Rect>& taken) {
+  // Symbols of emitters, which are drawn later.
+  const auto first_symbol = static_cast<std::ptrdiff_t>(taken.size());
+  for (const Marker& marker : annotations.markers) {
+    Point2 at;
+    const double reach = kSymbol * style.unit;
+    if (projector.project(marker.position_m, at))
+      taken.push_back({at.x - reach, at.y - reach, 2 * reach, 2 * reach});
+  }
+  const auto end_of_symbols = static_cast<std::ptrdiff_t>(taken.size());
   for (const GroundLine& line : annotations.ground_lines) {
     const LineLook look = lookOf(style, line.ink);
     const std::vector<Vertex> vertices = verticesOf(line, projector, hidden);
     if (line.is_area) fillArea(canvas, line, projector, look);
     drawVisible(canvas, style, vertices, look);
-    const std::optional<Point2> at = line.label.empty() ? std::nullopt : labelPoint(style, line, vertices);
-    if (at) drawIfFree(canvas, style, line.label, *at, look.text, Align::center, taken);
+    if (line.label.empty()) continue;
+    for (const Point2& at : labelPoints(style, line, vertices)) {
+      if (drawIfFree(canvas, style, line.label, at, look.text, Align::center, taken)) break;
+    }
   }
   const LineLook look = lookOf(style, GroundInk::place);
   for (const GroundPoint& point : annotations.ground_points) {
@@ -143,9 +174,9 @@ void drawGroundMarks(Canvas& canvas, const Style& style, const Projector& projec
     if (!projector.project(point.position_m, at) || (hidden && hidden(point.position_m))) continue;
     canvas.disc(at, kDot * style.unit, look.line);
     canvas.circle(at, kDot * style.unit, style.rimInk(0.9), style.unit);
-    drawIfFree(canvas, style, point.label, at + Point2{kPlaceGap * style.unit, 0}, look.text, Align::left,
-               taken);
+    drawPointName(canvas, style, point.label, at, look.text, taken);
   }
+  taken.erase(taken.begin() + first_symbol, taken.begin() + end_of_symbols);
 }
 
 void drawScaleBar(Canvas& canvas, const Style& style, const Projector& projector, Units units,

@@ -10,7 +10,6 @@
 #include "emscape/base/units.h"
 #include "scenario/map/vector_file.h"
 #include "scenario/terrain/transformation.h"
-#include "study/maps/gdal_support.h"
 #include "study/sweep/definition/study_reading.h"
 
 namespace emscape::study {

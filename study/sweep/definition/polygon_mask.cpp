@@ -11,7 +11,6 @@
 #include "emscape/base/units.h"
 #include "scenario/map/vector_file.h"
 #include "scenario/terrain/transformation.h"
-#include "study/maps/gdal_support.h"
 
 namespace emscape::study {
 namespace {

@@ -301,5 +301,54 @@ TEST(Overlay, MarksTheIsoValueOnTheColourBar) {
   }
 }
 
+/// Pixels of a picture that differ with marks on the ground.
+long long pixelsOfMarks(const Annotations& marks, const HiddenTest& hidden = {}) {
+  Annotations annotations = marks;
+  const ImageSize size{320, 240};
+  const Camera camera = makeCamera(parseCamera("orbit"), kBox, size, overlayMargins(size, annotations));
+  const Image8 with = compose(Image(size), camera, kBox, annotations, hidden);
+  annotations.ground_lines.clear();
+  annotations.ground_points.clear();
+  return differingPixels(with, compose(Image(size), camera, kBox, annotations, hidden));
+}
+
+TEST(Overlay, MarksOnTheGroundAreDrawnWhereItDoesNotHideThem) {
+  Annotations line;
+  line.ground_lines = {{GroundInk::coast, {{-9000, 0, 0}, {0, 0, 0}, {9000, 0, 0}}, ""}};
+  EXPECT_GT(pixelsOfMarks(line), 100);
+  EXPECT_EQ(pixelsOfMarks(line, [](const Vec3d&) { return true; }), 0);
+  const double kNaN = std::numeric_limits<double>::quiet_NaN();
+  line.ground_lines[0].points_m = {{-9000, 0, kNaN}, {0, 0, 0}, {9000, 0, kNaN}};
+  EXPECT_EQ(pixelsOfMarks(line), 0) << "over holes";
+  Annotations point;
+  point.ground_points = {{{0, 0, 0}, ""}};
+  const long long dot = pixelsOfMarks(point);
+  EXPECT_GT(dot, 4);
+  point.ground_points[0].label = "harbour";
+  EXPECT_GT(pixelsOfMarks(point), dot + 20);
+  point.ground_points.push_back(point.ground_points[0]);
+  EXPECT_GT(pixelsOfMarks(point), dot + 20) << "the second name is beside the first";
+}
+
+TEST(Overlay, AxesCountFromTheNamedOriginInTheUnits) {
+  const ImageSize size{640, 480};
+  const auto picture = [&](const Annotations& annotations) {
+    const Camera camera = makeCamera(parseCamera("orbit"), kBox, size, overlayMargins(size, annotations));
+    return compose(Image(size), camera, kBox, annotations);
+  };
+  Annotations annotations;
+  const Image8 plain = picture(annotations);
+  annotations.origin_longitude = "3°E";
+  annotations.origin_latitude = "51.3°N";
+  const Image8 named = picture(annotations);
+  EXPECT_GT(differingPixels(plain, named), 50);
+  annotations.units = Units::nautical;
+  EXPECT_GT(differingPixels(named, picture(annotations)), 50);
+  annotations.scale_bar = true;
+  const Image8 with_bar = picture(annotations);
+  annotations.compass = false;
+  EXPECT_GT(differingPixels(with_bar, picture(annotations)), 200);
+}
+
 }  // namespace
 }  // namespace emscape::render
