@@ -10,6 +10,7 @@
 #include "emscape/base/parallel.h"
 #include "emscape/playback/frames/scene.h"
 #include "render/annotate/overlay_parts.h"
+#include "scenario/map/coast.h"
 #include "study/files/contour_lines.h"
 #include "study/files/map_colors.h"
 #include "study/files/map_frame.h"
@@ -41,7 +42,7 @@ class MapPicture {
         style_({options.width, options.width * 3 / 4}, render::Theme::light),
         relief_{grid.width * options.refinement, grid.height * options.refinement,
                 grid.cell_m / options.refinement, options.ground_msl_m},
-        sea_(seaOf(relief_)) {
+        sea_(options.water.empty() ? seaOf(relief_) : options.water) {
     const std::string unknown = hasUnknown() ? "no value" : "";
     if (!unknown.empty()) legend_.note += (legend_.note.empty() ? "no colour: " : ", or ") + unknown;
     const double left = 84 * style_.unit, top = 96 * style_.unit;
@@ -139,7 +140,9 @@ class MapPicture {
 
   /// The line between sea and land.
   void drawShore(Canvas& canvas, const MapFrame& frame) const {
-    if (std::find(sea_.begin(), sea_.end(), 1) == sea_.end()) return;
+    if (!options_.shores.empty())
+      frame.drawLine(canvas, frame.at(options_.shores), kCoast, 1.3 * style_.unit);
+    if (!options_.water.empty() || std::find(sea_.begin(), sea_.end(), 1) == sea_.end()) return;
     const std::vector<float> levels(sea_.begin(), sea_.end());
     const double square = scale_ / options_.refinement;
     for (const GridLine& line : contourLines(levels, relief_.width, relief_.height, 0.5F)) {
@@ -256,6 +259,23 @@ std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrai
     }
   });
   return heights;
+}
+
+void addCoast(const MapGrid& grid, const MapGrid& squares, MapPictureOptions& options) {
+  const auto coast = grid.area ? scenario::Coast::installed(grid.area->box) : nullptr;
+  if (coast == nullptr) return;
+  options.water.assign(squares.pixels(), 0);
+  parallelFor(static_cast<int>(squares.pixels()), 4096, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) {
+      const auto [latitude_deg, longitude_deg] = squares.positions[p];
+      if (!std::isnan(latitude_deg)) options.water[p] = coast->isWater(latitude_deg, longitude_deg) ? 1 : 0;
+    }
+  });
+  for (const scenario::CoastLine& line : coast->lines()) {
+    for (const GeodeticPosition& point : line.points)
+      options.shores.push_back({point.latitude_deg, point.longitude_deg});
+    options.shores.push_back({NAN, NAN});
+  }
 }
 
 render::Image8 drawMap(const MapGrid& grid, const Map& map, const MapPictureOptions& options) {

@@ -1,6 +1,7 @@
 /// A map as a picture: colours over the shaded ground, with legend, axes and emitters.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/study/maps/map.h"
+#include "study/files/map_plane.h"
 
 namespace emscape::study {
 
@@ -26,6 +28,10 @@ struct MapPictureOptions {
   std::vector<MapMarker> markers;
   int refinement = 1;               ///< squares of the ground along a pixel of the map
   std::vector<float> ground_msl_m;  ///< of these squares, for shading; empty: none
+  /// Of a map without ground: the squares of water (1), and the shores, with NaN behind each line; empty:
+  /// unknown.
+  std::vector<std::uint8_t> water;
+  std::vector<GeoPoint> shores;
 };
 
 /// The active emitters of an instant, and the platforms that have a side but no emitter.
@@ -36,6 +42,10 @@ int refinementOf(const MapGrid& grid, int picture_width);
 
 /// Heights of the ground below the pixels (m); NaN where there is none.
 std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrain);
+
+/// Sets water and shores of the installed coast lines (scenario::Coast), if there are any.
+/// @param squares  the grid of the ground's squares
+void addCoast(const MapGrid& grid, const MapGrid& squares, MapPictureOptions& options);
 
 render::Image8 drawMap(const MapGrid& grid, const Map& map, const MapPictureOptions& options);
 

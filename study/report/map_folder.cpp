@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "base/files/folder.h"
 #include "base/files/folder_lock.h"
@@ -101,8 +102,7 @@ struct MapFolder::State {
   EarlierOutputs earlier_outputs;
   MapStudy study;
   bool has_cog = false, has_png = false;
-  int refinement = 1;               ///< of the ground over the map's pixels
-  std::vector<float> ground_msl_m;  ///< for pictures
+  MapPictureOptions background;  ///< of all pictures: what is below the colours
   std::vector<Collection> collections;
   std::vector<MapRecord> records;
   std::vector<Picture> pictures;
@@ -115,14 +115,24 @@ struct MapFolder::State {
         earlier_outputs(path),
         study(std::move(of)) {
     for (const std::filesystem::path& written : {path, path / "maps"}) removeAbandonedFiles(written);
-    if (study.terrain == nullptr) return;
+    setBackground();
+  }
+
+  /// Ground, or water and shores, of all pictures.
+  void setBackground() {
     const MapGrid& grid = *study.grid;
-    refinement = refinementOf(grid, MapPictureOptions{}.width);
-    ground_msl_m =
-        groundOf(refinement == 1 ? grid
-                                 : mapGridAt(grid.wkt, grid.crs, grid.cell_m / refinement, grid.left_m,
-                                             grid.top_m, grid.width * refinement, grid.height * refinement),
-                 *study.terrain);
+    const int parts = background.refinement = refinementOf(grid, background.width);
+    std::optional<MapGrid> finer;
+    if (parts > 1) {
+      finer = mapGridAt(grid.wkt, grid.crs, grid.cell_m / parts, grid.left_m, grid.top_m, grid.width * parts,
+                        grid.height * parts);
+    }
+    const MapGrid& squares = finer ? *finer : grid;
+    if (study.terrain != nullptr) {
+      background.ground_msl_m = groundOf(squares, *study.terrain);
+    } else {
+      addCoast(grid, squares, background);
+    }
   }
 
   void addFormat(const std::string& name) {
@@ -158,12 +168,10 @@ struct MapFolder::State {
   render::Image8 pictureOf(const Map& map) const {
     const scenario::Scenario& scenario = *study.scenarios.front();
     const double time_s = map.time_s.value_or(study.times_s.front());
-    MapPictureOptions options;
+    MapPictureOptions options = background;
     options.title = fmt::format("{}: {}", scenario.name, render::displayText(map.description));
     options.subtitle = timesText(map);
     options.markers = markersOf(scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), time_s));
-    options.refinement = refinement;
-    options.ground_msl_m = ground_msl_m;
     return drawMap(*study.grid, map, options);
   }
 

@@ -240,6 +240,22 @@ TEST(MapPicture, SeaIsLevelGroundAtMeanSeaLevel) {
       << "unknown ground is no sea";
 }
 
+TEST(MapPicture, WithoutGroundTheSeaIsThatOfTheCoastLines) {
+  const MapGrid grid = makeMapGrid(parseArea("bbox:6.3,0,6.9,0.5"), 2000, "utm");  // the island of Sao Tome
+  MapPictureOptions options;
+  addCoast(grid, grid, options);
+  if (options.water.empty()) GTEST_SKIP() << "no coast lines are installed";
+  const auto waterAt = [&](double latitude_deg, double longitude_deg) {
+    return options.water[static_cast<std::size_t>(grid.pixelAt(latitude_deg, longitude_deg))] != 0;
+  };
+  EXPECT_FALSE(waterAt(0.25, 6.6)) << "the middle of the island";
+  EXPECT_TRUE(waterAt(0.45, 6.4)) << "the sea to the north-west";
+  EXPECT_FALSE(options.shores.empty());
+  const render::Image8 image = drawMap(grid, jamLoss(grid), options);
+  const std::uint8_t* const sea = image.at(110, 130);
+  EXPECT_GT(sea[2], sea[0] + 15) << "blue";
+}
+
 TEST(MapPicture, DegreesGoOnAcrossTheAntimeridian) {
   std::vector<std::string> texts;
   for (const DegreeTick& tick : degreeTicks(179.3, 180.8, 3, true)) texts.push_back(tick.text);
