@@ -33,9 +33,11 @@ interop::TimeSpan parseSpan(const std::string& text) {
   const double begin = document::numberOf(text.substr(0, at)).value_or(nan);
   const double end = at == std::string::npos ? nan : document::numberOf(text.substr(at + 1)).value_or(nan);
   if (!(begin < end) || !(std::abs(begin) <= 1e9) || !(std::abs(end) <= 1e9)) {
-    throw Error(ErrorCode::usage,
-                fmt::format("--times '{}' is not BEGIN:END in seconds of the recording, BEGIN below END, such as 0:120",
-                            text));
+    throw Error(
+        ErrorCode::usage,
+        fmt::format(
+            "--times '{}' is not BEGIN:END in seconds of the recording, BEGIN below END, such as 0:120",
+            text));
   }
   return {begin, end};
 }
@@ -90,18 +92,26 @@ Exit status: 0; 2 for wrong options; 3 for a recording, database or base that ca
   auto arguments = std::make_shared<ImportArguments>();
   command->add_option("FILE", arguments->files, "Recordings of the same battlefield")->required();
   command->add_option("-o,--output", arguments->options.scenario, "The scenario to write")->required();
-  command->add_option("--emitters", arguments->options.emitters, "Emitter database, whose rows come before the starter set's");
-  command->add_option("--base", arguments->options.base,
-                      "Scenario to which the platforms and emitters are added; its region, terrain and output stay");
+  command->add_option("--emitters", arguments->options.emitters,
+                      "Emitter database, whose rows come before the starter set's");
+  command->add_option(
+      "--base", arguments->options.base,
+      "Scenario to which the platforms and emitters are added; its region, terrain and output stay");
   addListOption(*command, "--terrain", arguments->options.terrain, "Elevation files of the scenario");
-  command->add_option("--region", arguments->region, "auto, or LAT,LON,SIZE_KM: the field's region; auto is around all platforms");
+  command->add_option("--region", arguments->region,
+                      "auto, or LAT,LON,SIZE_KM: the field's region; auto is around all platforms");
   command->add_option("--times", arguments->times, "BEGIN:END: part of the recording, in its seconds");
   addListOption(*command, "--only", arguments->options.only, "Names or types of the objects, with * and ?");
   command->add_option("--beamwidth", arguments->beamwidth,
-                      "Beamwidths of the recording: by_size (up to 15 degrees the beam's, else of the searched sector), scan or beam");
-  command->add_option("--timeout", arguments->read.emission_timeout_s, "Seconds without update after which an emission of DIS ends")
+                      "Beamwidths of the recording: by_size (up to 15 degrees the beam's, else of the "
+                      "searched sector), scan or beam");
+  command
+      ->add_option("--timeout", arguments->read.emission_timeout_s,
+                   "Seconds without update after which an emission of DIS ends")
       ->check(CLI::Range(0.1, 1e6));
-  command->callback([arguments, &global, &action] { action = [arguments, &global] { return import(*arguments, global); }; });
+  command->callback([arguments, &global, &action] {
+    action = [arguments, &global] { return import(*arguments, global); };
+  });
 }
 
 }  // namespace emscape::app

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/geodesy/position_limits.h"
 #include "base/text/utc.h"
 #include "base/text/utf8.h"
-#include "base/geodesy/position_limits.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "interop/acmi/acmi_text.h"
@@ -37,8 +37,8 @@ bool isBeam(const std::string& type) {
 
 /// @see the table "Object Types" of the documentation of ACMI 2.2
 Domain domainOf(const std::string& type) {
-  for (const char* tag : {"Navaid", "Misc", "Bullseye", "Waypoint", "Explosion", "Decoy", "Shrapnel", "Projectile",
-                          "Container", "Parachutist"}) {
+  for (const char* tag : {"Navaid", "Misc", "Bullseye", "Waypoint", "Explosion", "Decoy", "Shrapnel",
+                          "Projectile", "Container", "Parachutist"}) {
     if (hasTag(type, tag)) return Domain::scenery;
   }
   if (hasTag(type, "Weapon")) return Domain::weapon;
@@ -103,8 +103,9 @@ void AcmiReader::take(std::string_view line, long long line_number) {
     removes = id && states_.count(*id) != 0 && (!time_s || *time_s < time_s_ - kMaxStepBack_s);
     if (!removes) {
       if (!time_s || std::abs(*time_s) > kMaxFrame_s) {
-        return countBad(recording_.tally, location,
-                        fmt::format("'#{}' is no time within {} s", printable(line.substr(0, 40)), kMaxFrame_s));
+        return countBad(
+            recording_.tally, location,
+            fmt::format("'#{}' is no time within {} s", printable(line.substr(0, 40)), kMaxFrame_s));
       }
       time_s_ = *time_s;
       return;
@@ -191,7 +192,8 @@ void AcmiReader::takeObject(std::uint64_t id, std::string_view properties, const
     const std::size_t at = part.find('=');
     if (at == std::string_view::npos) {
       if (!part.empty())
-        countBad(recording_.tally, location, fmt::format("'{}' is no PROPERTY=VALUE", printable(part.substr(0, 40))));
+        countBad(recording_.tally, location,
+                 fmt::format("'{}' is no PROPERTY=VALUE", printable(part.substr(0, 40))));
       continue;
     }
     takeProperty(state, part.substr(0, at), part.substr(at + 1), location);
@@ -199,6 +201,8 @@ void AcmiReader::takeObject(std::uint64_t id, std::string_view properties, const
   if (!state.beam) return;
   state.radar.t_s = time_s_;
   if (!state.has_mode) state.radar.is_on = true;
+  const auto target = state.is_locked && state.locked ? states_.find(*state.locked) : states_.end();
+  state.radar.target = target == states_.end() ? kNoTarget : target->second.object;
   auto& states = recording_.beams[*state.beam].states;
   const std::size_t before = states.size();
   addState(states, state.radar);
@@ -231,6 +235,10 @@ void AcmiReader::takeProperty(State& state, std::string_view name, std::string_v
   } else if (name == "Visible" || name == "Disabled") {
     const auto number = acmiNumber(value);
     if (number) addPresence(object.presence, time_s_, (*number != 0) == (name == "Visible"));
+  } else if (name == "LockedTarget") {
+    state.locked = acmiId(value);
+  } else if (name == "LockedTargetMode") {
+    state.is_locked = acmiNumber(value).value_or(0) != 0;
   } else if (!takeRadarProperty(state, name, value)) {
     countIgnored(recording_.tally, "property " + printable(name.substr(0, 40)));
   }
@@ -283,10 +291,10 @@ void AcmiReader::place(State& state, std::string_view value, const std::string& 
                         state.altitude_m >= PositionLimits::kLowest_m &&
                         state.altitude_m <= PositionLimits::kHighest_m;
   if (!is_sound) {
-    return countBad(recording_.tally, location,
-                    fmt::format("T={} is no position from {} to {} m above mean sea level",
-                                printable(value.substr(0, 60)), PositionLimits::kLowest_m,
-                                PositionLimits::kHighest_m));
+    return countBad(
+        recording_.tally, location,
+        fmt::format("T={} is no position from {} to {} m above mean sea level",
+                    printable(value.substr(0, 60)), PositionLimits::kLowest_m, PositionLimits::kHighest_m));
   }
   PoseSample pose;
   pose.t_s = time_s_;
@@ -372,8 +380,8 @@ Recording readAcmi(ByteSource& source, const std::string& name, const ProgressSi
       }
       const bool continues = !line.empty() && line.back() == '\\';
       if (!lines.isTerminated()) {  // an object's line may lack digits that were to follow
-        reader.tally().torn = fmt::format("line {} has no end: the recording was cut there, and the line is not used",
-                                          lines.line());
+        reader.tally().torn = fmt::format(
+            "line {} has no end: the recording was cut there, and the line is not used", lines.line());
         break;
       }
       if (continues || !joined.empty()) {
@@ -396,7 +404,8 @@ Recording readAcmi(ByteSource& source, const std::string& name, const ProgressSi
     reader.tally().torn = fmt::format("after line {}: {}", lines.line(), source.failure());
   Recording recording = reader.finish();
   if (recording.format.empty())
-    throw Error(ErrorCode::bad_input, {name, 1, 1}, "an ACMI recording begins with FileType=text/acmi/tacview");
+    throw Error(ErrorCode::bad_input, {name, 1, 1},
+                "an ACMI recording begins with FileType=text/acmi/tacview");
   return recording;
 }
 

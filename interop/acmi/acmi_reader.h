@@ -35,8 +35,10 @@ class AcmiReader {
     double roll_deg = kUnknown, pitch_deg = kUnknown, yaw_deg = kUnknown;
     std::optional<std::size_t> beam;
     BeamState radar;
-    bool has_mode = false;    ///< RadarMode was told
-    std::string parent;       ///< id of the object that carries this beam
+    bool has_mode = false;                ///< RadarMode was told
+    std::optional<std::uint64_t> locked;  ///< id of the target
+    bool is_locked = true;                ///< LockedTargetMode
+    std::string parent;                   ///< id of the object that carries this beam
   };
 
   void takeHeader(std::string_view line, long long line_number);

@@ -70,7 +70,8 @@ std::optional<AcmiPlace> acmiPlace(std::string_view text) {
   }
   if (count == 4 || count == 7 || count == 8) return std::nullopt;
   AcmiPlace place;
-  const bool has_attitude = count >= 6;  // 5 parts: a position in a plane follows; 9: attitude, then the plane
+  const bool has_attitude =
+      count >= 6;  // 5 parts: a position in a plane follows; 9: attitude, then the plane
   for (std::size_t i = 0; i < (has_attitude ? 6u : std::min<std::size_t>(count, 3)); ++i) {
     if (parts[i].empty()) continue;
     place.values[i] = acmiNumber(parts[i]);

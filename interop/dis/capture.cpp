@@ -166,7 +166,8 @@ void readClassic(RecordReader& reader, const std::vector<std::uint8_t>& magic, R
     const double arrival_s = order.u32(bytes.data()) + order.u32(bytes.data() + 4) * unit_s;
     const std::uint32_t size = order.u32(bytes.data() + 8);
     if (size > kMaxPacket) {
-      tally.torn = fmt::format("byte {}: a packet of {} bytes, more than the allowed {}", at, size, kMaxPacket);
+      tally.torn =
+          fmt::format("byte {}: a packet of {} bytes, more than the allowed {}", at, size, kMaxPacket);
       return;
     }
     if (!reader.read(size, bytes)) {
@@ -298,8 +299,9 @@ void CaptureWriter::write(double time_s, const std::vector<std::uint8_t>& bytes)
   const auto low = [](std::size_t value) { return static_cast<std::uint8_t>(value & 0xFF); };
   ++count_;
   // Version 4; not fragmented; a lifetime of 1 hop; UDP; from 10.0.0.1 to the multicast group 239.1.2.3.
-  std::array<std::uint8_t, 28> head{0x45, 0, high(total), low(total), high(count_), low(count_), 0x40, 0, 1, 17, 0, 0,
-                                    10,   0, 0,           1,          239,          1,           2,    3};
+  std::array<std::uint8_t, 28> head{0x45, 0,  high(total), low(total), high(count_), low(count_), 0x40, 0,
+                                    1,    17, 0,           0,          10,           0,           0,    1,
+                                    239,  1,  2,           3};
   const std::uint16_t checksum = checksumOf(head.data(), 20);
   head[10] = high(checksum);
   head[11] = low(checksum);

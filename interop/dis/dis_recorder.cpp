@@ -19,15 +19,17 @@ namespace {
 
 /// Arrivals after this time (s) count from 1970.
 constexpr double kUnixTime_s = 1e8;
-/// Effective radiated powers above it (dBm) are in watts: 10^17 W do not exist, and senders confuse the units.
+/// Effective radiated powers above it (dBm) are in watts: 10^17 W do not exist, and senders confuse the
+/// units.
 constexpr double kMaxErp_dbm = 200;
+constexpr double kMaxTime_s = 9.9e7;  ///< of a scenario's track, and some hours less
 /// Functions of beams (SISO-REF-010, UID 78).
 constexpr int kTrack = 4, kJam = 12, kIff = 13, kTimeSharedJam = 25;
 
 Domain domainOf(const std::array<int, 7>& type) {
   switch (type[0]) {
     case 1: {  // platforms
-      constexpr Domain kDomains[] = {Domain::other, Domain::land, Domain::air,
+      constexpr Domain kDomains[] = {Domain::other, Domain::land,       Domain::air,
                                      Domain::sea,   Domain::subsurface, Domain::space};
       return type[1] >= 0 && type[1] <= 5 ? kDomains[type[1]] : Domain::other;
     }
@@ -139,15 +141,20 @@ void DisRecorder::takePdu(const Header& header, const std::uint8_t* bytes, doubl
   const bool is_used =
       type == PduType::entity_state || type == PduType::emission || type == PduType::transmitter;
   if (!is_used) return countIgnored(tally, nameOf(header.type) + " PDU");
+  if (!(std::abs(arrival_s - origin_s_) <= kMaxTime_s)) {
+    return countBad(tally, fmt::format("PDU {}", tally.records),
+                    fmt::format("it arrived {:.6g} s after the first one, more than {:.6g} s",
+                                arrival_s - origin_s_, kMaxTime_s));
+  }
   std::string fault;
   const auto timeOf = [&](const EntityId& id) {
     const double time_s = clocks_.timeOf(id, header, arrival_s) - origin_s_;
-    if (std::abs(time_s) > 1e8) throw Error(ErrorCode::bad_input, "a time more than 10^8 s after the first");
     last_s_ = std::max(last_s_, time_s);
     return time_s;
   };
   if (type == PduType::entity_state) {
-    if (const auto state = decodeEntityState(bytes, header.length, fault)) takeState(*state, timeOf(state->id));
+    if (const auto state = decodeEntityState(bytes, header.length, fault))
+      takeState(*state, timeOf(state->id));
   } else if (type == PduType::emission) {
     if (const auto emission = decodeEmission(bytes, header.length, fault))
       takeEmission(*emission, timeOf(emission->entity), header.version);
@@ -161,8 +168,9 @@ DisRecorder::Entity& DisRecorder::entityOf(const EntityId& id) {
   const auto [found, is_new] = entities_.try_emplace(id.key());
   if (!is_new) return found->second;
   if (recording_.objects.size() >= RecordingLimits::kObjects) {
-    throw Error(ErrorCode::bad_input, fmt::format("more than {} entities; a recording of one exercise has fewer",
-                                                  RecordingLimits::kObjects));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("more than {} entities; a recording of one exercise has fewer",
+                            RecordingLimits::kObjects));
   }
   found->second.object = recording_.objects.size();
   RecordedObject object;
@@ -284,7 +292,8 @@ void DisRecorder::takeEmission(const Emission& emission, double time_s, int vers
       record.name = fmt::format("emitter {}, beam {}", system.name, told.number);
       record.kind = kindOf(told.function);
       record.keys = {system.name, system.function, told.function, told.parameter_index, std::nullopt};
-      if (std::isfinite(system.location_m.z)) record.height_m = std::clamp(-system.location_m.z, -100.0, 100.0);
+      if (std::isfinite(system.location_m.z))
+        record.height_m = std::clamp(-system.location_m.z, -100.0, 100.0);
       BeamState state = stateOf(told, time_s);
       if (std::isfinite(told.erp_dbm) && told.erp_dbm > kMaxErp_dbm) {
         state.erp_dbm = ratioToDb(told.erp_dbm) + 30;
@@ -294,11 +303,18 @@ void DisRecorder::takeEmission(const Emission& emission, double time_s, int vers
       } else {
         ++no_power_;
       }
+      // Of several targets the first one; search beams list what they have found.
+      const bool is_held = told.function >= kTrack && told.function <= kJam;
+      if (is_held && !told.targets.empty() && told.targets[0].entity != 0)
+        state.target = entityOf(told.targets[0]).object;
       setState(beam, state);
     }
     // Up to version 6 a beam that its system does not list is off; in version 7 a system may be told in part.
     if (version > 6 && !system.beams.empty()) continue;
-    for (auto& [number, beam] : systemOf(emission.entity, system.number)) {
+    auto& known_systems = systems_[emission.entity.key()];
+    const auto known_system = known_systems.find(system.number);
+    if (known_system == known_systems.end()) continue;
+    for (auto& [number, beam] : known_system->second) {
       const bool is_listed = std::any_of(system.beams.begin(), system.beams.end(),
                                          [n = number](const EmissionBeam& b) { return b.number == n; });
       if (!is_listed) switchOff(beam, time_s);
@@ -319,14 +335,16 @@ void DisRecorder::takeTransmitter(const Transmitter& transmitter, double time_s)
   state.is_on = transmitter.state == 2;
   state.frequency_hz = known(static_cast<double>(transmitter.frequency_hz));
   state.bandwidth_hz = known(transmitter.bandwidth_hz);
-  if (std::isfinite(transmitter.power_dbm) && transmitter.power_dbm != 0) state.power_dbm = transmitter.power_dbm;
+  if (std::isfinite(transmitter.power_dbm) && transmitter.power_dbm != 0)
+    state.power_dbm = transmitter.power_dbm;
   setState(beam, state);
 }
 
 Recording DisRecorder::finish() {
   for (auto& [key, entity] : entities_) {
     if (entity.is_known && last_s_ - entity.time_s > options_.entity_timeout_s)
-      addPresence(recording_.objects[entity.object].presence, entity.time_s + options_.entity_timeout_s, false);
+      addPresence(recording_.objects[entity.object].presence, entity.time_s + options_.entity_timeout_s,
+                  false);
   }
   for (auto& [entity, systems] : systems_) {
     for (auto& [number, system] : systems) {
@@ -339,19 +357,23 @@ Recording DisRecorder::finish() {
   for (RecordedObject& object : recording_.objects) sortByTime(object);
   for (RecordedBeam& beam : recording_.beams) sortByTime(beam);
   auto& notes = recording_.tally.notes;
-  if (late_ > 0) notes.push_back(fmt::format("{} Entity State PDUs came after a later one and were left out", late_));
+  if (late_ > 0)
+    notes.push_back(fmt::format("{} Entity State PDUs came after a later one and were left out", late_));
   if (watts_ > 0) {
-    notes.push_back(fmt::format("{} beams have an effective radiated power above {} dBm; it is taken as watts", watts_,
-                                kMaxErp_dbm));
+    notes.push_back(fmt::format(
+        "{} beams have an effective radiated power above {} dBm; it is taken as watts", watts_, kMaxErp_dbm));
   }
   if (no_power_ > 0)
-    notes.push_back(fmt::format("{} beams have no effective radiated power (0 dBm); it is that of the database", no_power_));
+    notes.push_back(fmt::format(
+        "{} beams have no effective radiated power (0 dBm); it is that of the database", no_power_));
   if (clocks_.untrusted() > 0) {
-    notes.push_back(fmt::format("the timestamps of {} PDUs do not agree with their arrivals, which are used instead",
-                                clocks_.untrusted()));
+    notes.push_back(
+        fmt::format("the timestamps of {} PDUs do not agree with their arrivals, which are used instead",
+                    clocks_.untrusted()));
   }
   const int low = lowest_version_, high = highest_version_;
-  recording_.format = low == high ? fmt::format("DIS version {}", low) : fmt::format("DIS versions {} to {}", low, high);
+  recording_.format =
+      low == high ? fmt::format("DIS version {}", low) : fmt::format("DIS versions {} to {}", low, high);
   if (low > high) recording_.format = "DIS";
   return std::move(recording_);
 }

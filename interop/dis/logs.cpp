@@ -78,7 +78,8 @@ void readSession(ByteSource& source, ReadingTally& tally, const DatagramSink& si
     const auto time_ms = static_cast<std::int64_t>(head.u64());
     const std::size_t size = head.u16();
     if (size > kMaxPduBytes) {
-      tally.torn = fmt::format("byte {}: a record of {} bytes, more than the allowed {}", at, size, kMaxPduBytes);
+      tally.torn =
+          fmt::format("byte {}: a record of {} bytes, more than the allowed {}", at, size, kMaxPduBytes);
       return;
     }
     if (!reader.read(size, bytes)) {

@@ -11,7 +11,8 @@ namespace {
 /// North, east and down in ECEF.
 BodyAxes localAxes(double latitude_deg, double longitude_deg) {
   const double lat = degToRad(latitude_deg), lon = degToRad(longitude_deg);
-  const double sin_lat = std::sin(lat), cos_lat = std::cos(lat), sin_lon = std::sin(lon), cos_lon = std::cos(lon);
+  const double sin_lat = std::sin(lat), cos_lat = std::cos(lat), sin_lon = std::sin(lon),
+               cos_lon = std::cos(lon);
   return {{-sin_lat * cos_lon, -sin_lat * sin_lon, cos_lat},
           {-sin_lon, cos_lon, 0},
           {-cos_lat * cos_lon, -cos_lat * sin_lon, -sin_lat}};
@@ -28,10 +29,10 @@ BodyAxes axesOf(const Vec3d& euler_rad) {
   const double sin_theta = std::sin(euler_rad.y), cos_theta = std::cos(euler_rad.y);
   const double sin_phi = std::sin(euler_rad.z), cos_phi = std::cos(euler_rad.z);
   return {{cos_theta * cos_psi, cos_theta * sin_psi, -sin_theta},
-          {sin_phi * sin_theta * cos_psi - cos_phi * sin_psi, sin_phi * sin_theta * sin_psi + cos_phi * cos_psi,
-           sin_phi * cos_theta},
-          {cos_phi * sin_theta * cos_psi + sin_phi * sin_psi, cos_phi * sin_theta * sin_psi - sin_phi * cos_psi,
-           cos_phi * cos_theta}};
+          {sin_phi * sin_theta * cos_psi - cos_phi * sin_psi,
+           sin_phi * sin_theta * sin_psi + cos_phi * cos_psi, sin_phi * cos_theta},
+          {cos_phi * sin_theta * cos_psi + sin_phi * sin_psi,
+           cos_phi * sin_theta * sin_psi - sin_phi * cos_psi, cos_phi * cos_theta}};
 }
 
 Vec3d eulerOf(const BodyAxes& axes) {
@@ -49,8 +50,8 @@ LocalAttitude attitudeOf(const BodyAxes& axes, double latitude_deg, double longi
 BodyAxes axesOf(const LocalAttitude& attitude, double latitude_deg, double longitude_deg) {
   const BodyAxes local = localAxes(latitude_deg, longitude_deg);
   // The same turns as those of the Euler angles, from north, east and down.
-  const BodyAxes turned =
-      axesOf(Vec3d{degToRad(attitude.heading_deg), degToRad(attitude.pitch_deg), degToRad(attitude.roll_deg)});
+  const BodyAxes turned = axesOf(
+      Vec3d{degToRad(attitude.heading_deg), degToRad(attitude.pitch_deg), degToRad(attitude.roll_deg)});
   return {local.toWorld(turned.x), local.toWorld(turned.y), local.toWorld(turned.z)};
 }
 

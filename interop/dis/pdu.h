@@ -43,12 +43,14 @@ struct Header {
 
 struct EntityId {
   std::uint16_t site = 0, application = 0, entity = 0;
-  std::uint64_t key() const { return (std::uint64_t{site} << 32) | (std::uint64_t{application} << 16) | entity; }
+  std::uint64_t key() const {
+    return (std::uint64_t{site} << 32) | (std::uint64_t{application} << 16) | entity;
+  }
 };
 
 struct EntityState {
   EntityId id;
-  std::uint8_t force = 0;  ///< 1 friendly, 2 opposing, 3 neutral
+  std::uint8_t force = 0;     ///< 1 friendly, 2 opposing, 3 neutral
   std::array<int, 7> type{};  ///< kind, domain, country, category, subcategory, specific, extra
   Vec3d velocity_mps;         ///< ECEF; body axes for the algorithms 6 to 9
   Vec3d position_m;           ///< ECEF
@@ -96,9 +98,9 @@ struct Transmitter {
   EntityId entity;
   std::uint16_t radio = 0;
   std::array<int, 7> type{};
-  std::uint8_t state = 0;  ///< 0 off, 1 on, 2 transmitting
-  Vec3d antenna_m;           ///< ECEF; zeros: the entity's
-  Vec3d relative_antenna_m;  ///< in the body
+  std::uint8_t state = 0;             ///< 0 off, 1 on, 2 transmitting
+  Vec3d antenna_m;                    ///< ECEF; zeros: the entity's
+  Vec3d relative_antenna_m;           ///< in the body
   std::uint16_t antenna_pattern = 0;  ///< 0 omnidirectional, 1 beam
   std::uint64_t frequency_hz = 0;
   double bandwidth_hz = 0;

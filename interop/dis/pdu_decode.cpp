@@ -63,13 +63,20 @@ EmissionBeam emissionBeam(BigEndianReader& reader, std::uint8_t version) {
 
 std::string nameOf(std::uint8_t type) {
   switch (static_cast<PduType>(type)) {
-    case PduType::entity_state: return "Entity State";
-    case PduType::emission: return "Electromagnetic Emission";
-    case PduType::designator: return "Designator";
-    case PduType::transmitter: return "Transmitter";
-    case PduType::signal: return "Signal";
-    case PduType::receiver: return "Receiver";
-    case PduType::iff: return "IFF";
+    case PduType::entity_state:
+      return "Entity State";
+    case PduType::emission:
+      return "Electromagnetic Emission";
+    case PduType::designator:
+      return "Designator";
+    case PduType::transmitter:
+      return "Transmitter";
+    case PduType::signal:
+      return "Signal";
+    case PduType::receiver:
+      return "Receiver";
+    case PduType::iff:
+      return "IFF";
   }
   return "type " + std::to_string(type);
 }
@@ -118,7 +125,8 @@ std::optional<EntityState> decodeEntityState(const std::uint8_t* bytes, std::siz
   const double radius_m = length(state.position_m);
   if (!(radius_m > 6.2e6 && radius_m < 5e7) || !isFinite(state.velocity_mps) ||
       !isFinite(state.orientation_rad) || !isFinite(state.acceleration_mps2) || !isFinite(state.turn_radps)) {
-    fault = "an Entity State PDU whose position is not near the earth, or that has values that are no numbers";
+    fault =
+        "an Entity State PDU whose position is not near the earth, or that has values that are no numbers";
     return std::nullopt;
   }
   return state;

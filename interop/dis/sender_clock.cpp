@@ -6,7 +6,8 @@ namespace emscape::interop::dis {
 namespace {
 
 constexpr double kHour_s = 3600;
-/// Largest difference (s) between a sender's clock and the arrivals: logs have whole seconds, networks delays.
+/// Largest difference (s) between a sender's clock and the arrivals: logs have whole seconds, networks
+/// delays.
 constexpr double kTolerance_s = 2;
 constexpr int kMaxFaults = 3;  ///< restarts of a sender's clock that are followed
 constexpr std::size_t kMaxSenders = 65536;

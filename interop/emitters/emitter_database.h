@@ -25,12 +25,13 @@ constexpr auto namesOf(Unmatched) {
 /// Conditions of a row; all that are given must hold.
 struct EmitterMatch {
   std::optional<int> dis_name, dis_radio, function;
-  std::vector<int> beam_function, index;                    ///< one of them; empty: any
-  std::string dis_entity_type, acmi_name, acmi_type;        ///< patterns; empty: any
+  std::vector<int> beam_function, index;              ///< one of them; empty: any
+  std::string dis_entity_type, acmi_name, acmi_type;  ///< patterns; empty: any
 
   /// True if a condition is of the beam, not of the object.
   bool isOfBeams() const {
-    return dis_name.has_value() || dis_radio.has_value() || function.has_value() || !beam_function.empty() || !index.empty();
+    return dis_name.has_value() || dis_radio.has_value() || function.has_value() || !beam_function.empty() ||
+           !index.empty();
   }
 };
 
@@ -47,7 +48,8 @@ struct EmitterRow {
 struct EmitterDatabase {
   std::vector<EmitterRow> rows;
   std::optional<Unmatched> unmatched;  ///< none: not told
-  /// The emitter for Unmatched::use_default; its antenna may be missing, and is then made of the beam's sweep.
+  /// The emitter for Unmatched::use_default; its antenna may be missing, and is then made of the beam's
+  /// sweep.
   document::DocumentNodePtr default_emitter;
   std::string default_file;
 };

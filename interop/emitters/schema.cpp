@@ -54,8 +54,10 @@ const ObjectSpec& matchSpec() {
       "match",
       "",
       {
-          optional("dis_name", scenario::kInteger.from(0).to(65535), "DIS: emitter name (SISO-REF-010, UID 75)"),
-          optional("dis_radio", scenario::kInteger.from(0).to(65535), "DIS: number of the radio of a transmitter"),
+          optional("dis_name", scenario::kInteger.from(0).to(65535),
+                   "DIS: emitter name (SISO-REF-010, UID 75)"),
+          optional("dis_radio", scenario::kInteger.from(0).to(65535),
+                   "DIS: number of the radio of a transmitter"),
           optional("function", code, "DIS: function of the emitter system (UID 76)"),
           optional("beam_function", listOf(code, 1, 256), "DIS: functions of the beam (UID 78), one of them"),
           optional("index", listOf(scenario::kInteger.from(0).to(65535), 1, 1000),
@@ -95,9 +97,11 @@ const ObjectSpec& emitterDatabaseSpec() {
           byDefault("emitters", listOf(object(rowSpec()), 0, scenario::kMaxItems), {},
                     "rows in the order in which they are tried"),
           optional("unmatched", choice({"warn", "ignore", "default"}),
-                   "beams that no row matches: left out and named (warn, by default), left out, or given the default"),
+                   "beams that no row matches: left out and named (warn, by default), left out, or given the "
+                   "default"),
           optional("default", object(defaultEmitterSpec()),
-                   "emitter of beams that no row matches; without an antenna a Gaussian beam as wide as the beam's sweep"),
+                   "emitter of beams that no row matches; without an antenna a Gaussian beam as wide as the "
+                   "beam's sweep"),
       }};
   return spec;
 }

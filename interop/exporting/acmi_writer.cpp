@@ -34,8 +34,9 @@ struct AcmiObject {
 };
 
 std::string placeOf(const PoseSample& pose) {
-  return fmt::format("T={}|{}|{}|{}|{}|{}", decimalText(pose.longitude_deg, 7), decimalText(pose.latitude_deg, 7),
-                     decimalText(pose.height_msl_m, 2), decimalText(pose.roll_deg, 2), decimalText(pose.pitch_deg, 2),
+  return fmt::format("T={}|{}|{}|{}|{}|{}", decimalText(pose.longitude_deg, 7),
+                     decimalText(pose.latitude_deg, 7), decimalText(pose.height_msl_m, 2),
+                     decimalText(pose.roll_deg, 2), decimalText(pose.pitch_deg, 2),
                      decimalText(pose.heading_deg, 2));
 }
 
@@ -43,10 +44,11 @@ std::string placeOf(const PoseSample& pose) {
 std::string radarOf(const scenario::Emitter& emitter, double t_s) {
   const BeamState state = beamStateAt(emitter, t_s);
   const bool sweeps = state.azimuth_half_sweep_deg > 0;
-  return fmt::format("RadarMode={},RadarAzimuth={},RadarElevation={},RadarHorizontalBeamwidth={},RadarVerticalBeamwidth={}",
-                     state.is_on ? 1 : 0, decimalText(state.azimuth_deg, 2), decimalText(state.elevation_deg, 2),
-                     decimalText(sweeps ? 2 * state.azimuth_half_sweep_deg : state.beamwidth_az_deg, 3),
-                     decimalText(std::max(state.beamwidth_el_deg, 2 * state.elevation_half_sweep_deg), 3));
+  return fmt::format(
+      "RadarMode={},RadarAzimuth={},RadarElevation={},RadarHorizontalBeamwidth={},RadarVerticalBeamwidth={}",
+      state.is_on ? 1 : 0, decimalText(state.azimuth_deg, 2), decimalText(state.elevation_deg, 2),
+      decimalText(sweeps ? 2 * state.azimuth_half_sweep_deg : state.beamwidth_az_deg, 3),
+      decimalText(std::max(state.beamwidth_el_deg, 2 * state.elevation_half_sweep_deg), 3));
 }
 
 std::vector<AcmiObject> objectsOf(const ExportJob& job, std::vector<ExportedRow>& rows) {
@@ -89,14 +91,17 @@ long long writeAcmi(const ExportJob& job, const TextSink& sink, std::vector<Expo
   std::vector<AcmiObject> objects = objectsOf(job, rows);
   std::vector<std::pair<double, std::size_t>> events;
   for (std::size_t i = 0; i < objects.size(); ++i) {
-    for (const double t_s : timesOfPositions(scenario, *objects[i].platform, job.step_s)) events.emplace_back(t_s, i);
+    for (const double t_s : timesOfPositions(scenario, *objects[i].platform, job.step_s))
+      events.emplace_back(t_s, i);
     if (objects[i].emitter == nullptr) continue;
-    for (const double t_s : timesOfChanges(scenario, *objects[i].emitter, job.step_s)) events.emplace_back(t_s, i);
+    for (const double t_s : timesOfChanges(scenario, *objects[i].emitter, job.step_s))
+      events.emplace_back(t_s, i);
   }
   std::sort(events.begin(), events.end());
   events.erase(std::unique(events.begin(), events.end()), events.end());
-  sink("\xEF\xBB\xBF"
-       "FileType=text/acmi/tacview\nFileVersion=2.2\n");
+  sink(
+      "\xEF\xBB\xBF"
+      "FileType=text/acmi/tacview\nFileVersion=2.2\n");
   if (!scenario.clock.epoch_utc.empty()) sink("0,ReferenceTime=" + scenario.clock.epoch_utc + "\n");
   sink("0,Title=" + escapedAcmi(scenario.name) + "\n0,DataSource=Emscape\n0,DataRecorder=Emscape\n");
   double frame_s = -1;

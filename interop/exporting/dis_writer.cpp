@@ -44,7 +44,8 @@ std::vector<double> withHeartbeats(std::vector<double> times, double end_s, doub
   std::vector<double> result;
   times.push_back(end_s);
   for (const double t_s : times) {
-    while (!result.empty() && t_s - result.back() > heartbeat_s) result.push_back(result.back() + heartbeat_s);
+    while (!result.empty() && t_s - result.back() > heartbeat_s)
+      result.push_back(result.back() + heartbeat_s);
     if (result.empty() || t_s > result.back()) result.push_back(t_s);
   }
   return result;
@@ -57,7 +58,8 @@ Vec3d ecefOf(const PoseSample& pose) {
 
 class DisWriter {
  public:
-  DisWriter(const ExportJob& job, std::ostream& stream) : job_(job), scenario_(job.scenario), capture_(stream) {
+  DisWriter(const ExportJob& job, std::ostream& stream)
+      : job_(job), scenario_(job.scenario), capture_(stream) {
     const auto epoch_ms = parseUtc_ms(scenario_.clock.epoch_utc);
     if (epoch_ms) origin_s_ = static_cast<double>(*epoch_ms) / 1000;
   }
@@ -112,13 +114,13 @@ class DisWriter {
     const Domain domain = domains_[index];
     state.type = {1, domain == Domain::air ? 2 : domain == Domain::sea ? 3 : 1, 0, 0, 0, 0, 0};
     state.position_m = ecefOf(pose);
-    state.orientation_rad = dis::eulerOf(dis::axesOf(
-        dis::LocalAttitude{pose.heading_deg, pose.pitch_deg, pose.roll_deg}, pose.latitude_deg, pose.longitude_deg));
+    state.orientation_rad =
+        dis::eulerOf(dis::axesOf(dis::LocalAttitude{pose.heading_deg, pose.pitch_deg, pose.roll_deg},
+                                 pose.latitude_deg, pose.longitude_deg));
     const auto& times = times_[index];
     const auto next = std::upper_bound(times.begin(), times.end(), t_s);
     if (next != times.end() && platform.track.size() > 1) {
-      state.velocity_mps =
-          (ecefOf(poseOf(platform, job_.terrain, *next)) - state.position_m) / (*next - t_s);
+      state.velocity_mps = (ecefOf(poseOf(platform, job_.terrain, *next)) - state.position_m) / (*next - t_s);
     }
     state.algorithm = platform.track.size() > 1 ? 2 : 1;
     for (const char c : platform.name) state.marking += c >= 0x20 && c < 0x7F ? c : '?';
@@ -145,7 +147,9 @@ class DisWriter {
     beam.elevation_rad = degToRad(state.elevation_deg);
     beam.elevation_sweep_rad = degToRad(state.elevation_half_sweep_deg);
     const bool is_jammer = emitter.kind == scenario::EmitterKind::jammer;
-    beam.function = static_cast<std::uint8_t>(is_jammer ? kJam : state.azimuth_half_sweep_deg > 0 ? kSearch : kTrack);
+    beam.function = static_cast<std::uint8_t>(is_jammer                          ? kJam
+                                              : state.azimuth_half_sweep_deg > 0 ? kSearch
+                                                                                 : kTrack);
     beam.is_off = !state.is_on;
     system.beams.push_back(beam);
     return system;
@@ -182,7 +186,9 @@ class DisWriter {
   void write(double t_s, const Pdu& pdu) {
     Header header;
     const double past_hour = std::fmod(origin_s_ + t_s, 3600) / 3600;
-    header.timestamp = static_cast<std::uint32_t>(past_hour * dis::kTimestampsPerHour) << 1 | (origin_s_ > 0 ? 1u : 0u);
+    header.timestamp =
+        static_cast<std::uint32_t>(std::llround(past_hour * dis::kTimestampsPerHour) % (1ll << 31)) << 1 |
+        (origin_s_ > 0 ? 1u : 0u);
     capture_.write(origin_s_ + t_s, dis::encode(header, pdu));
     ++records_;
   }
@@ -192,7 +198,7 @@ class DisWriter {
   dis::CaptureWriter capture_;
   double origin_s_ = 0;
   std::vector<Due> due_;
-  std::vector<std::vector<double>> times_;          ///< of the platforms' states
+  std::vector<std::vector<double>> times_;  ///< of the platforms' states
   std::vector<Domain> domains_;
   std::vector<std::vector<std::size_t>> systems_;  ///< emitters of each platform, without transmitters
   std::uint16_t event_ = 0;

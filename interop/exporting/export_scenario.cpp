@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "base/files/unfinished_file.h"
@@ -15,6 +16,9 @@ namespace emscape::interop {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr double kMaxRecords = 2e7;
+constexpr double kShortestHeartbeat_s = 2;
 
 bool endsWith(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -67,7 +71,8 @@ std::vector<std::string> exportFormats() {
 ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& scenario,
                             const scenario::Terrain* terrain, const std::string& file,
                             const ExportOptions& options, const ProgressSink& progress) {
-  const bool is_zip = endsWith(file, ".zip.acmi"), is_acmi = endsWith(file, ".acmi"), is_capture = endsWith(file, ".pcap");
+  const bool is_zip = endsWith(file, ".zip.acmi"), is_acmi = endsWith(file, ".acmi"),
+             is_capture = endsWith(file, ".pcap");
   if (!is_acmi && !is_capture) {
     throw Error(ErrorCode::usage,
                 fmt::format("'{}' is no name of a recording; it ends in .acmi, .zip.acmi or .pcap", file));
@@ -76,15 +81,25 @@ ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& sce
   result.file = file;
   result.format = is_acmi ? "ACMI 2.2" : "DIS version 7";
   const ExportJob job{*scenario, terrain, options.step_s > 0 ? options.step_s : 1, progress};
-  const std::string end = is_zip ? ".zip.acmi" : is_acmi ? ".acmi" : ".pcap";
-  result.emitters = file.substr(0, file.size() - end.size()) + ".emitters.yaml";
+  const double records = scenario->clock.duration_s / std::min(job.step_s, kShortestHeartbeat_s) *
+                         static_cast<double>(scenario->platforms.size() + scenario->emitters.size());
+  if (records > kMaxRecords) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format(
+            "about {:.2g} records, more than the allowed {:.2g}; give a larger --step, or a part of the "
+            "scenario: --set duration_s=3600",
+            records, kMaxRecords));
+  }
+  result.emitters = file + ".emitters.yaml";
   std::vector<ExportedRow> rows;
   if (is_zip) {
     result.records = writeZip(job, file, rows);
   } else {
     writeWhole(file, [&](std::ostream& stream) {
       result.records = is_capture ? writeCapture(job, stream, rows)
-                                  : writeAcmi(job, [&](const std::string& piece) { stream << piece; }, rows);
+                                  : writeAcmi(
+                                        job, [&](const std::string& piece) { stream << piece; }, rows);
     });
   }
   const std::string database =

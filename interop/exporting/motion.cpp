@@ -27,7 +27,8 @@ std::vector<double> filled(std::vector<double> times, double step_s) {
       const double begin_s = result.back();
       const double gap_s = time_s - begin_s;
       const auto parts = static_cast<long long>(std::ceil(gap_s / step_s - 1e-9));
-      for (long long i = 1; i < parts; ++i) result.push_back(begin_s + gap_s * static_cast<double>(i) / static_cast<double>(parts));
+      for (long long i = 1; i < parts; ++i)
+        result.push_back(begin_s + gap_s * static_cast<double>(i) / static_cast<double>(parts));
     }
     result.push_back(time_s);
   }
@@ -91,10 +92,11 @@ BeamState beamStateAt(const scenario::Emitter& emitter, double t_s) {
   const scenario::ScanSpec& scan = emitter.scan;
   BeamState state;
   state.t_s = t_s;
-  state.is_on = emitter.active_s.empty() ||
-                std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [t_s](const scenario::TimeInterval& interval) {
-                  return t_s >= interval.begin_s && t_s < interval.end_s;
-                });
+  state.is_on =
+      emitter.active_s.empty() || std::any_of(emitter.active_s.begin(), emitter.active_s.end(),
+                                              [t_s](const scenario::TimeInterval& interval) {
+                                                return t_s >= interval.begin_s && t_s < interval.end_s;
+                                              });
   state.frequency_hz = emitter.frequency_hz;
   state.bandwidth_hz = emitter.bandwidth_hz;
   state.erp_dbm = ratioToDb(emitter.power_w) + 30 + emitter.antenna->gain_dbi - emitter.losses_db;
@@ -113,7 +115,8 @@ BeamState beamStateAt(const scenario::Emitter& emitter, double t_s) {
     state.azimuth_half_sweep_deg = 180;
   } else if (scan.kind == ScanKind::sector || scan.kind == ScanKind::raster) {
     state.azimuth_half_sweep_deg = scan.width_deg / 2;
-    if (scan.kind == ScanKind::raster) state.elevation_half_sweep_deg = scan.bars * scan.elevation_step_deg / 2;
+    if (scan.kind == ScanKind::raster)
+      state.elevation_half_sweep_deg = scan.bars * scan.elevation_step_deg / 2;
   } else if (scan.kind == ScanKind::dwell_list) {
     const scenario::BeamDirection beam = scenario::beamAt(scan, t_s);
     state.azimuth_deg += beam.azimuth_deg;
@@ -134,19 +137,19 @@ std::vector<double> timesOfChanges(const scenario::Scenario& scenario, const sce
     add(interval.end_s);
   }
   if (emitter.scan.kind == scenario::ScanKind::dwell_list) {
+    const auto& dwells = emitter.scan.dwells;
     double cycle_s = 0;
-    for (const scenario::Dwell& dwell : emitter.scan.dwells) cycle_s += dwell.duration_s;
-    double last_s = 0;
-    for (double begin_s = 0; cycle_s > 0 && begin_s <= duration_s; begin_s += cycle_s) {
-      double t_s = begin_s;
-      for (const scenario::Dwell& dwell : emitter.scan.dwells) {
-        if (t_s - last_s >= step_s || emitter.scan.dwells.size() < 1000) {
-          if (t_s - last_s >= std::min(step_s, 0.1)) {
-            add(t_s);
-            last_s = t_s;
-          }
-        }
-        t_s += dwell.duration_s;
+    for (const scenario::Dwell& dwell : dwells) cycle_s += dwell.duration_s;
+    // Many short dwells are sampled.
+    constexpr double kMaxDwells = 100000;
+    const double count = static_cast<double>(dwells.size()) * std::ceil(duration_s / cycle_s);
+    if (!(count <= kMaxDwells)) {
+      for (double t_s = step_s; t_s < duration_s; t_s += step_s) add(t_s);
+    } else {
+      double t_s = 0;
+      for (std::size_t i = 0; t_s <= duration_s; ++i) {
+        add(t_s);
+        t_s += dwells[i % dwells.size()].duration_s;
       }
     }
   }
@@ -161,7 +164,8 @@ std::string databaseText(const scenario::Scenario& scenario, const std::vector<E
     throw Error(ErrorCode::bad_input, "the scenario was not read from a file; save it first");
   const DocumentNodePtr emitters = document::valueAt(scenario.source->root, {std::string("emitters")});
   std::string text = fmt::format(
-      "# Emitters of the scenario {}, for emscape import: what the recording beside this file does not tell.\n"
+      "# Emitters of the scenario {}, for emscape import: what the recording beside this file does not "
+      "tell.\n"
       "schema_version: 1\nemitters:\n",
       document::flowText(*textNode(scenario.name), false));
   const fs::path from = fs::absolute(scenario.file).parent_path().lexically_normal();
@@ -177,7 +181,8 @@ std::string databaseText(const scenario::Scenario& scenario, const std::vector<E
       antenna.set(key, textNode((from / file).lexically_normal().lexically_relative(to).generic_string()));
     }
     emitter.set("antenna", antenna.node());
-    text += "  - name: " + document::flowText(*textNode(name), false) + "\n    match: " + row.match + "\n    emitter:\n";
+    text += "  - name: " + document::flowText(*textNode(name), false) + "\n    match: " + row.match +
+            "\n    emitter:\n";
     for (const document::MapEntry& entry : emitter.entries())
       text += "      " + entry.key + ": " + document::flowText(*entry.value, false) + "\n";
   }

@@ -15,11 +15,12 @@ bool near(double a, double b, double tolerance) {
 bool equalSettings(const BeamState& a, const BeamState& b) {
   const auto nearPart = [](double x, double y, double part) { return near(x, y, part * std::abs(x)); };
   return nearPart(a.frequency_hz, b.frequency_hz, 1e-3) && nearPart(a.bandwidth_hz, b.bandwidth_hz, 1e-2) &&
-         near(a.erp_dbm, b.erp_dbm, 0.25) && near(a.power_dbm, b.power_dbm, 0.25) && nearPart(a.prf_hz, b.prf_hz, 1e-2) &&
-         nearPart(a.pulse_width_s, b.pulse_width_s, 1e-2) &&
+         near(a.erp_dbm, b.erp_dbm, 0.25) && near(a.power_dbm, b.power_dbm, 0.25) &&
+         nearPart(a.prf_hz, b.prf_hz, 1e-2) && nearPart(a.pulse_width_s, b.pulse_width_s, 1e-2) &&
          near(a.azimuth_half_sweep_deg, b.azimuth_half_sweep_deg, 0.5) &&
          near(a.elevation_half_sweep_deg, b.elevation_half_sweep_deg, 0.5) &&
-         near(a.beamwidth_az_deg, b.beamwidth_az_deg, 0.5) && near(a.beamwidth_el_deg, b.beamwidth_el_deg, 0.5);
+         near(a.beamwidth_az_deg, b.beamwidth_az_deg, 0.5) &&
+         near(a.beamwidth_el_deg, b.beamwidth_el_deg, 0.5);
 }
 
 /// Adds a span, joined with the last one if they touch.

@@ -44,13 +44,15 @@ std::string printable(const std::string& name) {
 }
 
 /// An antenna whose files are named from another folder.
-DocumentNodePtr movedAntenna(const DocumentNodePtr& antenna, const std::string& database, const fs::path& folder) {
+DocumentNodePtr movedAntenna(const DocumentNodePtr& antenna, const std::string& database,
+                             const fs::path& folder) {
   MapBuilder moved(antenna);
   for (const char* key : {"file", "azimuth_file", "elevation_file"}) {
     const std::string name = moved.textOf(key);
     if (name.empty() || fs::path(name).is_absolute()) continue;
     const fs::path absolute = fs::absolute(fs::path(database).parent_path() / name).lexically_normal();
-    moved.set(key, textNode(absolute.lexically_relative(fs::absolute(folder).lexically_normal()).generic_string()));
+    moved.set(
+        key, textNode(absolute.lexically_relative(fs::absolute(folder).lexically_normal()).generic_string()));
   }
   return moved.node();
 }
@@ -88,18 +90,20 @@ void EmitterMaker::count(const std::string& name, const std::string& source, con
 std::vector<std::string> EmitterMaker::notes() const {
   std::vector<std::string> notes;
   if (sectors_ > 0) {
-    notes.push_back(fmt::format("{} beams are wider than {} deg: taken as the sector that the beam searches "
-                                "(--beamwidth beam takes them as the beam)",
-                                sectors_, kWidestBeam_deg));
+    notes.push_back(
+        fmt::format("{} beams are wider than {} deg: taken as the sector that the beam searches "
+                    "(--beamwidth beam takes them as the beam)",
+                    sectors_, kWidestBeam_deg));
   }
   if (assumed_turns_ > 0) {
-    notes.push_back(fmt::format("{} beams turn or sweep at an unknown rate: {} rpm or {} deg/s are assumed; give "
-                                "the rate in the database's scan",
-                                assumed_turns_, kAssumedRate_rpm, kAssumedRate_deg_s));
+    notes.push_back(
+        fmt::format("{} beams turn or sweep at an unknown rate: {} rpm or {} deg/s are assumed; give "
+                    "the rate in the database's scan",
+                    assumed_turns_, kAssumedRate_rpm, kAssumedRate_deg_s));
   }
   if (beams_cut_ > 0) {
-    notes.push_back(fmt::format("{} beams have more than {} settings; the later ones are left out", beams_cut_,
-                                kMaxPieces));
+    notes.push_back(fmt::format("{} beams have more than {} settings; the later ones are left out",
+                                beams_cut_, kMaxPieces));
   }
   return notes;
 }
@@ -134,10 +138,9 @@ EmitterMaker::Origin EmitterMaker::originOf(const RecordedObject& object, const 
   MapBuilder emitter(database_.default_emitter);
   const bool is_radar = emitter.textOf("kind") == "radar";
   if (is_radar && !emitter.find("receiver")) {
-    emitter.set("receiver", MapBuilder()
-                                .set("noise_figure_db", numberNode(5))
-                                .set("bandwidth_hz", numberNode(1e6))
-                                .node());
+    emitter.set(
+        "receiver",
+        MapBuilder().set("noise_figure_db", numberNode(5)).set("bandwidth_hz", numberNode(1e6)).node());
   }
   return {emitter.node(), "default", "the database's default", database_.default_file, 0};
 }
@@ -145,10 +148,10 @@ EmitterMaker::Origin EmitterMaker::originOf(const RecordedObject& object, const 
 void EmitterMaker::setPower(MapBuilder& emitter, const Origin& origin, const BeamPiece* piece,
                             std::string& fault) const {
   if (piece != nullptr && known(piece->state.erp_dbm)) {
-    const double gain = gain_dbi(MapBuilder(origin.emitter).find("antenna")
-                                     ? MapBuilder(origin.emitter).find("antenna")
-                                     : emitter.find("antenna"),
-                                 origin.file);
+    const double gain =
+        gain_dbi(MapBuilder(origin.emitter).find("antenna") ? MapBuilder(origin.emitter).find("antenna")
+                                                            : emitter.find("antenna"),
+                 origin.file);
     const double losses_db = known(emitter.numberOf("losses_db")) ? emitter.numberOf("losses_db") : 0;
     const double power_w = dbToRatio(piece->state.erp_dbm - gain + losses_db - 30);
     if (power_w > 0 && power_w <= 1e12) {
@@ -171,9 +174,9 @@ void EmitterMaker::setScan(MapBuilder& emitter, const BeamPiece& piece) {
   MapBuilder scan(emitter.find("scan"));
   const std::string kind = scan.textOf("kind");
   double half_sweep_deg = state.azimuth_half_sweep_deg;
-  if (known(state.beamwidth_az_deg)) {
-    const bool is_sector = beamwidth_ == BeamwidthMeaning::scan ||
-                           (beamwidth_ == BeamwidthMeaning::by_size && state.beamwidth_az_deg > kWidestBeam_deg);
+  if (known(state.beamwidth_az_deg) && emitter.textOf("kind") == "radar") {
+    const bool is_sector = beamwidth_ == BeamwidthMeaning::scan || (beamwidth_ == BeamwidthMeaning::by_size &&
+                                                                    state.beamwidth_az_deg > kWidestBeam_deg);
     if (is_sector) {
       half_sweep_deg = state.beamwidth_az_deg / 2;
       ++sectors_;
@@ -181,7 +184,8 @@ void EmitterMaker::setScan(MapBuilder& emitter, const BeamPiece& piece) {
   }
   const std::vector<Pointing> pointings = reduced(piece.pointings, kMaxDwells);
   const double azimuth_deg = pointings.empty() ? 0 : std::remainder(pointings.front().azimuth_deg, 360);
-  const double elevation_deg = pointings.empty() ? 0 : std::clamp(pointings.front().elevation_deg, -90.0, 90.0);
+  const double elevation_deg =
+      pointings.empty() ? 0 : std::clamp(pointings.front().elevation_deg, -90.0, 90.0);
   if (half_sweep_deg > 179) {
     if (kind == "rotate") return;
     ++assumed_turns_;
@@ -216,14 +220,16 @@ void EmitterMaker::setScan(MapBuilder& emitter, const BeamPiece& piece) {
     const double end_s = i + 1 < pointings.size() ? pointings[i + 1].begin_s : window_.end_s + 1;
     const double duration_s = std::min(end_s - begin_s, 1e6);
     if (duration_s < 1e-6) continue;
-    dwells.push_back(MapBuilder()
-                         .set("azimuth_deg", decimalNode(std::remainder(pointings[i].azimuth_deg, 360), 2))
-                         .set("elevation_deg", decimalNode(std::clamp(pointings[i].elevation_deg, -90.0, 90.0), 2))
-                         .set("duration_s", decimalNode(duration_s, 6))
-                         .node());
+    dwells.push_back(
+        MapBuilder()
+            .set("azimuth_deg", decimalNode(std::remainder(pointings[i].azimuth_deg, 360), 2))
+            .set("elevation_deg", decimalNode(std::clamp(pointings[i].elevation_deg, -90.0, 90.0), 2))
+            .set("duration_s", decimalNode(duration_s, 6))
+            .node());
     begin_s = end_s;
   }
-  emitter.set("scan", MapBuilder().set("kind", textNode("dwell_list")).set("dwells", listNode(dwells)).node());
+  emitter.set("scan",
+              MapBuilder().set("kind", textNode("dwell_list")).set("dwells", listNode(dwells)).node());
 }
 
 DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece* piece,
@@ -232,7 +238,8 @@ DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece*
   MapBuilder source(origin.emitter);
   MapBuilder emitter;
   emitter.set("name", textNode(name)).set("platform", textNode(platform));
-  for (const char* key : {"kind", "frequency_hz", "bandwidth_hz", "power_w"}) emitter.set(key, source.find(key));
+  for (const char* key : {"kind", "frequency_hz", "bandwidth_hz", "power_w"})
+    emitter.set(key, source.find(key));
   if (!emitter.find("kind")) emitter.set("kind", textNode("transmitter"));
   for (const document::MapEntry& entry : source.entries()) {
     if (!emitter.find(entry.key)) emitter.set(entry.key, entry.value);
@@ -267,7 +274,8 @@ DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece*
   }
   setPower(emitter, origin, piece, fault);
   if (!fault.empty()) return nullptr;
-  const bool is_always = active.size() == 1 && active[0].begin_s <= window_.begin_s && active[0].end_s >= window_.end_s;
+  const bool is_always =
+      active.size() == 1 && active[0].begin_s <= window_.begin_s && active[0].end_s >= window_.end_s;
   if (!is_always) {
     std::vector<DocumentNodePtr> spans;
     for (const Span_s& span : active) {
@@ -280,8 +288,8 @@ DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece*
 }
 
 void EmitterMaker::makeOfBeam(const RecordedObject& object, const RecordedBeam& beam,
-                              const std::vector<Span_s>& presence, const std::string& platform, double& height_m,
-                              std::vector<DocumentNodePtr>& emitters) {
+                              const std::vector<Span_s>& presence, const std::string& platform,
+                              double& height_m, std::vector<DocumentNodePtr>& emitters) {
   bool cut = false;
   const std::vector<BeamPiece> pieces = piecesOf(beam, presence, cut);
   if (pieces.empty()) return count(beam.name, "", "never on within these times");
@@ -294,8 +302,8 @@ void EmitterMaker::makeOfBeam(const RecordedObject& object, const RecordedBeam& 
   if (cut) ++beams_cut_;
   for (const BeamPiece& piece : pieces) {
     std::string fault;
-    const DocumentNodePtr emitter =
-        emitterNode(origin, &piece, piece.active, names_.unique(platform + " " + origin.name), platform, fault);
+    const DocumentNodePtr emitter = emitterNode(origin, &piece, piece.active,
+                                                names_.unique(platform + " " + origin.name), platform, fault);
     count(fault.empty() ? origin.name : beam.name, origin.source, fault);
     if (!emitter) continue;
     emitters.push_back(emitter);

@@ -30,12 +30,17 @@ class EmitterMaker {
   /// @param window  times of the scenario
   EmitterMaker(const EmitterDatabase& database, std::filesystem::path folder, BeamwidthMeaning beamwidth,
                Span_s window, UniqueNames& names)
-      : database_(database), folder_(std::move(folder)), beamwidth_(beamwidth), window_(window), names_(names) {}
+      : database_(database),
+        folder_(std::move(folder)),
+        beamwidth_(beamwidth),
+        window_(window),
+        names_(names) {}
 
   /// The emitters of an object, for a platform of the given name.
   /// @param beams  of the object; without any the object has the emitter of the row that matches it
   /// @param height_m  receives the largest height of their antennas above the object's reference point
-  std::vector<DocumentNodePtr> make(const RecordedObject& object, const std::vector<const RecordedBeam*>& beams,
+  std::vector<DocumentNodePtr> make(const RecordedObject& object,
+                                    const std::vector<const RecordedBeam*>& beams,
                                     const std::string& platform, double& height_m);
 
   /// What was made and what was not.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <set>
 
 #include "base/files/folder.h"
 #include "base/files/whole_file.h"
@@ -16,6 +17,7 @@
 #include "emscape/scenario/terrain/terrain.h"
 #include "interop/emitters/emitter_database.h"
 #include "interop/importing/emitter_nodes.h"
+#include "interop/importing/held_beams.h"
 #include "interop/importing/platforms.h"
 #include "interop/importing/scenario_text.h"
 
@@ -29,16 +31,18 @@ constexpr std::size_t kMaxPlatforms = 10000;  ///< of the scenario format
 /// Why an object is not imported; empty if it is.
 std::string reasonToLeaveOut(const RecordedObject& object, bool has_beams, const ImportOptions& options,
                              const TimeSpan& window) {
-  const bool is_chosen = std::any_of(options.only.begin(), options.only.end(), [&](const std::string& pattern) {
-    return matchesPattern(pattern, object.name) || matchesPattern(pattern, object.type) ||
-           matchesPattern(pattern, object.keys.acmi_name);
-  });
+  const bool is_chosen =
+      std::any_of(options.only.begin(), options.only.end(), [&](const std::string& pattern) {
+        return matchesPattern(pattern, object.name) || matchesPattern(pattern, object.type) ||
+               matchesPattern(pattern, object.keys.acmi_name);
+      });
   if (!options.only.empty() && !is_chosen) return "not named by --only";
   const bool is_within = object.poses.front().t_s <= window.end_s &&
                          (object.poses.back().t_s >= window.begin_s || object.poses.size() == 1);
   if (!is_within) return "outside the chosen times";
   if (options.only.empty() && object.domain == Domain::scenery && !has_beams) return "scenery";
-  if (options.only.empty() && object.domain == Domain::weapon && !has_beams) return "weapons without emission";
+  if (options.only.empty() && object.domain == Domain::weapon && !has_beams)
+    return "weapons without emission";
   return "";
 }
 
@@ -58,8 +62,8 @@ TimeSpan windowOf(const Recording& recording, const ImportOptions& options) {
   if (!options.times) return recorded;
   if (options.times->begin_s > recorded.end_s || options.times->end_s < recorded.begin_s) {
     throw Error(ErrorCode::usage,
-                fmt::format("--times {}:{} is outside the recording, {:.3f} to {:.3f} s", options.times->begin_s,
-                            options.times->end_s, recorded.begin_s, recorded.end_s));
+                fmt::format("--times {}:{} is outside the recording, {:.3f} to {:.3f} s",
+                            options.times->begin_s, options.times->end_s, recorded.begin_s, recorded.end_s));
   }
   return {options.times->begin_s, std::min(options.times->end_s, recorded.end_s)};
 }
@@ -84,7 +88,7 @@ class Importer {
         stem_(fs::path(options.scenario).stem().string()) {
     // Without --times t = 0 is a whole second of the recording, so that its times stay readable.
     origin_s_ = options.times ? window_.begin_s : std::floor(window_.begin_s);
-    duration_s_ = std::max(std::floor((window_.end_s - origin_s_) * 1000) / 1000, 0.0);
+    duration_s_ = std::max(std::round((window_.end_s - origin_s_) * 1000) / 1000, 0.0);
   }
 
   ImportResult run() {
@@ -143,15 +147,18 @@ void Importer::choose() {
     for (PoseSample& pose : shifted_.back().poses) pose.t_s -= origin_s_;
   }
   if (shifted_.empty())
-    throw Error(ErrorCode::bad_input, {recording_.file, 0, 0}, "no object is left; --only chooses by name and type");
-  if (shifted_.size() > kMaxPlatforms) {
     throw Error(ErrorCode::bad_input, {recording_.file, 0, 0},
-                fmt::format("{} objects, more than the {} platforms of a scenario; choose with --only or --times",
-                            shifted_.size(), kMaxPlatforms));
+                "no object is left; --only chooses by name and type");
+  if (shifted_.size() > kMaxPlatforms) {
+    throw Error(
+        ErrorCode::bad_input, {recording_.file, 0, 0},
+        fmt::format("{} objects, more than the {} platforms of a scenario; choose with --only or --times",
+                    shifted_.size(), kMaxPlatforms));
   }
   for (const RecordedBeam& beam : recording_.beams) {
     if (kept_as[beam.object] == recording_.objects.size()) continue;
     beams_.push_back(beam);
+    beams_.back().states = withDirections(beam, recording_.objects);
     beams_.back().object = kept_as[beam.object];
     for (BeamState& state : beams_.back().states) state.t_s -= origin_s_;
   }
@@ -167,14 +174,14 @@ void Importer::makeEmitters() {
   }
   // An end beyond the last step, as a time interval does not include its end.
   EmitterMaker maker(database, folder_, options_.beamwidth, {0, duration_s_ + 1}, emitter_names);
+  std::vector<std::vector<const RecordedBeam*>> beams_of(shifted_.size());
+  for (const RecordedBeam& beam : beams_) beams_of[beam.object].push_back(&beam);
   std::map<std::string, ImportedType> types;
   for (std::size_t i = 0; i < shifted_.size(); ++i) {
     Chosen chosen;
     chosen.object = &shifted_[i];
     chosen.name = platform_names.unique(shifted_[i].name);
-    for (const RecordedBeam& beam : beams_) {
-      if (beam.object == i) chosen.beams.push_back(&beam);
-    }
+    chosen.beams = std::move(beams_of[i]);
     double height_m = 0;
     chosen.emitters = maker.make(*chosen.object, chosen.beams, chosen.name, height_m);
     raise_m_.push_back(height_m);
@@ -188,15 +195,17 @@ void Importer::makeEmitters() {
   for (auto& [name, type] : types) result_.types.push_back(type);
   result_.emitters = maker.uses();
   result_.notes = maker.notes();
-  const bool has_emitter = std::any_of(chosen_.begin(), chosen_.end(), [](const Chosen& c) { return !c.emitters.empty(); });
+  const bool has_emitter =
+      std::any_of(chosen_.begin(), chosen_.end(), [](const Chosen& c) { return !c.emitters.empty(); });
   if (has_emitter || base_) return;
   std::string unmatched;
   for (const ImportedEmitters& use : result_.emitters)
     unmatched += (unmatched.empty() ? ": " : "; ") + use.name + " (" + use.fault + ")";
-  throw Error(ErrorCode::bad_input, {recording_.file, 0, 0},
-              fmt::format("no emitter is left of {} objects{}. Give a database that matches them (--emitters FILE; "
-                          "docs/battlefield.md), or add the objects to a scenario with emitters (--base FILE)",
-                          shifted_.size(), unmatched.substr(0, 300)));
+  throw Error(
+      ErrorCode::bad_input, {recording_.file, 0, 0},
+      fmt::format("no emitter is left of {} objects{}. Give a database that matches them (--emitters FILE; "
+                  "docs/battlefield.md), or add the objects to a scenario with emitters (--base FILE)",
+                  shifted_.size(), unmatched.substr(0, 300)));
 }
 
 void Importer::loadTerrain() {
@@ -246,7 +255,8 @@ void Importer::makeTracks() {
 
 std::string Importer::headerText() const {
   const auto nameOf = [](const std::string& file) { return fs::path(file).filename().string(); };
-  std::string text = fmt::format("Imported from {} ({}) by emscape import", nameOf(recording_.file), recording_.format);
+  std::string text =
+      fmt::format("Imported from {} ({}) by emscape import", nameOf(recording_.file), recording_.format);
   if (!options_.base.empty()) text += ", added to " + nameOf(options_.base);
   text += fmt::format(": {} objects, {:.6g} s.\n", chosen_.size(), duration_s_);
   for (const ImportedEmitters& use : result_.emitters) {
@@ -268,23 +278,26 @@ void Importer::write() {
   std::vector<std::vector<PoseSample>> tracks;
   std::vector<OutputFile> files;
   const std::string tracks_name = stem_ + "_tracks";
-  UniqueNames file_names;
+  std::set<std::string> file_names;
   for (Chosen& chosen : chosen_) {
     std::string track_file;
     if (!isFixed(chosen.track)) {
       std::string name;
       for (const char c : chosen.name.substr(0, 60)) {
-        const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+        const bool is_plain =
+            (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
         name += is_plain ? c : '_';
       }
       // File systems may not distinguish upper and lower case.
       std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return std::tolower(c); });
-      name = file_names.unique(name);
-      std::replace(name.begin(), name.end(), ' ', '_');
-      track_file = tracks_name + "/" + name + ".csv";
-      files.push_back({folder_ / track_file, [&chosen](std::ostream& stream) { stream << trackCsv(chosen.track); }});
+      std::string unique = name;
+      for (int n = 2; !file_names.insert(unique).second; ++n) unique = fmt::format("{}_{}", name, n);
+      track_file = tracks_name + "/" + unique + ".csv";
+      files.push_back(
+          {folder_ / track_file, [&chosen](std::ostream& stream) { stream << trackCsv(chosen.track); }});
     }
-    parts.platforms.push_back(platformNode(chosen.name, chosen.track.front(), track_file));
+    parts.platforms.push_back(
+        platformNode(chosen.name, chosen.object->side, chosen.track.front(), track_file));
     parts.emitters.insert(parts.emitters.end(), chosen.emitters.begin(), chosen.emitters.end());
     tracks.push_back(chosen.track);
   }
@@ -324,12 +337,14 @@ RegionRequest parseRegion(const std::string& text) {
     begin = end + 1;
   }
   const bool is_sound = count == 3 && begin == text.size() + 1 && std::abs(request.latitude_deg) <= 90 &&
-                        std::abs(request.longitude_deg) <= 180 && request.size_km >= 0.1 && request.size_km <= 4000;
+                        std::abs(request.longitude_deg) <= 180 && request.size_km >= 0.1 &&
+                        request.size_km <= 4000;
   if (!is_sound) {
-    throw Error(ErrorCode::usage,
-                fmt::format("--region '{}' is not auto or LAT,LON,SIZE_KM: latitude -90..90 deg, longitude -180..180 "
-                            "deg, size 0.1..4000 km, such as 36.30,-84.25,80",
-                            text));
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("--region '{}' is not auto or LAT,LON,SIZE_KM: latitude -90..90 deg, longitude -180..180 "
+                    "deg, size 0.1..4000 km, such as 36.30,-84.25,80",
+                    text));
   }
   return request;
 }

@@ -76,8 +76,9 @@ MapBuilder& MapBuilder::set(const std::string& key, const DocumentNodePtr& value
 
 MapBuilder& MapBuilder::remove(const std::string& key) {
   auto& entries = node_.entries;
-  entries.erase(std::remove_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.key == key; }),
-                entries.end());
+  entries.erase(
+      std::remove_if(entries.begin(), entries.end(), [&](const auto& entry) { return entry.key == key; }),
+      entries.end());
   return *this;
 }
 
@@ -109,7 +110,8 @@ std::string blockText(const std::vector<DocumentNodePtr>& items, int indent) {
   for (const DocumentNodePtr& item : items) {
     bool is_first = true;
     for (const document::MapEntry& entry : item->entries) {
-      text += blanks + (is_first ? "- " : "  ") + entry.key + ": " + document::flowText(*entry.value, false) + "\n";
+      text += blanks + (is_first ? "- " : "  ") + entry.key + ": " + document::flowText(*entry.value, false) +
+              "\n";
       is_first = false;
     }
   }

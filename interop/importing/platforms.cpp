@@ -7,13 +7,14 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "scenario/schema/sections.h"
 
 namespace emscape::interop {
 namespace {
 
 /// Height (m) above the ground to which positions below it are raised.
 constexpr double kAboveGround_m = 2;
-constexpr double kMaxRegion_m = 4e6;    ///< of the scenario format
+constexpr double kMaxRegion_m = 4e6;  ///< of the scenario format
 constexpr double kMinRegion_m = 20000;
 constexpr int kCells = 128, kLevels = 64;
 
@@ -85,8 +86,9 @@ bool isFixed(const std::vector<PoseSample>& track) {
     };
     return near(pose.latitude_deg, first.latitude_deg, 1e-7) &&
            near(pose.longitude_deg, first.longitude_deg, 1e-7) &&
-           near(pose.height_msl_m, first.height_msl_m, 0.01) && near(pose.heading_deg, first.heading_deg, 0.01) &&
-           near(pose.pitch_deg, first.pitch_deg, 0.01) && near(pose.roll_deg, first.roll_deg, 0.01);
+           near(pose.height_msl_m, first.height_msl_m, 0.01) &&
+           near(pose.heading_deg, first.heading_deg, 0.01) && near(pose.pitch_deg, first.pitch_deg, 0.01) &&
+           near(pose.roll_deg, first.roll_deg, 0.01);
   });
 }
 
@@ -104,21 +106,27 @@ std::string trackCsv(const std::vector<PoseSample>& track) {
     const std::string time = decimalText(pose.t_s, 6);
     if (time == last_time) continue;
     last_time = time;
-    text += fmt::format("{},{},{},{}", time, decimalText(pose.latitude_deg, 9), decimalText(pose.longitude_deg, 9),
-                        decimalText(pose.height_msl_m, 3));
+    text += fmt::format("{},{},{},{}", time, decimalText(pose.latitude_deg, 9),
+                        decimalText(pose.longitude_deg, 9), decimalText(pose.height_msl_m, 3));
     if (has_attitude) {
       if (!std::isnan(pose.heading_deg)) last = pose;
-      text += fmt::format(",{},{},{}", decimalText(std::remainder(last.heading_deg, 720), 4), decimalText(last.pitch_deg, 4),
-                          decimalText(std::remainder(last.roll_deg, 360), 4));
+      text += fmt::format(",{},{},{}", decimalText(std::remainder(last.heading_deg, 720), 4),
+                          decimalText(last.pitch_deg, 4), decimalText(std::remainder(last.roll_deg, 360), 4));
     }
     text += "\n";
   }
   return text;
 }
 
-DocumentNodePtr platformNode(const std::string& name, const PoseSample& pose, const std::string& track_file) {
+DocumentNodePtr platformNode(const std::string& name, Side side, const PoseSample& pose,
+                             const std::string& track_file) {
   MapBuilder platform;
   platform.set("name", textNode(name));
+  // Where the scenario format has the side of a platform.
+  if (side != Side::unknown && scenario::platformSpec().find("side", nullptr) != nullptr) {
+    constexpr const char* kNames[] = {"unknown", "friend", "hostile", "neutral"};
+    platform.set("side", textNode(kNames[static_cast<int>(side)]));
+  }
   if (!track_file.empty()) {
     platform.set("track", MapBuilder().set("file", textNode(track_file)).node());
     return platform.node();
@@ -156,10 +164,12 @@ DocumentNodePtr regionAround(const std::vector<std::vector<PoseSample>>& tracks)
   const double width_m = rounded(upper.x - lower.x + 2 * margin_m, 1000);
   const double depth_m = rounded(upper.y - lower.y + 2 * margin_m, 1000);
   if (std::max(width_m, depth_m) > kMaxRegion_m) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("the objects are {:.0f} km apart, more than the {:.0f} km of a region; choose a part with "
-                            "--region LAT,LON,SIZE_KM or objects with --only",
-                            extent_m / 1000, kMaxRegion_m / 1000));
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format(
+            "the objects are {:.0f} km apart, more than the {:.0f} km of a region; choose a part with "
+            "--region LAT,LON,SIZE_KM or objects with --only",
+            extent_m / 1000, kMaxRegion_m / 1000));
   }
   return regionNode(frame.toGeodetic((lower + upper) / 2.0), width_m, depth_m, tracks);
 }

@@ -16,8 +16,8 @@ struct Raised {
   double deepest_m = 0;
 };
 
-/// Poses with times from `origin_s` on, of those within a window and one more at each side; raised by a height,
-/// and to 2 m above the ground where they are below it.
+/// Poses with times from `origin_s` on, of those within a window and one more at each side; raised by a
+/// height, and to 2 m above the ground where they are below it.
 /// @param window  in the recording's time
 /// @param terrain  null: the ground is at mean sea level
 std::vector<PoseSample> trackOf(const RecordedObject& object, const TimeSpan& window, double origin_s,
@@ -30,7 +30,8 @@ bool isFixed(const std::vector<PoseSample>& track);
 std::string trackCsv(const std::vector<PoseSample>& track);
 
 /// @param track_file  name of its track file, relative to the scenario; empty: fixed at the first pose
-DocumentNodePtr platformNode(const std::string& name, const PoseSample& pose, const std::string& track_file);
+DocumentNodePtr platformNode(const std::string& name, Side side, const PoseSample& pose,
+                             const std::string& track_file);
 
 /// The region around tracks: square voxels, a margin, and a top above the highest position.
 /// @throws Error (bad_input) if it would be larger than a scenario's region may be

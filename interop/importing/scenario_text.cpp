@@ -17,7 +17,8 @@ DocumentNodePtr terrainFiles(const std::vector<std::string>& files, const fs::pa
   std::vector<DocumentNodePtr> names;
   for (const std::string& file : files) {
     const fs::path absolute = fs::absolute(file).lexically_normal();
-    names.push_back(textNode(absolute.lexically_relative(fs::absolute(folder).lexically_normal()).generic_string()));
+    names.push_back(
+        textNode(absolute.lexically_relative(fs::absolute(folder).lexically_normal()).generic_string()));
   }
   return listNode(names);
 }
@@ -71,7 +72,8 @@ std::string scenarioText(const ScenarioParts& parts, const fs::path& folder) {
   return text;
 }
 
-std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioParts& parts, const fs::path& folder) {
+std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioParts& parts,
+                               const fs::path& folder) {
   scenario::Scenario changed = base;
   std::vector<scenario::Edit> edits;
   if (!parts.epoch_utc.empty()) edits.push_back({"epoch", parts.epoch_utc});
@@ -80,7 +82,8 @@ std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioPar
   if (!parts.terrain.empty()) {
     // Edits name files from the base's folder.
     const fs::path base_folder = fs::absolute(base.file).parent_path();
-    edits.push_back({"terrain", "{files: " + document::flowText(*terrainFiles(parts.terrain, base_folder), false) + "}"});
+    edits.push_back(
+        {"terrain", "{files: " + document::flowText(*terrainFiles(parts.terrain, base_folder), false) + "}"});
   }
   changed.set(edits);
   std::string text = scenario::scenarioTextIn(changed, folder);
@@ -88,7 +91,8 @@ std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioPar
     text = withItems(text, base.file, "emitters", parts.emitters);
     text = withItems(text, base.file, "platforms", parts.platforms);
   } catch (const Error& error) {
-    throw Error(error.code(), {base.file, 0, 0}, "platforms and emitters cannot be added: " + error.message());
+    throw Error(error.code(), {base.file, 0, 0},
+                "platforms and emitters cannot be added: " + error.message());
   }
   return commentOf(parts.header) + text;
 }

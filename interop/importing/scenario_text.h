@@ -16,15 +16,15 @@ struct ScenarioParts {
   std::string name;
   std::string epoch_utc;  ///< empty: none
   double duration_s = 0, step_s = 1;
-  DocumentNodePtr region;                ///< null: that of the base
-  std::vector<std::string> terrain;      ///< elevation files, as named on the command line
+  DocumentNodePtr region;            ///< null: that of the base
+  std::vector<std::string> terrain;  ///< elevation files, as named on the command line
   std::vector<DocumentNodePtr> platforms, emitters;
 };
 
 std::string scenarioText(const ScenarioParts& parts, const std::filesystem::path& folder);
 
-/// The text of a base scenario with epoch, duration and, where they are given, region and terrain replaced, and
-/// platforms and emitters added.
+/// The text of a base scenario with epoch, duration and, where they are given, region and terrain replaced,
+/// and platforms and emitters added.
 /// @throws Error (bad_input) naming the base
 std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioParts& parts,
                                const std::filesystem::path& folder);

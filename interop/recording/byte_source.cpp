@@ -95,7 +95,8 @@ class ZipSource : public ByteSource {
     if (chosen.empty()) failReading(file, messages.explain("the zip file is damaged or has no file in it"));
     inner = chosen;
     file_ = VSIFOpenL((archive + "/" + chosen).c_str(), "rb");
-    if (file_ == nullptr) failReading(file, messages.explain("'" + chosen + "' in the zip file cannot be opened"));
+    if (file_ == nullptr)
+      failReading(file, messages.explain("'" + chosen + "' in the zip file cannot be opened"));
   }
   ~ZipSource() override {
     const scenario::GdalMessages messages;
@@ -108,8 +109,7 @@ class ZipSource : public ByteSource {
     const scenario::GdalMessages messages;
     const std::size_t count = VSIFReadL(bytes, 1, size, file_);
     done_ += count;
-    if (count < size && messages.hasFailure())
-      failure_ = messages.explain("the zip file is damaged");
+    if (count < size && messages.hasFailure()) failure_ = messages.explain("the zip file is damaged");
     if (done_ > kMaxUnzipped) {
       failure_ = "the zip file unpacks to more than 16 GiB";
       return 0;

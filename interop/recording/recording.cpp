@@ -25,11 +25,11 @@ double lerpAngle_deg(double a, double b, double part) {
 }  // namespace
 
 bool sameState(const BeamState& a, const BeamState& b) {
-  return a.is_on == b.is_on && sameValue(a.frequency_hz, b.frequency_hz) &&
+  return a.is_on == b.is_on && a.target == b.target && sameValue(a.frequency_hz, b.frequency_hz) &&
          sameValue(a.bandwidth_hz, b.bandwidth_hz) && sameValue(a.erp_dbm, b.erp_dbm) &&
-         sameValue(a.power_dbm, b.power_dbm) &&
-         sameValue(a.prf_hz, b.prf_hz) && sameValue(a.pulse_width_s, b.pulse_width_s) &&
-         sameValue(a.azimuth_deg, b.azimuth_deg) && sameValue(a.elevation_deg, b.elevation_deg) &&
+         sameValue(a.power_dbm, b.power_dbm) && sameValue(a.prf_hz, b.prf_hz) &&
+         sameValue(a.pulse_width_s, b.pulse_width_s) && sameValue(a.azimuth_deg, b.azimuth_deg) &&
+         sameValue(a.elevation_deg, b.elevation_deg) &&
          sameValue(a.azimuth_half_sweep_deg, b.azimuth_half_sweep_deg) &&
          sameValue(a.elevation_half_sweep_deg, b.elevation_half_sweep_deg) &&
          sameValue(a.beamwidth_az_deg, b.beamwidth_az_deg) &&

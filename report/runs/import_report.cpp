@@ -11,7 +11,8 @@ namespace {
 std::string countsText(const std::map<std::string, long long>& counts) {
   constexpr std::size_t kShown = 8;
   std::vector<std::pair<std::string, long long>> sorted(counts.begin(), counts.end());
-  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string text;
   long long others = 0;
   for (std::size_t i = 0; i < sorted.size(); ++i) {
@@ -86,7 +87,8 @@ std::string importText(const interop::ImportResult& result) {
   if (!result.epoch_utc.empty()) text += ", t = 0 is " + result.epoch_utc;
   text += "\n";
   if (result.tally.bad > 0)
-    text += fmt::format("{} records could not be read, the first: {}\n", result.tally.bad, result.tally.first_bad);
+    text += fmt::format("{} records could not be read, the first: {}\n", result.tally.bad,
+                        result.tally.first_bad);
   if (!result.tally.torn.empty()) text += "the recording ends too early: " + result.tally.torn + "\n";
   if (!result.tally.ignored.empty()) text += "not used: " + countsText(result.tally.ignored) + "\n";
   for (const auto* notes : {&result.tally.notes, &result.notes}) {

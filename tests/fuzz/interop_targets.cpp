@@ -59,12 +59,14 @@ const FuzzTargetsAdded added({
      [] {
        return std::vector<std::string>{
            recordingOf(".acmi"),
-           "FileType=text/acmi/tacview\nFileVersion=2.1\n0,ReferenceLongitude=5,ReferenceTime=2020-01-01T00:00:00Z\n"
+           "FileType=text/acmi/"
+           "tacview\nFileVersion=2.1\n0,ReferenceLongitude=5,ReferenceTime=2020-01-01T00:00:00Z\n"
            "1,T=1|2|3|4|5|6|7|8|9,Name=a\\, b,Color=Red\n#-1\n1,T=||,Visible=0\n0,Event=Destroyed|1|\n-1\n"};
      }},
     {"acmi_zip", "input.zip.acmi", readRecordingFile,
      [] { return std::vector<std::string>{recordingOf(".zip.acmi")}; }},
-    {"capture", "input.pcap", readRecordingFile, [] { return std::vector<std::string>{recordingOf(".pcap")}; }},
+    {"capture", "input.pcap", readRecordingFile,
+     [] { return std::vector<std::string>{recordingOf(".pcap")}; }},
     {"hex_log", "input.log", readRecordingFile,
      [] {
        std::string log;
@@ -93,12 +95,16 @@ const FuzzTargetsAdded added({
        checkFuzzMessage(recorder.finish().tally.first_bad);
      },
      pdus},
-    {"emitter_database", "",
+    {"emitter_database",
+     "",
      [](const fs::path&, const std::string& text) { interop::parseEmitterDatabase("input.yaml", text); },
      [] {
-       return std::vector<std::string>{interop::kStarterEmitters,
-                                       "schema_version: 1\nunmatched: default\ndefault: {kind: transmitter}\n"};
-     }},
+       return std::vector<std::string>{
+           interop::kStarterEmitters,
+           "schema_version: 1\nunmatched: default\ndefault: {kind: transmitter}\n"};
+     },
+     {},
+     interop::emitterDatabaseJsonSchema},
     {"import_region", "", [](const fs::path&, const std::string& text) { interop::parseRegion(text); },
      [] { return std::vector<std::string>{"36.3,-84.2,80"}; }},
 });

@@ -89,8 +89,8 @@ TEST(Acmi, RemovalWithAMarkOfTimeIsARemoval) {
 }
 
 TEST(Acmi, HiddenAndDestroyedObjectsAreAbsent) {
-  const Recording r = readLines(
-      "1,T=1|2|3\n2,T=1|2|3\n#1\n1,T=||,Visible=0\n0,Event=Destroyed|2|\n#2\n1,T=||,Visible=1\n");
+  const Recording r =
+      readLines("1,T=1|2|3\n2,T=1|2|3\n#1\n1,T=||,Visible=0\n0,Event=Destroyed|2|\n#2\n1,T=||,Visible=1\n");
   ASSERT_EQ(r.objects[0].presence.size(), 2u);
   EXPECT_FALSE(r.objects[0].presence[0].is_present);
   EXPECT_TRUE(r.objects[0].presence[1].is_present);
@@ -99,7 +99,8 @@ TEST(Acmi, HiddenAndDestroyedObjectsAreAbsent) {
 
 TEST(Acmi, RadarIsABeamOfItsObject) {
   const Recording r = readLines(
-      "1,T=1|2|3,RadarMode=1,RadarAzimuth=10,RadarElevation=-2,RadarHorizontalBeamwidth=5\n#2\n1,RadarMode=0\n");
+      "1,T=1|2|3,RadarMode=1,RadarAzimuth=10,RadarElevation=-2,RadarHorizontalBeamwidth=5\n#2\n1,RadarMode="
+      "0\n");
   ASSERT_EQ(r.beams.size(), 1u);
   EXPECT_EQ(r.beams[0].kind, BeamKind::radar);
   ASSERT_EQ(r.beams[0].states.size(), 2u);
@@ -111,7 +112,8 @@ TEST(Acmi, RadarIsABeamOfItsObject) {
 
 TEST(Acmi, BeamThatIsAnObjectHasTheKeysOfTheObjectThatCarriesIt) {
   const Recording r = readLines(
-      "a,T=1|2|3,Type=Air+FixedWing,Name=F-14B\nb,T=1|2|3|0|0|90,Type=Beam,Parent=a,RadarHorizontalBeamwidth=120\n");
+      "a,T=1|2|3,Type=Air+FixedWing,Name=F-14B\nb,T=1|2|3|0|0|90,Type=Beam,Parent=a,RadarHorizontalBeamwidth="
+      "120\n");
   ASSERT_EQ(r.beams.size(), 1u);
   EXPECT_EQ(r.objects[r.beams[0].object].keys.acmi_name, "F-14B");
   EXPECT_EQ(r.objects[r.beams[0].object].name, "F-14B beam");
@@ -131,8 +133,9 @@ TEST(Acmi, LinesThatCannotBeReadAreCountedWithTheFirstReason) {
 }
 
 TEST(Acmi, OtherFormatsAndVersionsAreRefusedWithARemedy) {
-  EXPECT_THAT(test::errorOf([] { readText("FileType=text/acmi/tacview\nFileVersion=1.5\n"); }, ErrorCode::bad_input),
-              HasSubstr("test.acmi:2:1: 'FileVersion=1.5' must be FileVersion=2.0 to FileVersion=2.2"));
+  EXPECT_THAT(
+      test::errorOf([] { readText("FileType=text/acmi/tacview\nFileVersion=1.5\n"); }, ErrorCode::bad_input),
+      HasSubstr("test.acmi:2:1: 'FileVersion=1.5' must be FileVersion=2.0 to FileVersion=2.2"));
   EXPECT_THAT(test::errorOf([] { readText("hello\n"); }, ErrorCode::bad_input),
               HasSubstr("begins with FileType=text/acmi/tacview"));
   const test::TemporaryFolder folder;
@@ -147,7 +150,8 @@ TEST(Acmi, OtherFormatsAndVersionsAreRefusedWithARemedy) {
 TEST(Acmi, DamagedZipIsRefused) {
   const test::TemporaryFolder folder;
   const std::string archive = folder.write("a.zip.acmi", "PK\x03\x04 damaged");
-  EXPECT_THAT(test::errorOf([&] { readRecording(archive); }, ErrorCode::bad_input), HasSubstr("cannot read: "));
+  EXPECT_THAT(test::errorOf([&] { readRecording(archive); }, ErrorCode::bad_input),
+              HasSubstr("cannot read: "));
 }
 
 class AcmiSample : public testing::Test {
@@ -192,7 +196,8 @@ TEST_F(AcmiSample, TextAndZipAreEqual) {
 TEST_F(AcmiSample, CutAnywhereItIsReadToTheCut) {
   const std::string text = test::readFile(files_[0]);
   for (const double part : {0.01, 0.3, 0.77777}) {
-    const Recording r = readText(text.substr(0, static_cast<std::size_t>(part * static_cast<double>(text.size()))));
+    const Recording r =
+        readText(text.substr(0, static_cast<std::size_t>(part * static_cast<double>(text.size()))));
     EXPECT_EQ(r.tally.bad, 0) << r.tally.first_bad;
     EXPECT_EQ(r.objects.size(), 14u);
   }

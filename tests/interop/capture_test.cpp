@@ -45,8 +45,10 @@ std::string udp(const std::string& content) {
 }
 std::string ipv4(const std::string& content, int fragment = 0, int protocol = 17) {
   const std::string body = udp(content);
-  return std::string("\x45\0", 2) + big(20 + body.size(), 2) + big(1, 2) + big(static_cast<std::uint64_t>(fragment), 2) +
-         big(64, 1) + big(static_cast<std::uint64_t>(protocol), 1) + big(0, 2) + big(0x7F000001, 4) + big(0x7F000001, 4) + body;
+  return std::string("\x45\0", 2) + big(20 + body.size(), 2) + big(1, 2) +
+         big(static_cast<std::uint64_t>(fragment), 2) + big(64, 1) +
+         big(static_cast<std::uint64_t>(protocol), 1) + big(0, 2) + big(0x7F000001, 4) + big(0x7F000001, 4) +
+         body;
 }
 std::string ipv6(const std::string& content) {
   const std::string body = udp(content);
@@ -86,11 +88,17 @@ TEST(Capture, DatagramsOfEveryLinkTypeAreFound) {
 }
 
 TEST(Capture, OtherPacketsAreCounted) {
-  EXPECT_EQ(readAll(classic(ipv4("x", 0x2000), 101), readCapture).tally.ignored.at("fragments of UDP datagrams"), 1);
-  EXPECT_EQ(readAll(classic(ipv4("x", 0, 6), 101), readCapture).tally.ignored.at("packets other than UDP"), 1);
-  EXPECT_EQ(readAll(classic(ethernet(0x0806, "arp"), 1), readCapture).tally.ignored.at("packets other than IP"), 1);
+  EXPECT_EQ(
+      readAll(classic(ipv4("x", 0x2000), 101), readCapture).tally.ignored.at("fragments of UDP datagrams"),
+      1);
+  EXPECT_EQ(readAll(classic(ipv4("x", 0, 6), 101), readCapture).tally.ignored.at("packets other than UDP"),
+            1);
+  EXPECT_EQ(
+      readAll(classic(ethernet(0x0806, "arp"), 1), readCapture).tally.ignored.at("packets other than IP"), 1);
   const std::string whole = ipv4("hello");
-  EXPECT_EQ(readAll(classic(whole.substr(0, whole.size() - 2), 101), readCapture).tally.ignored.at("packets cut by the capture"), 1);
+  EXPECT_EQ(readAll(classic(whole.substr(0, whole.size() - 2), 101), readCapture)
+                .tally.ignored.at("packets cut by the capture"),
+            1);
 }
 
 TEST(Capture, TornEndIsToldWithItsByte) {
@@ -116,9 +124,10 @@ TEST(Capture, EnhancedPacketsOfPcapngAreRead) {
   const std::uint64_t ticks = 1000500000000ull;  // nanoseconds
   const std::string file =
       block(0x0A0D0D0A, little(0x1A2B3C4D, 4) + little(1, 2) + little(0, 2) + std::string(8, '\xFF')) +
-      block(1, little(101, 2) + little(0, 2) + little(65535, 4) + little(9, 2) + little(1, 2) + std::string("\x09\0\0\0", 4)) +
-      block(6, little(0, 4) + little(ticks >> 32, 4) + little(ticks & 0xFFFFFFFF, 4) + little(packet.size(), 4) +
-                   little(packet.size(), 4) + packet);
+      block(1, little(101, 2) + little(0, 2) + little(65535, 4) + little(9, 2) + little(1, 2) +
+                   std::string("\x09\0\0\0", 4)) +
+      block(6, little(0, 4) + little(ticks >> 32, 4) + little(ticks & 0xFFFFFFFF, 4) +
+                   little(packet.size(), 4) + little(packet.size(), 4) + packet);
   const Read read = readAll(file, readCapture);
   ASSERT_EQ(read.contents.size(), 1u) << read.tally.torn;
   EXPECT_EQ(read.contents[0], "hello");

@@ -1,4 +1,6 @@
 // Dead reckoning against its differential equation and against recordings; orientations.
+#include "interop/dis/dead_reckoning.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 
 #include "emscape/base/units.h"
 #include "interop/dis/datagrams.h"
-#include "interop/dis/dead_reckoning.h"
 #include "tests/support/reference_data.h"
 
 namespace emscape::interop::dis {
@@ -35,7 +36,8 @@ Motion integratedMotion(const EntityState& state, double t_s, bool accelerates) 
   const int steps = 20000;
   const double dt = t_s / steps;
   const auto rates = [&](const Motion& m) {
-    const Vec3d turn = m.forward * state.turn_radps.x + m.right * state.turn_radps.y + m.down * state.turn_radps.z;
+    const Vec3d turn =
+        m.forward * state.turn_radps.x + m.right * state.turn_radps.y + m.down * state.turn_radps.z;
     return Motion{{}, cross(turn, m.forward), cross(turn, m.right), cross(turn, m.down)};
   };
   for (int i = 0; i < steps; ++i) {
@@ -44,9 +46,9 @@ Motion integratedMotion(const EntityState& state, double t_s, bool accelerates) 
     middle.forward = motion.forward + rate.forward * (dt / 2);
     middle.right = motion.right + rate.right * (dt / 2);
     middle.down = motion.down + rate.down * (dt / 2);
-    const Vec3d v =
-        state.velocity_mps + (accelerates ? state.acceleration_mps2 * ((i + 0.5) * dt) : Vec3d{});
-    motion.position_m = motion.position_m + (middle.forward * v.x + middle.right * v.y + middle.down * v.z) * dt;
+    const Vec3d v = state.velocity_mps + (accelerates ? state.acceleration_mps2 * ((i + 0.5) * dt) : Vec3d{});
+    motion.position_m =
+        motion.position_m + (middle.forward * v.x + middle.right * v.y + middle.down * v.z) * dt;
     const Motion middle_rate = rates(middle);
     motion.forward = motion.forward + middle_rate.forward * dt;
     motion.right = motion.right + middle_rate.right * dt;
@@ -137,7 +139,8 @@ double medianError_m(const std::string& name) {
     readSession(*source, tally, sink);
   }
   EXPECT_GT(errors.size(), 50u);
-  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
+  std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
+                   errors.end());
   return errors[errors.size() / 2];
 }
 

@@ -1,11 +1,12 @@
 // PDUs as recordings.
+#include "interop/dis/dis_recorder.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "emscape/interop/read_recording.h"
-#include "interop/dis/dis_recorder.h"
 #include "interop/dis/dead_reckoning.h"
 #include "interop/dis/orientation.h"
 #include "tests/support/errors.h"
@@ -106,7 +107,8 @@ TEST(DisRecorder, BeamThatItsSystemDoesNotListIsOffUpToVersion6) {
     stream.send(2, emissionOf({1}));
     const Recording r = stream.finish();
     ASSERT_EQ(r.beams.size(), 2u);
-    const std::vector<bool> expected = version == 6 ? std::vector<bool>{true, false} : std::vector<bool>{true};
+    const std::vector<bool> expected =
+        version == 6 ? std::vector<bool>{true, false} : std::vector<bool>{true};
     EXPECT_EQ(switches(r.beams[1]), expected) << version;
     EXPECT_EQ(switches(r.beams[0]), std::vector<bool>{true}) << version;
   }
@@ -262,13 +264,16 @@ TEST(DisRecorder, SeveralPdusOfADatagramAreTakenAndBadOnesCounted) {
   const Recording r = recorder.finish();
   EXPECT_EQ(r.tally.records, 2);
   EXPECT_EQ(r.tally.bad, 1);
-  EXPECT_THAT(r.tally.first_bad, HasSubstr("PDU 2: an Entity State PDU whose position is not near the earth"));
+  EXPECT_THAT(r.tally.first_bad,
+              HasSubstr("PDU 2: an Entity State PDU whose position is not near the earth"));
   EXPECT_EQ(r.tally.ignored.at("datagrams other than DIS"), 1);
 }
 
 TEST(DisRecordings, PublicLogsHaveTheirEntities) {
   if (!test::referenceFile("interop/dis/kdis_log1.log")) GTEST_SKIP() << test::notInRepository("interop/dis");
-  const auto read = [](const std::string& name) { return readRecording(*test::referenceFile("interop/dis/" + name)); };
+  const auto read = [](const std::string& name) {
+    return readRecording(*test::referenceFile("interop/dis/" + name));
+  };
   const Recording log = read("kdis_log2.log"), capture = read("kdis_log2.pcap");
   EXPECT_EQ(log.objects.size(), 22u);
   EXPECT_EQ(log.tally.records, 759);

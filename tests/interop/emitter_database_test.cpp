@@ -1,8 +1,9 @@
 // Emitter databases.
+#include "interop/emitters/emitter_database.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "interop/emitters/emitter_database.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 
@@ -42,8 +43,8 @@ TEST(EmitterDatabase, FirstRowWhoseConditionsAllHoldIsUsed) {
 }
 
 TEST(EmitterDatabase, PatternsMatchNamesAndTypes) {
-  const EmitterDatabase database = databaseOf({"{acmi_name: \"F-1?*|mig-29*\", acmi_type: \"Air+*\"}",
-                                               "{dis_entity_type: \"1.2.225.*\"}"});
+  const EmitterDatabase database = databaseOf(
+      {"{acmi_name: \"F-1?*|mig-29*\", acmi_type: \"Air+*\"}", "{dis_entity_type: \"1.2.225.*\"}"});
   RecordedObject object;
   object.keys.acmi_type = "Air+FixedWing";
   object.keys.acmi_name = "MiG-29S";
@@ -63,10 +64,11 @@ TEST(EmitterDatabase, RowWithConditionsOfBeamsIsNotOfObjectsWithoutBeams) {
 
 TEST(EmitterDatabase, FaultsAreListedWithTheirLocation) {
   EXPECT_THAT(test::errorOf([] { databaseOf({"{dis_nme: 5}"}); }, ErrorCode::bad_input),
-              HasSubstr("db.yaml:4:13: unknown key 'dis_nme' in match, did you mean 'dis_name'?"));
+              HasSubstr("db.yaml:4:13: unknown key 'dis_nme' of the match; did you mean 'dis_name'?"));
   EXPECT_THAT(test::errorOf([] { databaseOf({"{}"}); }, ErrorCode::bad_input), HasSubstr("has no condition"));
-  EXPECT_THAT(test::errorOf([] { databaseOf({}, "\nunmatched: default\n"); }, ErrorCode::bad_input),
-              HasSubstr("'unmatched' is default, but the database has no 'default'"));
+  EXPECT_THAT(
+      test::errorOf([] { databaseOf({"{dis_name: 1}"}, "unmatched: default\n"); }, ErrorCode::bad_input),
+      HasSubstr("'unmatched' is default, but the database has no 'default'"));
 }
 
 TEST(EmitterDatabase, StarterSetIsTheShippedFileAndEveryRowNamesItsSource) {

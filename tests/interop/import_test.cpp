@@ -21,8 +21,8 @@ namespace {
 using testing::HasSubstr;
 using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 
-RecordedObject objectAt(const std::string& name, const std::string& type, double latitude_deg, double height_m,
-                        double moves_deg = 0) {
+RecordedObject objectAt(const std::string& name, const std::string& type, double latitude_deg,
+                        double height_m, double moves_deg = 0) {
   RecordedObject object;
   object.name = object.keys.acmi_name = name;
   object.type = object.keys.acmi_type = type;
@@ -76,7 +76,8 @@ TEST_F(Import, ObjectsHaveThePlatformsAndEmittersOfTheirTypes) {
   EXPECT_EQ(scenario_->platforms[1].track.size(), 11u);
   EXPECT_EQ(scenario_->clock.duration_s, 100);
   EXPECT_EQ(result_.left_out.at("scenery"), 1);
-  EXPECT_NEAR(scenario_->platforms[0].track[0].position.height_msl_m.value(), 19, 1e-9) << "the antenna's height";
+  EXPECT_NEAR(scenario_->platforms[0].track[0].position.height_msl_m.value(), 19, 1e-9)
+      << "the antenna's height";
 }
 
 TEST_F(Import, PositionsBelowTheGroundAreRaisedAndTold) {
@@ -123,11 +124,13 @@ TEST_F(Import, UnmatchedBeamsAreNamedOrHaveTheDefault) {
   EXPECT_EQ(result_.emitters.at(0).fault, "not in the database");
 
   ImportOptions options;
-  options.emitters = folder_.write("db.yaml", "schema_version: 1\nunmatched: default\ndefault: {kind: transmitter}\n");
+  options.emitters =
+      folder_.write("db.yaml", "schema_version: 1\nunmatched: default\ndefault: {kind: transmitter}\n");
   import(recording, options);
   ASSERT_EQ(scenario_->emitters.size(), 2u);
   EXPECT_EQ(scenario_->emitters[0].kind, scenario::EmitterKind::transmitter);
-  EXPECT_NEAR(10 * std::log10(scenario_->emitters[0].power_w) + 30 + scenario_->emitters[0].antenna->gain_dbi, 93, 1e-3);
+  EXPECT_NEAR(10 * std::log10(scenario_->emitters[0].power_w) + 30 + scenario_->emitters[0].antenna->gain_dbi,
+              93, 1e-3);
 }
 
 TEST_F(Import, BeamThatFollowsATargetPointsWhereItPointed) {
@@ -152,6 +155,33 @@ TEST_F(Import, BeamThatFollowsATargetPointsWhereItPointed) {
     const scenario::BeamDirection direction = scenario::beamAt(emitter.scan, 10 * i + 5);
     EXPECT_NEAR(direction.azimuth_deg, 5 * i, 0.01);
     EXPECT_NEAR(direction.elevation_deg, -i, 0.01);
+  }
+}
+
+TEST_F(Import, BeamHeldOnATargetPointsAtIt) {
+  Recording recording = smallRecording();
+  recording.objects[0] = objectAt("site", "Ground+AntiAircraft", 52, 10);
+  recording.objects[1].poses.clear();
+  for (int i = 0; i <= 10; ++i)  // from north to east of the site, whose heading is east
+    recording.objects[1].poses.push_back({10.0 * i, 52.2 - 0.02 * i, 5 + 0.03 * i, 3000, 90, 0, 0});
+  RecordedBeam beam;
+  beam.object = 0;
+  beam.kind = BeamKind::radar;
+  beam.keys.dis_beam_function = 4;
+  BeamState state = stateAt(0, true);
+  state.target = 1;
+  beam.states = {state};
+  recording.beams.push_back(beam);
+  import(recording);
+  for (const double t_s : {5.0, 50.0, 95.0}) {
+    const scenario::Snapshot snapshot = scenario::instantAt(scenario_, nullptr, t_s);
+    const scenario::EmitterState& emitter = snapshot.emitters[0];
+    const GeodesicInverse way = geodesicInverse(emitter.position.latitude_deg, emitter.position.longitude_deg,
+                                                snapshot.platforms[1].position.latitude_deg,
+                                                snapshot.platforms[1].position.longitude_deg);
+    const Vec3d forward = emitter.beam.forward;
+    EXPECT_NEAR(std::atan2(forward.x, forward.y), way.azimuth_rad, 0.02) << t_s;
+    EXPECT_NEAR(forward.z, 3000 / way.distance_m, 0.02) << t_s;
   }
 }
 
@@ -216,7 +246,8 @@ TEST_F(Import, OnlyTheNamedObjectsAreTaken) {
   import(smallRecording(), options);
   ASSERT_EQ(scenario_->platforms.size(), 1u);
   options.only = {"nothing"};
-  EXPECT_THAT(test::errorOf([&] { import(smallRecording(), options); }, ErrorCode::bad_input), HasSubstr("no object is left"));
+  EXPECT_THAT(test::errorOf([&] { import(smallRecording(), options); }, ErrorCode::bad_input),
+              HasSubstr("no object is left"));
 }
 
 TEST_F(Import, WithoutAnyEmitterTheErrorNamesTheRemedy) {
@@ -224,14 +255,16 @@ TEST_F(Import, WithoutAnyEmitterTheErrorNamesTheRemedy) {
   recording.objects.erase(recording.objects.begin(), recording.objects.begin() + 2);
   recording.objects[0].domain = Domain::land;
   recording.objects[0].keys = {};
-  EXPECT_THAT(test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
-              HasSubstr("no emitter is left of 1 objects. Give a database that matches them (--emitters FILE"));
+  EXPECT_THAT(
+      test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
+      HasSubstr("no emitter is left of 1 objects. Give a database that matches them (--emitters FILE"));
 }
 
 TEST(ImportRegion, TextIsALatitudeALongitudeAndASize) {
   EXPECT_EQ(parseRegion("36.3,-84,80").longitude_deg, -84);
   for (const char* text : {"", "1,2", "1,2,3,4", "91,0,10", "1,2,x", "1,2,0"})
-    EXPECT_THAT(test::errorOf([&] { parseRegion(text); }, ErrorCode::usage), HasSubstr("is not auto or LAT,LON,SIZE_KM"));
+    EXPECT_THAT(test::errorOf([&] { parseRegion(text); }, ErrorCode::usage),
+                HasSubstr("is not auto or LAT,LON,SIZE_KM"));
 }
 
 TEST(BeamPieces, EqualSettingsAreOnePieceDifferentOnesSeveral) {
@@ -268,7 +301,7 @@ TEST_P(RoundTrip, PositionsAnglesAndEmittersStay) {
   EXPECT_NEAR(after->clock.duration_s, before->clock.duration_s, 0.01);
   const bool is_dis = std::string(GetParam()) == ".pcap";
   const double position_m = is_dis ? 0.01 : 0.02, height_m = is_dis ? 0.01 : 0.006;
-  for (const double t_s : {0.0, 37.0, 81.5, 119.0}) {
+  for (const double t_s : {0.0, 37.0, 81.0, 119.0}) {
     const scenario::Snapshot a = scenario::instantAt(before, terrain.get(), t_s);
     const scenario::Snapshot b = scenario::instantAt(after, nullptr, t_s);
     for (std::size_t i = 0; i < before->emitters.size(); ++i) {

@@ -1,11 +1,12 @@
 // Decoding and encoding of PDUs.
+#include "interop/dis/pdu.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
-#include "interop/dis/pdu.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"
 

@@ -26,9 +26,9 @@ struct ExportResult {
 /// Endings of the formats that are written: ".acmi", ".zip.acmi", ".pcap".
 std::vector<std::string> exportFormats();
 
-/// Writes a recording, whose format its ending tells, and STEM.emitters.yaml, an emitter database for
-/// importRecording(). Positions are those of the tracks and at most step_s apart. ACMI 2.2: the first radar of
-/// a platform has its properties, further emitters are objects of type Beam. DIS version 7: Entity State,
+/// Writes a recording, whose format its ending tells, and FILE.emitters.yaml, an emitter database for
+/// importRecording(). Positions are those of the tracks and at most step_s apart. ACMI 2.2: the first radar
+/// of a platform has its properties, further emitters are objects of type Beam. DIS version 7: Entity State,
 /// Electromagnetic Emission and Transmitter PDUs.
 /// @param scenario  read from a file
 /// @param terrain   of the scenario; may be null

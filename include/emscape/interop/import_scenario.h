@@ -13,8 +13,8 @@
 
 namespace emscape::interop {
 
-/// Meaning of the beamwidths of a recording: those of the beam, or those of the sector that it searches, which
-/// many programs write. by_size: beam up to 15 degrees.
+/// Meaning of the beamwidths of a recording: those of the beam, or those of the sector that it searches,
+/// which many programs write. by_size: beam up to 15 degrees.
 enum class BeamwidthMeaning { by_size, scan, beam };
 constexpr auto namesOf(BeamwidthMeaning) {
   return std::array{"by_size", "scan", "beam"};
@@ -36,7 +36,7 @@ struct ImportOptions {
   std::vector<std::string> terrain;     ///< elevation files
   std::optional<RegionRequest> region;  ///< none: around all platforms, or that of the base
   std::optional<TimeSpan> times;        ///< part of the recording, in its own seconds
-  std::vector<std::string> only;        ///< patterns of names and types of objects; empty: see importRecording()
+  std::vector<std::string> only;  ///< patterns of names and types of objects; empty: see importRecording()
   BeamwidthMeaning beamwidth = BeamwidthMeaning::by_size;
 };
 
@@ -57,13 +57,13 @@ struct ImportedEmitters {
 };
 
 struct ImportResult {
-  std::string scenario;           ///< the written file
-  std::string tracks;             ///< folder of the written tracks; empty: no platform moves
+  std::string scenario;  ///< the written file
+  std::string tracks;    ///< folder of the written tracks; empty: no platform moves
   int track_files = 0;
   std::string format;
-  std::string epoch_utc;          ///< of t = 0; empty: the recording has none
-  TimeSpan recorded;              ///< of the whole recording
-  double duration_s = 0;          ///< of the scenario
+  std::string epoch_utc;  ///< of t = 0; empty: the recording has none
+  TimeSpan recorded;      ///< of the whole recording
+  double duration_s = 0;  ///< of the scenario
   std::vector<ImportedType> types;
   std::vector<ImportedEmitters> emitters;
   std::map<std::string, int> left_out;  ///< objects, by reason

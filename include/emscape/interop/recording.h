@@ -70,22 +70,26 @@ constexpr auto namesOf(BeamKind) {
   return std::array{"unknown", "radar", "jammer", "transmitter"};
 }
 
+constexpr std::size_t kNoTarget = std::numeric_limits<std::size_t>::max();
+
 /// State of a beam from t_s on. Angles are relative to the object's axes.
 struct BeamState {
   double t_s = 0;
   bool is_on = false;
   double frequency_hz = kUnknown;
   double bandwidth_hz = kUnknown;
-  double erp_dbm = kUnknown;  ///< power of the transmitter with antenna gain and losses
+  double erp_dbm = kUnknown;    ///< power of the transmitter with antenna gain and losses
   double power_dbm = kUnknown;  ///< at the transmitter's output, where that is told instead
   double prf_hz = kUnknown;
   double pulse_width_s = kUnknown;
-  double azimuth_deg = kUnknown;              ///< of the beam or of the middle of its sweep, clockwise
-  double elevation_deg = kUnknown;            ///< of the same, upwards
-  double azimuth_half_sweep_deg = kUnknown;   ///< half the sector; 180: all around
+  double azimuth_deg = kUnknown;             ///< of the beam or of the middle of its sweep, clockwise
+  double elevation_deg = kUnknown;           ///< of the same, upwards
+  double azimuth_half_sweep_deg = kUnknown;  ///< half the sector; 180: all around
   double elevation_half_sweep_deg = kUnknown;
   double beamwidth_az_deg = kUnknown;  ///< as the recording has it: of the beam, or of the searched sector
   double beamwidth_el_deg = kUnknown;
+  /// Object on which the beam is held: index into Recording::objects; kNoTarget: none.
+  std::size_t target = kNoTarget;
 };
 
 /// True if nothing but the time differs; two unknown values are equal.
@@ -105,24 +109,24 @@ struct RecordedBeam {
   std::string name;        ///< for people: "emitter 28665, beam 1"
   BeamKind kind = BeamKind::unknown;
   BeamKeys keys;
-  double height_m = 0;  ///< of the antenna above the object's reference point
+  double height_m = 0;            ///< of the antenna above the object's reference point
   std::vector<BeamState> states;  ///< in the order of time; before the first: off
 };
 
 /// What was read and what was not.
 struct ReadingTally {
-  long long records = 0;                   ///< lines or PDUs
-  long long bad = 0;                       ///< could not be read
-  std::string first_bad;                   ///< location and reason of the first of them
-  std::string torn;                        ///< where and how the file ends too early; empty: it does not
+  long long records = 0;                     ///< lines or PDUs
+  long long bad = 0;                         ///< could not be read
+  std::string first_bad;                     ///< location and reason of the first of them
+  std::string torn;                          ///< where and how the file ends too early; empty: it does not
   std::map<std::string, long long> ignored;  ///< records and properties without use, by kind
-  std::vector<std::string> notes;          ///< assumptions, each with its effect
+  std::vector<std::string> notes;            ///< assumptions, each with its effect
 };
 
 struct Recording {
   std::string file;
-  std::string format;                     ///< "ACMI 2.2"
-  std::optional<std::int64_t> epoch_ms;   ///< t = 0, since 1970-01-01T00:00:00Z
+  std::string format;                    ///< "ACMI 2.2"
+  std::optional<std::int64_t> epoch_ms;  ///< t = 0, since 1970-01-01T00:00:00Z
   std::vector<RecordedObject> objects;
   std::vector<RecordedBeam> beams;
   ReadingTally tally;

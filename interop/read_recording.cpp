@@ -42,11 +42,15 @@ bool isSession(std::string_view head) {
 }
 
 Format formatOf(std::string_view head) {
-  if (beginsWith(head, "\xEF\xBB\xBF" "FileType=") || beginsWith(head, "FileType=")) return Format::acmi;
+  if (beginsWith(head,
+                 "\xEF\xBB\xBF"
+                 "FileType=") ||
+      beginsWith(head, "FileType="))
+    return Format::acmi;
   if (beginsWith(head, "PK\x03\x04")) return Format::zip;
   if (beginsWith(head, "7z\xBC\xAF\x27\x1C")) return Format::seven_zip;
-  for (const std::string_view magic : {"\xA1\xB2\xC3\xD4", "\xD4\xC3\xB2\xA1", "\xA1\xB2\x3C\x4D",
-                                       "\x4D\x3C\xB2\xA1", "\x0A\x0D\x0D\x0A"}) {
+  for (const std::string_view magic :
+       {"\xA1\xB2\xC3\xD4", "\xD4\xC3\xB2\xA1", "\xA1\xB2\x3C\x4D", "\x4D\x3C\xB2\xA1", "\x0A\x0D\x0D\x0A"}) {
     if (beginsWith(head, magic)) return Format::capture;
   }
   if (isHexLog(head)) return Format::hex_log;
@@ -97,6 +101,11 @@ void dropWithoutPosition(Recording& recording) {
   for (RecordedBeam& beam : recording.beams) {
     if (kept_as[beam.object] == recording.objects.size()) continue;
     beam.object = kept_as[beam.object];
+    for (BeamState& state : beam.states) {
+      if (state.target == kNoTarget) continue;
+      const bool is_kept = kept_as[state.target] != recording.objects.size();
+      state.target = is_kept ? kept_as[state.target] : kNoTarget;
+    }
     beams.push_back(std::move(beam));
   }
   recording.objects = std::move(objects);
@@ -123,10 +132,11 @@ Recording readRecording(const std::string& file, const ReadOptions& options, con
       throw Error(ErrorCode::bad_input, {file, 0, 0},
                   "a 7z archive; unpack it with 7z x and give the recording in it");
     case Format::unknown:
-      throw Error(ErrorCode::bad_input, {file, 0, 0},
-                  "no recording of a known format: ACMI 2.0 to 2.2 (.acmi, .zip.acmi), DIS as .pcap, .pcapng, "
-                  "hexadecimal log or .session. From other programs export one of these, or record the network "
-                  "with tcpdump -w FILE.pcap udp");
+      throw Error(
+          ErrorCode::bad_input, {file, 0, 0},
+          "no recording of a known format: ACMI 2.0 to 2.2 (.acmi, .zip.acmi), DIS as .pcap, .pcapng, "
+          "hexadecimal log or .session. From other programs export one of these, or record the network "
+          "with tcpdump -w FILE.pcap udp");
     default:
       recording = readDis(*openFile(file), format, file, options, progress);
   }
@@ -134,8 +144,9 @@ Recording readRecording(const std::string& file, const ReadOptions& options, con
   dropWithoutPosition(recording);
   if (recording.objects.empty()) {
     std::string reason;
-    if (recording.tally.bad > 0) reason = fmt::format("; {} records cannot be read, the first: {}", recording.tally.bad,
-                                                      recording.tally.first_bad);
+    if (recording.tally.bad > 0)
+      reason = fmt::format("; {} records cannot be read, the first: {}", recording.tally.bad,
+                           recording.tally.first_bad);
     throw Error(ErrorCode::bad_input, {file, 0, 0}, "the recording has no object with a position" + reason);
   }
   return recording;
@@ -147,7 +158,8 @@ Recording merged(std::vector<Recording> recordings) {
   const bool have_epochs = std::all_of(recordings.begin(), recordings.end(),
                                        [](const Recording& r) { return r.epoch_ms.has_value(); });
   if (have_epochs) {
-    for (const Recording& r : recordings) all.epoch_ms = std::min(all.epoch_ms.value_or(*r.epoch_ms), *r.epoch_ms);
+    for (const Recording& r : recordings)
+      all.epoch_ms = std::min(all.epoch_ms.value_or(*r.epoch_ms), *r.epoch_ms);
   }
   for (Recording& recording : recordings) {
     const double shift_s = have_epochs ? static_cast<double>(*recording.epoch_ms - *all.epoch_ms) / 1000 : 0;
@@ -158,7 +170,10 @@ Recording merged(std::vector<Recording> recordings) {
       all.objects.push_back(std::move(object));
     }
     for (RecordedBeam& beam : recording.beams) {
-      for (BeamState& state : beam.states) state.t_s += shift_s;
+      for (BeamState& state : beam.states) {
+        state.t_s += shift_s;
+        if (state.target != kNoTarget) state.target += first;
+      }
       beam.object += first;
       all.beams.push_back(std::move(beam));
     }
