@@ -157,6 +157,8 @@ double largestOfSigned(const volume::VolumeInfo& info, const std::vector<float>&
   constexpr double kFew = 0.005;
   constexpr double kMinPart = 0.05;  // of the smaller side, in the larger one
   if (ascending.empty() || info.categorical || info.extra.count("scenario_hash") > 0) return 0;
+  // A floor below all values is that of decibels, whose zero has no meaning.
+  if (info.floor != volume::kNoFloor && info.floor < ascending.front()) return 0;
   const auto few = static_cast<std::size_t>(kFew * static_cast<double>(ascending.size() - 1));
   const double below = -double{ascending[few]}, above = ascending[ascending.size() - 1 - few];
   return std::min(below, above) > kMinPart * std::max(below, above) ? std::max(below, above) : 0;

@@ -400,27 +400,6 @@ TEST_F(OpenDialog, SavesUnderTheTypedName) {
   EXPECT_TRUE(reports("unsaved", false));
 }
 
-TEST_F(OpenDialog, AFileIsReplacedOnlyByTheButton) {
-  open(input("a.yaml"));
-  const std::string before = readFile(input("b.yaml"));
-  ASSERT_TRUE(
-      xdotool("key ctrl+shift+s sleep 0.5 key ctrl+a" + type("b.yaml") + " key Return sleep 0.5 key Return"));
-  EXPECT_TRUE(commandsBecome("save_as save")) << commands();
-  EXPECT_EQ(readFile(input("b.yaml")), before);
-}
-
-TEST_F(OpenDialog, QuittingDuringARecordingCanWaitForItsEnd) {
-  if (!hasProgram("ffmpeg")) GTEST_SKIP() << "ffmpeg is not installed";
-  open(input("a.yaml"));
-  ASSERT_TRUE(xdotool("key ctrl+m sleep 0.5 key Return sleep 0.2 key ctrl+q"));
-  ASSERT_TRUE(commandsBecome("record record quit")) << commands();
-  EXPECT_TRUE(log("end").empty());
-  ASSERT_TRUE(xdotool("sleep 0.3 key Return"));
-  EXPECT_EQ(program_->wait().status, 0);
-  program_.reset();
-  EXPECT_TRUE(std::filesystem::exists(input("a.mp4")));
-}
-
 TEST_F(OpenDialog, TakesTheKeysFromAQuestionBehindIt) {
   open(input("a.yaml"));
   ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Return"));

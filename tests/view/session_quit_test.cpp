@@ -146,7 +146,7 @@ TEST(Warnings, AreThoseOfTheScenarioOnScreenAndGoWithTheEditThatCausesThem) {
   SessionSample shown("quick.yaml");
   ASSERT_TRUE(shown.settle());
   const std::size_t before = shown->warnings().size();
-  // More gain than the directivity of the beam.
+  // More gain than the beam's directivity.
   EXPECT_EQ(shown.perform(R"({"do":"set","path":"emitters.radar.antenna.gain_dbi","value":"60"})"), "");
   EXPECT_TRUE(shown.waitUntil([&] { return shown->settled() && shown->warnings().size() > before; }));
   shown.perform(R"({"do":"undo"})");
