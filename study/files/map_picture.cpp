@@ -180,7 +180,7 @@ class MapPicture {
       reach = std::max(reach, render::symbolSize(symbolOf(*marker)) - 0.2);
     const auto places = placeLabels(at, reach * radius, extents, rect_);
     for (std::size_t m = 0; m < shown.size(); ++m) {
-      if (places[m]) drawLeader(canvas, at[m], *places[m], 2 * radius);
+      if (places[m]) drawLeader(canvas, at[m], *places[m], 2 * reach * radius);
     }
     for (std::size_t m = 0; m < shown.size(); ++m)
       render::drawMark(canvas, symbolOf(*shown[m]), at[m], radius);
