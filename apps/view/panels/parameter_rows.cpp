@@ -351,7 +351,7 @@ void ParameterRows::drawChoice(const Parameter& parameter) {
     const std::string& choice = parameter.choices[i];
     pushNameId(choice);
     const bool is_chosen = selectableName(parameter.titles[i], choice == parameter.value);
-    if (choice == parameter.value && ImGui::IsWindowAppearing()) ImGui::SetItemDefaultFocus();
+    if (choice == parameter.value) ImGui::SetItemDefaultFocus();
     ImGui::PopID();
     if (!is_chosen || choice == parameter.value) continue;
     state_.sent_path = parameter.path;

@@ -44,12 +44,18 @@ struct PanelState {
   std::unordered_set<std::string> open;  // paths of sections
   std::string selected;                  // path of the section that is marked
   bool arrives = false;                  // it is scrolled to
+  std::string shown;                     // path of the section that is scrolled to
   bool is_new = true;
   ImGuiTextFilter filter;
   RowState rows;
 
   void take(const playback::ScenarioPtr& next) {
     if (next == scenario) return;
+    const bool is_edited_further = scenario && scenario->file == next->file;
+    std::unordered_set<std::string> before;
+    for (const SectionGroup& group : section_groups) {
+      for (const Section& section : group.sections) before.insert(section.path);
+    }
     scenario = next;
     groups.clear();
     edited.clear();
@@ -79,6 +85,11 @@ struct PanelState {
             "Scenario",
             {},
             {{"Air", "atmosphere"}, {"Ground", "ground"}, {"Output", "output"}, {"Region", "region"}}}};
+    for (const SectionGroup& group : section_groups) {
+      for (const Section& section : group.sections) {
+        if (is_edited_further && before.count(section.path) == 0) show(section.path);
+      }
+    }
     if (std::exchange(is_new, false) && !emitters.sections.empty())
       open.insert(emitters.sections.front().path);
   }
@@ -89,6 +100,12 @@ struct PanelState {
     selected = path;
     arrives = !path.empty();
     if (arrives) open.insert(path);
+  }
+
+  /// Opens a section and scrolls to it.
+  void show(const std::string& path) {
+    open.insert(path);
+    shown = path;
   }
 
   const ParameterGroup& groupAt(const std::string& path) {
@@ -191,6 +208,10 @@ void drawHeading(PanelContext& context, PanelState& state, const Section& sectio
     list.AddRect(low, high, ImGui::ColorConvertFloat4ToU32(accentColor(theme)),
                  ImGui::GetStyle().FrameRounding, 0, 1.5F * s);
     if (focus.arrives(section.path)) ImGui::ScrollToItem(ImGuiScrollFlags_KeepVisibleEdgeY);
+  }
+  if (state.shown == section.path) {
+    state.shown.clear();
+    ImGui::SetScrollHereY(0);
   }
   float right = high.x - 8 * s;
   if (is_item) {
