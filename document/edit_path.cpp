@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "document/schema_check.h"
 #include "emscape/base/error.h"
@@ -134,9 +135,9 @@ class Resolver {
       fail(fmt::format("{} is not a list in the file", result_.name));
     }
     const std::size_t index = named ? indexByName(*list.item->object) : indexByNumber();
-    result_.required = false;
+    result_.is_list_required = std::exchange(result_.required, false);
     result_.steps.emplace_back(index);
-    enter(node_->items[index], *list.item);
+    enter(result_.missing.empty() ? node_->items[index] : nullptr, *list.item);
   }
 
   std::size_t indexByName(const ObjectSpec& spec) {
@@ -157,7 +158,7 @@ class Resolver {
       best = i;
       best_length = name->size();
     }
-    if (best == items.size()) failByName(in_quotes ? written : word(), spec, names);
+    if (best == items.size()) return newItem(in_quotes ? written : word(), spec, names);
     const std::string name = *nameOf(*items[best]);
     result_.name = fmt::format("the {} '{}'", spec.name, name);
     append(quotedIfNeeded(name));
@@ -165,16 +166,24 @@ class Resolver {
     return best;
   }
 
-  [[noreturn]] static void failByName(const std::string& name, const ObjectSpec& spec,
-                                      const std::vector<std::string>& names) {
+  /// The end of the list, if the path ends with this name.
+  std::size_t newItem(const std::string& name, const ObjectSpec& spec,
+                      const std::vector<std::string>& names) {
     std::string known;
     for (std::size_t i = 0; i < std::min(names.size(), kMaxNamesShown); ++i) {
       known += (i == 0 ? "'" : ", '") + names[i] + "'";
     }
     if (names.size() > kMaxNamesShown) known += fmt::format(" and {} more", names.size() - kMaxNamesShown);
-    fail(fmt::format("there is no {} '{}'; {}{}", spec.name, name,
-                     names.empty() ? "the scenario has none" : "allowed are " + known,
-                     didYouMean(name, names)));
+    result_.missing = fmt::format("there is no {} '{}'; {}{}", spec.name, name,
+                                  names.empty() ? "the scenario has none" : "allowed are " + known,
+                                  didYouMean(name, names));
+    const std::size_t length = word().size();
+    if (name.empty() || at_ + length != path_.size()) fail(result_.missing);
+    result_.name = fmt::format("the {} '{}'", spec.name, name);
+    result_.new_name = name;
+    append(quotedIfNeeded(name));
+    advance(length);
+    return node_ ? node_->items.size() : 0;
   }
 
   std::size_t indexByNumber() {

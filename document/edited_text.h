@@ -19,6 +19,8 @@ class EditedText {
 
   const std::string& file() const { return file_; }
   const std::string& text() const { return text_; }
+  /// The text of the file.
+  const std::string& original() const { return original_; }
 
   /// @param label  names the origin of the change
   void apply(const Splice& splice, const std::string& label);

@@ -75,7 +75,9 @@ class SchemaWriter {
     Json json = valueOf(row.value);
     if (!row.description.empty()) json["description"] = row.description;
     if (const double* value = std::get_if<double>(&row.default_value)) json["default"] = number(*value);
-    if (const auto* text = std::get_if<std::string>(&row.default_value)) json["default"] = *text;
+    if (const auto* text = std::get_if<std::string>(&row.default_value)) {
+      json["default"] = row.value.type == ValueType::boolean ? Json(*text == "true") : Json(*text);
+    }
     if (const auto* texts = std::get_if<std::vector<std::string>>(&row.default_value))
       json["default"] = *texts;
     return json;

@@ -21,13 +21,18 @@ DocumentNodePtr childOf(const DocumentNode& node, const PathStep& step) {
   return nullptr;
 }
 
-/// Nested maps for a chain of keys: {a: {b: value}}.
+/// Nested maps and lists of one item for a chain of steps: {a: {b: [value]}}.
 DocumentNodePtr wrapped(const NodePath& path, std::size_t from, DocumentNodePtr value) {
   for (std::size_t i = path.size(); i-- > from;) {
-    auto map = std::make_shared<DocumentNode>();
-    map->kind = NodeKind::map;
-    map->entries.push_back({std::get<std::string>(path[i]), {}, std::move(value)});
-    value = std::move(map);
+    auto outer = std::make_shared<DocumentNode>();
+    if (const std::string* key = std::get_if<std::string>(&path[i])) {
+      outer->kind = NodeKind::map;
+      outer->entries.push_back({*key, {}, std::move(value)});
+    } else {
+      outer->kind = NodeKind::sequence;
+      outer->items.push_back(std::move(value));
+    }
+    value = std::move(outer);
   }
   return value;
 }
@@ -67,7 +72,9 @@ class Splicer {
     if (depth == path.size() || node->kind == NodeKind::null) {
       return replacement(*parent, path[depth - 1], *wrapped(path, depth, value));
     }
-    return insertion(*node, std::get<std::string>(path[depth]), *wrapped(path, depth + 1, value));
+    const DocumentNodePtr inner = wrapped(path, depth + 1, value);
+    const std::string* key = std::get_if<std::string>(&path[depth]);
+    return key != nullptr ? insertion(*node, *key, *inner) : appendedItem(*node, *inner);
   }
 
  private:
@@ -121,6 +128,33 @@ class Splicer {
     }
     const std::size_t at = lineEnd(text_, end).begin;
     return {at, at, eol + std::string(before.size(), ' ') + pair};
+  }
+
+  Splice appendedItem(const DocumentNode& list, const DocumentNode& value) const {
+    if (list.anchored) refuseAnchor();
+    if (list.items.empty()) {
+      const std::size_t inside = list.position.offset + 1;
+      return {inside, inside, flowText(value, json_)};
+    }
+    const std::size_t first = spanOf(text_, *list.items.front()).begin;
+    const std::size_t end = spanOf(text_, *list.items.back()).end;
+    const std::string eol = lineEnding(first);
+    if (isFlow(text_, list)) {
+      const std::size_t line = lineBegin(text_, first);
+      const string_view before = string_view(text_).substr(line, first - line);
+      const bool own_line = isOnlyBlanks(before) && line > list.position.offset;
+      return {end, end, (own_line ? "," + eol + std::string(before) : ", ") + flowText(value, json_)};
+    }
+    const std::size_t dash = dashBefore(first);
+    const std::string indentation(dash - lineBegin(text_, dash), ' ');
+    std::string written;
+    for (const MapEntry& entry : value.entries) {
+      written += eol + indentation + (written.empty() ? "- " : "  ") + keyText(entry.key) + ": " +
+                 flowText(*entry.value, json_);
+    }
+    if (written.empty()) written = eol + indentation + "- " + flowText(value, json_);
+    const std::size_t at = lineEnd(text_, end).begin;
+    return {at, at, written};
   }
 
   std::string keyText(const std::string& key) const {
@@ -202,6 +236,10 @@ DocumentNodePtr withValueFrom(const DocumentNodePtr& node, const NodePath& path,
   if (node->kind == NodeKind::null) return value ? wrapped(path, depth, value) : node;
   auto copy = std::make_shared<DocumentNode>(*node);
   if (const std::size_t* index = std::get_if<std::size_t>(&path[depth])) {
+    if (*index == copy->items.size()) {
+      copy->items.push_back(wrapped(path, depth + 1, value));
+      return copy;
+    }
     const auto item = copy->items.begin() + static_cast<std::ptrdiff_t>(*index);
     DocumentNodePtr changed = withValueFrom(*item, path, depth + 1, value);
     if (changed) {

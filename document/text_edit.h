@@ -28,11 +28,12 @@ DocumentNodePtr valueAt(const DocumentNodePtr& root, const NodePath& path);
 /// The document with the value at a path replaced, or added as the last key of its map; keys on the way that
 /// do not exist become maps. Only the nodes on the path are copied.
 /// @param value  null: the key or item is removed
-/// @pre every index of the path is that of an existing item, and every key belongs to a map or to a missing
-/// value
+/// @pre every index of the path is that of an existing item or, if a value is added, the number of items, and
+/// every key belongs to a map or to a missing value
 DocumentNodePtr withValueAt(const DocumentNodePtr& root, const NodePath& path, const DocumentNodePtr& value);
 
-/// The change of the text for withValueAt(root, path, value). The new value is written on one line.
+/// The change of the text for withValueAt(root, path, value). The new value is written on one line; a new
+/// item of a list in block style with one line per key.
 /// @param text  the text from which readDocument() built `root`
 /// @throws Error (bad_input), without a location, if the text cannot be changed in one span: anchors,
 /// aliases, block texts with an indentation indicator

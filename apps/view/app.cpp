@@ -41,6 +41,10 @@ std::string titleOf(const ViewOptions& options) {
   return (path.has_filename() ? path : path.parent_path()).filename().string() + " — emscape";
 }
 
+bool isFunctionKey(const KeyChord& chord) {
+  return chord.key.size() > 1 && chord.key[0] == 'F' && chord.key[1] >= '0' && chord.key[1] <= '9';
+}
+
 /// True if a text field may take the chord: all without Ctrl, and those of editing.
 bool editsText(const KeyChord& chord) {
   static const std::set<std::string> kEditing{"A",    "C",     "V",    "X",   "Y",         "Z",
@@ -201,6 +205,9 @@ void App::run() {
     if (window_.takeDirty()) frames_left_ = kFramesAfterEvent;
     handleRequests();
     if (session_->update()) frames_left_ = std::max(frames_left_, 1);
+    // New rows take their widths in a second frame.
+    const void* const scenario = session_->scenario().get();
+    if (std::exchange(drawn_scenario_, scenario) != scenario) frames_left_ = kFramesAfterEvent;
     failIfNothingOpens();
     if (ImGui::GetIO().WantTextInput) frames_left_ = std::max(frames_left_, 1);
     if (!ends() && !script_.finished() && !isFitting()) script_.run(*session_, *this, log_.now_s());
@@ -220,8 +227,13 @@ void App::frame() {
   if (size.width < 1 || size.height < 1) return;
   Stopwatch watch;
   window_.setTheme(session_->theme());
+  ImGuiIO& io = ImGui::GetIO();
+  io.KeyMap[ImGuiKey_Tab] = scenarioPanelTakesTab(*session_) ? -1 : GLFW_KEY_TAB;
+  // The keys walk through menus and lists while one is open, else they are for the picture or the panel.
+  was_popup_open_ = isPopupOpen();  // Esc closes it when the frame begins
+  io.ConfigFlags = was_popup_open_ ? io.ConfigFlags | ImGuiConfigFlags_NavEnableKeyboard
+                                   : io.ConfigFlags & ~ImGuiConfigFlags_NavEnableKeyboard;
   const std::vector<InputEvent> events = window_.beginFrame();
-  const ImGuiIO& io = ImGui::GetIO();
   const auto scale = static_cast<float>(window_.scale());
   const Layout layout =
       layoutOf(*session_, static_cast<float>(size.width), static_cast<float>(size.height), scale);
@@ -286,13 +298,15 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
   const Panels& panels = session_->panels;
   const bool dialog = panels.record || panels.restore || panels.unsaved || panels.time;
   const bool typing = ImGui::GetIO().WantTextInput && !panels.open;
+  const bool in_panel = scenarioPanelHasKeyboard() || was_popup_open_;
   for (const InputEvent& event : events) {
     if (event.kind != InputEvent::Kind::key || event.action == GLFW_RELEASE) continue;
     const KeyChord chord = chordOf(event);
     if (chord.key.empty()) continue;
-    const bool is_for_panel = dialog || typing || (panels.open && editsText(chord));
-    const bool is_global =
-        chord.key == "F1" || chord.key == "F12" || (chord.key == "Esc" && (dialog || !typing));
+    const bool is_for_panel = dialog || typing || (panels.open && editsText(chord)) ||
+                              (in_panel && !chord.control && !isFunctionKey(chord));
+    const bool is_global = chord.key == "F1" || chord.key == "F10" || chord.key == "F12" ||
+                           (chord.key == "Esc" && (dialog || (!typing && !in_panel)));
     if (is_for_panel && !is_global) continue;
     const bool flying = window_.buttonDown(GLFW_MOUSE_BUTTON_RIGHT) && !chord.control;
     if (flying && chord.key.size() == 1 && std::string("WASDQE").find(chord.key) != std::string::npos)

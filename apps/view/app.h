@@ -76,8 +76,10 @@ class App : private WindowControl {
   long long shown_picture_ = 0;  // number of the picture in texture_; 0: none
   std::optional<std::string> screenshot_;
   std::string open_panels_;
-  int window_fits_;            // remaining attempts to give the picture the size of the first view
-  render::ImageSize fitting_;  // the size requested last
+  bool was_popup_open_ = false;           // before this frame
+  const void* drawn_scenario_ = nullptr;  // only compared
+  int window_fits_;                       // remaining attempts to give the picture the size of the first view
+  render::ImageSize fitting_;             // the size requested last
 };
 
 }  // namespace emscape::view

@@ -273,6 +273,12 @@ std::vector<InputEvent> Window::beginFrame() {
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {static_cast<float>(cursor_x_), static_cast<float>(cursor_y_)};
   for (int i = 0; i < 5; ++i) io.MouseDown[i] = buttons_[i];
+  // In menus and lists Dear ImGui takes Space alone.
+  for (const InputEvent& event : events) {
+    const bool is_enter = event.code == GLFW_KEY_ENTER || event.code == GLFW_KEY_KP_ENTER;
+    if (event.kind == InputEvent::Kind::key && event.action == GLFW_PRESS && is_enter)
+      io.NavInputs[ImGuiNavInput_Activate] = 1;
+  }
   ImGui::NewFrame();
   return events;
 }

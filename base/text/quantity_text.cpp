@@ -18,6 +18,57 @@ bool takesPrefix(const std::string& unit) {
   return unit == "W" || unit == "Hz";
 }
 
+/// number * factor + offset is in the unit `of`.
+struct OtherUnit {
+  const char *of, *unit;
+  double factor, offset = 0;
+};
+constexpr std::array<OtherUnit, 29> kOtherUnits{{
+    {"m", "km", 1e3},
+    {"m", "cm", 1e-2},
+    {"m", "mm", 1e-3},
+    {"m", "ft", 0.3048},
+    {"m", "NM", 1852},
+    {"m", "nm", 1852},
+    {"m", "mi", 1609.344},
+    {"m/s", "km/h", 1 / 3.6},
+    {"m/s", "kt", 1852. / 3600},
+    {"m/s", "kn", 1852. / 3600},
+    {"s", "ms", 1e-3},
+    {"s", "us", 1e-6},
+    {"s", "µs", 1e-6},
+    {"s", "ns", 1e-9},
+    {"s", "min", 60},
+    {"s", "h", 3600},
+    {"K", "°C", 1, 273.15},
+    {"K", "C", 1, 273.15},
+    {"dBm", "dBW", 1, 30},
+    {"dBi", "dB", 1},
+    {"dBi", "dBd", 1, 2.15},
+    {"hPa", "mbar", 1},
+    {"hPa", "Pa", 1e-2},
+    {"hPa", "kPa", 10},
+    {"percent", "%", 1},
+    {"rpm", "Hz", 60},
+    {"rpm", "°/s", 1. / 6},
+    {"rpm", "deg/s", 1. / 6},
+    {"rpm", "1/min", 1},
+}};
+
+/// 10 log10(value in the unit `of`) + offset_db.
+struct DecibelUnit {
+  const char *of, *unit;
+  double offset_db;
+};
+constexpr std::array<DecibelUnit, 4> kDecibelUnits{
+    {{"W", "dBW", 0}, {"W", "dBm", 30}, {"m2", "dBsm", 0}, {"m2", "dBm2", 0}}};
+
+/// ASCII letters in lower case.
+std::string lowered(std::string text) {
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
+}
+
 double rounded(double value, int digits) {
   return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
 }
@@ -45,6 +96,15 @@ PrefixedUnit prefixedUnit(double value, const std::string& unit, int digits) {
   return {kPrefixes.back().first + unit, kPrefixes.back().second};
 }
 
+std::string unitSigns(const std::string& unit) {
+  std::string text = unit == "deg" ? "°" : unit == "percent" ? "%" : unit;
+  if (text.compare(0, 4, "deg/") == 0) text = "°" + text.substr(3);
+  for (const auto& [plain, sign] : {std::pair{"m2", "m²"}, std::pair{"m3", "m³"}}) {
+    if (const std::size_t at = text.find(plain); at != std::string::npos) text.replace(at, 2, sign);
+  }
+  return text;
+}
+
 std::string quantityText(double value, const std::string& unit, int digits) {
   const PrefixedUnit prefixed = prefixedUnit(value, unit, digits);
   return withUnit(numberText(value / prefixed.factor, digits), prefixed.unit);
@@ -60,17 +120,36 @@ std::string rangeText(double minimum, double maximum, const std::string& unit, i
 std::optional<double> parseQuantity(const std::string& text, const std::string& unit, double shown) {
   char* rest = nullptr;
   const double number = std::strtod(text.c_str(), &rest);
-  if (rest == text.c_str()) return std::nullopt;
+  if (rest == text.c_str() || !std::isfinite(number)) return std::nullopt;
   std::string suffix = rest;
   suffix.erase(0, std::min(suffix.find_first_not_of(' '), suffix.size()));
   suffix.erase(suffix.find_last_not_of(' ') + 1);
   if (suffix.empty()) return number * shown;
-  if (suffix == unit) return number;
-  if (!takesPrefix(unit)) return std::nullopt;
-  for (const auto& [prefix, factor] : kPrefixes) {
-    if (suffix == prefix + unit) return number * factor;
+  if (suffix == unit || suffix == unitSigns(unit)) return number;
+  if (takesPrefix(unit)) {
+    for (const auto& [prefix, factor] : kPrefixes) {
+      if (suffix == prefix + unit) return number * factor;
+    }
   }
-  return std::nullopt;
+  for (const OtherUnit& other : kOtherUnits) {
+    if (unit == other.of && suffix == other.unit) return number * other.factor + other.offset;
+  }
+  for (const DecibelUnit& other : kDecibelUnits) {
+    if (unit == other.of && lowered(suffix) == lowered(other.unit))
+      return std::pow(10, (number - other.offset_db) / 10);
+  }
+  // Typed without attention to the case: 300 mhz is 300 MHz, but 5 mw is not 5 MW.
+  const std::string lower = lowered(suffix);
+  if (unit == "Hz" && lower == "mhz") return number * 1e6;
+  for (const auto& [prefix, factor] : kPrefixes) {
+    const std::string name = prefix;
+    const bool is_known = takesPrefix(unit) && name != "M" && name != "m" && lower == lowered(prefix + unit);
+    if (is_known) return number * factor;
+  }
+  for (const OtherUnit& other : kOtherUnits) {
+    if (unit == other.of && lower == lowered(other.unit)) return number * other.factor + other.offset;
+  }
+  return lower == lowered(unit) ? std::optional(number) : std::nullopt;
 }
 
 }  // namespace emscape

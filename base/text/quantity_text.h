@@ -17,12 +17,17 @@ struct PrefixedUnit {
 /// @param digits  significant digits, to which the value is rounded first: 999999.9 W is 1 MW to 6 digits
 PrefixedUnit prefixedUnit(double value, const std::string& unit, int digits = 6);
 
+/// The unit with its signs: "°" for deg, "m²" for m2. parseQuantity() reads both.
+std::string unitSigns(const std::string& unit);
+
 /// "10 MW". @param unit    may be empty  @param digits  significant digits, 1..17
 std::string quantityText(double value, const std::string& unit, int digits = 6);
 /// "1 MHz to 1 THz", "0 to 100 dB".
 std::string rangeText(double minimum, double maximum, const std::string& unit, int digits = 6);
 
-/// Reads a number that may be followed by the unit, with or without a prefix: "3e9", "3 GHz", "3000MHz".
+/// Reads a number that may be followed by the unit, with or without a prefix, or by another unit of the same
+/// dimension: "3e9", "3 GHz", "3000MHz", "2 km", "10 kt", "-3 dBW", "15 °C". The prefixes k and G, and units
+/// of letters only, may be of either case.
 /// @param unit    plain: "Hz"
 /// @param shown   factor for a number without a unit
 /// @return the value in the plain unit; none for another text

@@ -181,9 +181,9 @@ bool sameRays(const JammerAtRadar& a, const JammerAtRadar& b) {
 GeometryInputs geometryInputs(const FieldPlan& plan, int emitter_index, const scenario::EmitterState& state) {
   // Only the listed inputs enter the geometry. Members that are not named below enter the combine stage
   // (power_w, losses_db, antenna, receiver, bandwidth_hz, the filter of clutter), the channels (kind,
-  // waveform), the snapshot (platform, scan, active_s) or messages (name, locations).
+  // waveform), the snapshot (platform, scan, enabled, active_s) or messages (name, locations).
   const auto& [name, platform, kind, frequency_hz, bandwidth_hz, power_w, losses_db, polarization, antenna,
-               scan, propagation, receiver, waveform, clutter, active_s, place, frequency_place] =
+               scan, propagation, receiver, waveform, clutter, enabled, active_s, place, frequency_place] =
       plan.scenario->emitters[static_cast<std::size_t>(emitter_index)];
   GeometryInputs inputs;
   inputs.position = state.position;

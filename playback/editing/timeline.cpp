@@ -87,8 +87,9 @@ std::vector<ActivityBar> activityBarsOf(const scenario::Scenario& scenario, doub
   std::vector<ActivityBar> bars;
   for (const scenario::Emitter& emitter : scenario.emitters) {
     ActivityBar bar{emitter.name, {}};
-    if (emitter.active_s.empty()) bar.intervals.push_back({from_s, to_s});
+    if (emitter.isAlwaysActive()) bar.intervals.push_back({from_s, to_s});
     for (const TimeInterval& interval : emitter.active_s) {
+      if (!emitter.enabled) break;
       const TimeInterval seen{std::max(interval.begin_s, from_s), std::min(interval.end_s, to_s)};
       if (seen.begin_s < seen.end_s) bar.intervals.push_back(seen);
     }

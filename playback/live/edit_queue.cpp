@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/text/failure_text.h"
+#include "emscape/scenario/file/scenario_file.h"
 
 namespace emscape::playback {
 namespace {
@@ -51,10 +52,11 @@ bool EditQueue::makeEdits(EditHistory& history, std::vector<Outcome>& outcomes) 
       return true;
     }
   }
-  task_.start([base = history.scenario(), edits = waiting_.front().edits] {
+  const bool replaces = waiting_.front().kind == Kind::replace;
+  task_.start([base = history.scenario(), edits = waiting_.front().edits, replaces] {
     Result result{base, nullptr, ""};
     try {
-      result.edited = edited(base, edits);
+      result.edited = replaces ? scenario::withEdits(*base, edits) : edited(base, edits);
     } catch (const std::exception& error) {
       result.error = failureText(error);
     }
@@ -69,6 +71,7 @@ std::vector<EditQueue::Outcome> EditQueue::update(EditHistory& history) {
   for (; !waiting_.empty(); waiting_.pop_front()) {
     switch (waiting_.front().kind) {
       case Kind::set:
+      case Kind::replace:
       case Kind::move:
         if (!makeEdits(history, outcomes)) return outcomes;
         break;

@@ -28,7 +28,9 @@ class EditQueue {
 
   /// As the functions of EditHistory.
   void set(std::vector<scenario::Edit> edits) { push({Kind::set, std::move(edits), {}}); }
-  /// The same as a part of one drag, which the first call begins.
+  /// Replaces all edits of the scenario's file by these, as one step.
+  void replace(std::vector<scenario::Edit> edits) { push({Kind::replace, std::move(edits), {}}); }
+  /// As set(), as a part of one drag, which the first call begins.
   void drag(std::vector<scenario::Edit> edits);
   void endDrag();
   void cancelDrag();
@@ -45,7 +47,7 @@ class EditQueue {
   void clear();
 
  private:
-  enum class Kind { set, move, begin_drag, end_drag, cancel_drag, callback };
+  enum class Kind { set, replace, move, begin_drag, end_drag, cancel_drag, callback };
   struct Operation {
     Kind kind;
     std::vector<scenario::Edit> edits;

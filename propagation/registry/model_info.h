@@ -43,6 +43,7 @@ struct RadialExcess {
 struct ModelInfo {
   PropagationModel model = PropagationModel::free_space;
   std::string name;       ///< as in scenario files
+  std::string title;      ///< what it computes, in a few words
   std::string reference;  ///< the publication that the model follows
   std::string accuracy;  ///< measured accuracy, with the names of the tests; quoted in the table of README.md
   ModelCost cost;

@@ -22,17 +22,18 @@ std::vector<const ModelLimit*> listOf(const ModelLimit* const (&limits)[kCount])
   return {std::begin(limits), std::end(limits)};
 }
 
-ModelInfo rowOf(PropagationModel model, const char* reference) {
+ModelInfo rowOf(PropagationModel model, const char* title, const char* reference) {
   ModelInfo row;
   row.model = model;
   row.name = toString(model);
+  row.title = title;
   row.reference = reference;
   row.mechanisms = {mechanismOf(model)};
   return row;
 }
 
 ModelInfo freeSpaceRow() {
-  ModelInfo row = rowOf(PropagationModel::free_space, "ITU-R P.525");
+  ModelInfo row = rowOf(PropagationModel::free_space, "free space: spreading only", "ITU-R P.525");
   row.accuracy = "1e-4 dB from emitter to voxel, on and off the beam's axis (FreeSpaceTable)";
   row.reference_datasets = {"radar/freespace_conversions_derived.csv"};
   row.gases = GasRole::on_request;
@@ -45,7 +46,8 @@ ModelInfo freeSpaceRow() {
 }
 
 ModelInfo horizonRow() {
-  ModelInfo row = rowOf(PropagationModel::horizon, "ITU-R P.834, P.453");
+  ModelInfo row =
+      rowOf(PropagationModel::horizon, "line of sight: shadow behind terrain", "ITU-R P.834, P.453");
   row.cost = {40, 0};
   row.accuracy = "the shadow's edge within 0.1 m of a walk over the posts of the terrain (FieldAtPosts)";
   row.gases = GasRole::on_request;
@@ -57,7 +59,8 @@ ModelInfo horizonRow() {
 }
 
 ModelInfo diffractionRow() {
-  ModelInfo row = rowOf(PropagationModel::diffraction, "ITU-R P.526-15, section 4.5");
+  ModelInfo row = rowOf(PropagationModel::diffraction, "diffraction over terrain, ITU-R P.526",
+                        "ITU-R P.526-15, section 4.5");
   row.cost = {200, 0};
   row.accuracy = "the field within 0.1 dB of path by path at 99 % of voxels (Excess)";
   row.settings = diffractionSettings();
@@ -77,7 +80,8 @@ ModelInfo diffractionRow() {
 }
 
 ModelInfo twoRayRow() {
-  ModelInfo row = rowOf(PropagationModel::two_ray, "Blake 1980; ITU-R P.526-15, P.527-6");
+  ModelInfo row = rowOf(PropagationModel::two_ray, "direct and reflected ray over a smooth surface",
+                        "Blake 1980; ITU-R P.526-15, P.527-6");
   row.cost = {400, 0};
   row.accuracy = "the formula, at each voxel";
   row.settings = twoRaySettings();
@@ -97,7 +101,8 @@ ModelInfo twoRayRow() {
 }
 
 ModelInfo itmRow() {
-  ModelInfo row = rowOf(PropagationModel::itm, "NTIA Report 82-100");
+  ModelInfo row =
+      rowOf(PropagationModel::itm, "Longley-Rice (ITM): terrain, 20 MHz to 20 GHz", "NTIA Report 82-100");
   row.cost = {1000, 0};
   row.accuracy = "0.0008 dB from NTIA's own program; the field within 1 dB of each path (Excess)";
   row.settings = itmSettings();
@@ -114,7 +119,7 @@ ModelInfo itmRow() {
 }
 
 ModelInfo p528Row() {
-  ModelInfo row = rowOf(PropagationModel::p528, "ITU-R P.528-5");
+  ModelInfo row = rowOf(PropagationModel::p528, "ITU-R P.528: aeronautical, smooth earth", "ITU-R P.528-5");
   row.cost = {100, 0.3};
   row.accuracy = "tables within 0.5 dB, more where the model steps at the horizon (Excess)";
   row.settings = p528Settings();
@@ -138,7 +143,8 @@ ModelInfo p528Row() {
 }
 
 ModelInfo p1812Row() {
-  ModelInfo row = rowOf(PropagationModel::p1812, "ITU-R P.1812-8");
+  ModelInfo row = rowOf(PropagationModel::p1812, "ITU-R P.1812: terrestrial, by share of time and places",
+                        "ITU-R P.1812-8");
   row.cost = {1000, 0};
   row.accuracy =
       "0.0002 dB from ITU-R's validation set; the field within 0.1 dB at 99 % of heights (ExcessModels)";
@@ -157,7 +163,8 @@ ModelInfo p1812Row() {
 }
 
 ModelInfo p452Row() {
-  ModelInfo row = rowOf(PropagationModel::p452, "ITU-R P.452-18");
+  ModelInfo row =
+      rowOf(PropagationModel::p452, "ITU-R P.452: interference, by share of time", "ITU-R P.452-18");
   row.cost = {1000, 0};
   row.accuracy = "0.0003 dB from ITU-R's validation set; the field as p1812";
   row.settings = p452Settings();
@@ -176,8 +183,8 @@ ModelInfo p452Row() {
 }
 
 ModelInfo parabolicEquationRow() {
-  ModelInfo row =
-      rowOf(PropagationModel::parabolic_equation, "Feit and Fleck 1978; Donohue and Kuttler 2000");
+  ModelInfo row = rowOf(PropagationModel::parabolic_equation, "parabolic equation: ducts, lobes, terrain",
+                        "Feit and Fleck 1978; Donohue and Kuttler 2000");
   row.cost = {9000, 3};
   row.accuracy = "0.3 dB from exact fields to 60 dB below free space (emscape check, pe)";
   row.settings = peSettings();

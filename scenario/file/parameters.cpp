@@ -8,6 +8,7 @@
 #include "document/edit_path.h"
 #include "document/text_edit.h"
 #include "propagation/registry/model_info.h"
+#include "scenario/file/parameter_words.h"
 #include "scenario/file/schema.h"
 #include "scenario/file/source.h"
 
@@ -93,8 +94,9 @@ Parameter::Type typeOf(const document::ValueSpec& spec) {
       return Parameter::Type::number;
     case ValueType::integer:
       return Parameter::Type::integer;
-    case ValueType::choice:
     case ValueType::boolean:
+      return Parameter::Type::boolean;
+    case ValueType::choice:
       return Parameter::Type::choice;
     case ValueType::list:
       return Parameter::Type::list;
@@ -109,7 +111,8 @@ class GroupBuilder {
 
   ParameterGroup build(const std::string& name, const std::string& path, const ObjectSpec& spec,
                        const DocumentNode* node) const {
-    ParameterGroup group{name, path, {}, {}};
+    const bool is_of_model = propagation::modelNamed(name) != nullptr;
+    ParameterGroup group{name, (is_of_model ? "settings of " : "") + wordsOf(name, name).name, path, {}, {}};
     const std::string variant = variantOf(spec, node);
     for (const KeySpec& row : spec.keys) {
       if (!applies(spec, row, node, variant)) continue;
@@ -147,29 +150,39 @@ class GroupBuilder {
     Parameter result;
     result.path = path;
     result.key = row.name;
-    result.name = document::stemOf(row);
-    std::replace(result.name.begin(), result.name.end(), '_', ' ');
+    const KeyWords words = wordsOf(row.name, document::stemOf(row));
+    result.name = words.name;
+    result.is_expert = words.is_expert;
     result.unit = document::unitOf(row.value);
     result.description = row.description;
     result.type = typeOf(row.value);
     result.minimum = row.value.minimum;
     result.maximum = row.value.maximum;
-    result.choices = row.value.choices;
-    if (row.value.type == ValueType::boolean) result.choices = {"false", "true"};
+    result.choices = row.value.type == ValueType::list ? row.value.item->choices : row.value.choices;
     result.required = row.required;
     result.is_given = node != nullptr;
+    result.default_value = textOf(row.default_value);
     if (node == nullptr) {
-      result.value = textOf(row.default_value);
+      result.value = result.default_value;
     } else {
       result.value = node->kind == NodeKind::scalar ? node->text : document::flowText(*node, /*json=*/false);
       // Keys instead of a number.
       if (node->kind == NodeKind::map) result.type = Parameter::Type::text;
     }
-    if (spec.name == "emitter" && row.name == "platform") {
-      result.type = Parameter::Type::choice;
-      for (const Platform& platform : scenario_.platforms) result.choices.push_back(platform.name);
+    if (row.name == "platform") offerNames(scenario_.platforms, result);
+    if (spec.name == "output" && row.name == "receiver") offerNames(scenario_.receivers, result);
+    if (row.name == "wanted_emitter") offerNames(scenario_.emitters, result);
+    if (result.titles.empty()) {
+      for (const std::string& choice : result.choices) result.titles.push_back(titleOf(row.name, choice));
     }
     return result;
+  }
+
+  template <class Items>
+  static void offerNames(const Items& items, Parameter& parameter) {
+    parameter.type = Parameter::Type::choice;
+    for (const auto& item : items) parameter.choices.push_back(item.name);
+    parameter.titles = parameter.choices;
   }
 
   const Scenario& scenario_;
@@ -190,6 +203,7 @@ std::string commonValueOf(const std::string& key, const std::string& choice) {
 ParameterGroup parametersOf(const Scenario& scenario, const std::string& path) {
   const DocumentNodePtr& root = rootOf(scenario);
   const ResolvedPath found = document::resolvePath(path, root, scenarioSpec());
+  if (!found.missing.empty()) throw Error(ErrorCode::bad_input, found.missing);
   if (found.spec->type != ValueType::object) {
     throw Error(ErrorCode::bad_input, fmt::format("{} is not a set of keys", found.name));
   }

@@ -10,24 +10,28 @@ namespace emscape::scenario {
 
 /// One value: name, type, limits and current text, from the table of the format.
 struct Parameter {
-  enum class Type { number, integer, choice, text, list };
+  enum class Type { number, integer, boolean, choice, text, list };
   std::string path;  ///< as an Edit takes it
   std::string key;   ///< the last part of the path
-  std::string name;  ///< for people: the key without its unit's suffix
+  std::string name;  ///< for people: "height above ground"
   std::string unit;  ///< of a number; may be empty
   std::string description;
   Type type = Type::text;
   double minimum = 0, maximum = 0;   ///< number, integer
-  std::vector<std::string> choices;  ///< choice
+  std::vector<std::string> choices;  ///< choice; list: the allowed items, empty: any
+  std::vector<std::string> titles;   ///< of the choices, for people
   bool required = false;             ///< else null removes it
+  bool is_expert = false;            ///< rarely changed
   bool is_given = false;             ///< in the text of the scenario
   /// The given text on one line; else the default; empty if there is none.
   std::string value;
+  std::string default_value;  ///< empty if there is none
 };
 
 /// The values of an object and of its nested objects.
 struct ParameterGroup {
-  std::string name;  ///< key, or name of the list's item
+  std::string name;   ///< key, or name of the list's item
+  std::string title;  ///< for people
   std::string path;
   std::vector<Parameter> parameters;
   std::vector<ParameterGroup> groups;

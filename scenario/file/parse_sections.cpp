@@ -225,7 +225,33 @@ bool ParseContext::addNamed(const Section& section, const std::string& key, std:
 
 namespace {
 
+SitePosition positionOf(const Section& section) {
+  return {section.number("latitude_deg"), section.number("longitude_deg"),
+          section.optionalNumber("height_msl_m"), section.optionalNumber("height_agl_m"), std::nullopt};
+}
+
+/// The points that the scenario itself lists.
+std::vector<TrackPoint> listedTrack(const Section& track, ParseContext& context) {
+  std::vector<TrackPoint> points;
+  for (const Section& item : track.sections("points")) {
+    const TrackPoint point{item.number("t_s"), positionOf(item), item.optionalNumber("heading_deg"),
+                           item.optionalNumber("pitch_deg"), item.optionalNumber("roll_deg")};
+    if (!points.empty() && point.t_s <= points.back().t_s) {
+      context.problems.addError(
+          item.locationOf("t_s"),
+          fmt::format("'t_s' is {}, not above the {} s of the point before", point.t_s, points.back().t_s));
+    }
+    if (!points.empty() &&
+        point.position.height_agl_m.has_value() != points.front().position.height_agl_m.has_value()) {
+      context.problems.addError(item.location(), "all points of a track must have the same kind of height");
+    }
+    points.push_back(point);
+  }
+  return points;
+}
+
 std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
+  if (track.has("points")) return listedTrack(track, context);
   const std::string file = context.resolve(track.text("file"));
   std::string bytes;
   if (!context.addNamed(track, "file", &bytes)) return {};
@@ -280,15 +306,13 @@ Platform parsePlatform(const Section& section, ParseContext& context) {
   if (section.has("track")) {
     const Section track = section.section("track");
     platform.track = trackOf(track, context);
-    if (!platform.track.empty()) platform.track_file = context.resolve(track.text("file"));
+    if (!platform.track.empty() && track.has("file"))
+      platform.track_file = context.resolve(track.text("file"));
     return platform;
   }
   const Section position = section.section("position"), attitude = section.section("attitude");
   TrackPoint point;
-  point.position.latitude_deg = position.number("latitude_deg");
-  point.position.longitude_deg = position.number("longitude_deg");
-  point.position.height_msl_m = position.optionalNumber("height_msl_m");
-  point.position.height_agl_m = position.optionalNumber("height_agl_m");
+  point.position = positionOf(position);
   point.position.height_ellipsoid_m = position.optionalNumber("height_ellipsoid_m");
   platform.track = {point};
   platform.attitude = {attitude.number("heading_deg"), attitude.number("pitch_deg"),
@@ -357,6 +381,7 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   emitter.location = section.location();
   emitter.platform = parseCarrier(section, platforms, context);
   emitter.kind = section.choice<EmitterKind>("kind");
+  emitter.enabled = section.optionalBoolean("enabled").value_or(true);
   emitter.frequency_hz = section.number("frequency_hz");
   emitter.bandwidth_hz = section.number("bandwidth_hz");
   emitter.power_w = section.number("power_w");

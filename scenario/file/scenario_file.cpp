@@ -349,6 +349,21 @@ ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edit
   return readSource(std::move(source), &scenario.source->files, context);
 }
 
+std::shared_ptr<const Scenario> withEdits(const Scenario& scenario, const std::vector<Edit>& edits) {
+  if (!scenario.source) {
+    throw Error(ErrorCode::bad_input, "the scenario was not read from a file: there is no text to edit");
+  }
+  ParseContext context;
+  context.file = scenario.file;
+  ScenarioSource source;
+  source.text = {scenario.file, scenario.source->text.original()};
+  source.root = document::readDocument(scenario.file, source.text.text(), context.problems);
+  applyEdits(source, edits, context);
+  const ParseResult result = readSource(std::move(source), &scenario.source->files, context);
+  requireScenario(result);
+  return result.scenario;
+}
+
 void Scenario::set(const std::string& path, const std::string& value) {
   set({Edit{path, value}});
 }

@@ -68,7 +68,7 @@ void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseConte
   WarningOfItems warning;
   for (std::size_t i = 0; i < sections.size() && counts; ++i) {
     const Emitter& jammer = scenario.emitters[i];
-    if (jammer.kind != EmitterKind::jammer) continue;
+    if (jammer.kind != EmitterKind::jammer || !jammer.enabled) continue;
     const bool jams =
         std::any_of(scenario.emitters.begin(), scenario.emitters.end(), [&jammer](const Emitter& radar) {
           return radar.kind == EmitterKind::radar &&
@@ -150,9 +150,29 @@ void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseConte
   context.problems.addWarning(scan.locationOf(rotates ? "rate_rpm" : "rate_deg_s"), unlit->warning);
 }
 
+/// Reminds once of the emitters that are switched off.
+void tellOfDisabledEmitters(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  std::vector<std::string> names;
+  SourceLocation first;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    if (scenario.emitters[i].enabled) continue;
+    if (names.empty()) first = sections[i].locationOf("enabled");
+    names.push_back("'" + scenario.emitters[i].name + "'");
+  }
+  if (names.empty()) return;
+  constexpr std::size_t kMaxNames = 5;
+  const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kMaxNames));
+  context.problems.addWarning(
+      first, fmt::format("{} of {} emitters {} disabled: {}{}", names.size(), sections.size(),
+                         names.size() == 1 ? "is" : "are", fmt::join(names.begin(), end, ", "),
+                         names.size() > kMaxNames ? " and others" : ""));
+}
+
 }  // namespace
 
 void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseContext& context) {
+  tellOfDisabledEmitters(scenario, root, context);
   warnOfEmittersWithoutBand(scenario, root, context);
   warnOfIdleJammers(scenario, root, context);
   warnOfGains(scenario, root, context);

@@ -57,9 +57,23 @@ std::size_t lastEditOf(const std::string& path, const std::vector<MadeEdit>& edi
   return std::string::npos;
 }
 
+/// Drops the edit that added an item, and those within it, if the paths of the later edits do not depend on
+/// it. @return false if there is none
+bool forgetAddedItem(std::vector<MadeEdit>& edits, const std::string& path) {
+  std::size_t i = edits.size();
+  while (i > 0 && !edits[i - 1].moves_paths && !(edits[i - 1].adds && edits[i - 1].edit.path == path)) --i;
+  if (i == 0 || edits[i - 1].moves_paths) return false;
+  const auto added = edits.begin() + static_cast<std::ptrdiff_t>(i - 1);
+  edits.erase(std::remove_if(added, edits.end(),
+                             [&](const MadeEdit& made) { return leadsInto(path, made.edit.path); }),
+              edits.end());
+  return true;
+}
+
 /// Adds an edit to the list. A repeated edit of a value replaces the earlier one, and a value that was added
 /// and then removed leaves no edit.
 void remember(std::vector<MadeEdit>& edits, MadeEdit made) {
+  if (made.moves_paths && isNull(made.edit.value) && forgetAddedItem(edits, made.edit.path)) return;
   const std::size_t last =
       made.moves_paths ? std::string::npos : lastEditOf(made.edit.path, edits, edits.size());
   if (last == std::string::npos) {
@@ -68,7 +82,10 @@ void remember(std::vector<MadeEdit>& edits, MadeEdit made) {
   }
   const bool was_removed = isNull(edits[last].edit.value), is_removed = isNull(made.edit.value);
   if (!was_removed && !is_removed) {
+    made.adds = edits[last].adds;
     edits[last] = std::move(made);
+  } else if (is_removed && edits[last].adds) {
+    edits.erase(edits.begin() + static_cast<std::ptrdiff_t>(last));
   } else if (was_removed != is_removed) {
     const std::size_t before = is_removed ? lastEditOf(made.edit.path, edits, last) : std::string::npos;
     if (before != std::string::npos && isNull(edits[before].edit.value)) {
@@ -92,12 +109,37 @@ DocumentNodePtr readEdited(const document::EditedText& text, const DocumentNodeP
   return root;
 }
 
+/// The keys of a new item with its name, which is that of the path.
+DocumentNodePtr namedItem(const ResolvedPath& path, const DocumentNodePtr& value) {
+  if (!value || value->kind != document::NodeKind::map) throw Error(ErrorCode::bad_input, path.missing);
+  const auto given = std::find_if(value->entries.begin(), value->entries.end(),
+                                  [](const document::MapEntry& entry) { return entry.key == "name"; });
+  auto item = std::make_shared<document::DocumentNode>(*value);
+  if (given != value->entries.end()) {
+    if (given->value->text == path.new_name) return item;
+    throw Error(ErrorCode::bad_input, fmt::format("the new item is '{}' in the path and '{}' in its 'name'",
+                                                  path.new_name, given->value->text));
+  }
+  auto name = std::make_shared<document::DocumentNode>();
+  name->kind = document::NodeKind::scalar;
+  name->text = path.new_name;
+  name->quoted = true;
+  item->entries.insert(item->entries.begin(), {"name", {}, std::move(name)});
+  return item;
+}
+
 void apply(ScenarioSource& source, const Edit& edit) {
-  const ResolvedPath path = document::resolvePath(edit.path, source.root, scenarioSpec());
-  const DocumentNodePtr value = valueOf(edit);
+  ResolvedPath path = document::resolvePath(edit.path, source.root, scenarioSpec());
+  DocumentNodePtr value = valueOf(edit);
+  if (!path.missing.empty()) value = namedItem(path, value);
   const Edit made{path.text, edit.value};
+  const bool is_item = std::holds_alternative<std::size_t>(path.steps.back());
   if (!value && path.required) {
     throw Error(ErrorCode::bad_input, fmt::format("{} must be given; it cannot be removed", path.name));
+  }
+  if (is_item && !value && !path.is_list_required) {  // an optional list without items is not given
+    const document::NodePath list(path.steps.begin(), path.steps.end() - 1);
+    if (document::valueAt(source.root, list)->items.size() == 1) path.steps = list;
   }
   ScenarioSource edited;
   edited.text = source.text;
@@ -115,9 +157,12 @@ void apply(ScenarioSource& source, const Edit& edit) {
   } else {
     edited.root = source.root;
   }
-  const bool is_item = std::holds_alternative<std::size_t>(path.steps.back());
   const bool is_name = !is_item && std::get<std::string>(path.steps.back()) == "name";
-  remember(source.edits, {made, is_name || (is_item && !value)});
+  const DocumentNodePtr parent =
+      document::valueAt(source.root, document::NodePath(path.steps.begin(), path.steps.end() - 1));
+  const bool adds =
+      !path.missing.empty() || (!path.exists && parent && parent->kind == document::NodeKind::map);
+  remember(source.edits, {made, is_name || (is_item && !value), adds});
   source.text = std::move(edited.text);
   source.root = std::move(edited.root);
 }

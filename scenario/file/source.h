@@ -37,6 +37,7 @@ struct MadeEdit {
   Edit edit;
   bool moves_paths = false;  ///< the same path may refer to another value afterwards, because a name changed
                              ///< or an item was removed
+  bool adds = false;         ///< a key or an item that was not there: its removal leaves the same text
 };
 
 /// Immutable; shared by all copies of a scenario.

@@ -96,6 +96,7 @@ std::optional<UnlitAzimuths> unlitAzimuths(const Scenario& scenario, const Clock
   std::vector<Beams> beams;
   UnlitAzimuths unlit;
   for (std::size_t e = 0; e < emitters.size(); ++e) {
+    if (!emitters[e].enabled) continue;
     const double width_deg = emitters[e].antenna->beamwidth_az_deg;
     const auto sampling = scanSampling(emitters[e].scan, width_deg, clock);
     if (!sampling || !leavesGaps(*sampling, width_deg)) continue;

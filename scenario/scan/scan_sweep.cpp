@@ -138,6 +138,7 @@ void addLastPasses(const ScanSpec& scan, double begin_s, double end_s, std::vect
 template <class Visit>
 void visitActive(const Emitter& emitter, double begin_s, double duration_s, const Visit& visit) {
   const double end_s = begin_s + duration_s;
+  if (!emitter.enabled) return;
   if (emitter.active_s.empty()) return visit(begin_s, end_s, duration_s);
   const double shortest_s = rounding_s(begin_s, end_s);
   std::vector<TimeInterval> parts;

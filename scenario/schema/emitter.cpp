@@ -138,6 +138,8 @@ const ObjectSpec& emitterSpec() {
               required("name", kName, "on pictures and in volumes"),
               required("platform", kName, "name of its platform"),
               required("kind", choiceOf<EmitterKind>(), "kind"),
+              byDefault("enabled", simple(ValueType::boolean), "true",
+                        "false: switched off; the results are those of an emitter that never transmits"),
               required("frequency_hz", kFrequency, "carrier"),
               byDefault("bandwidth_hz", number("Hz").from(0).to(1e11), Emitter{}.bandwidth_hz,
                         "of the signal; 0: narrower than any receiver"),

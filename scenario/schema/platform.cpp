@@ -7,6 +7,7 @@ namespace {
 
 using document::DefaultValue;
 using document::spec::byDefault;
+using document::spec::listOf;
 using document::spec::number;
 using document::spec::object;
 using document::spec::optional;
@@ -47,13 +48,25 @@ const ObjectSpec& attitudeSpec() {
   return spec;
 }
 
+const ObjectSpec& trackPointSpec() {
+  static const ObjectSpec spec = [] {
+    ObjectSpec row = trackRowSpec();
+    row.name = "track point";
+    return row;
+  }();
+  return spec;
+}
+
 const ObjectSpec& trackSpec() {
   static const ObjectSpec spec{
       "track",
       "",
-      {required("file", kFile,
+      {optional("file", kFile,
                 "CSV with a header line: t_s, latitude_deg, longitude_deg, height_msl_m or height_agl_m and, "
-                "if wanted, heading_deg, pitch_deg, roll_deg; relative to the scenario's folder")}};
+                "if wanted, heading_deg, pitch_deg, roll_deg; relative to the scenario's folder"),
+       optional("points", listOf(object(trackPointSpec()), 2, kMaxItems),
+                "the rows of such a file, in place of it")},
+      {{"file", "points"}}};
   return spec;
 }
 

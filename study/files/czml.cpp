@@ -112,6 +112,7 @@ class Czml : public MapCollection {
     const std::vector<MapEmitter> emitters = emittersOf(study_);
     for (std::size_t e = 0; e < emitters.size(); ++e) {
       const scenario::Emitter& emitter = *emitters[e].emitter;
+      if (!emitter.enabled) continue;
       Json packet{{"id", "emitter/" + std::to_string(e)},
                   {"name", emitter.name},
                   {"description", escapedXml(std::string(scenario::toString(emitter.kind)) + " on " +

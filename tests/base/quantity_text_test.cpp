@@ -57,10 +57,44 @@ TEST(ParseQuantity, TakesANumberWithOrWithoutItsUnit) {
   EXPECT_EQ(parseQuantity("10 Hz", "Hz", 1e6), 10);
   EXPECT_EQ(parseQuantity("-5 kW", "W"), -5000);
   EXPECT_EQ(parseQuantity("2 m", "m"), 2);
-  EXPECT_EQ(parseQuantity("2 km", "m"), std::nullopt);
+  EXPECT_EQ(parseQuantity("2 kg", "m"), std::nullopt);
   EXPECT_EQ(parseQuantity("2 GW", "Hz"), std::nullopt);
   EXPECT_EQ(parseQuantity("much", "Hz"), std::nullopt);
   EXPECT_EQ(parseQuantity("", "Hz"), std::nullopt);
+  EXPECT_EQ(parseQuantity("inf", "m"), std::nullopt);
+}
+
+TEST(ParseQuantity, TakesOtherUnitsOfTheDimension) {
+  const auto expectNear = [](const char* text, const char* unit, double expected) {
+    const auto value = parseQuantity(text, unit);
+    ASSERT_TRUE(value) << text;
+    EXPECT_NEAR(*value, expected, 1e-9 * std::abs(expected)) << text;
+  };
+  expectNear("2 km", "m", 2000);
+  expectNear("1000 ft", "m", 304.8);
+  expectNear("3 NM", "m", 5556);
+  expectNear("10 kt", "m/s", 5.144444444444445);
+  expectNear("36 km/h", "m/s", 10);
+  expectNear("12 µs", "s", 12e-6);
+  expectNear("45°", "deg", 45);
+  expectNear("15 °C", "K", 288.15);
+  expectNear("-3 dBW", "W", 0.5011872336272722);
+  expectNear("30 dBm", "W", 1);
+  expectNear("-120 dBW", "dBm", -90);
+  expectNear("10 dBsm", "m2", 10);
+  expectNear("5 m²", "m2", 5);
+}
+
+TEST(ParseQuantity, ReadsUnitsOfEitherCaseWhereOnlyOneIsPossible) {
+  EXPECT_EQ(parseQuantity("5 kw", "W"), 5000);
+  EXPECT_EQ(parseQuantity("300 mhz", "Hz"), 300e6);
+  EXPECT_EQ(parseQuantity("5 mw", "W"), std::nullopt);
+  EXPECT_EQ(parseQuantity("-3 dbw", "W"), parseQuantity("-3 dBW", "W"));
+}
+
+TEST(UnitSigns, AreReadAsTheUnit) {
+  for (const char* unit : {"deg", "deg/s", "m2", "g/m3", "dBW/m2", "percent", "m"})
+    EXPECT_EQ(parseQuantity("2 " + unitSigns(unit), unit), 2) << unit;
 }
 
 }  // namespace

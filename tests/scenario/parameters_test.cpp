@@ -77,6 +77,39 @@ TEST(Parameters, OmitParametersWithoutChoices) {
   EXPECT_TRUE(find(parametersOf(*scenario, "ground"), "ground.kind"));  // not in the file
 }
 
+/// The names are words: no keys, no unit's suffixes, no abbreviations that only keys have.
+TEST(Parameters, HaveNamesInWords) {
+  for (const char* name : {"jacksboro.yaml", "jamming.yaml", "links.yaml", "sinr.yaml", "clutter.yaml"}) {
+    const auto scenario = shipped(name);
+    std::vector<std::string> paths{"atmosphere", "ground", "output", "region"};
+    for (const Emitter& emitter : scenario->emitters) paths.push_back("emitters." + pathStep(emitter.name));
+    for (const auto& platform : scenario->platforms) paths.push_back("platforms." + pathStep(platform.name));
+    for (const auto& receiver : scenario->receivers) paths.push_back("receivers." + pathStep(receiver.name));
+    for (const auto& target : scenario->targets) paths.push_back("targets." + pathStep(target.name));
+    for (const std::string& path : paths) {
+      forEach(parametersOf(*scenario, path), [&](const Parameter& parameter) {
+        const std::string words = " " + parameter.name + " ";
+        for (const char* wrong : {"_", " agl ", " msl ", " az ", " el ", " pfa ", " prf ", " cfar ", " rcs ",
+                                  " deg ", " msec ", " swerling "}) {
+          EXPECT_EQ(words.find(wrong), std::string::npos) << parameter.path << ": " << parameter.name;
+        }
+        EXPECT_EQ(parameter.titles.size(), parameter.choices.size()) << parameter.path;
+        if (parameter.key == "platform") return;
+        for (const std::string& title : parameter.titles)
+          EXPECT_EQ(title.find('_'), std::string::npos) << title;
+      });
+    }
+  }
+}
+
+TEST(Parameters, OfferTheNamesOfOtherItems) {
+  const auto scenario = shipped("sinr.yaml");
+  const ParameterGroup output = parametersOf(*scenario, "output");
+  EXPECT_THAT(find(output, "output.wanted_emitter")->choices, Contains(scenario->emitters.front().name));
+  EXPECT_THAT(find(output, "output.receiver")->choices, Contains(scenario->receivers.front().name));
+  EXPECT_THAT(find(output, "output.quantities")->choices, Contains("sinr_db"));
+}
+
 TEST(Parameters, EveryValueSetToItselfKeepsTheScenarioValid) {
   for (const char* name : {"jacksboro.yaml", "jamming.yaml", "quick.yaml"}) {
     const auto scenario = shipped(name);

@@ -19,7 +19,7 @@ TEST(SessionEdits, AreMadeRefusedUndoneAndRedone) {
   EXPECT_FALSE(sample->rejection());
   sample.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"-5"})");
   EXPECT_EQ(sample->scenario()->emitters[0].power_w, 5);
-  EXPECT_THAT(sample.error(), HasSubstr("'power_w' is -5"));
+  EXPECT_THAT(sample.error(), HasSubstr("power is -5"));
   ASSERT_TRUE(sample->rejection());
   EXPECT_EQ(sample->rejection()->edits.front().path, "emitters.radar.power_w");
   sample.perform(R"({"do":"undo"})");
@@ -53,6 +53,54 @@ TEST(SessionEdits, ANewKeyOfASectionThatIsNotGivenIsAdded) {
             propagation::DiffractionMethod::deygout);
 }
 
+TEST(SessionEdits, ItemsAreSwitchedAddedCopiedAndRemovedWithUndo) {
+  SessionSample sample("quick.yaml");
+  const auto& emitters = [&]() -> const std::vector<scenario::Emitter>& {
+    return sample->scenario()->emitters;
+  };
+  EXPECT_EQ(sample.perform(R"({"do":"enable","emitter":"radar"})"), "");
+  EXPECT_FALSE(emitters()[0].enabled);
+  sample.perform(R"({"do":"enable","emitter":"radar"})");
+  EXPECT_TRUE(emitters()[0].enabled);
+  EXPECT_TRUE(sample->scenario()->edits().empty());
+  EXPECT_EQ(
+      sample.perform(R"({"do":"add","what":"jammer","name":"noise","latitude_deg":52,"longitude_deg":5.01})"),
+      "");
+  ASSERT_EQ(emitters().size(), 3U);
+  EXPECT_EQ(sample->scenario()->platforms.size(), 3U);
+  EXPECT_EQ(sample.perform(R"({"do":"duplicate","path":"emitters.noise"})"), "");
+  EXPECT_EQ(emitters().back().name, "noise 2");
+  EXPECT_EQ(sample.perform(R"({"do":"remove","path":"emitters.noise"})"), "");
+  EXPECT_EQ(emitters().size(), 3U);
+  EXPECT_THAT(sample.perform(R"({"do":"remove","path":"platforms.noise"})"), HasSubstr("carries 'noise 2'"));
+  sample.perform(R"({"do":"undo"})");
+  sample.perform(R"({"do":"undo"})");
+  sample.perform(R"({"do":"undo"})");
+  EXPECT_EQ(emitters().size(), 2U);
+  sample.perform(R"({"do":"track","platform":"mast","points":["52,5","52.01,5.01,70"],"speed_m_s":100})");
+  EXPECT_EQ(sample->scenario()->platforms[1].track.size(), 2U);
+  EXPECT_THAT(sample.perform(R"({"do":"track","platform":"mast","points":["52,5","52"]})"),
+              HasSubstr("point '52': expected LAT,LON"));
+}
+
+TEST(SessionEdits, RevertTakesBackOneOrAllInOneStep) {
+  SessionSample sample("quick.yaml");
+  sample.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"5"})");
+  sample.perform(R"({"do":"set","path":"emitters.radar.losses_db","value":"1"})");
+  sample.perform(R"({"do":"set","path":"emitters.transmitter.power_w","value":"6"})");
+  EXPECT_EQ(sample.perform(R"({"do":"revert","path":"emitters.radar.power_w"})"), "");
+  EXPECT_EQ(sample->scenario()->emitters[0].power_w, 10000);
+  EXPECT_EQ(sample->scenario()->emitters[0].losses_db, 1);
+  sample.perform(R"({"do":"undo"})");
+  EXPECT_EQ(sample->scenario()->edits().size(), 3U);
+  sample.perform(R"({"do":"revert","path":"emitters.radar"})");
+  EXPECT_EQ(sample->scenario()->edits().size(), 1U);
+  sample.perform(R"({"do":"revert"})");
+  EXPECT_TRUE(sample->scenario()->edits().empty());
+  sample.perform(R"({"do":"undo"})");
+  EXPECT_EQ(sample->scenario()->emitters[1].power_w, 6);
+}
+
 TEST(SessionEdits, MovePutsAPlatformElsewhereInOneStep) {
   SessionSample sample("quick.yaml");
   sample.perform(R"({"do":"move","platform":"mast","latitude_deg":52.01,"longitude_deg":5.02})");
@@ -64,7 +112,7 @@ TEST(SessionEdits, MovePutsAPlatformElsewhereInOneStep) {
   sample.perform(R"({"do":"move","platform":"tower","latitude_deg":52,"longitude_deg":5})");
   EXPECT_EQ(sample.error(), "there is no platform 'tower'; the scenario has 'radar site', 'mast'");
   sample.perform(R"({"do":"move","platform":"mast","latitude_deg":95,"longitude_deg":5})");
-  EXPECT_THAT(sample.error(), HasSubstr("'latitude_deg' is 95"));
+  EXPECT_THAT(sample.error(), HasSubstr("latitude is 95"));
   EXPECT_EQ(positionOf(*sample, 1).latitude_deg, 52.05);
 }
 

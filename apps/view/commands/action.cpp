@@ -38,6 +38,7 @@ const std::vector<Action>& actions() {
         {"Edit", "Undo", "Ctrl+Z", R"({"do":"undo"})", "without the last --set, another --transfer FILE"},
         {"Edit", "Redo", "Ctrl+Shift+Z Ctrl+Y", R"({"do":"redo"})",
          "with the last --set, another --transfer FILE"},
+        {"Edit", "Undo all changes of the scenario", "Ctrl+Backspace", R"({"do":"revert"})", "without --set"},
 
         {"Time", "Play or pause", "Space", R"({"do":"play"})", "emscape render INPUT --realtime"},
         {"Time", "Pause", "K", R"({"do":"pause"})", "emscape render INPUT --times T"},
@@ -103,7 +104,7 @@ const std::vector<Action>& actions() {
         {"Panels", "Probe", "Shift+P", R"({"do":"panel","name":"probe"})",
          "emscape profile INPUT --emitter NAME --to LAT,LON,HEIGHT"},
         {"Panels", "Timeline", "Shift+T", R"({"do":"panel","name":"timeline"})", "--times BEGIN:END:STEP"},
-        {"Panels", "Hide or show all", "Tab", R"({"do":"panel","name":"all"})",
+        {"Panels", "Hide or show all", "F10", R"({"do":"panel","name":"all"})",
          "emscape render draws no panels"},
         {"Panels", "Larger texts", "Ctrl++", R"({"do":"scale","change":1})", "emscape view --scale F"},
         {"Panels", "Smaller texts", "Ctrl+-", R"({"do":"scale","change":-1})", "emscape view --scale F"},
@@ -178,7 +179,10 @@ const std::vector<Gesture>& gestures() {
       {"wheel", "towards the cursor and back"},
       {"right drag", "look around; with W A S D, Q, E fly, with Shift faster"},
       {"1-9, Ctrl + 1-9", "show, store a bookmark of camera and time"},
-      {"Ctrl + click on a slider", "type the value"},
+      {"double click, Ctrl + click on a value", "type it, also in other units: 5 kW, 2 km, -3 dBW"},
+      {"drag of a value, with Shift", "change it, in fine steps"},
+      {"Tab, Shift + Tab, Up, Down", "next and previous value; Enter types it, Left and Right change it"},
+      {"Esc on a value, click in the picture", "the keys are for the picture again"},
   };
   return all;
 }

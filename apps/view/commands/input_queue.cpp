@@ -16,30 +16,16 @@ struct NamedKey {
   int code;
 };
 /// If two rows have the same name, scripts press the first one.
-constexpr NamedKey kKeys[] = {{"Space", GLFW_KEY_SPACE},
-                              {"Right", GLFW_KEY_RIGHT},
-                              {"Left", GLFW_KEY_LEFT},
-                              {"Up", GLFW_KEY_UP},
-                              {"Down", GLFW_KEY_DOWN},
-                              {"Home", GLFW_KEY_HOME},
-                              {"End", GLFW_KEY_END},
-                              {"Tab", GLFW_KEY_TAB},
-                              {"Esc", GLFW_KEY_ESCAPE},
-                              {"Enter", GLFW_KEY_ENTER},
-                              {"F1", GLFW_KEY_F1},
-                              {"F5", GLFW_KEY_F5},
-                              {"F12", GLFW_KEY_F12},
-                              {"+", GLFW_KEY_EQUAL},
-                              {"+", GLFW_KEY_KP_ADD},
-                              {"-", GLFW_KEY_MINUS},
-                              {"-", GLFW_KEY_KP_SUBTRACT},
-                              {".", GLFW_KEY_PERIOD},
-                              {",", GLFW_KEY_COMMA},
-                              {"[", GLFW_KEY_LEFT_BRACKET},
-                              {"]", GLFW_KEY_RIGHT_BRACKET},
-                              {"?", GLFW_KEY_SLASH},
-                              {"Backspace", GLFW_KEY_BACKSPACE},
-                              {"Delete", GLFW_KEY_DELETE}};
+constexpr NamedKey kKeys[] = {
+    {"Space", GLFW_KEY_SPACE},     {"Right", GLFW_KEY_RIGHT}, {"Left", GLFW_KEY_LEFT},
+    {"Up", GLFW_KEY_UP},           {"Down", GLFW_KEY_DOWN},   {"Home", GLFW_KEY_HOME},
+    {"End", GLFW_KEY_END},         {"Tab", GLFW_KEY_TAB},     {"Esc", GLFW_KEY_ESCAPE},
+    {"Enter", GLFW_KEY_ENTER},     {"F1", GLFW_KEY_F1},       {"F5", GLFW_KEY_F5},
+    {"F10", GLFW_KEY_F10},         {"F12", GLFW_KEY_F12},     {"+", GLFW_KEY_EQUAL},
+    {"+", GLFW_KEY_KP_ADD},        {"-", GLFW_KEY_MINUS},     {"-", GLFW_KEY_KP_SUBTRACT},
+    {".", GLFW_KEY_PERIOD},        {",", GLFW_KEY_COMMA},     {"[", GLFW_KEY_LEFT_BRACKET},
+    {"]", GLFW_KEY_RIGHT_BRACKET}, {"?", GLFW_KEY_SLASH},     {"Backspace", GLFW_KEY_BACKSPACE},
+    {"Delete", GLFW_KEY_DELETE}};
 
 bool isCharacter(int code, char first, char last) {
   return code >= first && code <= last;

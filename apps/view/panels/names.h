@@ -3,6 +3,8 @@
 #pragma once
 
 #include <imgui.h>
+// imgui.h first
+#include <imgui_internal.h>
 
 #include <functional>
 #include <string>
@@ -14,13 +16,20 @@ inline void pushNameId(const std::string& name) {
   ImGui::PushID(static_cast<int>(std::hash<std::string>()(name)));
 }
 
-/// Text in a control of one line.
+/// Text of one line that ends with an ellipsis where it is too long.
 /// @param at     upper left corner of the text
-/// @param right  end of the control; the text is clipped there
-inline void drawName(ImDrawList& list, const std::string& name, const ImVec2& at, float right) {
-  list.PushClipRect(at, {right, at.y + ImGui::GetTextLineHeight()}, true);
-  list.AddText(at, ImGui::GetColorU32(ImGuiCol_Text), name.c_str());
-  list.PopClipRect();
+/// @param right  end of the control
+/// @return true if it is too long
+inline bool drawName(ImDrawList& list, const std::string& name, const ImVec2& at, float right) {
+  const ImVec2 size = ImGui::CalcTextSize(name.c_str());
+  ImGui::RenderTextEllipsis(&list, at, {right, at.y + size.y}, right, right, name.c_str(),
+                            name.c_str() + name.size(), &size);
+  return at.x + size.x > right;
+}
+
+/// Shows the whole of a text that is too long while the mouse is over the item drawn last.
+inline void tooltipOfLongName(const std::string& name, bool is_long) {
+  if (is_long && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", name.c_str());
 }
 
 /// An entry of a list. The identifiers of the scope must differ by entry.
@@ -31,14 +40,21 @@ inline bool selectableName(const std::string& name, bool is_selected, ImGuiSelec
   return is_chosen;
 }
 
-/// A collapsible heading as wide as the panel. @return true if it is open
-inline bool headingOfName(const char* id, const std::string& name) {
+/// A collapsible heading as wide as the panel.
+/// @param reserved  width at its end that the name leaves free
+/// @return true if it is open
+inline bool headingOfName(const char* id, const std::string& name, ImGuiTreeNodeFlags flags = 0,
+                          float reserved = 0) {
   const ImVec2 at = ImGui::GetCursorScreenPos(), padding = ImGui::GetStyle().FramePadding;
-  const bool is_open = ImGui::TreeNodeEx(
-      id, ImGuiTreeNodeFlags_Framed | ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen,
-      "%s", "");
-  drawName(*ImGui::GetWindowDrawList(), name, {at.x + ImGui::GetFontSize() + 3 * padding.x, at.y + padding.y},
-           ImGui::GetItemRectMax().x);
+  const bool is_open =
+      ImGui::TreeNodeEx(id,
+                        flags | ImGuiTreeNodeFlags_Framed | ImGuiTreeNodeFlags_SpanAvailWidth |
+                            ImGuiTreeNodeFlags_NoTreePushOnOpen,
+                        "%s", "");
+  const bool is_long = drawName(*ImGui::GetWindowDrawList(), name,
+                                {at.x + ImGui::GetFontSize() + 3 * padding.x, at.y + padding.y},
+                                ImGui::GetItemRectMax().x - padding.x - reserved);
+  tooltipOfLongName(name, is_long);
   return is_open;
 }
 
@@ -48,7 +64,8 @@ inline bool beginComboOfName(const char* id, const std::string& shown) {
   const float right = at.x + ImGui::CalcItemWidth() - ImGui::GetFrameHeight();
   ImDrawList& list = *ImGui::GetWindowDrawList();  // of the control, not of the unfolded list
   const bool is_open = ImGui::BeginCombo(id, "");
-  drawName(list, shown, {at.x + padding.x, at.y + padding.y}, right);
+  const bool is_long = drawName(list, shown, {at.x + padding.x, at.y + padding.y}, right);
+  if (!is_open) tooltipOfLongName(shown, is_long);
   return is_open;
 }
 

@@ -124,6 +124,10 @@ void perform(PanelContext& context, const char* command) {
   context.session.perform(parseCommand(std::string(command)));
 }
 
+bool isPopupOpen() {
+  return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+}
+
 bool isKeyPressed(ImGuiKey key, bool repeats) {
   return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), repeats);
 }
@@ -242,6 +246,8 @@ void drawNotice(PanelContext& context, const Area& picture) {
     text = "opening …";
     color = mutedColor(session.theme());
   }
+  const std::optional<Rejection>& rejection = session.rejection();
+  if (context.shows_rejection && rejection && text == rejection->message) return;
   if (text.empty()) return;
   const float wrap = std::max(120 * s, std::min(picture.width - 60 * s, 760 * s));
   const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);

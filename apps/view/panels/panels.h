@@ -30,6 +30,7 @@ struct PanelContext {
   Session& session;
   WindowControl& window;
   float scale = 1;
+  bool shows_rejection = false;  ///< beside the value that was refused
 };
 
 /// Remaining width of the line after the last item (pixels).
@@ -39,6 +40,8 @@ void sameLineIfRoom(float width, float spacing = 0);
 
 /// Runs the command of an action, like its key.
 void perform(PanelContext& context, const char* command);
+/// True while a menu or a list is unfolded.
+bool isPopupOpen();
 /// True in the frame in which the key was pressed. @param repeats  also while it is held, at intervals
 bool isKeyPressed(ImGuiKey key, bool repeats = false);
 /// The same for Enter of the main block or the keypad.
@@ -49,6 +52,10 @@ bool numberField(const char* id, double& value, const char* format);
 
 void drawMenuBar(PanelContext& context);
 void drawScenarioPanel(PanelContext& context);
+/// True if the panel of the scenario has the keyboard: its keys are not for the picture.
+bool scenarioPanelHasKeyboard();
+/// True if Tab moves the focus between the rows of that panel.
+bool scenarioPanelTakesTab(const Session& session);
 /// Colours and opacities: transfer_panel.cpp.
 void drawColorsPanel(PanelContext& context);
 void drawPlanesPanel(PanelContext& context);

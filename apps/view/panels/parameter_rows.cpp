@@ -1,15 +1,14 @@
 #include "apps/view/panels/parameter_rows.h"
 
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
-#include <optional>
 #include <utility>
 
 #include "apps/view/panels/names.h"
+#include "apps/view/panels/slider_field.h"
 #include "apps/view/panels/theme.h"
 #include "base/files/json_writing.h"
 #include "base/text/quantity_text.h"
@@ -20,76 +19,49 @@ namespace {
 
 using scenario::Parameter;
 using scenario::ParameterGroup;
+using Type = Parameter::Type;
 
-/// The part of the allowed range that a slider spans; other values are typed after Ctrl + click.
-struct SliderRange {
-  const char* key;
-  double min, max;
-  bool is_logarithmic = false;
-};
-constexpr std::array<SliderRange, 33> kSliderRanges{{
-    {"power_w", 1e-2, 1e7, true},
-    {"losses_db", 0, 30},
-    {"gain_dbi", -10, 60},
-    {"beamwidth_az_deg", 0.1, 360, true},
-    {"beamwidth_el_deg", 0.1, 180, true},
-    {"side_lobe_db", -80, 0},
-    {"columns", 1, 256},
-    {"rows", 1, 256},
-    {"azimuth_deg", -180, 360},
-    {"elevation_deg", -10, 60},
-    {"heading_deg", 0, 360},
-    {"rate_rpm", -60, 60},
-    {"rate_deg_s", 0.1, 360, true},
-    {"bars", 1, 16},
-    {"noise_figure_db", 0, 20},
-    {"antenna_temperature_k", 0, 1000},
-    {"processing_gain_db", -20, 60},
-    {"cross_polar_isolation_db", 0, 60},
-    {"pulses", 1, 256},
-    {"pfa", 1e-12, 0.1, true},
-    {"target_rcs_m2", 1e-3, 1e3, true},
-    {"height_agl_m", 0, 3000, true},
-    {"height_msl_m", 0, 12000},
-    {"height_ellipsoid_m", 0, 12000},
-    {"k_factor", 0.5, 4},
-    {"pressure_hpa", 600, 1100},
-    {"temperature_k", 230, 320},
-    {"vapour_g_m3", 0, 30},
-    {"rain_mm_h", 0, 100},
-    {"irregularity_m", 0, 500},
-    {"roughness_m", 0, 10},
-    {"floor", -200, 0},
-    {"count_threshold_dbwm2", -150, 0},
-}};
-/// Significant digits of typed numbers, and of numbers set by a slider.
-constexpr int kTypedDigits = 10, kDraggedDigits = 5;
-/// Values with wider ranges, and coordinates, are typed.
-constexpr double kMaxSliderWidth = 1000;
+/// Significant digits of typed numbers, and of those on screen.
+constexpr int kTypedDigits = 10, kShownDigits = 6;
+constexpr float kNameWidth = 152;
+constexpr const char* kByDefault = "by default";
 
-std::optional<SliderRange> sliderRangeOf(const Parameter& parameter) {
-  for (const SliderRange& range : kSliderRanges) {
-    if (parameter.key == range.key) return range;
-  }
-  const bool is_place = parameter.key == "latitude_deg" || parameter.key == "longitude_deg";
-  if (is_place || parameter.unit == "Hz" || !(parameter.maximum - parameter.minimum <= kMaxSliderWidth))
-    return std::nullopt;
-  return SliderRange{"", parameter.minimum, parameter.maximum};
+bool isNumber(const Parameter& parameter) {
+  return parameter.type == Type::number || parameter.type == Type::integer;
 }
 
-std::string numberText(double value, int digits = kTypedDigits) {
-  return fmt::format("{:.{}g}", value, digits);
+std::string numberText(double value) {
+  return fmt::format("{:.{}g}", value, kTypedDigits);
+}
+
+std::string rangeOf(const Parameter& parameter) {
+  return rangeText(parameter.minimum, parameter.maximum, unitSigns(parameter.unit));
 }
 
 std::string tooltipOf(const Parameter& parameter) {
-  std::string text = parameter.description;
-  const bool is_number =
-      parameter.type == Parameter::Type::number || parameter.type == Parameter::Type::integer;
-  if (is_number && (std::isfinite(parameter.minimum) || std::isfinite(parameter.maximum))) {
-    text += (text.empty() ? "" : "\n") + rangeText(parameter.minimum, parameter.maximum, parameter.unit);
+  std::string text = parameter.name + (parameter.description.empty() ? "" : ": " + parameter.description);
+  if (isNumber(parameter)) {
+    if (std::isfinite(parameter.minimum) || std::isfinite(parameter.maximum))
+      text += "\n" + rangeOf(parameter);
+    text +=
+        "\nDouble click, Ctrl + click or Enter: type, also in other units. Drag: change; with Shift: fine.";
   }
-  if (!parameter.is_given) text += text.empty() ? "default" : "\ndefault";
-  return text + fmt::format("{}--set '{}=…'", text.empty() ? "" : "\n", parameter.path);
+  if (!parameter.is_given) text += "\ndefault";
+  return text + fmt::format("\n--set '{}=…'", parameter.path);
+}
+
+/// The value in its unit, as it is shown and typed.
+std::string shownText(const Parameter& parameter, int digits) {
+  if (!isNumber(parameter) || parameter.value.empty()) return parameter.value;
+  char* rest = nullptr;
+  const double value = std::strtod(parameter.value.c_str(), &rest);
+  if (*rest != '\0') return parameter.value;
+  std::string text = quantityText(value, parameter.unit, digits);
+  const std::string signs = unitSigns(parameter.unit);
+  if (signs == parameter.unit) return text;
+  const bool is_angle = signs == "°";  // written without a blank
+  text.replace(text.size() - parameter.unit.size() - (is_angle ? 1 : 0), std::string::npos, signs);
+  return text;
 }
 
 bool isGiven(const ParameterGroup& group) {
@@ -97,11 +69,31 @@ bool isGiven(const ParameterGroup& group) {
                      [](const Parameter& parameter) { return parameter.is_given; });
 }
 
+std::string titleOf(const Parameter& parameter, const std::string& choice) {
+  const auto found = std::find(parameter.choices.begin(), parameter.choices.end(), choice);
+  return found == parameter.choices.end()
+             ? choice
+             : parameter.titles[static_cast<std::size_t>(found - parameter.choices.begin())];
+}
+
+/// The items of a list of words: "[a, b]".
+std::vector<std::string> itemsOf(const std::string& list) {
+  std::vector<std::string> items;
+  std::string word;
+  for (const char c : list) {
+    const bool is_part = c != '[' && c != ']' && c != ',' && c != ' ' && c != '"';
+    if (is_part) word += c;
+    if (!is_part && !word.empty()) items.push_back(std::exchange(word, {}));
+  }
+  if (!word.empty()) items.push_back(word);
+  return items;
+}
+
 }  // namespace
 
 bool ParameterRows::begin(const char* id) {
   if (!ImGui::BeginTable(id, 2, ImGuiTableFlags_SizingStretchProp)) return false;
-  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, 138 * context_.scale);
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed, kNameWidth * context_.scale);
   ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch);
   return true;
 }
@@ -113,11 +105,16 @@ void ParameterRows::end() {
 void ParameterRows::label(const std::string& name, const std::string& tooltip, bool is_edited) {
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
-  ImGui::AlignTextToFramePadding();
+  const ImVec2 at = ImGui::GetCursorScreenPos(), padding = ImGui::GetStyle().FramePadding;
+  const float width = ImGui::GetContentRegionAvail().x;
   const ImVec4 color =
       is_edited ? accentColor(context_.session.theme()) : ImGui::GetStyleColorVec4(ImGuiCol_Text);
-  ImGui::TextColored(color, "%s%s", name.c_str(), is_edited ? " •" : "");
-  if (ImGui::IsItemHovered()) {
+  ImGui::InvisibleButton("label", {std::max(1.0F, width), ImGui::GetFrameHeight()});
+  ImGui::PushStyleColor(ImGuiCol_Text, color);
+  drawName(*ImGui::GetWindowDrawList(), name + (is_edited ? " •" : ""), {at.x, at.y + padding.y},
+           at.x + width);
+  ImGui::PopStyleColor();
+  if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) {
     ImGui::BeginTooltip();
     ImGui::PushTextWrapPos(360 * context_.scale);
     ImGui::TextUnformatted(tooltip.c_str());
@@ -133,44 +130,76 @@ void ParameterRows::draw(const ParameterGroup& group) {
 }
 
 void ParameterRows::drawGroup(const ParameterGroup& group) {
-  for (const Parameter& parameter : group.parameters) drawRow(parameter);
+  const auto isBasic = [&](const Parameter& parameter) {
+    return !parameter.is_expert || parameter.is_given || edited_.count(parameter.path) > 0;
+  };
+  bool has_more = false;
+  for (const Parameter& parameter : group.parameters) {
+    has_more = has_more || !isBasic(parameter);
+    if (isBasic(parameter)) drawRow(parameter);
+  }
+  if (has_more && drawSubheading(group.path + ".more", "more", false)) {
+    for (const Parameter& parameter : group.parameters) {
+      if (!isBasic(parameter)) drawRow(parameter);
+    }
+  }
   for (const ParameterGroup& inner : group.groups) {
-    ImGui::TableNextRow();
-    ImGui::TableNextColumn();
-    std::string name = inner.name;
-    std::replace(name.begin(), name.end(), '_', ' ');
-    ImGui::PushStyleColor(ImGuiCol_Text, accentColor(context_.session.theme()));
-    const bool open = ImGui::TreeNodeEx(
-        name.c_str(), ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen |
-                          (isGiven(inner) ? ImGuiTreeNodeFlags_DefaultOpen : 0));
-    ImGui::PopStyleColor();
-    if (!open) continue;
+    if (!drawSubheading(inner.path, inner.title, isGiven(inner))) continue;
     ImGui::PushID(inner.name.c_str());
     drawGroup(inner);
     ImGui::PopID();
   }
 }
 
+bool ParameterRows::drawSubheading(const std::string& id, const std::string& name, bool is_open_first) {
+  ImGui::TableNextRow();
+  ImGui::TableNextColumn();
+  focus_.add(id);
+  int* const open = ImGui::GetStateStorage()->GetIntRef(ImGui::GetID(id.c_str()), is_open_first ? 1 : 0);
+  if (focus_.isEntered(id) || focus_.isSpaced(id)) *open = *open == 0 ? 1 : 0;
+  if (focus_.steps(id) != 0) *open = focus_.steps(id) > 0 ? 1 : 0;
+  ImGui::SetNextItemOpen(*open != 0);
+  ImGui::PushStyleColor(ImGuiCol_Text, accentColor(context_.session.theme()));
+  const bool is_open = ImGui::TreeNodeEx(
+      ("##" + id).c_str(), ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen);
+  ImGui::PopStyleColor();
+  ImGui::SameLine();
+  ImGui::TextColored(accentColor(context_.session.theme()), "%s", name.c_str());
+  *open = is_open ? 1 : 0;
+  showFocus(id);
+  return is_open;
+}
+
 void ParameterRows::drawRow(const Parameter& parameter) {
   ImGui::PushID(parameter.key.c_str());
+  focus_.add(parameter.path);
+  takeRejection(parameter.path);
   label(parameter.name, tooltipOf(parameter), edited_.count(parameter.path) > 0);
+  if (ImGui::IsItemClicked()) focus_.take(parameter.path);
   drawLabelMenu(parameter);
   ImGui::TableNextColumn();
   ImGui::SetNextItemWidth(-1);
+  const bool is_refused = state_.refused.path == parameter.path;
+  if (is_refused) ImGui::PushStyleColor(ImGuiCol_Border, errorColor(context_.session.theme()));
   switch (parameter.type) {
-    case Parameter::Type::number:
-    case Parameter::Type::integer:
-      drawNumber(parameter);
+    case Type::number:
+    case Type::integer:
+    case Type::text:
+      drawValue(parameter);
       break;
-    case Parameter::Type::choice:
+    case Type::boolean:
+      drawBoolean(parameter);
+      break;
+    case Type::choice:
       drawChoice(parameter);
       break;
-    case Parameter::Type::text:
-    case Parameter::Type::list:
-      drawText(parameter);
+    case Type::list:
+      parameter.choices.empty() ? drawValue(parameter) : drawItems(parameter);
       break;
   }
-  drawRejection(parameter.path);
+  if (is_refused) ImGui::PopStyleColor();
+  showFocus(parameter.path);
+  drawRefusal(parameter.path);
   ImGui::PopID();
 }
 
@@ -179,98 +208,216 @@ void ParameterRows::drawLabelMenu(const Parameter& parameter) const {
   if (ImGui::MenuItem("Default", nullptr, false, !parameter.required && parameter.is_given)) {
     set(parameter.path, "null");
   }
+  if (ImGui::MenuItem("Take back the change", nullptr, false, edited_.count(parameter.path) > 0)) {
+    context_.session.perform({"revert", {{"path", parameter.path}}});
+  }
   if (ImGui::MenuItem("Copy as --set")) {
     ImGui::SetClipboardText(shellWord(parameter.path + "=" + parameter.value).c_str());
   }
   ImGui::EndPopup();
 }
 
-void ParameterRows::drawNumber(const Parameter& parameter) {
-  const std::optional<SliderRange> range = sliderRangeOf(parameter);
-  if (!range || parameter.value.empty()) return drawTypedNumber(parameter);
-  const double given = std::strtod(parameter.value.c_str(), nullptr);
-  // Values are shown, and typed after Ctrl + click, in the unit with its prefix.
-  const PrefixedUnit unit = prefixedUnit(given, parameter.unit);
-  double value = given / unit.factor;
-  const double low = std::min(range->min, given) / unit.factor,
-               high = std::max(range->max, given) / unit.factor;
-  const bool is_integer = parameter.type == Parameter::Type::integer;
-  // Dear ImGui derives the smallest value of a logarithmic slider from the precision.
-  const char* number = is_integer ? "%.0f" : range->is_logarithmic ? "%.12g" : "%.6g";
-  const std::string format = number + (unit.unit.empty() ? "" : " " + unit.unit);
-  const bool is_changed =
-      ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low, &high, format.c_str(),
-                          range->is_logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-  const bool is_typed = ImGui::GetIO().WantTextInput && !ImGui::IsItemActivated();
-  if (is_changed && !is_typed) {
-    context_.session.dragValue(parameter.path, numberText(value * unit.factor, kDraggedDigits));
+void ParameterRows::showFocus(const std::string& path) {
+  if (ImGui::IsItemClicked() && !focus_.isTyping(path)) focus_.take(path);
+  if (!focus_.has(path)) return;
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  ImGui::GetWindowDrawList()->AddRect(low, high,
+                                      ImGui::ColorConvertFloat4ToU32(accentColor(context_.session.theme())),
+                                      ImGui::GetStyle().FrameRounding, 0, 1.5F * context_.scale);
+  if (focus_.arrives(path)) ImGui::ScrollToItem(ImGuiScrollFlags_KeepVisibleEdgeY);
+}
+
+void ParameterRows::drawValue(const Parameter& parameter) {
+  const std::string& path = parameter.path;
+  const RefusedText& refused = state_.refused;
+  const bool is_refused = refused.path == path && !refused.text.empty();
+  const std::string typed_text = is_refused ? refused.text : shownText(parameter, kTypedDigits);
+  if (focus_.isTyping(path)) {
+    const std::optional<std::string> text = focus_.drawField();
+    if (text) enter(parameter, *text);
+    const bool is_taken_back = !text && !focus_.isTyping(path) && isKeyPressed(ImGuiKey_Escape);
+    if (is_taken_back && refused.path == path) state_.refused = {};
+    return;
   }
-  if (ImGui::IsItemDeactivated()) context_.session.endDrag();
-  // A typed number is taken when it is complete: its first digits alone may change the unit.
-  const auto typed = takeTyped(parameter.path, is_typed, numberText(value * unit.factor));
-  if (typed && *typed != numberText(given)) set(parameter.path, *typed);
+  std::optional<ValueSlider> slider;
+  double value = 0;
+  if (isNumber(parameter) && !parameter.value.empty() && !is_refused) {
+    char* rest = nullptr;
+    value = std::strtod(parameter.value.c_str(), &rest);
+    if (*rest == '\0') slider = sliderOf(parameter, value);
+  }
+  const std::string shown = is_refused ? refused.text : shownText(parameter, kShownDigits);
+  ValueFrame frame{shown.empty() ? kByDefault : shown, ImGui::GetStyleColorVec4(ImGuiCol_Text), {}};
+  if (is_refused) frame.ink = errorColor(context_.session.theme());
+  if (!is_refused && !parameter.is_given) frame.ink = mutedColor(context_.session.theme());
+  if (slider) frame.position = slider->positionOf(value);
+  const bool is_long = drawValueFrame("##value", frame, ImGui::GetContentRegionAvail().x, context_.scale);
+  tooltipOfLongName(shown, is_long && !ImGui::IsItemActive());
+  const bool types = wantsTyping() || (ImGui::IsItemClicked() && !slider) || focus_.isEntered(path);
+  const std::string characters = focus_.typed(path);
+  if (types || !characters.empty()) {
+    if (std::exchange(state_.drag.is_moved, false)) context_.session.endDrag();
+    state_.drag.path.clear();
+    focus_.type(path, characters.empty() ? typed_text : characters, characters.empty());
+  } else if (slider) {
+    handleSlider(parameter, *slider, value);
+  }
+}
+
+void ParameterRows::handleSlider(const Parameter& parameter, const ValueSlider& slider, double value) {
+  const double pixel = 1 / std::max(1.0, static_cast<double>(ImGui::GetItemRectSize().x));
+  auto& drag_state = state_.drag;
+  if (const int steps = focus_.steps(parameter.path)) {
+    const double step = slider.stepAt(value, pixel);
+    const double next = (std::round(value / step) + steps) * step;
+    set(parameter.path, numberText(std::clamp(next, parameter.minimum, parameter.maximum)));
+  }
+  if (ImGui::IsItemActivated())
+    drag_state = {parameter.path, numberText(value), slider.positionOf(value), false};
+  if (drag_state.path != parameter.path) return;
+  if (dragPosition(drag_state.position, drag_state.is_moved, context_.scale)) {
+    const double fine = ImGui::GetIO().KeyShift ? 0.1 : 1;
+    drag(parameter, numberText(slider.steppedValueAt(drag_state.position, fine * pixel)));
+  }
+  if (drag_state.is_moved && isKeyPressed(ImGuiKey_Escape)) {
+    context_.session.cancelDrag();
+    drag_state.path.clear();
+    ImGui::ClearActiveID();
+  } else if (ImGui::IsItemDeactivated()) {
+    if (drag_state.is_moved) context_.session.endDrag();
+    drag_state.path.clear();
+  }
+}
+
+/// A value that is held still makes one edit.
+void ParameterRows::drag(const Parameter& parameter, const std::string& value) {
+  if (value == std::exchange(state_.drag.sent, value)) return;
+  context_.session.dragValue(parameter.path, value);
+}
+
+/// A number without a unit is in the unit that was shown.
+void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
+  const std::string& path = parameter.path;
+  state_.refused = {};
+  if (text.empty()) {
+    if (parameter.is_given) set(path, "null");
+    return;
+  }
+  if (!isNumber(parameter)) {
+    if (text == parameter.value) return;
+    state_.sent_path = path;
+    state_.sent_text = text;
+    return set(path, parameter.type == Type::text ? dumpJson(Json(text)) : text);
+  }
+  const double value = std::strtod(parameter.value.c_str(), nullptr);
+  const double factor = prefixedUnit(value, parameter.unit, kTypedDigits).factor;
+  const std::optional<double> number = parseQuantity(text, parameter.unit, factor);
+  const auto refuse = [&](const std::string& why) { state_.refused = {path, text, why}; };
+  const bool is_word = !number && text.find_first_of("0123456789") == std::string::npos;
+  if (number && !(*number >= parameter.minimum && *number <= parameter.maximum)) {
+    return refuse(fmt::format("{}: {} is not allowed; {}", parameter.name, text, rangeOf(parameter)));
+  }
+  if (number && parameter.type == Type::integer && *number != std::round(*number)) {
+    return refuse(
+        fmt::format("{}: a whole number is needed; allowed: {}", parameter.name, rangeOf(parameter)));
+  }
+  if (!number && !(is_word && !parameter.choices.empty())) {
+    const std::string unit = parameter.unit.empty() ? "" : fmt::format(" in {}", unitSigns(parameter.unit));
+    return refuse(fmt::format("{}: '{}' is not a number{}; allowed: {}", parameter.name, text, unit,
+                              rangeOf(parameter)));
+  }
+  const std::string next = number ? numberText(*number) : text;
+  if (next == numberText(value) && parameter.is_given) return;
+  state_.sent_path = path;
+  state_.sent_text = text;
+  set(path, next);
+}
+
+void ParameterRows::drawBoolean(const Parameter& parameter) {
+  bool on = parameter.value == "true";
+  const bool is_switched = ImGui::Checkbox("##value", &on);
+  if (focus_.isEntered(parameter.path) || focus_.isSpaced(parameter.path)) on = !on;
+  if (!is_switched && on == (parameter.value == "true")) return;
+  const std::string next = on ? "true" : "false";
+  set(parameter.path, next == parameter.default_value ? "null" : next);
 }
 
 void ParameterRows::drawChoice(const Parameter& parameter) {
-  if (!beginComboOfName("##value", parameter.value.empty() ? "by default" : parameter.value)) return;
-  for (const std::string& choice : parameter.choices) {
+  if (focus_.isEntered(parameter.path) || focus_.isSpaced(parameter.path))
+    ImGui::ActivateItem(ImGui::GetID("##value"));
+  const std::string shown = parameter.value.empty() ? kByDefault : titleOf(parameter, parameter.value);
+  if (!beginComboOfName("##value", shown)) return;
+  for (std::size_t i = 0; i < parameter.choices.size(); ++i) {
+    const std::string& choice = parameter.choices[i];
     pushNameId(choice);
-    const bool is_chosen = selectableName(choice, choice == parameter.value);
+    const bool is_chosen = selectableName(parameter.titles[i], choice == parameter.value);
+    if (choice == parameter.value) ImGui::SetItemDefaultFocus();
     ImGui::PopID();
     if (!is_chosen || choice == parameter.value) continue;
+    state_.sent_path = parameter.path;
+    state_.sent_text.clear();
     context_.session.perform({"choose", {{"path", parameter.path}, {"value", choice}}});
   }
   ImGui::EndCombo();
 }
 
-std::optional<std::string> ParameterRows::drawField(const Parameter& parameter, const std::string& shown,
-                                                    const char* hint) {
-  std::array<char, 1024> text{};
-  std::strncpy(text.data(), shown.c_str(), text.size() - 1);
-  ImGui::InputTextWithHint("##value", hint, text.data(), text.size());
-  const std::optional<std::string> typed = takeTyped(parameter.path, true, text.data());
-  return typed == shown ? std::nullopt : typed;
+void ParameterRows::drawItems(const Parameter& parameter) {
+  if (focus_.isEntered(parameter.path) || focus_.isSpaced(parameter.path))
+    ImGui::ActivateItem(ImGui::GetID("##value"));
+  std::vector<std::string> items = itemsOf(parameter.value);
+  std::string shown;
+  for (const std::string& item : items) shown += (shown.empty() ? "" : ", ") + titleOf(parameter, item);
+  if (!beginComboOfName("##value", shown)) return;
+  for (std::size_t i = 0; i < parameter.choices.size(); ++i) {
+    const std::string& choice = parameter.choices[i];
+    const auto found = std::find(items.begin(), items.end(), choice);
+    bool on = found != items.end();
+    ImGui::PushID(static_cast<int>(i));
+    ImGui::BeginDisabled(on && items.size() == 1);  // one stays
+    if (ImGui::Checkbox("##item", &on)) {
+      on ? static_cast<void>(items.push_back(choice)) : static_cast<void>(items.erase(found));
+      state_.sent_path = parameter.path;
+      state_.sent_text.clear();
+      set(parameter.path, fmt::format("[{}]", fmt::join(items, ", ")));
+    }
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::TextUnformatted(parameter.titles[i].c_str());
+    ImGui::PopID();
+  }
+  ImGui::EndCombo();
 }
 
-std::optional<std::string> ParameterRows::takeTyped(const std::string& path, bool is_typed,
-                                                    const std::string& text) {
-  // In the frame of its activation another field may still return its text.
-  if (is_typed && ImGui::IsItemActive() && !ImGui::IsItemActivated()) typing_ = {path, text};
-  if (!ImGui::IsItemDeactivatedAfterEdit() || typing_.path != path) return std::nullopt;
-  const std::string typed = std::exchange(typing_, {}).text;
-  if (isKeyPressed(ImGuiKey_Escape)) return std::nullopt;
-  return typed;
-}
-
-void ParameterRows::drawText(const Parameter& parameter) {
-  const std::optional<std::string> typed = drawField(parameter, parameter.value, "by default");
-  if (!typed) return;
-  const bool is_text = parameter.type == Parameter::Type::text;
-  set(parameter.path, typed->empty() ? "null" : is_text ? dumpJson(Json(*typed)) : *typed);
-}
-
-/// A number without a unit is in the unit that was shown.
-void ParameterRows::drawTypedNumber(const Parameter& parameter) {
-  const double value = std::strtod(parameter.value.c_str(), nullptr);
-  const std::optional<std::string> typed =
-      drawField(parameter, parameter.value.empty() ? "" : quantityText(value, parameter.unit, kTypedDigits),
-                "by default");
-  if (!typed) return;
-  const std::optional<double> number =
-      parseQuantity(*typed, parameter.unit, prefixedUnit(value, parameter.unit, kTypedDigits).factor);
-  // Any other text is rejected by the scenario's check.
-  set(parameter.path, typed->empty() ? "null" : number ? numberText(*number) : *typed);
-}
-
-void ParameterRows::drawRejection(const std::string& path) {
+/// Marks the row whose edit the session has refused.
+void ParameterRows::takeRejection(const std::string& path) {
   const std::optional<Rejection>& rejection = context_.session.rejection();
-  if (!rejection || rejection->edits.empty() || rejection->edits.front().path != path) return;
-  ImGui::PushStyleColor(ImGuiCol_Text, errorColor(context_.session.theme()));
-  // The row already shows the value's name.
-  const std::string location = scenario::toString(rejection->edits.front()) + ": ";
-  const bool has_location = rejection->message.compare(0, location.size(), location) == 0;
-  ImGui::TextWrapped("%s", rejection->message.c_str() + (has_location ? location.size() : 0));
-  ImGui::PopStyleColor();
+  const bool is_own = rejection && !rejection->edits.empty() && rejection->edits.front().path == path;
+  if (is_own && state_.sent_path == path) {
+    state_.refused = {path, std::exchange(state_.sent_text, {}), rejection->message};
+    state_.sent_path.clear();
+  }
+  if (!rejection && state_.sent_path != path && state_.refused.path == path && state_.refused.text.empty())
+    state_.refused = {};
+  context_.shows_rejection = context_.shows_rejection || (is_own && state_.refused.path == path);
+}
+
+/// Over the rows below, so that they stay where they are.
+void ParameterRows::drawRefusal(const std::string& path) {
+  if (state_.refused.path != path || focus_.isTyping(path)) return;
+  if (!focus_.has(path) && !ImGui::IsItemHovered()) return;
+  const ImVec2 end = ImGui::GetItemRectMax();
+  const float s = context_.scale;
+  ImGui::SetNextWindowPos({end.x, end.y + 2 * s}, ImGuiCond_Always, {1, 0});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(8 * s, 6 * s));
+  ImGui::Begin("refusal", nullptr,
+               ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoDecoration |
+                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                   ImGuiWindowFlags_AlwaysAutoResize);
+  ImGui::PushTextWrapPos(300 * s);
+  ImGui::TextColored(errorColor(context_.session.theme()), "%s", state_.refused.why.c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+  ImGui::PopStyleVar();
 }
 
 void ParameterRows::set(const std::string& path, const std::string& value) const {

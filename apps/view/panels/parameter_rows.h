@@ -6,22 +6,36 @@
 #include <string>
 
 #include "apps/view/panels/panels.h"
+#include "apps/view/panels/row_focus.h"
+#include "apps/view/parts/value_slider.h"
 #include "scenario/file/parameters.h"
 
 namespace emscape::view {
 
-/// Text of the field being edited.
-struct Typing {
+/// A typed text that was not accepted, kept for correction.
+struct RefusedText {
   std::string path, text;
+  std::string why;
 };
 
-/// Draws the rows of groups; a refused edit is shown below its row. Lives for one frame.
+/// State of the rows between frames.
+struct RowState {
+  RefusedText refused;
+  std::string sent_path, sent_text;  ///< the text entered last
+  /// A value that is being dragged.
+  struct {
+    std::string path, sent;
+    double position = 0;
+    bool is_moved = false;
+  } drag;
+};
+
+/// Draws the rows of groups; a refused edit is explained over the rows below its own. Lives for one frame.
 class ParameterRows {
  public:
   /// @param edited  paths that differ from the scenario's file
-  /// @param typing  kept from frame to frame
-  ParameterRows(PanelContext& context, const std::set<std::string>& edited, Typing& typing)
-      : context_(context), edited_(edited), typing_(typing) {}
+  ParameterRows(PanelContext& context, const std::set<std::string>& edited, RowFocus& focus, RowState& state)
+      : context_(context), edited_(edited), focus_(focus), state_(state) {}
 
   /// Draws a table of the group's values, and its subgroups below collapsible headings.
   void draw(const scenario::ParameterGroup& group);
@@ -34,24 +48,29 @@ class ParameterRows {
 
  private:
   void drawGroup(const scenario::ParameterGroup& group);
+  /// A collapsible heading in the table. @return true if it is open
+  bool drawSubheading(const std::string& id, const std::string& name, bool is_open_first);
   void drawRow(const scenario::Parameter& parameter);
   void drawLabelMenu(const scenario::Parameter& parameter) const;
-  void drawNumber(const scenario::Parameter& parameter);
+  /// A number or a text: a control that becomes a text field.
+  void drawValue(const scenario::Parameter& parameter);
+  void handleSlider(const scenario::Parameter& parameter, const ValueSlider& slider, double value);
+  void drag(const scenario::Parameter& parameter, const std::string& value);
+  void enter(const scenario::Parameter& parameter, const std::string& text);
+  void drawBoolean(const scenario::Parameter& parameter);
   void drawChoice(const scenario::Parameter& parameter);
-  void drawText(const scenario::Parameter& parameter);
-  void drawTypedNumber(const scenario::Parameter& parameter);
-  /// Draws a text field. @return the text when Enter is pressed or the focus is lost
-  std::optional<std::string> drawField(const scenario::Parameter& parameter, const std::string& shown,
-                                       const char* hint);
-  /// Keeps the text of the item drawn last while it is edited. @return the text when Enter is pressed or the
-  /// focus is lost, because a field without the focus no longer returns it; empty if Esc is pressed
-  std::optional<std::string> takeTyped(const std::string& path, bool is_typed, const std::string& text);
-  void drawRejection(const std::string& path);
+  void drawItems(const scenario::Parameter& parameter);
+  /// Draws the mark of the focus around the control drawn last and scrolls to it; takes the focus if it is
+  /// clicked.
+  void showFocus(const std::string& path);
+  void takeRejection(const std::string& path);
+  void drawRefusal(const std::string& path);
   void set(const std::string& path, const std::string& value) const;
 
   PanelContext& context_;
   const std::set<std::string>& edited_;
-  Typing& typing_;
+  RowFocus& focus_;
+  RowState& state_;
 };
 
 }  // namespace emscape::view

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/view/panels/panels.h"
+#include "apps/view/panels/slider_field.h"
 #include "apps/view/panels/theme.h"
 
 namespace emscape::view {
@@ -12,23 +12,22 @@ namespace {
 
 using render::CutPlane;
 
-/// A number that is dragged between limits, or typed after Ctrl + click. @return true if it was changed
-bool slide(const char* id, double& value, double min, double max, const char* format) {
-  const double low = std::min(min, value), high = std::max(max, value);
+bool slide(const PanelContext& context, const char* id, double& value, double min, double max,
+           const char* format) {
   ImGui::SetNextItemWidth(-1);
-  return ImGui::SliderScalar(id, ImGuiDataType_Double, &value, &low, &high, format);
+  return sliderField(context, id, value, std::min(min, value), std::max(max, value), format);
 }
 
 /// @return true if the plane was changed
-bool drawHorizontal(CutPlane& plane, const render::SceneBox& box) {
-  return slide("##altitude", plane.altitude_m, box.lower_m.z, box.upper_m.z, "altitude %.0f m");
+bool drawHorizontal(const PanelContext& context, CutPlane& plane, const render::SceneBox& box) {
+  return slide(context, "##altitude", plane.altitude_m, box.lower_m.z, box.upper_m.z, "altitude %.0f m");
 }
 
-bool drawVertical(CutPlane& plane, const render::SceneBox& box) {
+bool drawVertical(const PanelContext& context, CutPlane& plane, const render::SceneBox& box) {
   const Vec3d size_m = box.upper_m - box.lower_m;
   const double reach_m = 0.5 * std::hypot(size_m.x, size_m.y);
-  const bool turned = slide("##bearing", plane.bearing_deg, 0, 360, "bearing %.0f°");
-  const bool moved = slide("##offset", plane.offset_m, -reach_m, reach_m, "offset %.0f m");
+  const bool turned = slide(context, "##bearing", plane.bearing_deg, 0, 360, "bearing %.0f°");
+  const bool moved = slide(context, "##offset", plane.offset_m, -reach_m, reach_m, "offset %.0f m");
   return turned || moved;
 }
 
@@ -65,7 +64,7 @@ void drawPlane(PanelContext& context, std::size_t index, const render::SceneBox&
     session.perform({"plane", {{"index", number}, {"remove", true}}});
     return;
   }
-  if (horizontal ? drawHorizontal(plane, box) : drawVertical(plane, box)) {
+  if (horizontal ? drawHorizontal(context, plane, box) : drawVertical(context, plane, box)) {
     plane.on = true;
     session.setPlanes(planes);
   }

@@ -1,5 +1,6 @@
 /// Editor of the scenario's values; makes the same edits as --set.
 #include <fmt/format.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <map>
@@ -23,49 +24,79 @@ constexpr std::size_t kSearchFrom = 8;  // with more emitters there is a search 
 struct Section {
   std::string name;
   std::string path;
-  std::optional<scenario::EmitterKind> kind;  ///< of an emitter
+  std::optional<scenario::EmitterKind> kind = {};  ///< of an emitter
+  bool is_enabled = true;
+};
+
+/// Sections below a heading.
+struct SectionGroup {
+  const char* name;
+  std::vector<const char*> kinds;  ///< of the items that can be added
+  std::vector<Section> sections = {};
 };
 
 /// State of the panel between frames.
 struct PanelState {
   playback::ScenarioPtr scenario;  // source of the following
-  std::vector<Section> emitters, platforms, others;
+  std::vector<SectionGroup> section_groups;
   std::map<std::string, ParameterGroup> groups;
   std::set<std::string> edited;
+  std::size_t disabled_count = 0;
   std::unordered_set<std::string> open;  // paths of sections
+  std::string shown;                     // path of the section that is scrolled to
   bool is_new = true;
   ImGuiTextFilter filter;
-  Typing typing;
+  RowState rows;
 
   void take(const playback::ScenarioPtr& next) {
     if (next == scenario) return;
+    const bool is_edited_further = scenario && scenario->file == next->file;
+    std::unordered_set<std::string> before;
+    for (const SectionGroup& group : section_groups) {
+      for (const Section& section : group.sections) before.insert(section.path);
+    }
     scenario = next;
     groups.clear();
     edited.clear();
     for (const scenario::Edit& edit : next->edits()) edited.insert(edit.path);
-    emitters.clear();
-    platforms.clear();
-    others.clear();
+    SectionGroup emitters{"Emitters", {"radar", "transmitter", "jammer"}};
+    disabled_count = 0;
     for (const scenario::Emitter& emitter : next->emitters) {
-      emitters.push_back({emitter.name, "emitters." + scenario::pathStep(emitter.name), emitter.kind});
+      emitters.sections.push_back(
+          {emitter.name, "emitters." + scenario::pathStep(emitter.name), emitter.kind, emitter.enabled});
+      disabled_count += emitter.enabled ? 0 : 1;
     }
-    for (const scenario::Platform& platform : next->platforms) {
-      platforms.push_back({platform.name, "platforms." + scenario::pathStep(platform.name), {}});
+    const auto groupOf = [](const char* name, const char* kind, const std::string& list,
+                            const auto&... items) {
+      SectionGroup group{name, {kind}};
+      const auto add = [&](const auto& some) {
+        for (const auto& item : some)
+          group.sections.push_back({item.name, list + "." + scenario::pathStep(item.name)});
+      };
+      (add(items), ...);
+      return group;
+    };
+    section_groups = {
+        emitters, groupOf("Platforms", "platform", "platforms", next->platforms),
+        groupOf("Receivers", "receiver", "receivers", next->receivers, next->placed_receivers),
+        groupOf("Targets", "target", "targets", next->targets),
+        SectionGroup{
+            "Scenario",
+            {},
+            {{"Air", "atmosphere"}, {"Ground", "ground"}, {"Output", "output"}, {"Region", "region"}}}};
+    for (const SectionGroup& group : section_groups) {
+      for (const Section& section : group.sections) {
+        if (is_edited_further && before.count(section.path) == 0) show(section.path);
+      }
     }
-    for (const scenario::ReceiverProfile& receiver : next->receivers) {
-      others.push_back({receiver.name, "receivers." + scenario::pathStep(receiver.name), {}});
-    }
-    for (const scenario::PlacedReceiver& receiver : next->placed_receivers) {
-      others.push_back({receiver.name, "receivers." + scenario::pathStep(receiver.name), {}});
-    }
-    for (const scenario::Target& target : next->targets) {
-      others.push_back({target.name, "targets." + scenario::pathStep(target.name), {}});
-    }
-    others.push_back({"Air", "atmosphere", {}});
-    others.push_back({"Ground", "ground", {}});
-    others.push_back({"Output", "output", {}});
-    others.push_back({"Region", "region", {}});
-    if (std::exchange(is_new, false) && !emitters.empty()) open.insert(emitters.front().path);
+    if (std::exchange(is_new, false) && !emitters.sections.empty())
+      open.insert(emitters.sections.front().path);
+  }
+
+  /// Opens a section and scrolls to it.
+  void show(const std::string& path) {
+    open.insert(path);
+    shown = path;
   }
 
   const ParameterGroup& groupAt(const std::string& path) {
@@ -73,34 +104,14 @@ struct PanelState {
     if (known != groups.end()) return known->second;
     return groups.emplace(path, scenario::parametersOf(*scenario, path)).first->second;
   }
-};
 
-bool transmitsAtAll(const scenario::Emitter& emitter, double duration_s) {
-  return emitter.active_s.empty() ||
-         std::any_of(emitter.active_s.begin(), emitter.active_s.end(),
-                     [&](const scenario::TimeInterval& interval) { return interval.begin_s <= duration_s; });
-}
-
-/// Switches the emitter on or off; off sets an active interval after the last step.
-void drawSwitch(PanelContext& context, ParameterRows& rows, const PanelState& state, const Section& section) {
-  const std::vector<scenario::Emitter>& emitters = state.scenario->emitters;
-  const auto emitter = std::find_if(emitters.begin(), emitters.end(),
-                                    [&](const scenario::Emitter& one) { return one.name == section.name; });
-  if (emitter == emitters.end() || !rows.begin("switch")) return;
-  const scenario::Clock& clock = state.scenario->clock;
-  const std::string path = section.path + ".active_s";
-  bool on = transmitsAtAll(*emitter, clock.duration_s);
-  rows.label("transmits", "--set '" + path + "=…'", state.edited.count(path) > 0);
-  ImGui::TableNextColumn();
-  if (ImGui::Checkbox("##transmits", &on)) {
-    const double never_s = clock.duration_s + clock.step_s + 1;
-    context.session.perform(
-        {"set",
-         {{"path", path},
-          {"value", on ? std::string("null") : fmt::format("[[{:g}, {:g}]]", never_s, never_s + 1)}}});
+  /// True if a value of a section differs from the file.
+  bool isEdited(const std::string& path) const {
+    const std::string within = path + ".";
+    const auto at = edited.lower_bound(within);
+    return edited.count(path) > 0 || (at != edited.end() && at->compare(0, within.size(), within) == 0);
   }
-  ParameterRows::end();
-}
+};
 
 void drawQuantity(PanelContext& context, ParameterRows& rows, const scenario::Scenario& scenario) {
   if (!rows.begin("quantity")) return;
@@ -121,10 +132,9 @@ void drawQuantity(PanelContext& context, ParameterRows& rows, const scenario::Sc
 }
 
 void drawBody(PanelContext& context, PanelState& state, const Section& section) {
-  ParameterRows rows(context, state.edited, state.typing);
+  ParameterRows rows(context, state.edited, scenarioFocus(), state.rows);
   pushNameId(section.path);
   try {
-    if (section.kind) drawSwitch(context, rows, state, section);
     if (section.path == "output") drawQuantity(context, rows, *state.scenario);
     rows.draw(state.groupAt(section.path));
   } catch (const Error& error) {
@@ -133,17 +143,101 @@ void drawBody(PanelContext& context, PanelState& state, const Section& section) 
   ImGui::PopID();
 }
 
-/// A collapsible heading, with a dot in the kind's colour.
-void drawHeading(PanelState& state, const Section& section, render::Theme theme, float scale) {
+void switchEmitter(PanelContext& context, const Section& section) {
+  context.session.perform({"enable", {{"emitter", section.name}, {"on", !section.is_enabled}}});
+}
+
+/// The on/off switch of an emitter, over its heading.
+void drawSwitch(PanelContext& context, const Section& section, const ImVec2& at) {
+  const float s = context.scale;
+  const ImVec2 size{26 * s, 14 * s}, before = ImGui::GetCursorScreenPos();
+  ImGui::SetCursorScreenPos(at);
+  if (ImGui::InvisibleButton("switch", size)) switchEmitter(context, section);
+  if (ImGui::IsItemHovered())
+    ImGui::SetTooltip(section.is_enabled ? "transmits; click: switch off" : "off; click: switch on");
+  const bool on = section.is_enabled;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const ImVec4 color = on ? accentColor(context.session.theme()) : mutedColor(context.session.theme());
+  const float r = size.y / 2;
+  list.AddRectFilled(at, {at.x + size.x, at.y + size.y},
+                     ImGui::ColorConvertFloat4ToU32({color.x, color.y, color.z, on ? 0.75F : 0.35F}), r);
+  list.AddCircleFilled({on ? at.x + size.x - r : at.x + r, at.y + r}, r - 2 * s,
+                       ImGui::GetColorU32(on ? ImGuiCol_Text : ImGuiCol_TextDisabled));
+  ImGui::SetCursorScreenPos(before);
+}
+
+void drawHeadingMenu(PanelContext& context, const PanelState& state, const Section& section, bool is_item) {
+  if (!ImGui::BeginPopup("menu")) return;
+  const auto perform = [&](const char* verb) { context.session.perform({verb, {{"path", section.path}}}); };
+  if (section.kind && ImGui::MenuItem(section.is_enabled ? "Switch off" : "Switch on"))
+    switchEmitter(context, section);
+  if (is_item && ImGui::MenuItem("Duplicate")) perform("duplicate");
+  if (is_item && ImGui::MenuItem("Delete")) perform("remove");
+  if (ImGui::MenuItem("Take back the changes", nullptr, false, state.isEdited(section.path)))
+    perform("revert");
+  ImGui::EndPopup();
+}
+
+/// A collapsible heading; at its end the marks of changes and kind, the switch, and the menu.
+void drawHeading(PanelContext& context, PanelState& state, const Section& section, bool is_item) {
+  const float s = context.scale;
+  const render::Theme theme = context.session.theme();
+  RowFocus& focus = scenarioFocus();
   pushNameId(section.path);
-  ImGui::SetNextItemOpen(state.open.count(section.path) > 0);
-  const bool open = headingOfName("section", section.name);
-  if (section.kind) {
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    ImGui::GetWindowDrawList()->AddCircleFilled(
-        {high.x - 14 * scale, (low.y + high.y) / 2}, 4.5F * scale,
-        ImGui::ColorConvertFloat4ToU32(emitterColor(*section.kind, theme)));
+  const bool was_open = state.open.count(section.path) > 0;
+  bool open = was_open;
+  if (focus.isEntered(section.path)) open = !open;
+  if (focus.isSpaced(section.path))
+    section.kind ? switchEmitter(context, section) : static_cast<void>(open = !open);
+  if (focus.steps(section.path) != 0) open = focus.steps(section.path) > 0;
+  ImGui::SetNextItemOpen(open);
+  const bool is_off = !section.is_enabled;
+  if (is_off) ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(theme));
+  const float reserved = (section.kind ? 74 : is_item ? 40 : 16) * s;
+  headingOfName("section", section.name, ImGuiTreeNodeFlags_AllowItemOverlap, reserved);
+  if (is_off) ImGui::PopStyleColor();
+  // A heading that is clipped reports that it is closed.
+  if (ImGui::IsItemToggledOpen()) {
+    open = !was_open;
+    focus.startAt(section.path);
   }
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  const float middle = (low.y + high.y) / 2;
+  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) ImGui::OpenPopup("menu");
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (focus.has(section.path)) {
+    list.AddRect(low, high, ImGui::ColorConvertFloat4ToU32(accentColor(theme)),
+                 ImGui::GetStyle().FrameRounding, 0, 1.5F * s);
+    if (focus.arrives(section.path)) ImGui::ScrollToItem(ImGuiScrollFlags_KeepVisibleEdgeY);
+  }
+  if (state.shown == section.path) {
+    state.shown.clear();
+    ImGui::SetScrollHereY(0);
+  }
+  float right = high.x - 8 * s;
+  if (is_item) {
+    const ImVec2 before = ImGui::GetCursorScreenPos();
+    ImGui::SetCursorScreenPos({right - 16 * s, low.y + 2 * s});
+    if (ImGui::InvisibleButton("more", {18 * s, high.y - low.y - 4 * s})) ImGui::OpenPopup("menu");
+    const bool is_hovered = ImGui::IsItemHovered();
+    if (is_hovered) ImGui::SetTooltip("duplicate, delete, take back");
+    ImGui::SetCursorScreenPos(before);
+    const ImU32 ink = ImGui::GetColorU32(is_hovered ? ImGuiCol_Text : ImGuiCol_TextDisabled);
+    for (int i = -1; i <= 1; ++i)
+      list.AddCircleFilled({right - 8 * s, middle + 4.5F * s * static_cast<float>(i)}, 1.5F * s, ink);
+    right -= 22 * s;
+  }
+  if (section.kind) {
+    drawSwitch(context, section, {right - 26 * s, middle - 7 * s});
+    right -= 32 * s;
+    list.AddCircleFilled({right - 4 * s, middle}, 4.5F * s,
+                         ImGui::ColorConvertFloat4ToU32(emitterColor(*section.kind, theme)));
+    right -= 14 * s;
+  }
+  if (state.isEdited(section.path)) {
+    list.AddCircleFilled({low.x + 4 * s, middle}, 3 * s, ImGui::ColorConvertFloat4ToU32(accentColor(theme)));
+  }
+  drawHeadingMenu(context, state, section, is_item);
   ImGui::PopID();
   if (open) {
     state.open.insert(section.path);
@@ -152,17 +246,44 @@ void drawHeading(PanelState& state, const Section& section, render::Theme theme,
   }
 }
 
+/// The name of a group, with a button that adds an item to it.
+void drawGroupName(PanelContext& context, const SectionGroup& group) {
+  ImGui::PushID(group.name);
+  ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(group.name);
+  ImGui::PopStyleColor();
+  const auto add = [&](const char* kind) { context.session.perform({"add", {{"what", kind}}}); };
+  if (!group.kinds.empty()) {
+    const float width = ImGui::CalcTextSize("+ add").x + 2 * ImGui::GetStyle().FramePadding.x;
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - width);
+    if (ImGui::SmallButton("+ add"))
+      group.kinds.size() == 1 ? add(group.kinds.front()) : ImGui::OpenPopup("add");
+    if (ImGui::BeginPopup("add")) {
+      for (const char* kind : group.kinds) {
+        if (ImGui::MenuItem(kind)) add(kind);
+      }
+      ImGui::EndPopup();
+    }
+  }
+  ImGui::PopID();
+}
+
 /// Draws only visible sections: runs of closed sections are clipped.
-void drawSections(PanelContext& context, PanelState& state, const std::vector<Section>& sections) {
-  const render::Theme theme = context.session.theme();
+void drawSections(PanelContext& context, PanelState& state, const SectionGroup& group) {
   std::vector<const Section*> shown;
-  for (const Section& section : sections) {
+  for (const Section& section : group.sections) {
     if (state.filter.PassFilter(section.name.c_str())) shown.push_back(&section);
   }
+  if (shown.empty() && state.filter.IsActive()) return;
+  drawGroupName(context, group);
+  RowFocus& focus = scenarioFocus();
+  const bool is_item = !group.kinds.empty();
   const auto isOpen = [&](const Section* section) { return state.open.count(section->path) > 0; };
   for (auto at = shown.begin(); at != shown.end();) {
     if (isOpen(*at)) {
-      drawHeading(state, **at, theme, context.scale);
+      focus.add((*at)->path);
+      drawHeading(context, state, **at, is_item);
       if (isOpen(*at)) drawBody(context, state, **at);
       ++at;
       continue;
@@ -170,16 +291,45 @@ void drawSections(PanelContext& context, PanelState& state, const std::vector<Se
     const auto end = std::find_if(at, shown.end(), isOpen);
     ImGuiListClipper clipper;
     clipper.Begin(static_cast<int>(end - at), ImGui::GetFrameHeightWithSpacing());
+    for (auto one = at; one != end; ++one) {
+      focus.add((*one)->path);
+      const auto index = static_cast<int>(one - at);
+      if (focus.arrives((*one)->path)) clipper.ForceDisplayRangeByIndices(index, index + 1);
+    }
     while (clipper.Step()) {
-      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-        drawHeading(state, **(at + i), theme, context.scale);
-      }
+      for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i)
+        drawHeading(context, state, **(at + i), is_item);
     }
     at = end;
   }
-  if (!shown.empty()) ImGui::Spacing();
+  ImGui::Spacing();
 }
 
+/// The edits, each with a button that takes it back.
+void drawEdits(PanelContext& context, const PanelState& state) {
+  if (!ImGui::BeginPopup("edits")) return;
+  constexpr std::size_t kMaxCharacters = 60;
+  std::string reverted;
+  for (const scenario::Edit& edit : state.scenario->edits()) {
+    pushNameId(edit.path);
+    if (ImGui::SmallButton("undo this")) reverted = edit.path;
+    ImGui::SameLine();
+    const std::string text = edit.value == "null" ? edit.path + ": removed" : toString(edit);
+    const bool is_long = text.size() > kMaxCharacters;
+    ImGui::TextUnformatted((is_long ? text.substr(0, kMaxCharacters) + " …" : text).c_str());
+    tooltipOfLongName(text, is_long);
+    ImGui::PopID();
+  }
+  ImGui::Separator();
+  if (ImGui::SmallButton("undo all")) {
+    ImGui::CloseCurrentPopup();
+    context.session.perform({"revert"});
+  }
+  if (!reverted.empty()) context.session.perform({"revert", {{"path", reverted}}});
+  ImGui::EndPopup();
+}
+
+/// Undo and redo, and a line on the changes that is always there: the rows below stay where they are.
 void drawHead(PanelContext& context, const PanelState& state) {
   const Session& session = context.session;
   const auto button = [&](const char* name, const char* command, bool enabled, const char* tip,
@@ -194,12 +344,35 @@ void drawHead(PanelContext& context, const PanelState& state) {
   button("undo", R"({"do":"undo"})", session.canUndo(), "Ctrl+Z", 2 * spacing);
   button("redo", R"({"do":"redo"})", session.canRedo(), "Ctrl+Shift+Z", spacing);
   button("copy as command", R"({"do":"copy_command"})", true, "Ctrl+Shift+C", spacing);
-  if (!state.edited.empty()) {
-    ImGui::TextDisabled("%zu value%s changed", state.edited.size(), state.edited.size() == 1 ? "" : "s");
+  const std::size_t count = state.scenario->edits().size();
+  const std::string changes =
+      count == 0 ? "nothing changed" : fmt::format("{} value{} changed …", count, count == 1 ? "" : "s");
+  ImGui::BeginDisabled(count == 0);
+  if (ImGui::SmallButton((changes + "###edits").c_str())) ImGui::OpenPopup("edits");
+  ImGui::EndDisabled();
+  if (count > 0 && ImGui::IsItemHovered()) ImGui::SetTooltip("the changes; undo one or all");
+  drawEdits(context, state);
+  if (state.disabled_count > 0) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("%zu emitter%s off", state.disabled_count, state.disabled_count == 1 ? "" : "s");
   }
 }
 
+bool isDialogOpen(const Panels& panels) {
+  return panels.record || panels.restore || panels.unsaved || panels.open || panels.time;
+}
+
 }  // namespace
+
+bool scenarioPanelHasKeyboard() {
+  return scenarioFocus().hasKeyboard();
+}
+
+bool scenarioPanelTakesTab(const Session& session) {
+  const RowFocus& focus = scenarioFocus();
+  return focus.isShown() && !isDialogOpen(session.panels) &&
+         (focus.hasKeyboard() || !ImGui::GetIO().WantTextInput);
+}
 
 void drawScenarioPanel(PanelContext& context) {
   static PanelState state;
@@ -211,18 +384,25 @@ void drawScenarioPanel(PanelContext& context) {
   }
   state.take(scenario);
   drawHead(context, state);
-  if (state.emitters.size() > kSearchFrom || state.filter.IsActive()) {
+  RowFocus& focus = scenarioFocus();
+  focus.beginFrame();
+  const std::size_t emitter_count = state.scenario->emitters.size();
+  if (emitter_count > kSearchFrom || state.filter.IsActive()) {
     ImGui::SetNextItemWidth(-1);
     if (ImGui::InputTextWithHint("##search", "search emitters and platforms", state.filter.InputBuf,
                                  IM_ARRAYSIZE(state.filter.InputBuf))) {
       state.filter.Build();
     }
   }
-  ImGui::Spacing();
   ImGui::BeginChild("sections");
-  drawSections(context, state, state.emitters);
-  drawSections(context, state, state.platforms);
-  drawSections(context, state, state.others);
+  // Clicked before the rows, which may take the focus.
+  const bool is_clicked =
+      ImGui::IsMouseClicked(ImGuiMouseButton_Left) || ImGui::IsMouseClicked(ImGuiMouseButton_Right);
+  const bool is_elsewhere = !ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem |
+                                                    ImGuiHoveredFlags_AllowWhenBlockedByPopup) &&
+                            !isPopupOpen();
+  for (const SectionGroup& group : state.section_groups) drawSections(context, state, group);
+  focus.endFrame(is_clicked && is_elsewhere);
   ImGui::EndChild();
 }
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "apps/view/panels/panels.h"
+#include "apps/view/panels/slider_field.h"
 #include "apps/view/panels/theme.h"
 #include "apps/view/panels/transfer_plot.h"
 #include "emscape/render/annotate/legend.h"
@@ -148,7 +149,7 @@ void drawIso(PanelContext& context) {
   double value = std::isnan(set) ? (lowest + highest) / 2 : set;
   const float width = 0.38F * ImGui::GetContentRegionAvail().x;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - width - 8 * context.scale);
-  if (ImGui::SliderScalar("##iso", ImGuiDataType_Double, &value, &lowest, &highest, "surface at %.4g")) {
+  if (sliderField(context, "##iso", value, lowest, highest, "surface at %.4g")) {
     session.change([&](playback::ViewState& view) { view.settings.iso_value = value; });
   }
   ImGui::SameLine();

@@ -54,7 +54,7 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
 std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;
   for (const auto& topic :
-       {timeVerbs(), cameraVerbs(), scenarioVerbs(), probeVerbs(), pictureVerbs(), planeVerbs(),
+       {timeVerbs(), cameraVerbs(), scenarioVerbs(), itemVerbs(), probeVerbs(), pictureVerbs(), planeVerbs(),
         transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(), recordVerbs()}) {
     all.insert(all.end(), topic.begin(), topic.end());
   }

@@ -161,6 +161,7 @@ class Session {
   static std::vector<Verb> timeVerbs();
   static std::vector<Verb> cameraVerbs();
   static std::vector<Verb> scenarioVerbs();
+  static std::vector<Verb> itemVerbs();
   static std::vector<Verb> probeVerbs();
   static std::vector<Verb> pictureVerbs();
   static std::vector<Verb> planeVerbs();
@@ -202,6 +203,12 @@ class Session {
   void showScenario();
   /// Takes effect with one of the next updates.
   void changeScenario(const std::vector<scenario::Edit>& edits);
+  /// @throws Error (bad_input) if there is none
+  const scenario::Scenario& requireScenario() const;
+  /// @param on  none: the other state
+  void enableEmitter(const std::string& name, std::optional<bool> on);
+  /// @param path  empty: all edits
+  void revertEdits(const std::string& path);
   void takeEdits();
   std::vector<render::Marker> emittersOfPicture() const;
   void focusEmitter(const std::optional<std::string>& name);

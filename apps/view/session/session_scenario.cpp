@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "apps/view/parts/refusal_text.h"
 #include "apps/view/parts/shown_quantity.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
@@ -30,9 +31,9 @@ std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const st
                                     double latitude_deg, double longitude_deg) {
   const scenario::Platform& moved =
       scenario.platforms[scenario::indexOfNamed(scenario.platforms, platform, "platform")];
-  if (!moved.track_file.empty()) {
-    throw Error(ErrorCode::bad_input,
-                fmt::format("'{}' cannot be put elsewhere: it moves along {}", platform, moved.track_file));
+  if (moved.track.size() > 1) {
+    throw Error(ErrorCode::bad_input, fmt::format("'{}' cannot be put elsewhere: it moves along {}", platform,
+                                                  moved.track_file.empty() ? "its track" : moved.track_file));
   }
   const std::string path = "platforms." + scenario::pathStep(platform) + ".position.";
   return {{path + "latitude_deg", fmt::format("{:.7f}", latitude_deg)},
@@ -40,7 +41,7 @@ std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const st
 }
 
 void Session::changeScenario(const std::vector<scenario::Edit>& edits) {
-  if (!edits_) throw Error(ErrorCode::bad_input, "there is no scenario to change");
+  requireScenario();
   edit_queue_.set(edits);
 }
 
@@ -64,8 +65,8 @@ void Session::takeEdits() {
   for (const playback::EditQueue::Outcome& outcome : edit_queue_.update(*edits_)) {
     touched_ = true;
     if (!outcome.error.empty()) {
-      rejection_ = Rejection{outcome.edits, outcome.error};
-      tell(outcome.error, true);
+      rejection_ = Rejection{outcome.edits, refusalText(outcome.error, outcome.edits)};
+      tell(rejection_->message, true);
       continue;
     }
     rejection_.reset();
@@ -141,16 +142,14 @@ std::vector<Verb> Session::scenarioVerbs() {
        {{"path", kText}, {"value", kText}},
        "Chooses another antenna pattern, scan or propagation model, with common values for what it needs",
        [](Session& session, const Command& command) {
-         if (!session.edits_) throw Error(ErrorCode::bad_input, "there is no scenario to change");
-         session.changeScenario(
-             scenario::editsForChoice(*session.scenario(), command.text("path"), command.text("value")));
+         session.changeScenario(scenario::editsForChoice(session.requireScenario(), command.text("path"),
+                                                         command.text("value")));
        }},
       {"move",
        {{"platform", kText}, {"latitude_deg"}, {"longitude_deg"}},
        "Moves a platform; its height is kept",
        [](Session& session, const Command& command) {
-         if (!session.edits_) throw Error(ErrorCode::bad_input, "there is no scenario to change");
-         session.changeScenario(movesOf(*session.scenario(), command.text("platform"),
+         session.changeScenario(movesOf(session.requireScenario(), command.text("platform"),
                                         command.number("latitude_deg"), command.number("longitude_deg")));
        }},
       {"undo",

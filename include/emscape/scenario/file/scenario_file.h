@@ -41,6 +41,11 @@ std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std:
 /// @throws Error (bad_input) if the scenario was not read from a file
 ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits);
 
+/// The scenario as it was read from its file, with these edits in place of its own. The file is not read
+/// again.
+/// @throws Error (bad_input) as Scenario::set()
+std::shared_ptr<const Scenario> withEdits(const Scenario& scenario, const std::vector<Edit>& edits);
+
 /// The files that a scenario was read from: its own, tracks, antennas, elevation; absolute or relative to the
 /// working folder.
 std::vector<std::string> filesOf(const Scenario& scenario);

@@ -92,12 +92,15 @@ struct Emitter {
   RadarReceiver receiver;              ///< radars only
   std::optional<Waveform> waveform;    ///< radars only; none: power_w is also the mean power
   std::optional<Clutter> clutter;      ///< radars with a waveform only; none: only noise and jamming
+  bool enabled = true;                 ///< false: it never transmits, whatever active_s is
   std::vector<TimeInterval> active_s;  ///< empty: always
   SourceLocation location;             ///< in the scenario
   SourceLocation frequency_location;   ///< of its frequency
 
   /// Mean over peak power, (0..1].
   double dutyCycle() const { return waveform ? waveform->dutyCycle() : 1; }
+  /// True if it transmits at all times.
+  bool isAlwaysActive() const { return enabled && active_s.empty(); }
 };
 
 }  // namespace emscape::scenario

@@ -42,7 +42,7 @@ struct Platform {
   /// at its ends.
   std::vector<TrackPoint> track;
   Attitude attitude;        ///< of a fixed site
-  std::string track_file;   ///< empty for a fixed site
+  std::string track_file;   ///< empty for a fixed site, and for a track in the scenario itself
   SourceLocation location;  ///< in the scenario
 };
 

@@ -1,0 +1,131 @@
+/// Verbs of the items of a scenario: emitters, platforms, receivers and targets.
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+#include "apps/view/session/session.h"
+#include "emscape/base/error.h"
+#include "scenario/file/named_items.h"
+#include "scenario/file/new_items.h"
+
+namespace emscape::view {
+namespace {
+
+/// Of "LAT,LON" or "LAT,LON,HEIGHT".
+scenario::DrawnPoint pointOf(const std::string& text) {
+  std::vector<double> numbers;
+  const char* at = text.c_str();
+  for (char* rest = nullptr; numbers.size() < 3; at = rest + 1) {
+    numbers.push_back(std::strtod(at, &rest));
+    const bool is_number = rest != at;
+    at = rest;
+    if (!is_number || *rest != ',') break;
+  }
+  if (numbers.size() < 2 || *at != '\0') {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("point '{}': expected LAT,LON or LAT,LON,HEIGHT_AGL (degrees, m)", text));
+  }
+  scenario::DrawnPoint point{{numbers[0], numbers[1]}, std::nullopt};
+  if (numbers.size() == 3) point.height_agl_m = numbers[2];
+  return point;
+}
+
+std::optional<double> optionalNumber(const Command& command, const char* name) {
+  return command.has(name) ? std::optional(command.number(name)) : std::nullopt;
+}
+
+scenario::NewItem newItemOf(const Command& command) {
+  scenario::NewItem item{command.text("what"), command.text("name"), command.text("platform"), {}};
+  if (command.has("latitude_deg") != command.has("longitude_deg"))
+    throw Error(ErrorCode::bad_input, "add: latitude_deg and longitude_deg belong together");
+  if (command.has("latitude_deg"))
+    item.position = {command.number("latitude_deg"), command.number("longitude_deg")};
+  return item;
+}
+
+/// True if an edit changes the value at a path, or a part of it.
+bool isWithin(const std::string& path, const scenario::Edit& edit) {
+  return edit.path.compare(0, path.size(), path) == 0 &&
+         (edit.path.size() == path.size() || edit.path[path.size()] == '.');
+}
+
+}  // namespace
+
+const scenario::Scenario& Session::requireScenario() const {
+  if (!edits_) throw Error(ErrorCode::bad_input, "there is no scenario to change");
+  return *edits_->scenario();
+}
+
+void Session::enableEmitter(const std::string& name, std::optional<bool> on) {
+  const scenario::Scenario& now = requireScenario();
+  const scenario::Emitter& emitter = now.emitters[scenario::indexOfNamed(now.emitters, name, "emitter")];
+  const bool is_on = on.value_or(!emitter.enabled);
+  changeScenario({{"emitters." + scenario::pathStep(name) + ".enabled", is_on ? "null" : "false"}});
+}
+
+void Session::revertEdits(const std::string& path) {
+  requireScenario();
+  std::vector<scenario::Edit> kept;
+  for (const scenario::Edit& edit : edits_->edits()) {
+    if (!path.empty() && !isWithin(path, edit)) kept.push_back(edit);
+  }
+  edit_queue_.replace(kept);
+}
+
+std::vector<Verb> Session::itemVerbs() {
+  return {
+      {"enable",
+       {{"emitter", kText}, {"on", kBoolean, false}},
+       "Switches an emitter on or off; without `on` the other of the two",
+       [](Session& session, const Command& command) {
+         session.enableEmitter(command.text("emitter"),
+                               command.has("on") ? std::optional(command.boolean("on", true)) : std::nullopt);
+       }},
+      {"add",
+       {{"what", kText, true, {}, {"radar", "transmitter", "jammer", "platform", "receiver", "target"}},
+        {"name", kText, false},
+        {"platform", kText, false},
+        {"latitude_deg", kNumber, false, {-90, 90}},
+        {"longitude_deg", kNumber, false, {-180, 180}}},
+       "Adds an item with common values, on a platform (default: the first one) or on a new one at a "
+       "position",
+       [](Session& session, const Command& command) {
+         session.changeScenario(editsToAdd(session.requireScenario(), newItemOf(command)));
+       }},
+      {"duplicate",
+       {{"path", kText}, {"name", kText, false}},
+       "Adds a copy of an emitter, platform, receiver or target: `emitters.NAME`",
+       [](Session& session, const Command& command) {
+         session.changeScenario(
+             {editToDuplicate(session.requireScenario(), command.text("path"), command.text("name"))});
+       }},
+      {"remove",
+       {{"path", kText}},
+       "Removes an emitter, platform, receiver or target that nothing else names: `emitters.NAME`",
+       [](Session& session, const Command& command) {
+         session.changeScenario({editToRemove(session.requireScenario(), command.text("path"))});
+       }},
+      {"track",
+       {{"platform", kText},
+        {"points", ArgumentType::texts},
+        {"speed_m_s", kNumber, false, {1e-6, 1e5}},
+        {"begin_s", kNumber, false}},
+       "Moves a platform along points, LAT,LON or LAT,LON,HEIGHT_AGL, at a constant speed; default: it "
+       "arrives "
+       "at the end of the scenario",
+       [](Session& session, const Command& command) {
+         std::vector<scenario::DrawnPoint> points;
+         for (const Json& text : command.arguments["points"])
+           points.push_back(pointOf(text.get<std::string>()));
+         session.changeScenario(editsForTrack(session.requireScenario(), command.text("platform"), points,
+                                              command.number("begin_s"),
+                                              optionalNumber(command, "speed_m_s")));
+       }},
+      {"revert",
+       {{"path", kText, false}},
+       "Takes back the edits of a value or an item, in one step; without `path` all edits",
+       [](Session& session, const Command& command) { session.revertEdits(command.text("path")); }},
+  };
+}
+
+}  // namespace emscape::view
