@@ -126,7 +126,7 @@ void drawTimes(const PanelContext& context) {
   if (session.picture() && session.status().shown_s != asked_s && !timeline.playing()) {
     draw("shown " + timeText(session.status().shown_s, span_s), stateColor(render::ControllerState::busy));
   }
-  if (!timeline.times_s().empty() && timeline.step_s() == asked_s) {
+  if (!timeline.playing() && !timeline.times_s().empty() && timeline.step_s() == asked_s) {
     draw(fmt::format("step {} of {}", timeline.step() + 1, timeline.times_s().size()), ink);
   }
   if (const auto scenario = session.scenario(); scenario && !scenario->clock.epoch_utc.empty()) {

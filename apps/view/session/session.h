@@ -331,6 +331,7 @@ class Session {
   std::string reported_error_;
   render::ControllerState logged_state_ = render::ControllerState::idle;
   Activity logged_activity_ = Activity::empty;
+  bool is_on_screen_ = false;               // else it is opened beside the one on screen
   std::string noted_words_;                 // of the program's state at the last update
   std::optional<double> computing_from_s_;  // when the pending field was requested
   CameraControl camera_;

@@ -37,6 +37,7 @@ void Session::ask(OpenRequest request) {
 }
 
 void Session::shown(const std::string& left_out) {
+  is_on_screen_ = true;
   if (!left_out.empty()) tell("these edits do not apply any more: " + left_out, true);
   jobs_.run([this, input = options_.view.input]() -> BackgroundJobs::Finish {
     auto examples = input.empty() ? findExamples() : std::vector<Example>();

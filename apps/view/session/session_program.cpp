@@ -30,6 +30,7 @@ void Session::noteProgram() {
   }
   const ProgramState state = programState();
   noted_words_ = state.badge + state.what + state.picture;
+  if (!is_on_screen_) return;
   const Activity before = std::exchange(logged_activity_, state.activity);
   if (before == state.activity) return;
   log_.write(

@@ -121,8 +121,7 @@ void Session::showScenario() {
       playback::dropColors(view_);
     }
   }
-  live_.show(view_, shown_scenario_,
-             isDragging() ? playback::Patience::kShort : playback::Patience::kNone);
+  live_.show(view_, shown_scenario_, isDragging() ? playback::Patience::kShort : playback::Patience::kNone);
 }
 
 std::vector<Verb> Session::scenarioVerbs() {
