@@ -75,7 +75,8 @@ std::vector<BarTick> ticksOf(const Legend& legend, int count, double gap) {
   for (const double at : shown) {
     const double value = scale.stored(at);
     const double to_end = std::min(value - lowest, highest - value) / (highest - lowest);
-    if (to_end >= gap) ticks.push_back({value, scale.is_amplitude ? fmt::format("{:g}", at) : tickText(at, step)});
+    if (to_end >= gap)
+      ticks.push_back({value, scale.is_amplitude ? fmt::format("{:g}", at) : tickText(at, step)});
   }
   for (const auto& [value, at] : {std::pair{lowest, first}, std::pair{highest, last}}) {
     const double unit = std::pow(10, -decimalsOf(step));

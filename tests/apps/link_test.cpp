@@ -105,7 +105,7 @@ TEST(Link, WritesRowsOfOneWidthAndAPicture) {
       if (c == '"') is_quoted = !is_quoted;
       if (c == ',' && !is_quoted) ++cells;
     }
-    EXPECT_EQ(cells, 23) << line;
+    EXPECT_EQ(cells, 25) << line;
   }
   EXPECT_EQ(rows, 1 + 5 * 4);
 }
