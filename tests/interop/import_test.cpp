@@ -87,6 +87,14 @@ TEST_F(Import, PositionsBelowTheGroundAreRaisedAndTold) {
   EXPECT_THAT(result_.notes, testing::Contains(HasSubstr("up to 3.0 m below mean sea level")));
 }
 
+TEST_F(Import, PositionsOutsideTheTerrainAreTold) {
+  ImportOptions options;
+  options.terrain = {test::shippedScenario("data/jacksboro.tif")};
+  import(smallRecording(), options);
+  EXPECT_THAT(result_.notes,
+              testing::Contains(HasSubstr("positions are where the elevation files have no height")));
+}
+
 TEST_F(Import, BeamIsAnEmitterWithThePowerOfTheRecordingAndTheAntennaOfTheDatabase) {
   Recording recording = smallRecording();
   RecordedBeam beam;
