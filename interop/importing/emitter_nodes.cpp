@@ -21,6 +21,8 @@ namespace fs = std::filesystem;
 constexpr double kWidestBeam_deg = 15;
 /// Assumed where a recording tells that a beam turns or sweeps, but neither it nor the database how fast.
 constexpr double kAssumedRate_rpm = 6, kAssumedRate_deg_s = 30;
+/// A beamwidth from here on (deg) is no beam's.
+constexpr double kAllAround_deg = 359;
 /// A half sweep from here on (deg) is a motion of the beam.
 constexpr double kSweeps_deg = 2;
 constexpr std::size_t kMaxDwells = 5000, kMaxActive = 10000;
@@ -179,7 +181,7 @@ void EmitterMaker::setScan(MapBuilder& emitter, const BeamPiece& piece) {
                                                                     state.beamwidth_az_deg > kWidestBeam_deg);
     if (is_sector) {
       half_sweep_deg = state.beamwidth_az_deg / 2;
-      ++sectors_;
+      if (state.beamwidth_az_deg < kAllAround_deg) ++sectors_;
     }
   }
   const std::vector<Pointing> pointings = reduced(piece.pointings, kMaxDwells);

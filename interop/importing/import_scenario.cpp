@@ -246,6 +246,12 @@ void Importer::makeTracks() {
     tell("writing tracks", static_cast<double>(i) / static_cast<double>(chosen_.size()));
     chosen_[i].track = trackOf(*chosen_[i].object, window, 0, raise_m_[i], terrain_.get(), raised);
   }
+  if (raised.without_ground > 0) {
+    result_.notes.push_back(fmt::format(
+        "{} positions are where the elevation files have no height; the ground is taken at mean sea level "
+        "there. Give more files (--terrain), or a part of the area (--region, --only)",
+        raised.without_ground));
+  }
   if (raised.positions > 0) {
     result_.notes.push_back(fmt::format(
         "{} positions were up to {:.1f} m below {}; they are raised to 2 m above it", raised.positions,

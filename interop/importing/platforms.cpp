@@ -69,7 +69,10 @@ std::vector<PoseSample> trackOf(const RecordedObject& object, const TimeSpan& wi
     pose.t_s -= origin_s;
     pose.height_msl_m += raise_m;
     double ground_m = terrain == nullptr ? 0 : terrain->heightMsl_m(pose.latitude_deg, pose.longitude_deg);
-    if (std::isnan(ground_m)) ground_m = 0;
+    if (std::isnan(ground_m)) {
+      ++raised.without_ground;
+      ground_m = 0;
+    }
     if (pose.height_msl_m >= ground_m) continue;
     ++raised.positions;
     raised.deepest_m = std::max(raised.deepest_m, ground_m - pose.height_msl_m);

@@ -10,10 +10,11 @@
 
 namespace emscape::interop {
 
-/// What was raised because it was below the ground.
+/// What was raised because it was below the ground, and where no ground is known.
 struct Raised {
   long long positions = 0;
   double deepest_m = 0;
+  long long without_ground = 0;
 };
 
 /// Poses with times from `origin_s` on, of those within a window and one more at each side; raised by a

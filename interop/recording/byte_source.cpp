@@ -94,6 +94,9 @@ class ZipSource : public ByteSource {
     CSLDestroy(names);
     if (chosen.empty()) failReading(file, messages.explain("the zip file is damaged or has no file in it"));
     inner = chosen;
+    VSIStatBufL size{};
+    if (VSIStatL((archive + "/" + chosen).c_str(), &size) == 0)
+      size_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(size.st_size));
     file_ = VSIFOpenL((archive + "/" + chosen).c_str(), "rb");
     if (file_ == nullptr)
       failReading(file, messages.explain("'" + chosen + "' in the zip file cannot be opened"));
@@ -116,11 +119,14 @@ class ZipSource : public ByteSource {
     }
     return count;
   }
+  double fraction() const override {
+    return std::min(1.0, static_cast<double>(done_) / static_cast<double>(size_));
+  }
   std::string failure() const override { return failure_; }
 
  private:
   VSILFILE* file_ = nullptr;
-  std::uint64_t done_ = 0;
+  std::uint64_t done_ = 0, size_ = 1;
   std::string failure_;
 };
 

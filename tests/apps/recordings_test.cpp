@@ -61,10 +61,9 @@ TEST(Recordings, FaultsNameFileValueAndRemedy) {
     EXPECT_EQ(result.status, status) << result.err;
     return result.err;
   };
-  EXPECT_THAT(errorOf({"import", other, "-o", out}, 3),
-              HasSubstr("a.txt: error: no recording of a known format"));
+  EXPECT_THAT(errorOf({"import", other, "-o", out}, 3), HasSubstr("a.txt: no recording of a known format"));
   EXPECT_THAT(errorOf({"import", folder / "none", "-o", out}, 3),
-              HasSubstr("none: error: cannot read: no such file"));
+              HasSubstr("none: cannot read: no such file"));
   EXPECT_THAT(errorOf({"import", other, "-o", out, "--times", "5"}, 2),
               HasSubstr("--times '5' is not BEGIN:END"));
   EXPECT_THAT(errorOf({"import", other, "-o", out, "--region", "95,0,10"}, 2),

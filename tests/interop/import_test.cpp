@@ -87,6 +87,14 @@ TEST_F(Import, PositionsBelowTheGroundAreRaisedAndTold) {
   EXPECT_THAT(result_.notes, testing::Contains(HasSubstr("up to 3.0 m below mean sea level")));
 }
 
+TEST_F(Import, PositionsOutsideTheTerrainAreTold) {
+  ImportOptions options;
+  options.terrain = {test::shippedScenario("data/jacksboro.tif")};
+  import(smallRecording(), options);
+  EXPECT_THAT(result_.notes,
+              testing::Contains(HasSubstr("positions are where the elevation files have no height")));
+}
+
 TEST_F(Import, BeamIsAnEmitterWithThePowerOfTheRecordingAndTheAntennaOfTheDatabase) {
   Recording recording = smallRecording();
   RecordedBeam beam;
@@ -342,6 +350,21 @@ TEST(Export, UnknownEndingIsRefused) {
   const ScenarioPtr scenario = scenario::loadScenario(test::shippedScenario("quick.yaml"));
   EXPECT_THAT(test::errorOf([&] { exportScenario(scenario, nullptr, "a.hla"); }, ErrorCode::usage),
               HasSubstr("'a.hla' is no name of a recording; it ends in .acmi, .zip.acmi or .pcap"));
+}
+
+TEST(ShippedRecordings, BecomeTheScenarioThatTheyWereMadeOf) {
+  for (const char* name : {"jamming.zip.acmi", "jamming.pcap"}) {
+    const test::TemporaryFolder folder;
+    const std::string file = test::shippedScenario(std::string("recordings/") + name);
+    ImportOptions options;
+    options.scenario = folder / "out.yaml";
+    options.emitters = file + ".emitters.yaml";
+    const ImportResult result = importRecording(readRecording(file), options);
+    const ScenarioPtr scenario = scenario::loadScenario(options.scenario);
+    EXPECT_EQ(scenario->emitters.size(), 2u) << name;
+    EXPECT_NEAR(result.duration_s, 60, 1e-3) << name;
+    EXPECT_EQ(scenario->clock.epoch_utc.substr(0, 19), "2026-06-01T06:00:00") << name;
+  }
 }
 
 TEST(PublicRecordings, BecomeScenarios) {
