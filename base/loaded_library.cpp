@@ -20,8 +20,12 @@ LoadedLibrary::LoadedLibrary(const std::vector<std::string>& files, const std::s
   throw Error(ErrorCode::other, "cannot load " + title + " (" + reason + "); " + remedy);
 }
 
+void* LoadedLibrary::functionIfAny(const char* name) const {
+  return ::dlsym(handle_, name);
+}
+
 void* LoadedLibrary::function(const char* name) const {
-  void* const address = ::dlsym(handle_, name);
+  void* const address = functionIfAny(name);
   if (address == nullptr)
     throw Error(ErrorCode::other, file_ + " has no function " + name + ": it is of an older version");
   return address;

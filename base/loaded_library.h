@@ -18,6 +18,8 @@ class LoadedLibrary {
 
   /// @throws Error (other) naming the function and the library's file
   void* function(const char* name) const;
+  /// The same for a function that the library or one that it needs may have; null if none has.
+  void* functionIfAny(const char* name) const;
 
  private:
   std::string file_;

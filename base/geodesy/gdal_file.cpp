@@ -1,10 +1,24 @@
 #include "base/geodesy/gdal_file.h"
 
+#include <cstdint>
 #include <mutex>
 #include <system_error>
 
 namespace emscape::gdal {
 namespace fs = std::filesystem;
+
+namespace {
+
+/// netCDF files are read by HDF5, which prints, for each thread that does not forbid it, of attributes that a
+/// file need not have.
+void silenceHdf5() {
+  using SetHandler = int(std::int64_t stack, int (*handler)(std::int64_t, void*), void* data);
+  static void* const address = library().functionIfAny("H5Eset_auto2");
+  constexpr std::int64_t kDefaultStack = 0;
+  if (address != nullptr) reinterpret_cast<SetHandler*>(address)(kDefaultStack, nullptr, nullptr);
+}
+
+}  // namespace
 
 void prepare() {
   static std::once_flag once;
@@ -35,6 +49,7 @@ Dataset openFile(const fs::path& file, unsigned flags, const char* const* driver
     CPLError(CE_Failure, CPLE_OpenFailed, "%s", fault.c_str());
     return nullptr;
   }
+  silenceHdf5();
   return Dataset(GDALOpenEx(localName(file).c_str(), flags | GDAL_OF_READONLY, drivers, options, siblings));
 }
 

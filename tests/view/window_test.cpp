@@ -184,7 +184,7 @@ TEST_F(Window, TheTimeLineIsScrubbedZoomedPannedAndLimited) {
 {"do":"wait_state","state":"exact"}
 {"do":"expect","key":"shown_s","op":">","value":1.95}
 {"do":"expect","key":"shown_s","op":"<","value":2.1}
-{"do":"mouse","x":627,"y":359,"button":"left","to_x":495,"to_y":359}
+{"do":"mouse","x":614,"y":378,"button":"left","to_x":486,"to_y":378}
 {"do":"expect","key":"play_to_s","op":"==","value":3}
 {"do":"key","key":"["}
 {"do":"expect","key":"play_from_s","op":">","value":1.95}
