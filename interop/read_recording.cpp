@@ -120,13 +120,12 @@ Recording readRecording(const std::string& file, const ReadOptions& options, con
   const std::size_t size = openFile(file)->read(head.data(), head.size());
   const Format format = formatOf({head.data(), size});
   Recording recording;
-  std::string inner;
   switch (format) {
     case Format::acmi:
       recording = readAcmi(*openFile(file), file, progress);
       break;
     case Format::zip:
-      recording = readAcmi(*openZip(file, inner), file, progress);
+      recording = readAcmi(*openZip(file), file, progress);
       break;
     case Format::seven_zip:
       throw Error(ErrorCode::bad_input, {file, 0, 0},

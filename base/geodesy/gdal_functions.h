@@ -68,7 +68,7 @@ const LoadedLibrary& library();
   F(OSRGetAttrValue) F(OSRGetAuthorityCode) F(OSRGetAuthorityName) F(OSRGetAxesCount) \
   F(OSRGetLinearUnits) F(OSRGetName) F(OSRGetPROJSearchPaths) F(OSRImportFromEPSG) F(OSRImportFromProj4) \
   F(OSRIsGeocentric) F(OSRIsGeographic) F(OSRIsProjected) F(OSRNewSpatialReference) \
-  F(OSRSetAxisMappingStrategy) F(OSRSetPROJEnableNetwork) F(OSRSetWellKnownGeogCS) F(OSRStripVertical) F(VSIFCloseL) F(VSIFOpenL) F(VSIFReadL) F(VSIFree) F(VSIReadDirRecursive) F(VSIStatExL) \
+  F(OSRSetAxisMappingStrategy) F(OSRSetPROJEnableNetwork) F(OSRSetWellKnownGeogCS) F(OSRStripVertical) F(VSIFree) F(VSIStatExL) \
   F(VSIStatL)
 // clang-format on
 

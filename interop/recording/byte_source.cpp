@@ -11,7 +11,6 @@
 #include "base/files/descriptor.h"
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
-#include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::interop {
 namespace {
@@ -71,73 +70,10 @@ class TextSource : public ByteSource {
   std::size_t done_ = 0;
 };
 
-/// The largest recording in a zip file (bytes): text is compressed at most about 30 times.
-constexpr std::uint64_t kMaxUnzipped = std::uint64_t{16} << 30;
-
-class ZipSource : public ByteSource {
- public:
-  ZipSource(const std::string& file, std::string& inner) {
-    requireRegular(file);
-    if (file.find_first_of("{}") != std::string::npos)
-      failReading(file, "the name of a zip file may not contain braces; rename it");
-    const scenario::GdalMessages messages;
-    const std::string archive = "/vsizip/{" + gdal::localName(file) + "}";
-    char** const names = VSIReadDirRecursive(archive.c_str());
-    std::string chosen;
-    for (char** name = names; name != nullptr && *name != nullptr; ++name) {
-      const std::string candidate = *name;
-      if (candidate.empty() || candidate.back() == '/') continue;
-      const bool is_recording = candidate.size() > 5 && candidate.substr(candidate.size() - 5) == ".acmi";
-      if (chosen.empty() || is_recording) chosen = candidate;
-      if (is_recording) break;
-    }
-    CSLDestroy(names);
-    if (chosen.empty()) failReading(file, messages.explain("the zip file is damaged or has no file in it"));
-    inner = chosen;
-    VSIStatBufL size{};
-    if (VSIStatL((archive + "/" + chosen).c_str(), &size) == 0)
-      size_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(size.st_size));
-    file_ = VSIFOpenL((archive + "/" + chosen).c_str(), "rb");
-    if (file_ == nullptr)
-      failReading(file, messages.explain("'" + chosen + "' in the zip file cannot be opened"));
-  }
-  ~ZipSource() override {
-    const scenario::GdalMessages messages;
-    VSIFCloseL(file_);
-  }
-  ZipSource(const ZipSource&) = delete;
-  ZipSource& operator=(const ZipSource&) = delete;
-
-  std::size_t read(char* bytes, std::size_t size) override {
-    const scenario::GdalMessages messages;
-    const std::size_t count = VSIFReadL(bytes, 1, size, file_);
-    done_ += count;
-    if (count < size && messages.hasFailure()) failure_ = messages.explain("the zip file is damaged");
-    if (done_ > kMaxUnzipped) {
-      failure_ = "the zip file unpacks to more than 16 GiB";
-      return 0;
-    }
-    return count;
-  }
-  double fraction() const override {
-    return std::min(1.0, static_cast<double>(done_) / static_cast<double>(size_));
-  }
-  std::string failure() const override { return failure_; }
-
- private:
-  VSILFILE* file_ = nullptr;
-  std::uint64_t done_ = 0, size_ = 1;
-  std::string failure_;
-};
-
 }  // namespace
 
 std::unique_ptr<ByteSource> openFile(const std::string& file) {
   return std::make_unique<FileSource>(file);
-}
-
-std::unique_ptr<ByteSource> openZip(const std::string& file, std::string& inner) {
-  return std::make_unique<ZipSource>(file, inner);
 }
 
 std::unique_ptr<ByteSource> openText(std::string_view text) {

@@ -24,9 +24,10 @@ class ByteSource {
 
 /// Opens a regular file. @throws Error (bad_input) that names it and the cause
 std::unique_ptr<ByteSource> openFile(const std::string& file);
-/// Opens the first recording in a zip file, by GDAL.
-/// @param inner  receives its name  @throws Error (bad_input)
-std::unique_ptr<ByteSource> openZip(const std::string& file, std::string& inner);
+/// Opens the recording in a zip file: the first file in it whose name ends in .acmi, else the first file.
+/// The directory at the end of the zip file is not needed, so that one that was cut is read to the cut.
+/// @throws Error (bad_input)
+std::unique_ptr<ByteSource> openZip(const std::string& file);
 /// A text in memory, which must outlive the source.
 std::unique_ptr<ByteSource> openText(std::string_view text);
 

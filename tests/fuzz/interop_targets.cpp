@@ -1,4 +1,6 @@
 // Recordings of other programs, and databases of emitters.
+#include <stdexcept>
+
 #include "emscape/interop/export_scenario.h"
 #include "emscape/interop/import_scenario.h"
 #include "emscape/interop/read_recording.h"
@@ -54,6 +56,18 @@ void readRecordingFile(const fs::path& file, const std::string&) {
   for (const interop::RecordedObject& object : recording.objects) checkFuzzMessage(object.name);
 }
 
+/// Whatever a recording has, the scenario that is written of it is valid.
+void importRecordingFile(const fs::path& file, const std::string&) {
+  interop::ImportOptions options;
+  options.scenario = file.parent_path() / "out.yaml";
+  interop::importRecording(interop::readRecording(file), options);
+  for (const scenario::Problem& problem : scenario::parseScenario(options.scenario).problems) {
+    if (problem.severity == scenario::Severity::error)
+      throw std::logic_error("the imported scenario is not valid: " + problem.message);
+  }
+  fs::remove_all(file.parent_path() / "out_tracks");
+}
+
 const FuzzTargetsAdded added({
     {"acmi", "input.acmi", readRecordingFile,
      [] {
@@ -95,6 +109,18 @@ const FuzzTargetsAdded added({
        checkFuzzMessage(recorder.finish().tally.first_bad);
      },
      pdus},
+    {"import_acmi", "input.acmi", importRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           recordingOf(".acmi"),
+           "FileType=text/acmi/tacview\nFileVersion=2.2\n1,T=5|52|10|0|0|90,Type=Sea+Watercraft,Name=Boat\n"
+           "2,T=5|52|3000,Type=Air+FixedWing,Name=F-14B,RadarMode=1,RadarAzimuth=5,RadarHorizontalBeamwidth="
+           "3\n"
+           "#10\n1,T=5.01|52\n2,T=5.1|52.1,RadarAzimuth=50,LockedTarget=1,LockedTargetMode=1\n#30\n2,"
+           "RadarMode=0\n-1\n"};
+     }},
+    {"import_capture", "input.pcap", importRecordingFile,
+     [] { return std::vector<std::string>{recordingOf(".pcap")}; }},
     {"emitter_database",
      "",
      [](const fs::path&, const std::string& text) { interop::parseEmitterDatabase("input.yaml", text); },

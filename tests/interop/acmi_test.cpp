@@ -193,6 +193,18 @@ TEST_F(AcmiSample, TextAndZipAreEqual) {
   }
 }
 
+TEST_F(AcmiSample, CutZipIsReadToTheCut) {
+  const std::string archive = test::readFile(files_[1]);
+  const test::TemporaryFolder folder;
+  const Recording r = readRecording(folder.write("a.zip.acmi", archive.substr(0, archive.size() / 2)));
+  EXPECT_EQ(r.objects.size(), 14u);
+  EXPECT_THAT(r.tally.torn, HasSubstr("the zip file is cut"));
+  std::string damaged = archive;
+  damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 0x10);
+  EXPECT_THAT(readRecording(folder.write("b.zip.acmi", damaged)).tally.torn,
+              HasSubstr("the zip file is damaged"));
+}
+
 TEST_F(AcmiSample, CutAnywhereItIsReadToTheCut) {
   const std::string text = test::readFile(files_[0]);
   for (const double part : {0.01, 0.3, 0.77777}) {
