@@ -69,8 +69,8 @@ void parallelFor(int count, int grain, const std::function<void(int begin, int e
   const auto work = [&] {
     for (long long begin; (begin = next.fetch_add(piece)) < count;) {
       try {
-        runRange(current, static_cast<int>(begin), static_cast<int>(std::min<long long>(begin + piece, count)),
-                 grain, body);
+        runRange(current, static_cast<int>(begin),
+                 static_cast<int>(std::min<long long>(begin + piece, count)), grain, body);
       } catch (...) {
         std::lock_guard<std::mutex> lock(failure_mutex);
         if (!failure) failure = std::current_exception();

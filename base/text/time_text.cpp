@@ -18,8 +18,8 @@ std::string timeText(double time_s, double span_s) {
   const bool has_days = longest_s >= kDay_s;
   std::string text = time_s < 0 ? "−" : "";
   if (has_days) text += fmt::format("{} d ", days);
-  text += fmt::format(has_days ? "{:02}:{:02}:{:02}" : "{}:{:02}:{:02}",
-                      seconds / 3600 % 24, seconds / 60 % 60, seconds % 60);
+  text += fmt::format(has_days ? "{:02}:{:02}:{:02}" : "{}:{:02}:{:02}", seconds / 3600 % 24,
+                      seconds / 60 % 60, seconds % 60);
   return tenths % 10 == 0 ? text : fmt::format("{}.{}", text, tenths % 10);
 }
 

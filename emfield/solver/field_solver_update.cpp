@@ -75,7 +75,8 @@ void FieldSolver::Impl::setEnginePlan(bool channels_changed) {
 }
 
 /// After a failure: the results may belong to either scenario.
-/// @param keeps_geometry  the slots of emitters with a geometry are valid; the next update compares the inputs
+/// @param keeps_geometry  the slots of emitters with a geometry are valid; the next update compares the
+/// inputs
 void FieldSolver::Impl::discardResults(bool keeps_geometry) {
   is_stale = true;
   static_count = recombined_since = 0;

@@ -27,8 +27,8 @@ struct ActivityBar {
 /// The usual rates, ascending, in scenario seconds per second; negative rates (backwards) are not listed.
 const std::vector<double>& playRates();
 
-/// Time is between the first and the last step. A continuous time line shows all times, others those of steps.
-/// For one thread.
+/// Time is between the first and the last step. A continuous time line shows all times, others those of
+/// steps. For one thread.
 class Timeline {
  public:
   /// No steps: nothing moves before setSteps().

@@ -44,7 +44,8 @@ class UndoStack {
   long long stepsMade() const { return steps_made_; }
   bool canUndo() const { return !past_.empty() || drag_; }
   bool canRedo() const { return !future_.empty() && !drag_; }
-  /// Number of steps to another state, latest first: negative by undo(), positive by redo(); 0: there is none.
+  /// Number of steps to another state, latest first: negative by undo(), positive by redo(); 0: there is
+  /// none.
   int stepsTo(const State& state) const {
     const auto stepsIn = [&](const std::vector<State>& states) {
       const auto found = std::find(states.rbegin(), states.rend(), state);

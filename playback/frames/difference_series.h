@@ -48,7 +48,7 @@ class DifferenceSeries {
   const std::string name_;
   std::shared_ptr<VolumeSeries> reference_;
   StepCache<std::vector<volume::Volume>> cache_;
-  std::optional<double> between_s_;  // time of between_
+  std::optional<double> between_s_;      // time of between_
   std::vector<volume::Volume> between_;  // the last volumes that are not of a step
 };
 

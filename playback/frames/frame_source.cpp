@@ -7,9 +7,9 @@
 #include <filesystem>
 
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "emscape/emfield/columns/terrain_mesh.h"
 #include "emscape/playback/frames/scene.h"
-#include "emscape/base/work.h"
 #include "emscape/volume/format/file.h"
 #include "playback/frames/difference_source.h"
 #include "playback/frames/platform_tracks.h"

@@ -59,8 +59,8 @@ struct FieldsStatus {
   long long fields_abandoned = 0;
   double abandon_ms = 0;  ///< longest time from the end of a request's patience to the end of the field
   WorkProgress progress;  ///< of the field in progress; of the opening before the first
-  long long failed_revision = 0;      ///< the last request that failed
-  std::string error;                  ///< reason; empty after another request has succeeded
+  long long failed_revision = 0;  ///< the last request that failed
+  std::string error;              ///< reason; empty after another request has succeeded
   ErrorCode error_code = ErrorCode::other;
   SeriesRange series;  ///< of the last completed search
   long long wake_ups = 0;

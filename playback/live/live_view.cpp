@@ -101,8 +101,7 @@ struct LiveView::Impl {
             },
             field,
             {options.cache_bytes, options.min_seek_interval_ms, options.min_play_interval_ms,
-             options.steps_ahead, options.solve_threads,
-             solveNiceness(options)},
+             options.steps_ahead, options.solve_threads, solveNiceness(options)},
             {[this](FieldDelivery delivery, Mailbox<FieldRequest>::Time asked) {
                caster.deliver(std::move(delivery), asked);
              },
@@ -192,8 +191,8 @@ void LiveView::show(const ViewState& view, std::shared_ptr<const scenario::Scena
     const ViewState& before = impl_->view.view;
     const ViewChange change = changeOf(before, view);
     const bool is_other_time =
-        change.time && (fields.times_s.empty() ||
-                        fieldTime_s(fields, view.time_s) != fieldTime_s(fields, before.time_s));
+        change.time &&
+        (fields.times_s.empty() || fieldTime_s(fields, view.time_s) != fieldTime_s(fields, before.time_s));
     is_other_view = change.size || change.camera || change.settings || change.colors || change.ground ||
                     change.labels || change.pattern;
     is_other_field = change.field || is_other_time || (edited && edited != impl_->field.scenario);

@@ -61,11 +61,11 @@ struct LiveStatus {
   /// The picture shows the last request, and each of its pixels is cast. After a failure: the last valid
   /// request.
   bool exact = false;
-  double asked_s = 0;       ///< time of the last requested field
-  double shown_s = 0;       ///< time of the picture's field
-  bool computing = false;   ///< the last requested field is being computed, or no picture shows it yet
-  WorkProgress progress;    ///< of the field in progress, and of the opening of the input
-  double fields_per_s = 0;  ///< different fields in the pictures of the last two seconds; 0: at most one
+  double asked_s = 0;          ///< time of the last requested field
+  double shown_s = 0;          ///< time of the picture's field
+  bool computing = false;      ///< the last requested field is being computed, or no picture shows it yet
+  WorkProgress progress;       ///< of the field in progress, and of the opening of the input
+  double fields_per_s = 0;     ///< different fields in the pictures of the last two seconds; 0: at most one
   bool is_continuous = false;  ///< there are fields between the steps, too
   bool failed = false;     ///< the last requested field cannot be computed; the picture shows an earlier one
   bool searching = false;  ///< searchSeriesRange() is in progress
@@ -84,7 +84,7 @@ struct LiveStatus {
   long long fields_computed = 0;
   long long fields_abandoned = 0;  ///< because a request superseded them
   double abandon_ms = 0;           ///< longest time that this took
-  long long wake_ups = 0;  ///< of both threads since the start; constant while there is no work
+  long long wake_ups = 0;          ///< of both threads since the start; constant while there is no work
 
   /// True if nothing is to be done until the next input.
   bool isSettled() const { return exact && state == render::ControllerState::idle && !searching; }
@@ -142,13 +142,12 @@ class LiveView {
 
   /// Shows another view: only what differs from the last one is computed and drawn.
   ///
-  /// The time is the nearest that there is a field for, also beyond the ends: that of a step, or of a computed
-  /// scenario any. An edited scenario keeps the results that the
-  /// edit does not invalidate; cached steps are dropped. A comparison is with the reference of the first
-  /// view, else with the opened scenario without edits; an edit does not recompute the reference. Of another
-  /// input, scenario or mesh than the first view's nothing is shown. If a model refuses an input, fields
-  /// cannot be compared, or settings are out of their range, the message is in status().error and the picture
-  /// stays as it was in this respect.
+  /// The time is the nearest that there is a field for, also beyond the ends: that of a step, or of a
+  /// computed scenario any. An edited scenario keeps the results that the edit does not invalidate; cached
+  /// steps are dropped. A comparison is with the reference of the first view, else with the opened scenario
+  /// without edits; an edit does not recompute the reference. Of another input, scenario or mesh than the
+  /// first view's nothing is shown. If a model refuses an input, fields cannot be compared, or settings are
+  /// out of their range, the message is in status().error and the picture stays as it was in this respect.
   /// @param edited       the scenario with the edits of the view; null: as it was shown last
   /// @param patience_ms  with the field in progress, if another one is requested: see Patience
   void show(const ViewState& view, std::shared_ptr<const scenario::Scenario> edited = nullptr,

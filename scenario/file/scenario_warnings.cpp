@@ -151,7 +151,7 @@ void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseConte
   context.problems.addWarning(scan.locationOf(rotates ? "rate_rpm" : "rate_deg_s"), unlit->warning);
 }
 
-/// Warns about emitters that are never over the region. Stand-off jammers may be; a mistyped position is too.
+/// Warns about emitters that are never within a region's length of the region, as at a mistyped position.
 void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseContext& context) {
   const GeoFrame frame(scenario.region.origin);
   const Vec3d half = scenario.region.size_m * 0.5;
@@ -166,7 +166,7 @@ void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseC
     double nearest_m = HUGE_VAL;
     for (const TrackPoint& point : scenario.platforms[emitter.platform].track)
       nearest_m = std::min(nearest_m, outside_m(point));
-    if (!(nearest_m > 0) || std::isinf(nearest_m)) continue;
+    if (!(nearest_m > 2 * std::max(half.x, half.y)) || std::isinf(nearest_m)) continue;
     warning.add(
         sections[i].locationOf("platform"), emitter.name,
         fmt::format("emitter '{}' is outside the region, {:.1f} km from it: its field in the region is "

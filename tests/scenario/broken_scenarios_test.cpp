@@ -1,4 +1,6 @@
 // Broken scenarios: the first lines of each list exactly the errors that must be found, with their locations.
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <ostream>
 #include <random>
@@ -137,7 +139,9 @@ output: {quantities: [snr_db], combine: per_emitter}
 };
 
 TEST_F(DamagedScenario, IsValidBeforeItIsDamaged) {
-  EXPECT_EQ(told(parseScenario(folder_.write("whole.yaml", text_)).problems), "");
+  const std::string remarks = told(parseScenario(folder_.write("whole.yaml", text_)).problems);
+  EXPECT_THAT(remarks, testing::HasSubstr("is outside the region"));
+  EXPECT_EQ(std::count(remarks.begin(), remarks.end(), '\n'), 1) << remarks;
 }
 
 TEST_F(DamagedScenario, CutAtAnyByteIsReadOrRefused) {

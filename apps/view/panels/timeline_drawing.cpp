@@ -95,8 +95,8 @@ void drawRows(ImDrawList& list, const TimeAxis& axis, const Session& session, fl
       list.AddRectFilled({names_left, y}, {axis.right(), y + row},
                          colorOf(accentColor(session.theme()), 0.3F), 2 * scale);
     }
-    ImGui::PushStyleColor(ImGuiCol_Text, is_selected ? accentColor(session.theme())
-                                                     : ImGui::GetStyleColorVec4(ImGuiCol_Text));
+    ImGui::PushStyleColor(
+        ImGuiCol_Text, is_selected ? accentColor(session.theme()) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
     drawName(list, bars[i].emitter, {names_left, y + (row - ImGui::GetTextLineHeight()) / 2},
              axis.left - 6 * scale);
     ImGui::PopStyleColor();

@@ -10,8 +10,8 @@
 #include "base/text/failure_text.h"
 #include "base/thread_arena.h"
 #include "emscape/base/error.h"
-#include "emscape/playback/frames/field_series.h"
 #include "emscape/base/work.h"
+#include "emscape/playback/frames/field_series.h"
 
 namespace emscape::view {
 namespace {

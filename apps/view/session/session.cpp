@@ -69,10 +69,10 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
 
 std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;
-  for (const auto& topic : {timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(), itemVerbs(),
-                            selectionVerbs(), toolVerbs(), probeVerbs(), pictureVerbs(), planeVerbs(),
-                            transferVerbs(), windowVerbs(), stateVerbs(), fileVerbs(), recordVerbs(),
-                            programVerbs(), quitVerbs()}) {
+  for (const auto& topic :
+       {timeVerbs(), cameraVerbs(), followVerbs(), scenarioVerbs(), itemVerbs(), selectionVerbs(),
+        toolVerbs(), probeVerbs(), pictureVerbs(), planeVerbs(), transferVerbs(), windowVerbs(), stateVerbs(),
+        fileVerbs(), recordVerbs(), programVerbs(), quitVerbs()}) {
     all.insert(all.end(), topic.begin(), topic.end());
   }
   return all;
@@ -201,8 +201,7 @@ bool Session::update() {
   const std::string words = noted_words_;
   noteProgram();
   return touched || words != noted_words_ || is_probed || is_read || has_history || notice_ends ||
-         picture_ != old_picture ||
-         status_.state != before.state || status_.computing != before.computing ||
+         picture_ != old_picture || status_.state != before.state || status_.computing != before.computing ||
          status_.cached_steps != before.cached_steps || timeline_.playing();
 }
 

@@ -30,7 +30,8 @@ struct WorkProgress {
   double fraction = -1;  ///< completed, 0..1; negative: unknown
 };
 
-/// Work of one thread and its loops (parallelFor). Models pass a checkpoint() at least every few milliseconds.
+/// Work of one thread and its loops (parallelFor). Models pass a checkpoint() at least every few
+/// milliseconds.
 class Work {
  public:
   using Time = std::chrono::steady_clock::time_point;

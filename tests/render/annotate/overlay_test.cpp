@@ -43,8 +43,11 @@ Annotations everything(const TransferFunction& function) {
   annotations.planes.insert(annotations.planes.begin() + 1, annotations.planes[0]);
   annotations.planes[1].on = false;
   std::swap(annotations.planes[1], annotations.planes[2]);
-  annotations.tracks.push_back(
-      {MarkerKind::jammer, {{-9000, 4000, 2500}, {0, 7000, 2500}, {40000, 7000, 2500}}, {}, 0.5, Affiliation::none});
+  annotations.tracks.push_back({MarkerKind::jammer,
+                                {{-9000, 4000, 2500}, {0, 7000, 2500}, {40000, 7000, 2500}},
+                                {},
+                                0.5,
+                                Affiliation::none});
   return annotations;
 }
 

@@ -81,7 +81,7 @@ class FieldSeries : public VolumeSeries {
   std::optional<LoadedScenario> reference_;
   std::unique_ptr<DifferenceSeries> difference_;
   std::vector<emfield::Channel> difference_channels_;
-  std::optional<double> updated_s_;  // time of the solver's field
+  std::optional<double> updated_s_;   // time of the solver's field
   bool changed_since_given_ = false;  // by an update since the last compute()
   bool changed_ = true;
 };
