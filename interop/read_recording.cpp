@@ -1,4 +1,4 @@
-#include "emscape/interop/read_recording.h"
+#include "interop/read_recording.h"
 
 #include <fmt/format.h>
 

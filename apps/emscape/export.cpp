@@ -5,8 +5,8 @@
 
 #include "apps/common/console.h"
 #include "apps/emscape/subcommands.h"
-#include "emscape/interop/export_scenario.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "interop/export_scenario.h"
 
 namespace emscape::app {
 namespace {

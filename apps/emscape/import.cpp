@@ -9,9 +9,9 @@
 #include "apps/emscape/subcommands.h"
 #include "document/schema_check.h"
 #include "emscape/base/log.h"
-#include "emscape/interop/import_scenario.h"
-#include "emscape/interop/read_recording.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "interop/import_scenario.h"
+#include "interop/read_recording.h"
 #include "report/runs/import_report.h"
 
 namespace emscape::app {

@@ -8,7 +8,7 @@
 #include <unordered_map>
 
 #include "emscape/base/progress.h"
-#include "emscape/interop/recording.h"
+#include "interop/recording.h"
 #include "interop/recording/byte_source.h"
 
 namespace emscape::interop {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "emscape/interop/recording.h"
+#include "interop/recording.h"
 #include "interop/recording/byte_source.h"
 
 namespace emscape::interop::dis {

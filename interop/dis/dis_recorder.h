@@ -6,11 +6,11 @@
 #include <unordered_map>
 #include <utility>
 
-#include "emscape/interop/read_recording.h"
-#include "emscape/interop/recording.h"
 #include "interop/dis/datagrams.h"
 #include "interop/dis/pdu.h"
 #include "interop/dis/sender_clock.h"
+#include "interop/read_recording.h"
+#include "interop/recording.h"
 
 namespace emscape::interop::dis {
 

@@ -1,4 +1,4 @@
-#include "emscape/interop/export_scenario.h"
+#include "interop/export_scenario.h"
 
 #include <fmt/format.h>
 

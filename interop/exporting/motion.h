@@ -4,8 +4,8 @@
 #include <memory>
 #include <vector>
 
-#include "emscape/interop/recording.h"
 #include "emscape/scenario/model/scenario.h"
+#include "interop/recording.h"
 
 namespace emscape::interop {
 

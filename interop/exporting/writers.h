@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "emscape/interop/export_scenario.h"
+#include "interop/export_scenario.h"
 #include "interop/exporting/motion.h"
 
 namespace emscape::interop {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "emscape/interop/recording.h"
+#include "interop/recording.h"
 
 namespace emscape::interop {
 

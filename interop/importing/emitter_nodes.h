@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "emscape/interop/import_scenario.h"
 #include "interop/emitters/emitter_database.h"
+#include "interop/import_scenario.h"
 #include "interop/importing/beam_pieces.h"
 #include "interop/importing/nodes.h"
 

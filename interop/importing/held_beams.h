@@ -1,7 +1,7 @@
 /// Beams that are held on a target.
 #pragma once
 
-#include "emscape/interop/recording.h"
+#include "interop/recording.h"
 
 namespace emscape::interop {
 

@@ -1,4 +1,4 @@
-#include "emscape/interop/import_scenario.h"
+#include "interop/import_scenario.h"
 
 #include <fmt/format.h>
 

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "emscape/interop/recording.h"
 #include "emscape/scenario/terrain/terrain.h"
 #include "interop/importing/nodes.h"
+#include "interop/recording.h"
 
 namespace emscape::interop {
 

@@ -1,4 +1,4 @@
-#include "emscape/interop/recording.h"
+#include "interop/recording.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "emscape/interop/recording.h"
+#include "interop/recording.h"
 
 namespace emscape::interop {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "emscape/interop/recording.h"
+#include "interop/recording.h"
 #include "interop/recording/samples.h"
 
 namespace emscape::interop {

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "emscape/interop/import_scenario.h"
+#include "interop/import_scenario.h"
 #include "report/json.h"
 
 namespace emscape::report {

@@ -1,14 +1,14 @@
 // Recordings of other programs, and databases of emitters.
 #include <stdexcept>
 
-#include "emscape/interop/export_scenario.h"
-#include "emscape/interop/import_scenario.h"
-#include "emscape/interop/read_recording.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "interop/acmi/acmi_reader.h"
 #include "interop/dis/datagrams.h"
 #include "interop/dis/dis_recorder.h"
 #include "interop/emitters/emitter_database.h"
+#include "interop/export_scenario.h"
+#include "interop/import_scenario.h"
+#include "interop/read_recording.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

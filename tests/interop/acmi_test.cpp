@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "emscape/interop/read_recording.h"
 #include "interop/acmi/acmi_reader.h"
+#include "interop/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"

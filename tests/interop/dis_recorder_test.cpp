@@ -6,9 +6,9 @@
 
 #include <cmath>
 
-#include "emscape/interop/read_recording.h"
 #include "interop/dis/dead_reckoning.h"
 #include "interop/dis/orientation.h"
+#include "interop/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/reference_data.h"
 

@@ -4,12 +4,12 @@
 
 #include <cmath>
 
-#include "emscape/interop/export_scenario.h"
-#include "emscape/interop/import_scenario.h"
-#include "emscape/interop/read_recording.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "interop/export_scenario.h"
+#include "interop/import_scenario.h"
 #include "interop/importing/beam_pieces.h"
+#include "interop/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"
