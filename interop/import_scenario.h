@@ -9,7 +9,7 @@
 
 #include "emscape/base/enum_names.h"
 #include "emscape/base/progress.h"
-#include "interop/recording.h"
+#include "interop/recording/recording.h"
 
 namespace emscape::interop {
 

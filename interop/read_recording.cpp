@@ -1,4 +1,4 @@
-#include "interop/read_recording.h"
+#include "interop/recording/read_recording.h"
 
 #include <fmt/format.h>
 

@@ -11,7 +11,7 @@
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "interop/import_scenario.h"
-#include "interop/read_recording.h"
+#include "interop/recording/read_recording.h"
 #include "report/runs/import_report.h"
 
 namespace emscape::app {

@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "emscape/base/progress.h"
-#include "interop/recording.h"
 #include "interop/recording/byte_source.h"
+#include "interop/recording/recording.h"
 
 namespace emscape::interop {
 

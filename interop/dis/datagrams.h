@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "interop/recording.h"
 #include "interop/recording/byte_source.h"
+#include "interop/recording/recording.h"
 
 namespace emscape::interop::dis {
 

@@ -9,8 +9,8 @@
 #include "interop/dis/datagrams.h"
 #include "interop/dis/pdu.h"
 #include "interop/dis/sender_clock.h"
-#include "interop/read_recording.h"
-#include "interop/recording.h"
+#include "interop/recording/read_recording.h"
+#include "interop/recording/recording.h"
 
 namespace emscape::interop::dis {
 

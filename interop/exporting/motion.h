@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "emscape/scenario/model/scenario.h"
-#include "interop/recording.h"
+#include "interop/recording/recording.h"
 
 namespace emscape::interop {
 

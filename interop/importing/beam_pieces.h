@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "interop/recording.h"
+#include "interop/recording/recording.h"
 
 namespace emscape::interop {
 

@@ -1,4 +1,4 @@
-#include "interop/recording.h"
+#include "interop/recording/recording.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "interop/recording.h"
+#include "interop/recording/recording.h"
 
 namespace emscape::interop {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "interop/recording.h"
+#include "interop/recording/recording.h"
 #include "interop/recording/samples.h"
 
 namespace emscape::interop {

@@ -8,7 +8,7 @@
 #include "interop/emitters/emitter_database.h"
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
-#include "interop/read_recording.h"
+#include "interop/recording/read_recording.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "interop/acmi/acmi_reader.h"
-#include "interop/read_recording.h"
+#include "interop/recording/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"

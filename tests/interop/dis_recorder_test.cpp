@@ -8,7 +8,7 @@
 
 #include "interop/dis/dead_reckoning.h"
 #include "interop/dis/orientation.h"
-#include "interop/read_recording.h"
+#include "interop/recording/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/reference_data.h"
 

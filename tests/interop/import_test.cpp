@@ -9,7 +9,7 @@
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
 #include "interop/importing/beam_pieces.h"
-#include "interop/read_recording.h"
+#include "interop/recording/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "emscape/base/progress.h"
-#include "interop/recording.h"
+#include "interop/recording/recording.h"
 
 namespace emscape::interop {
 
