@@ -45,6 +45,13 @@ std::string printable(const std::string& name) {
   return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
+/// The platform's name and the row's; a beam that is an object of its own may have both already.
+std::string emitterName(const std::string& platform, const std::string& row) {
+  const bool has_both =
+      platform.size() > row.size() && platform.compare(platform.size() - row.size(), row.size(), row) == 0;
+  return has_both ? platform : platform + " " + row;
+}
+
 /// An antenna whose files are named from another folder.
 DocumentNodePtr movedAntenna(const DocumentNodePtr& antenna, const std::string& database,
                              const fs::path& folder) {
@@ -304,8 +311,8 @@ void EmitterMaker::makeOfBeam(const RecordedObject& object, const RecordedBeam& 
   if (cut) ++beams_cut_;
   for (const BeamPiece& piece : pieces) {
     std::string fault;
-    const DocumentNodePtr emitter = emitterNode(origin, &piece, piece.active,
-                                                names_.unique(platform + " " + origin.name), platform, fault);
+    const DocumentNodePtr emitter = emitterNode(
+        origin, &piece, piece.active, names_.unique(emitterName(platform, origin.name)), platform, fault);
     count(fault.empty() ? origin.name : beam.name, origin.source, fault);
     if (!emitter) continue;
     emitters.push_back(emitter);
@@ -325,8 +332,8 @@ std::vector<DocumentNodePtr> EmitterMaker::make(const RecordedObject& object,
   if (row == nullptr) return emitters;
   std::string fault;
   const Origin origin{row->emitter, row->name, row->source, row->file, row->antenna_height_m};
-  const DocumentNodePtr emitter =
-      emitterNode(origin, nullptr, presence, names_.unique(platform + " " + row->name), platform, fault);
+  const DocumentNodePtr emitter = emitterNode(
+      origin, nullptr, presence, names_.unique(emitterName(platform, row->name)), platform, fault);
   count(row->name, row->source, fault);
   if (emitter) {
     emitters.push_back(emitter);

@@ -361,7 +361,9 @@ TEST(ShippedRecordings, BecomeTheScenarioThatTheyWereMadeOf) {
     options.emitters = file + ".emitters.yaml";
     const ImportResult result = importRecording(readRecording(file), options);
     const ScenarioPtr scenario = scenario::loadScenario(options.scenario);
-    EXPECT_EQ(scenario->emitters.size(), 2u) << name;
+    ASSERT_EQ(scenario->emitters.size(), 2u) << name;
+    EXPECT_EQ(scenario->emitters[0].name, "ridge site search radar") << name;
+    EXPECT_EQ(scenario->emitters[1].name, "helicopter stand-off jammer") << name;
     EXPECT_NEAR(result.duration_s, 60, 1e-3) << name;
     EXPECT_EQ(scenario->clock.epoch_utc.substr(0, 19), "2026-06-01T06:00:00") << name;
   }
