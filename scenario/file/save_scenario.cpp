@@ -1,3 +1,5 @@
+#include "scenario/file/save_scenario.h"
+
 #include <algorithm>
 #include <filesystem>
 
@@ -68,18 +70,20 @@ std::string textFor(const ScenarioSource& source, const fs::path& folder) {
 
 }  // namespace
 
-void saveScenario(const Scenario& scenario, const std::string& file) {
+std::string scenarioTextIn(const Scenario& scenario, const fs::path& folder) {
   if (!scenario.source) {
     throw Error(ErrorCode::bad_input, "the scenario was not read from a file: there is no text to save");
   }
-  const fs::path folder = fs::absolute(file).parent_path().lexically_normal();
-  std::string text;
   try {
-    text = textFor(*scenario.source, folder);
+    return textFor(*scenario.source, fs::absolute(folder).lexically_normal());
   } catch (const Error& error) {
     throw Error(error.code(), {scenario.file, 0, 0},
                 "the files that it names cannot be named from " + folder.string() + ": " + error.message());
   }
+}
+
+void saveScenario(const Scenario& scenario, const std::string& file) {
+  const std::string text = scenarioTextIn(scenario, fs::absolute(file).parent_path());
   writeWhole(file, [&text](std::ostream& stream) { stream << text; });
 }
 
