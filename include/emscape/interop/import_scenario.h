@@ -1,0 +1,83 @@
+/// Makes a scenario of a recording.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "emscape/base/enum_names.h"
+#include "emscape/base/progress.h"
+#include "emscape/interop/recording.h"
+
+namespace emscape::interop {
+
+/// Meaning of the beamwidths of a recording: those of the beam, or those of the sector that it searches,
+/// which many programs write. by_size: beam up to 15 degrees.
+enum class BeamwidthMeaning { by_size, scan, beam };
+constexpr auto namesOf(BeamwidthMeaning) {
+  return std::array{"by_size", "scan", "beam"};
+}
+
+/// A square region of the field.
+struct RegionRequest {
+  double latitude_deg = 0;
+  double longitude_deg = 0;
+  double size_km = 0;
+};
+/// "36.3,-84.2,80". @throws Error (usage) with the allowed ranges
+RegionRequest parseRegion(const std::string& text);
+
+struct ImportOptions {
+  std::string scenario;                 ///< the file to write; the tracks go into STEM_tracks beside it
+  std::string emitters;                 ///< emitter database; empty: the starter set
+  std::string base;                     ///< scenario to which the recording is added; empty: none
+  std::vector<std::string> terrain;     ///< elevation files
+  std::optional<RegionRequest> region;  ///< none: around all platforms, or that of the base
+  std::optional<TimeSpan> times;        ///< part of the recording, in its own seconds
+  std::vector<std::string> only;  ///< patterns of names and types of objects; empty: see importRecording()
+  BeamwidthMeaning beamwidth = BeamwidthMeaning::by_size;
+};
+
+/// Objects of one type.
+struct ImportedType {
+  std::string type;
+  Domain domain = Domain::other;
+  int objects = 0;
+  int emitters = 0;  ///< that they carry in the scenario
+};
+
+/// Emitters of one row of the database, or beams that no row matches.
+struct ImportedEmitters {
+  std::string name;    ///< of the row; of the beam if it is not matched
+  std::string source;  ///< of the row's figures
+  std::string fault;   ///< why they are not in the scenario; empty: they are
+  int count = 0;
+};
+
+struct ImportResult {
+  std::string scenario;  ///< the written file
+  std::string tracks;    ///< folder of the written tracks; empty: no platform moves
+  int track_files = 0;
+  std::string format;
+  std::string epoch_utc;  ///< of t = 0; empty: the recording has none
+  TimeSpan recorded;      ///< of the whole recording
+  double duration_s = 0;  ///< of the scenario
+  std::vector<ImportedType> types;
+  std::vector<ImportedEmitters> emitters;
+  std::map<std::string, int> left_out;  ///< objects, by reason
+  ReadingTally tally;
+  std::vector<std::string> notes;  ///< assumptions of the conversion, each with its effect
+};
+
+/// Writes a scenario, and CSV tracks for the platforms that move. Without `only`, scenery (reference points,
+/// effects) and weapons without an emission are left out.
+/// Emitters are the recording's beams with what the database has on them; an object without beams has the
+/// emitter of the first row that matches it.
+/// @throws Error (bad_input): no object or emitter is left, a fault in the database or the base; (other): a
+/// file cannot be written
+ImportResult importRecording(const Recording& recording, const ImportOptions& options,
+                             const ProgressSink& progress = {});
+
+}  // namespace emscape::interop

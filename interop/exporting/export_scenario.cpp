@@ -1,0 +1,113 @@
+#include "emscape/interop/export_scenario.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "base/files/unfinished_file.h"
+#include "base/files/whole_file.h"
+#include "base/geodesy/gdal.h"
+#include "emscape/base/error.h"
+#include "interop/exporting/writers.h"
+#include "scenario/terrain/gdal_messages.h"
+
+namespace emscape::interop {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxRecords = 2e7;
+constexpr double kShortestHeartbeat_s = 2;
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+[[noreturn]] void failZip(const scenario::GdalMessages& messages, const fs::path& file) {
+  throw Error(ErrorCode::other, {file.string(), 0, 0}, messages.explain("cannot write the zip file"));
+}
+
+/// Writes an ACMI text into a zip file.
+long long writeZip(const ExportJob& job, const fs::path& file, std::vector<ExportedRow>& rows) {
+  UnfinishedFile unfinished(file);
+  const scenario::GdalMessages messages;
+  void* const zip = CPLCreateZip(unfinished.temporary().c_str(), nullptr);
+  if (zip == nullptr) failZip(messages, file);
+  const std::string stem = file.filename().string();
+  const std::string inner = stem.substr(0, stem.size() - std::string(".zip.acmi").size()) + ".txt.acmi";
+  bool is_sound = CPLCreateFileInZip(zip, inner.c_str(), nullptr) == CE_None;
+  std::string piece;
+  const auto flush = [&] {
+    is_sound = is_sound && CPLWriteFileInZip(zip, piece.data(), static_cast<int>(piece.size())) == CE_None;
+    piece.clear();
+  };
+  long long records = 0;
+  try {
+    records = writeAcmi(
+        job,
+        [&](const std::string& text) {
+          piece += text;
+          if (piece.size() > 65536) flush();
+        },
+        rows);
+  } catch (...) {
+    CPLCloseZip(zip);
+    throw;
+  }
+  flush();
+  is_sound = CPLCloseFileInZip(zip) == CE_None && is_sound;
+  if (CPLCloseZip(zip) != CE_None || !is_sound || messages.hasFailure()) failZip(messages, file);
+  unfinished.publish();
+  return records;
+}
+
+}  // namespace
+
+std::vector<std::string> exportFormats() {
+  return {".acmi", ".zip.acmi", ".pcap"};
+}
+
+ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& scenario,
+                            const scenario::Terrain* terrain, const std::string& file,
+                            const ExportOptions& options, const ProgressSink& progress) {
+  const bool is_zip = endsWith(file, ".zip.acmi"), is_acmi = endsWith(file, ".acmi"),
+             is_capture = endsWith(file, ".pcap");
+  if (!is_acmi && !is_capture) {
+    throw Error(ErrorCode::usage,
+                fmt::format("'{}' is no name of a recording; it ends in .acmi, .zip.acmi or .pcap", file));
+  }
+  ExportResult result;
+  result.file = file;
+  result.format = is_acmi ? "ACMI 2.2" : "DIS version 7";
+  const ExportJob job{*scenario, terrain, options.step_s > 0 ? options.step_s : 1, progress};
+  const double records = scenario->clock.duration_s / std::min(job.step_s, kShortestHeartbeat_s) *
+                         static_cast<double>(scenario->platforms.size() + scenario->emitters.size());
+  if (records > kMaxRecords) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format(
+            "about {:.2g} records, more than the allowed {:.2g}; give a larger --step, or a part of the "
+            "scenario: --set duration_s=3600",
+            records, kMaxRecords));
+  }
+  result.emitters = file + ".emitters.yaml";
+  std::vector<ExportedRow> rows;
+  if (is_zip) {
+    result.records = writeZip(job, file, rows);
+  } else {
+    writeWhole(file, [&](std::ostream& stream) {
+      result.records = is_capture ? writeCapture(job, stream, rows)
+                                  : writeAcmi(
+                                        job, [&](const std::string& piece) { stream << piece; }, rows);
+    });
+  }
+  const std::string database =
+      databaseText(*scenario, rows, fs::absolute(result.emitters).parent_path().string());
+  writeWhole(result.emitters, [&](std::ostream& stream) { stream << database; });
+  result.platforms = static_cast<int>(scenario->platforms.size());
+  result.emitter_count = static_cast<int>(scenario->emitters.size());
+  return result;
+}
+
+}  // namespace emscape::interop

@@ -1,0 +1,40 @@
+/// Platforms and beams of a scenario over time, for the writers of recordings.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "emscape/interop/recording.h"
+#include "emscape/scenario/model/scenario.h"
+
+namespace emscape::interop {
+
+/// Times (s) at which a platform's position is written: of its track, 0, the scenario's end, and others so
+/// that none is more than step_s after the one before. A fixed platform: 0 alone.
+std::vector<double> timesOfPositions(const scenario::Scenario& scenario, const scenario::Platform& platform,
+                                     double step_s);
+
+/// Position and attitude of a platform, with its height above mean sea level.
+PoseSample poseOf(const scenario::Platform& platform, const scenario::Terrain* terrain, double t_s);
+
+/// What a platform probably is: scenarios do not tell.
+Domain domainOf(const scenario::Scenario& scenario, const scenario::Platform& platform,
+                const scenario::Terrain* terrain);
+
+/// The state of an emitter's beam: direction, sweep, power. Angles are relative to the platform.
+BeamState beamStateAt(const scenario::Emitter& emitter, double t_s);
+
+/// Times (s) at which an emitter's state changes: switching, and dwells at most every step_s.
+std::vector<double> timesOfChanges(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                                   double step_s);
+
+/// A row of the emitter database for an emitter of the scenario.
+struct ExportedRow {
+  std::string match;  ///< conditions in YAML's flow style
+  std::size_t emitter = 0;
+};
+/// The text of an emitter database for a folder. @throws Error (bad_input) without the scenario's text
+std::string databaseText(const scenario::Scenario& scenario, const std::vector<ExportedRow>& rows,
+                         const std::string& folder);
+
+}  // namespace emscape::interop

@@ -1,0 +1,30 @@
+/// Writers of recordings, one per format.
+#pragma once
+
+#include <functional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "emscape/interop/export_scenario.h"
+#include "interop/exporting/motion.h"
+
+namespace emscape::interop {
+
+/// What the writers need.
+struct ExportJob {
+  const scenario::Scenario& scenario;
+  const scenario::Terrain* terrain;
+  double step_s;
+  ProgressSink progress;
+};
+
+/// Receives the text of a file in pieces.
+using TextSink = std::function<void(const std::string& piece)>;
+
+/// @param rows  receives the rows of the emitter database
+/// @return number of records
+long long writeAcmi(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
+long long writeCapture(const ExportJob& job, std::ostream& stream, std::vector<ExportedRow>& rows);
+
+}  // namespace emscape::interop

@@ -1,0 +1,100 @@
+#include "interop/importing/scenario_text.h"
+
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "document/node_span.h"
+#include "document/text_edit.h"
+#include "scenario/file/save_scenario.h"
+
+namespace emscape::interop {
+namespace {
+
+namespace fs = std::filesystem;
+
+DocumentNodePtr terrainFiles(const std::vector<std::string>& files, const fs::path& folder) {
+  std::vector<DocumentNodePtr> names;
+  for (const std::string& file : files) {
+    const fs::path absolute = fs::absolute(file).lexically_normal();
+    names.push_back(
+        textNode(absolute.lexically_relative(fs::absolute(folder).lexically_normal()).generic_string()));
+  }
+  return listNode(names);
+}
+
+std::string commentOf(const std::string& header) {
+  std::string text;
+  std::istringstream lines(header);
+  for (std::string line; std::getline(lines, line);) text += "# " + line + "\n";
+  return text;
+}
+
+/// Adds items to a list of the document.
+std::string withItems(const std::string& text, const std::string& file, const std::string& key,
+                      const std::vector<DocumentNodePtr>& items) {
+  if (items.empty()) return text;
+  document::ProblemList problems;
+  const DocumentNodePtr root = document::readDocument(file, text, problems);
+  const DocumentNodePtr list = document::valueAt(root, {key});
+  const document::Span span = document::spanOf(text, *list);
+  std::string added;
+  if (document::isFlow(text, *list)) {
+    for (const DocumentNodePtr& item : items) added += ", " + document::flowText(*item, false);
+    return text.substr(0, span.end - 1) + added + text.substr(span.end - 1);
+  }
+  // The hyphens of the list stand where its value begins.
+  const int indent = std::max(list->position.column - 1, 0);
+  const std::size_t line_end = std::min(text.find('\n', span.end), text.size());
+  std::string before = text.substr(0, line_end);
+  return before + "\n" + blockText(items, indent) + text.substr(std::min(line_end + 1, text.size()));
+}
+
+}  // namespace
+
+std::string scenarioText(const ScenarioParts& parts, const fs::path& folder) {
+  std::string text = commentOf(parts.header) + "schema_version: 1\n";
+  const auto line = [&text](const std::string& key, const DocumentNodePtr& value) {
+    text += key + ": " + document::flowText(*value, false) + "\n";
+  };
+  line("name", textNode(parts.name));
+  if (!parts.epoch_utc.empty()) text += "epoch: " + parts.epoch_utc + "\n";
+  line("duration_s", decimalNode(parts.duration_s, 3));
+  line("step_s", decimalNode(parts.step_s, 3));
+  text += "region:\n";
+  for (const document::MapEntry& entry : parts.region->entries)
+    text += "  " + entry.key + ": " + document::flowText(*entry.value, false) + "\n";
+  if (!parts.terrain.empty())
+    text += "terrain: {files: " + document::flowText(*terrainFiles(parts.terrain, folder), false) + "}\n";
+  text += "\nplatforms:\n" + blockText(parts.platforms, 2);
+  text += "\nemitters:\n" + blockText(parts.emitters, 2);
+  text += "\noutput:\n  quantities: [power_density_dbwm2]\n";
+  return text;
+}
+
+std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioParts& parts,
+                               const fs::path& folder) {
+  scenario::Scenario changed = base;
+  std::vector<scenario::Edit> edits;
+  if (!parts.epoch_utc.empty()) edits.push_back({"epoch", parts.epoch_utc});
+  edits.push_back({"duration_s", decimalText(parts.duration_s, 3)});
+  if (parts.region) edits.push_back({"region", document::flowText(*parts.region, false)});
+  if (!parts.terrain.empty()) {
+    // Edits name files from the base's folder.
+    const fs::path base_folder = fs::absolute(base.file).parent_path();
+    edits.push_back(
+        {"terrain", "{files: " + document::flowText(*terrainFiles(parts.terrain, base_folder), false) + "}"});
+  }
+  changed.set(edits);
+  std::string text = scenario::scenarioTextIn(changed, folder);
+  try {
+    text = withItems(text, base.file, "emitters", parts.emitters);
+    text = withItems(text, base.file, "platforms", parts.platforms);
+  } catch (const Error& error) {
+    throw Error(error.code(), {base.file, 0, 0},
+                "platforms and emitters cannot be added: " + error.message());
+  }
+  return commentOf(parts.header) + text;
+}
+
+}  // namespace emscape::interop

@@ -1,0 +1,32 @@
+/// The text of an imported scenario.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/model/scenario.h"
+#include "interop/importing/nodes.h"
+
+namespace emscape::interop {
+
+/// What a scenario is written from.
+struct ScenarioParts {
+  std::string header;  ///< lines of a comment, without #
+  std::string name;
+  std::string epoch_utc;  ///< empty: none
+  double duration_s = 0, step_s = 1;
+  DocumentNodePtr region;            ///< null: that of the base
+  std::vector<std::string> terrain;  ///< elevation files, as named on the command line
+  std::vector<DocumentNodePtr> platforms, emitters;
+};
+
+std::string scenarioText(const ScenarioParts& parts, const std::filesystem::path& folder);
+
+/// The text of a base scenario with epoch, duration and, where they are given, region and terrain replaced,
+/// and platforms and emitters added.
+/// @throws Error (bad_input) naming the base
+std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioParts& parts,
+                               const std::filesystem::path& folder);
+
+}  // namespace emscape::interop

@@ -1,0 +1,386 @@
+// Scenarios of recordings, and recordings of scenarios.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "emscape/interop/export_scenario.h"
+#include "emscape/interop/import_scenario.h"
+#include "emscape/interop/read_recording.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "interop/importing/beam_pieces.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+#include "tests/support/reference_data.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::interop {
+namespace {
+
+using testing::HasSubstr;
+using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
+
+RecordedObject objectAt(const std::string& name, const std::string& type, double latitude_deg,
+                        double height_m, double moves_deg = 0) {
+  RecordedObject object;
+  object.name = object.keys.acmi_name = name;
+  object.type = object.keys.acmi_type = type;
+  for (int i = 0; i <= 10; ++i)
+    object.poses.push_back({10.0 * i, latitude_deg + moves_deg * i, 5, height_m, 90, 0, 0});
+  return object;
+}
+
+BeamState stateAt(double t_s, bool is_on) {
+  BeamState state;
+  state.t_s = t_s;
+  state.is_on = is_on;
+  state.frequency_hz = 3e9;
+  state.erp_dbm = 93;
+  state.azimuth_deg = state.elevation_deg = 0;
+  state.azimuth_half_sweep_deg = 180;
+  return state;
+}
+
+Recording smallRecording() {
+  Recording recording;
+  recording.file = "test.acmi";
+  recording.format = "ACMI 2.2";
+  recording.objects.push_back(objectAt("ship", "Sea+Watercraft", 52, -1));
+  recording.objects.push_back(objectAt("MiG-29", "Air+FixedWing", 52.1, 3000, 0.01));
+  recording.objects.push_back(objectAt("bullseye", "Navaid+Static+Bullseye", 40, 0));
+  recording.objects.back().domain = Domain::scenery;
+  return recording;
+}
+
+class Import : public testing::Test {
+ protected:
+  ImportResult import(const Recording& recording, ImportOptions options = {}) {
+    options.scenario = folder_ / "out.yaml";
+    result_ = importRecording(recording, options);
+    scenario_ = scenario::loadScenario(options.scenario);
+    return result_;
+  }
+  const test::TemporaryFolder folder_;
+  ImportResult result_;
+  ScenarioPtr scenario_;
+};
+
+TEST_F(Import, ObjectsHaveThePlatformsAndEmittersOfTheirTypes) {
+  import(smallRecording());
+  ASSERT_EQ(scenario_->platforms.size(), 2u);
+  ASSERT_EQ(scenario_->emitters.size(), 2u);
+  EXPECT_EQ(scenario_->emitters[0].name, "ship navigation radar");
+  EXPECT_EQ(scenario_->emitters[1].name, "MiG-29 fire-control radar");
+  EXPECT_EQ(scenario_->platforms[0].track.size(), 1u) << "it does not move";
+  EXPECT_EQ(scenario_->platforms[1].track.size(), 11u);
+  EXPECT_EQ(scenario_->clock.duration_s, 100);
+  EXPECT_EQ(result_.left_out.at("scenery"), 1);
+  EXPECT_NEAR(scenario_->platforms[0].track[0].position.height_msl_m.value(), 19, 1e-9)
+      << "the antenna's height";
+}
+
+TEST_F(Import, PositionsBelowTheGroundAreRaisedAndTold) {
+  Recording recording = smallRecording();
+  recording.objects[1] = objectAt("F-14", "Air+FixedWing", 52.1, -3);
+  import(recording);
+  EXPECT_THAT(result_.notes, testing::Contains(HasSubstr("up to 3.0 m below mean sea level")));
+}
+
+TEST_F(Import, PositionsOutsideTheTerrainAreTold) {
+  ImportOptions options;
+  options.terrain = {test::shippedScenario("data/jacksboro.tif")};
+  import(smallRecording(), options);
+  EXPECT_THAT(result_.notes,
+              testing::Contains(HasSubstr("positions are where the elevation files have no height")));
+}
+
+TEST_F(Import, BeamIsAnEmitterWithThePowerOfTheRecordingAndTheAntennaOfTheDatabase) {
+  Recording recording = smallRecording();
+  RecordedBeam beam;
+  beam.object = 0;
+  beam.name = "emitter 4711, beam 1";
+  beam.kind = BeamKind::radar;
+  beam.keys = {4711, 2, 1, 0, {}};
+  beam.states = {stateAt(10, true), stateAt(20, false), stateAt(30, true)};
+  recording.beams.push_back(beam);
+  import(recording);
+  const scenario::Emitter& emitter = scenario_->emitters[0];
+  EXPECT_EQ(emitter.name, "ship search radar");
+  EXPECT_EQ(emitter.frequency_hz, 3e9);
+  EXPECT_NEAR(10 * std::log10(emitter.power_w) + 30 + emitter.antenna->gain_dbi, 93, 1e-3);
+  ASSERT_EQ(emitter.active_s.size(), 2u);
+  EXPECT_EQ(emitter.active_s[0].begin_s, 10);
+  EXPECT_EQ(emitter.active_s[0].end_s, 20);
+  EXPECT_EQ(emitter.active_s[1].begin_s, 30);
+  EXPECT_EQ(emitter.scan.kind, scenario::ScanKind::rotate);
+}
+
+TEST_F(Import, UnmatchedBeamsAreNamedOrHaveTheDefault) {
+  Recording recording = smallRecording();
+  RecordedBeam beam;
+  beam.object = 0;
+  beam.name = "emitter 4711, beam 1";
+  beam.kind = BeamKind::radar;
+  beam.keys = {4711, 2, 99, 0, {}};
+  beam.states = {stateAt(0, true)};
+  recording.beams.push_back(beam);
+  recording.objects[0].keys = {};
+  import(recording);
+  EXPECT_EQ(scenario_->emitters.size(), 1u);
+  EXPECT_EQ(result_.emitters.at(0).name, "emitter 4711, beam 1");
+  EXPECT_EQ(result_.emitters.at(0).fault, "not in the database");
+
+  ImportOptions options;
+  options.emitters =
+      folder_.write("db.yaml", "schema_version: 1\nunmatched: default\ndefault: {kind: transmitter}\n");
+  import(recording, options);
+  ASSERT_EQ(scenario_->emitters.size(), 2u);
+  EXPECT_EQ(scenario_->emitters[0].kind, scenario::EmitterKind::transmitter);
+  EXPECT_NEAR(10 * std::log10(scenario_->emitters[0].power_w) + 30 + scenario_->emitters[0].antenna->gain_dbi,
+              93, 1e-3);
+}
+
+TEST_F(Import, BeamThatFollowsATargetPointsWhereItPointed) {
+  Recording recording = smallRecording();
+  RecordedBeam beam;
+  beam.object = 1;
+  beam.kind = BeamKind::radar;
+  for (int i = 0; i < 10; ++i) {
+    BeamState state = stateAt(10 * i, true);
+    state.frequency_hz = state.erp_dbm = kUnknown;
+    state.azimuth_half_sweep_deg = kUnknown;
+    state.beamwidth_az_deg = 3;
+    state.azimuth_deg = 5 * i;
+    state.elevation_deg = -i;
+    beam.states.push_back(state);
+  }
+  recording.beams.push_back(beam);
+  import(recording);
+  const scenario::Emitter& emitter = scenario_->emitters[1];
+  ASSERT_EQ(emitter.scan.kind, scenario::ScanKind::dwell_list);
+  for (int i = 0; i < 10; ++i) {
+    const scenario::BeamDirection direction = scenario::beamAt(emitter.scan, 10 * i + 5);
+    EXPECT_NEAR(direction.azimuth_deg, 5 * i, 0.01);
+    EXPECT_NEAR(direction.elevation_deg, -i, 0.01);
+  }
+}
+
+TEST_F(Import, BeamHeldOnATargetPointsAtIt) {
+  Recording recording = smallRecording();
+  recording.objects[0] = objectAt("site", "Ground+AntiAircraft", 52, 10);
+  recording.objects[1].poses.clear();
+  for (int i = 0; i <= 10; ++i)  // from north to east of the site, whose heading is east
+    recording.objects[1].poses.push_back({10.0 * i, 52.2 - 0.02 * i, 5 + 0.03 * i, 3000, 90, 0, 0});
+  RecordedBeam beam;
+  beam.object = 0;
+  beam.kind = BeamKind::radar;
+  beam.keys.dis_beam_function = 4;
+  BeamState state = stateAt(0, true);
+  state.target = 1;
+  beam.states = {state};
+  recording.beams.push_back(beam);
+  import(recording);
+  for (const double t_s : {5.0, 50.0, 95.0}) {
+    const scenario::Snapshot snapshot = scenario::instantAt(scenario_, nullptr, t_s);
+    const scenario::EmitterState& emitter = snapshot.emitters[0];
+    const GeodesicInverse way = geodesicInverse(emitter.position.latitude_deg, emitter.position.longitude_deg,
+                                                snapshot.platforms[1].position.latitude_deg,
+                                                snapshot.platforms[1].position.longitude_deg);
+    const Vec3d forward = emitter.beam.forward;
+    EXPECT_NEAR(std::atan2(forward.x, forward.y), way.azimuth_rad, 0.02) << t_s;
+    EXPECT_NEAR(forward.z, 3000 / way.distance_m, 0.02) << t_s;
+  }
+}
+
+TEST_F(Import, WideBeamIsTheSearchedSector) {
+  Recording recording = smallRecording();
+  RecordedBeam beam;
+  beam.object = 1;
+  beam.kind = BeamKind::radar;
+  BeamState state = stateAt(0, true);
+  state.frequency_hz = state.erp_dbm = state.azimuth_half_sweep_deg = kUnknown;
+  state.beamwidth_az_deg = 120;
+  beam.states = {state};
+  recording.beams.push_back(beam);
+  import(recording);
+  EXPECT_EQ(scenario_->emitters[1].scan.kind, scenario::ScanKind::raster);
+  EXPECT_EQ(scenario_->emitters[1].scan.width_deg, 120);
+  EXPECT_THAT(result_.notes, testing::Contains(HasSubstr("taken as the sector that the beam searches")));
+}
+
+TEST_F(Import, PartOfTheTimesBeginsAtZero) {
+  ImportOptions options;
+  options.times = TimeSpan{20, 50};
+  import(smallRecording(), options);
+  EXPECT_EQ(scenario_->clock.duration_s, 30);
+  const scenario::TrackPoint point = scenario::pointAt(scenario_->platforms[1], 0);
+  EXPECT_NEAR(point.position.latitude_deg, 52.12, 1e-9);
+}
+
+TEST_F(Import, RecordingIsAddedToABase) {
+  ImportOptions options;
+  options.base = folder_.write("base/base.yaml", R"(# my site
+schema_version: 1
+name: site
+duration_s: 10
+region:
+  origin: {latitude_deg: 52, longitude_deg: 5}
+  size_m: [20000, 20000, 5000]
+  dims: [10, 10, 5]
+platforms:
+  - {name: mast, position: {latitude_deg: 52, longitude_deg: 5, height_agl_m: 40}}
+emitters:
+  - name: beacon  # of the mast
+    platform: mast
+    kind: transmitter
+    frequency_hz: 100.0e6
+    power_w: 1000
+    antenna: {pattern: isotropic}
+output: {quantities: [field_strength_dbuvm]}
+)");
+  import(smallRecording(), options);
+  ASSERT_EQ(scenario_->platforms.size(), 3u);
+  ASSERT_EQ(scenario_->emitters.size(), 3u);
+  EXPECT_EQ(scenario_->emitters[0].name, "beacon");
+  EXPECT_EQ(scenario_->output.quantities, std::vector<std::string>{"field_strength_dbuvm"});
+  EXPECT_EQ(scenario_->clock.duration_s, 100);
+  EXPECT_THAT(test::readFile(folder_ / "out.yaml"), HasSubstr("# of the mast"));
+}
+
+TEST_F(Import, OnlyTheNamedObjectsAreTaken) {
+  ImportOptions options;
+  options.only = {"mig*"};
+  import(smallRecording(), options);
+  ASSERT_EQ(scenario_->platforms.size(), 1u);
+  options.only = {"nothing"};
+  EXPECT_THAT(test::errorOf([&] { import(smallRecording(), options); }, ErrorCode::bad_input),
+              HasSubstr("no object is left"));
+}
+
+TEST_F(Import, WithoutAnyEmitterTheErrorNamesTheRemedy) {
+  Recording recording = smallRecording();
+  recording.objects.erase(recording.objects.begin(), recording.objects.begin() + 2);
+  recording.objects[0].domain = Domain::land;
+  recording.objects[0].keys = {};
+  EXPECT_THAT(
+      test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
+      HasSubstr("no emitter is left of 1 objects. Give a database that matches them (--emitters FILE"));
+}
+
+TEST(ImportRegion, TextIsALatitudeALongitudeAndASize) {
+  EXPECT_EQ(parseRegion("36.3,-84,80").longitude_deg, -84);
+  for (const char* text : {"", "1,2", "1,2,3,4", "91,0,10", "1,2,x", "1,2,0"})
+    EXPECT_THAT(test::errorOf([&] { parseRegion(text); }, ErrorCode::usage),
+                HasSubstr("is not auto or LAT,LON,SIZE_KM"));
+}
+
+TEST(BeamPieces, EqualSettingsAreOnePieceDifferentOnesSeveral) {
+  RecordedBeam beam;
+  for (int i = 0; i < 6; ++i) {
+    BeamState state = stateAt(i, true);
+    state.frequency_hz = i % 2 == 0 ? 3e9 : 3.1e9;
+    beam.states.push_back(state);
+  }
+  bool cut = false;
+  const auto pieces = piecesOf(beam, {{0, 10}}, cut);
+  ASSERT_EQ(pieces.size(), 2u);
+  EXPECT_EQ(pieces[0].active.size(), 3u);
+  EXPECT_EQ(pieces[1].active.back().end_s, 10);
+  EXPECT_FALSE(cut);
+}
+
+class RoundTrip : public testing::TestWithParam<const char*> {};
+
+TEST_P(RoundTrip, PositionsAnglesAndEmittersStay) {
+  const test::TemporaryFolder folder;
+  const ScenarioPtr before = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
+  const std::string file = folder / (std::string("a") + GetParam());
+  const ExportResult exported = exportScenario(before, terrain.get(), file);
+  EXPECT_GT(exported.records, 100);
+  ImportOptions options;
+  options.scenario = folder / "back.yaml";
+  options.emitters = exported.emitters;
+  const ImportResult result = importRecording(readRecording(file), options);
+  EXPECT_EQ(result.tally.bad, 0) << result.tally.first_bad;
+  const ScenarioPtr after = scenario::loadScenario(options.scenario);
+  EXPECT_EQ(after->clock.epoch_utc.substr(0, 19), before->clock.epoch_utc.substr(0, 19));
+  EXPECT_NEAR(after->clock.duration_s, before->clock.duration_s, 0.01);
+  const bool is_dis = std::string(GetParam()) == ".pcap";
+  const double position_m = is_dis ? 0.01 : 0.02, height_m = is_dis ? 0.01 : 0.006;
+  for (const double t_s : {0.0, 37.0, 81.0, 119.0}) {
+    const scenario::Snapshot a = scenario::instantAt(before, terrain.get(), t_s);
+    const scenario::Snapshot b = scenario::instantAt(after, nullptr, t_s);
+    for (std::size_t i = 0; i < before->emitters.size(); ++i) {
+      const scenario::Emitter& emitter = before->emitters[i];
+      std::size_t match = after->emitters.size();
+      for (std::size_t j = 0; j < after->emitters.size(); ++j) {
+        const std::string& name = after->emitters[j].name;
+        if (name.size() >= emitter.name.size() &&
+            name.compare(name.size() - emitter.name.size(), std::string::npos, emitter.name) == 0 &&
+            after->emitters[j].frequency_hz > 0.999 * emitter.frequency_hz)
+          match = j;
+      }
+      ASSERT_LT(match, after->emitters.size()) << emitter.name;
+      const scenario::Emitter& found = after->emitters[match];
+      const scenario::EmitterState &x = a.emitters[i], &y = b.emitters[match];
+      const double apart_m = geodesicInverse(x.position.latitude_deg, x.position.longitude_deg,
+                                             y.position.latitude_deg, y.position.longitude_deg)
+                                 .distance_m;
+      EXPECT_LT(apart_m, position_m) << emitter.name << " at " << t_s;
+      EXPECT_NEAR(x.height_msl_m, y.height_msl_m, height_m) << emitter.name << " at " << t_s;
+      EXPECT_NEAR(dot(x.beam.forward, y.beam.forward), 1, 1e-7) << emitter.name << " at " << t_s;
+      EXPECT_EQ(x.active, y.active);
+      EXPECT_NEAR(10 * std::log10(found.power_w / emitter.power_w), 0, 0.01) << emitter.name;
+      EXPECT_NEAR(found.frequency_hz / emitter.frequency_hz, 1, 1e-6);
+      EXPECT_EQ(found.antenna->gain_dbi, emitter.antenna->gain_dbi);
+      EXPECT_EQ(found.polarization, emitter.polarization);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, testing::Values(".acmi", ".zip.acmi", ".pcap"),
+                         [](const auto& format) {
+                           const std::string name = format.param;
+                           return name == ".pcap" ? "Dis" : name == ".acmi" ? "Acmi" : "ZippedAcmi";
+                         });
+
+TEST(Export, UnknownEndingIsRefused) {
+  const ScenarioPtr scenario = scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  EXPECT_THAT(test::errorOf([&] { exportScenario(scenario, nullptr, "a.hla"); }, ErrorCode::usage),
+              HasSubstr("'a.hla' is no name of a recording; it ends in .acmi, .zip.acmi or .pcap"));
+}
+
+TEST(ShippedRecordings, BecomeTheScenarioThatTheyWereMadeOf) {
+  for (const char* name : {"jamming.zip.acmi", "jamming.pcap"}) {
+    const test::TemporaryFolder folder;
+    const std::string file = test::shippedScenario(std::string("recordings/") + name);
+    ImportOptions options;
+    options.scenario = folder / "out.yaml";
+    options.emitters = file + ".emitters.yaml";
+    const ImportResult result = importRecording(readRecording(file), options);
+    const ScenarioPtr scenario = scenario::loadScenario(options.scenario);
+    ASSERT_EQ(scenario->emitters.size(), 2u) << name;
+    EXPECT_EQ(scenario->emitters[0].name, "ridge site search radar") << name;
+    EXPECT_EQ(scenario->emitters[1].name, "helicopter stand-off jammer") << name;
+    EXPECT_NEAR(result.duration_s, 60, 1e-3) << name;
+    EXPECT_EQ(scenario->clock.epoch_utc.substr(0, 19), "2026-06-01T06:00:00") << name;
+  }
+}
+
+TEST(PublicRecordings, BecomeScenarios) {
+  const test::TemporaryFolder folder;
+  const auto file = test::referenceFile("interop/acmi/kavinsky_simple.zip.acmi");
+  if (!file) GTEST_SKIP() << test::notInRepository("interop/acmi/kavinsky_simple.zip.acmi");
+  ImportOptions options;
+  options.scenario = folder / "flight.yaml";
+  const ImportResult result = importRecording(readRecording(*file), options);
+  const ScenarioPtr scenario = scenario::loadScenario(options.scenario);
+  EXPECT_EQ(scenario->platforms.size(), 11u) << "without the three reference points";
+  EXPECT_EQ(scenario->emitters.size(), 7u) << "six ships and the F-14";
+  EXPECT_NEAR(result.duration_s, 221, 1);
+}
+
+}  // namespace
+}  // namespace emscape::interop
