@@ -32,6 +32,8 @@ void addSubcommands(CLI::App& app, const GlobalOptions& global, Action& action) 
   addExposure(app, global, action);
   addCompare(app, global, action);
   addStudy(app, global, action);
+  addImport(app, global, action);
+  addExport(app, global, action);
   addCheck(app, global, action);
   addProgram(app, "bench", "Measure speed, and the error of interpolated pixels", kBenchProgram, global,
              action);

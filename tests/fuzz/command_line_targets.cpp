@@ -57,6 +57,9 @@ const FuzzTargetsAdded added({
            "exposure\na.yaml\n--platform\nhelicopter",
            "compare\na\nb\n-o\nout",
            "study\na.yaml\n-o\nout\n--jobs\n2\n--parts\n4\n--resume",
+           "import\na.acmi\nb.pcap\n-o\na.yaml\n--emitters\nd.yaml\n--region\n52,5,80\n--times\n0:9\n--"
+           "only\nF*",
+           "export\na.yaml\n-o\na.pcap\n--step\n2",
            "check\nreference\n--backend\ncpu",
            "bench\nfield\na.yaml\n--frames\n3",
            "--version"};

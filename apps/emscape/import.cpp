@@ -1,0 +1,117 @@
+/// emscape import: makes a scenario of a recording of another program.
+#include <fmt/core.h>
+
+#include <cmath>
+#include <memory>
+
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
+#include "apps/emscape/subcommands.h"
+#include "document/schema_check.h"
+#include "emscape/base/log.h"
+#include "emscape/interop/import_scenario.h"
+#include "emscape/interop/read_recording.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "report/runs/import_report.h"
+
+namespace emscape::app {
+namespace {
+
+struct ImportArguments {
+  std::vector<std::string> files;
+  std::string region = "auto";
+  std::string times;
+  std::string beamwidth = "by_size";
+  interop::ReadOptions read;
+  interop::ImportOptions options;
+};
+
+/// "B:E". @throws Error (usage)
+interop::TimeSpan parseSpan(const std::string& text) {
+  const std::size_t at = text.find(':');
+  const double nan = std::nan("");
+  const double begin = document::numberOf(text.substr(0, at)).value_or(nan);
+  const double end = at == std::string::npos ? nan : document::numberOf(text.substr(at + 1)).value_or(nan);
+  if (!(begin < end) || !(std::abs(begin) <= 1e9) || !(std::abs(end) <= 1e9)) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format(
+            "--times '{}' is not BEGIN:END in seconds of the recording, BEGIN below END, such as 0:120",
+            text));
+  }
+  return {begin, end};
+}
+
+/// @throws Error (bad_input) if the written scenario has faults
+void check(const std::string& file) {
+  for (const scenario::Problem& problem : scenario::parseScenario(file).problems) {
+    if (problem.severity == scenario::Severity::error)
+      throw Error(ErrorCode::bad_input, problem.location, problem.message);
+    logWarning(toString(problem.location) + ": " + problem.message);
+  }
+}
+
+int import(const ImportArguments& arguments, const GlobalOptions& global) {
+  interop::ImportOptions options = arguments.options;
+  if (arguments.region != "auto") options.region = interop::parseRegion(arguments.region);
+  if (!arguments.times.empty()) options.times = parseSpan(arguments.times);
+  options.beamwidth = parseName<interop::BeamwidthMeaning>("meaning of beamwidths", arguments.beamwidth);
+  const ProgressSink progress = stoppingProgress(global);
+  std::vector<interop::Recording> recordings;
+  for (const std::string& file : arguments.files)
+    recordings.push_back(interop::readRecording(file, arguments.read, progress));
+  const interop::ImportResult result =
+      interop::importRecording(interop::merged(std::move(recordings)), options, progress);
+  check(options.scenario);
+  if (global.json) {
+    printJson(report::importJson(result));
+  } else if (!global.quiet) {
+    print("{}", report::importText(result));
+  }
+  return 0;
+}
+
+}  // namespace
+
+void addImport(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command = app.add_subcommand("import", "Make a scenario of a recording of another program");
+  command->fallthrough();
+  command->footer(R"(
+Reads ACMI 2.0 to 2.2 (Tacview; .acmi, .zip.acmi) and DIS (.pcap, .pcapng, hexadecimal logs, .session), and writes a scenario with
+CSV tracks in STEM_tracks beside it. What recordings do not tell of their emitters is taken from a database; a starter set is built
+in (scenarios/data/emitters.yaml). Ends with a table of the objects, the emitters that were matched or not, and what was lost,
+torn or ignored.
+
+Examples:
+  emscape import flight.zip.acmi -o flight.yaml
+  emscape import exercise.pcap -o exercise.yaml --emitters mine.yaml --times 600:1200
+  emscape import flight.acmi -o added.yaml --base scenarios/jacksboro.yaml --only "F-14*,Air+Rotorcraft"
+  emscape import flight.acmi -o flight.yaml --json
+
+Exit status: 0; 2 for wrong options; 3 for a recording, database or base that cannot be used.)");
+  auto arguments = std::make_shared<ImportArguments>();
+  command->add_option("FILE", arguments->files, "Recordings of the same battlefield")->required();
+  command->add_option("-o,--output", arguments->options.scenario, "The scenario to write")->required();
+  command->add_option("--emitters", arguments->options.emitters,
+                      "Emitter database, whose rows come before the starter set's");
+  command->add_option(
+      "--base", arguments->options.base,
+      "Scenario to which the platforms and emitters are added; its region, terrain and output stay");
+  addListOption(*command, "--terrain", arguments->options.terrain, "Elevation files of the scenario");
+  command->add_option("--region", arguments->region,
+                      "auto, or LAT,LON,SIZE_KM: the field's region; auto is around all platforms");
+  command->add_option("--times", arguments->times, "BEGIN:END: part of the recording, in its seconds");
+  addListOption(*command, "--only", arguments->options.only, "Names or types of the objects, with * and ?");
+  command->add_option("--beamwidth", arguments->beamwidth,
+                      "Beamwidths of the recording: by_size (up to 15 degrees the beam's, else of the "
+                      "searched sector), scan or beam");
+  command
+      ->add_option("--timeout", arguments->read.emission_timeout_s,
+                   "Seconds without update after which an emission of DIS ends")
+      ->check(CLI::Range(0.1, 1e6));
+  command->callback([arguments, &global, &action] {
+    action = [arguments, &global] { return import(*arguments, global); };
+  });
+}
+
+}  // namespace emscape::app

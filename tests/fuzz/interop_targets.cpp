@@ -1,0 +1,139 @@
+// Recordings of other programs, and databases of emitters.
+#include <stdexcept>
+
+#include "emscape/interop/export_scenario.h"
+#include "emscape/interop/import_scenario.h"
+#include "emscape/interop/read_recording.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "interop/acmi/acmi_reader.h"
+#include "interop/dis/datagrams.h"
+#include "interop/dis/dis_recorder.h"
+#include "interop/emitters/emitter_database.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A short scenario as a recording.
+std::string recordingOf(const std::string& ending) {
+  const TemporaryFolder folder;
+  const std::string file = folder / ("a" + ending);
+  const auto scenario = scenario::loadScenario(shippedScenario("jamming.yaml"), {{"duration_s", "4"}},
+                                               scenario::ReadFor::chosen_times);
+  interop::ExportOptions options;
+  options.step_s = 2;
+  interop::exportScenario(scenario, nullptr, file, options);
+  return readFile(file);
+}
+
+/// The bytes after the headers of a capture's packets: PDUs, one after another.
+std::vector<std::string> pdus() {
+  const std::string capture = recordingOf(".pcap");
+  const auto source = interop::openText(capture);
+  interop::ReadingTally tally;
+  std::vector<std::string> all;
+  interop::dis::readCapture(*source, tally, [&](const interop::dis::Datagram& datagram) {
+    all.emplace_back(reinterpret_cast<const char*>(datagram.bytes), datagram.size);
+  });
+  return all;
+}
+
+std::string bigEndian(std::uint64_t value, int bytes) {
+  std::string text;
+  for (int i = bytes - 1; i >= 0; --i) text += static_cast<char>(value >> (8 * i));
+  return text;
+}
+
+void readRecordingFile(const fs::path& file, const std::string&) {
+  const interop::Recording recording = interop::readRecording(file);
+  checkFuzzMessage(recording.tally.first_bad);
+  checkFuzzMessage(recording.tally.torn);
+  for (const auto& [kind, count] : recording.tally.ignored) checkFuzzMessage(kind);
+  for (const interop::RecordedObject& object : recording.objects) checkFuzzMessage(object.name);
+}
+
+/// Whatever a recording has, the scenario that is written of it is valid.
+void importRecordingFile(const fs::path& file, const std::string&) {
+  interop::ImportOptions options;
+  options.scenario = file.parent_path() / "out.yaml";
+  interop::importRecording(interop::readRecording(file), options);
+  for (const scenario::Problem& problem : scenario::parseScenario(options.scenario).problems) {
+    if (problem.severity == scenario::Severity::error)
+      throw std::logic_error("the imported scenario is not valid: " + problem.message);
+  }
+  fs::remove_all(file.parent_path() / "out_tracks");
+}
+
+const FuzzTargetsAdded added({
+    {"acmi", "input.acmi", readRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           recordingOf(".acmi"),
+           "FileType=text/acmi/"
+           "tacview\nFileVersion=2.1\n0,ReferenceLongitude=5,ReferenceTime=2020-01-01T00:00:00Z\n"
+           "1,T=1|2|3|4|5|6|7|8|9,Name=a\\, b,Color=Red\n#-1\n1,T=||,Visible=0\n0,Event=Destroyed|1|\n-1\n"};
+     }},
+    {"acmi_zip", "input.zip.acmi", readRecordingFile,
+     [] { return std::vector<std::string>{recordingOf(".zip.acmi")}; }},
+    {"capture", "input.pcap", readRecordingFile,
+     [] { return std::vector<std::string>{recordingOf(".pcap")}; }},
+    {"hex_log", "input.log", readRecordingFile,
+     [] {
+       std::string log;
+       for (const std::string& pdu : pdus()) {
+         log += "0\n";
+         for (const char c : pdu) {
+           const char digits[] = "0123456789abcdef";
+           const auto byte = static_cast<unsigned char>(c);
+           log += {digits[byte >> 4], digits[byte & 15], ' '};
+         }
+         log += "\n";
+       }
+       return std::vector<std::string>{log};
+     }},
+    {"dis_session", "input.session", readRecordingFile,
+     [] {
+       std::string session;
+       for (const std::string& pdu : pdus()) session += bigEndian(1000, 8) + bigEndian(pdu.size(), 2) + pdu;
+       return std::vector<std::string>{session};
+     }},
+    {"dis_datagram", "",
+     [](const fs::path&, const std::string& bytes) {
+       interop::dis::DisRecorder recorder{interop::ReadOptions{}};
+       recorder.take({0, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+       recorder.take({1, reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
+       checkFuzzMessage(recorder.finish().tally.first_bad);
+     },
+     pdus},
+    {"import_acmi", "input.acmi", importRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           recordingOf(".acmi"),
+           "FileType=text/acmi/tacview\nFileVersion=2.2\n1,T=5|52|10|0|0|90,Type=Sea+Watercraft,Name=Boat\n"
+           "2,T=5|52|3000,Type=Air+FixedWing,Name=F-14B,RadarMode=1,RadarAzimuth=5,RadarHorizontalBeamwidth="
+           "3\n"
+           "#10\n1,T=5.01|52\n2,T=5.1|52.1,RadarAzimuth=50,LockedTarget=1,LockedTargetMode=1\n#30\n2,"
+           "RadarMode=0\n-1\n"};
+     }},
+    {"import_capture", "input.pcap", importRecordingFile,
+     [] { return std::vector<std::string>{recordingOf(".pcap")}; }},
+    {"emitter_database",
+     "",
+     [](const fs::path&, const std::string& text) { interop::parseEmitterDatabase("input.yaml", text); },
+     [] {
+       return std::vector<std::string>{
+           interop::kStarterEmitters,
+           "schema_version: 1\nunmatched: default\ndefault: {kind: transmitter}\n"};
+     },
+     {},
+     interop::emitterDatabaseJsonSchema},
+    {"import_region", "", [](const fs::path&, const std::string& text) { interop::parseRegion(text); },
+     [] { return std::vector<std::string>{"36.3,-84.2,80"}; }},
+});
+
+}  // namespace
+}  // namespace emscape::test
