@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
 #include "emscape/render/annotate/legend.h"
@@ -58,7 +59,7 @@ void drawHistory(PanelContext& context) {
   Session& session = context.session;
   const ValueHistory history = shownOf(session.history(), session.view().field_unit);
   if (!history.error.empty()) {
-    ImGui::TextDisabled("over time: %s", history.error.c_str());
+    ImGui::TextDisabled("over time: %s", drawable(history.error).c_str());
     return;
   }
   if (history.times_s.size() < 2) return;

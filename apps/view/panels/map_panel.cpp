@@ -57,7 +57,7 @@ std::size_t listToRemove(const std::vector<std::string>& texts) {
     ImGui::PushID(static_cast<int>(i));
     if (ImGui::SmallButton("remove")) removed = i;
     ImGui::SameLine();
-    ImGui::TextUnformatted(texts[i].c_str());
+    ImGui::TextUnformatted(drawable(texts[i]).c_str());
     ImGui::PopID();
   }
   return removed;

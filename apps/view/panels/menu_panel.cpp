@@ -76,7 +76,7 @@ void drawChoices(const std::string& title, const std::string& key, const std::ve
                  const std::string& present, const std::function<void(const std::string&)>& choose) {
   if (!ImGui::BeginMenu(title.c_str(), !values.empty())) return;
   for (const std::string& value : values) {
-    if (ImGui::MenuItem(value.c_str(), nullptr, value == present)) choose(value);
+    if (ImGui::MenuItem((drawable(value) + "###" + value).c_str(), nullptr, value == present)) choose(value);
   }
   if (!key.empty()) ImGui::TextDisabled("%s: the next one", key.c_str());
   ImGui::EndMenu();

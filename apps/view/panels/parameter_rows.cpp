@@ -382,7 +382,7 @@ void ParameterRows::drawItems(const Parameter& parameter) {
     }
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::TextUnformatted(parameter.titles[i].c_str());
+    ImGui::TextUnformatted(drawable(parameter.titles[i]).c_str());
     ImGui::PopID();
   }
   ImGui::EndCombo();

@@ -174,7 +174,7 @@ void drawMenuOfObject(PanelContext& context, const SceneObject& object) {
   for (const SceneObject& other : session.objects()) {
     if (other.platform != object.platform || other.path == object.path) continue;
     if (!std::exchange(has_heading, true)) ImGui::Separator();
-    const std::string label = "Select " + other.kind + " " + other.name + "###" + other.path;
+    const std::string label = "Select " + other.kind + " " + drawable(other.name) + "###" + other.path;
     if (ImGui::MenuItem(label.c_str())) session.perform({"select", {{"path", other.path}}});
   }
 }
@@ -201,8 +201,8 @@ void drawMenuOfGround(PanelContext& context, const ContextMenu& menu) {
 }  // namespace
 
 std::string tooltipOf(const SceneObject& object, const playback::ViewState& view) {
-  std::string text = object.name + "\n" + object.kind;
-  if (!object.details.empty()) text += ", " + object.details;
+  std::string text = drawable(object.name) + "\n" + object.kind;
+  if (!object.details.empty()) text += ", " + drawable(object.details);
   text += "\n" + positionText(object.position, view) + "\n" + heightText(object.height_msl_m, view) +
           " above sea level";
   if (object.height_agl_m) text += ", " + heightText(*object.height_agl_m, view) + " above ground";
@@ -241,12 +241,12 @@ void drawToolHint(PanelContext& context, const Area& picture) {
                                                        : "Measure: click the first point");
       break;
     case PickTool::Kind::track:
-      ImGui::Text("Track of %s: click its points; a double click ends it", tool.subject.c_str());
+      ImGui::Text("Track of %s: click its points; a double click ends it", drawable(tool.subject).c_str());
       ImGui::SameLine();
       if (ImGui::SmallButton("Finish")) context.session.perform({"draw_track"});
       break;
     case PickTool::Kind::place:
-      ImGui::Text("Click the place of the new %s", tool.subject.c_str());
+      ImGui::Text("Click the place of the new %s", drawable(tool.subject).c_str());
       break;
   }
   ImGui::SameLine();

@@ -15,7 +15,7 @@ void drawEdits(const std::vector<scenario::Edit>& edits, render::Theme theme) {
   constexpr std::size_t kMaxLines = 6;
   ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(theme));
   for (std::size_t i = 0; i < edits.size() && i < kMaxLines; ++i) {
-    ImGui::BulletText("%s", scenario::toString(edits[i]).c_str());
+    ImGui::BulletText("%s", drawable(scenario::toString(edits[i])).c_str());
   }
   if (edits.size() > kMaxLines) ImGui::Text("and %zu more", edits.size() - kMaxLines);
   ImGui::PopStyleColor();
@@ -98,7 +98,7 @@ void drawLossQuestion(PanelContext& context, const Json& answers) {
   Session& session = context.session;
   const auto tellFile = [](const std::string& file) {
     std::error_code ignored;
-    ImGui::TextDisabled("to %s%s", file.c_str(),
+    ImGui::TextDisabled("to %s%s", drawable(file).c_str(),
                         std::filesystem::exists(file, ignored) ? ", which is replaced" : "");
   };
   if (session.hasUnsavedEdits()) {

@@ -315,7 +315,9 @@ void drawEdits(PanelContext& context, const PanelState& state) {
     ImGui::SameLine();
     const std::string text = edit.value == "null" ? edit.path + ": removed" : toString(edit);
     const bool is_long = text.size() > kMaxCharacters;
-    ImGui::TextUnformatted((is_long ? text.substr(0, kMaxCharacters) + " …" : text).c_str());
+    std::size_t end = kMaxCharacters;
+    while (is_long && (text[end] & 0xC0) == 0x80) --end;  // not within a character
+    ImGui::TextUnformatted(drawable(is_long ? text.substr(0, end) + " …" : text).c_str());
     tooltipOfLongName(text, is_long);
     ImGui::PopID();
   }

@@ -68,7 +68,7 @@ void drawStateBadge(PanelContext& context, float right_x) {
   std::string text, all;
   bool fits = true;
   for (const std::string& part : parts) {
-    all += (all.empty() ? "" : "\n") + part;
+    all += (all.empty() ? "" : "\n") + drawable(part);
     const std::string longer = text + (text.empty() ? "" : "   ·   ") + part;
     fits = fits && ImGui::CalcTextSize(longer.c_str()).x <= room;
     if (fits) text = longer;
