@@ -331,7 +331,7 @@ void App::handleKeys(const std::vector<InputEvent>& events) {
     const bool is_for_panel = dialog || typing || (panels.open && editsText(chord)) ||
                               (in_panel && !chord.control && !isFunctionKey(chord));
     const bool is_global = chord.key == "F1" || chord.key == "F10" || chord.key == "F12" ||
-                           (chord.key == "Esc" && (dialog || (!typing && !in_panel)));
+                           (chord.key == "Esc" && (chord.shift || dialog || (!typing && !in_panel)));
     if (is_for_panel && !is_global) continue;
     const bool flying = window_.buttonDown(GLFW_MOUSE_BUTTON_RIGHT) && !chord.control;
     if (flying && chord.key.size() == 1 && std::string("WASDQE").find(chord.key) != std::string::npos)

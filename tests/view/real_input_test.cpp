@@ -85,14 +85,25 @@ class RealInput : public Window {
 
   /// Opens an input, and waits until it is shown and has the focus.
   void open(const std::string& input) {
-    std::filesystem::remove(logFile());
-    Arguments arguments = viewOf(input, R"({"do":"wait_state","state":"exact"}
+    start(viewOf(input, R"({"do":"wait_state","state":"exact"}
 {"do":"mark","text":"ready"}
 {"do":"wait_s","seconds":300}
-)");
+)"));
+    ASSERT_TRUE(comesToLog("mark"));
+    activate();
+  }
+  /// The same as a user does, without a script: questions are asked.
+  void openByHand(const std::string& input) {
+    start({"view", input, "--size", "", "--backend", "cpu", "--log", logFile()});
+    ASSERT_TRUE(reports("program", "IDLE"));
+    activate();
+  }
+  void start(Arguments arguments) {
+    std::filesystem::remove(logFile());
     arguments[3] = "1000x800";
     program_ = std::make_unique<RunningProgram>(arguments, environment());
-    ASSERT_TRUE(comesToLog("mark"));
+  }
+  void activate() const {
     ASSERT_TRUE(xdotool("search --sync --onlyvisible --name emscape windowactivate --sync"));
   }
   /// Runs commands of xdotool; $w is the window.
@@ -198,6 +209,28 @@ TEST_F(RealInput, EscapeInAFieldTakesBackTheTypedNumberAndNothingElse) {
   ASSERT_TRUE(xdotool("key Escape key Escape"));  // the first one gives the keys back to the picture
   EXPECT_TRUE(commandsBecome("set back")) << commands();
   EXPECT_EQ(log("edit").size(), 1U);
+}
+
+TEST_F(RealInput, EscapeAndUndoShowTheValueInPlaceOfARefusedText) {
+  open(quick());
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("xyz") + " key Return sleep 0.5 key Escape sleep 0.3"));
+  // The row still has the focus: what is typed next is its number.
+  ASSERT_TRUE(xdotool(type("7") + " key Return"));
+  EXPECT_TRUE(commandsBecome("set")) << commands();
+  ASSERT_TRUE(comesToLog("edit"));
+  ASSERT_TRUE(xdotool(type("q") + " key Return sleep 0.3 key ctrl+z sleep 0.5"));
+  EXPECT_TRUE(commandsBecome("set undo")) << commands();
+  // Without a refused text, a drag changes the value.
+  ASSERT_TRUE(xdotool(drag(kLosses, 20)));
+  EXPECT_TRUE(comes([&] { return log("edit").size() > 1; }));
+}
+
+TEST_F(RealInput, ShiftEscapeCancelsAlsoWhileAValueHasTheKeyboard) {
+  open(quick());
+  ASSERT_TRUE(xdotool(click(kLosses) + " key shift+Escape"));
+  EXPECT_TRUE(commandsBecome("cancel")) << commands();
+  ASSERT_TRUE(xdotool(type("7") + " key Return"));
+  EXPECT_TRUE(commandsBecome("cancel set")) << commands();
 }
 
 TEST_F(RealInput, AClickSelectsAValueAndADragChangesItFromWhereItIs) {
@@ -400,15 +433,30 @@ TEST_F(OpenDialog, SavesUnderTheTypedName) {
   EXPECT_TRUE(reports("unsaved", false));
 }
 
-TEST_F(OpenDialog, TakesTheKeysFromAQuestionBehindIt) {
+// The help over it closes alone; the rest of the window waits.
+TEST_F(OpenDialog, TheQuestionAboutKeptEditsIsAnsweredByEnter) {
   open(input("a.yaml"));
   ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Return"));
   ASSERT_TRUE(comesToLog("autosave"));
   kill(SIGKILL);
-  open(input("a.yaml"));
-  ASSERT_TRUE(xdotool(click(kFileMenu) + click(kOpenItem) + type("b.yaml") + " key Return"));
-  EXPECT_TRUE(commandsBecome("open open")) << commands();
-  EXPECT_TRUE(reports("input", input("b.yaml")));
+  openByHand(input("a.yaml"));
+  ASSERT_TRUE(
+      xdotool(click(kFileMenu) + click(kPicture) + " sleep 0.5 key F1 sleep 0.5 key Escape sleep 0.5"));
+  EXPECT_TRUE(commandsBecome("panel back")) << commands();
+  ASSERT_TRUE(xdotool("key Return"));
+  EXPECT_TRUE(commandsBecome("panel back restore")) << commands();
+  EXPECT_TRUE(reports("edits", 1));
+}
+
+TEST_F(OpenDialog, EnterInTheQuestionOfLossReplacesNoFile) {
+  writeFile(input("a.edited.yaml"), "kept");
+  openByHand(input("a.yaml"));
+  ASSERT_TRUE(xdotool(controlClick(kLosses) + type("7") + " key Return"));
+  ASSERT_TRUE(comesToLog("edit"));
+  ASSERT_TRUE(xdotool("key ctrl+q sleep 0.5 key Return sleep 0.5"));
+  EXPECT_TRUE(commandsBecome("set quit")) << commands();
+  EXPECT_EQ(readFile(input("a.edited.yaml")), "kept");
+  EXPECT_EQ(end()["edits"], 1);
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 #include "apps/view/panels/dialog.h"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
+#include <cstring>
 #include <map>
 #include <string>
+#include <vector>
 
 namespace emscape::view {
 namespace {
@@ -15,6 +19,50 @@ struct Place {
 Place& placeOf(const char* title) {
   static std::map<std::string, Place> places;
   return places[title];
+}
+
+/// A dialog that was drawn in this frame or the one before.
+struct OpenDialog {
+  const char* title;
+  bool waits;  ///< the rest of the window waits for it
+  int frame;
+};
+
+/// The open dialogs; the one that was opened last is at the end.
+std::vector<OpenDialog>& openDialogs() {
+  static std::vector<OpenDialog> dialogs;
+  const int frame = ImGui::GetFrameCount();
+  dialogs.erase(std::remove_if(dialogs.begin(), dialogs.end(),
+                               [&](const OpenDialog& dialog) { return frame - dialog.frame > 1; }),
+                dialogs.end());
+  return dialogs;
+}
+
+void noteOpen(const char* title, Waits waits) {
+  std::vector<OpenDialog>& dialogs = openDialogs();
+  const auto known = std::find_if(dialogs.begin(), dialogs.end(), [&](const OpenDialog& dialog) {
+    return std::strcmp(dialog.title, title) == 0;
+  });
+  if (known != dialogs.end()) {
+    known->frame = ImGui::GetFrameCount();
+  } else {
+    dialogs.push_back({title, waits == Waits::yes, ImGui::GetFrameCount()});
+  }
+}
+
+bool isOnTop(const char* title) {
+  const std::vector<OpenDialog>& dialogs = openDialogs();
+  return !dialogs.empty() && std::strcmp(dialogs.back().title, title) == 0;
+}
+
+/// Gives the focus to the dialog on top, however it was lost, while the rest of the window waits.
+void keepFocus(const char* title) {
+  const std::vector<OpenDialog>& dialogs = openDialogs();
+  const bool waits =
+      std::any_of(dialogs.begin(), dialogs.end(), [](const OpenDialog& dialog) { return dialog.waits; });
+  if (!waits || !isOnTop(title) || isPopupOpen()) return;
+  const ImGuiWindow* const focused = ImGui::GetCurrentContext()->NavWindow;
+  if (focused == nullptr || std::strcmp(focused->RootWindow->Name, title) != 0) ImGui::SetNextWindowFocus();
 }
 
 void drawShadow(ImDrawList& list, const Place& place, float scale) {
@@ -45,9 +93,7 @@ void drawBehind(const char* title, float scale, Waits waits) {
     list.AddRectFilled({0, 0}, ImGui::GetIO().DisplaySize, ImGui::GetColorU32(ImGuiCol_ModalWindowDimBg));
   }
   if (place.to.x > place.from.x) drawShadow(list, place, scale);
-  const bool takes_focus = dims && ImGui::IsWindowFocused() && !ImGui::IsWindowAppearing();
   ImGui::End();
-  if (takes_focus) ImGui::SetNextWindowFocus();  // a click beside the dialog
 }
 
 }  // namespace
@@ -61,7 +107,9 @@ bool beginDialog(PanelContext& context, const char* title, bool& open, const ImV
   const float s = context.scale, margin = 8 * s;
   const ImVec2 screen = ImGui::GetIO().DisplaySize;
   const ImVec2 most{std::max(1.0F, screen.x - 2 * margin), std::max(1.0F, screen.y - 2 * margin)};
+  noteOpen(title, waits);
   drawBehind(title, s, waits);
+  keepFocus(title);
   ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
   ImGui::SetNextWindowSizeConstraints({0, 0}, most);
   if (size.x > 0) ImGui::SetNextWindowSize({size.x * s, size.y * s}, ImGuiCond_Appearing);
@@ -87,8 +135,8 @@ void endDialog() {
 bool defaultButton(const char* text) {
   const bool pressed = ImGui::Button((std::string(text) + " (Enter)").c_str());
   ImGui::SameLine();
-  const bool takes_keys = !ImGui::IsWindowAppearing() &&
-                          (ImGui::IsWindowFocused() || !ImGui::IsWindowFocused(ImGuiFocusedFlags_AnyWindow));
+  const bool takes_keys =
+      !ImGui::IsWindowAppearing() && !isPopupOpen() && isOnTop(ImGui::GetCurrentWindow()->RootWindow->Name);
   return pressed || (takes_keys && isEnterPressed());
 }
 

@@ -16,7 +16,7 @@ bool beginDialog(PanelContext& context, const char* title, bool& open, const ImV
                  Waits waits = Waits::yes, ImGuiWindowFlags flags = 0);
 void endDialog();
 
-/// The default button of a dialog, also pressed by Enter unless another window has the focus.
+/// The default button of a dialog, also pressed by Enter if no other dialog was opened after it.
 bool defaultButton(const char* text);
 
 }  // namespace emscape::view

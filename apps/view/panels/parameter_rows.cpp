@@ -174,6 +174,7 @@ void ParameterRows::drawRow(const Parameter& parameter) {
   ImGui::PushID(parameter.key.c_str());
   focus_.add(parameter.path);
   takeRejection(parameter.path);
+  restoreValue(parameter.path);
   label(parameter.name, tooltipOf(parameter), edited_.count(parameter.path) > 0);
   if (ImGui::IsItemClicked()) focus_.take(parameter.path);
   drawLabelMenu(parameter);
@@ -275,8 +276,9 @@ void ParameterRows::handleSlider(const Parameter& parameter, const ValueSlider& 
   if (ImGui::IsItemActivated())
     drag_state = {parameter.path, numberText(value), slider.positionOf(value), false};
   if (drag_state.path != parameter.path) return;
-  if (dragPosition(drag_state.position, drag_state.is_moved, context_.scale)) {
-    const double fine = ImGui::GetIO().KeyShift ? 0.1 : 1;
+  const double rate = slider.dragRate(1 / pixel);
+  if (dragPosition(drag_state.position, drag_state.is_moved, context_.scale, rate)) {
+    const double fine = rate * (ImGui::GetIO().KeyShift ? 0.1 : 1);
     drag(parameter, numberText(slider.steppedValueAt(drag_state.position, fine * pixel)));
   }
   if (drag_state.is_moved && isKeyPressed(ImGuiKey_Escape)) {
@@ -312,7 +314,9 @@ void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
   const double value = std::strtod(parameter.value.c_str(), nullptr);
   const double factor = prefixedUnit(value, parameter.unit, kTypedDigits).factor;
   const std::optional<double> number = parseQuantity(text, parameter.unit, factor);
-  const auto refuse = [&](const std::string& why) { state_.refused = {path, text, why}; };
+  const auto refuse = [&](const std::string& why) {
+    state_.refused = {path, text, why, context_.session.scenario()};
+  };
   const bool is_word = !number && text.find_first_of("0123456789") == std::string::npos;
   if (number && !(*number >= parameter.minimum && *number <= parameter.maximum)) {
     return refuse(fmt::format("{}: {} is not allowed; {}", parameter.name, text, rangeOf(parameter)));
@@ -393,12 +397,21 @@ void ParameterRows::takeRejection(const std::string& path) {
   const std::optional<Rejection>& rejection = context_.session.rejection();
   const bool is_own = rejection && !rejection->edits.empty() && rejection->edits.front().path == path;
   if (is_own && state_.sent_path == path) {
-    state_.refused = {path, std::exchange(state_.sent_text, {}), rejection->message};
+    state_.refused = {path, std::exchange(state_.sent_text, {}), rejection->message,
+                      context_.session.scenario()};
     state_.sent_path.clear();
   }
   if (!rejection && state_.sent_path != path && state_.refused.path == path && state_.refused.text.empty())
     state_.refused = {};
   context_.shows_rejection = context_.shows_rejection || (is_own && state_.refused.path == path);
+}
+
+/// Esc, and each change of the scenario such as undo, show the value again in place of a refused text.
+void ParameterRows::restoreValue(const std::string& path) {
+  if (state_.refused.path != path) return;
+  const bool is_escaped = focus_.isEscaped(path);
+  if (is_escaped) focus_.take(path);  // the next Esc leaves the row
+  if (is_escaped || state_.refused.scenario != context_.session.scenario()) state_.refused = {};
 }
 
 /// Over the rows below, so that they stay where they are.

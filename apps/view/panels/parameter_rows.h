@@ -16,6 +16,7 @@ namespace emscape::view {
 struct RefusedText {
   std::string path, text;
   std::string why;
+  playback::ScenarioPtr scenario;  ///< whose value it was to replace
 };
 
 /// State of the rows between frames.
@@ -64,6 +65,7 @@ class ParameterRows {
   /// clicked.
   void showFocus(const std::string& path);
   void takeRejection(const std::string& path);
+  void restoreValue(const std::string& path);
   void drawRefusal(const std::string& path);
   void set(const std::string& path, const std::string& value) const;
 

@@ -77,6 +77,7 @@ void RowFocus::beginFrame() {
   drawn_frame_ = ImGui::GetFrameCount();
   key_ = Key::none;
   characters_.clear();
+  escaped_.clear();
   moved_ = leaves_ = false;
   if (!was_shown || (!typing_.empty() && drawn_frame_ - drawn_field_frame_ > 1)) typing_.clear();
   if (!was_shown) focused_.clear();
@@ -106,7 +107,7 @@ void RowFocus::beginFrame() {
   if (isPressed(GLFW_KEY_RIGHT)) key_ = Key::right;
   if (isPressed(GLFW_KEY_SPACE)) key_ = Key::space;
   if (isPressed(GLFW_KEY_ENTER) || isPressed(GLFW_KEY_KP_ENTER)) key_ = Key::enter;
-  if (isPressed(GLFW_KEY_ESCAPE)) focused_.clear();
+  if (isPressed(GLFW_KEY_ESCAPE) && !io.KeyShift) escaped_ = std::exchange(focused_, {});
   characters_ = typedCharacters();
 }
 

@@ -29,6 +29,8 @@ class RowFocus {
   /// True in the frame in which Enter was pressed in a row.
   bool isEntered(const std::string& row) const { return key_ == Key::enter && has(row); }
   bool isSpaced(const std::string& row) const { return key_ == Key::space && has(row); }
+  /// True in the frame in which Esc took the focus from a row.
+  bool isEscaped(const std::string& row) const { return row == escaped_; }
   /// Steps by the keys Left (-1) and Right (1).
   int steps(const std::string& row) const;
   /// Characters that were typed in a row without a text field.
@@ -53,6 +55,7 @@ class RowFocus {
 
   std::vector<std::string> rows_, rows_before_;
   std::string focused_, last_;  // the last one gets the focus by Tab
+  std::string escaped_;
   bool moved_ = false;
   int will_move_ = 0;  // by Tab, once the field has given its text
   Key key_ = Key::none;

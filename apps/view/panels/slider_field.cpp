@@ -46,7 +46,7 @@ bool drawValueFrame(const char* id, const ValueFrame& frame, float width, float 
   return is_long;
 }
 
-bool dragPosition(double& position, bool& is_moved, float scale) {
+bool dragPosition(double& position, bool& is_moved, float scale, double rate) {
   constexpr double kFine = 0.1;
   const ImGuiIO& io = ImGui::GetIO();
   const bool drags =
@@ -56,8 +56,8 @@ bool dragPosition(double& position, bool& is_moved, float scale) {
       std::exchange(is_moved, true) ? io.MouseDelta.x : ImGui::GetMouseDragDelta(ImGuiMouseButton_Left).x;
   const float width = std::max(1.0F, ImGui::GetItemRectSize().x - 2 * kMargin * scale);
   const double before = position;
-  position =
-      std::clamp(position + (io.KeyShift ? kFine : 1) * static_cast<double>(moved_px / width), 0.0, 1.0);
+  position = std::clamp(position + (io.KeyShift ? kFine : 1) * rate * static_cast<double>(moved_px / width),
+                        0.0, 1.0);
   return position != before;
 }
 

@@ -24,8 +24,9 @@ bool drawValueFrame(const char* id, const ValueFrame& frame, float width, float 
 /// The change of a position (0..1) by the mouse that drags the item drawn last: fine with Shift. Relative to
 /// where the item was grabbed; a click changes nothing.
 /// @param position  of the value; kept between frames by the caller
+/// @param rate      as ValueSlider::dragRate()
 /// @return true if it was changed
-bool dragPosition(double& position, bool& is_moved, float scale);
+bool dragPosition(double& position, bool& is_moved, float scale, double rate = 1);
 
 /// True if the item drawn last is to become a text field: a double click, or Ctrl + click.
 bool wantsTyping();

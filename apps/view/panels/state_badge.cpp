@@ -57,12 +57,14 @@ void drawStateBadge(PanelContext& context, float right_x) {
   const ProgramState state = session.programState();
   const float s = context.scale;
   const std::vector<std::string> parts = partsOf(session, state);
+  bool is_on_button = false;
   ImGui::BeginGroup();
   drawBadge(context, state);
   if (state.can_cancel && state.activity != Activity::playing) {
     ImGui::SameLine(0, 8 * s);
     if (ImGui::SmallButton("Cancel")) perform(context, R"({"do":"cancel"})");
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("Shift+Esc");
+    is_on_button = ImGui::IsItemHovered();
+    if (is_on_button) ImGui::SetTooltip("Shift+Esc");
   }
   const float room = right_x - (ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x + 12 * s);
   std::string text, all;
@@ -76,7 +78,10 @@ void drawStateBadge(PanelContext& context, float right_x) {
   ImGui::SameLine(0, 12 * s);
   ImGui::TextUnformatted(drawable(text).c_str());
   ImGui::EndGroup();
-  if (!ImGui::IsItemHovered() || !session.picture()) return;
+  if (is_on_button || !ImGui::IsItemHovered() || !session.picture()) return;
+  // Above the line: Cancel stays free.
+  ImGui::SetNextWindowPos({ImGui::GetItemRectMin().x, ImGui::GetItemRectMin().y - 8 * s}, ImGuiCond_Always,
+                          {0, 1});
   ImGui::SetTooltip("%s", fmt::format("{}\ncache {:.0f} of {:.0f} MiB", all,
                                       static_cast<double>(session.status().cached_bytes) / kMebibyte,
                                       static_cast<double>(session.cacheLimit_bytes()) / kMebibyte)

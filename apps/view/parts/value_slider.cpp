@@ -105,6 +105,12 @@ double ValueSlider::stepAt(double value, double position_step) const {
   return is_integer ? std::max(1.0, std::round(step)) : step;
 }
 
+double ValueSlider::dragRate(double length_px) const {
+  constexpr double kMaxRatio = 1.02;  // of the values of two neighbouring pixels
+  if (scale != Scale::logarithmic) return 1;
+  return std::min(1.0, std::log(kMaxRatio) * length_px / std::log(max / min));
+}
+
 double ValueSlider::steppedValueAt(double position, double position_step) const {
   const double value = valueAt(std::clamp(position, 0.0, 1.0));
   const double step = stepAt(value, position_step);

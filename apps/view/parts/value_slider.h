@@ -26,6 +26,9 @@ struct ValueSlider {
   /// The distance between values that are told apart at a value: 1, 2 or 5 times a power of ten.
   /// @param position_step  the distance of two positions, such as that of two pixels
   double stepAt(double value, double position_step) const;
+  /// The part of the scale's length that a drag over its length moves the value by: 1, or less if a pixel
+  /// would change the value by more than 2 %.
+  double dragRate(double length_px) const;
   /// The multiple of the step that is nearest to the value at a position, within the range.
   double steppedValueAt(double position, double position_step) const;
 };

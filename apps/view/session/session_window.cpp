@@ -100,8 +100,11 @@ std::vector<Verb> Session::windowVerbs() {
            return;
          }
          Panels& panels = session.panels;
-         // A question or a file browser over another dialog is closed alone.
+         // A question, the help or a file browser over another dialog is closed alone.
          if (std::exchange(panels.replace, false)) return;
+         const bool asks =
+             panels.restore || panels.unsaved || panels.record || panels.time || panels.warnings;
+         if (asks && std::exchange(panels.help, false)) return;
          if (panels.record && std::exchange(panels.open, false)) return;
          for (const PanelName& panel : panelNames()) {
            if (!panel.stays) was_open |= std::exchange(panels.*panel.open, false);
