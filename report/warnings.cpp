@@ -13,10 +13,11 @@
 namespace emscape::report {
 
 std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings) {
-  static const std::regex kOfEmitter("emitter '([^']*)': (.*)");
+  static const std::regex kOfEmitter("((?:[^']*: )?)emitter '([^']*)': (.*)");
   static const std::regex kNumber(R"((\B-)?\b\d+(\.\d+)?\b)");
   constexpr std::size_t kMaxNames = 5;
   struct Kind {
+    std::string of;                                 // the series in front, such as "the original: "
     std::string form;                               // the text with '#' for each number
     std::unordered_set<std::string> emitters;       // empty: the warning of no emitter
     std::vector<std::string> names;                 // of the first emitters
@@ -28,13 +29,13 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
   for (const std::string& warning : warnings) {
     std::smatch parts;
     if (!std::regex_match(warning, parts, kOfEmitter)) {
-      kinds.push_back({warning, {}, {}, 1, {}});
+      kinds.push_back({"", warning, {}, {}, 1, {}});
       continue;
     }
-    const std::string text = parts[2], emitter = "'" + parts[1].str() + "'";
+    const std::string of = parts[1], text = parts[3], emitter = "'" + parts[2].str() + "'";
     const std::string form = std::regex_replace(text, kNumber, "#");
-    const auto [known, is_new] = kind_of_form.emplace(form, kinds.size());
-    if (is_new) kinds.push_back({form, {}, {}, 0, {}});
+    const auto [known, is_new] = kind_of_form.emplace(of + form, kinds.size());
+    if (is_new) kinds.push_back({of, form, {}, {}, 0, {}});
     Kind& kind = kinds[known->second];
     if (kind.emitters.insert(emitter).second && kind.names.size() < kMaxNames) kind.names.push_back(emitter);
     ++kind.count;
@@ -52,8 +53,8 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
       continue;
     }
     const std::size_t others = kind.emitters.size() - kind.names.size();
-    std::string line =
-        fmt::format("emitter{} {}", kind.emitters.size() > 1 ? "s" : "", fmt::join(kind.names, ", "));
+    std::string line = fmt::format("{}emitter{} {}", kind.of, kind.emitters.size() > 1 ? "s" : "",
+                                   fmt::join(kind.names, ", "));
     line += others == 0 ? ": " : fmt::format(" and {} other{}: ", others, others > 1 ? "s" : "");
     std::size_t place = 0;
     for (const char character : kind.form) {

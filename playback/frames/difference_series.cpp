@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <utility>
 
 #include "emscape/base/error.h"
@@ -65,7 +66,10 @@ const std::vector<volume::Volume>& DifferenceSeries::reference(double time_s) {
 
 std::vector<std::string> DifferenceSeries::warnings(std::vector<std::string> others) const {
   if (!reference_) return others;
-  for (const std::string& warning : reference_->warnings()) others.push_back(name_ + ": " + warning);
+  const std::set<std::string> of_both(others.begin(), others.end());
+  for (const std::string& warning : reference_->warnings()) {
+    if (of_both.count(warning) == 0) others.push_back(name_ + ": " + warning);
+  }
   return others;
 }
 

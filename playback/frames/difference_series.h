@@ -34,7 +34,7 @@ class DifferenceSeries {
   std::vector<volume::Volume> of(const std::vector<volume::Volume>& volumes, double time_s);
   /// The volumes of the reference. @throws as of()
   const std::vector<volume::Volume>& reference(double time_s);
-  /// @return the warnings of the other series, followed by those of the reference, which name it
+  /// @return the warnings of the other series, followed by those that only the reference has, which name it
   std::vector<std::string> warnings(std::vector<std::string> others) const;
   /// Drops the cached volumes.
   void clear() {

@@ -36,7 +36,9 @@ class DifferenceSource : public FrameSource {
   }
   std::string name() const override { return source_->name(); }
   const LoadedScenario* scene() const override { return source_->scene(); }
-  std::vector<std::string> warnings() const override { return difference_.warnings(source_->warnings()); }
+  std::vector<std::string> warnings() const override {
+    return compares_ ? difference_.warnings(source_->warnings()) : source_->warnings();
+  }
   std::vector<std::string> quantities() const override { return source_->quantities(); }
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override;
   void setQuantity(const std::string& quantity) override;

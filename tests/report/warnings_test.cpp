@@ -16,6 +16,14 @@ TEST(JoinedWarnings, EmittersWithTheSameWarningAreNamedTogether) {
       ElementsAre("emitters 'a', 'b': far field from 120, 80 m", "a warning of none", "emitter 'a': off"));
 }
 
+TEST(JoinedWarnings, ThoseOfAReferenceAreJoinedOnTheirOwn) {
+  EXPECT_THAT(joinedWarnings({"emitter 'a': far field from 120 m",
+                              "the original scenario: emitter 'a': far field from 90 m",
+                              "the original scenario: emitter 'b': far field from 80 m"}),
+              ElementsAre("emitter 'a': far field from 120 m",
+                          "the original scenario: emitters 'a', 'b': far field from 90, 80 m"));
+}
+
 TEST(JoinedWarnings, MoreThanFiveEmittersAreCounted) {
   std::vector<std::string> warnings;
   for (int i = 1; i <= 7; ++i)
