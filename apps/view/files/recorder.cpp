@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/stopwatch.h"
 #include "base/text/failure_text.h"
 #include "base/thread_arena.h"
 #include "emscape/base/error.h"
@@ -62,6 +63,21 @@ RecordEstimate estimateOf(const RecordRange& range, double begin_s, double end_s
   return estimate;
 }
 
+void FieldTimes::add(long long fields, double field_ms) {
+  constexpr std::size_t kMost = 9;
+  const bool is_first = fields_ == 0;  // also reads terrain and antennas
+  if (std::exchange(fields_, fields) == fields || is_first) return;
+  last_ms_.push_back(field_ms);
+  if (last_ms_.size() > kMost) last_ms_.pop_front();
+}
+
+double FieldTimes::usual_ms() const {
+  if (last_ms_.empty()) return 0;
+  std::vector<double> sorted(last_ms_.begin(), last_ms_.end());
+  std::sort(sorted.begin(), sorted.end());
+  return sorted[(sorted.size() - 1) / 2];
+}
+
 Recorder::~Recorder() {
   cancel();
 }
@@ -79,7 +95,14 @@ void Recorder::start(const RecordJob& job, std::function<void()> wake) {
       // Leaves one core to the window.
       ThreadArena arena(threadCount() - 1);
       arena.run([&] {
+        Stopwatch watch;
+        double since_first_s = 0;
         draw(job, stop_, [&](int pictures, int total) {
+          const double picture_s = watch.lap_ms() / 1000;
+          if (pictures > 1) {
+            since_first_s += picture_s;
+            counter->left_s = since_first_s / (pictures - 1) * (total - pictures);
+          }
           counter->pictures = pictures;
           counter->total = total;
           if (wake) wake();
@@ -102,7 +125,7 @@ void Recorder::start(const RecordJob& job, std::function<void()> wake) {
 }
 
 Recorder::Progress Recorder::progress() const {
-  return {output_, counter_->pictures, counter_->total};
+  return {output_, counter_->pictures, counter_->total, counter_->left_s};
 }
 
 std::optional<Recorder::Outcome> Recorder::takeOutcome() {

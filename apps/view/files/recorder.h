@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -35,6 +36,19 @@ struct RecordEstimate {
 RecordEstimate estimateOf(const RecordRange& range, double begin_s, double end_s, double step_s,
                           render::ImageSize size, double picture_ms, bool is_video);
 
+/// The usual time of a field: the median of the last ones, of which the first after the opening is none.
+/// @return 0: not known
+class FieldTimes {
+ public:
+  /// @param fields  computed so far
+  void add(long long fields, double field_ms);
+  double usual_ms() const;
+
+ private:
+  long long fields_ = 0;
+  std::deque<double> last_ms_;
+};
+
 /// The view to draw, and the output.
 struct RecordJob {
   playback::ViewState view;
@@ -64,7 +78,8 @@ class Recorder {
   struct Progress {
     std::string output;
     int pictures = 0;
-    int total = 0;  ///< 0: not known yet
+    int total = 0;      ///< 0: not known yet
+    double left_s = 0;  ///< until the end, by the pictures after the first one; 0: not known yet
   };
   Progress progress() const;
 
@@ -79,6 +94,7 @@ class Recorder {
  private:
   struct Counter {
     std::atomic<int> pictures{0}, total{0};
+    std::atomic<double> left_s{0};
   };
 
   StopFlag stop_{false};

@@ -1,6 +1,7 @@
 /// The recording dialog, and the progress of a recording.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iterator>
@@ -22,7 +23,7 @@ void drawProgress(PanelContext& context, const Area& picture) {
   const float s = context.scale;
   const Recorder::Progress progress = recorder.progress();
   const float width = std::min(420 * s, 0.9F * picture.width);
-  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + 12 * s}, ImGuiCond_Always, {0.5F, 0});
+  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + 84 * s}, ImGuiCond_Always, {0.5F, 0});
   ImGui::SetNextWindowSize({width, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.0F, s));
@@ -34,8 +35,9 @@ void drawProgress(PanelContext& context, const Area& picture) {
   if (session.quitsWhenRecorded()) ImGui::TextDisabled("the program ends when it is complete");
   const float part =
       progress.total > 0 ? static_cast<float>(progress.pictures) / static_cast<float>(progress.total) : 0;
-  const std::string text =
+  std::string text =
       progress.total > 0 ? fmt::format("{} of {}", progress.pictures, progress.total) : "opening";
+  if (progress.left_s > 0) text += ", " + timeText(std::ceil(progress.left_s)) + " left";
   ImGui::ProgressBar(part, {width - 110 * s, 0}, text.c_str());
   ImGui::SameLine();
   if (ImGui::Button("Cancel")) perform(context, R"({"do":"record_cancel"})");
@@ -125,9 +127,10 @@ void drawEstimate(const PanelContext& context, const Typed& typed) {
   const double pixels =
       shown.count() > 0 ? static_cast<double>(size.count()) / static_cast<double>(shown.count()) : 1;
   const double full_cast_ms = status.rays_fraction > 0 ? status.cast_ms / status.rays_fraction : 0;
+  const double usual_ms = session.fieldTimes().usual_ms();
   const RecordEstimate estimate =
       estimateOf({{}, {}, {}, typed.frames_per_s, {}}, typed.begin_s, typed.end_s, typed.step_s, size,
-                 status.field_ms + pixels * full_cast_ms, typed.isVideo());
+                 usual_ms > 0 ? usual_ms + pixels * full_cast_ms : 0, typed.isVideo());
   if (estimate.pictures == 0) {
     ImGui::TextColored(errorColor(session.theme()), "expected begin <= end and step > 0");
     return;
@@ -138,8 +141,11 @@ void drawEstimate(const PanelContext& context, const Typed& typed) {
                         timeText(estimate.speed));
   }
   ImGui::TextUnformatted(drawable(text).c_str());
-  ImGui::TextDisabled("about %s to record, %s", timeText(std::max(1.0, std::round(estimate.work_s))).c_str(),
-                      bytesText(estimate.bytes).c_str());
+  const std::string time =
+      estimate.work_s > 0
+          ? fmt::format("about {} to record", timeText(std::max(1.0, std::round(estimate.work_s))))
+          : "time to record: known when another step was shown";
+  ImGui::TextDisabled("%s, %s", time.c_str(), bytesText(estimate.bytes).c_str());
 }
 
 /// The same on the command line.

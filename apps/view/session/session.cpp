@@ -161,6 +161,7 @@ bool Session::update() {
   takeEdits();
   const playback::LiveStatus before = status_;
   status_ = live_.status();
+  field_times_.add(status_.fields_computed, status_.field_ms);
   if (status_.is_continuous != timeline_.isContinuous() && !timeline_.times_s().empty()) {
     timeline_.setContinuous(status_.is_continuous);
   }

@@ -204,6 +204,7 @@ class Session {
   bool canUndo() const { return undo_order_.canUndo() || dragging_ || isDragging(); }
   bool canRedo() const { return undo_order_.canRedo() && !dragging_ && !isDragging(); }
   const std::vector<std::optional<playback::Bookmark>>& bookmarks() const { return bookmarks_; }
+  const FieldTimes& fieldTimes() const { return field_times_; }
   const Notice& notice() const { return notice_; }
   void tell(const std::string& text, bool is_error = false);
   /// Shows a notice that another session of the window has told and logged.
@@ -377,6 +378,7 @@ class Session {
   std::optional<double> keep_at_s_;
   bool has_kept_;  // true: there is an autosave; a regular end removes it
   std::optional<playback::AutosavedView> kept_view_;
+  FieldTimes field_times_;
   FileWatch file_watch_;
   std::vector<std::string> changed_files_;
   std::vector<ShownQuantity> quantities_;
