@@ -33,8 +33,9 @@ void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool int
   const auto compute = [&](std::size_t begin, std::size_t end) {
     const auto count = static_cast<double>(chosen.size());
     const Emitter& emitter = setup.scenario->emitters[chosen[begin]];
-    const WorkPart part(fmt::format("'{}' by {}, {} of {}", emitter.name, toString(emitter.propagation.model),
-                                    begin + 1, chosen.size()),
+    std::string model = toString(emitter.propagation.model);
+    std::replace(model.begin(), model.end(), '_', ' ');
+    const WorkPart part(fmt::format("'{}' by {}, {} of {}", emitter.name, model, begin + 1, chosen.size()),
                         static_cast<double>(begin) / count, static_cast<double>(end) / count);
     std::vector<GeometryRequest> requests;
     for (std::size_t i = begin; i < end; ++i) {

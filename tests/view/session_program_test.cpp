@@ -31,7 +31,7 @@ TEST(ProgramState, SaysWhatIsComputedAndHowFarItIs) {
   facts.computing_s = 1;
   const ProgramState state = programState(facts, status);
   EXPECT_EQ(state.badge, "COMPUTING 42 %");
-  EXPECT_EQ(state.what, "power_density_dbwm2 at 3 s: 'radar' by itm, 1 of 2");
+  EXPECT_EQ(state.what, "Power density at 3 s: 'radar' by itm, 1 of 2");
   EXPECT_EQ(state.picture, "the picture shows the field before");
   EXPECT_TRUE(state.can_cancel);
 }

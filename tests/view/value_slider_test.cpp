@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "apps/view/parts/edit_text.h"
 #include "apps/view/parts/refusal_text.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "tests/support/files.h"
@@ -88,6 +89,26 @@ TEST(ValueSlider, AMastOfFortyMetresChangesByMetres) {
   EXPECT_GE(slider->stepAt(40, kPixel), 0.5);
   EXPECT_EQ(slider->max, 3000);
   EXPECT_EQ(sliderOf(height, 5000)->max, 5000);
+}
+
+// The power has eight decades: without a limit a pixel would change it by 11 %.
+TEST(ValueSlider, APixelOfADragChangesAPowerByTwoPercent) {
+  Parameter power;
+  power.key = "power_w";
+  power.type = Parameter::Type::number;
+  const auto slider = sliderOf(power, 5000);
+  ASSERT_TRUE(slider);
+  const double position = slider->positionOf(5000);
+  EXPECT_NEAR(slider->valueAt(position + slider->dragRate(1 / kPixel) * kPixel), 5100, 1);
+  EXPECT_EQ((ValueSlider{0, 30}.dragRate(1 / kPixel)), 1) << "a linear scale follows the mouse";
+}
+
+TEST(EditText, NamesTheThingTheValueAndItsChange) {
+  const auto scenario = scenario::loadScenario(emscape::test::shippedScenario("quick.yaml"));
+  const scenario::Edit power{"emitters.radar.power_w", "5000"};
+  EXPECT_THAT(editText(*scenario, power), testing::MatchesRegex("radar, power: .* → 5 kW"));
+  EXPECT_EQ(editText(*scenario, {"emitters.radar.antenna.gain_dbi", "null"}), "radar, gain: by default");
+  EXPECT_EQ(editText(*scenario, {"emitters.nobody.power_w", "1"}), "emitters.nobody.power_w=1");
 }
 
 TEST(RefusalText, SpeaksOfValuesNotOfPlacesInFiles) {

@@ -124,6 +124,15 @@ void entry(PanelContext& context, const char* label, const Command& command) {
   if (hasVerb(command.verb.c_str()) && ImGui::MenuItem(label)) context.session.perform(command);
 }
 
+/// Null if the scenario has no emitter of that name.
+const scenario::Emitter* emitterOf(const Session& session, const std::string& name) {
+  const playback::ScenarioPtr scenario = session.scenario();
+  if (!scenario) return nullptr;
+  const auto found = std::find_if(scenario->emitters.begin(), scenario->emitters.end(),
+                                  [&](const scenario::Emitter& emitter) { return emitter.name == name; });
+  return found == scenario->emitters.end() ? nullptr : &*found;
+}
+
 /// Shows or hides the range rings of an emitter, whose setting is a list of texts EMITTER:KEY=VALUE,...
 void ringsEntry(PanelContext& context, const std::string& emitter) {
   const playback::ViewSetting* const setting = playback::settingOfVerb("range_rings");
@@ -152,7 +161,11 @@ void drawMenuOfObject(PanelContext& context, const SceneObject& object) {
   ImGui::SameLine();
   ImGui::TextDisabled("%s", drawable(object.kind).c_str());
   ImGui::Separator();
-  if (is_emitter) entry(context, "Switch on or off", {"enable", {{"emitter", object.name}}});
+  const scenario::Emitter* const emitter = is_emitter ? emitterOf(session, object.name) : nullptr;
+  if (emitter != nullptr) {
+    entry(context, emitter->enabled ? "Switch off" : "Switch on",
+          {"enable", {{"emitter", object.name}, {"on", !emitter->enabled}}});
+  }
   entry(context, "Look at it", {"focus", {{"path", object.path}}});
   const playback::ScenarioPtr scenario = session.scenario();
   const auto platform = static_cast<std::size_t>(object.platform);

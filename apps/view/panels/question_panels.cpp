@@ -7,15 +7,17 @@
 #include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/theme.h"
+#include "apps/view/parts/edit_text.h"
 
 namespace emscape::view {
 namespace {
 
-void drawEdits(const std::vector<scenario::Edit>& edits, render::Theme theme) {
+void drawEdits(const std::vector<scenario::Edit>& edits, const Session& session) {
   constexpr std::size_t kMaxLines = 6;
-  ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(theme));
+  const playback::ScenarioPtr scenario = session.scenario();
+  ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(session.theme()));
   for (std::size_t i = 0; i < edits.size() && i < kMaxLines; ++i) {
-    ImGui::BulletText("%s", drawable(scenario::toString(edits[i])).c_str());
+    ImGui::BulletText("%s", drawable(scenario ? editText(*scenario, edits[i]) : toString(edits[i])).c_str());
   }
   if (edits.size() > kMaxLines) ImGui::Text("and %zu more", edits.size() - kMaxLines);
   ImGui::PopStyleColor();
@@ -27,12 +29,12 @@ void drawRestoreQuestion(PanelContext& context) {
   Session& session = context.session;
   if (!session.keptView()) return;
   const playback::AutosavedView kept = *session.keptView();
-  if (!beginDialog(context, "Edits that were not saved", session.panels.restore, {}, Waits::no)) return;
+  if (!beginDialog(context, "Edits that were not saved", session.panels.restore)) return;
   ImGui::TextUnformatted(
       fmt::format("Edits of this input were not saved. A view with {} edit{} was kept at {}.",
                   kept.state.edits.size(), kept.state.edits.size() == 1 ? "" : "s", kept.written_utc)
           .c_str());
-  drawEdits(kept.state.edits, session.theme());
+  drawEdits(kept.state.edits, session);
   if (kept.input_changed) {
     ImGui::TextUnformatted("The file was written since: edits that do not apply any more are left out.");
   }
@@ -55,7 +57,9 @@ void drawChangedFiles(PanelContext& context, const Area& picture) {
                                ? name + " has changed on the disk."
                                : fmt::format("{} and {} other file{} have changed on the disk.", name,
                                              files.size() - 1, files.size() == 2 ? "" : "s");
-  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + 80 * s}, ImGuiCond_Always, {0.5F, 0});
+  ImGui::SetNextWindowPos(
+      {picture.x + picture.width / 2, picture.y + (session.files().recorder.running() ? 184 : 84) * s},
+      ImGuiCond_Always, {0.5F, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(16 * s, 10 * s));
   ImGui::Begin("changed", nullptr,
@@ -91,19 +95,22 @@ void drawRecordingQuestion(PanelContext& context, const Json& answers) {
   if (defaultButton("Wait, then quit")) answer("wait");
   if (ImGui::Button("Cancel it and quit")) answer("cancel");
   ImGui::SameLine();
+  if (ImGui::Button("Back (Esc)")) session.panels.unsaved = false;
 }
 
 /// Asks about edits and colours.
 void drawLossQuestion(PanelContext& context, const Json& answers) {
   Session& session = context.session;
-  const auto tellFile = [](const std::string& file) {
+  bool replaces = false;
+  const auto tellFile = [&](const std::string& file) {
     std::error_code ignored;
-    ImGui::TextDisabled("to %s%s", drawable(file).c_str(),
-                        std::filesystem::exists(file, ignored) ? ", which is replaced" : "");
+    const bool exists = std::filesystem::exists(file, ignored);
+    replaces = replaces || exists;
+    ImGui::TextDisabled("to %s%s", drawable(file).c_str(), exists ? ", which is replaced" : "");
   };
   if (session.hasUnsavedEdits()) {
     ImGui::TextUnformatted("The scenario has edits that are not saved.");
-    drawEdits(session.viewState().edits, session.theme());
+    drawEdits(session.viewState().edits, session);
     tellFile(session.usualScenarioFile());
   }
   if (session.hasUnsavedColors()) {
@@ -116,9 +123,17 @@ void drawLossQuestion(PanelContext& context, const Json& answers) {
     all["edits"] = edits;
     session.perform({"quit", all});
   };
-  if (defaultButton("Save and quit")) answer("save");
+  if (replaces) {
+    if (ImGui::Button("Replace and quit")) answer("save");
+    ImGui::SameLine();
+  } else if (defaultButton("Save and quit")) {
+    answer("save");
+  }
   if (ImGui::Button("Discard and quit")) answer("discard");
   ImGui::SameLine();
+  if (replaces && defaultButton("Back")) session.panels.unsaved = false;
+  if (replaces) ImGui::NewLine();
+  if (!replaces && ImGui::Button("Back (Esc)")) session.panels.unsaved = false;
 }
 
 }  // namespace
@@ -134,7 +149,6 @@ void drawUnsavedQuestion(PanelContext& context) {
   } else {
     drawLossQuestion(context, answers);
   }
-  if (ImGui::Button("Back (Esc)")) session.panels.unsaved = false;
   endDialog();
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "emscape/base/enum_names.h"
+#include "emscape/render/annotate/legend.h"
+#include "emscape/scenario/model/quantities.h"
 
 namespace emscape::view {
 namespace {
@@ -29,8 +31,15 @@ Activity activityOf(const ProgramFacts& facts, const playback::LiveStatus& statu
   return status.exact || status.failed ? Activity::idle : Activity::restore;
 }
 
+/// With the title of the quantity in place of its name.
 std::string textOf(const WorkProgress& progress) {
-  return progress.part.empty() ? progress.what : progress.what + ": " + progress.part;
+  std::string what = progress.what;
+  const std::string name = what.substr(0, what.rfind(" at "));
+  const std::string quantity = name.substr(0, name.find(':'));
+  for (const scenario::QuantityInfo& info : scenario::quantityTable()) {
+    if (info.name == quantity) what = render::quantityTitle(name, info.unit) + what.substr(name.size());
+  }
+  return progress.part.empty() ? what : what + ": " + progress.part;
 }
 
 std::string pictureText(const playback::LiveStatus& status, bool is_computing) {

@@ -148,6 +148,8 @@ std::vector<Verb> Session::planeVerbs() {
          session.change([&](playback::ViewState& view) {
            playback::changeComparison(view, compares ? reference : std::string());
          });
+         const bool is_of_itself = reference == playback::kOriginal && session.viewState().edits.empty();
+         if (compares && is_of_itself) session.tell("nothing is changed: no difference");
        }},
   };
 }

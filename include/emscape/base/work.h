@@ -26,7 +26,7 @@ inline void throwIfStopped(const StopFlag* stop) {
 /// Progress of a piece of work.
 struct WorkProgress {
   std::string what;      ///< "power_density_dbwm2 at 49.5 s"
-  std::string part;      ///< "'search radar' by parabolic_equation, 1 of 4"; may be empty
+  std::string part;      ///< "'search radar' by parabolic equation, 1 of 4"; may be empty
   double fraction = -1;  ///< completed, 0..1; negative: unknown
 };
 
