@@ -27,7 +27,7 @@ constexpr double kMinUnit = 0.62;
 constexpr double kMaxOfSize = 2.2;     // unit that a scale may cause, in that of the picture's size
 constexpr double kNamePart = 1.0 / 3;  // maximum width of a name, of the picture's
 constexpr double kMinName = 160;
-constexpr double kLabelPart = 0.2;  // maximum width of a label
+constexpr double kLabelPart = 0.4;  // maximum width of a label
 constexpr double kMinText_px = 12, kMinSmall_px = 11;
 constexpr double kThumbnail_px = 360;  // smaller pictures have smaller texts
 

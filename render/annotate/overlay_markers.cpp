@@ -9,7 +9,9 @@ namespace emscape::render {
 namespace {
 
 // Lengths at 1200 x 900.
-constexpr double kRadius = 8;  // of a symbol
+constexpr double kRadius = 8;         // of a symbol
+constexpr double kSymbolPart = 0.15;  // of the distance between symbols, its maximum radius
+constexpr double kMinRadius_px = 4;
 constexpr double kBeamLength = 38;
 constexpr double kLabelGap = 5, kLabelPadding = 4;
 constexpr double kHiddenAlpha = 0.5;
@@ -49,9 +51,9 @@ void drawBeam(Canvas& canvas, const Style& style, const Projector& p, const Plac
   const double across = length(pixelsAlong(p.camera.right));
   const double foreshortening = across > 0 ? length(along) / across : 0;
   if (foreshortening < 0.15) return;
-  const double head = 9 * style.unit;
-  const double size =
-      placed.radius + (kBeamLength - kRadius) * style.unit * std::clamp(foreshortening, 0.5, 1.0);
+  const double part = placed.radius / (symbolSize(marker) * kRadius);
+  const double head = 9 * part;
+  const double size = placed.radius + (kBeamLength - kRadius) * part * std::clamp(foreshortening, 0.5, 1.0);
   const Point2 forward = along * (1 / length(along));
   const Point2 side{-forward.y, forward.x};
   const Point2 tip = placed.at + forward * size, neck = tip - forward * head;
@@ -96,7 +98,7 @@ void drawLabel(Canvas& canvas, const Style& style, const PlacedMarker& placed, c
   const Rect& rect = place.rect;
   const double padding = kLabelPadding * style.unit;
   const double alpha = placed.marker->active ? placed.alpha : 0.6 * placed.alpha;
-  if (place.is_away) {
+  if (place.needs_line) {
     const Point2 end = nearestIn(rect, placed.at);
     canvas.line(placed.at, end, style.rimInk(0.6 * placed.alpha), 3 * style.unit);
     canvas.line(placed.at, end, style.mutedInk(0.9 * placed.alpha), style.unit);
@@ -124,6 +126,23 @@ void drawLabels(Canvas& canvas, const Style& style, const std::vector<PlacedMark
   }
 }
 
+/// Radius of a symbol without a side (pixels): less where there are so many that they would hide the field.
+double radiusOf(const std::vector<PlacedMarker>& placed, const Style& style, ImageSize size) {
+  constexpr double kMinArea = 0.02;  // of the picture
+  const double full = kRadius * style.unit;
+  if (placed.empty()) return full;
+  Point2 lower{static_cast<double>(size.width), static_cast<double>(size.height)}, upper{0, 0};
+  for (const PlacedMarker& p : placed) {
+    lower = {std::min(lower.x, std::max(p.at.x, 0.0)), std::min(lower.y, std::max(p.at.y, 0.0))};
+    upper = {std::max(upper.x, std::min(p.at.x, size.width * 1.0)),
+             std::max(upper.y, std::min(p.at.y, size.height * 1.0))};
+  }
+  const double area = std::max(std::max(upper.x - lower.x, 0.0) * std::max(upper.y - lower.y, 0.0),
+                               kMinArea * static_cast<double>(size.count()));
+  const double spacing = std::sqrt(area / static_cast<double>(placed.size()));
+  return std::clamp(kSymbolPart * spacing, std::min(kMinRadius_px, full), full);
+}
+
 }  // namespace
 
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
@@ -135,13 +154,14 @@ void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
     if (!marker.is_shown || !projector.project(marker.position_m, at)) continue;
     const double depth =
         dot(projector.box.toDrawn(marker.position_m) - projector.camera.eye_m, projector.camera.forward);
-    placed.push_back({&marker, at, symbolSize(marker) * kRadius * style.unit, depth,
-                      hidden && hidden(marker.position_m) ? kHiddenAlpha : 1.0});
+    placed.push_back({&marker, at, 0, depth, hidden && hidden(marker.position_m) ? kHiddenAlpha : 1.0});
   }
+  const double radius = radiusOf(placed, style, canvas.size());
+  for (PlacedMarker& p : placed) p.radius = symbolSize(*p.marker) * radius;
   for (const PlacedMarker& p : placed) drawStem(canvas, style, projector, p);
   for (const PlacedMarker& p : placed) drawBeam(canvas, style, projector, p);
   drawLabels(canvas, style, placed, taken);
-  for (const PlacedMarker& p : placed) drawMark(canvas, *p.marker, p.at, kRadius * style.unit, p.alpha);
+  for (const PlacedMarker& p : placed) drawMark(canvas, *p.marker, p.at, radius, p.alpha);
 }
 
 }  // namespace emscape::render
