@@ -123,7 +123,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
   drawGroundMarks(canvas, style, projector, annotations, hidden, taken);
   if (annotations.legend) drawLegend(canvas, style, *annotations.legend);
   drawTracks(canvas, style, projector, annotations.tracks, hidden);
-  drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
+  drawMarkers(canvas, style, projector, annotations.markers, annotations.units, hidden, taken);
   drawTexts(canvas, style, annotations);
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/display_units.h"
 #include "render/annotate/label_placement.h"
 #include "render/annotate/overlay_parts.h"
 
@@ -75,15 +76,22 @@ struct LabelText {
   double width = 0, height = 0;
 };
 
-LabelText textOf(const Canvas& canvas, const Style& style, const Marker& marker) {
+/// The second line of a label.
+std::string detailOf(const Marker& marker, Units units) {
+  if (!marker.height_m) return marker.detail;
+  return marker.detail + (marker.detail.empty() ? "" : ", ") + heightText(*marker.height_m, units) +
+         (marker.is_height_above_ground ? " above ground" : " above sea");
+}
+
+LabelText textOf(const Canvas& canvas, const Style& style, const Marker& marker, Units units) {
   LabelText text;
   if (marker.label.empty()) return text;
   text.name = shortenedText(canvas, marker.label, style.text_px, style.label_px);
   const Rect name = canvas.textBox(text.name, style.text_px);
   text.width = name.width;
   text.height = name.height;
-  if (!marker.detail.empty()) {
-    text.detail = shortenedText(canvas, marker.detail, style.small_px, style.label_px);
+  if (const std::string detail_text = detailOf(marker, units); !detail_text.empty()) {
+    text.detail = shortenedText(canvas, detail_text, style.small_px, style.label_px);
     const Rect detail = canvas.textBox(text.detail, style.small_px);
     text.width = std::max(text.width, detail.width);
     text.height += detail.height;
@@ -111,12 +119,12 @@ void drawLabel(Canvas& canvas, const Style& style, const PlacedMarker& placed, c
     canvas.text(text.detail, {rect.x + padding, y}, style.small_px, style.mutedInk(alpha));
 }
 
-void drawLabels(Canvas& canvas, const Style& style, const std::vector<PlacedMarker>& placed,
+void drawLabels(Canvas& canvas, const Style& style, const std::vector<PlacedMarker>& placed, Units units,
                 const std::vector<Rect>& taken) {
   std::vector<LabelText> texts;
   std::vector<LabelRequest> requests;
   for (const PlacedMarker& p : placed) {
-    const LabelText& text = texts.emplace_back(textOf(canvas, style, *p.marker));
+    const LabelText& text = texts.emplace_back(textOf(canvas, style, *p.marker, units));
     requests.push_back(
         {p.at, p.radius, text.width, text.height, rankOf(*p.marker), p.depth, p.marker->moves});
   }
@@ -146,7 +154,7 @@ double radiusOf(const std::vector<PlacedMarker>& placed, const Style& style, Ima
 }  // namespace
 
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
-                 const std::vector<Marker>& markers, const HiddenTest& hidden,
+                 const std::vector<Marker>& markers, Units units, const HiddenTest& hidden,
                  const std::vector<Rect>& taken) {
   std::vector<PlacedMarker> placed;
   for (const Marker& marker : markers) {
@@ -160,7 +168,7 @@ void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
   for (PlacedMarker& p : placed) p.radius = symbolSize(*p.marker) * radius;
   for (const PlacedMarker& p : placed) drawStem(canvas, style, projector, p);
   for (const PlacedMarker& p : placed) drawBeam(canvas, style, projector, p);
-  drawLabels(canvas, style, placed, taken);
+  drawLabels(canvas, style, placed, units, taken);
   for (const PlacedMarker& p : placed) drawMark(canvas, *p.marker, p.at, radius, p.alpha);
 }
 

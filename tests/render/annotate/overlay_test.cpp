@@ -333,6 +333,23 @@ TEST(Overlay, MarksOnTheGroundAreDrawnWhereItDoesNotHideThem) {
   EXPECT_GT(pixelsOfMarks(point), dot + 20) << "the second name is beside the first";
 }
 
+TEST(Overlay, HeightsOfLabelsAreInTheUnits) {
+  const ImageSize size{640, 480};
+  Annotations annotations;
+  annotations.axes = annotations.compass = false;
+  annotations.markers.resize(1);
+  annotations.markers[0].label = "mast";
+  annotations.markers[0].height_m = 304.8;
+  const auto picture = [&] { return compose(Image(size), makeCamera({}, kBox, size), kBox, annotations); };
+  const Image8 metric = picture();
+  annotations.units = Units::nautical;
+  const Image8 nautical = picture();
+  EXPECT_GT(differingPixels(metric, nautical), 5);
+  annotations.markers[0].height_m.reset();
+  annotations.markers[0].detail = "1000 ft above sea";
+  EXPECT_EQ(differingPixels(nautical, picture()), 0);
+}
+
 TEST(Overlay, AxesCountFromTheNamedOriginInTheUnits) {
   const ImageSize size{640, 480};
   const auto picture = [&](const Annotations& annotations) {
