@@ -100,6 +100,7 @@ void drawBehind(Canvas& canvas, const Style& style, const Projector& projector,
 void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
                  const Annotations& annotations, const HiddenTest& hidden) {
   std::vector<Rect> taken;
+  drawFooter(canvas, style, projector.box, annotations, taken);
   if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
   if (annotations.georeferenced && annotations.compass) {
     const double reach = (kMargin + kCompassRadius + 10) * style.unit;
@@ -107,7 +108,6 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     drawCompass(canvas, style, projector.camera, center, kCompassRadius * style.unit);
     taken.push_back({center.x - reach / 2, center.y - reach / 2, reach, reach});
   }
-  drawFooter(canvas, style, projector.box, annotations, taken);
   drawPlanes(canvas, style, projector, annotations.planes, taken);
   if (annotations.legend) {
     const double width = legendWidth(style, *annotations.legend);
