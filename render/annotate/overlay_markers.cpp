@@ -1,6 +1,8 @@
 /// Markers of emitters and platforms: positions, beams and labels.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 
 #include "base/text/display_units.h"
 #include "render/annotate/label_placement.h"
@@ -30,9 +32,10 @@ void drawStem(Canvas& canvas, const Style& style, const Projector& p, const Plac
   Point2 foot;
   if (!marker.ground_m) return;
   if (!p.project({marker.position_m.x, marker.position_m.y, *marker.ground_m}, foot)) return;
-  if (length(foot - placed.at) < placed.radius) return;
-  canvas.line(placed.at, foot, style.rimInk(0.5 * placed.alpha), 3 * style.unit);
-  canvas.line(placed.at, foot, {colorOf(marker.kind, marker.side), 0.9 * placed.alpha}, 1.2 * style.unit);
+  Point2 top;
+  if (!p.project(marker.position_m, top) || length(foot - top) < placed.radius) return;
+  canvas.line(top, foot, style.rimInk(0.5 * placed.alpha), 3 * style.unit);
+  canvas.line(top, foot, {colorOf(marker.kind, marker.side), 0.9 * placed.alpha}, 1.2 * style.unit);
   canvas.disc(foot, 2.5 * style.unit, {colorOf(marker.kind, marker.side), placed.alpha});
 }
 
@@ -134,6 +137,26 @@ void drawLabels(Canvas& canvas, const Style& style, const std::vector<PlacedMark
   }
 }
 
+/// Moves symbols of one position, as those of one platform have, to a row about it.
+void standSideBySide(std::vector<PlacedMarker>& placed, const Style& style) {
+  const double gap = 2 * style.unit;
+  std::map<std::array<double, 3>, std::vector<PlacedMarker*>> rows;
+  for (PlacedMarker& p : placed) {
+    const Vec3d& position_m = p.marker->position_m;
+    rows[{position_m.x, position_m.y, position_m.z}].push_back(&p);
+  }
+  for (const auto& [position_m, row] : rows) {
+    if (row.size() < 2) continue;
+    double width = -gap;
+    for (const PlacedMarker* p : row) width += 2 * p->radius + gap;
+    double x = row.front()->at.x - width / 2;
+    for (PlacedMarker* p : row) {
+      p->at.x = x + p->radius;
+      x += 2 * p->radius + gap;
+    }
+  }
+}
+
 /// Radius of a symbol without a side (pixels): less where there are so many that they would hide the field.
 double radiusOf(const std::vector<PlacedMarker>& placed, const Style& style, ImageSize size) {
   constexpr double kMinArea = 0.02;  // of the picture
@@ -166,6 +189,7 @@ void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
   }
   const double radius = radiusOf(placed, style, canvas.size());
   for (PlacedMarker& p : placed) p.radius = symbolSize(*p.marker) * radius;
+  standSideBySide(placed, style);
   for (const PlacedMarker& p : placed) drawStem(canvas, style, projector, p);
   for (const PlacedMarker& p : placed) drawBeam(canvas, style, projector, p);
   drawLabels(canvas, style, placed, units, taken);
