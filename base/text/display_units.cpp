@@ -16,7 +16,7 @@ std::string threeDigits(double value) {
 }  // namespace
 
 DisplayUnit distanceUnit(Units units) {
-  return units == Units::metric ? DisplayUnit{"km", 1000} : DisplayUnit{"nm", 1852};
+  return units == Units::metric ? DisplayUnit{"km", 1000} : DisplayUnit{"NM", 1852};
 }
 DisplayUnit heightUnit(Units units) {
   return units == Units::metric ? DisplayUnit{"m", 1} : DisplayUnit{"ft", 0.3048};

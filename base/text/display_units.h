@@ -12,13 +12,13 @@ struct DisplayUnit {
   const char* name;
   double factor;
 };
-DisplayUnit distanceUnit(Units units);  ///< km, nm
+DisplayUnit distanceUnit(Units units);  ///< km, NM
 DisplayUnit heightUnit(Units units);    ///< m, ft
 DisplayUnit speedUnit(Units units);     ///< m/s, kt
 
-/// "850 m", "12.3 km", "160 km"; "0.46 nm", "86.4 nm".
+/// "850 m", "12.3 km", "160 km"; "0.46 NM", "86.4 NM".
 std::string distanceText(double distance_m, Units units);
-/// A distance that is round in the unit: "10 km", "500 m", "0.5 nm".
+/// A distance that is round in the unit: "10 km", "500 m", "0.5 NM".
 std::string roundDistanceText(double distance_m, Units units);
 /// "250 m", "820 ft".
 std::string heightText(double height_m, Units units);

@@ -15,10 +15,10 @@ namespace emscape::playback {
 namespace {
 
 /// Height of a mast above the ground if that is given, else above mean sea level.
-std::string heightText(const scenario::Platform& platform, double height_msl_m) {
+void setHeight(render::Marker& marker, const scenario::Platform& platform, double height_msl_m) {
   const std::optional<double>& above_ground_m = platform.track.front().position.height_agl_m;
-  return above_ground_m && !platform.moves() ? fmt::format("{:.0f} m above ground", *above_ground_m)
-                                             : fmt::format("{:.0f} m above sea", height_msl_m);
+  marker.is_height_above_ground = above_ground_m && !platform.moves();
+  marker.height_m = marker.is_height_above_ground ? *above_ground_m : height_msl_m;
 }
 
 }  // namespace
@@ -82,16 +82,15 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
     render::Marker& marker = add(platform, state.position);
     marker.label = emitter.name;
     marker.kind = markerKindOf(emitter.kind);
-    marker.detail =
-        fmt::format("{} {}, {}", toString(emitter.kind), quantityText(emitter.frequency_hz, "Hz", 4),
-                    heightText(platforms[platform], state.height_msl_m));
+    marker.detail = fmt::format("{} {}", toString(emitter.kind), quantityText(emitter.frequency_hz, "Hz", 4));
+    setHeight(marker, platforms[platform], state.height_msl_m);
     marker.active = state.active;
     if (emitter.antenna->view().kind != scenario::PatternKind::isotropic) marker.beam = state.beam.forward;
   }
   for (std::size_t p = 0; p < platforms.size(); ++p) {
     if (has_emitter[p] || !platforms[p].side) continue;
     const scenario::PlatformState& state = snapshot.platforms[p];
-    add(p, state.position).detail = heightText(platforms[p], state.height_msl_m);
+    setHeight(add(p, state.position), platforms[p], state.height_msl_m);
   }
   return markers;
 }

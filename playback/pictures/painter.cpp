@@ -364,7 +364,10 @@ void Painter::setMarkers() {
   };
   for (render::Marker& marker : annotations_.markers) {
     marker.is_shown = isShown(marker.side);
-    if (view_.labels != Labels::all) marker.detail.clear();
+    if (view_.labels != Labels::all) {
+      marker.detail.clear();
+      marker.height_m.reset();
+    }
     if (view_.labels == Labels::off) marker.label.clear();
   }
   std::vector<render::Track>& tracks = annotations_.tracks;

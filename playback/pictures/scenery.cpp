@@ -145,9 +145,14 @@ void Scenery::annotate(render::Annotations& annotations, const ViewState& view,
   annotations.origin_longitude.clear();
   if (!grid_ || !grid_->georeferenced) return;
   const FrameOrigin& origin = grid_->frame;
-  annotations.origin_latitude = shortCoordinate(origin.latitude_deg, true, view.positions);
-  annotations.origin_longitude =
-      shortCoordinate(wrapLongitude_deg(origin.longitude_deg), false, view.positions);
+  if (view.positions == PositionFormat::mgrs) {
+    annotations.origin_latitude = annotations.origin_longitude =
+        positionText(origin.latitude_deg, origin.longitude_deg, view.positions);
+  } else {
+    annotations.origin_latitude = shortCoordinate(origin.latitude_deg, true, view.positions);
+    annotations.origin_longitude =
+        shortCoordinate(wrapLongitude_deg(origin.longitude_deg), false, view.positions);
+  }
   if (view.range_rings.empty()) return;
   GroundMarks rings(*grid_, drawn_.get(), scene());
   rings.addRings(view.range_rings, markers, view.units);

@@ -87,7 +87,7 @@ void addReferences(SettingsTable& table) {
       .withEffect(&ViewChange::labels)
       .withOption("--units", "Units of shown lengths and speeds; default: metric")
       .withVerb("units", "units",
-                "metric (km, m, m/s) or nautical (nm, ft, kt); without a name the other one")
+                "metric (km, m, m/s) or nautical (NM, ft, kt); without a name the other one")
       .withAction("Units of length", "U");
   table
       .member(

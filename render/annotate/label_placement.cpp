@@ -56,10 +56,19 @@ class Occupied {
   std::vector<std::vector<Rect>> cells_;
 };
 
-/// Tries positions, best first: beside, above, below, oblique, then further away.
-std::optional<LabelPlace> placeOf(const LabelRequest& label, ImageSize size, double gap, Occupied& occupied) {
+/// From the edge of a label's symbol to a rectangle.
+double distanceTo(const Rect& rect, const LabelRequest& label) {
+  return length(nearestIn(rect, label.at) - label.at) - label.radius;
+}
+
+/// Tries positions, best first: beside, above, below, oblique, then further away. Of those equally far away,
+/// the ones that are nearer to another symbol are the last.
+/// @param symbols  those that matter
+std::optional<LabelPlace> placeOf(const LabelRequest& label, ImageSize size, double gap, Occupied& occupied,
+                                  const std::vector<const LabelRequest*>& symbols) {
   const double width = label.width, height = label.height;
   for (const double reach : kReaches) {
+    std::optional<LabelPlace> nearer_to_other;
     const double d = label.radius + gap * reach, o = 0.7 * d;
     const Point2& at = label.at;
     const std::array<Point2, 8> corners{{{at.x + d, at.y - height / 2},
@@ -74,8 +83,15 @@ std::optional<LabelPlace> placeOf(const LabelRequest& label, ImageSize size, dou
       const Rect rect{corner.x, corner.y, width, height};
       const bool is_inside =
           rect.x >= 0 && rect.y >= 0 && rect.x + width <= size.width && rect.y + height <= size.height;
-      if (is_inside && !occupied.hits(rect)) return LabelPlace{rect, reach > kReaches.front()};
+      if (!is_inside || occupied.hits(rect)) continue;
+      const double own = distanceTo(rect, label);
+      const bool is_own = std::none_of(symbols.begin(), symbols.end(), [&](const LabelRequest* other) {
+        return distanceTo(rect, *other) < own;
+      });
+      if (is_own) return LabelPlace{rect, reach > kReaches.front()};
+      if (!nearer_to_other) nearer_to_other = LabelPlace{rect, true};
     }
+    if (nearer_to_other) return nearer_to_other;
   }
   return std::nullopt;
 }
@@ -92,9 +108,12 @@ std::vector<std::optional<LabelPlace>> placeLabels(const std::vector<LabelReques
   });
   Occupied occupied(size);
   for (const Rect& rect : taken) occupied.add(rect);
+  std::vector<const LabelRequest*> symbols;
   const auto addSymbols = [&](bool moves) {
     for (const LabelRequest& request : requests) {
-      if (request.moves == moves) occupied.add(around(request.at, request.radius));
+      if (request.moves != moves) continue;
+      occupied.add(around(request.at, request.radius));
+      symbols.push_back(&request);
     }
   };
   addSymbols(false);
@@ -108,7 +127,7 @@ std::vector<std::optional<LabelPlace>> placeLabels(const std::vector<LabelReques
     if (request.moves && !std::exchange(has_moving, true)) addSymbols(true);
     const double area = request.width * request.height;
     if (covered + area > (request.moves ? kLabelsPart : kFixedLabelsPart) * picture) continue;
-    places[index] = placeOf(request, size, gap, occupied);
+    places[index] = placeOf(request, size, gap, occupied, symbols);
     if (!places[index]) continue;
     occupied.add(places[index]->rect);
     covered += area;

@@ -24,7 +24,7 @@ struct LabelRequest {
 
 struct LabelPlace {
   Rect rect;
-  bool is_away = false;  ///< not beside the symbol: a line leads to it
+  bool needs_line = false;  ///< not beside the symbol, or nearer to another one: a line leads to it
 };
 
 /// No two of the places overlap, and none covers `taken` or the symbol of a fixed object.

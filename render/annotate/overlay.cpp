@@ -27,7 +27,7 @@ constexpr double kMinUnit = 0.62;
 constexpr double kMaxOfSize = 2.2;     // unit that a scale may cause, in that of the picture's size
 constexpr double kNamePart = 1.0 / 3;  // maximum width of a name, of the picture's
 constexpr double kMinName = 160;
-constexpr double kLabelPart = 0.2;  // maximum width of a label
+constexpr double kLabelPart = 0.4;  // maximum width of a label
 constexpr double kMinText_px = 12, kMinSmall_px = 11;
 constexpr double kThumbnail_px = 360;  // smaller pictures have smaller texts
 
@@ -100,6 +100,7 @@ void drawBehind(Canvas& canvas, const Style& style, const Projector& projector,
 void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
                  const Annotations& annotations, const HiddenTest& hidden) {
   std::vector<Rect> taken;
+  drawFooter(canvas, style, projector.box, annotations, taken);
   if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
   if (annotations.georeferenced && annotations.compass) {
     const double reach = (kMargin + kCompassRadius + 10) * style.unit;
@@ -107,7 +108,6 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     drawCompass(canvas, style, projector.camera, center, kCompassRadius * style.unit);
     taken.push_back({center.x - reach / 2, center.y - reach / 2, reach, reach});
   }
-  drawFooter(canvas, style, projector.box, annotations, taken);
   drawPlanes(canvas, style, projector, annotations.planes, taken);
   if (annotations.legend) {
     const double width = legendWidth(style, *annotations.legend);
@@ -123,7 +123,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
   drawGroundMarks(canvas, style, projector, annotations, hidden, taken);
   if (annotations.legend) drawLegend(canvas, style, *annotations.legend);
   drawTracks(canvas, style, projector, annotations.tracks, hidden);
-  drawMarkers(canvas, style, projector, annotations.markers, hidden, taken);
+  drawMarkers(canvas, style, projector, annotations.markers, annotations.units, hidden, taken);
   drawTexts(canvas, style, annotations);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "base/text/display_units.h"
 #include "emscape/base/units.h"
@@ -193,11 +194,14 @@ void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis,
     return of_axis;
   }();
   double widest = 0;
+  std::optional<Rect> last_number;  // numbers of an axis seen nearly end on would be stacked
   for (const AxisTick& tick : ticks) {
     widest = std::max(widest,
                       std::abs(outward.x) * tick.covered.width + std::abs(outward.y) * tick.covered.height);
     canvas.line(tick.at, tick.at + outward * (kTick * style.unit), style.textInk(0.8), 1.2 * style.unit);
-    if (!tick.is_free) continue;
+    const bool meets_last = last_number && overlap(tick.covered, *last_number);
+    if (!tick.is_free || meets_last) continue;
+    last_number = tick.covered;
     taken.push_back(tick.covered);
     canvas.textWithRim(tick.text, tick.label, style.small_px, style.textInk(0.92), style.rimInk(), align);
   }
@@ -207,14 +211,23 @@ void drawAxis(Canvas& canvas, const Style& style, const Projector& p, int axis,
   if (axis == 2) angle = -kPi / 2;
   const Point2 middle =
       (a + b) * 0.5 + outward * ((kTick + kTickToLabel + kTitleBeyondLabels) * style.unit + widest);
+  const Rect title = canvas.textBox(words.title, style.small_px);
+  // Squares along the text, as the rectangle around an oblique text would also cover what is beside it.
+  const Point2 direction{std::cos(angle), std::sin(angle)};
+  const double side = 0.8 * title.height;
+  const int parts = std::max(1, static_cast<int>(std::ceil(title.width / side)));
+  std::vector<Rect> squares;
+  for (int i = 0; i < parts; ++i) {
+    const Point2 at = middle + direction * (((i + 0.5) / parts - 0.5) * title.width);
+    squares.push_back({at.x - side / 2, at.y - side / 2, side, side});
+  }
+  const bool meets_text = std::any_of(squares.begin(), squares.end(), [&](const Rect& square) {
+    return std::any_of(taken.begin(), taken.end(), [&](const Rect& other) { return overlap(square, other); });
+  });
+  if (meets_text) return;
   canvas.textWithRim(words.title, middle, style.small_px, style.mutedInk(), style.rimInk(), Align::center,
                      Weight::normal, angle);
-  const Rect title = canvas.textBox(words.title, style.small_px);
-  const double across = std::abs(std::cos(angle)), along = std::abs(std::sin(angle));
-  const Rect covered{0, 0, across * title.width + along * title.height,
-                     along * title.width + across * title.height};
-  taken.push_back(
-      {middle.x - covered.width / 2, middle.y - covered.height / 2, covered.width, covered.height});
+  taken.insert(taken.end(), squares.begin(), squares.end());
 }
 
 }  // namespace

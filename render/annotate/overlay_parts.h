@@ -55,7 +55,7 @@ void drawTracks(Canvas& canvas, const Style& style, const Projector& projector,
                 const std::vector<Track>& tracks, const HiddenTest& hidden);
 /// Stems, beams, symbols and labels. Labels avoid `taken`, as many as fit.
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
-                 const std::vector<Marker>& markers, const HiddenTest& hidden,
+                 const std::vector<Marker>& markers, Units units, const HiddenTest& hidden,
                  const std::vector<Rect>& taken);
 /// Lines and points on the ground, where it does not hide them. Labels avoid `taken`; those that find no room
 /// are left out.

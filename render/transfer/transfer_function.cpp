@@ -68,6 +68,10 @@ constexpr TransferFunction::OpacityPoint kRangeOpacity[] = {{0.0, 0.0},   {0.2, 
                                                             {0.7, 0.018}, {0.9, 0.07}, {1.0, 0.16}};
 constexpr double kCategoryOpacity = 0.03;
 
+/// For values of another program: the quantiles of the ends of the colours and of the ramp of the opacity, and
+/// the opacity at its top.
+constexpr double kFirstPercentile = 0.01, kLastPercentile = 0.99, kRampOpacity = 0.06;
+
 /// For a probability: transparent where it is small, a shell at one half.
 constexpr TransferFunction::OpacityPoint kProbabilityOpacity[] = {{0.0, 0.0},  {0.1, 0.001}, {0.4, 0.01},
                                                                   {0.5, 0.05}, {0.6, 0.03},  {1.0, 0.04}};
@@ -151,17 +155,48 @@ double usualDifference(const volume::DenseVolume& volume) {
   return double{*usual};
 }
 
-/// The largest absolute value of the colours of values about 0 that another program wrote: all but a few are
-/// within it; 0: the values are not about 0, or of Emscape, whose quantities have a sense of their own.
-double largestOfSigned(const volume::VolumeInfo& info, const std::vector<float>& ascending) {
+/// A value of an ascending sample; 0.5: the median.
+double quantileOf(const std::vector<float>& ascending, double part) {
+  return double{ascending[static_cast<std::size_t>(part * static_cast<double>(ascending.size() - 1))]};
+}
+
+/// Whether another program wrote the values, whose sense is not known. A floor below all values is that of
+/// decibels.
+bool isForeign(const volume::VolumeInfo& info, const std::vector<float>& ascending) {
+  return !ascending.empty() && !info.categorical && info.extra.count("scenario_hash") == 0 &&
+         (info.floor == volume::kNoFloor || info.floor >= ascending.front());
+}
+
+/// The largest absolute value of the colours of values about 0: all but a few are within it; 0: the values are
+/// not about 0.
+double largestOfSigned(const std::vector<float>& ascending) {
   constexpr double kFew = 0.005;
   constexpr double kMinPart = 0.05;  // of the smaller side, in the larger one
-  if (ascending.empty() || info.categorical || info.extra.count("scenario_hash") > 0) return 0;
-  // A floor below all values is that of decibels, whose zero has no meaning.
-  if (info.floor != volume::kNoFloor && info.floor < ascending.front()) return 0;
   const auto few = static_cast<std::size_t>(kFew * static_cast<double>(ascending.size() - 1));
   const double below = -double{ascending[few]}, above = ascending[ascending.size() - 1 - few];
   return std::min(below, above) > kMinPart * std::max(below, above) ? std::max(below, above) : 0;
+}
+
+/// The colours of a volume from `weakest` to `strongest`, ends at round numbers, and no opacities yet.
+TransferFunction coloredFunction(const volume::VolumeInfo& info, double weakest, double strongest) {
+  const double unit = roundUnit(strongest - weakest);
+  TransferFunction function = namedDefault(info);
+  function.colors = colorsOver(colorMap("viridis"), std::floor(weakest / unit) * unit,
+                               std::ceil(strongest / unit) * unit);
+  return function;
+}
+
+/// The function of values of another program; none if they are all the same.
+std::optional<TransferFunction> functionOfForeign(const volume::VolumeInfo& info,
+                                                  const std::vector<float>& ascending) {
+  if (const double largest = largestOfSigned(ascending); largest > 0)
+    return functionOfDifference(info, largest);
+  const double lowest = quantileOf(ascending, kFirstPercentile);
+  const double highest = quantileOf(ascending, kLastPercentile);
+  if (!(highest > lowest)) return std::nullopt;
+  TransferFunction function = coloredFunction(info, lowest, highest);
+  function.opacities = {{function.colors.front().at, 0}, {function.colors.back().at, kRampOpacity}};
+  return function;
 }
 
 /// The function of the volume's scale; none if the volume has no scale.
@@ -303,26 +338,19 @@ TransferFunction defaultTransferFunction(const volume::DenseVolume& volume, cons
   }
   if (const auto function = functionOfScale(volume.info, range)) return *function;
   const std::vector<float> values = sortedSample(volume);
-  if (const double largest = largestOfSigned(volume.info, values); largest > 0) {
-    return functionOfDifference(volume.info, largest);
-  }
   if (volume.info.categorical || values.empty()) return defaultTransferFunction(volume.info, range);
-  const auto quantile = [&](double part) {
-    return double{values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))]};
-  };
-  const double weakest = quantile(kColorsFrom);
-  const double strongest = quantile(std::prev(std::end(kQuantileOpacity))->quantile);
-  if (!(strongest > weakest)) return defaultTransferFunction(volume.info, range);
-  const double unit = roundUnit(strongest - weakest);
-  const double lowest = std::floor(weakest / unit) * unit;
-  const double highest = std::ceil(strongest / unit) * unit;
-  TransferFunction function = namedDefault(volume.info);
-  function.colors = colorsOver(colorMap("viridis"), lowest, highest);
-  function.opacities.push_back({lowest, 0});
-  for (const QuantileOpacity& point : kQuantileOpacity) {
-    function.opacities.push_back({quantile(point.quantile), point.opacity});
+  if (isForeign(volume.info, values)) {
+    if (const auto function = functionOfForeign(volume.info, values)) return *function;
   }
-  function.opacities.push_back({highest, function.opacities.back().opacity});
+  const double weakest = quantileOf(values, kColorsFrom);
+  const double strongest = quantileOf(values, std::prev(std::end(kQuantileOpacity))->quantile);
+  if (!(strongest > weakest)) return defaultTransferFunction(volume.info, range);
+  TransferFunction function = coloredFunction(volume.info, weakest, strongest);
+  function.opacities.push_back({function.colors.front().at, 0});
+  for (const QuantileOpacity& point : kQuantileOpacity) {
+    function.opacities.push_back({quantileOf(values, point.quantile), point.opacity});
+  }
+  function.opacities.push_back({function.colors.back().at, function.opacities.back().opacity});
   return function;
 }
 

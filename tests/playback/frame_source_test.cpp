@@ -64,13 +64,17 @@ TEST(FrameSource, MarkersAreEmittersAndPlatformsWithASide) {
   const std::vector<render::Marker> markers = openFrameSource(selection, {})->frame(0).markers;
   ASSERT_EQ(markers.size(), 3U);
   EXPECT_EQ(markers[0].side, render::Affiliation::none);
-  EXPECT_EQ(markers[0].detail, "radar 3 GHz, 20 m above ground");
+  EXPECT_EQ(markers[0].detail, "radar 3 GHz");
+  EXPECT_DOUBLE_EQ(markers[0].height_m.value(), 20);
+  EXPECT_TRUE(markers[0].is_height_above_ground);
   EXPECT_EQ(markers[1].label, "transmitter");
   EXPECT_EQ(markers[1].side, render::Affiliation::hostile);
   EXPECT_EQ(markers[2].label, "ship");
   EXPECT_EQ(markers[2].side, render::Affiliation::neutral);
   EXPECT_EQ(markers[2].sidc, "10043000001201000000");
-  EXPECT_EQ(markers[2].detail, "20 m above sea");
+  EXPECT_EQ(markers[2].detail, "");
+  EXPECT_NEAR(markers[2].height_m.value(), 20, 0.5);
+  EXPECT_FALSE(markers[2].is_height_above_ground);
 }
 
 TEST(FrameSource, TracksPassThroughMarkersOfTheirEmitters) {

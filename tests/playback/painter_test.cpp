@@ -133,7 +133,8 @@ TEST(Painter, LabelsOfEmittersAreNoneNamesOrAll) {
   Frame frame = source.frame(0);
   render::Marker& marker = frame.markers.emplace_back();
   marker.label = "radar";
-  marker.detail = "radar 3 GHz, 20 m above ground";
+  marker.detail = "radar 3 GHz";
+  marker.height_m = 20;
   marker.beam = Vec3d{0, 1, 0};
   marker.ground_m = 0;
   frame.tracks.resize(1);
@@ -148,6 +149,7 @@ TEST(Painter, LabelsOfEmittersAreNoneNamesOrAll) {
     ASSERT_EQ(markers.size(), 1U) << "the symbol stays";
     EXPECT_EQ(markers[0].label, labels == Labels::off ? "" : "radar");
     EXPECT_EQ(markers[0].detail.empty(), labels != Labels::all);
+    EXPECT_EQ(markers[0].height_m.has_value(), labels == Labels::all);
     EXPECT_TRUE(markers[0].beam);
     EXPECT_EQ(painter.annotations().tracks.size(), 1U);
   }

@@ -104,6 +104,17 @@ TEST(TransferFunction, DefaultOfValuesOnBothSidesOfZeroIsSymmetricalAndDiverging
   EXPECT_NE(defaultTransferFunction(volume).lowest(), -defaultTransferFunction(volume).highest());
 }
 
+TEST(TransferFunction, DefaultOfValuesOfAnotherProgramIsARampOverNearlyAllOfThem) {
+  auto volume = *testing::makeVolume({10, 10, 60}, {1, 1, 1},
+                                     [](int, int, int k) { return 241 + 2 * static_cast<float>(k); });
+  volume.info.floor = volume::kNoFloor;
+  const TransferFunction f = defaultTransferFunction(volume);
+  EXPECT_LE(f.lowest(), 245);
+  EXPECT_GE(f.highest(), 355);
+  EXPECT_GT(f.opacity(270), 0.005);
+  EXPECT_NEAR(f.opacity(350) - f.opacity(320), f.opacity(290) - f.opacity(260), 1e-9);
+}
+
 TEST(TransferFunction, VolumeWithoutFieldHasADefault) {
   const auto empty = testing::makeVolume({4, 4, 4}, {1, 1, 1}, [](int, int, int) { return 0.0F; });
   const TransferFunction f = defaultTransferFunction(*empty);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 namespace emscape::render {
@@ -37,7 +38,12 @@ TEST(LabelPlacement, LabelsOfManyMarkersDoNotOverlapAndLeaveThePictureFree) {
       EXPECT_GE(rect.x, 0);
       EXPECT_LE(rect.y + rect.height, kSize.height);
       const double away = length(nearestIn(rect, requests[i].at) - requests[i].at);
-      EXPECT_EQ(places[i]->is_away, away > requests[i].radius + 2 * kGap);
+      const bool is_nearer_to_other =
+          std::any_of(requests.begin(), requests.end(), [&](const LabelRequest& other) {
+            return (requests[i].moves || !other.moves) &&
+                   length(nearestIn(rect, other.at) - other.at) < away - 1e-9;
+          });
+      EXPECT_EQ(places[i]->needs_line, away > requests[i].radius + 2 * kGap || is_nearer_to_other);
     }
     EXPECT_LE(covered, 0.1 * static_cast<double>(kSize.count()));
     EXPECT_GT(count, 20);
@@ -61,6 +67,21 @@ TEST(LabelPlacement, MovingObjectsDoNotMoveLabelsOfFixedOnes) {
   }
 }
 
+TEST(LabelPlacement, ALabelIsNearestToItsOwnSymbolOrHasALineToIt) {
+  // The right side of the first is free, but the second symbol is as near to it.
+  const std::vector<LabelRequest> two{{{600, 450}, 9, 100, 22, 1, 1, false},
+                                      {{630, 472}, 9, 0, 0, 1, 2, false}};
+  const auto beside = placeLabels(two, kSize, kGap, {});
+  ASSERT_TRUE(beside[0]);
+  EXPECT_LT(beside[0]->rect.x, 600) << "the left side is its own alone";
+  EXPECT_FALSE(beside[0]->needs_line);
+  // Nothing is free but a place near the second.
+  const std::vector<Rect> taken{{0, 0, 610, 900}, {610, 0, 590, 430}, {610, 470, 590, 430}};
+  const auto between = placeLabels({two[0], {{660, 466}, 2, 0, 0, 1, 2, false}}, kSize, kGap, taken);
+  ASSERT_TRUE(between[0]);
+  EXPECT_TRUE(between[0]->needs_line);
+}
+
 TEST(LabelPlacement, TheFirstRankAndTheNearestComeFirst) {
   // All at one point: only some places are free.
   std::vector<LabelRequest> requests(60, {{600, 450}, 9, 300, 60, 1, 0, false});
@@ -68,7 +89,7 @@ TEST(LabelPlacement, TheFirstRankAndTheNearestComeFirst) {
   requests[0].rank = 0;
   const auto places = placeLabels(requests, kSize, kGap, {});
   ASSERT_TRUE(places[0] && places[59]);
-  EXPECT_FALSE(places[0]->is_away);
+  EXPECT_FALSE(places[0]->needs_line);
   EXPECT_FALSE(places[1]);
 }
 

@@ -333,6 +333,38 @@ TEST(Overlay, MarksOnTheGroundAreDrawnWhereItDoesNotHideThem) {
   EXPECT_GT(pixelsOfMarks(point), dot + 20) << "the second name is beside the first";
 }
 
+TEST(Overlay, SymbolsOfOnePositionStandSideBySide) {
+  const ImageSize size{640, 480};
+  Annotations annotations;
+  annotations.axes = annotations.compass = false;
+  const auto pixelsOf = [&](std::vector<MarkerKind> kinds) {
+    const auto picture = [&] { return compose(Image(size), makeCamera({}, kBox, size), kBox, annotations); };
+    annotations.markers.clear();
+    const Image8 empty = picture();
+    for (const MarkerKind kind : kinds) annotations.markers.emplace_back().kind = kind;
+    return differingPixels(empty, picture());
+  };
+  const long long both = pixelsOf({MarkerKind::radar, MarkerKind::transmitter});
+  EXPECT_GE(both, pixelsOf({MarkerKind::radar}) + 0.8 * pixelsOf({MarkerKind::transmitter}));
+}
+
+TEST(Overlay, HeightsOfLabelsAreInTheUnits) {
+  const ImageSize size{640, 480};
+  Annotations annotations;
+  annotations.axes = annotations.compass = false;
+  annotations.markers.resize(1);
+  annotations.markers[0].label = "mast";
+  annotations.markers[0].height_m = 304.8;
+  const auto picture = [&] { return compose(Image(size), makeCamera({}, kBox, size), kBox, annotations); };
+  const Image8 metric = picture();
+  annotations.units = Units::nautical;
+  const Image8 nautical = picture();
+  EXPECT_GT(differingPixels(metric, nautical), 5);
+  annotations.markers[0].height_m.reset();
+  annotations.markers[0].detail = "1000 ft above sea";
+  EXPECT_EQ(differingPixels(nautical, picture()), 0);
+}
+
 TEST(Overlay, AxesCountFromTheNamedOriginInTheUnits) {
   const ImageSize size{640, 480};
   const auto picture = [&](const Annotations& annotations) {

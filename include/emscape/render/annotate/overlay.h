@@ -27,7 +27,9 @@ enum class Affiliation { none, friendly, hostile, neutral, unknown };
 struct Marker {
   Vec3d position_m;  ///< frame metres
   std::string label;
-  std::string detail;  ///< a second line of the label, small; may be empty
+  std::string detail;  ///< a second line of the label, small, and the height after it; both may be empty
+  std::optional<double> height_m;       ///< in the second line, in the picture's units
+  bool is_height_above_ground = false;  ///< false: above sea
   MarkerKind kind = MarkerKind::platform;
   Affiliation side = Affiliation::none;
   std::string sidc;                ///< MIL-STD-2525D or APP-6D, of its icon; empty: that of its kind
