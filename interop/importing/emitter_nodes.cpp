@@ -45,13 +45,6 @@ std::string printable(const std::string& name) {
   return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
 }
 
-/// The platform's name and the row's; a beam that is an object of its own may have both already.
-std::string emitterName(const std::string& platform, const std::string& row) {
-  const bool has_both =
-      platform.size() > row.size() && platform.compare(platform.size() - row.size(), row.size(), row) == 0;
-  return has_both ? platform : platform + " " + row;
-}
-
 /// An antenna whose files are named from another folder.
 DocumentNodePtr movedAntenna(const DocumentNodePtr& antenna, const std::string& database,
                              const fs::path& folder) {
@@ -312,7 +305,7 @@ void EmitterMaker::makeOfBeam(const RecordedObject& object, const RecordedBeam& 
   for (const BeamPiece& piece : pieces) {
     std::string fault;
     const DocumentNodePtr emitter = emitterNode(
-        origin, &piece, piece.active, names_.unique(emitterName(platform, origin.name)), platform, fault);
+        origin, &piece, piece.active, names_.unique(joinedName(platform, origin.name)), platform, fault);
     count(fault.empty() ? origin.name : beam.name, origin.source, fault);
     if (!emitter) continue;
     emitters.push_back(emitter);
@@ -332,8 +325,8 @@ std::vector<DocumentNodePtr> EmitterMaker::make(const RecordedObject& object,
   if (row == nullptr) return emitters;
   std::string fault;
   const Origin origin{row->emitter, row->name, row->source, row->file, row->antenna_height_m};
-  const DocumentNodePtr emitter = emitterNode(
-      origin, nullptr, presence, names_.unique(emitterName(platform, row->name)), platform, fault);
+  const DocumentNodePtr emitter =
+      emitterNode(origin, nullptr, presence, names_.unique(joinedName(platform, row->name)), platform, fault);
   count(row->name, row->source, fault);
   if (emitter) {
     emitters.push_back(emitter);

@@ -96,6 +96,7 @@ class Importer {
     makeEmitters();
     loadTerrain();
     makeTracks();
+    tellWhatIsMissing();
     write();
     return std::move(result_);
   }
@@ -109,6 +110,7 @@ class Importer {
   void makeEmitters();
   void loadTerrain();
   void makeTracks();
+  void tellWhatIsMissing();
   void write();
   std::string headerText() const;
 
@@ -166,7 +168,8 @@ void Importer::choose() {
 
 void Importer::makeEmitters() {
   tell("matching emitters", 0);
-  const EmitterDatabase database = loadEmitterDatabase(options_.emitters);
+  EmitterDatabase database = loadEmitterDatabase(options_.emitters);
+  describeRecording(database, shifted_, beams_);
   UniqueNames platform_names, emitter_names;
   if (base_) {
     for (const scenario::Platform& platform : base_->platforms) platform_names.unique(platform.name);
@@ -195,6 +198,14 @@ void Importer::makeEmitters() {
   for (auto& [name, type] : types) result_.types.push_back(type);
   result_.emitters = maker.uses();
   result_.notes = maker.notes();
+  const auto silent = std::count_if(chosen_.begin(), chosen_.end(), [](const Chosen& chosen) {
+    return chosen.beams.empty() && chosen.emitters.empty();
+  });
+  if (!database.starter_serves_objects && silent > 0) {
+    result_.notes.push_back(
+        fmt::format("objects that tell no emission, and that no row of {} matches: {}; they have no emitter",
+                    fs::path(options_.emitters).filename().string(), silent));
+  }
   const bool has_emitter =
       std::any_of(chosen_.begin(), chosen_.end(), [](const Chosen& c) { return !c.emitters.empty(); });
   if (has_emitter || base_) return;
@@ -259,6 +270,16 @@ void Importer::makeTracks() {
   }
 }
 
+void Importer::tellWhatIsMissing() {
+  if (base_) return;
+  result_.notes.push_back(
+      options_.terrain.empty()
+          ? "recordings have no terrain, targets and receivers: the ground is flat at mean sea level; give "
+            "elevation files (--terrain), or a scenario that has them (--base)"
+          : "recordings have no targets and receivers: add them to the scenario, or give one that has them "
+            "(--base)");
+}
+
 std::string Importer::headerText() const {
   const auto nameOf = [](const std::string& file) { return fs::path(file).filename().string(); };
   std::string text =
@@ -315,11 +336,16 @@ void Importer::write() {
   }
   const std::string text = base_ ? scenarioTextOnBase(*base_, parts, folder_) : scenarioText(parts, folder_);
   result_.track_files = static_cast<int>(files.size());
-  if (!files.empty()) {
+  files.push_back({options_.scenario, [&text](std::ostream& stream) { stream << text; }});
+  if (!options_.replace) {
+    std::vector<fs::path> names;
+    for (const OutputFile& file : files) names.push_back(file.path);
+    requireNew(names);
+  }
+  if (result_.track_files > 0) {
     makeFolderIn(folder_, tracks_name);
     result_.tracks = (fs::path(options_.scenario).parent_path() / tracks_name).string();
   }
-  files.push_back({fs::absolute(options_.scenario), [&text](std::ostream& stream) { stream << text; }});
   writeWhole(files);
   result_.scenario = options_.scenario;
   result_.format = recording_.format;
