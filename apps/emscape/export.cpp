@@ -5,6 +5,7 @@
 
 #include "apps/common/console.h"
 #include "apps/emscape/subcommands.h"
+#include "base/text/count_text.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "interop/export_scenario.h"
 
@@ -33,9 +34,11 @@ int writeRecording(const ExportArguments& arguments, const GlobalOptions& global
                {"notes", result.notes}});
   } else if (!global.quiet) {
     print(
-        "{}: {}, {} platforms, {} emitters, {} records\n{}: what the recording does not tell of the "
+        "{}: {}, {}, {}, {}\n{}: what the recording does not tell of the "
         "emitters\n",
-        result.file, result.format, result.platforms, result.emitter_count, result.records, result.emitters);
+        result.file, result.format, countText(result.platforms, "platform", "platforms"),
+        countText(result.emitter_count, "emitter", "emitters"),
+        countText(result.records, "record", "records"), result.emitters);
     for (const std::string& note : result.notes) print("note: {}\n", note);
   }
   return 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/count_text.h"
 #include "base/text/utf8.h"
 #include "document/schema_check.h"
 #include "document/section.h"
@@ -93,19 +94,20 @@ std::vector<std::string> EmitterMaker::notes() const {
   std::vector<std::string> notes;
   if (sectors_ > 0) {
     notes.push_back(
-        fmt::format("{} beams are wider than {} deg: taken as the sector that the beam searches "
+        fmt::format("{} wider than {} deg: taken as the sector that the beam searches "
                     "(--beamwidth beam takes them as the beam)",
-                    sectors_, kWidestBeam_deg));
+                    countText(sectors_, "beam is", "beams are"), kWidestBeam_deg));
   }
   if (assumed_turns_ > 0) {
     notes.push_back(
-        fmt::format("{} beams turn or sweep at an unknown rate: {} rpm or {} deg/s are assumed; give "
+        fmt::format("{} at an unknown rate: {} rpm or {} deg/s are assumed; give "
                     "the rate in the database's scan",
-                    assumed_turns_, kAssumedRate_rpm, kAssumedRate_deg_s));
+                    countText(assumed_turns_, "beam turns or sweeps", "beams turn or sweep"),
+                    kAssumedRate_rpm, kAssumedRate_deg_s));
   }
   if (beams_cut_ > 0) {
-    notes.push_back(fmt::format("{} beams have more than {} settings; the later ones are left out",
-                                beams_cut_, kMaxPieces));
+    notes.push_back(fmt::format("{} more than {} settings; the later ones are left out",
+                                countText(beams_cut_, "beam has", "beams have"), kMaxPieces));
   }
   return notes;
 }

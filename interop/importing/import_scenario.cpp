@@ -10,6 +10,7 @@
 
 #include "base/files/folder.h"
 #include "base/files/whole_file.h"
+#include "base/text/count_text.h"
 #include "base/text/utc.h"
 #include "document/schema_check.h"
 #include "emscape/base/error.h"
@@ -214,9 +215,9 @@ void Importer::makeEmitters() {
     unmatched += (unmatched.empty() ? ": " : "; ") + use.name + " (" + use.fault + ")";
   throw Error(
       ErrorCode::bad_input, {recording_.file, 0, 0},
-      fmt::format("no emitter is left of {} objects{}. Give a database that matches them (--emitters FILE; "
+      fmt::format("no emitter is left of {}{}. Give a database that matches them (--emitters FILE; "
                   "docs/battlefield.md), or add the objects to a scenario with emitters (--base FILE)",
-                  shifted_.size(), unmatched.substr(0, 300)));
+                  countText(shifted_.size(), "object", "objects"), unmatched.substr(0, 300)));
 }
 
 void Importer::loadTerrain() {
@@ -258,15 +259,16 @@ void Importer::makeTracks() {
     chosen_[i].track = trackOf(*chosen_[i].object, window, 0, raise_m_[i], terrain_.get(), raised);
   }
   if (raised.without_ground > 0) {
-    result_.notes.push_back(fmt::format(
-        "{} positions are where the elevation files have no height; the ground is taken at mean sea level "
-        "there. Give more files (--terrain), or a part of the area (--region, --only)",
-        raised.without_ground));
+    result_.notes.push_back(
+        fmt::format("{} where the elevation files have no height; the ground is taken at mean sea level "
+                    "there. Give more files (--terrain), or a part of the area (--region, --only)",
+                    countText(raised.without_ground, "position is", "positions are")));
   }
   if (raised.positions > 0) {
-    result_.notes.push_back(fmt::format(
-        "{} positions were up to {:.1f} m below {}; they are raised to 2 m above it", raised.positions,
-        raised.deepest_m, terrain_ ? "the ground" : "mean sea level, the ground without terrain"));
+    result_.notes.push_back(
+        fmt::format("{} up to {:.1f} m below {} and raised to 2 m above it",
+                    countText(raised.positions, "position was", "positions were"), raised.deepest_m,
+                    terrain_ ? "the ground" : "mean sea level, the ground without terrain"));
   }
 }
 
@@ -274,9 +276,9 @@ void Importer::tellWhatIsMissing() {
   if (base_) return;
   result_.notes.push_back(
       options_.terrain.empty()
-          ? "recordings have no terrain, targets and receivers: the ground is flat at mean sea level; give "
+          ? "recordings have no terrain, targets or receivers: the ground is flat at mean sea level; give "
             "elevation files (--terrain), or a scenario that has them (--base)"
-          : "recordings have no targets and receivers: add them to the scenario, or give one that has them "
+          : "recordings have no targets or receivers: add them to the scenario, or give one that has them "
             "(--base)");
 }
 
@@ -285,7 +287,7 @@ std::string Importer::headerText() const {
   std::string text =
       fmt::format("Imported from {} ({}) by emscape import", nameOf(recording_.file), recording_.format);
   if (!options_.base.empty()) text += ", added to " + nameOf(options_.base);
-  text += fmt::format(": {} objects, {:.6g} s.\n", chosen_.size(), duration_s_);
+  text += fmt::format(": {}, {:.6g} s.\n", countText(chosen_.size(), "object", "objects"), duration_s_);
   for (const ImportedEmitters& use : result_.emitters) {
     if (use.fault.empty() && !use.source.empty())
       text += fmt::format("{} x {}: {}\n", use.count, use.name, use.source);

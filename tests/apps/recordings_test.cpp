@@ -47,7 +47,7 @@ TEST(Recordings, TableTellsWhatWasLeftOut) {
   EXPECT_THAT(result.out, HasSubstr("left out: scenery"));
   EXPECT_THAT(result.out, HasSubstr("navigation radar"));
   EXPECT_THAT(result.out,
-              HasSubstr("1 records could not be read, the first: line 7: 'zzz' is no hexadecimal id"));
+              HasSubstr("1 record could not be read, the first: line 7: 'zzz' is no hexadecimal id"));
   EXPECT_THAT(result.out, HasSubstr("the recording ends too early: line 9 has no end"));
   EXPECT_THAT(result.out, HasSubstr("not used: property Fuel (1)"));
 }

@@ -166,7 +166,7 @@ TEST_F(Import, DatabaseThatMatchesDescribesTheWholeRecording) {
 TEST_F(Import, TellsWhatRecordingsDoNotHave) {
   import(smallRecording());
   EXPECT_THAT(result_.notes,
-              testing::Contains(HasSubstr("recordings have no terrain, targets and receivers")));
+              testing::Contains(HasSubstr("recordings have no terrain, targets or receivers")));
 }
 
 TEST(JoinedName, HasEachPartOnce) {
@@ -302,7 +302,7 @@ TEST_F(Import, WithoutAnyEmitterTheErrorNamesTheRemedy) {
   recording.objects[0].keys = {};
   EXPECT_THAT(
       test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
-      HasSubstr("no emitter is left of 1 objects. Give a database that matches them (--emitters FILE"));
+      HasSubstr("no emitter is left of 1 object. Give a database that matches them (--emitters FILE"));
 }
 
 TEST(ImportRegion, TextIsALatitudeALongitudeAndASize) {
