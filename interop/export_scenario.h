@@ -11,7 +11,8 @@
 namespace emscape::interop {
 
 struct ExportOptions {
-  double step_s = 0;  ///< largest time between positions of a moving platform; 0: 1 s
+  double step_s = 0;     ///< largest time between positions of a moving platform; 0: 1 s
+  bool replace = false;  ///< files that exist; else they are an error
 };
 
 struct ExportResult {
@@ -21,6 +22,7 @@ struct ExportResult {
   long long records = 0;
   int platforms = 0;
   int emitter_count = 0;
+  std::vector<std::string> notes;  ///< what the recording does not carry
 };
 
 /// Endings of the formats that are written: ".acmi", ".zip.acmi", ".pcap".
@@ -32,8 +34,8 @@ std::vector<std::string> exportFormats();
 /// Electromagnetic Emission and Transmitter PDUs.
 /// @param scenario  read from a file
 /// @param terrain   of the scenario; may be null
-/// @throws Error (usage) for another ending, (bad_input) for a scenario without a file, (other) if a file
-/// cannot be written
+/// @throws Error (usage) for another ending or a file that exists, (bad_input) for a scenario without a file,
+/// (other) if a file cannot be written
 ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& scenario,
                             const scenario::Terrain* terrain, const std::string& file,
                             const ExportOptions& options = {}, const ProgressSink& progress = {});

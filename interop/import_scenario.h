@@ -38,6 +38,7 @@ struct ImportOptions {
   std::optional<TimeSpan> times;        ///< part of the recording, in its own seconds
   std::vector<std::string> only;  ///< patterns of names and types of objects; empty: see importRecording()
   BeamwidthMeaning beamwidth = BeamwidthMeaning::by_size;
+  bool replace = false;  ///< files that exist; else they are an error
 };
 
 /// Objects of one type.
@@ -75,8 +76,8 @@ struct ImportResult {
 /// effects) and weapons without an emission are left out.
 /// Emitters are the recording's beams with what the database has on them; an object without beams has the
 /// emitter of the first row that matches it.
-/// @throws Error (bad_input): no object or emitter is left, a fault in the database or the base; (other): a
-/// file cannot be written
+/// @throws Error (bad_input): no object or emitter is left, a fault in the database or the base; (usage): a
+/// file exists; (other): a file cannot be written
 ImportResult importRecording(const Recording& recording, const ImportOptions& options,
                              const ProgressSink& progress = {});
 

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "base/text/count_text.h"
 #include "emscape/base/error.h"
 #include "interop/acmi/acmi_reader.h"
 #include "interop/dis/dis_recorder.h"
@@ -110,7 +111,8 @@ void dropWithoutPosition(Recording& recording) {
   }
   recording.objects = std::move(objects);
   recording.beams = std::move(beams);
-  recording.tally.notes.push_back(fmt::format("{} objects never had a position and were left out", dropped));
+  recording.tally.notes.push_back(
+      fmt::format("{} without a position, left out", countText(dropped, "object", "objects")));
 }
 
 }  // namespace
@@ -144,8 +146,8 @@ Recording readRecording(const std::string& file, const ReadOptions& options, con
   if (recording.objects.empty()) {
     std::string reason;
     if (recording.tally.bad > 0)
-      reason = fmt::format("; {} records cannot be read, the first: {}", recording.tally.bad,
-                           recording.tally.first_bad);
+      reason = fmt::format("; {} cannot be read, the first: {}",
+                           countText(recording.tally.bad, "record", "records"), recording.tally.first_bad);
     throw Error(ErrorCode::bad_input, {file, 0, 0}, "the recording has no object with a position" + reason);
   }
   return recording;

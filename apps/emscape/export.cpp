@@ -5,6 +5,7 @@
 
 #include "apps/common/console.h"
 #include "apps/emscape/subcommands.h"
+#include "base/text/count_text.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "interop/export_scenario.h"
 
@@ -29,12 +30,16 @@ int writeRecording(const ExportArguments& arguments, const GlobalOptions& global
                {"emitter_database", result.emitters},
                {"records", result.records},
                {"platforms", result.platforms},
-               {"emitters", result.emitter_count}});
+               {"emitters", result.emitter_count},
+               {"notes", result.notes}});
   } else if (!global.quiet) {
     print(
-        "{}: {}, {} platforms, {} emitters, {} records\n{}: what the recording does not tell of the "
+        "{}: {}, {}, {}, {}\n{}: what the recording does not tell of the "
         "emitters\n",
-        result.file, result.format, result.platforms, result.emitter_count, result.records, result.emitters);
+        result.file, result.format, countText(result.platforms, "platform", "platforms"),
+        countText(result.emitter_count, "emitter", "emitters"),
+        countText(result.records, "record", "records"), result.emitters);
+    for (const std::string& note : result.notes) print("note: {}\n", note);
   }
   return 0;
 }
@@ -59,6 +64,7 @@ Exit status: 0; 2 for wrong options; 3 for a faulty scenario.)");
   command->add_option("SCENARIO", arguments->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, arguments->edits);
   command->add_option("-o,--output", arguments->file, "The recording: .acmi, .zip.acmi or .pcap")->required();
+  command->add_flag("--force", arguments->options.replace, "Replace the recording and its emitter database");
   command
       ->add_option("--step", arguments->options.step_s,
                    "Largest time between positions of a moving platform (s; 1)")

@@ -7,6 +7,7 @@
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/whole_file.h"
 #include "document/schema_check.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -56,6 +57,7 @@ int import(const ImportArguments& arguments, const GlobalOptions& global) {
   if (arguments.region != "auto") options.region = interop::parseRegion(arguments.region);
   if (!arguments.times.empty()) options.times = parseSpan(arguments.times);
   options.beamwidth = parseName<interop::BeamwidthMeaning>("meaning of beamwidths", arguments.beamwidth);
+  if (!options.replace) requireNew({options.scenario});  // before the work
   const ProgressSink progress = stoppingProgress(global);
   std::vector<interop::Recording> recordings;
   for (const std::string& file : arguments.files)
@@ -97,6 +99,7 @@ Exit status: 0; 2 for wrong options; 3 for a recording, database or base that ca
   command->add_option(
       "--base", arguments->options.base,
       "Scenario to which the platforms and emitters are added; its region, terrain and output stay");
+  command->add_flag("--force", arguments->options.replace, "Replace the scenario and its tracks");
   addListOption(*command, "--terrain", arguments->options.terrain, "Elevation files of the scenario");
   command->add_option("--region", arguments->region,
                       "auto, or LAT,LON,SIZE_KM: the field's region; auto is around all platforms");

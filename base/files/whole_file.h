@@ -23,4 +23,8 @@ struct OutputFile {
 void writeWhole(const std::vector<OutputFile>& files);
 void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
+/// Protects what a user may have written or edited under the names of outputs.
+/// @throws Error (usage) that names the first file that exists, and the options --force and --output
+void requireNew(const std::vector<std::filesystem::path>& files);
+
 }  // namespace emscape

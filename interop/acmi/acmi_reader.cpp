@@ -325,7 +325,7 @@ void AcmiReader::nameCarriedBeams() {
     const auto found = id ? by_id.find(fmt::format("{:x}", *id)) : by_id.end();
     if (!isBeam(object.type) || found == by_id.end() || found->second == index) continue;
     const RecordedObject& parent = recording_.objects[found->second];
-    object.name = parent.name + " " + (object.name.empty() ? "beam" : object.name);
+    object.name = joinedName(parent.name, object.name.empty() ? "beam" : object.name);
     if (object.keys.acmi_name.empty()) object.keys.acmi_name = parent.keys.acmi_name;
     object.keys.acmi_type = parent.keys.acmi_type;
     object.side = parent.side;

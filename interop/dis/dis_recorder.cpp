@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/geodesy/position_limits.h"
+#include "base/text/count_text.h"
 #include "base/text/utf8.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
@@ -360,12 +361,12 @@ Recording DisRecorder::finish() {
   if (late_ > 0)
     notes.push_back(fmt::format("{} Entity State PDUs came after a later one and were left out", late_));
   if (watts_ > 0) {
-    notes.push_back(fmt::format(
-        "{} beams have an effective radiated power above {} dBm; it is taken as watts", watts_, kMaxErp_dbm));
+    notes.push_back(fmt::format("{} an effective radiated power above {} dBm; it is taken as watts",
+                                countText(watts_, "beam has", "beams have"), kMaxErp_dbm));
   }
   if (no_power_ > 0)
-    notes.push_back(fmt::format(
-        "{} beams have no effective radiated power (0 dBm); it is that of the database", no_power_));
+    notes.push_back(fmt::format("{} no effective radiated power (0 dBm); it is that of the database",
+                                countText(no_power_, "beam has", "beams have")));
   if (clocks_.untrusted() > 0) {
     notes.push_back(
         fmt::format("the timestamps of {} PDUs do not agree with their arrivals, which are used instead",

@@ -14,6 +14,7 @@ namespace emscape::interop::dis {
 
 constexpr std::size_t kHeaderBytes = 12;
 constexpr std::size_t kMaxPduBytes = 8192;  ///< of the standard
+constexpr std::size_t kMarkingBytes = 11;   ///< of an entity's name
 /// Units of timestamps in an hour.
 constexpr double kTimestampsPerHour = 2147483648.0;
 

@@ -115,7 +115,7 @@ std::optional<EntityState> decodeEntityState(const std::uint8_t* bytes, std::siz
   state.acceleration_mps2 = reader.floats();
   state.turn_radps = reader.floats();
   reader.skip(1);  // character set
-  for (int i = 0; i < 11; ++i) state.marking += static_cast<char>(reader.u8());
+  for (std::size_t i = 0; i < kMarkingBytes; ++i) state.marking += static_cast<char>(reader.u8());
   state.marking.resize(std::min(state.marking.find('\0'), state.marking.size()));
   reader.u32();  // capabilities
   if (!reader.isSound()) {

@@ -88,7 +88,7 @@ std::vector<std::uint8_t> encode(Header header, const EntityState& state) {
   writer.floats(state.acceleration_mps2);
   writer.floats(state.turn_radps);
   writer.u8(1);  // ASCII
-  for (std::size_t i = 0; i < 11; ++i)
+  for (std::size_t i = 0; i < kMarkingBytes; ++i)
     writer.u8(i < state.marking.size() ? static_cast<std::uint8_t>(state.marking[i]) : 0);
   writer.u32(0);  // capabilities
   return finished(writer);

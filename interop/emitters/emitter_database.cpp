@@ -74,10 +74,24 @@ bool matchesPattern(const std::string& patterns, const std::string& text) {
 const EmitterRow* findRow(const EmitterDatabase& database, const RecordedObject& object,
                           const RecordedBeam* beam) {
   for (const EmitterRow& row : database.rows) {
+    if (row.is_starter && beam == nullptr && !database.starter_serves_objects) continue;
     const bool holds = beam == nullptr ? !row.match.isOfBeams() : matches(row.match, beam->keys);
     if (holds && matches(row.match, object.keys)) return &row;
   }
   return nullptr;
+}
+
+void describeRecording(EmitterDatabase& database, const std::vector<RecordedObject>& objects,
+                       const std::vector<RecordedBeam>& beams) {
+  if (database.unmatched == Unmatched::use_default) return;
+  const auto isOwn = [](const EmitterRow* row) { return row != nullptr && !row->is_starter; };
+  const bool has_own =
+      std::any_of(objects.begin(), objects.end(),
+                  [&](const RecordedObject& object) { return isOwn(findRow(database, object, nullptr)); }) ||
+      std::any_of(beams.begin(), beams.end(), [&](const RecordedBeam& beam) {
+        return isOwn(findRow(database, objects[beam.object], &beam));
+      });
+  database.starter_serves_objects = !has_own;
 }
 
 EmitterDatabase parseEmitterDatabase(const std::string& file, const std::string& text) {
@@ -123,6 +137,7 @@ EmitterDatabase parseEmitterDatabase(const std::string& file, const std::string&
 
 EmitterDatabase loadEmitterDatabase(const std::string& file) {
   EmitterDatabase starter = parseEmitterDatabase("scenarios/data/emitters.yaml", kStarterEmitters);
+  for (EmitterRow& row : starter.rows) row.is_starter = true;
   if (file.empty()) return starter;
   EmitterDatabase database = parseEmitterDatabase(file, readWholeText(file, kMaxDatabaseBytes));
   database.rows.insert(database.rows.end(), starter.rows.begin(), starter.rows.end());

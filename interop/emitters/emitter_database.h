@@ -42,7 +42,8 @@ struct EmitterRow {
   double antenna_height_m = 0;  ///< above the object's reference point
   /// Keys of a scenario's emitter but name and platform.
   document::DocumentNodePtr emitter;
-  std::string file;  ///< of the database, for the files that the emitter names
+  std::string file;         ///< of the database, for the files that the emitter names
+  bool is_starter = false;  ///< of the starter set
 };
 
 struct EmitterDatabase {
@@ -52,7 +53,14 @@ struct EmitterDatabase {
   /// sweep.
   document::DocumentNodePtr default_emitter;
   std::string default_file;
+  /// False: rows of the starter set serve beams alone. @see describeRecording()
+  bool starter_serves_objects = true;
 };
+
+/// A file whose rows match something of the recording describes it: objects that tell of no beam have then no
+/// emitter of the starter set, unless the file says `unmatched: default`.
+void describeRecording(EmitterDatabase& database, const std::vector<RecordedObject>& objects,
+                       const std::vector<RecordedBeam>& beams);
 
 /// True if a text has the form of one of the patterns, which are separated by |. In a pattern * stands for
 /// any characters and ? for one; upper and lower case are the same.

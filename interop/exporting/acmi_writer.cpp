@@ -16,6 +16,21 @@ std::string typeOf(Domain domain) {
   return domain == Domain::sea ? "Sea+Watercraft" : "Ground+Vehicle";
 }
 
+/// Properties of a side. Names of coalitions are free; programs tell the sides by the colours.
+std::string sideOf(const scenario::Platform& platform) {
+  switch (platform.side.value_or(scenario::Side::unknown)) {
+    case scenario::Side::friendly:
+      return ",Coalition=Friend,Color=Blue";
+    case scenario::Side::hostile:
+      return ",Coalition=Hostile,Color=Red";
+    case scenario::Side::neutral:
+      return ",Coalition=Neutral,Color=Green";
+    case scenario::Side::unknown:
+      break;
+  }
+  return "";
+}
+
 /// A pattern that matches a text alone.
 std::string patternOf(std::string text) {
   for (char& c : text) {
@@ -61,8 +76,8 @@ std::vector<AcmiObject> objectsOf(const ExportJob& job, std::vector<ExportedRow>
     AcmiObject object;
     object.id = static_cast<int>(objects.size()) + 1;
     object.platform = &platform;
-    object.properties = fmt::format(",Type={},Name={}", typeOf(domainOf(scenario, platform, job.terrain)),
-                                    escapedAcmi(platform.name));
+    object.properties = fmt::format(",Type={},Name={}{}", typeOf(domainOf(scenario, platform, job.terrain)),
+                                    escapedAcmi(platform.name), sideOf(platform));
     objects.push_back(object);
   }
   for (std::size_t i = 0; i < scenario.emitters.size(); ++i) {

@@ -56,6 +56,32 @@ Vec3d ecefOf(const PoseSample& pose) {
                  pose.height_msl_m + geoidUndulation_m(pose.latitude_deg, pose.longitude_deg)});
 }
 
+/// The force of an entity (UID 6); 0: other.
+std::uint8_t forceOf(const scenario::Platform& platform) {
+  switch (platform.side.value_or(scenario::Side::unknown)) {
+    case scenario::Side::friendly:
+      return 1;
+    case scenario::Side::hostile:
+      return 2;
+    case scenario::Side::neutral:
+      return 3;
+    case scenario::Side::unknown:
+      break;
+  }
+  return 0;
+}
+
+/// A name in ASCII, with one ? for each other character, cut to a marking's length.
+std::string markingOf(const std::string& name) {
+  std::string marking;
+  for (const char c : name) {
+    const bool is_continuation = (static_cast<unsigned char>(c) & 0xC0) == 0x80;  // of UTF-8
+    if (marking.size() == dis::kMarkingBytes) break;
+    if (!is_continuation) marking += c >= 0x20 && c < 0x7F ? c : '?';
+  }
+  return marking;
+}
+
 class DisWriter {
  public:
   DisWriter(const ExportJob& job, std::ostream& stream)
@@ -111,6 +137,7 @@ class DisWriter {
     const PoseSample pose = poseOf(platform, job_.terrain, t_s);
     EntityState state;
     state.id = idOf(index);
+    state.force = forceOf(platform);
     const Domain domain = domains_[index];
     state.type = {1, domain == Domain::air ? 2 : domain == Domain::sea ? 3 : 1, 0, 0, 0, 0, 0};
     state.position_m = ecefOf(pose);
@@ -123,7 +150,7 @@ class DisWriter {
       state.velocity_mps = (ecefOf(poseOf(platform, job_.terrain, *next)) - state.position_m) / (*next - t_s);
     }
     state.algorithm = platform.track.size() > 1 ? 2 : 1;
-    for (const char c : platform.name) state.marking += c >= 0x20 && c < 0x7F ? c : '?';
+    state.marking = markingOf(platform.name);
     return state;
   }
 
@@ -209,6 +236,12 @@ class DisWriter {
 
 long long writeCapture(const ExportJob& job, std::ostream& stream, std::vector<ExportedRow>& rows) {
   return DisWriter(job, stream).run(rows);
+}
+
+int countChangedMarkings(const scenario::Scenario& scenario) {
+  return static_cast<int>(std::count_if(
+      scenario.platforms.begin(), scenario.platforms.end(),
+      [](const scenario::Platform& platform) { return markingOf(platform.name) != platform.name; }));
 }
 
 }  // namespace emscape::interop

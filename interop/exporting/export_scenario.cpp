@@ -9,6 +9,7 @@
 #include "base/files/whole_file.h"
 #include "base/geodesy/gdal.h"
 #include "emscape/base/error.h"
+#include "interop/dis/pdu.h"
 #include "interop/exporting/writers.h"
 #include "scenario/terrain/gdal_messages.h"
 
@@ -62,6 +63,16 @@ long long writeZip(const ExportJob& job, const fs::path& file, std::vector<Expor
   return records;
 }
 
+/// What the scenario has and no recording can carry.
+std::string missingText(const scenario::Scenario& scenario) {
+  std::vector<std::string> missing;
+  if (scenario.terrain) missing.emplace_back("terrain (import --terrain)");
+  if (!scenario.targets.empty()) missing.emplace_back("targets");
+  if (!scenario.receivers.empty()) missing.emplace_back("receivers");
+  if (missing.empty()) return "";
+  return fmt::format("not in the recording: {}", fmt::join(missing, ", "));
+}
+
 }  // namespace
 
 std::vector<std::string> exportFormats() {
@@ -92,6 +103,7 @@ ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& sce
             records, kMaxRecords));
   }
   result.emitters = file + ".emitters.yaml";
+  if (!options.replace) requireNew({file, result.emitters});
   std::vector<ExportedRow> rows;
   if (is_zip) {
     result.records = writeZip(job, file, rows);
@@ -105,6 +117,14 @@ ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& sce
   const std::string database =
       databaseText(*scenario, rows, fs::absolute(result.emitters).parent_path().string());
   writeWhole(result.emitters, [&](std::ostream& stream) { stream << database; });
+  const std::string missing = missingText(*scenario);
+  if (!missing.empty()) result.notes.push_back(missing);
+  const int changed = is_capture ? countChangedMarkings(*scenario) : 0;
+  if (changed > 0) {
+    result.notes.push_back(fmt::format(
+        "names of platforms that are cut to {} characters, or have ? for those that are not ASCII: {}",
+        dis::kMarkingBytes, changed));
+  }
   result.platforms = static_cast<int>(scenario->platforms.size());
   result.emitter_count = static_cast<int>(scenario->emitters.size());
   return result;

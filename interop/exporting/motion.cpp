@@ -43,8 +43,9 @@ double distance_m(const PoseSample& a, const PoseSample& b) {
 
 std::vector<double> timesOfPositions(const scenario::Scenario& scenario, const scenario::Platform& platform,
                                      double step_s) {
-  if (platform.track.size() < 2) return {0};
-  std::vector<double> times{0, scenario.clock.duration_s};
+  const double end_s = scenario.clock.duration_s;
+  if (platform.track.size() < 2) return end_s > 0 ? std::vector<double>{0, end_s} : std::vector<double>{0};
+  std::vector<double> times{0, end_s};
   for (const scenario::TrackPoint& point : platform.track) {
     if (point.t_s > 0 && point.t_s < scenario.clock.duration_s) times.push_back(point.t_s);
   }

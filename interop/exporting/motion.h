@@ -10,7 +10,7 @@
 namespace emscape::interop {
 
 /// Times (s) at which a platform's position is written: of its track, 0, the scenario's end, and others so
-/// that none is more than step_s after the one before. A fixed platform: 0 alone.
+/// that none is more than step_s after the one before. A fixed platform: 0 and the end.
 std::vector<double> timesOfPositions(const scenario::Scenario& scenario, const scenario::Platform& platform,
                                      double step_s);
 

@@ -27,4 +27,7 @@ using TextSink = std::function<void(const std::string& piece)>;
 long long writeAcmi(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
 long long writeCapture(const ExportJob& job, std::ostream& stream, std::vector<ExportedRow>& rows);
 
+/// Number of platforms whose names are longer than a marking of DIS, or not in ASCII.
+int countChangedMarkings(const scenario::Scenario& scenario);
+
 }  // namespace emscape::interop

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/count_text.h"
 #include "base/text/utf8.h"
 #include "document/schema_check.h"
 #include "document/section.h"
@@ -43,13 +44,6 @@ std::string printable(const std::string& name) {
   const std::size_t begin = text.find_first_not_of(' ');
   if (begin == std::string::npos) return "unnamed";
   return text.substr(begin, text.find_last_not_of(' ') - begin + 1);
-}
-
-/// The platform's name and the row's; a beam that is an object of its own may have both already.
-std::string emitterName(const std::string& platform, const std::string& row) {
-  const bool has_both =
-      platform.size() > row.size() && platform.compare(platform.size() - row.size(), row.size(), row) == 0;
-  return has_both ? platform : platform + " " + row;
 }
 
 /// An antenna whose files are named from another folder.
@@ -100,19 +94,20 @@ std::vector<std::string> EmitterMaker::notes() const {
   std::vector<std::string> notes;
   if (sectors_ > 0) {
     notes.push_back(
-        fmt::format("{} beams are wider than {} deg: taken as the sector that the beam searches "
+        fmt::format("{} wider than {} deg: taken as the sector that the beam searches "
                     "(--beamwidth beam takes them as the beam)",
-                    sectors_, kWidestBeam_deg));
+                    countText(sectors_, "beam is", "beams are"), kWidestBeam_deg));
   }
   if (assumed_turns_ > 0) {
     notes.push_back(
-        fmt::format("{} beams turn or sweep at an unknown rate: {} rpm or {} deg/s are assumed; give "
+        fmt::format("{} at an unknown rate: {} rpm or {} deg/s are assumed; give "
                     "the rate in the database's scan",
-                    assumed_turns_, kAssumedRate_rpm, kAssumedRate_deg_s));
+                    countText(assumed_turns_, "beam turns or sweeps", "beams turn or sweep"),
+                    kAssumedRate_rpm, kAssumedRate_deg_s));
   }
   if (beams_cut_ > 0) {
-    notes.push_back(fmt::format("{} beams have more than {} settings; the later ones are left out",
-                                beams_cut_, kMaxPieces));
+    notes.push_back(fmt::format("{} more than {} settings; the later ones are left out",
+                                countText(beams_cut_, "beam has", "beams have"), kMaxPieces));
   }
   return notes;
 }
@@ -312,7 +307,7 @@ void EmitterMaker::makeOfBeam(const RecordedObject& object, const RecordedBeam& 
   for (const BeamPiece& piece : pieces) {
     std::string fault;
     const DocumentNodePtr emitter = emitterNode(
-        origin, &piece, piece.active, names_.unique(emitterName(platform, origin.name)), platform, fault);
+        origin, &piece, piece.active, names_.unique(joinedName(platform, origin.name)), platform, fault);
     count(fault.empty() ? origin.name : beam.name, origin.source, fault);
     if (!emitter) continue;
     emitters.push_back(emitter);
@@ -332,8 +327,8 @@ std::vector<DocumentNodePtr> EmitterMaker::make(const RecordedObject& object,
   if (row == nullptr) return emitters;
   std::string fault;
   const Origin origin{row->emitter, row->name, row->source, row->file, row->antenna_height_m};
-  const DocumentNodePtr emitter = emitterNode(
-      origin, nullptr, presence, names_.unique(emitterName(platform, row->name)), platform, fault);
+  const DocumentNodePtr emitter =
+      emitterNode(origin, nullptr, presence, names_.unique(joinedName(platform, row->name)), platform, fault);
   count(row->name, row->source, fault);
   if (emitter) {
     emitters.push_back(emitter);

@@ -10,6 +10,7 @@
 
 #include "base/files/folder.h"
 #include "base/files/whole_file.h"
+#include "base/text/count_text.h"
 #include "base/text/utc.h"
 #include "document/schema_check.h"
 #include "emscape/base/error.h"
@@ -96,6 +97,7 @@ class Importer {
     makeEmitters();
     loadTerrain();
     makeTracks();
+    tellWhatIsMissing();
     write();
     return std::move(result_);
   }
@@ -109,6 +111,7 @@ class Importer {
   void makeEmitters();
   void loadTerrain();
   void makeTracks();
+  void tellWhatIsMissing();
   void write();
   std::string headerText() const;
 
@@ -166,7 +169,8 @@ void Importer::choose() {
 
 void Importer::makeEmitters() {
   tell("matching emitters", 0);
-  const EmitterDatabase database = loadEmitterDatabase(options_.emitters);
+  EmitterDatabase database = loadEmitterDatabase(options_.emitters);
+  describeRecording(database, shifted_, beams_);
   UniqueNames platform_names, emitter_names;
   if (base_) {
     for (const scenario::Platform& platform : base_->platforms) platform_names.unique(platform.name);
@@ -195,6 +199,14 @@ void Importer::makeEmitters() {
   for (auto& [name, type] : types) result_.types.push_back(type);
   result_.emitters = maker.uses();
   result_.notes = maker.notes();
+  const auto silent = std::count_if(chosen_.begin(), chosen_.end(), [](const Chosen& chosen) {
+    return chosen.beams.empty() && chosen.emitters.empty();
+  });
+  if (!database.starter_serves_objects && silent > 0) {
+    result_.notes.push_back(
+        fmt::format("objects that tell no emission, and that no row of {} matches: {}; they have no emitter",
+                    fs::path(options_.emitters).filename().string(), silent));
+  }
   const bool has_emitter =
       std::any_of(chosen_.begin(), chosen_.end(), [](const Chosen& c) { return !c.emitters.empty(); });
   if (has_emitter || base_) return;
@@ -203,9 +215,9 @@ void Importer::makeEmitters() {
     unmatched += (unmatched.empty() ? ": " : "; ") + use.name + " (" + use.fault + ")";
   throw Error(
       ErrorCode::bad_input, {recording_.file, 0, 0},
-      fmt::format("no emitter is left of {} objects{}. Give a database that matches them (--emitters FILE; "
+      fmt::format("no emitter is left of {}{}. Give a database that matches them (--emitters FILE; "
                   "docs/battlefield.md), or add the objects to a scenario with emitters (--base FILE)",
-                  shifted_.size(), unmatched.substr(0, 300)));
+                  countText(shifted_.size(), "object", "objects"), unmatched.substr(0, 300)));
 }
 
 void Importer::loadTerrain() {
@@ -247,16 +259,27 @@ void Importer::makeTracks() {
     chosen_[i].track = trackOf(*chosen_[i].object, window, 0, raise_m_[i], terrain_.get(), raised);
   }
   if (raised.without_ground > 0) {
-    result_.notes.push_back(fmt::format(
-        "{} positions are where the elevation files have no height; the ground is taken at mean sea level "
-        "there. Give more files (--terrain), or a part of the area (--region, --only)",
-        raised.without_ground));
+    result_.notes.push_back(
+        fmt::format("{} where the elevation files have no height; the ground is taken at mean sea level "
+                    "there. Give more files (--terrain), or a part of the area (--region, --only)",
+                    countText(raised.without_ground, "position is", "positions are")));
   }
   if (raised.positions > 0) {
-    result_.notes.push_back(fmt::format(
-        "{} positions were up to {:.1f} m below {}; they are raised to 2 m above it", raised.positions,
-        raised.deepest_m, terrain_ ? "the ground" : "mean sea level, the ground without terrain"));
+    result_.notes.push_back(
+        fmt::format("{} up to {:.1f} m below {} and raised to 2 m above it",
+                    countText(raised.positions, "position was", "positions were"), raised.deepest_m,
+                    terrain_ ? "the ground" : "mean sea level, the ground without terrain"));
   }
+}
+
+void Importer::tellWhatIsMissing() {
+  if (base_) return;
+  result_.notes.push_back(
+      options_.terrain.empty()
+          ? "recordings have no terrain, targets or receivers: the ground is flat at mean sea level; give "
+            "elevation files (--terrain), or a scenario that has them (--base)"
+          : "recordings have no targets or receivers: add them to the scenario, or give one that has them "
+            "(--base)");
 }
 
 std::string Importer::headerText() const {
@@ -264,7 +287,7 @@ std::string Importer::headerText() const {
   std::string text =
       fmt::format("Imported from {} ({}) by emscape import", nameOf(recording_.file), recording_.format);
   if (!options_.base.empty()) text += ", added to " + nameOf(options_.base);
-  text += fmt::format(": {} objects, {:.6g} s.\n", chosen_.size(), duration_s_);
+  text += fmt::format(": {}, {:.6g} s.\n", countText(chosen_.size(), "object", "objects"), duration_s_);
   for (const ImportedEmitters& use : result_.emitters) {
     if (use.fault.empty() && !use.source.empty())
       text += fmt::format("{} x {}: {}\n", use.count, use.name, use.source);
@@ -315,11 +338,16 @@ void Importer::write() {
   }
   const std::string text = base_ ? scenarioTextOnBase(*base_, parts, folder_) : scenarioText(parts, folder_);
   result_.track_files = static_cast<int>(files.size());
-  if (!files.empty()) {
+  files.push_back({options_.scenario, [&text](std::ostream& stream) { stream << text; }});
+  if (!options_.replace) {
+    std::vector<fs::path> names;
+    for (const OutputFile& file : files) names.push_back(file.path);
+    requireNew(names);
+  }
+  if (result_.track_files > 0) {
     makeFolderIn(folder_, tracks_name);
     result_.tracks = (fs::path(options_.scenario).parent_path() / tracks_name).string();
   }
-  files.push_back({fs::absolute(options_.scenario), [&text](std::ostream& stream) { stream << text; }});
   writeWhole(files);
   result_.scenario = options_.scenario;
   result_.format = recording_.format;

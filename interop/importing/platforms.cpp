@@ -125,8 +125,7 @@ DocumentNodePtr platformNode(const std::string& name, Side side, const PoseSampl
                              const std::string& track_file) {
   MapBuilder platform;
   platform.set("name", textNode(name));
-  // Where the scenario format has the side of a platform.
-  if (side != Side::unknown && scenario::platformSpec().find("side", nullptr) != nullptr) {
+  if (side != Side::unknown) {
     constexpr const char* kNames[] = {"unknown", "friend", "hostile", "neutral"};
     platform.set("side", textNode(kNames[static_cast<int>(side)]));
   }

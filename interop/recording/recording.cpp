@@ -105,6 +105,16 @@ TimeSpan spanOf(const Recording& recording) {
   return span.begin_s <= span.end_s ? span : TimeSpan{};
 }
 
+std::string joinedName(const std::string& carrier, const std::string& part) {
+  // Blanks around both, so that names begin and end with whole words.
+  const std::string of_carrier = " " + carrier + " ", of_part = " " + part + " ";
+  const bool part_has_carrier = of_part.rfind(of_carrier, 0) == 0;
+  const bool carrier_has_part =
+      of_carrier.rfind(of_part, 0) == 0 || (of_carrier.size() > of_part.size() &&
+                                            of_carrier.substr(of_carrier.size() - of_part.size()) == of_part);
+  return part_has_carrier ? part : carrier_has_part ? carrier : carrier + " " + part;
+}
+
 PoseSample poseAt(const RecordedObject& object, double t_s) {
   const auto& poses = object.poses;
   const auto after = std::upper_bound(poses.begin(), poses.end(), t_s,

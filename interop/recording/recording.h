@@ -139,6 +139,9 @@ struct TimeSpan {
 };
 TimeSpan spanOf(const Recording& recording);
 
+/// Name of a part after that of its carrier; the longer one if it has the other at its begin or end.
+std::string joinedName(const std::string& carrier, const std::string& part);
+
 /// Position of an object at a time, linear between its samples (angles over the shorter arc), at the nearest
 /// end outside them. @pre the object has a pose
 PoseSample poseAt(const RecordedObject& object, double t_s);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "base/text/count_text.h"
+
 namespace emscape::report {
 namespace {
 
@@ -82,20 +84,21 @@ std::string importText(const interop::ImportResult& result) {
     if (!use.fault.empty())
       text += fmt::format("{:<40} {:>8}  {}\n", "left out: " + use.name, use.count, use.fault);
   }
-  text += fmt::format("\n{}, {:.3f} to {:.3f} s, {} records", result.format, result.recorded.begin_s,
-                      result.recorded.end_s, result.tally.records);
+  text += fmt::format("\n{}, {:.3f} to {:.3f} s, {}", result.format, result.recorded.begin_s,
+                      result.recorded.end_s, countText(result.tally.records, "record", "records"));
   if (!result.epoch_utc.empty()) text += ", t = 0 is " + result.epoch_utc;
   text += "\n";
   if (result.tally.bad > 0)
-    text += fmt::format("{} records could not be read, the first: {}\n", result.tally.bad,
-                        result.tally.first_bad);
+    text += fmt::format("{} could not be read, the first: {}\n",
+                        countText(result.tally.bad, "record", "records"), result.tally.first_bad);
   if (!result.tally.torn.empty()) text += "the recording ends too early: " + result.tally.torn + "\n";
   if (!result.tally.ignored.empty()) text += "not used: " + countsText(result.tally.ignored) + "\n";
   for (const auto* notes : {&result.tally.notes, &result.notes}) {
     for (const std::string& note : *notes) text += "note: " + note + "\n";
   }
   text += fmt::format("{}: {:.6g} s", result.scenario, result.duration_s);
-  if (result.track_files > 0) text += fmt::format(", {} tracks in {}", result.track_files, result.tracks);
+  if (result.track_files > 0)
+    text += fmt::format(", {} in {}", countText(result.track_files, "track", "tracks"), result.tracks);
   return text + "\n";
 }
 

@@ -59,10 +59,11 @@ struct Beams {
   std::string text(double step_s) const {
     const bool is_one = names.size() == 1;
     return fmt::format(
-        "the {} of '{}', {:.3g} deg wide, {} {:.4g} deg in a step of {} s: of {} azimuths {:.0f} % are ever "
+        "the {} of '{}', {:.3g} deg wide, {} {:.4g} deg in a step of {} s: of {} azimuths {} are ever "
         "lit",
         is_one ? "beam" : "beams", fmt::join(names, "', '"), width_deg, is_one ? "sweeps" : "sweep",
-        sampling.step_deg, step_s, is_one ? "its" : "their", 100 * sampling.lit_share);
+        sampling.step_deg, step_s, is_one ? "its" : "their",
+        sampling.lit_share < 0.01 ? "below 1 %" : fmt::format("{:.0f} %", 100 * sampling.lit_share));
   }
 };
 

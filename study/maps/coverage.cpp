@@ -289,6 +289,12 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
         const std::size_t r = impl_->with_least[n];
         CoverageMap map = emptyMap(*at_targets[s], requests[r], Product::min_height, std::nullopt);
         map.time_s = time_s;
+        double unreached_m2 = 0;
+        for (std::size_t p = 0; p < least_m[n].size(); ++p) {
+          if (impl_->least_heights->isKnown()[p] && std::isnan(least_m[n][p]))
+            unreached_m2 += static_cast<double>(impl_->grid.areas_m2[p]);
+        }
+        map.unreached_area_m2 = unreached_m2;
         setValues(map, impl_->grid, std::move(least_m[n]));
         takeOf(r)(std::move(map));
       }

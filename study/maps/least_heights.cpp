@@ -58,6 +58,20 @@ class Strip {
     });
   }
 
+  /// Adds for each position whether it has a value at any height.
+  /// @param volume  as in search()
+  void addKnown(int steps, const volume::DenseVolume& volume, std::vector<bool>& is_known) const {
+    const std::size_t positions = surface_.positions.size();
+    for (std::size_t p = 0; p < positions; ++p) {
+      bool known = false;
+      const bool is_inside = !std::isnan(surface_.positions[p].latitude_deg);
+      std::size_t k = volume.first_valid_k.empty() ? 0 : volume.first_valid_k[p];
+      for (; is_inside && !known && k <= static_cast<std::size_t>(steps); ++k)
+        known = !std::isnan(volume.values[k * positions + p]);
+      is_known.push_back(known);
+    }
+  }
+
   const std::vector<float>& found_m() const { return found_m_; }
 
  private:
@@ -89,6 +103,7 @@ std::vector<std::vector<float>> LeastHeights::compute(
     return solver->volumes().front().host();
   };
   std::vector<std::vector<float>> heights_m(thresholds_.size());
+  is_known_.clear();
   for (int row = 0; row < grid_.height; row += rows_at_once) {
     Strip all(grid_, row, std::min(rows_at_once, grid_.height - row));
     std::shared_ptr<const volume::DenseVolume> first;
@@ -96,6 +111,9 @@ std::vector<std::vector<float>> LeastHeights::compute(
     if (all.hasPositions()) {
       std::optional<emfield::FieldSolver> own;
       first = solve(all.surfaceOf(kFirstStep_m, kFirstSteps), is_kept ? first_steps_ : own);
+      all.addKnown(kFirstSteps, *first, is_known_);
+    } else {
+      is_known_.resize(is_known_.size() + all.found_m().size(), false);
     }
     for (std::size_t t = 0; t < thresholds_.size(); ++t) {
       Strip strip = all;

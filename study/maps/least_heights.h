@@ -32,11 +32,15 @@ class LeastHeights {
   std::vector<std::vector<float>> compute(const std::shared_ptr<const scenario::Scenario>& scenario,
                                           const scenario::TerrainPtr& terrain, double time_s);
 
+  /// Of the last compute(): which positions have a field value at any height.
+  const std::vector<bool>& isKnown() const { return is_known_; }
+
  private:
   const MapGrid& grid_;
   std::vector<double> thresholds_;
   emfield::FieldOptions options_;
   std::optional<emfield::FieldSolver> first_steps_;
+  std::vector<bool> is_known_;
 };
 
 }  // namespace emscape::study

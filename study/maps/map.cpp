@@ -42,6 +42,10 @@ MapSummary summaryOf(const MapGrid& grid, const Map& map) {
       summary.largest_pixel = static_cast<long long>(p);
     }
   }
+  if (map.unreached_area_m2) {
+    summary.class_area_m2 = summary.known_area_m2;
+    summary.known_area_m2 += *map.unreached_area_m2;
+  }
   return summary;
 }
 

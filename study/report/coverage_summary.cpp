@@ -159,7 +159,8 @@ std::vector<std::string> coverageSummary(const MapStudy& study, const std::vecto
   Spread least_m;
   for (const MapRecord& record : records) {
     if (record.map.name != "min_height") continue;
-    reached.add(record.summary.known_area_m2, area_m2);
+    reached.add(record.summary.class_area_m2, record.summary.known_area_m2);
+    known.add(record.summary.known_area_m2);
     if (std::isfinite(record.summary.min)) least_m.add(record.summary.min);
     if (std::isfinite(record.summary.max)) least_m.add(record.summary.max);
   }

@@ -43,7 +43,7 @@ Json toJson(const MapRecord& record) {
   json["min"] = number(record.summary.min);
   json["max"] = number(record.summary.max);
   json["known_area_km2"] = record.summary.known_area_m2 / 1e6;
-  if (map.area_class >= 0) {
+  if (map.area_class >= 0 || map.unreached_area_m2) {
     json["area_km2"] = record.summary.class_area_m2 / 1e6;
     json["share_of_known"] = number(record.summary.class_area_m2 / record.summary.known_area_m2);
   }
@@ -229,7 +229,8 @@ ReportTable tableOf(const std::vector<MapRecord>& records) {
           addRow(map.title + ": " + map.labels[n], summary.label_areas_m2[n], false);
       continue;
     }
-    addRow(map.title, map.area_class >= 0 ? std::optional(summary.class_area_m2) : std::nullopt,
+    addRow(map.title,
+           map.area_class >= 0 || map.unreached_area_m2 ? std::optional(summary.class_area_m2) : std::nullopt,
            map.kind != MapKind::classes);
   }
   return table;

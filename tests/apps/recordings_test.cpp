@@ -47,7 +47,7 @@ TEST(Recordings, TableTellsWhatWasLeftOut) {
   EXPECT_THAT(result.out, HasSubstr("left out: scenery"));
   EXPECT_THAT(result.out, HasSubstr("navigation radar"));
   EXPECT_THAT(result.out,
-              HasSubstr("1 records could not be read, the first: line 7: 'zzz' is no hexadecimal id"));
+              HasSubstr("1 record could not be read, the first: line 7: 'zzz' is no hexadecimal id"));
   EXPECT_THAT(result.out, HasSubstr("the recording ends too early: line 9 has no end"));
   EXPECT_THAT(result.out, HasSubstr("not used: property Fuel (1)"));
 }
@@ -71,6 +71,36 @@ TEST(Recordings, FaultsNameFileValueAndRemedy) {
   EXPECT_THAT(errorOf({"export", shippedScenario("quick.yaml"), "-o", folder / "a.hla"}, 2),
               HasSubstr("it ends in .acmi, .zip.acmi or .pcap"));
   EXPECT_FALSE(std::filesystem::exists(out));
+}
+
+TEST(Recordings, FilesThatExistAreReplacedOnlyWithForce) {
+  const TemporaryFolder folder;
+  const std::string flight = folder.write(
+      "a.acmi",
+      "FileType=text/acmi/tacview\nFileVersion=2.2\n1,T=5|52|3000,Type=Air+FixedWing,Name=F-14\n#10\n"
+      "1,T=5.01|52\n");
+  const std::string scenario = folder / "b.yaml", track = folder / "b_tracks/f-14.csv";
+  const std::string recording = folder / "c.acmi", database = folder / "c.acmi.emitters.yaml";
+  const Arguments import{"import", flight, "-o", scenario};
+  const Arguments write{"export", shippedScenario("quick.yaml"), "-o", recording};
+  const auto expectKept = [&](Arguments arguments, const std::string& file) {
+    const std::vector<std::string> files = folder.files();
+    std::filesystem::create_directories(std::filesystem::path(file).parent_path());
+    writeFile(file, "mine\n");
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, 2) << result.err;
+    EXPECT_THAT(result.err, HasSubstr(file + " exists; --force replaces it, another --output keeps it"));
+    EXPECT_EQ(readFile(file), "mine\n");
+    arguments.emplace_back("--force");
+    EXPECT_EQ(run(arguments).status, 0);
+    EXPECT_NE(readFile(file), "mine\n");
+  };
+  expectKept(import, scenario);
+  std::filesystem::remove(scenario);
+  expectKept(import, track);
+  expectKept(write, recording);
+  std::filesystem::remove(recording);
+  expectKept(write, database);
 }
 
 }  // namespace

@@ -60,6 +60,7 @@ void readRecordingFile(const fs::path& file, const std::string&) {
 void importRecordingFile(const fs::path& file, const std::string&) {
   interop::ImportOptions options;
   options.scenario = file.parent_path() / "out.yaml";
+  options.replace = true;
   interop::importRecording(interop::readRecording(file), options);
   for (const scenario::Problem& problem : scenario::parseScenario(options.scenario).problems) {
     if (problem.severity == scenario::Severity::error)

@@ -57,6 +57,7 @@ class Import : public testing::Test {
  protected:
   ImportResult import(const Recording& recording, ImportOptions options = {}) {
     options.scenario = folder_ / "out.yaml";
+    options.replace = true;
     result_ = importRecording(recording, options);
     scenario_ = scenario::loadScenario(options.scenario);
     return result_;
@@ -139,6 +140,42 @@ TEST_F(Import, UnmatchedBeamsAreNamedOrHaveTheDefault) {
   EXPECT_EQ(scenario_->emitters[0].kind, scenario::EmitterKind::transmitter);
   EXPECT_NEAR(10 * std::log10(scenario_->emitters[0].power_w) + 30 + scenario_->emitters[0].antenna->gain_dbi,
               93, 1e-3);
+}
+
+TEST_F(Import, DatabaseThatMatchesDescribesTheWholeRecording) {
+  const auto databaseOf = [this](const std::string& name, const std::string& more) {
+    ImportOptions options;
+    options.emitters = folder_.write(
+        "db.yaml",
+        "schema_version: 1\nemitters:\n  - name: MiG-29 radar\n    match: {acmi_name: \"" + name +
+            "\"}\n    emitter: {kind: transmitter, frequency_hz: 1.0e9, power_w: 1, antenna: {pattern: "
+            "isotropic}}\n" +
+            more);
+    return options;
+  };
+  import(smallRecording(), databaseOf("MiG*", ""));
+  ASSERT_EQ(scenario_->emitters.size(), 1u) << "the ship tells no emission";
+  EXPECT_EQ(scenario_->emitters[0].name, "MiG-29 radar") << "the platform's name is not doubled";
+  EXPECT_THAT(result_.notes, testing::Contains(HasSubstr("no row of db.yaml matches: 1;")));
+  import(smallRecording(), databaseOf("MiG*", "unmatched: default\ndefault: {kind: transmitter}\n"));
+  EXPECT_EQ(scenario_->emitters.size(), 2u);
+  import(smallRecording(), databaseOf("nothing here", ""));
+  EXPECT_EQ(scenario_->emitters.size(), 2u);
+}
+
+TEST_F(Import, TellsWhatRecordingsDoNotHave) {
+  import(smallRecording());
+  EXPECT_THAT(result_.notes,
+              testing::Contains(HasSubstr("recordings have no terrain, targets or receivers")));
+}
+
+TEST(JoinedName, HasEachPartOnce) {
+  EXPECT_EQ(joinedName("helicopter", "jammer"), "helicopter jammer");
+  EXPECT_EQ(joinedName("helicopter", "helicopter jammer"), "helicopter jammer");
+  EXPECT_EQ(joinedName("helicopter jammer", "jammer"), "helicopter jammer");
+  EXPECT_EQ(joinedName("helicopter jammer 2", "helicopter jammer"), "helicopter jammer 2");
+  EXPECT_EQ(joinedName("radar", "radar"), "radar");
+  EXPECT_EQ(joinedName("F", "Furuno"), "F Furuno");
 }
 
 TEST_F(Import, BeamThatFollowsATargetPointsWhereItPointed) {
@@ -265,7 +302,7 @@ TEST_F(Import, WithoutAnyEmitterTheErrorNamesTheRemedy) {
   recording.objects[0].keys = {};
   EXPECT_THAT(
       test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
-      HasSubstr("no emitter is left of 1 objects. Give a database that matches them (--emitters FILE"));
+      HasSubstr("no emitter is left of 1 object. Give a database that matches them (--emitters FILE"));
 }
 
 TEST(ImportRegion, TextIsALatitudeALongitudeAndASize) {
@@ -345,6 +382,53 @@ INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, testing::Values(".acmi", ".zip.acmi
                            const std::string name = format.param;
                            return name == ".pcap" ? "Dis" : name == ".acmi" ? "Acmi" : "ZippedAcmi";
                          });
+
+constexpr const char* kFixedSites = R"(schema_version: 1
+name: sites
+duration_s: 30
+region:
+  origin: {latitude_deg: 52, longitude_deg: 5}
+  size_m: [20000, 20000, 5000]
+  dims: [10, 10, 5]
+platforms:
+  - {name: ours, side: friend, position: {latitude_deg: 52, longitude_deg: 5, height_agl_m: 40}}
+  - {name: theirs, side: hostile, position: {latitude_deg: 52.01, longitude_deg: 5, height_agl_m: 40}}
+  - {name: Łódź, side: neutral, position: {latitude_deg: 52.02, longitude_deg: 5, height_agl_m: 40}}
+  - {name: a name of many letters, position: {latitude_deg: 52.03, longitude_deg: 5, height_agl_m: 40}}
+emitters:
+  - {name: beacon, platform: ours, kind: transmitter, frequency_hz: 1.0e8, power_w: 9, antenna: {pattern: isotropic}}
+targets:
+  - {name: drone, platform: theirs, rcs_m2: 1}
+output: {quantities: [field_strength_dbuvm]}
+)";
+
+TEST_P(RoundTrip, SidesAndDurationOfFixedSitesStayAndTheRestIsTold) {
+  const test::TemporaryFolder folder;
+  const ScenarioPtr before = scenario::loadScenario(folder.write("sites.yaml", kFixedSites));
+  const ExportResult exported = exportScenario(before, nullptr, folder / (std::string("a") + GetParam()));
+  const bool is_dis = std::string(GetParam()) == ".pcap";
+  ASSERT_EQ(exported.notes.size(), is_dis ? 2u : 1u);
+  EXPECT_EQ(exported.notes[0], "not in the recording: targets");
+  if (is_dis) {
+    EXPECT_THAT(exported.notes[1], HasSubstr("not ASCII: 2"));
+  }
+  ImportOptions options;
+  options.scenario = folder / "back.yaml";
+  options.emitters = exported.emitters;
+  importRecording(readRecording(exported.file), options);
+  const ScenarioPtr after = scenario::loadScenario(options.scenario);
+  EXPECT_NEAR(after->clock.duration_s, 30, 1e-3);
+  std::vector<std::optional<scenario::Side>> sides;
+  for (const scenario::Platform& platform : after->platforms) {
+    if (platform.name != "ours beacon") sides.push_back(platform.side);
+    EXPECT_FALSE(platform.moves());
+  }
+  using scenario::Side;
+  EXPECT_THAT(sides, testing::ElementsAre(Side::friendly, Side::hostile, Side::neutral, std::nullopt));
+  if (is_dis) {
+    EXPECT_EQ(after->platforms[2].name, "??d?");
+  }
+}
 
 TEST(Export, UnknownEndingIsRefused) {
   const ScenarioPtr scenario = scenario::loadScenario(test::shippedScenario("quick.yaml"));

@@ -75,7 +75,7 @@ def main():
         return 1 if os.environ.get("EMSCAPE_REQUIRE_PEERS") else SKIPPED
     os.makedirs(folder, exist_ok=True)
     capture = pathlib.Path(folder) / "jamming.pcap"
-    subprocess.run([emscape, "export", ROOT / "scenarios" / "jamming.yaml", "-o", capture, "--quiet"], check=True)
+    subprocess.run([emscape, "export", ROOT / "scenarios" / "jamming.yaml", "-o", capture, "--force", "--quiet"], check=True)
     return subprocess.run([PYTHON, __file__, "--compare", capture], check=False).returncode
 
 

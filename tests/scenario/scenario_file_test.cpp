@@ -356,6 +356,9 @@ TEST_F(ScenarioYaml, WarnsOfABeamThatStepsOverAzimuths) {
               AllOf(HasSubstr("'search radar', 1.6 deg wide, sweeps 36 deg in a step of 0.5 s"),
                     HasSubstr("4 % are ever lit")));
   EXPECT_EQ(result.problems[0].location.line, 32);
+  const std::string whole_turns = replaced(valid_, "rate_rpm: 11.95", "rate_rpm: 120");
+  EXPECT_THAT(parseScenario(folder_.write("scenario.yaml", whole_turns)).problems[0].message,
+              HasSubstr("of its azimuths below 1 % are ever lit"));
   // Beams alike are named together.
   const std::string twin =
       "  - {name: twin, platform: ridge site, kind: transmitter, frequency_hz: 3.1e9, power_w: 10, "

@@ -70,6 +70,17 @@ TEST(CoverageSummary, OtherQuantitiesAreNamedWithTheirThreshold) {
               HasSubstr("power density is at least -60 dBW/m² on 40.0 %"));
 }
 
+TEST(CoverageSummary, SharesOfMinimumHeightsAreOfTheKnownPixels) {
+  MapRecord record = recordOf("min_height", 20, 80);
+  record.summary.min = 3;
+  record.summary.max = 90;
+  const std::vector<std::string> sentences = coverageSummary(smallStudy(), {record});
+  ASSERT_EQ(sentences.size(), 3u);
+  EXPECT_THAT(sentences[1],
+              HasSubstr("On 25.0 % of the area (20 km²) a target is detected from some height on"));
+  EXPECT_THAT(sentences[2], HasSubstr("known answer, 80.0 % of the area"));
+}
+
 TEST(CoverageSummary, MapsWithoutAreasHaveNone) {
   EXPECT_THAT(coverageSummary(smallStudy(), {recordOf("value", 0, 100)}), ElementsAre());
 }

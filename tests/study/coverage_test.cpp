@@ -340,6 +340,9 @@ TEST(Coverage, MinHeightIsLowestCoveredHeight) {
       {{kLow}, {Product::min_height}, scenario::Quantity::detection_probability, 0.5, {10}});
   ASSERT_EQ(coverage.maps.size(), 1u);
   const std::vector<float>& least_m = coverage.maps[0].values;
+  EXPECT_GT(coverage.maps[0].class_area_m2, 0);
+  EXPECT_NEAR(coverage.maps[0].known_area_m2,
+              coverage.maps[0].class_area_m2 + *coverage.maps[0].unreached_area_m2, 1);
   auto edited = std::make_shared<scenario::Scenario>(*coverage.scenario);
   edited->output.radar_look = scenario::RadarAim::target;
   edited->output.quantities = {"detection_probability"};

@@ -28,8 +28,8 @@ struct CoverageRequest {
 /// left out, below ground or unknown.
 struct CoverageMap : Map {
   Product product = Product::value;
-  double known_area_m2 = 0;  ///< of the pixels with a value
-  double class_area_m2 = 0;  ///< of ProductInfo::area_class; 0 for products without one
+  double known_area_m2 = 0;  ///< of the pixels with a known answer
+  double class_area_m2 = 0;  ///< as in MapSummary; 0 for products without areas
 };
 
 /// The default threshold: 0.5 for a probability, 0 dB for a margin or ratio over a required level; none for

@@ -41,6 +41,9 @@ struct Map {
   std::vector<int> colors;    ///< of classes: indices of render::categoryColor(); empty: the class itself
   int area_class = -1;        ///< the class whose area is reported; -1: none
   std::vector<float> values;  ///< pixels in the grid's order; NaN: no value
+  /// Of the pixels without a value whose answer is known: no height reaches the threshold. None: all pixels
+  /// with a known answer have a value.
+  std::optional<double> unreached_area_m2;
 };
 
 /// Name of a map's files, layers and variables: "covered_agl150m_t80s".
@@ -54,8 +57,8 @@ std::string figureText(double value, const std::string& unit);
 /// Statistics of a map.
 struct MapSummary {
   double min = 0, max = 0;       ///< of the values; NaN if there are none
-  double known_area_m2 = 0;      ///< of the pixels with a value, on the ellipsoid
-  double class_area_m2 = 0;      ///< of the pixels in Map::area_class
+  double known_area_m2 = 0;      ///< of the pixels with a known answer, on the ellipsoid
+  double class_area_m2 = 0;      ///< of the pixels in Map::area_class, or that a height reaches
   long long largest_pixel = -1;  ///< with the largest value; -1: there is none
   /// Of categories and classes: of the pixels of each of Map::labels; else empty.
   std::vector<double> label_areas_m2;
