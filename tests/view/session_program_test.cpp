@@ -69,7 +69,7 @@ class SessionProgram : public SessionTest {
             "emitters.transmitter.propagation=parabolic_equation","region.size_m=[200000, 200000, 9000]",
             "region.dims=[200, 200, 100]"]})");
     waitUntil(
-        [this] { return session->status().progress.part.find("parabolic_equation") != std::string::npos; });
+        [this] { return session->status().progress.part.find("parabolic equation") != std::string::npos; });
   }
 };
 
