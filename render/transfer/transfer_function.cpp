@@ -68,8 +68,8 @@ constexpr TransferFunction::OpacityPoint kRangeOpacity[] = {{0.0, 0.0},   {0.2, 
                                                             {0.7, 0.018}, {0.9, 0.07}, {1.0, 0.16}};
 constexpr double kCategoryOpacity = 0.03;
 
-/// For values of another program: the quantiles of the ends of the colours and of the ramp of the opacity, and
-/// the opacity at its top.
+/// For values of another program: the quantiles of the ends of the colours and of the ramp of the opacity,
+/// and the opacity at its top.
 constexpr double kFirstPercentile = 0.01, kLastPercentile = 0.99, kRampOpacity = 0.06;
 
 /// For a probability: transparent where it is small, a shell at one half.
@@ -167,8 +167,8 @@ bool isForeign(const volume::VolumeInfo& info, const std::vector<float>& ascendi
          (info.floor == volume::kNoFloor || info.floor >= ascending.front());
 }
 
-/// The largest absolute value of the colours of values about 0: all but a few are within it; 0: the values are
-/// not about 0.
+/// The largest absolute value of the colours of values about 0: all but a few are within it; 0: the values
+/// are not about 0.
 double largestOfSigned(const std::vector<float>& ascending) {
   constexpr double kFew = 0.005;
   constexpr double kMinPart = 0.05;  // of the smaller side, in the larger one
@@ -181,8 +181,8 @@ double largestOfSigned(const std::vector<float>& ascending) {
 TransferFunction coloredFunction(const volume::VolumeInfo& info, double weakest, double strongest) {
   const double unit = roundUnit(strongest - weakest);
   TransferFunction function = namedDefault(info);
-  function.colors = colorsOver(colorMap("viridis"), std::floor(weakest / unit) * unit,
-                               std::ceil(strongest / unit) * unit);
+  function.colors =
+      colorsOver(colorMap("viridis"), std::floor(weakest / unit) * unit, std::ceil(strongest / unit) * unit);
   return function;
 }
 
