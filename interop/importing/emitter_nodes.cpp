@@ -237,7 +237,7 @@ void EmitterMaker::setScan(MapBuilder& emitter, const BeamPiece& piece) {
 }
 
 DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece* piece,
-                                          const std::vector<Span_s>& active, const std::string& name,
+                                          const std::vector<PieceSpan>& active, const std::string& name,
                                           const std::string& platform, std::string& fault) {
   MapBuilder source(origin.emitter);
   MapBuilder emitter;
@@ -282,7 +282,7 @@ DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece*
       active.size() == 1 && active[0].begin_s <= window_.begin_s && active[0].end_s >= window_.end_s;
   if (!is_always) {
     std::vector<DocumentNodePtr> spans;
-    for (const Span_s& span : active) {
+    for (const PieceSpan& span : active) {
       if (spans.size() < kMaxActive)
         spans.push_back(listNode({decimalNode(std::max(span.begin_s, 0.0), 3), decimalNode(span.end_s, 3)}));
     }
@@ -292,7 +292,7 @@ DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece*
 }
 
 void EmitterMaker::makeOfBeam(const RecordedObject& object, const RecordedBeam& beam,
-                              const std::vector<Span_s>& presence, const std::string& platform,
+                              const std::vector<PieceSpan>& presence, const std::string& platform,
                               double& height_m, std::vector<DocumentNodePtr>& emitters) {
   bool cut = false;
   const std::vector<BeamPiece> pieces = piecesOf(beam, presence, cut);
@@ -319,7 +319,7 @@ std::vector<DocumentNodePtr> EmitterMaker::make(const RecordedObject& object,
                                                 const std::vector<const RecordedBeam*>& beams,
                                                 const std::string& platform, double& height_m) {
   std::vector<DocumentNodePtr> emitters;
-  const std::vector<Span_s> presence = presenceOf(object, window_);
+  const std::vector<PieceSpan> presence = presenceOf(object, window_);
   if (presence.empty()) return emitters;
   for (const RecordedBeam* beam : beams) makeOfBeam(object, *beam, presence, platform, height_m, emitters);
   if (!beams.empty()) return emitters;

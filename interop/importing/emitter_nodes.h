@@ -29,7 +29,7 @@ class EmitterMaker {
   /// @param folder  of the scenario, for the names of antenna files
   /// @param window  times of the scenario
   EmitterMaker(const EmitterDatabase& database, std::filesystem::path folder, BeamwidthMeaning beamwidth,
-               Span_s window, UniqueNames& names)
+               PieceSpan window, UniqueNames& names)
       : database_(database),
         folder_(std::move(folder)),
         beamwidth_(beamwidth),
@@ -54,13 +54,15 @@ class EmitterMaker {
     double height_m = 0;
   };
 
-  void makeOfBeam(const RecordedObject& object, const RecordedBeam& beam, const std::vector<Span_s>& presence,
-                  const std::string& platform, double& height_m, std::vector<DocumentNodePtr>& emitters);
+  void makeOfBeam(const RecordedObject& object, const RecordedBeam& beam,
+                  const std::vector<PieceSpan>& presence, const std::string& platform, double& height_m,
+                  std::vector<DocumentNodePtr>& emitters);
   /// What the emitter of a beam is made from; without an emitter if nothing matches.
   Origin originOf(const RecordedObject& object, const RecordedBeam& beam) const;
   /// @param fault  receives the reason if the result is null
-  DocumentNodePtr emitterNode(const Origin& origin, const BeamPiece* piece, const std::vector<Span_s>& active,
-                              const std::string& name, const std::string& platform, std::string& fault);
+  DocumentNodePtr emitterNode(const Origin& origin, const BeamPiece* piece,
+                              const std::vector<PieceSpan>& active, const std::string& name,
+                              const std::string& platform, std::string& fault);
   void setPower(MapBuilder& emitter, const Origin& origin, const BeamPiece* piece, std::string& fault) const;
   void setScan(MapBuilder& emitter, const BeamPiece& piece);
   DocumentNodePtr antennaOfSweep(const BeamState& state) const;
@@ -69,7 +71,7 @@ class EmitterMaker {
   const EmitterDatabase& database_;
   std::filesystem::path folder_;
   BeamwidthMeaning beamwidth_;
-  Span_s window_;
+  PieceSpan window_;
   UniqueNames& names_;
   std::vector<ImportedEmitters> uses_;
   int sectors_ = 0, beams_cut_ = 0, assumed_turns_ = 0;
