@@ -4,16 +4,19 @@
 // Debian's libraries are not instrumented: the sanitizer misses how OpenVDB and oneTBB hand data from thread
 // to thread. OpenVDB's templates are compiled into emscape_vdb.so, whose symbols are hidden. Our own loops do
 // not use oneTBB here (base/parallel.cpp) and are checked in full. GDAL takes its locks in changing order.
-// Cairo hands freed objects from thread to thread by atomic operations. Pango reads fonts in
-// a thread of its own. Mesa's software rasterizer
-// (swrast_dri) destroys a fence while one of its own threads still leaves it.
+// Cairo hands freed objects from thread to thread by atomic operations, and so do fontconfig and HarfBuzz.
+// Pango reads fonts in a thread of its own. Mesa's software rasterizer (swrast_dri) destroys a fence while
+// one of its own threads still leaves it.
 extern "C" const char* __tsan_default_suppressions() {
   return "called_from_lib:libtbb.so\n"
          "race:libopenvdb.so\n"
          "race:emscape_vdb.so\n"
          "race:libz.so\n"
          "race:libcairo.so\n"
+         "race:libfontconfig.so\n"
+         "race:libharfbuzz.so\n"
          "race:libpango-1.0.so\n"
+         "race:libpangocairo-1.0.so\n"
          "race:libpangoft2-1.0.so\n"
          "race:libglib-2.0.so\n"
          "race:swrast_dri.so\n"
