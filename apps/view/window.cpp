@@ -29,7 +29,6 @@ namespace {
 constexpr const char* kFont = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
 constexpr float kFont_px = 14.5F;
 constexpr ImWchar kMissing = 0x25A1;  // a box
-constexpr int kAtlasWidth = 2048;
 
 std::string last_error;
 std::mutex alive_mutex;

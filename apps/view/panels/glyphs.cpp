@@ -12,7 +12,6 @@ namespace {
 
 constexpr ImWchar kFirstRun = 0xE000, kLastRun = 0xF8FF;  // for private use
 constexpr std::size_t kMaxGlyphs = 6000;
-constexpr int kUsualAtlasWidth = 2048;
 // Of DejaVu Sans: Dear ImGui's size is ascent and descent, together 2384/2048 of the em.
 constexpr float kEm = 2048.0F / 2384, kAscent = 1901.0F / 2384;
 
@@ -174,7 +173,7 @@ void Glyphs::addTo(ImFontAtlas& atlas, ImFont* font, float size_px) {
   const float ascent = std::floor(kAscent * size_px + 1);  // as Dear ImGui rounds it
   for (auto& [id, glyph] : glyphs_) {
     const auto width = static_cast<float>(measure.textBox(glyph.text, kEm * size_px).width);
-    const int room_px = (atlas.TexDesiredWidth > 0 ? atlas.TexDesiredWidth : kUsualAtlasWidth) - 2;
+    const int room_px = kAtlasWidth - 2;
     const int width_px = std::min(static_cast<int>(std::ceil(width)) + 2, room_px);
     glyph.rect = atlas.AddCustomRectFontGlyph(font, id, width_px, baseline + below, width,
                                               {-1, ascent - static_cast<float>(baseline)});

@@ -11,6 +11,9 @@
 
 namespace emscape::view {
 
+/// Of the atlas of glyphs, pixels.
+inline constexpr int kAtlasWidth = 2048;
+
 /// For the thread of the window.
 class Glyphs {
  public:
