@@ -155,17 +155,19 @@ bool ParameterRows::drawSubheading(const std::string& id, const std::string& nam
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   focus_.add(id);
-  int* const open = ImGui::GetStateStorage()->GetIntRef(ImGui::GetID(id.c_str()), is_open_first ? 1 : 0);
-  if (focus_.isEntered(id) || focus_.isSpaced(id)) *open = *open == 0 ? 1 : 0;
-  if (focus_.steps(id) != 0) *open = focus_.steps(id) > 0 ? 1 : 0;
-  ImGui::SetNextItemOpen(*open != 0);
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
+  const ImGuiID key = ImGui::GetID(id.c_str());
+  bool opens = storage.GetBool(key, is_open_first);
+  if (focus_.isEntered(id) || focus_.isSpaced(id)) opens = !opens;
+  if (focus_.steps(id) != 0) opens = focus_.steps(id) > 0;
+  ImGui::SetNextItemOpen(opens);
   ImGui::PushStyleColor(ImGuiCol_Text, accentColor(context_.session.theme()));
   const bool is_open = ImGui::TreeNodeEx(
       ("##" + id).c_str(), ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen);
   ImGui::PopStyleColor();
   ImGui::SameLine();
   ImGui::TextColored(accentColor(context_.session.theme()), "%s", drawable(name).c_str());
-  *open = is_open ? 1 : 0;
+  storage.SetBool(key, is_open);
   showFocus(id);
   return is_open;
 }

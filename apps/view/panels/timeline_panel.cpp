@@ -100,11 +100,12 @@ void handleMouse(PanelContext& context, const TimeAxis& axis, bool on_marks) {
   const double step_s = timeline.times_s()[static_cast<std::size_t>(timeline.nearestStep(mouse_s))];
   const double pointed_s = pointedTime_s(context, axis, step_s);
   if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) showTime(context, pointed_s);
-  int* grip = ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("grip"));
-  if (ImGui::IsItemActivated()) *grip = static_cast<int>(gripAt(context, axis, on_marks));
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
+  const ImGuiID grip = ImGui::GetID("grip");
+  if (ImGui::IsItemActivated()) storage.SetInt(grip, static_cast<int>(gripAt(context, axis, on_marks)));
   if (!ImGui::IsItemActive()) return;
   const scenario::TimeInterval range = timeline.playRange();
-  switch (static_cast<Grip>(*grip)) {
+  switch (static_cast<Grip>(storage.GetInt(grip))) {
     case Grip::nothing:
       break;
     case Grip::hand:

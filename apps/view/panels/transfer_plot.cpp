@@ -228,12 +228,13 @@ void drag(Session& session, const Plot& plot, PlotGrip grip, ImVec2 mouse) {
 void handleMouse(PanelContext& context, const Plot& plot) {
   Session& session = context.session;
   const ImGuiIO& io = ImGui::GetIO();
-  int* grip = ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("grip"));
+  ImGuiStorage& storage = *ImGui::GetStateStorage();
+  const ImGuiID grip = ImGui::GetID("grip");
   if (ImGui::IsItemActivated()) {
-    *grip = static_cast<int>(press(session, plot, io.MousePos, context.scale));
+    storage.SetInt(grip, static_cast<int>(press(session, plot, io.MousePos, context.scale)));
   } else if ((ImGui::IsItemActive() || ImGui::IsItemDeactivated()) &&
              (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
-    drag(session, plot, static_cast<PlotGrip>(*grip), io.MousePos);
+    drag(session, plot, static_cast<PlotGrip>(storage.GetInt(grip)), io.MousePos);
   }
   if (ImGui::IsItemDeactivated()) session.endDrag();
   if (!ImGui::IsItemHovered()) return;
