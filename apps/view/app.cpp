@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "apps/common/interrupt.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/theme.h"
 #include "base/stopwatch.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"

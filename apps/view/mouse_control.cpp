@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/theme.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {

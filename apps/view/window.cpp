@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/view/panels/glyphs.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/theme.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {

@@ -11,11 +11,11 @@
 #include "emscape/playback/frames/scene.h"
 #include "render/annotate/overlay_parts.h"
 #include "scenario/terrain/transformation.h"
-#include "study/files/map_objects.h"
-#include "study/files/map_picture.h"
 #include "study/files/map_shapes.h"
 #include "study/files/qgis_style.h"
 #include "study/maps/gdal_support.h"
+#include "study/picture/map_objects.h"
+#include "study/picture/map_picture.h"
 
 namespace emscape::study {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/files/unfinished_file.h"
-#include "study/files/map_colors.h"
 #include "study/maps/gdal_support.h"
+#include "study/picture/map_colors.h"
 
 namespace emscape::study {
 namespace {

@@ -12,9 +12,9 @@
 #include "emscape/playback/frames/scene.h"
 #include "emscape/render/picture/image.h"
 #include "render/annotate/overlay_parts.h"
-#include "study/files/map_colors.h"
-#include "study/files/map_objects.h"
 #include "study/maps/gdal_support.h"
+#include "study/picture/map_colors.h"
+#include "study/picture/map_objects.h"
 
 namespace emscape::study {
 namespace {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "study/files/map_study.h"
+#include "study/maps/map_study.h"
 
 namespace emscape::study {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "study/files/map_study.h"
+#include "study/maps/map_study.h"
 
 namespace emscape::study {
 

@@ -7,8 +7,8 @@
 #include <map>
 
 #include "emscape/base/error.h"
-#include "study/files/map_colors.h"
 #include "study/maps/gdal_support.h"
+#include "study/picture/map_colors.h"
 
 namespace emscape::study {
 namespace {

@@ -10,9 +10,9 @@
 #include "base/files/unfinished_file.h"
 #include "emscape/base/error.h"
 #include "study/files/map_metadata.h"
-#include "study/files/map_objects.h"
 #include "study/maps/gdal_arrays.h"
 #include "study/maps/gdal_support.h"
+#include "study/picture/map_objects.h"
 
 namespace emscape::study {
 namespace {

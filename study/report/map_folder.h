@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "emscape/study/maps/map.h"
-#include "study/files/map_study.h"
+#include "study/maps/map_study.h"
 #include "study/report/html_report.h"
 
 namespace emscape::study {

@@ -13,7 +13,7 @@
 #include "emscape/study/maps/area.h"
 #include "emscape/study/maps/coverage.h"
 #include "emscape/volume/dense_volume.h"
-#include "study/files/contour_lines.h"
+#include "study/maps/contour_lines.h"
 
 namespace emscape::study {
 namespace {

@@ -1,4 +1,4 @@
-#include "study/files/contour_lines.h"
+#include "study/maps/contour_lines.h"
 
 #include <gtest/gtest.h>
 

@@ -14,9 +14,9 @@
 
 #include "emscape/scenario/file/scenario_file.h"
 #include "study/files/geotiff.h"
-#include "study/files/map_colors.h"
-#include "study/files/map_objects.h"
 #include "study/files/map_shapes.h"
+#include "study/picture/map_colors.h"
+#include "study/picture/map_objects.h"
 #include "study/report/map_folder.h"
 #include "study/report/map_report.h"
 #include "tests/support/errors.h"

@@ -1,5 +1,5 @@
 // Properties of a map's picture that do not depend on its values.
-#include "study/files/map_picture.h"
+#include "study/picture/map_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -12,10 +12,10 @@
 #include "emscape/study/maps/area.h"
 #include "emscape/study/maps/map_grid.h"
 #include "render/transfer/oklab.h"
-#include "study/files/map_colors.h"
-#include "study/files/map_frame.h"
-#include "study/files/map_labels.h"
-#include "study/files/map_relief.h"
+#include "study/picture/map_colors.h"
+#include "study/picture/map_frame.h"
+#include "study/picture/map_labels.h"
+#include "study/picture/map_relief.h"
 
 namespace emscape::study {
 namespace {

@@ -11,8 +11,8 @@
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/study/maps/coverage.h"
 #include "scenario/antenna/shapes.h"
-#include "study/files/map_picture.h"
 #include "study/maps/least_heights.h"
+#include "study/picture/map_picture.h"
 #include "tests/support/files.h"
 
 namespace emscape::study {

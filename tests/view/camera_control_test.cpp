@@ -1,4 +1,4 @@
-#include "apps/view/parts/camera_control.h"
+#include "apps/view/tools/camera_control.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "apps/view/panels/glyphs.h"
+#include "apps/view/widgets/glyphs.h"
 
 #include <gtest/gtest.h>
 

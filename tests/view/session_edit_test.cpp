@@ -1,5 +1,5 @@
-#include "apps/view/parts/shown_quantity.h"
 #include "apps/view/session/platform_drag.h"
+#include "apps/view/values/shown_quantity.h"
 #include "playback/editing/pick.h"
 #include "tests/view/session_sample.h"
 

@@ -1,12 +1,12 @@
-#include "apps/view/parts/value_slider.h"
+#include "apps/view/values/value_slider.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "apps/view/parts/edit_text.h"
-#include "apps/view/parts/refusal_text.h"
+#include "apps/view/values/edit_text.h"
+#include "apps/view/values/refusal_text.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "tests/support/files.h"
 

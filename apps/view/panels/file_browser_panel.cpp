@@ -5,10 +5,10 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "apps/view/panels/dialog.h"
-#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/dialog.h"
+#include "apps/view/widgets/names.h"
+#include "apps/view/widgets/theme.h"
 
 namespace emscape::view {
 namespace {

@@ -1,8 +1,8 @@
 /// Help: first steps, keys and mouse.
-#include "apps/view/panels/dialog.h"
-#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/dialog.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/theme.h"
 
 namespace emscape::view {
 namespace {

@@ -1,6 +1,6 @@
 /// The list of quantities at the heading of the picture's legend.
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/theme.h"
 #include "emscape/render/annotate/overlay.h"
 
 namespace emscape::view {

@@ -3,9 +3,9 @@
 
 #include <array>
 
-#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/names.h"
+#include "apps/view/widgets/theme.h"
 #include "base/text/display_units.h"
 
 namespace emscape::view {

@@ -1,9 +1,9 @@
 /// The result of a measurement.
-#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/path_plot.h"
-#include "apps/view/panels/theme.h"
-#include "apps/view/parts/position_text.h"
+#include "apps/view/values/position_text.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/path_plot.h"
+#include "apps/view/widgets/theme.h"
 
 namespace emscape::view {
 

@@ -5,9 +5,9 @@
 #include <cctype>
 #include <set>
 
-#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/parts/shown_quantity.h"
+#include "apps/view/values/shown_quantity.h"
+#include "apps/view/widgets/names.h"
 #include "emscape/render/annotate/legend.h"
 #include "playback/view/view_settings.h"
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/view/panels/dialog.h"
-#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/picture_overlay.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/dialog.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/theme.h"
 #include "base/text/time_text.h"
 #include "emscape/render/annotate/legend.h"
 
@@ -54,41 +54,6 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
   const float beside = layout.side_is_over ? 0 : side_width;
   layout.picture = {0, layout.menu_height, std::max(1.0F, width - beside), middle};
   return layout;
-}
-
-float roomInLine(float spacing) {
-  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  return right - ImGui::GetItemRectMax().x - spacing;
-}
-
-void sameLineIfRoom(float width, float spacing) {
-  if (roomInLine(spacing) >= width) ImGui::SameLine(0, spacing);
-}
-
-void perform(PanelContext& context, const char* command) {
-  context.session.perform(parseCommand(std::string(command)));
-}
-
-bool isPopupOpen() {
-  return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-}
-
-bool isKeyPressed(ImGuiKey key, bool repeats) {
-  return ImGui::IsKeyPressed(ImGui::GetKeyIndex(key), repeats);
-}
-
-bool isEnterPressed() {
-  return isKeyPressed(ImGuiKey_Enter) || isKeyPressed(ImGuiKey_KeyPadEnter);
-}
-
-bool numberField(const char* id, double& value, const char* format) {
-  static double typed = 0;  // a field without the focus no longer returns it
-  ImGui::InputDouble(id, &value, 0, 0, format, ImGuiInputTextFlags_AutoSelectAll);
-  // In the frame of its activation another field may still return its number.
-  if (ImGui::IsItemActive() && !ImGui::IsItemActivated()) typed = value;
-  if (!ImGui::IsItemDeactivatedAfterEdit() || isKeyPressed(ImGuiKey_Escape)) return false;
-  value = typed;
-  return true;
 }
 
 void drawSideButton(PanelContext& context) {

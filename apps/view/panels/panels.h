@@ -3,7 +3,7 @@
 
 #include <imgui.h>
 
-#include "apps/view/session/session.h"
+#include "apps/view/widgets/panel_context.h"
 
 namespace emscape::view {
 
@@ -26,31 +26,6 @@ inline constexpr ImGuiWindowFlags kFixedPanel =
     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove |
     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
     ImGuiWindowFlags_NoBackground;
-
-/// Context of all panels.
-struct PanelContext {
-  Session& session;
-  WindowControl& window;
-  float scale = 1;
-  bool shows_rejection = false;  ///< beside the value that was refused
-};
-
-/// Remaining width of the line after the last item (pixels).
-float roomInLine(float spacing);
-/// Continues on the line of the last item if the width (pixels) fits, otherwise on the next line.
-void sameLineIfRoom(float width, float spacing = 0);
-
-/// Runs the command of an action, like its key.
-void perform(PanelContext& context, const char* command);
-/// True while a menu or a list is unfolded.
-bool isPopupOpen();
-/// True in the frame in which the key was pressed. @param repeats  also while it is held, at intervals
-bool isKeyPressed(ImGuiKey key, bool repeats = false);
-/// The same for Enter of the main block or the keypad.
-bool isEnterPressed();
-/// A number field as wide as the next item. @return true if a number was entered: with Enter, or because the
-/// focus is lost
-bool numberField(const char* id, double& value, const char* format);
 
 void drawMenuBar(PanelContext& context);
 /// The entries of a menu or list of quantities.

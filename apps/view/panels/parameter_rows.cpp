@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/view/panels/names.h"
-#include "apps/view/panels/slider_field.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/names.h"
+#include "apps/view/widgets/slider_field.h"
+#include "apps/view/widgets/theme.h"
 #include "base/files/json_writing.h"
 #include "base/text/quantity_text.h"
 #include "base/text/shell_word.h"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/row_focus.h"
-#include "apps/view/parts/value_slider.h"
+#include "apps/view/values/value_slider.h"
+#include "apps/view/widgets/row_focus.h"
 #include "scenario/file/parameters.h"
 
 namespace emscape::view {

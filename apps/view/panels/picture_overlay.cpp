@@ -6,19 +6,15 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/view/panels/glyphs.h"
-#include "apps/view/panels/theme.h"
-#include "apps/view/parts/position_text.h"
 #include "apps/view/session/plane_drag.h"
+#include "apps/view/values/position_text.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/theme.h"
 #include "emscape/render/annotate/legend.h"
 #include "playback/view/view_settings.h"
 
 namespace emscape::view {
 namespace {
-
-ImU32 colorOf(const ImVec4& color, float alpha = 1) {
-  return ImGui::ColorConvertFloat4ToU32({color.x, color.y, color.z, alpha});
-}
 
 const ImU32 kRim = IM_COL32(10, 12, 16, 190);
 
@@ -29,7 +25,7 @@ class Overlay {
       : shown_(*context.session.picture()),
         area_(area),
         scale_(context.scale),
-        ink_(colorOf(accentColor(context.session.theme()))),
+        ink_(inkOf(accentColor(context.session.theme()))),
         list_(*ImGui::GetBackgroundDrawList()) {
     list_.PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height});
   }

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/view/panels/slider_field.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/slider_field.h"
+#include "apps/view/widgets/theme.h"
 
 namespace emscape::view {
 namespace {

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/path_plot.h"
-#include "apps/view/panels/theme.h"
-#include "apps/view/parts/position_text.h"
+#include "apps/view/values/position_text.h"
+#include "apps/view/widgets/names.h"
+#include "apps/view/widgets/path_plot.h"
+#include "apps/view/widgets/theme.h"
 #include "emfield/link/path_report.h"
 #include "emscape/render/annotate/legend.h"
 

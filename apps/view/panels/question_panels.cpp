@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
-#include "apps/view/panels/dialog.h"
-#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
-#include "apps/view/parts/edit_text.h"
+#include "apps/view/values/edit_text.h"
+#include "apps/view/widgets/dialog.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/theme.h"
 
 namespace emscape::view {
 namespace {

@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <iterator>
 
-#include "apps/view/panels/dialog.h"
-#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/dialog.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/theme.h"
 #include "base/text/shell_word.h"
 #include "base/text/time_text.h"
 

@@ -6,10 +6,10 @@
 #include <map>
 #include <unordered_set>
 
-#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/parameter_rows.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/names.h"
+#include "apps/view/widgets/theme.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/view/panels/names.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/names.h"
+#include "apps/view/widgets/theme.h"
 
 namespace emscape::view {
 

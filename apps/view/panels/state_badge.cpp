@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/theme.h"
 #include "volume/difference.h"
 
 namespace emscape::view {

@@ -2,15 +2,11 @@
 
 #include <cmath>
 
-#include "apps/view/panels/names.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/names.h"
+#include "apps/view/widgets/theme.h"
 
 namespace emscape::view {
 namespace {
-
-ImU32 colorOf(const ImVec4& color, float alpha = 1) {
-  return ImGui::ColorConvertFloat4ToU32({color.x, color.y, color.z, alpha});
-}
 
 /// Time of the hand; between the steps while playing.
 double handTime_s(const Session& session) {
@@ -21,13 +17,13 @@ double handTime_s(const Session& session) {
 
 void drawTicks(ImDrawList& list, const TimeAxis& axis, const Session& session, float top, float bottom,
                float scale) {
-  const ImU32 ink = colorOf(mutedColor(session.theme()));
+  const ImU32 ink = inkOf(mutedColor(session.theme()));
   const int count = std::max(2, static_cast<int>(axis.width / (95 * scale)));
   const float line = ImGui::GetTextLineHeight();
   float free_from = axis.left - 1e6F;
   for (const playback::TimelineTick& tick : session.timeline().ticks(axis.begin_s, axis.end_s, count)) {
     const float x = axis.x(tick.time_s);
-    list.AddLine({x, top}, {x, bottom}, colorOf(mutedColor(session.theme()), 0.25F));
+    list.AddLine({x, top}, {x, bottom}, inkOf(mutedColor(session.theme()), 0.25F));
     const float width =
         std::max(ImGui::CalcTextSize(tick.text.c_str()).x, ImGui::CalcTextSize(tick.utc_text.c_str()).x);
     const float at = std::clamp(x - width / 2, axis.left, std::max(axis.left, axis.right() - width));
@@ -40,13 +36,13 @@ void drawTicks(ImDrawList& list, const TimeAxis& axis, const Session& session, f
 
 void drawMarks(ImDrawList& list, const TimeAxis& axis, const Session& session, float top, float scale) {
   const float height = kTimelineMarks * scale;
-  const ImU32 accent = colorOf(accentColor(session.theme()));
+  const ImU32 accent = inkOf(accentColor(session.theme()));
   const scenario::TimeInterval range = session.timeline().playRange();
   list.AddRectFilled({axis.left, top}, {axis.right(), top + height}, ImGui::GetColorU32(ImGuiCol_FrameBg),
                      3 * scale);
   list.AddRectFilled({axis.clampedX(range.begin_s), top + height - 4 * scale},
                      {axis.clampedX(range.end_s), top + height - 2 * scale},
-                     colorOf(accentColor(session.theme()), 0.5F));
+                     inkOf(accentColor(session.theme()), 0.5F));
   const auto bracket = [&](double time_s, float direction) {
     if (!axis.shows(time_s)) return;
     const float x = axis.x(time_s);
@@ -64,7 +60,7 @@ void drawMarks(ImDrawList& list, const TimeAxis& axis, const Session& session, f
     const ImVec2 size = ImGui::CalcTextSize(number.c_str());
     const float x = axis.x(*bookmark->time_s), half = size.x / 2 + 3 * scale;
     list.AddRectFilled({x - half, top + scale}, {x + half, top + height - scale},
-                       colorOf(stateColor(render::ControllerState::busy)), 3 * scale);
+                       inkOf(stateColor(render::ControllerState::busy)), 3 * scale);
     list.AddText({x - size.x / 2, top + (height - size.y) / 2}, IM_COL32(16, 20, 27, 255), number.c_str());
   }
 }
@@ -72,7 +68,7 @@ void drawMarks(ImDrawList& list, const TimeAxis& axis, const Session& session, f
 void drawCached(ImDrawList& list, const TimeAxis& axis, const Session& session, float top, float scale) {
   const float bottom = top + kTimelineCached * scale;
   list.AddRectFilled({axis.left, top}, {axis.right(), bottom}, ImGui::GetColorU32(ImGuiCol_FrameBg));
-  const ImU32 known = colorOf(accentColor(session.theme()), 0.75F);
+  const ImU32 known = inkOf(accentColor(session.theme()), 0.75F);
   for (const scenario::TimeInterval& span : session.timeline().cachedSpans(session.status().cached_steps)) {
     const float from = axis.clampedX(span.begin_s), to = axis.clampedX(span.end_s);
     if (to > axis.left && from < axis.right()) {
@@ -92,8 +88,8 @@ void drawRows(ImDrawList& list, const TimeAxis& axis, const Session& session, fl
     const float y = at.y + row * static_cast<float>(i);
     const bool is_selected = session.selected() == "emitters." + scenario::pathStep(bars[i].emitter);
     if (is_selected) {
-      list.AddRectFilled({names_left, y}, {axis.right(), y + row},
-                         colorOf(accentColor(session.theme()), 0.3F), 2 * scale);
+      list.AddRectFilled({names_left, y}, {axis.right(), y + row}, inkOf(accentColor(session.theme()), 0.3F),
+                         2 * scale);
     }
     ImGui::PushStyleColor(
         ImGuiCol_Text, is_selected ? accentColor(session.theme()) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
@@ -104,9 +100,9 @@ void drawRows(ImDrawList& list, const TimeAxis& axis, const Session& session, fl
                        ImGui::GetColorU32(ImGuiCol_FrameBg), 2 * scale);
     const bool is_known = scenario && i < scenario->emitters.size();
     const ImU32 ink =
-        colorOf(emitterColor(is_known ? scenario->emitters[i].kind : scenario::EmitterKind::transmitter,
-                             session.theme()),
-                0.8F);
+        inkOf(emitterColor(is_known ? scenario->emitters[i].kind : scenario::EmitterKind::transmitter,
+                           session.theme()),
+              0.8F);
     for (const scenario::TimeInterval& interval : bars[i].intervals) {
       const float from = axis.clampedX(interval.begin_s), to = axis.clampedX(interval.end_s);
       if (to > axis.left && from < axis.right()) {
@@ -121,12 +117,12 @@ void drawHandGrip(ImDrawList& list, const TimeAxis& axis, const Session& session
   if (!axis.shows(hand_s)) return;
   const float x = axis.x(hand_s);
   list.AddTriangleFilled({x - 6 * scale, top - 4 * scale}, {x + 6 * scale, top - 4 * scale},
-                         {x, top + 5 * scale}, colorOf(accentColor(session.theme())));
+                         {x, top + 5 * scale}, inkOf(accentColor(session.theme())));
 }
 
 void drawShade(ImDrawList& list, const TimeAxis& axis, const Session& session, float top, float bottom) {
   const scenario::TimeInterval range = session.timeline().playRange();
-  const ImU32 shade = colorOf(ImGui::GetStyleColorVec4(ImGuiCol_WindowBg), 0.6F);
+  const ImU32 shade = inkOf(ImGui::GetStyleColorVec4(ImGuiCol_WindowBg), 0.6F);
   list.AddRectFilled({axis.left, top}, {axis.clampedX(range.begin_s), bottom}, shade);
   list.AddRectFilled({axis.clampedX(range.end_s), top}, {axis.right(), bottom}, shade);
 }
@@ -136,7 +132,7 @@ void drawHands(ImDrawList& list, const TimeAxis& axis, const Session& session, f
   const playback::Timeline& timeline = session.timeline();
   const auto line = [&](double time_s, const ImVec4& color) {
     if (axis.shows(time_s)) {
-      list.AddLine({axis.x(time_s), top}, {axis.x(time_s), bottom}, colorOf(color), 2 * scale);
+      list.AddLine({axis.x(time_s), top}, {axis.x(time_s), bottom}, inkOf(color), 2 * scale);
     }
   };
   if (session.picture() && session.status().shown_s != timeline.asked_s()) {

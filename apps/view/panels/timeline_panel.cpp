@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/timeline_drawing.h"
+#include "apps/view/widgets/glyphs.h"
 #include "base/text/time_text.h"
 #include "emscape/scenario/model/clock.h"
 

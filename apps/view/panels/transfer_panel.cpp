@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/slider_field.h"
-#include "apps/view/panels/theme.h"
 #include "apps/view/panels/transfer_plot.h"
+#include "apps/view/widgets/slider_field.h"
+#include "apps/view/widgets/theme.h"
 #include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/theme.h"
 #include "emscape/render/annotate/legend.h"
 
 namespace emscape::view {
@@ -15,14 +15,6 @@ namespace {
 constexpr float kHeight = 132, kBar = 14, kGrip = 9, kPointReach = 9, kPoint = 4, kSelectedPoint = 6.5F;
 /// The plot extends beyond the interval by this fraction, so that its ends can be dragged outwards.
 constexpr double kBeyond = 0.1;
-
-ImU32 inkOf(const render::Rgb& color, float alpha = 1) {
-  return ImGui::ColorConvertFloat4ToU32({color.r, color.g, color.b, alpha});
-}
-
-ImU32 inkOf(const ImVec4& color, float alpha = 1) {
-  return ImGui::ColorConvertFloat4ToU32({color.x, color.y, color.z, alpha});
-}
 
 /// The item that the mouse drags.
 enum class PlotGrip : int { nothing, point, lowest, highest };

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/theme.h"
 #include "base/text/time_text.h"
 #include "emscape/scenario/model/clock.h"
 

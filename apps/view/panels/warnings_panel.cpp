@@ -1,10 +1,10 @@
 /// The list of warnings, and their number in the status bar.
 #include <fmt/format.h>
 
-#include "apps/view/panels/dialog.h"
-#include "apps/view/panels/glyphs.h"
 #include "apps/view/panels/panels.h"
-#include "apps/view/panels/theme.h"
+#include "apps/view/widgets/dialog.h"
+#include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/theme.h"
 
 namespace emscape::view {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/view/parts/scene_objects.h"
+#include "apps/view/tools/scene_objects.h"
 #include "emscape/scenario/model/edit.h"
 #include "playback/live/live_view.h"
 

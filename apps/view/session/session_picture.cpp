@@ -5,8 +5,8 @@
 #include <iterator>
 #include <utility>
 
-#include "apps/view/parts/shown_quantity.h"
 #include "apps/view/session/session.h"
+#include "apps/view/values/shown_quantity.h"
 #include "emscape/base/error.h"
 #include "playback/view/view_settings.h"
 

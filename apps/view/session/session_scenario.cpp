@@ -3,9 +3,9 @@
 
 #include <utility>
 
-#include "apps/view/parts/refusal_text.h"
-#include "apps/view/parts/shown_quantity.h"
 #include "apps/view/session/session.h"
+#include "apps/view/values/refusal_text.h"
+#include "apps/view/values/shown_quantity.h"
 #include "emscape/base/error.h"
 #include "scenario/file/named_items.h"
 #include "scenario/file/parameters.h"

@@ -1,8 +1,8 @@
 /// Verbs of the selection.
 #include <algorithm>
 
-#include "apps/view/parts/position_text.h"
 #include "apps/view/session/session.h"
+#include "apps/view/values/position_text.h"
 #include "emscape/base/error.h"
 #include "playback/editing/pick.h"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "apps/view/parts/position_text.h"
 #include "apps/view/session/session.h"
+#include "apps/view/values/position_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 

@@ -1,0 +1,59 @@
+#include "apps/view/tools/measurement.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "emfield/link/path_report.h"
+#include "emscape/base/units.h"
+
+namespace emscape::view {
+namespace {
+
+GeodesicInverse geodesic(const emfield::PathEnd& from, const emfield::PathEnd& to) {
+  return geodesicInverse(from.position.latitude_deg, from.position.longitude_deg, to.position.latitude_deg,
+                         to.position.longitude_deg);
+}
+
+std::string verdictOf(const Measurement& measurement) {
+  const std::vector<emfield::PathObstacle>& obstacles = measurement.path.obstacles;
+  const auto nearest = std::min_element(obstacles.begin(), obstacles.end(), [](const auto& a, const auto& b) {
+    return a.clearance_m < b.clearance_m;
+  });
+  if (nearest == obstacles.end()) return "In sight.";
+  const char* const thing = nearest->is_earth_bulge ? "the earth's bulge" : "the terrain";
+  if (nearest->clearance_m < 0) {
+    return fmt::format("Not in sight: {} at {:.2f} km is {:.0f} m above the line.", thing,
+                       nearest->range_m / 1000, -nearest->clearance_m);
+  }
+  return fmt::format("In sight: {} at {:.2f} km is {:.0f} m below the line.", thing, nearest->range_m / 1000,
+                     nearest->clearance_m);
+}
+
+}  // namespace
+
+Measurement measure(const emfield::PathEnd& from, const emfield::PathEnd& to,
+                    const propagation::Atmosphere& atmosphere, double frequency_hz,
+                    const scenario::Terrain* terrain) {
+  constexpr double kMinPath_m = 1;  // of a profile
+  Measurement result;
+  result.from = from;
+  result.to = to;
+  const GeodesicInverse forward = geodesic(from, to);
+  result.distance_m = forward.distance_m;
+  result.slant_m = length(toEcef(to.position) - toEcef(from.position));
+  result.bearing_deg = radToDeg(forward.azimuth_rad);
+  result.back_bearing_deg = radToDeg(geodesic(to, from).azimuth_rad);
+  result.path.frequency_hz = frequency_hz;
+  result.path.k_factor = atmosphere.k_factor;
+  if (result.distance_m >= kMinPath_m) {
+    result.path.profile = emfield::readPathProfile(from, to, atmosphere, terrain);
+    result.path.obstacles = emfield::pathObstacles(result.path.profile, wavelength_m(frequency_hz));
+    result.is_blocked = emfield::isBlocked(result.path);
+  }
+  result.verdict = verdictOf(result);
+  return result;
+}
+
+}  // namespace emscape::view

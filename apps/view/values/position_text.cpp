@@ -1,0 +1,40 @@
+#include "apps/view/values/position_text.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/geodesy/position_text.h"
+#include "base/text/display_units.h"
+#include "emscape/render/annotate/legend.h"
+
+namespace emscape::view {
+
+std::string positionText(const GeodeticPosition& position, const playback::ViewState& view) {
+  return emscape::positionText(position.latitude_deg, position.longitude_deg, view.positions);
+}
+
+std::string heightText(double height_m, const playback::ViewState& view) {
+  return emscape::heightText(height_m, view.units);
+}
+
+std::string distanceText(double distance_m, const playback::ViewState& view) {
+  return emscape::distanceText(distance_m, view.units);
+}
+
+std::string valueText(const playback::ProbeReading& reading, const volume::VolumeInfo& info,
+                      const playback::ViewState& view) {
+  const render::FieldScale scale = render::fieldScale(info.unit, view.field_unit);
+  const bool is_converted = reading.sample.kind == playback::VolumeSample::Kind::value && !info.categorical &&
+                            scale.unit != info.unit;
+  return render::unitText(
+      is_converted ? fmt::format("{:.4g} {}", scale.shown(reading.sample.value), scale.unit) : reading.text);
+}
+
+std::string bearingText(double bearing_deg) {
+  const double rest = std::fmod(bearing_deg, 360);
+  const double rounded = std::fmod(std::round((rest < 0 ? rest + 360 : rest) * 10) / 10, 360);
+  return fmt::format("{:05.1f}°", rounded);
+}
+
+}  // namespace emscape::view

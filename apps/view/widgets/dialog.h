@@ -1,0 +1,22 @@
+/// Dialogs: over a dimmed window, with a border and a shadow, inside of the window whatever its size.
+#pragma once
+
+#include <imgui.h>
+
+#include "apps/view/widgets/panel_context.h"
+
+namespace emscape::view {
+
+/// Whether the rest of the window waits for the dialog.
+enum class Waits { no, yes };
+
+/// Begins a dialog in the middle of the window. @param size  at scale 1; 0: as large as its contents
+/// @return true if it is open; endDialog() must follow then
+bool beginDialog(PanelContext& context, const char* title, bool& open, const ImVec2& size = {0, 0},
+                 Waits waits = Waits::yes, ImGuiWindowFlags flags = 0);
+void endDialog();
+
+/// The default button of a dialog, also pressed by Enter if no other dialog was opened after it.
+bool defaultButton(const char* text);
+
+}  // namespace emscape::view

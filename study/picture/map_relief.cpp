@@ -1,0 +1,93 @@
+#include "study/picture/map_relief.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "emscape/base/parallel.h"
+#include "render/transfer/oklab.h"
+
+namespace emscape::study {
+namespace {
+
+constexpr float kLevel = 0.70710678F;  ///< cosine of the light's angle on level ground
+
+/// Slope of three posts at distances of cell_m: central if all are known, one-sided at an edge, else NaN.
+float slopeOf(float before, float here, float after, float cell_m) {
+  if (std::isnan(before)) return (after - here) / cell_m;
+  if (std::isnan(after)) return (here - before) / cell_m;
+  return (after - before) / (2 * cell_m);
+}
+
+/// Height of a square; NaN beyond the edges.
+float heightAt(const Relief& relief, int i, int j) {
+  const bool is_inside = i >= 0 && i < relief.width && j >= 0 && j < relief.height;
+  return is_inside ? relief.ground_msl_m[static_cast<std::size_t>(j) * relief.width + i] : NAN;
+}
+
+template <class Change>
+void forSquares(const Relief& relief, const Change& change) {
+  parallelFor(relief.height, 16, [&](int begin, int end) {
+    for (int j = begin; j < end; ++j) {
+      for (int i = 0; i < relief.width; ++i) change(i, j, static_cast<std::size_t>(j) * relief.width + i);
+    }
+  });
+}
+
+/// Whether a test holds of the 3 x 3 squares around one, as far as they are on the map.
+template <class Test>
+bool allAround(const Relief& relief, int i, int j, const Test& test) {
+  for (int y = std::max(j - 1, 0); y <= std::min(j + 1, relief.height - 1); ++y) {
+    for (int x = std::max(i - 1, 0); x <= std::min(i + 1, relief.width - 1); ++x)
+      if (!test(static_cast<std::size_t>(y) * relief.width + x)) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<float> shadesOf(const Relief& relief) {
+  std::vector<float> shades(relief.posts(), 0.0F);
+  if (relief.ground_msl_m.empty()) return shades;
+  const auto cell_m = static_cast<float>(relief.cell_m);
+  forSquares(relief, [&](int i, int j, std::size_t p) {
+    const float here = relief.ground_msl_m[p];
+    const float east = slopeOf(heightAt(relief, i - 1, j), here, heightAt(relief, i + 1, j), cell_m);
+    const float south = slopeOf(heightAt(relief, i, j - 1), here, heightAt(relief, i, j + 1), cell_m);
+    const float toward = (0.5F * (east + south) + kLevel) / std::sqrt(1 + east * east + south * south);
+    if (!std::isnan(toward)) shades[p] = toward - kLevel;
+  });
+  return shades;
+}
+
+std::vector<std::uint8_t> seaOf(const Relief& relief) {
+  constexpr float kSea_m = 0.5F;
+  std::vector<std::uint8_t> sea(relief.posts(), 0);
+  if (relief.ground_msl_m.empty()) return sea;
+  const auto isLevel = [&](std::size_t p) { return std::abs(relief.ground_msl_m[p]) <= kSea_m; };
+  const auto mayBeLevel = [&](std::size_t p) { return std::isnan(relief.ground_msl_m[p]) || isLevel(p); };
+  std::vector<std::uint8_t> open(relief.posts(), 0);  // sea on all sides
+  forSquares(relief, [&](int i, int j, std::size_t p) {
+    open[p] = isLevel(p) && allAround(relief, i, j, mayBeLevel) ? 1 : 0;
+  });
+  forSquares(relief, [&](int i, int j, std::size_t p) {
+    const bool is_near_open = !allAround(relief, i, j, [&](std::size_t near) { return open[near] == 0; });
+    sea[p] = isLevel(p) && is_near_open ? 1 : 0;
+  });
+  return sea;
+}
+
+render::Rgb shadedColor(const render::Rgb& color, float shade) {
+  if (shade == 0) return color;
+  constexpr double kSteepness = 3;  // of the change with small shades
+  return render::withLightness(color, kMaxRelief * std::tanh(kSteepness * static_cast<double>(shade)));
+}
+
+render::Rgb groundColor(float shade, bool is_sea) {
+  if (is_sea) return {0.80F, 0.88F, 0.94F};
+  constexpr double kLevelGround = 0.90, kDarkest = 0.55, kLightest = 0.97, kRelief = 0.55;
+  const double lightness =
+      std::clamp(kLevelGround + kRelief * static_cast<double>(shade), kDarkest, kLightest);
+  return render::encoded(render::linearOf(render::Oklab{lightness, 0, 0}));
+}
+
+}  // namespace emscape::study
