@@ -36,14 +36,15 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
   }
   // The picture keeps the largest part of the window. Where that leaves too little for the side panel, it
   // lies over the picture while it is used, and the time line is reduced to its buttons.
-  const bool is_narrow = width < 620 * scale, is_low = height < 420 * scale;
+  const bool is_narrow = width < 720 * scale, is_low = height < 420 * scale;
   const float status_height = 30 * scale;
   layout.has_side = session.hasInput() && (panels.scenario || panels.colors || panels.planes ||
                                            panels.probe || isMeasuring(session));
   layout.side_is_over = layout.has_side && is_narrow;
   const float side_width = !layout.has_side ? 0
                            : is_narrow      ? panels.side ? std::min(340 * scale, 0.85F * width) : 0
-                                            : std::min(340 * scale, std::max(310 * scale, 0.36F * width));
+                                       : std::max(std::min(340 * scale, std::max(310 * scale, 0.36F * width)),
+                                                  std::min(420 * scale, 0.3F * width));
   layout.menu_height = ImGui::GetFrameHeight();
   const float room = std::max(1.0F, height - status_height - layout.menu_height);
   const float timeline_height = timelineHeight(session, scale, is_low ? 0 : 0.3F * room);
@@ -111,9 +112,10 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   place(area);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(12 * s, 5 * s));
   ImGui::Begin("status", nullptr, kFixedPanel | ImGuiWindowFlags_NoScrollbar);
-  // The picture and the buttons of the time line state the time; here only what differs.
+  // The picture and the buttons of the time line state the time; here only what differs, without that line.
+  const bool has_times = session.panels.timeline && !session.panels.hidden;
   std::string right;
-  if (session.picture() && status.shown_s != status.asked_s && !session.timeline().playing()) {
+  if (!has_times && session.picture() && status.shown_s != status.asked_s && !session.timeline().playing()) {
     const double span_s = session.timeline().end_s();
     right = fmt::format("requested {}, shown {}", timeText(status.asked_s, span_s),
                         timeText(status.shown_s, span_s));

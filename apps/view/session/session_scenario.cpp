@@ -8,6 +8,7 @@
 #include "apps/view/values/shown_quantity.h"
 #include "emscape/base/error.h"
 #include "scenario/file/named_items.h"
+#include "scenario/file/new_items.h"
 #include "scenario/file/parameters.h"
 
 namespace emscape::view {
@@ -43,10 +44,13 @@ std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const st
 void Session::changeScenario(const std::vector<scenario::Edit>& edits) {
   requireScenario();
   edit_queue_.set(edits);
+  edit_queue_.begin(*edits_);
 }
 
 void Session::drag(const std::vector<scenario::Edit>& edits) {
-  if (edits_) edit_queue_.drag(edits);
+  if (!edits_) return;
+  edit_queue_.drag(edits);
+  edit_queue_.begin(*edits_);
 }
 
 void Session::endDrag() {
@@ -103,10 +107,28 @@ void Session::undoOrRedo(bool undo) {
   }
 }
 
+/// Selection, followed platform, range rings and channel keep their items, which have another name now.
+void Session::followNames(const std::vector<RenamedItem>& renamed) {
+  selected_ = renamedPath(renamed, selected_);
+  for (const RenamedItem& item : renamed) {
+    if (item.list == "platforms" && view_.follow == item.before) view_.follow = item.now;
+    if (item.list != "emitters") continue;
+    for (playback::RangeRings& rings : view_.range_rings) {
+      if (rings.emitter == item.before) rings.emitter = item.now;
+    }
+    for (std::string* quantity : {&view_.quantity, &last_shown_.quantity}) {
+      const std::size_t at = quantity->find(':');
+      if (at != std::string::npos && quantity->substr(at + 1) == item.before)
+        *quantity = quantity->substr(0, at + 1) + item.now;
+    }
+  }
+}
+
 void Session::showScenario() {
   touched_ = true;
   const playback::ScenarioPtr before = std::exchange(shown_scenario_, edits_->scenario());
   view_.edits = edits_->edits();
+  followNames(renamedItems(*before, *shown_scenario_));
   watchFiles();
   timeline_.setScenario(*shown_scenario_);
   if (computedScenario()) {
@@ -128,9 +150,11 @@ std::vector<Verb> Session::scenarioVerbs() {
   return {
       {"set",
        {{"path", kText}, {"value", kText}},
-       "Changes a value of the scenario, as `--set PATH=VALUE` does",
+       "Changes a value of the scenario, as `--set PATH=VALUE` does; a new name also where others refer to "
+       "it",
        [](Session& session, const Command& command) {
-         session.changeScenario({{command.text("path"), command.text("value")}});
+         session.changeScenario(
+             editsWithReferences(session.requireScenario(), {command.text("path"), command.text("value")}));
        }},
       {"set_together",
        {{"edits", ArgumentType::texts}},
