@@ -1,7 +1,7 @@
 /// The walk "The first hour" of docs/viewer.md, with keys and mouse.
 #include <gmock/gmock.h>
 
-#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "tests/support/files.h"
@@ -15,7 +15,14 @@ using testing::HasSubstr;
 
 // In a window of 1200 x 900 pixels
 constexpr int kMenuBar_px = 24;
-constexpr Place kValley{250, 420}, kBesideAll{60, 120};
+constexpr Place kValley{300, 380}, kFirstEmitterOfProbe{960, 358}, kHeightOfMast{1093, 327},
+    kEmptyPicture{250, 150}, kFarGround{560, 420}, kFileOfRecord{500, 305}, kStepOfRecord{395, 477};
+// From the thing whose menu it is
+constexpr Place kFirstEntry{45, 46}, kSelectPlatform{84, 258};
+
+Place operator+(const Place& a, const Place& b) {
+  return {a.x + b.x, a.y + b.y};
+}
 
 class FirstHour : public RealInput {
  protected:
@@ -55,7 +62,11 @@ class FirstHour : public RealInput {
     const std::size_t before = log("notice").size();
     EXPECT_TRUE(xdotool("key F12"));
     EXPECT_TRUE(comes([&] { return log("notice").size() > before; })) << step;
-    EXPECT_THAT(log("notice").back()["text"].get<std::string>(), HasSubstr("written: ")) << step;
+    const std::string text = log("notice").back()["text"];
+    EXPECT_THAT(text, HasSubstr("written: ")) << step;
+    if (const char* folder = std::getenv("EMSCAPE_WALK_PICTURES"))
+      fs::copy_file(text.substr(text.find('/')), fs::path(folder) / (std::string(step) + ".png"),
+                    fs::copy_options::overwrite_existing);
     EXPECT_EQ(log("error").size(), 0U) << step << ": " << Json(log("error")).dump();
   }
 };
@@ -84,9 +95,68 @@ TEST_F(FirstHour, SLOW_IsAsTheDocumentationSays) {
   EXPECT_TRUE(reports("probe_locked", true));
   look("probe");
 
+  ASSERT_TRUE(xdotool(click(kFirstEmitterOfProbe)));
+  look("why");
+
   const Place mast = select("emitters.communications mast");
-  ASSERT_TRUE(xdotool(click(mast)));
-  look("select");
+  ASSERT_TRUE(xdotool(at(mast) + " click 3 sleep 0.7" + at(mast + kSelectPlatform) + " sleep 0.5 click 1"));
+  EXPECT_TRUE(reports("selected", "platforms.mast"));
+  ASSERT_TRUE(
+      xdotool("sleep 0.5" + doubleClick(kHeightOfMast) + " sleep 0.5" + type("80 m") + " key Return"));
+  ASSERT_TRUE(comesToLog("edit"));
+  EXPECT_EQ(log("edit").back()["path"], "platforms.mast.position.height_agl_m");
+  EXPECT_EQ(log("edit").back()["value"], "80");
+  look("mast");
+
+  ASSERT_TRUE(xdotool("key Escape"));  // the keys are for the picture again
+  const Place radar = select("emitters.tracking radar");
+  ASSERT_TRUE(xdotool(at(radar) + " mousedown 1" + at(radar + Place{-30, -10}) + " sleep 0.2" +
+                      at(radar + Place{-87, -26}) + " sleep 0.5 mouseup 1"));
+  EXPECT_TRUE(
+      comes([&] { return log("edit").back()["path"] == "platforms.valley site.position.longitude_deg"; }));
+  look("drag");
+
+  const Place jammer = select("emitters.jammer");
+  ASSERT_TRUE(xdotool(at(jammer) + " click 3 sleep 0.7" + at(jammer + kFirstEntry) + " sleep 0.5 click 1"));
+  EXPECT_TRUE(comes([&] { return log("edit").back()["path"] == "emitters.jammer.enabled"; }));
+  look("jammer");
+
+  ASSERT_TRUE(xdotool(click(kEmptyPicture) + " key c"));
+  EXPECT_TRUE(reports("compare", true));
+  look("compare");
+  ASSERT_TRUE(xdotool("key c"));
+
+  ASSERT_TRUE(xdotool("key h"));
+  EXPECT_TRUE(reports("planes", 1));
+  look("plane");
+  ASSERT_TRUE(xdotool("key h"));
+
+  const Place search = select("emitters.search radar");
+  ASSERT_TRUE(xdotool("key shift+m" + click(search) + " sleep 0.3" + click(kFarGround)));
+  EXPECT_TRUE(reports("measured_m", [](const Json& value) { return value.is_number() && value > 1000; }));
+  look("measure");
+  ASSERT_TRUE(xdotool("key Escape"));
+
+  const Json before = log("frame").back()["distance"];
+  ASSERT_TRUE(xdotool("key ctrl+g sleep 0.5" + type("36.30, -84.20") + " key Return"));
+  EXPECT_TRUE(reports("distance", [&](const Json& distance) { return distance != before; }));
+  look("position");
+  ASSERT_TRUE(xdotool("key r"));
+
+  ASSERT_TRUE(xdotool("key ctrl+m sleep 0.7" + click(kFileOfRecord) + " key ctrl+a" +
+                      type(input("film.mp4")) + doubleClick(kStepOfRecord) + " key ctrl+a" + type("60") +
+                      " key Tab sleep 0.3 key Return"));
+  EXPECT_TRUE(reports("recording", true));
+  EXPECT_TRUE(reports("recording", false));
+  EXPECT_TRUE(fs::exists(input("film.mp4")));
+
+  ASSERT_TRUE(xdotool("key ctrl+s sleep 0.3 key ctrl+shift+v"));
+  EXPECT_TRUE(comes([&] { return fs::exists(input("jacksboro.view.json")); }));
+  EXPECT_TRUE(reports("unsaved", false));
+  openTyped(input("jacksboro.edited.yaml"));
+  EXPECT_EQ(log("frame").back()["edits"], 0);
+  EXPECT_THAT(readFile(input("jacksboro.edited.yaml")), HasSubstr("height_agl_m: 80"));
+  look("reopen");
 }
 
 }  // namespace

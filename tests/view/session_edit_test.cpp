@@ -111,6 +111,15 @@ TEST(SessionEdits, ANewNameComputesNothingAndIsFollowed) {
   EXPECT_EQ(session->view().quantity, channel);
 }
 
+TEST(SessionEdits, RangeRingsOfARemovedEmitterEnd) {
+  SessionSample session("quick.yaml");
+  session.perform(R"({"do":"range_rings","rings":["radar:spacing_m=2000","transmitter:spacing_m=3000"]})");
+  session.perform(R"({"do":"remove","path":"emitters.transmitter"})");
+  session.settle();
+  ASSERT_EQ(session->view().range_rings.size(), 1U);
+  EXPECT_EQ(session->view().range_rings.front().emitter, "radar");
+}
+
 TEST(RenamedItems, HaveTheirEditsUnderTheNewName) {
   EXPECT_THAT(editedPaths({{"emitters.radar.power_w", "5"},
                            {"emitters.radar.name", "\"a.b\""},

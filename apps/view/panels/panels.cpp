@@ -4,7 +4,10 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include "apps/view/panels/picture_overlay.h"
 #include "apps/view/widgets/dialog.h"
@@ -19,6 +22,18 @@ namespace {
 void place(const Area& area) {
   ImGui::SetNextWindowPos({area.x, area.y});
   ImGui::SetNextWindowSize({area.width, area.height});
+}
+
+/// Scrolls by as much as the panels above the scenario's rows have grown: the rows stay under the cursor.
+/// @param has_same_panels  as in the frame before
+void keepRowsInPlace(bool has_rows, bool has_same_panels) {
+  static float top_before = -1;
+  const float top = has_rows ? ImGui::GetCursorPosY() : -1;
+  const float scroll = ImGui::GetScrollY();
+  const bool are_rows_in_sight = top_before >= 0 && scroll > top_before - ImGui::GetWindowHeight() / 2;
+  if (has_rows && has_same_panels && are_rows_in_sight && scroll > 0 && top != top_before)
+    ImGui::SetScrollY(scroll + top - top_before);
+  top_before = top;
 }
 
 bool isMeasuring(const Session& session) {
@@ -78,29 +93,31 @@ void drawSidePanel(PanelContext& context, const Layout& layout) {
   ImGui::Begin(layout.side_is_over ? "side over" : "side", nullptr, flags);
   const Panels& panels = context.session.panels;
   // All panels share the scroll bar of the side; only that of the scenario, if it is alone, has its own.
-  const bool measures = isMeasuring(context.session);
-  const auto separator = [&](bool more) {
-    if (!more) return;
+  struct Section {
+    bool is_open;
+    void (*draw)(PanelContext& context);
+  };
+  const std::array<Section, 4> sections{{{panels.colors, drawColorsPanel},
+                                         {panels.planes, drawPlanesPanel},
+                                         {isMeasuring(context.session), drawMeasurePanel},
+                                         {panels.probe, drawProbePanel}}};
+  static std::array<bool, 4> was_open{};
+  bool has_same_panels = true;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const bool is_open = sections[i].is_open, is_other = std::exchange(was_open[i], is_open) != is_open;
+    has_same_panels = has_same_panels && !is_other;
+    if (!is_open) continue;
+    if (is_other) ImGui::SetScrollY(ImGui::GetCursorPosY() - ImGui::GetStyle().WindowPadding.y);
+    sections[i].draw(context);
+    const bool has_more =
+        panels.scenario || std::any_of(sections.begin() + static_cast<std::ptrdiff_t>(i) + 1, sections.end(),
+                                       [](const Section& s) { return s.is_open; });
+    if (!has_more) continue;
     ImGui::Spacing();
     ImGui::Separator();
     ImGui::Spacing();
-  };
-  if (panels.colors) {
-    drawColorsPanel(context);
-    separator(panels.planes || panels.scenario || panels.probe || measures);
   }
-  if (panels.planes) {
-    drawPlanesPanel(context);
-    separator(panels.scenario || panels.probe || measures);
-  }
-  if (measures) {
-    drawMeasurePanel(context);
-    separator(panels.scenario || panels.probe);
-  }
-  if (panels.probe) {
-    drawProbePanel(context);
-    separator(panels.scenario);
-  }
+  keepRowsInPlace(panels.scenario, has_same_panels);
   if (panels.scenario) drawScenarioPanel(context);
   ImGui::End();
 }

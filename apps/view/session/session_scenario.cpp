@@ -1,6 +1,7 @@
 /// Verbs of the scenario: edits and undo.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "apps/view/session/session.h"
@@ -107,7 +108,8 @@ void Session::undoOrRedo(bool undo) {
   }
 }
 
-/// Selection, followed platform, range rings and channel keep their items, which have another name now.
+/// Selection, followed platform, range rings and channel keep their items, which have another name now; those
+/// of items that are gone end.
 void Session::followNames(const std::vector<RenamedItem>& renamed) {
   selected_ = renamedPath(renamed, selected_);
   for (const RenamedItem& item : renamed) {
@@ -122,6 +124,13 @@ void Session::followNames(const std::vector<RenamedItem>& renamed) {
         *quantity = quantity->substr(0, at + 1) + item.now;
     }
   }
+  if (!scenario::findNamed(shown_scenario_->platforms, view_.follow)) view_.follow.clear();
+  std::vector<playback::RangeRings>& rings = view_.range_rings;
+  rings.erase(std::remove_if(rings.begin(), rings.end(),
+                             [this](const playback::RangeRings& each) {
+                               return !scenario::findNamed(shown_scenario_->emitters, each.emitter);
+                             }),
+              rings.end());
 }
 
 void Session::showScenario() {
