@@ -79,26 +79,34 @@ void openFile(Session& session, const std::optional<std::string>& file) {
   };
   switch (session.files().browser.purpose()) {
     case Purpose::input:
-      return session.perform({"open", {{"file", *file}}});
+      session.perform({"open", {{"file", *file}}});
+      break;
     case Purpose::view:
-      return session.perform({"load_state", {{"file", *file}}});
+      session.perform({"load_state", {{"file", *file}}});
+      break;
     case Purpose::scenario:
-      return session.perform({"add_scenario", {{"file", *file}}});
+      session.perform({"add_scenario", {{"file", *file}}});
+      break;
     case Purpose::colors:
-      return performAndClose({"transfer", {{"file", *file}}});
+      performAndClose({"transfer", {{"file", *file}}});
+      break;
     case Purpose::drape:
-      return performAndClose({"drape", {{"file", *file}}});
+      performAndClose({"drape", {{"file", *file}}});
+      break;
     case Purpose::places: {
       std::vector<std::string> files = session.view().places;
       files.push_back(*file);
-      return performAndClose({"places", {{"files", files}}});
+      performAndClose({"places", {{"files", files}}});
+      break;
     }
     case Purpose::save_scenario: {
       const std::string ending = std::filesystem::path(session.usualScenarioFile()).extension().string();
-      return session.perform({"save", {{"file", withEnding(*file, ending)}}});
+      session.perform({"save", {{"file", withEnding(*file, ending)}}});
+      break;
     }
     case Purpose::save_colors:
-      return performAndClose({"save_transfer", {{"file", withEnding(*file, ".transfer.json")}}});
+      performAndClose({"save_transfer", {{"file", withEnding(*file, ".transfer.json")}}});
+      break;
     case Purpose::record:
       session.files().record_output = *file;
       session.panels.open = false;

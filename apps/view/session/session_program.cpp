@@ -48,16 +48,16 @@ void Session::cancel() {
   const ProgramState state = programState();
   if (!state.can_cancel) throw Error(ErrorCode::bad_input, "cancel: nothing is being computed or opened");
   timeline_.pause();
+  if (edits_) {
+    edit_queue_.clear(*edits_);
+    if (edits_->scenario() != shown_scenario_) showScenario();
+  }
   if (!hasField()) {
-    edit_queue_.clear();
     is_opened_ = true;
     live_.showWithoutField();
     return tell("cancelled: the field is computed after the next change or step, or with F5");
   }
-  if (!status_.computing && edit_queue_.isBusy()) {
-    edit_queue_.clear();
-  } else if (status_.computing) {
-    edit_queue_.clear();
+  if (status_.computing) {
     showLastQuantity();
     timeline_.seek(picture_->info().time_s);
     askTime();
