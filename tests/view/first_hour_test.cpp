@@ -16,7 +16,7 @@ using testing::HasSubstr;
 // In a window of 1200 x 900 pixels
 constexpr int kMenuBar_px = 24;
 constexpr Place kValley{300, 380}, kFirstEmitterOfProbe{960, 358}, kHeightOfMast{1093, 327},
-    kEmptyPicture{250, 150}, kFarGround{560, 420}, kFileOfRecord{500, 305}, kStepOfRecord{395, 477};
+    kEmptyPicture{250, 150}, kFarGround{560, 420}, kFileOfRecord{500, 291}, kStepOfRecord{395, 462};
 // From the thing whose menu it is
 constexpr Place kFirstEntry{45, 46}, kSelectPlatform{84, 258};
 
@@ -53,12 +53,12 @@ class FirstHour : public RealInput {
   void openTyped(const std::string& file) {
     ASSERT_TRUE(xdotool("key ctrl+o sleep 0.5" + type(file) + " key Return"));
     ASSERT_TRUE(reports("input", file));
-    ASSERT_TRUE(reports("settled", true));
+    ASSERT_TRUE(reports("program", "IDLE"));
   }
   /// Waits until the picture shows all, and writes the window.
   void look(const char* step) {
     SCOPED_TRACE(step);
-    EXPECT_TRUE(reports("settled", true)) << step;
+    EXPECT_TRUE(reports("program", "IDLE")) << step;
     const std::size_t before = log("notice").size();
     EXPECT_TRUE(xdotool("key F12"));
     EXPECT_TRUE(comes([&] { return log("notice").size() > before; })) << step;
