@@ -7,6 +7,7 @@
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "interop/dis/datagrams.h"
+#include "interop/dis/force.h"
 #include "interop/dis/orientation.h"
 #include "interop/dis/pdu.h"
 #include "interop/exporting/writers.h"
@@ -54,21 +55,6 @@ std::vector<double> withHeartbeats(std::vector<double> times, double end_s, doub
 Vec3d ecefOf(const PoseSample& pose) {
   return toEcef({pose.latitude_deg, pose.longitude_deg,
                  pose.height_msl_m + geoidUndulation_m(pose.latitude_deg, pose.longitude_deg)});
-}
-
-/// The force of an entity (UID 6); 0: other.
-std::uint8_t forceOf(const scenario::Platform& platform) {
-  switch (platform.side.value_or(scenario::Side::unknown)) {
-    case scenario::Side::friendly:
-      return 1;
-    case scenario::Side::hostile:
-      return 2;
-    case scenario::Side::neutral:
-      return 3;
-    case scenario::Side::unknown:
-      break;
-  }
-  return 0;
 }
 
 /// A name in ASCII, with one ? for each other character, cut to a marking's length.
@@ -137,7 +123,7 @@ class DisWriter {
     const PoseSample pose = poseOf(platform, job_.terrain, t_s);
     EntityState state;
     state.id = idOf(index);
-    state.force = forceOf(platform);
+    state.force = dis::forceOf(platform.side.value_or(scenario::Side::unknown));
     const Domain domain = domains_[index];
     state.type = {1, domain == Domain::air ? 2 : domain == Domain::sea ? 3 : 1, 0, 0, 0, 0, 0};
     state.position_m = ecefOf(pose);

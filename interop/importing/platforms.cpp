@@ -125,10 +125,7 @@ DocumentNodePtr platformNode(const std::string& name, Side side, const PoseSampl
                              const std::string& track_file) {
   MapBuilder platform;
   platform.set("name", textNode(name));
-  if (side != Side::unknown) {
-    constexpr const char* kNames[] = {"unknown", "friend", "hostile", "neutral"};
-    platform.set("side", textNode(kNames[static_cast<int>(side)]));
-  }
+  if (side != Side::unknown) platform.set("side", textNode(toString(side)));
   if (!track_file.empty()) {
     platform.set("track", MapBuilder().set("file", textNode(track_file)).node());
     return platform.node();

@@ -69,7 +69,7 @@ TEST(Recordings, FaultsNameFileValueAndRemedy) {
   EXPECT_THAT(errorOf({"import", other, "-o", out, "--region", "95,0,10"}, 2),
               HasSubstr("--region '95,0,10' is not auto"));
   EXPECT_THAT(errorOf({"export", shippedScenario("quick.yaml"), "-o", folder / "a.hla"}, 2),
-              HasSubstr("it ends in .acmi, .zip.acmi or .pcap"));
+              HasSubstr("it ends in .zip.acmi, .acmi, .pcap, .asi"));
   EXPECT_FALSE(std::filesystem::exists(out));
 }
 
