@@ -221,14 +221,24 @@ Recording readRecording(const std::string& file, const ReadOptions& options, con
 Recording merged(std::vector<Recording> recordings) {
   if (recordings.size() == 1) return std::move(recordings.front());
   Recording all;
-  const bool have_epochs = std::all_of(recordings.begin(), recordings.end(),
-                                       [](const Recording& r) { return r.epoch_ms.has_value(); });
-  if (have_epochs) {
-    for (const Recording& r : recordings)
-      all.epoch_ms = std::min(all.epoch_ms.value_or(*r.epoch_ms), *r.epoch_ms);
+  // A recording of fixed objects alone has no times that could be shifted.
+  const auto needsEpoch = [](const Recording& r) {
+    const TimeSpan span = spanOf(r);
+    return !r.epoch_ms && span.begin_s < span.end_s;
+  };
+  std::string without;
+  for (const Recording& r : recordings) {
+    if (needsEpoch(r)) without += (without.empty() ? "" : ", ") + r.file;
+    if (r.epoch_ms) all.epoch_ms = std::min(all.epoch_ms.value_or(*r.epoch_ms), *r.epoch_ms);
+  }
+  if (!without.empty()) {
+    all.epoch_ms.reset();
+    all.tally.notes.push_back(
+        fmt::format("no common epoch, as {} has none: each recording begins at its own t = 0", without));
   }
   for (Recording& recording : recordings) {
-    const double shift_s = have_epochs ? static_cast<double>(*recording.epoch_ms - *all.epoch_ms) / 1000 : 0;
+    const bool is_shifted = all.epoch_ms && recording.epoch_ms;
+    const double shift_s = is_shifted ? static_cast<double>(*recording.epoch_ms - *all.epoch_ms) / 1000 : 0;
     const std::size_t first = all.objects.size();
     for (RecordedObject& object : recording.objects) {
       for (PoseSample& pose : object.poses) pose.t_s += shift_s;

@@ -118,6 +118,7 @@ void joinCarriedBeams(Recording& recording, const std::unordered_map<std::size_t
     beam.object = carriers[index];
     beam.name = object.keys.acmi_name.empty() ? "beam" : object.keys.acmi_name;
     beam.keys.acmi_name = object.keys.acmi_name;
+    beam.keys.acmi_type = object.type;
     const double begin_s = object.poses.front().t_s;
     beam.height_m =
         std::clamp(object.poses.front().height_msl_m - poseAt(carrier, begin_s).height_msl_m, -100.0, 100.0);

@@ -54,8 +54,10 @@ bool matches(const EmitterMatch& match, const RecordedObject& object, const Beam
       return false;
   }
   const bool has_own_name = beam != nullptr && !beam->acmi_name.empty();
+  const bool has_own_type =
+      beam != nullptr && !match.acmi_type.empty() && holds(match.acmi_type, beam->acmi_type);
   return holds(match.acmi_name, has_own_name ? beam->acmi_name : keys.acmi_name) &&
-         holds(match.acmi_type, keys.acmi_type) && holds(match.object_name, object.name) &&
+         (has_own_type || holds(match.acmi_type, keys.acmi_type)) && holds(match.object_name, object.name) &&
          keys.cot_type.compare(0, match.cot_type.size(), match.cot_type) == 0;
 }
 

@@ -80,9 +80,14 @@ std::vector<AcmiObject> objectsOf(const ExportJob& job, std::vector<ExportedRow>
     beam.platform = carrier.platform;
     beam.emitter = &emitter;
     beam.properties = fmt::format(",Type=Beam,Name={},Parent={:x}", escapedAcmi(emitter.name), carrier.id);
-    rows.push_back({fmt::format("{{acmi_name: {}}}", quotedPattern(emitter.name)), i});
+    rows.push_back({fmt::format("{{acmi_type: Beam, acmi_name: {}, object_name: {}}}",
+                                quotedPattern(emitter.name), quotedPattern(carrier.platform->name)),
+                    i});
     objects.push_back(beam);
   }
+  // A platform may have the name of an emitter: the rows of objects of type Beam come first.
+  std::stable_partition(rows.begin(), rows.end(),
+                        [](const ExportedRow& row) { return row.match.rfind("{acmi_type", 0) == 0; });
   return objects;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text/utc.h"
+#include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "interop/dis/datagrams.h"
@@ -22,6 +23,8 @@ using dis::Header;
 constexpr double kEntityHeartbeat_s = 5, kEmissionHeartbeat_s = 10, kTransmitterHeartbeat_s = 2;
 /// Systems of a PDU, so that it has less than 8192 bytes.
 constexpr std::size_t kMaxSystems = 100;
+constexpr double kEndOfCaptures_s = 4294967296;  // of their 32 bits, from 1970 on
+constexpr std::size_t kMaxNumber = 255;          ///< of a system
 constexpr int kSearch = 1, kTrack = 4, kJam = 12;
 
 enum class Event { state, emission, transmitter };
@@ -74,6 +77,13 @@ class DisWriter {
       : job_(job), scenario_(job.scenario), capture_(stream) {
     const auto epoch_ms = parseUtc_ms(scenario_.clock.epoch_utc);
     if (epoch_ms) origin_s_ = static_cast<double>(*epoch_ms) / 1000;
+    const double last_s = origin_s_ + scenario_.clock.duration_s;
+    if (!(origin_s_ >= 0 && last_s < kEndOfCaptures_s)) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: epoch: {}: captures hold times from 1970 to 2106; export to .acmi, or "
+                              "give another epoch, as with --set epoch=2000-01-01T00:00:00Z",
+                              scenario_.file, scenario_.clock.epoch_utc));
+    }
   }
 
   long long run(std::vector<ExportedRow>& rows) {
@@ -111,6 +121,14 @@ class DisWriter {
           is_radio ? Event::transmitter : Event::emission, is_radio ? i : platform);
       if (!is_radio) systems_[platform].push_back(i);
       rows.push_back({fmt::format(is_radio ? "{{dis_radio: {}}}" : "{{dis_name: {}}}", i + 1), i});
+    }
+    for (std::size_t i = 0; i < systems_.size(); ++i) {
+      if (systems_[i].size() <= kMaxNumber) continue;
+      throw Error(
+          ErrorCode::bad_input,
+          fmt::format("the platform '{}' has {} radars and jammers, more than the {} that DIS can number; "
+                      "give some of them another platform",
+                      scenario_.platforms[i].name, systems_[i].size(), kMaxNumber));
     }
     std::sort(due_.begin(), due_.end());
     due_.erase(std::unique(due_.begin(), due_.end()), due_.end());

@@ -101,6 +101,7 @@ struct BeamKeys {
   std::optional<int> dis_index;          ///< beam parameter index
   std::optional<int> dis_radio;          ///< number of the radio, of a transmitter
   std::string acmi_name{};               ///< of an object of type Beam; comes before that of its carrier
+  std::string acmi_type{};               ///< of the same; a row may name that of the carrier, too
   std::string asi_beam{};                ///< description of a beam of SIMDIS
 };
 

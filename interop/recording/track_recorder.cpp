@@ -148,6 +148,8 @@ Recording TrackRecorder::finish() {
                             span.end_s - span.begin_s, kMaxSpan_s));
   }
   const double origin_s = std::floor(span.begin_s);
+  const bool has_times = std::any_of(recording_.objects.begin(), recording_.objects.end(),
+                                     [](const RecordedObject& object) { return !object.poses.empty(); });
   for (const auto& [index, pose] : fixed_) {
     auto& poses = recording_.objects[index].poses;
     if (!poses.empty()) continue;
@@ -165,7 +167,7 @@ Recording TrackRecorder::finish() {
     for (BeamState& state : beam.states) state.t_s -= origin_s;
   }
   tellOutliers();
-  if (utc_begin_s_) recording_.epoch_ms = std::llround((*utc_begin_s_ + origin_s) * 1000);
+  if (utc_begin_s_ && has_times) recording_.epoch_ms = std::llround((*utc_begin_s_ + origin_s) * 1000);
   return std::move(recording_);
 }
 

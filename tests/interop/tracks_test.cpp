@@ -223,6 +223,23 @@ TEST(Tracks, GapsEndATrackWhereAskedForAndOutliersAreTold) {
   EXPECT_EQ(ended.objects[0].presence[1].t_s, 100);
 }
 
+TEST(MergedRecordings, WithoutACommonEpochSaySo) {
+  const std::string with = "time,lat,lon\n2026-06-01T06:00:10Z,52,5\n2026-06-01T06:00:20Z,52,5.1\n";
+  const std::string later = "time,lat,lon\n2026-06-01T06:00:30Z,52,5\n2026-06-01T06:00:40Z,52,5.1\n";
+  const std::string without = "time,lat,lon\n10,52,5\n20,52,5.1\n";
+  const std::string fixed = "<gpx><wpt lat='52' lon='5'><name>mast</name></wpt></gpx>";
+  const Recording aligned =
+      merged({readAs("b.csv", later), readAs("a.csv", with), readAs("mast.gpx", fixed)});
+  EXPECT_EQ(aligned.epoch_ms, kSix_ms + 10000);
+  EXPECT_EQ(aligned.objects.at(0).poses.at(0).t_s, 20);
+  EXPECT_EQ(aligned.objects.at(2).poses.at(0).t_s, 0);
+  EXPECT_TRUE(aligned.tally.notes.empty());
+  const Recording loose = merged({readAs("a.csv", with), readAs("c.csv", without)});
+  EXPECT_FALSE(loose.epoch_ms.has_value());
+  EXPECT_THAT(loose.tally.notes,
+              testing::Contains(HasSubstr("c.csv has none: each recording begins at its own t = 0")));
+}
+
 TEST(InterpolatedTrack, PolynomialOfTheDegreeIsExact) {
   // A parabola in the earth's axes is followed within the metre that is promised.
   std::vector<EcefSample> samples;
