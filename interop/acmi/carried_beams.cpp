@@ -5,13 +5,14 @@
 #include <set>
 
 #include "interop/acmi/acmi_text.h"
-#include "interop/recording/directions.h"
+#include "interop/beams/directions.h"
 #include "interop/recording/samples.h"
 
 namespace emscape::interop {
 namespace {
 
 constexpr double kNear_m = 50;
+constexpr int kMaxSearched = 2000;  ///< beams without a parent, each compared with all objects
 /// Directions that differ less (deg) are those of the carrier.
 constexpr double kAligned_deg = 0.1;
 
@@ -32,26 +33,43 @@ double distanceAt_m(const RecordedObject& a, const RecordedObject& b, double t_s
   return length(spot(pa) - spot(pb));
 }
 
-/// The object that carries a beam; kNoTarget if there is none.
-std::size_t carrierOf(const Recording& recording, std::size_t beam, const std::string& parent) {
-  const std::vector<RecordedObject>& objects = recording.objects;
-  const double begin_s = objects[beam].poses.front().t_s;
+using IndicesById = std::unordered_multimap<std::string, std::size_t>;
+
+/// The object of an id that carries a beam; kNoTarget if there is none. Ids are used again: the one that is
+/// present, else the last one.
+std::size_t parentOf(const Recording& recording, const IndicesById& indices, std::size_t beam,
+                     const std::string& parent) {
+  const double begin_s = recording.objects[beam].poses.front().t_s;
+  std::size_t found = kNoTarget;
+  bool found_is_present = false;
+  const auto [begin, end] = indices.equal_range(parent);
+  for (auto item = begin; item != end; ++item) {
+    const RecordedObject& object = recording.objects[item->second];
+    if (item->second == beam || isAcmiBeam(object.type) || object.poses.empty()) continue;
+    const bool is_present = isPresentAt(object, begin_s);
+    const bool is_better = found == kNoTarget || (is_present && !found_is_present) ||
+                           (is_present == found_is_present && item->second > found);
+    if (!is_better) continue;
+    found = item->second;
+    found_is_present = is_present;
+  }
+  return found;
+}
+
+/// The nearest object that can carry a beam; kNoTarget if there is none.
+std::size_t nearestTo(const Recording& recording, std::size_t beam) {
+  const double begin_s = recording.objects[beam].poses.front().t_s;
   std::size_t found = kNoTarget;
   double nearest_m = kNear_m;
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const RecordedObject& object = objects[i];
-    if (i == beam || isAcmiBeam(object.type) || object.poses.empty()) continue;
-    if (!parent.empty()) {  // ids are used again: the object that is present, else the last one
-      if (object.id != parent) continue;
-      if (found == kNoTarget || !isPresentAt(objects[found], begin_s)) found = i;
-    } else if (object.domain != Domain::scenery && object.domain != Domain::weapon &&
-               isPresentAt(object, begin_s)) {
-      const double distance_m = distanceAt_m(objects[beam], object, begin_s);
-      if (distance_m < nearest_m) {
-        nearest_m = distance_m;
-        found = i;
-      }
-    }
+  for (std::size_t i = 0; i < recording.objects.size(); ++i) {
+    const RecordedObject& object = recording.objects[i];
+    const bool can_carry = !isAcmiBeam(object.type) && !object.poses.empty() &&
+                           object.domain != Domain::scenery && object.domain != Domain::weapon;
+    if (!can_carry || !isPresentAt(object, begin_s)) continue;
+    const double distance_m = distanceAt_m(recording.objects[beam], object, begin_s);
+    if (distance_m >= nearest_m) continue;
+    nearest_m = distance_m;
+    found = i;
   }
   return found;
 }
@@ -100,11 +118,18 @@ std::vector<BeamState> statesOn(const RecordedObject& carrier, const RecordedObj
 void joinCarriedBeams(Recording& recording, const std::unordered_map<std::size_t, std::string>& parents) {
   std::vector<bool> is_kept(recording.objects.size(), true);
   std::vector<std::size_t> carriers(recording.objects.size(), kNoTarget);
+  IndicesById indices;
+  for (std::size_t i = 0; i < recording.objects.size(); ++i) indices.emplace(recording.objects[i].id, i);
+  int searched = 0;
   for (std::size_t i = 0; i < recording.objects.size(); ++i) {
     const RecordedObject& object = recording.objects[i];
     if (!isAcmiBeam(object.type) || object.poses.empty()) continue;
     const auto parent = parents.find(i);
-    carriers[i] = carrierOf(recording, i, parent == parents.end() ? "" : parent->second);
+    if (parent != parents.end()) {
+      carriers[i] = parentOf(recording, indices, i, parent->second);
+    } else if (searched++ < kMaxSearched) {
+      carriers[i] = nearestTo(recording, i);
+    }
     is_kept[i] = carriers[i] == kNoTarget;
   }
   for (RecordedBeam& beam : recording.beams) {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "base/text/count_text.h"
-#include "interop/recording/directions.h"
+#include "interop/beams/directions.h"
 #include "interop/recording/samples.h"
 #include "interop/recording/tally.h"
 #include "interop/recording/text.h"
@@ -244,8 +244,7 @@ Recording CotReader::finish() {
                                         countText(without_height_, "event has", "events have")));
   }
   Recording recording = recorder_.finish();
-  for (RecordedBeam& beam : recording.beams)
-    beam.states = inAxesOf(recording.objects[beam.object], beam.states);
+  turnIntoCarriers(recording, std::vector<bool>(recording.beams.size(), true));
   return recording;
 }
 

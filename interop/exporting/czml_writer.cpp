@@ -7,8 +7,8 @@
 #include "base/files/json_writing.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
+#include "interop/beams/directions.h"
 #include "interop/exporting/writers.h"
-#include "interop/recording/directions.h"
 #include "interop/recording/text.h"
 
 namespace emscape::interop {
@@ -17,7 +17,7 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 /// Positions that are nearer (m) to the straight line between those around them are left out.
-constexpr double kOnLine_m = 0.5;
+constexpr double kOnLine_m = 0.9;
 constexpr std::size_t kMaxSkipped = 2000;
 constexpr int kMaxShapes = 200;  ///< of a beam over time
 constexpr int kArcParts = 12;
@@ -56,10 +56,10 @@ std::vector<TimedPlace> reducedPlaces(const std::vector<TimedPlace>& places) {
   return kept;
 }
 
-/// Longitude, latitude (1e-8 degrees) and height above the ellipsoid (cm).
+/// Longitude, latitude (1e-7 degrees) and height above the ellipsoid (cm).
 void addTo(OrderedJson& list, const GeodeticPosition& at) {
-  list.push_back(std::round(at.longitude_deg * 1e8) / 1e8);
-  list.push_back(std::round(at.latitude_deg * 1e8) / 1e8);
+  list.push_back(std::round(at.longitude_deg * 1e7) / 1e7);
+  list.push_back(std::round(at.latitude_deg * 1e7) / 1e7);
   list.push_back(std::round(at.height_ellipsoid_m * 100) / 100);
 }
 

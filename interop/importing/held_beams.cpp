@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interop/recording/directions.h"
+#include "interop/beams/directions.h"
 
 namespace emscape::interop {
 namespace {

@@ -22,14 +22,9 @@ constexpr double kOutlierFactor = 3;   ///< of the speed without the position
 constexpr double kNoise_mps = 1;       ///< noise of a receiver that stands
 constexpr double kShortestStep_s = 1e-3;
 
-double straight_m(const PoseSample& a, const PoseSample& b) {
-  const double ground_m =
-      geodesicInverse(a.latitude_deg, a.longitude_deg, b.latitude_deg, b.longitude_deg).distance_m;
-  return std::hypot(ground_m, a.height_msl_m - b.height_msl_m);
-}
-
-double speed_mps(const PoseSample& a, const PoseSample& b) {
-  return straight_m(a, b) / std::max(b.t_s - a.t_s, kShortestStep_s);
+/// A place in ECEF; heights above the sea stand for those above the ellipsoid.
+Vec3d roughEcef(const PoseSample& pose) {
+  return toEcef({pose.latitude_deg, pose.longitude_deg, pose.height_msl_m});
 }
 
 }  // namespace
@@ -124,11 +119,19 @@ void TrackRecorder::tellOutliers() {
   std::string first;
   for (const RecordedObject& object : recording_.objects) {
     const auto& poses = object.poses;
+    if (poses.size() < 3) continue;
+    const auto speed_mps = [&](const Vec3d& from, const Vec3d& to, std::size_t first, std::size_t last) {
+      return length(to - from) / std::max(poses[last].t_s - poses[first].t_s, kShortestStep_s);
+    };
+    Vec3d before = roughEcef(poses[0]), here = roughEcef(poses[1]);
     for (std::size_t i = 1; i + 1 < poses.size(); ++i) {
-      const double limit_mps = kOutlierFactor * std::max(speed_mps(poses[i - 1], poses[i + 1]), kNoise_mps);
+      const Vec3d after = roughEcef(poses[i + 1]);
+      const double limit_mps = kOutlierFactor * std::max(speed_mps(before, after, i - 1, i + 1), kNoise_mps);
       const bool is_outlier =
-          speed_mps(poses[i - 1], poses[i]) > limit_mps && speed_mps(poses[i], poses[i + 1]) > limit_mps;
+          speed_mps(before, here, i - 1, i) > limit_mps && speed_mps(here, after, i, i + 1) > limit_mps;
       if (is_outlier && outliers++ == 0) first = fmt::format("{} at {:.3f} s", object.name, poses[i].t_s);
+      before = here;
+      here = after;
     }
   }
   if (outliers == 0) return;

@@ -12,7 +12,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
-#include "interop/recording/directions.h"
+#include "interop/beams/directions.h"
 #include "interop/recording/samples.h"
 #include "interop/recording/tally.h"
 #include "interop/recording/text.h"
@@ -305,11 +305,9 @@ class AsiReader {
       recorder_.beam(i).states = statesOf(told_[i], begin_s, objects);
     if (year_) recorder_.hasUtc(secondsOfDate(*year_, 1, 1));
     Recording recording = recorder_.finish();
-    for (std::size_t i = 0; i < told_.size(); ++i) {
-      if (told_[i].type != BeamType::absolute) continue;
-      RecordedBeam& beam = recording.beams[i];
-      beam.states = inAxesOf(recording.objects[beam.object], beam.states);
-    }
+    std::vector<bool> is_from_north;
+    for (const AsiBeam& beam : told_) is_from_north.push_back(beam.type == BeamType::absolute);
+    turnIntoCarriers(recording, is_from_north);
     return recording;
   }
 

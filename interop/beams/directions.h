@@ -24,8 +24,10 @@ RelativeDirection turned(const RelativeDirection& direction, const dis::BodyAxes
 /// Axes of a level body that points north.
 dis::BodyAxes northAt(const PoseSample& pose);
 
-/// States whose directions are from true north and the horizon, in the axes of their carrier: also at the
-/// times at which it turns.
-std::vector<BeamState> inAxesOf(const RecordedObject& carrier, const std::vector<BeamState>& states);
+/// Brings directions from true north and the horizon into the axes of the beams' carriers: also at the times
+/// at which these turn, at most 5000 of a beam.
+/// @param is_from_north  of each beam
+/// @throws Error (bad_input) if a recording may not have so many states
+void turnIntoCarriers(Recording& recording, const std::vector<bool>& is_from_north);
 
 }  // namespace emscape::interop
