@@ -99,7 +99,8 @@ class AsiReader {
       takePlatform(command, value, second, words);
     } else if (command.rfind("beam", 0) == 0 || command == "horzbw" || command == "vertbw") {
       takeBeam(command, value, second, words);
-    } else {
+    } else if (command != "version" && command != "scenarioinfo" && command != "classification" &&
+               command != "reflla") {
       countIgnored(recorder_.tally(), "command " + printableText(words[0].substr(0, 40)));
     }
   }
