@@ -87,9 +87,11 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
                      [&](const std::string& file) { report::writeVerticalCsv(diagram, file); },
                      [&] { return dumpJson(report::verticalJson(diagram, true)); }});
   if (!command.areps.empty()) {
-    study::VerticalRequest density = request;
-    density.quantity = scenario::Quantity::power_density_dbwm2;
-    for (const std::string& file : report::writeAreps(compute(density), *scenario, command.areps))
+    study::VerticalRequest strength = request;
+    const bool is_radar =
+        scenario->emitters[static_cast<std::size_t>(request.emitter)].kind == scenario::EmitterKind::radar;
+    strength.quantity = is_radar ? scenario::Quantity::snr_db : scenario::Quantity::power_density_dbwm2;
+    for (const std::string& file : report::writeAreps(compute(strength), *scenario, command.areps))
       logInfo("wrote " + file);
   }
   if (global.json) {

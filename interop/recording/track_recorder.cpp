@@ -120,8 +120,8 @@ void TrackRecorder::tellOutliers() {
   for (const RecordedObject& object : recording_.objects) {
     const auto& poses = object.poses;
     if (poses.size() < 3) continue;
-    const auto speed_mps = [&](const Vec3d& from, const Vec3d& to, std::size_t first, std::size_t last) {
-      return length(to - from) / std::max(poses[last].t_s - poses[first].t_s, kShortestStep_s);
+    const auto speed_mps = [&](const Vec3d& from, const Vec3d& to, std::size_t i, std::size_t k) {
+      return length(to - from) / std::max(poses[k].t_s - poses[i].t_s, kShortestStep_s);
     };
     Vec3d before = roughEcef(poses[0]), here = roughEcef(poses[1]);
     for (std::size_t i = 1; i + 1 < poses.size(); ++i) {

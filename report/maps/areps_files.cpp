@@ -34,15 +34,19 @@ double lossOf_db(const scenario::Emitter& emitter, double density_dbwm2) {
   return radiated_dbw(emitter) - density_dbwm2 - ratioToDb(wave_m * wave_m / (4 * kPi));
 }
 
+/// 20 lg c of a radar's SNR = (c S)^2 at a power density S.
+double echoRoot_db(const scenario::Emitter& radar) {
+  return 2 * ratioToDb(emfield::echoRoot_m2_w(radar));
+}
+
 void writeDetection(std::ostream& out, const scenario::Emitter& radar) {
   const emfield::Detector detector = emfield::detectorOf(radar.receiver);
-  const double echo_root_db = 2 * ratioToDb(emfield::echoRoot_m2_w(radar));
   out << "[Probability of detection]\n# largest one-way loss (dB) for 1 to 100 %\n";
   for (int percent = 1; percent <= 100; ++percent) {
     const double probability =
         std::max(std::min(percent / 100.0, kAlmostCertain), 2 * detector.false_alarm_probability);
     const double snr_db = emfield::requiredSnrDb(detector, probability);
-    const double loss_db = std::max(lossOf_db(radar, (snr_db - echo_root_db) / 2), 0.0);
+    const double loss_db = std::max(lossOf_db(radar, (snr_db - echoRoot_db(radar)) / 2), 0.0);
     out << fmt::format("{:.2f}{}", loss_db, percent % 10 == 0 ? "\n" : " ");
   }
 }
@@ -88,7 +92,8 @@ std::vector<std::string> writeAreps(const VerticalDiagram& diagram, const scenar
     const std::filesystem::path file = folder / fileNameOf(emitter.name, azimuth_deg);
     const std::size_t width = diagram.ranges_m.size();
     const auto loss_db = [&](std::size_t i, std::size_t k) {
-      return lossOf_db(emitter, cut.values[k * width + i]);
+      const double value = cut.values[k * width + i];
+      return lossOf_db(emitter, is_radar ? (value - echoRoot_db(emitter)) / 2 : value);
     };
     writeWhole(file, [&](std::ostream& out) {
       out << fmt::format(
