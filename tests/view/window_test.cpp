@@ -273,6 +273,8 @@ TEST_F(Window, NamesAreShownToTheirEnd) {
     text.replace(text.find(plain), plain.size(), "- name: '" + name + "'\n");
     writeFile(folder_ / "own.yaml", text);
     const ProgramResult result = run(viewOf(folder_ / "own.yaml", R"({"do":"wait_state","state":"exact"}
+{"do":"panel","name":"side"}
+{"do":"wait_s","seconds":0.2}
 {"do":"screenshot","file":")" + (folder_ / "window.png") + R"("}
 {"do":"quit"}
 )"),
@@ -280,7 +282,7 @@ TEST_F(Window, NamesAreShownToTheirEnd) {
     EXPECT_EQ(result.status, 0) << result.err;
     const render::Image8 window = render::readPng(folder_ / "window.png");
     std::vector<std::uint8_t> heading;
-    for (int y = 131; y < 150; ++y) heading.insert(heading.end(), window.at(375, y), window.at(540, y));
+    for (int y = 109; y < 128; ++y) heading.insert(heading.end(), window.at(345, y), window.at(505, y));
     return heading;
   };
   const auto first = headingOf("r##1");

@@ -358,6 +358,10 @@ void drawHead(PanelContext& context, const PanelState& state) {
   const float spacing = ImGui::GetStyle().ItemSpacing.x;
   button("undo", R"({"do":"undo"})", session.canUndo(), "Ctrl+Z", 2 * spacing);
   button("redo", R"({"do":"redo"})", session.canRedo(), "Ctrl+Shift+Z", spacing);
+  if (state.disabled_count > 0) {
+    ImGui::SameLine(0, 2 * spacing);
+    ImGui::TextDisabled("%zu emitter%s off", state.disabled_count, state.disabled_count == 1 ? "" : "s");
+  }
   const std::size_t count = state.scenario->edits().size();
   const std::string changes =
       count == 0 ? "nothing changed" : fmt::format("{} value{} changed …", count, count == 1 ? "" : "s");
@@ -367,11 +371,6 @@ void drawHead(PanelContext& context, const PanelState& state) {
   if (count > 0 && ImGui::IsItemHovered()) ImGui::SetTooltip("the changes; undo one or all");
   drawEdits(context, state);
   button("copy as command", R"({"do":"copy_command"})", true, "Ctrl+Shift+C", spacing);
-  if (state.disabled_count == 0) return;
-  const std::string off =
-      fmt::format("{} emitter{} off", state.disabled_count, state.disabled_count == 1 ? "" : "s");
-  sameLineIfRoom(ImGui::CalcTextSize(off.c_str()).x, spacing);
-  ImGui::TextDisabled("%s", off.c_str());
 }
 
 bool isDialogOpen(const Panels& panels) {
