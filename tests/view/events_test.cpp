@@ -30,7 +30,7 @@ const Event kEvents[] = {
     {"Range", R"({"do":"range","min":-60,"max":-20})"},
     {"Ground", R"({"do":"terrain","on":false})"},
     {"Resize", R"({"do":"resize","width":700,"height":500})"},
-    {"Panel", R"({"do":"panel","name":"scenario","open":false})"},
+    {"Panel", R"({"do":"panel","name":"timeline","open":false})"},
     {"Mouse", R"({"do":"mouse","x":150,"y":200,"button":"left","to_x":220,"to_y":230})"},
     {"Wheel", R"({"do":"mouse","x":150,"y":200,"wheel":2})"},
     {"Key", R"({"do":"key","key":"Ctrl+Left"})"},
