@@ -304,7 +304,20 @@ TEST(PathBudget, VerdictNamesJamming) {
   jammer.kind = scenario::EmitterKind::jammer;
   jammer.platform = static_cast<int>(scenario->platforms.size()) - 1;
   scenario->emitters.push_back(jammer);
-  EXPECT_THAT(verdict(), ::testing::ContainsRegex("\\(SNR -?[0-9.]+ dB, J/S -?[0-9.]+ dB\\)\\."));
+  EXPECT_THAT(verdict(), ::testing::ContainsRegex("\\(SNR -?[0-9.]+ dB, J/S -?[0-9.]+ dB by 'jammer'\\)\\."));
+  scenario->emitters[0].power_w = 1e7;
+  EXPECT_THAT(verdict(),
+              ::testing::ContainsRegex(
+                  "^Jammed by 'jammer': J/S [0-9.]+ dB, without which a target there is detected with "
+                  "probability [0-9.]+; clear: .* is detected with probability 0.0"))
+      << "it decides";
+  scenario->emitters.push_back(jammer);
+  scenario->emitters[2].name = "stronger";
+  scenario->emitters[2].power_w *= 3;
+  EXPECT_THAT(verdict(), ::testing::StartsWith("Jammed by 'stronger' and 1 more: "));
+  scenario->emitters.pop_back();
+  scenario->emitters[0].power_w = 1e9;
+  EXPECT_THAT(verdict(), ::testing::StartsWith("Clear: ")) << "detected in spite of jamming";
   scenario->emitters[1].power_w = 1e-12;
   EXPECT_THAT(verdict(), ::testing::Not(HasSubstr("J/S"))) << "too weak to matter";
 }
