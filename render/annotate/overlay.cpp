@@ -120,7 +120,16 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     const Point2 at{left, canvas.size().height - (kMargin + 30) * style.unit};
     drawScaleBar(canvas, style, projector, annotations.units, at, taken);
   }
-  drawGroundMarks(canvas, style, projector, annotations, hidden, taken);
+  const auto project = [&](const Vec3d& at_m) {
+    Point2 at;
+    return projector.project(at_m, at) ? std::optional(at) : std::nullopt;
+  };
+  std::vector<Point2> symbols;
+  for (const Marker& marker : annotations.markers) {
+    if (const std::optional<Point2> at = project(marker.position_m)) symbols.push_back(*at);
+  }
+  drawGroundMarks(canvas, style, project, annotations.ground_lines, annotations.ground_points, symbols,
+                  hidden, taken);
   if (annotations.legend) drawLegend(canvas, style, *annotations.legend);
   drawTracks(canvas, style, projector, annotations.tracks, hidden);
   drawMarkers(canvas, style, projector, annotations.markers, annotations.units, hidden, taken);
