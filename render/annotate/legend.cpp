@@ -165,14 +165,17 @@ double contentWidth(const Style& style, const Legend& legend) {
     content = (kOpacityWidth + kBarWidth + 14) * style.unit + widestText(numbers, style.small_px);
   }
   const double heading = widestText(headingOf(legend), style.text_px) * 1.08;
-  const double note = widestText({legend.note}, style.small_px);
+  const double note = widestText(legend.notes, style.small_px);
   return std::max(content, std::min(std::max(heading, note), style.name_px));
 }
 
-void drawNote(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
+void drawNotes(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
   const double size_px = style.small_px;
-  canvas.textWithRim(shortenedText(canvas, legend.note, size_px, style.name_px), {left, y}, size_px,
-                     style.mutedInk(), style.rimInk());
+  for (const std::string& note : legend.notes) {
+    canvas.textWithRim(shortenedText(canvas, note, size_px, style.name_px), {left, y}, size_px,
+                       style.mutedInk(), style.rimInk());
+    y += kLine * size_px;
+  }
 }
 
 /// A line across the bar with an arrowhead at its left end.
@@ -231,7 +234,7 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
     canvas.textWithRim("opacity", {left, bottom + 10 * style.unit + 0.6 * style.small_px}, style.small_px,
                        style.mutedInk(), style.rimInk());
   }
-  drawNote(canvas, style, legend, left, bottom + 14 * style.unit + 1.9 * style.small_px);
+  drawNotes(canvas, style, legend, left, bottom + 14 * style.unit + 1.9 * style.small_px);
 }
 
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
@@ -246,7 +249,7 @@ void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, do
                        {left + swatch + kSwatchGap * style.unit, y}, style.small_px, style.textInk(),
                        style.rimInk());
   }
-  drawNote(canvas, style, legend, left, y + kRowHeight * style.unit);
+  drawNotes(canvas, style, legend, left, y + kRowHeight * style.unit);
 }
 
 }  // namespace
@@ -358,7 +361,7 @@ Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function
   legend.unit = unitText(legend.scale.unit);
   legend.function = function;
   const auto note = info.extra.find(volume::kLegendNoteKey);
-  if (note != info.extra.end()) legend.note = note->second;
+  if (note != info.extra.end()) legend.notes.push_back(note->second);
   legend.whole_numbers = info.quantity.find("count") != std::string::npos;
   return legend;
 }
@@ -369,8 +372,8 @@ double legendWidth(const Style& style, const Legend& legend) {
 
 double legendHeight(const Style& style, const Legend& legend) {
   if (!legend.function.categorical) return 0;
-  const double rows = kRowHeight * style.unit *
-                      (static_cast<double>(legend.categories.size()) + (legend.note.empty() ? 1 : 2));
+  const double rows =
+      kRowHeight * style.unit * static_cast<double>(legend.categories.size() + legend.notes.size() + 1);
   return std::max(rows / (1 - kBarTop), leastTop(style, legend) + rows);
 }
 

@@ -45,7 +45,7 @@ struct Legend {
   TransferFunction function;
   std::optional<double> iso_value;   ///< marked on the colour bar
   bool whole_numbers = false;        ///< counts: no ticks between
-  std::string note;                  ///< a line below the colour bar or the categories; may be empty
+  std::vector<std::string> notes;    ///< lines below the colour bar or the categories
   std::vector<Category> categories;  ///< categorical volumes: the listed categories
 };
 
