@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text/utc.h"
+#include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "interop/dis/datagrams.h"
@@ -21,6 +22,7 @@ using dis::Header;
 constexpr double kEntityHeartbeat_s = 5, kEmissionHeartbeat_s = 10, kTransmitterHeartbeat_s = 2;
 /// Systems of a PDU, so that it has less than 8192 bytes.
 constexpr std::size_t kMaxSystems = 100;
+constexpr double kEndOfCaptures_s = 4294967296;  // of their 32 bits, from 1970 on
 constexpr int kSearch = 1, kTrack = 4, kJam = 12;
 
 enum class Event { state, emission, transmitter };
@@ -88,6 +90,13 @@ class DisWriter {
       : job_(job), scenario_(job.scenario), capture_(stream) {
     const auto epoch_ms = parseUtc_ms(scenario_.clock.epoch_utc);
     if (epoch_ms) origin_s_ = static_cast<double>(*epoch_ms) / 1000;
+    const double last_s = origin_s_ + scenario_.clock.duration_s;
+    if (!(origin_s_ >= 0 && last_s < kEndOfCaptures_s)) {
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("{}: epoch: {}: captures hold times from 1970 to 2106; export to .acmi, or "
+                              "give another epoch, as with --set epoch=2000-01-01T00:00:00Z",
+                              scenario_.file, scenario_.clock.epoch_utc));
+    }
   }
 
   long long run(std::vector<ExportedRow>& rows) {

@@ -155,7 +155,6 @@ class Painter {
   bool showsMap() const;
   void setTransferFunction(const render::TransferFunction& function);
   void setLegend();
-  render::CameraSpec followed(render::CameraSpec spec) const;
   render::Camera cameraOf(const render::CameraSpec& given) const;
   void fitCamera();
   render::TransferFunction functionFor(const Frame& frame) const;
