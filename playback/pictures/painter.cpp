@@ -443,9 +443,8 @@ void Painter::setLegend() {
     annotations_.legend->iso_value = renderer_.isoValue();
   if (showsMap()) {
     const DisplayUnit unit = heightUnit(view_.units);
-    annotations_.legend->notes.insert(annotations_.legend->notes.begin(),
-                                      fmt::format("map: at {:.4g} {} above ground",
-                                                  *view_.settings.map_height_agl_m / unit.factor, unit.name));
+    annotations_.legend->map_note = fmt::format("map: at {:.4g} {} above ground",
+                                                *view_.settings.map_height_agl_m / unit.factor, unit.name);
   }
   if (frame_->info().categorical) {
     annotations_.legend->categories =

@@ -152,6 +152,14 @@ void drawHeading(Canvas& canvas, const Style& style, const Legend& legend, doubl
   }
 }
 
+std::vector<std::string> notesOf(const Legend& legend) {
+  std::vector<std::string> notes;
+  for (const std::string* const note : {&legend.map_note, &legend.note}) {
+    if (!note->empty()) notes.push_back(*note);
+  }
+  return notes;
+}
+
 double contentWidth(const Style& style, const Legend& legend) {
   double content = 0;
   if (legend.function.categorical) {
@@ -165,13 +173,13 @@ double contentWidth(const Style& style, const Legend& legend) {
     content = (kOpacityWidth + kBarWidth + 14) * style.unit + widestText(numbers, style.small_px);
   }
   const double heading = widestText(headingOf(legend), style.text_px) * 1.08;
-  const double note = widestText(legend.notes, style.small_px);
+  const double note = widestText(notesOf(legend), style.small_px);
   return std::max(content, std::min(std::max(heading, note), style.name_px));
 }
 
 void drawNotes(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
   const double size_px = style.small_px;
-  for (const std::string& note : legend.notes) {
+  for (const std::string& note : notesOf(legend)) {
     canvas.textWithRim(shortenedText(canvas, note, size_px, style.name_px), {left, y}, size_px,
                        style.mutedInk(), style.rimInk());
     y += kLine * size_px;
@@ -361,7 +369,7 @@ Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function
   legend.unit = unitText(legend.scale.unit);
   legend.function = function;
   const auto note = info.extra.find(volume::kLegendNoteKey);
-  if (note != info.extra.end()) legend.notes.push_back(note->second);
+  if (note != info.extra.end()) legend.note = note->second;
   legend.whole_numbers = info.quantity.find("count") != std::string::npos;
   return legend;
 }
@@ -373,7 +381,7 @@ double legendWidth(const Style& style, const Legend& legend) {
 double legendHeight(const Style& style, const Legend& legend) {
   if (!legend.function.categorical) return 0;
   const double rows =
-      kRowHeight * style.unit * static_cast<double>(legend.categories.size() + legend.notes.size() + 1);
+      kRowHeight * style.unit * static_cast<double>(legend.categories.size() + notesOf(legend).size() + 1);
   return std::max(rows / (1 - kBarTop), leastTop(style, legend) + rows);
 }
 

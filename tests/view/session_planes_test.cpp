@@ -126,7 +126,7 @@ TEST_F(Map, LayerIsSwitchedAndKeepsItsHeight) {
   settle();
   EXPECT_EQ(session->picture()->settings.map_height_agl_m, 250);
   EXPECT_EQ(session->picture()->settings.map_opacity, 0.75);
-  EXPECT_THAT(session->picture()->annotations.legend->notes, testing::Contains("map: at 250 m above ground"));
+  EXPECT_EQ(session->picture()->annotations.legend->map_note, "map: at 250 m above ground");
   perform(R"({"do":"reset_switches"})");
   EXPECT_TRUE(session->report()["map_layer"].is_null());
   EXPECT_EQ(error(), "");

@@ -46,9 +46,9 @@ TEST(Legend, HasNoteOfTheVolume) {
   volume::VolumeInfo info;
   info.quantity = "jammer_to_signal_db";
   info.unit = "dB";
-  EXPECT_TRUE(legendOf(info, {}).notes.empty());
+  EXPECT_EQ(legendOf(info, {}).note, "");
   info.extra[volume::kLegendNoteKey] = "no echo: 100";
-  EXPECT_EQ(legendOf(info, {}).notes, std::vector<std::string>{"no echo: 100"});
+  EXPECT_EQ(legendOf(info, {}).note, "no echo: 100");
 }
 
 TEST(FieldScale, FieldStrengthOfAPowerDensityIsThatOfAPlaneWave) {
