@@ -35,15 +35,15 @@ bool drawVertical(const PanelContext& context, CutPlane& plane, const render::Sc
 const char* keptText(const CutPlane& plane) {
   switch (plane.keep) {
     case CutPlane::Side::below:
-      return "keeps what is below";
+      return "keeps below";
     case CutPlane::Side::above:
-      return "keeps what is above";
+      return "keeps above";
     case CutPlane::Side::left:
-      return "keeps the left";
+      return "keeps left";
     case CutPlane::Side::right:
       break;
   }
-  return "keeps the right";
+  return "keeps right";
 }
 
 void drawPlane(PanelContext& context, std::size_t index, const render::SceneBox& box) {
