@@ -153,6 +153,14 @@ void drawHeading(Canvas& canvas, const Style& style, const Legend& legend, doubl
   }
 }
 
+std::vector<std::string> notesOf(const Legend& legend) {
+  std::vector<std::string> notes;
+  for (const std::string* const note : {&legend.map_note, &legend.note}) {
+    if (!note->empty()) notes.push_back(*note);
+  }
+  return notes;
+}
+
 double contentWidth(const Style& style, const Legend& legend) {
   double content = 0;
   if (legend.function.categorical) {
@@ -170,14 +178,17 @@ double contentWidth(const Style& style, const Legend& legend) {
     content = std::max(content, std::min(hatched, style.name_px));
   }
   const double heading = widestText(headingOf(legend), style.text_px) * 1.08;
-  const double note = widestText({legend.note}, style.small_px);
+  const double note = widestText(notesOf(legend), style.small_px);
   return std::max(content, std::min(std::max(heading, note), style.name_px));
 }
 
-void drawNote(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
+void drawNotes(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
   const double size_px = style.small_px;
-  canvas.textWithRim(shortenedText(canvas, legend.note, size_px, style.name_px), {left, y}, size_px,
-                     style.mutedInk(), style.rimInk());
+  for (const std::string& note : notesOf(legend)) {
+    canvas.textWithRim(shortenedText(canvas, note, size_px, style.name_px), {left, y}, size_px,
+                       style.mutedInk(), style.rimInk());
+    y += kLine * size_px;
+  }
 }
 
 /// The swatch and the name of what is hatched. @return whether there is any
@@ -255,7 +266,7 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
   }
   double below = bottom + 14 * style.unit + 1.9 * style.small_px;
   if (drawHatched(canvas, style, legend, left, below)) below += kRowHeight * style.unit;
-  drawNote(canvas, style, legend, left, below);
+  drawNotes(canvas, style, legend, left, below);
 }
 
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
@@ -272,7 +283,7 @@ void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, do
   }
   y += kRowHeight * style.unit;
   if (drawHatched(canvas, style, legend, left, y)) y += kRowHeight * style.unit;
-  drawNote(canvas, style, legend, left, y);
+  drawNotes(canvas, style, legend, left, y);
 }
 
 }  // namespace
@@ -400,8 +411,8 @@ double legendWidth(const Style& style, const Legend& legend) {
 double legendHeight(const Style& style, const Legend& legend) {
   if (!legend.function.categorical) return 0;
   const double rows = kRowHeight * style.unit *
-                      (static_cast<double>(legend.categories.size()) + 1 + (legend.note.empty() ? 0 : 1) +
-                       (legend.hatched.empty() ? 0 : 1));
+                      static_cast<double>(legend.categories.size() + notesOf(legend).size() + 1 +
+                                          (legend.hatched.empty() ? 0 : 1));
   return std::max(rows / (1 - kBarTop), leastTop(style, legend) + rows);
 }
 

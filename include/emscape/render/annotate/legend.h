@@ -47,7 +47,8 @@ struct Legend {
   std::optional<double> iso_value;   ///< marked on the colour bar
   bool whole_numbers = false;        ///< counts: no ticks between
   std::string hatched;               ///< what is hatched; empty: nothing is
-  std::string note;                  ///< a line below the colour bar or the categories; may be empty
+  std::string map_note;              ///< a line below the colour bar or the categories: where the map layer is
+  std::string note;                  ///< a line below that; both may be empty
   std::vector<Category> categories;  ///< categorical volumes: the listed categories
 };
 
