@@ -55,7 +55,8 @@ struct FieldSolver::Impl {
   /// Number of unchanged emitters that were combined again since the static sum was last computed.
   int recombined_since = 0;
   bool is_first = true;
-  bool is_stale = false;  ///< an update failed: all results are invalid
+  bool is_stale = false;              ///< an update failed: all results are invalid
+  bool has_other_quantities = false;  ///< the options have, since the plan was made
 
   Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
        FieldOptions options_in);
@@ -72,6 +73,7 @@ struct FieldSolver::Impl {
   struct Changes {
     FieldChanged report;
     bool all = false;                   ///< everything is recomputed
+    bool all_sums = false;              ///< the channels have other sums
     bool is_edited = false;             ///< the scenario is a different object
     const FieldPlan* before = nullptr;  ///< the plan before an edit
     std::vector<bool> emitters;         ///< true if its contribution to some channel changed
@@ -92,6 +94,7 @@ struct FieldSolver::Impl {
   void findProducts(Changes& changes);
   void computeGeometry(const std::vector<int>& chosen, bool into_scratch);
   void takeGeometry(int e, GeometryResult found);
+  void noteWarnings(int e);
   void chooseResting(const std::vector<bool>& changed);
   void combine(int begin, int end, const std::vector<bool>& channel_chosen, bool into_static_sums);
   CombinePass::Member combineMember(int e, double t_s);

@@ -56,22 +56,31 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   cache.geometry = geometryInputs(setup, e, cache.state);
   cache.geometry_result = std::move(found);
   const GeometryResult& geometry_result = cache.geometry_result;
+  if (geometry_result.unknown_columns > 0 && !options.allow_missing_terrain) {
+    const auto first = std::find(geometry_result.unknown.begin(), geometry_result.unknown.end(), 1);
+    throw Error(
+        ErrorCode::bad_input, {setup.scenario->file},
+        fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
+                    emitter.name, placeOf(static_cast<std::size_t>(first - geometry_result.unknown.begin())),
+                    geometry_result.unknown_columns - 1),
+        Hint::allow_missing_terrain);
+  }
+  noteWarnings(e);
+}
+
+/// Adds the warnings of an emitter's geometry; they contain its name.
+void FieldSolver::Impl::noteWarnings(int e) {
+  const Emitter& emitter = setup.scenario->emitters[e];
+  EmitterCache& cache = emitters[e];
+  const GeometryResult& geometry_result = cache.geometry_result;
   if (geometry_result.unknown_columns > 0) {
-    if (!options.allow_missing_terrain) {
-      const auto first = std::find(geometry_result.unknown.begin(), geometry_result.unknown.end(), 1);
-      throw Error(ErrorCode::bad_input, {setup.scenario->file},
-                  fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
-                              emitter.name,
-                              placeOf(static_cast<std::size_t>(first - geometry_result.unknown.begin())),
-                              geometry_result.unknown_columns - 1),
-                  Hint::allow_missing_terrain);
-    }
     ++cache.warnings[fmt::format("emitter '{}': columns seen across missing terrain have no field",
                                  emitter.name)];
   }
   const Station station =
-      makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere);
-  const propagation::PathInputs inputs = pathInputs(*setup.scenario, emitter, cache.state.beam, station,
+      makeStation(cache.geometry->position, cache.geometry->height_msl_m, setup.scenario->atmosphere);
+  const scenario::BeamPose& beam = cache.state.beam;
+  const propagation::PathInputs inputs = pathInputs(*setup.scenario, emitter, beam, station,
                                                     setup.terrain.get(), pathExtent(station, setup.columns));
   for (const std::string& warning : pathWarnings(emitter, inputs, geometry_result.warnings)) {
     ++cache.warnings[warning];
@@ -227,7 +236,7 @@ const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& chann
 /// Makes the volumes of changed channels. After an edit the other volumes get the name and metadata of the
 /// edited scenario.
 void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes) {
-  if (changes.report.channels) {
+  if (changes.all_sums) {
     volumes.assign(setup.channels.size(), {});
     masks.assign(setup.channels.size(), {});
   }

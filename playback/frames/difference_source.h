@@ -44,6 +44,7 @@ class DifferenceSource : public FrameSource {
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override;
   void setQuantity(const std::string& quantity) override;
   void setComparison(Comparison comparison) override { comparison_ = comparison; }
+  std::optional<Frame> withoutField(double time_s) override { return source_->withoutField(time_s); }
   std::size_t cachedBytes() const override { return difference_.cachedBytes(); }
 
  protected:

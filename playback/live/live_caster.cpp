@@ -19,6 +19,8 @@ using render::SceneEvent;
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxStateChanges = 1000;
+/// Interval at which a deferred restoration is tried again.
+constexpr std::chrono::milliseconds kDeferral{20};
 
 double between_ms(SteadyClock::time_point begin, SteadyClock::time_point end) {
   return std::chrono::duration<double, std::milli>(end - begin).count();
@@ -87,8 +89,15 @@ void LiveCaster::run() {
   while (!closing_) {
     try {
       takeMail();
-      act(canDraw() ? controller_.next(now_ms())
-                    : ControllerAction{ControllerAction::Kind::wait, {}, INFINITY});
+      const ControllerAction action = canDraw()
+                                          ? controller_.next(now_ms())
+                                          : ControllerAction{ControllerAction::Kind::wait, {}, INFINITY};
+      if (action.kind == ControllerAction::Kind::restore && defers()) {
+        controller_.restoreDone(false);
+        event_.waitUntil(SteadyClock::now() + kDeferral);
+      } else {
+        act(action);
+      }
     } catch (const std::exception& error) {
       controller_ = render::FrameController(controllerOptions());
       is_drawing_ = false;
@@ -201,7 +210,7 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
   } else if (before.eye_m != painter_.camera().eye_m || before.forward != painter_.camera().forward) {
     raise(SceneEvent::view);  // it follows a platform
   }
-  if (is_other_quantity) painter_.setColors({});
+  if (is_other_quantity && !is_same_field) painter_.setColors({});  // else it only has another name
   if (refused) std::rethrow_exception(refused);
 }
 
@@ -336,6 +345,7 @@ void LiveCaster::publish() {
   static_cast<ShownField&>(picture) = field_->frame;
   picture.split_column = painter_.splitColumn();
   if (picture.split_column > 0) picture.beside = field_->frame.beside->frame;
+  picture.has_field = field_->frame.has_field;
   if (field_->scene) {
     picture.scenario = field_->scene->scenario;
     picture.terrain = field_->scene->terrain;

@@ -27,13 +27,14 @@ struct FieldRequest {
   long long revision = 0;  ///< counts requests
   ViewState view;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
+  bool has_field = true;                               ///< false: the ground and the emitters alone
   long long search = 0;                  ///< number of the requested search of the series' range; 0: none
   double patience_ms = Patience::kNone;  ///< with the field in progress
 };
 
 /// A field and its data.
 struct FieldDelivery {
-  long long revision = 0;  ///< of its request
+  long long revision = 0;  ///< of its request; 0: shown until the requested field is ready
   std::string title;
   std::optional<LoadedScenario> scene;
   std::string quantity;
@@ -76,7 +77,8 @@ class LiveFields {
     double min_seek_interval_ms = 0;
     double min_play_interval_ms = 0;  ///< the same for requests with endless patience
     int steps_ahead = 0;
-    int threads = 0;  ///< 0: one fewer than all while other threads need them
+    bool begins_without_field = false;  ///< delivers FrameSource::withoutField() before the first field
+    int threads = 0;                    ///< 0: one fewer than all while other threads need them
     int niceness = 0;
   };
   /// Called on the thread of this object. `deliver` and `changed` are required.
@@ -103,6 +105,9 @@ class LiveFields {
   /// stop(), and waits for the end.
   void close();
   FieldsStatus status() const;
+  /// True for a moment after a request without patience, until its field is delivered: other work that can
+  /// wait leaves the processor to it.
+  bool isHurried() const;
 
  private:
   using Time = Mailbox<FieldRequest>::Time;
@@ -144,6 +149,7 @@ class LiveFields {
   void begin(const std::string& what);
   void applyPatience();
   void deliver(const ContentPtr& content, const Frame& frame);
+  bool deliverWithoutField(long long revision);
   void fail(const std::string& line, ErrorCode code);
   void beginSearch();
   void endSearch(const ValueRange& range);
@@ -162,6 +168,7 @@ class LiveFields {
   StopFlag stop_{false};
   Work work_{&stop_};
 
+  std::atomic<Time::rep> hurried_until_{0};
   std::mutex patience_mutex_;                        // of the next four
   double pending_patience_ms_ = Patience::kEndless;  // smallest of the requests in the box
   std::optional<Time> begun_;                        // a field that may be abandoned is being computed

@@ -40,6 +40,8 @@ struct LiveOptions {
   /// Number of steps computed ahead of the one on screen, while steps are requested in sequence and there is
   /// no other work.
   int steps_ahead = 2;
+  /// Until the first field is computed, the pictures show the ground and the emitters.
+  bool begins_without_field = false;
   /// Threads of loops; 0: all, but fields leave one core free while pictures are cast.
   int solve_threads = 0;
   int cast_threads = 0;
@@ -101,6 +103,7 @@ struct LivePicture : ShownField {
   std::shared_ptr<const Frame>
       beside;  ///< field of the columns left of `split_column`; null if there are none
   int split_column = 0;
+  bool has_field = true;  ///< false: LiveOptions::begins_without_field, LiveView::showWithoutField()
   render::ImageSize size;
   /// With background and labels. Of a settled picture: as `emscape render` writes it.
   render::Image8 finished;
@@ -155,6 +158,9 @@ class LiveView {
   /// @param patience_ms  with the field in progress, if another one is requested: see Patience
   void show(const ViewState& view, std::shared_ptr<const scenario::Scenario> edited = nullptr,
             double patience_ms = Patience::kNone);
+  /// Abandons the field of the last view: the picture shows its ground and its emitters until another field
+  /// is requested. For computed grids before the first field.
+  void showWithoutField();
   /// Sets whether busy pictures of a GPU stay in its memory, to be displayed from there; false at first.
   void keepOnDevice(bool keep);
 

@@ -96,9 +96,9 @@ void Painter::prepareCells(const Frame& frame) {
 
 void Painter::setFrame(const Frame& frame) {
   prepareCells(frame);
-  const bool is_first_of_colors = !has_colors_;
-  if (is_first_of_colors) onRenderer([&](auto& to) { to.setTransferFunction(functionFor(frame)); });
-  has_colors_ = true;
+  const bool is_first_of_colors = !has_colors_ && frame.has_field;
+  if (!has_colors_) onRenderer([&](auto& to) { to.setTransferFunction(functionFor(frame)); });
+  has_colors_ = has_colors_ || frame.has_field;
   const bool is_other_grid = !frame_ || frame_->grid() != frame.grid();
   if (frame.cells) {
     cells_->setField(frame.cells->field, frame.cells->faces);
@@ -368,6 +368,7 @@ bool Painter::isHidden(const Vec3d& frame_m) const {
 }
 
 std::string Painter::note(render::Pattern pattern) const {
+  if (frame_ && !frame_->has_field) return "without the field";
   const char* const mode = wordsOf(view_.settings.mode);
   if (frame_ && frame_->cells) {
     return fmt::format("{}, {} tetrahedra{}", mode, frame_->cells->field.mesh->cells.size(),
@@ -438,6 +439,8 @@ void Painter::mark(render::Annotations& annotations, const Frame& frame) const {
 
 void Painter::setLegend() {
   if (!frame_) return;
+  annotations_.reserves_legend = !frame_->has_field;
+  if (!frame_->has_field) return annotations_.legend.reset();
   annotations_.legend = render::legendOf(frame_->info(), transferFunction(), view_.field_unit);
   if (view_.settings.mode == render::CompositingMode::iso)
     annotations_.legend->iso_value = renderer_.isoValue();

@@ -202,10 +202,10 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
   const bool has_texts = !annotations.title.empty() || !annotations.time.empty();
   FrameMargins margins;
   margins.left = side_px / size.width;
-  margins.right =
-      (annotations.legend ? std::min(kLegendRoom * style.unit, kMaxLegendRoom * size.width) + 0.3 * axis_px
-                          : side_px) /
-      size.width;
+  margins.right = (annotations.legend || annotations.reserves_legend
+                       ? std::min(kLegendRoom * style.unit, kMaxLegendRoom * size.width) + 0.3 * axis_px
+                       : side_px) /
+                  size.width;
   margins.top = (has_texts ? headerHeight(style) : side_px) / size.height;
   margins.bottom = (1.1 * kMargin * style.unit + axis_px) / size.height;
   return margins;

@@ -322,6 +322,42 @@ TEST(LiveView, EveryKindOfEventSettlesOnFullCast) {
   EXPECT_EQ(live.view->picture()->split_column, 0);
 }
 
+/// A scenario whose field takes long.
+ViewState slowView() {
+  ViewState view = smallView(emscape::test::shippedScenario("quick.yaml"));
+  view.edits = {{"emitters.radar.propagation", "parabolic_equation"},
+                {"emitters.transmitter.propagation", "parabolic_equation"},
+                {"region.size_m", "[200000, 200000, 9000]"},
+                {"region.dims", "[200, 200, 100]"}};
+  return view;
+}
+
+TEST(LiveView, BeforeTheFirstFieldTheGroundAndTheEmittersAreShown) {
+  LiveOptions options = fastOptions();
+  options.begins_without_field = true;
+  Live live(slowView(), options);
+  live.waitUntil([&](const LiveStatus& status) { return status.frame > 0; });
+  const auto first = live.view->picture();
+  EXPECT_FALSE(first->has_field);
+  EXPECT_EQ(first->annotations.markers.size(), 2U);
+  EXPECT_FALSE(first->annotations.legend.has_value());
+  EXPECT_TRUE(live.view->status().computing);
+  EXPECT_FALSE(live.view->status().exact);
+  live.view->showWithoutField();
+  const auto cancelled = live.settled();
+  EXPECT_FALSE(cancelled->has_field);
+  EXPECT_EQ(live.view->status().fields_computed, 0);
+  // Another field is requested and shown, with its own colours, in the same place.
+  auto edited = std::make_shared<scenario::Scenario>(*cancelled->scenario);
+  edited->set("emitters.radar.propagation", "free_space");
+  edited->set("emitters.transmitter.propagation", "free_space");
+  live.view->show(live.shown, edited);
+  const auto shown = live.settled();
+  EXPECT_TRUE(shown->has_field);
+  EXPECT_EQ(shown->camera.eye_m.x, cancelled->camera.eye_m.x) << "the legend's room was free before";
+  EXPECT_EQ(shown->transfer, shown->defaultColors());
+}
+
 TEST(LiveView, EventStopsRestorationAndSettledPictureShowsIt) {
   const TemporaryFolder folder;
   Expected expected(quickScenario(folder));

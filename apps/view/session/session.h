@@ -17,6 +17,7 @@
 #include "apps/view/parts/background_jobs.h"
 #include "apps/view/parts/open_panels.h"
 #include "apps/view/parts/program_state.h"
+#include "apps/view/parts/renamed_items.h"
 #include "apps/view/parts/undo_order.h"
 #include "apps/view/parts/view_options.h"
 #include "apps/view/tools/camera_control.h"
@@ -96,6 +97,10 @@ class Session {
 
   // --- state on screen ---
   const playback::LivePicture* picture() const { return picture_.get(); }
+  /// False before the first picture with a field: at first pictures show the ground and the emitters.
+  bool hasField() const { return picture_ && picture_->has_field; }
+  /// True once the first field was shown or cancelled.
+  bool isOpened() const { return is_opened_; }
   /// True if the input is files, not a scenario whose field is computed.
   bool showsFiles() const { return hasInput() && !status_.quantities.empty(); }
   /// The quantities that can be shown. Computed again for another scenario.
@@ -293,6 +298,7 @@ class Session {
   void takeScenario();
   void takePicture();
   void showScenario();
+  void followNames(const std::vector<RenamedItem>& renamed);
   /// Takes effect with one of the next updates.
   void changeScenario(const std::vector<scenario::Edit>& edits);
   /// @throws Error (bad_input) if there is none
@@ -352,6 +358,7 @@ class Session {
   std::string reported_error_;
   render::ControllerState logged_state_ = render::ControllerState::idle;
   Activity logged_activity_ = Activity::empty;
+  bool is_opened_ = false;
   bool is_on_screen_ = false;               // else it is opened beside the one on screen
   std::string noted_words_;                 // of the program's state at the last update
   std::optional<double> computing_from_s_;  // when the pending field was requested

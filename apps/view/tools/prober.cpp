@@ -67,6 +67,7 @@ class Prober::Reader {
         result.reading =
             playback::probe(*position_m, volume, detail_ == Detail::explained ? result.scenario : nullptr,
                             picture.terrain.get());
+        if (!picture.has_field) result.reading->text = "no field yet";
         result.contributions = contributionsOf(*result.reading, result.quantity);
       }
     } catch (const std::exception& error) {

@@ -134,6 +134,12 @@ class FieldSolver {
   /// @throws Error (bad_input) also if the snapshot's scenario names other elevation files
   FieldChanged update(const scenario::Snapshot& snapshot);
 
+  /// Sets FieldOptions::quantities for the next update, which treats the scenario as edited; until then
+  /// channels() and volumes() stay.
+  /// @param next  scenario of the next update
+  /// @throws Error (bad_input) as the constructor; nothing is changed then
+  void setQuantities(std::vector<std::string> quantities, std::shared_ptr<const scenario::Scenario> next);
+
   /// The channels' volumes after the last update, in the order of channels(), in the memory where they were
   /// computed: host or GPU. Later updates do not change them: a caller may keep one while the next is
   /// computed. info().range_* is the range of each volume, info().time_s the time of the last update. Empty

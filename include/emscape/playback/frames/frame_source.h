@@ -30,6 +30,7 @@ struct Frame : ShownField {
   std::vector<render::Marker> markers;
   std::vector<render::Track> tracks;  ///< of moving platforms
   bool changed = true;                ///< false: the field's values are those of the previous call
+  bool has_field = true;              ///< false: FrameSource::withoutField()
   render::ColorRange color_range;     ///< of the series; none: that of the field's values
   std::optional<FieldBeside> beside = std::nullopt;
 };
@@ -101,6 +102,10 @@ class FrameSource : public VolumeSeries {
     made.color_range = color_range_;
     return made;
   }
+  /// The ground and the emitters at a time of frameAt(), without waiting for the field: all voxels are
+  /// masked. None if the source has no such frame. As frame(). @throws Error (usage) if there is no such
+  /// channel
+  virtual std::optional<Frame> withoutField(double /*time_s*/) { return std::nullopt; }
   /// Sets the range of the colours of all frames; none: each has that of its values.
   void setColorRange(const render::ColorRange& range) { color_range_ = range; }
   /// The volume of frame(). @throws Error, Stopped; as comparableVolume()

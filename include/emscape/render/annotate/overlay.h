@@ -87,7 +87,8 @@ struct Annotations {
   std::vector<GroundLine> ground_lines;
   std::vector<GroundPoint> ground_points;
   std::optional<Legend> legend;
-  bool georeferenced = true;  ///< compass, axes in km and altitude; otherwise axes in the grid's unit
+  bool reserves_legend = false;  ///< without a legend its room stays free, so that the scene does not move
+  bool georeferenced = true;     ///< compass, axes in km and altitude; otherwise axes in the grid's unit
   bool axes = true;
   /// Position of the frame's origin, from which the axes count: "84.15000°W" and "36.30000°N"; may be empty.
   std::string origin_longitude, origin_latitude;
