@@ -99,8 +99,12 @@ std::vector<Point2> labelPoints(const Style& style, const GroundLine& line,
     return {sum * (1.0 / static_cast<double>(vertices.size()))};
   }
   const auto isLower = [](const Vertex& a, const Vertex& b) { return a.at.y < b.at.y; };
-  if (line.ink == GroundInk::ring)
-    return visible(*std::max_element(vertices.begin(), vertices.end(), isLower));
+  if (line.ink == GroundInk::ring) {
+    const auto [highest, lowest] = std::minmax_element(vertices.begin(), vertices.end(), isLower);
+    std::vector<Point2> points = visible(*lowest);
+    if (highest->is_visible) points.push_back(highest->at);
+    return points;
+  }
   if (line.ink == GroundInk::graticule) {  // inside the end nearer to the viewer
     const bool at_front = isLower(vertices.back(), vertices.front());
     const Vertex& end = at_front ? vertices.front() : vertices.back();
