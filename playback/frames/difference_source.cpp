@@ -42,10 +42,13 @@ FieldBeside DifferenceSource::besideOf(const Frame& frame) {
   comparableVolume(frame);  // throws for other fields
   other->volume = difference_.reference(time_s).front();
   const volume::VolumeInfo &own = frame.info(), &info = other->info();
-  if (other->grid() != frame.grid() || info.quantity != own.quantity || info.unit != own.unit) {
+  if (other->grid() != frame.grid()) {
     throw Error(ErrorCode::bad_input,
-                fmt::format("{}: {} in {} on another grid or of another quantity than {} in {}: they are not "
-                            "drawn side by side",
+                name_ + " is on another grid: fields are drawn side by side on the same one");
+  }
+  if (info.quantity != own.quantity || info.unit != own.unit) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{} is {} in {}, the field {} in {}: only one quantity is drawn side by side",
                             name_, info.quantity, info.unit, own.quantity, own.unit));
   }
   const LoadedScenario* const scene = reference_->scene();

@@ -154,10 +154,8 @@ void drawHeading(Canvas& canvas, const Style& style, const Legend& legend, doubl
 }
 
 std::vector<std::string> notesOf(const Legend& legend) {
-  std::vector<std::string> notes;
-  for (const std::string* const note : {&legend.map_note, &legend.note}) {
-    if (!note->empty()) notes.push_back(*note);
-  }
+  std::vector<std::string> notes = linesOf(legend.map_note, 15);
+  if (!legend.note.empty()) notes.push_back(legend.note);
   return notes;
 }
 
