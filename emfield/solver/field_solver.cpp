@@ -217,6 +217,9 @@ StageTimes FieldSolver::stageTimes() const {
 const std::vector<volume::Volume>& FieldSolver::volumes() const {
   return impl_->volumes;
 }
+const std::vector<std::uint8_t>& FieldSolver::partlyUnknown(std::size_t channel) const {
+  return impl_->masks[channel].partly_unknown;
+}
 
 FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
   const scenario::Scenario& old = *impl_->setup.scenario;

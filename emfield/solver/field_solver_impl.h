@@ -32,6 +32,12 @@ struct EmitterCache {
   WarningCounts warnings, jamming_warnings;
 };
 
+/// Columns of a channel that are unknown to its emitters.
+struct ChannelMask {
+  std::vector<std::uint16_t> first_valid_k;  ///< as in DenseVolume; empty: that of all channels
+  std::vector<std::uint8_t> partly_unknown;  ///< as FieldSolver::partlyUnknown()
+};
+
 struct FieldSolver::Impl {
   FieldOptions options;
   FieldSetup setup;
@@ -40,7 +46,7 @@ struct FieldSolver::Impl {
       engine;  ///< one slot per emitter plus a shared one for emitters that are not cached
   MemoryEstimate estimate;
   std::vector<EmitterCache> emitters;
-  std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
+  std::vector<ChannelMask> masks;  ///< one per channel
   std::vector<volume::Volume> volumes;
   PatternReaches reaches;
 
@@ -96,7 +102,7 @@ struct FieldSolver::Impl {
   std::vector<OccupancyShare> occupancyShares(int e, double t_s);
   void makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes);
   VolumeRequest volumeRequest(int channel, const scenario::Snapshot& snapshot);
-  const std::vector<std::uint16_t>& maskOf(const Channel& channel, std::vector<std::uint16_t>& own) const;
+  const std::vector<std::uint16_t>& maskOf(const Channel& channel, ChannelMask& mask) const;
 };
 
 }  // namespace emscape::emfield

@@ -264,8 +264,9 @@ void FrameSource::setScenario(std::shared_ptr<const scenario::Scenario> /*scenar
   throw Error(ErrorCode::usage, name() + ": volumes without a scenario cannot be edited");
 }
 
-void FrameSource::setComparison(bool on) {
-  if (on) throw Error(ErrorCode::usage, name() + ": there is nothing to compare with");
+void FrameSource::setComparison(Comparison comparison) {
+  if (comparison != Comparison::none)
+    throw Error(ErrorCode::usage, name() + ": there is nothing to compare with");
 }
 
 void FrameSource::setQuantity(const std::string& quantity) {
@@ -336,7 +337,7 @@ std::unique_ptr<FrameSource> openComparison(const FrameSelection& selection, con
       !compares || selection.compare == kOriginal ? "the original scenario" : selection.compare;
   return std::make_unique<DifferenceSource>(openField(field, target, stop), openReference,
                                             DifferenceReference{name, is_scenario, selection.cache_bytes},
-                                            compares);
+                                            selection.comparison());
 }
 
 /// The range of the values of a series.

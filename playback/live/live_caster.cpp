@@ -32,6 +32,11 @@ ViewState drawable(ViewState view) {
   return view;
 }
 
+bool sameBeside(const Frame& a, const Frame& b) {
+  if (!a.beside || !b.beside) return !a.beside && !b.beside;
+  return sameValues(*a.beside->frame, *b.beside->frame);
+}
+
 }  // namespace
 
 LiveCaster::LiveCaster(const ViewRequest& first, const ComputeTarget& target,
@@ -162,6 +167,7 @@ void LiveCaster::applyView(const ViewRequest& request) {
       if (painter_.setColors(view)) raise(SceneEvent::transfer_function);
     });
   }
+  apply(change.split, SceneEvent::view, [&] { painter_.setSplit(view.split); });
   if (change.ground) {
     attempt([&] { painter_.setScenery(view); });
     raise(SceneEvent::mode);  // also without the file that could not be read
@@ -182,7 +188,8 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
   const bool is_other_grid = field_ && field_->frame.grid() != delivery.frame.grid();
   const scenario::TerrainPtr ground = field_ && field_->scene ? field_->scene->terrain : nullptr;
   const bool is_other_ground = ground != (delivery.scene ? delivery.scene->terrain : nullptr);
-  const bool is_same_field = !is_first && !is_other_ground && sameValues(field_->frame, delivery.frame);
+  const bool is_same_field = !is_first && !is_other_ground && sameValues(field_->frame, delivery.frame) &&
+                             sameBeside(field_->frame, delivery.frame);
   const render::Camera before = is_first ? render::Camera{} : painter_.camera();
   painter_.setScene(delivery.title, delivery.scene ? &*delivery.scene : nullptr);
   field_ = delivery;
@@ -336,6 +343,8 @@ void LiveCaster::publish() {
   picture.transfer = painter_.transferFunction();
   picture.settings = painter_.settings();
   static_cast<ShownField&>(picture) = field_->frame;
+  picture.split_column = painter_.splitColumn();
+  if (picture.split_column > 0) picture.beside = field_->frame.beside->frame;
   picture.has_field = field_->frame.has_field;
   if (field_->scene) {
     picture.scenario = field_->scene->scenario;

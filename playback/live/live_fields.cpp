@@ -135,7 +135,7 @@ void LiveFields::open() {
     if (!source_) return;
     if (const LoadedScenario* scene = source_->scene()) opened_scenario_ = scene->scenario;
     Content content;
-    content.shown = {opened_scenario_, "", !wanted_.view.compare.empty()};
+    content.shown = {opened_scenario_, "", wanted_.view.comparison()};
     content.shown.quantity = shownOf(wanted_).quantity;
     content_ = std::make_shared<const Content>(content);
     noteContent();
@@ -232,7 +232,7 @@ bool LiveFields::serveFromMemory(const Shown& wanted) {
 /// What a request shows. Without a quantity it is the first of the computed scenario.
 LiveFields::Shown LiveFields::shownOf(const FieldRequest& request) const {
   Shown shown{request.scenario ? request.scenario : opened_scenario_, request.view.quantity,
-              !request.view.compare.empty()};
+              request.view.comparison()};
   const bool is_computed = source_->scene() != nullptr && request.view.scenario.empty();
   if (shown.quantity.empty() && is_computed) shown.quantity = shown.scenario->output.quantities.front();
   return shown;
@@ -255,9 +255,9 @@ void LiveFields::change(const Shown& wanted) {
     content.shown.quantity = wanted.quantity;
     changed();
   }
-  if (wanted.compares != content.shown.compares) {
-    source_->setComparison(wanted.compares);
-    content.shown.compares = wanted.compares;
+  if (wanted.comparison != content.shown.comparison) {
+    source_->setComparison(wanted.comparison);
+    content.shown.comparison = wanted.comparison;
     changed();
   }
   if (range_search_.next()) beginSearch();

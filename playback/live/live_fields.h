@@ -116,10 +116,10 @@ class LiveFields {
   struct Shown {
     std::shared_ptr<const scenario::Scenario> scenario;
     std::string quantity;
-    bool compares = false;
+    Comparison comparison = Comparison::none;
 
     bool operator==(const Shown& other) const {
-      return scenario == other.scenario && quantity == other.quantity && compares == other.compares;
+      return scenario == other.scenario && quantity == other.quantity && comparison == other.comparison;
     }
   };
   /// The same with what the source has for it.

@@ -199,8 +199,9 @@ void LiveView::show(const ViewState& view, std::shared_ptr<const scenario::Scena
         change.time &&
         (fields.times_s.empty() || fieldTime_s(fields, view.time_s) != fieldTime_s(fields, before.time_s));
     is_other_view = change.size || change.camera || change.settings || change.colors || change.ground ||
-                    change.labels || change.pattern;
-    is_other_field = change.field || is_other_time || (edited && edited != impl_->field.scenario);
+                    change.labels || change.pattern || change.split;
+    is_other_field = change.field || before.comparison() != view.comparison() || is_other_time ||
+                     (edited && edited != impl_->field.scenario);
     impl_->view.view = impl_->field.view = view;
   }
   if (is_other_view) impl_->ask(impl_->view, impl_->caster, [] {});

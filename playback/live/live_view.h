@@ -100,6 +100,9 @@ struct StateChange {
 
 /// A picture with the field that it shows; info().range_* is the range of that field. Immutable.
 struct LivePicture : ShownField {
+  std::shared_ptr<const Frame>
+      beside;  ///< field of the columns left of `split_column`; null if there are none
+  int split_column = 0;
   bool has_field = true;  ///< false: LiveOptions::begins_without_field, LiveView::showWithoutField()
   render::ImageSize size;
   /// With background and labels. Of a settled picture: as `emscape render` writes it.

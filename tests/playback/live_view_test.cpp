@@ -296,6 +296,30 @@ TEST(LiveView, EveryKindOfEventSettlesOnFullCast) {
   live.view->show(expected.view);
   expectSettled("quantity");
   EXPECT_EQ(live.view->picture()->volume.info().quantity, "snr_db");
+
+  expected.view.settings.map_height_agl_m = 400;
+  live.view->show(expected.view);
+  expectSettled("map layer");
+
+  changeSplit(expected.view, 0.25);
+  live.view->show(expected.view);
+  expectSettled("split");
+  EXPECT_EQ(live.view->picture()->split_column, 40);
+  ASSERT_NE(live.view->picture()->beside, nullptr);
+  EXPECT_EQ(live.view->picture()->info().quantity, "snr_db") << "no difference";
+
+  const long long computed = live.view->status().fields_computed;
+  expected.view.split = 0.75;
+  live.view->show(expected.view);
+  expectSettled("line of a split");
+  EXPECT_EQ(live.view->picture()->split_column, 120);
+  EXPECT_EQ(live.view->status().fields_computed, computed);
+
+  expected.view.split = 0;
+  changeComparison(expected.view, "");
+  live.view->show(expected.view);
+  expectSettled("field again");
+  EXPECT_EQ(live.view->picture()->split_column, 0);
 }
 
 /// A scenario whose field takes long.

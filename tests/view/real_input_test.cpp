@@ -171,6 +171,23 @@ TEST_F(RealInput, ShiftAndDragPanThePictureAndAPlainDragTurnsIt) {
   EXPECT_TRUE(reports("azimuth_deg", [&](const Json& value) { return value != before["azimuth_deg"]; }));
 }
 
+TEST_F(RealInput, KeysPaintTheMapAndSplitThePictureByALineThatIsDragged) {
+  open(quick());
+  ASSERT_TRUE(xdotool("key shift+l"));
+  EXPECT_TRUE(reports("map_layer", 100));
+  ASSERT_TRUE(xdotool("key shift+c"));
+  ASSERT_TRUE(reports("split", 0.5));
+  const int width = log("frame").back()["picture_width"].get<int>();
+  ASSERT_TRUE(comes([&] { return log("frame").back()["exact"] == true; }));
+  const Json before = log("frame").back();
+  ASSERT_TRUE(xdotool(drag({width / 2 + 1, 480}, -80)));
+  EXPECT_TRUE(reports("split", [&](const Json& value) {
+    return std::abs(value.get<double>() - (0.5 - 79.0 / width)) < 0.01;
+  }));
+  EXPECT_EQ(log("frame").back()["azimuth_deg"], before["azimuth_deg"]) << "the camera stays";
+  EXPECT_EQ(commands(), "map_layer split split");
+}
+
 class Selecting : public RealInput {
  protected:
   /// Selects the first object by its key. @return where it is in the window

@@ -59,6 +59,7 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       prober_(Prober::Detail::explained, wake_),
       cursor_(Prober::Detail::value, wake_),
       history_(wake_),
+      planes_(view_.settings.planes),
       files_(files ? std::move(files) : std::make_shared<Files>()),
       opened_unsaved_(options.unsaved_edits),
       has_kept_(options.unsaved_edits),

@@ -180,10 +180,17 @@ class Session {
   const render::RenderSettings& settings() const { return view_.settings; }
   /// A plane through the middle of the box; a vertical one faces the viewer.
   render::CutPlane newPlane(render::CutPlane::Kind kind) const;
-  /// @throws Error (bad_input) for too many, or values out of their range
+  /// Changes the planes: one undo step. @throws Error (bad_input) for too many, or values out of their range
   void setPlanes(const std::vector<render::CutPlane>& planes);
+  /// The same while one is dragged: all changes until endPlaneDrag() are one undo step.
+  void dragPlanes(const std::vector<render::CutPlane>& planes);
+  void endPlaneDrag();
   /// True if the difference to the reference is requested instead of the field.
-  bool compares() const { return !view_.compare.empty(); }
+  bool compares() const { return view_.comparison() == playback::Comparison::difference; }
+  /// True if the reference is requested beside the field.
+  bool isSplit() const { return view_.comparison() == playback::Comparison::side_by_side; }
+  /// Moves the line of a split view. @param x  pixel of the picture
+  void moveSplit(double x);
   /// Colours and opacities; null before the first picture, and for categories, which have fixed colours.
   const playback::TransferEditor* transfer() const { return transfer_ ? &*transfer_ : nullptr; }
   /// Statistics of the values of the picture's volume, or of the previous one while they are computed; null
@@ -210,9 +217,9 @@ class Session {
   const Prober& prober() const { return prober_; }
   /// Values over time at the locked probe, while its panel is open.
   const ValueHistory& history() const { return history_.values(); }
-  /// True if there is a change of the scenario or of the colours.
-  bool canUndo() const { return undo_order_.canUndo() || dragging_ || isDragging(); }
-  bool canRedo() const { return undo_order_.canRedo() && !dragging_ && !isDragging(); }
+  /// True if there is a change of the scenario, of the colours or of the planes.
+  bool canUndo() const { return undo_order_.canUndo() || dragging_ || isDragging() || planes_.dragged(); }
+  bool canRedo() const { return undo_order_.canRedo() && !dragging_ && !isDragging() && !planes_.dragged(); }
   const std::vector<std::optional<playback::Bookmark>>& bookmarks() const { return bookmarks_; }
   const FieldTimes& fieldTimes() const { return field_times_; }
   const Notice& notice() const { return notice_; }
@@ -245,6 +252,10 @@ class Session {
 
   void switchPlanes(const Command& command);
   void changePlane(const Command& command);
+  void changeMapLayer(const Command& command);
+  void changeComparison(bool compares);
+  void changeSplit(double split);
+  void showPlanes();
   void changeSetting(const Command& command);
   void showQuantity(const std::string& name);
   void revertRejected();
@@ -355,6 +366,8 @@ class Session {
   playback::Timeline timeline_;
   double advanced_at_s_ = 0;
   render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // mode to which the key I returns
+  double last_map_height_agl_m_ = 100;  // to which the key of the map layer returns
+  double last_split_ = 0.5;             // to which the key of the split view returns
   std::optional<playback::TransferEditor> transfer_;
   bool takes_colors_ = true;  // true: takes the colours of the next pictures, which are fitted again
   std::shared_ptr<const ValueSummary> values_;
@@ -368,7 +381,7 @@ class Session {
   playback::ScenarioPtr shown_scenario_;  // the scenario of the live view
   struct {
     std::string quantity, compare;
-    double iso_value = 0;
+    double split = 0, iso_value = 0;
   } last_shown_;  // of the view of the last computed field
   std::optional<Rejection> rejection_;
   std::string selected_;
@@ -377,6 +390,7 @@ class Session {
   PickTool tool_;
   Prober prober_, cursor_;
   ProbeHistory history_;
+  playback::UndoStack<std::vector<render::CutPlane>> planes_;  // those of the view
   UndoOrder undo_order_;
   bool dragging_ = false;  // the colours
   bool touched_ = false;   // by a command since the last update()

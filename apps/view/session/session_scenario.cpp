@@ -86,10 +86,12 @@ void Session::takeEdits() {
 void Session::noteSteps() {
   if (edits_) undo_order_.note(History::scenario, edits_->stepsMade());
   if (transfer_) undo_order_.note(History::transfer, transfer_->stepsMade());
+  undo_order_.note(History::planes, planes_.stepsMade());
 }
 
 void Session::askUndo(bool undo) {
   endDrag();
+  endPlaneDrag();
   if (edit_queue_.isBusy()) {
     edit_queue_.then([this, undo] { undoOrRedo(undo); });
   } else {
@@ -105,6 +107,9 @@ void Session::undoOrRedo(bool undo) {
     showScenario();
   } else if (history == History::transfer) {
     changeTransfer([undo](playback::TransferEditor& editor) { undo ? editor.undo() : editor.redo(); });
+  } else if (history == History::planes) {
+    undo ? planes_.undo() : planes_.redo();
+    showPlanes();
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -43,6 +44,10 @@ struct FieldOptions {
   bool also_unjammed = false;
   bool allow_missing_terrain =
       false;  ///< true: columns over holes, and those that are seen only across one, are masked
+  /// A column that is unknown to some of a channel's active emitters, but not to all. True: it has the value
+  /// of the others, if emitters can only raise the channel's quantity: the value is then at least that
+  /// (FieldSolver::partlyUnknown()). False, and for other quantities: it is masked.
+  bool keep_partly_unknown = false;
   Backend backend = Backend::cpu;  ///< automatic: the GPU if there is one with enough memory, else the CPU
   /// Null: the field is computed at the voxels of the scenario's region. Else at the points of this surface:
   /// volumes then have the dimensions width x height x number of heights, and no position on the earth.
@@ -140,6 +145,9 @@ class FieldSolver {
   /// computed. info().range_* is the range of each volume, info().time_s the time of the last update. Empty
   /// handles before the first update.
   const std::vector<volume::Volume>& volumes() const;
+  /// The columns of a channel's volume that are unknown to some of its emitters and have the value of the
+  /// others (FieldOptions::keep_partly_unknown): 1, else 0; empty: none. Valid until the next update.
+  const std::vector<std::uint8_t>& partlyUnknown(std::size_t channel) const;
   /// cpu or cuda.
   Backend backend() const;
 

@@ -128,4 +128,9 @@ Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, con
 Image8 compose(const Image8& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
                const HiddenTest& hidden = {});
 
+/// Replaces the columns of a finished picture before `column` by those of another one of the same size, and
+/// draws a line between them, with captions of both parts above.
+void joinParts(const Image8& left, int column, const std::array<std::string, 2>& captions,
+               const Annotations& annotations, Image8& picture);
+
 }  // namespace emscape::render
