@@ -44,11 +44,11 @@ struct Legend {
   std::string unit;      ///< "dBW/m²"; may be empty
   FieldScale scale;      ///< of the ticks, in `unit`
   TransferFunction function;
-  std::optional<double> iso_value;   ///< marked on the colour bar
-  bool whole_numbers = false;        ///< counts: no ticks between
-  std::string hatched;               ///< what is hatched; empty: nothing is
-  std::string map_note;              ///< a line below the colour bar or the categories: where the map layer is
-  std::string note;                  ///< a line below that; both may be empty
+  std::optional<double> iso_value;  ///< marked on the colour bar
+  bool whole_numbers = false;       ///< counts: no ticks between
+  std::string hatched;              ///< what is hatched; empty: nothing is
+  std::string map_note;             ///< a line below the colour bar or the categories: where the map layer is
+  std::string note;                 ///< a line below that; both may be empty
   std::vector<Category> categories;  ///< categorical volumes: the listed categories
 };
 
