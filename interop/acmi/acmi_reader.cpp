@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "base/geodesy/position_limits.h"
 #include "base/text/utc.h"
@@ -330,6 +331,53 @@ void AcmiReader::nameCarriedBeams() {
     object.keys.acmi_type = parent.keys.acmi_type;
     object.side = parent.side;
   }
+}
+
+std::size_t AcmiReader::keepLatest(std::size_t max_objects) {
+  std::vector<std::pair<double, std::uint64_t>> by_time;
+  for (const auto& [id, state] : states_) {
+    const auto& poses = objectOf(state).poses;
+    by_time.emplace_back(poses.empty() ? -1e9 : poses.back().t_s, id);
+  }
+  const std::size_t dropped = by_time.size() > max_objects ? by_time.size() - max_objects : 0;
+  std::sort(by_time.begin(), by_time.end());
+  for (std::size_t i = 0; i < dropped; ++i) states_.erase(by_time[i].second);
+  std::vector<std::size_t> kept_as(recording_.objects.size(), kNoTarget);
+  std::vector<RecordedObject> objects;
+  std::vector<RecordedBeam> beams;
+  std::vector<State*> kept;
+  for (auto& [id, state] : states_) kept.push_back(&state);
+  std::sort(kept.begin(), kept.end(), [](const State* a, const State* b) { return a->object < b->object; });
+  for (State* const state : kept) {
+    kept_as[state->object] = objects.size();
+    RecordedObject& object = objects.emplace_back(std::move(objectOf(*state)));
+    if (object.poses.size() > 1) object.poses = {object.poses.back()};
+    if (object.presence.size() > 1) object.presence = {object.presence.back()};
+    if (!state->beam) continue;
+    RecordedBeam& beam = beams.emplace_back(std::move(recording_.beams[*state->beam]));
+    if (beam.states.size() > 1) beam.states = {beam.states.back()};
+    state->beam = beams.size() - 1;
+  }
+  const auto keep = [&kept_as](std::size_t& index) {
+    if (index != kNoTarget) index = kept_as[index];
+  };
+  for (auto& [id, state] : states_) {
+    keep(state.object);
+    keep(state.radar.target);
+  }
+  for (RecordedBeam& beam : beams) {
+    keep(beam.object);
+    for (BeamState& state : beam.states) keep(state.target);
+  }
+  std::map<std::size_t, std::string> carried;  // of several parents told the last one
+  for (auto& [index, parent] : carried_) {
+    if (kept_as[index] != kNoTarget) carried[kept_as[index]] = std::move(parent);
+  }
+  carried_.assign(carried.begin(), carried.end());
+  recording_.objects = std::move(objects);
+  recording_.beams = std::move(beams);
+  samples_ = recording_.objects.size() + recording_.beams.size();
+  return dropped;
 }
 
 Recording AcmiReader::finish() {

@@ -41,6 +41,7 @@ class DifferenceSource : public FrameSource {
   }
   std::vector<std::string> quantities() const override { return source_->quantities(); }
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override;
+  void setPoses(PosesPtr poses) override { source_->setPoses(std::move(poses)); }
   void setQuantity(const std::string& quantity) override;
   void setComparison(bool on) override { compares_ = on; }
   std::size_t cachedBytes() const override { return difference_.cachedBytes(); }

@@ -27,6 +27,7 @@ struct FieldRequest {
   long long revision = 0;  ///< counts requests
   ViewState view;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
+  PosesPtr poses = {};                                 ///< of a live source; null: those of the scenario
   long long search = 0;                  ///< number of the requested search of the series' range; 0: none
   double patience_ms = Patience::kNone;  ///< with the field in progress
 };
@@ -110,11 +111,13 @@ class LiveFields {
   /// What the source shows, apart from the time.
   struct Shown {
     std::shared_ptr<const scenario::Scenario> scenario;
+    PosesPtr poses;
     std::string quantity;
     bool compares = false;
 
     bool operator==(const Shown& other) const {
-      return scenario == other.scenario && quantity == other.quantity && compares == other.compares;
+      return scenario == other.scenario && poses == other.poses && quantity == other.quantity &&
+             compares == other.compares;
     }
   };
   /// The same with what the source has for it.

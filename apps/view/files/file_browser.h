@@ -11,7 +11,7 @@
 namespace emscape::view {
 
 /// Files that the window can open, by their extension.
-enum class FileKind { folder, scenario, volume, view, other };
+enum class FileKind { folder, scenario, volume, view, recording, other };
 FileKind fileKindOf(const std::filesystem::path& file, bool is_folder);
 
 struct FolderEntry {

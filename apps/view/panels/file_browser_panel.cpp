@@ -23,6 +23,8 @@ const char* nameOf(FileKind kind) {
       return "volume";
     case FileKind::view:
       return "view";
+    case FileKind::recording:
+      return "recording";
     case FileKind::other:
       break;
   }

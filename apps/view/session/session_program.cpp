@@ -14,6 +14,7 @@ ProgramState Session::programState() const {
   facts.has_picture = picture_ != nullptr;
   facts.is_playing = timeline_.playing();
   facts.rate = timeline_.rate();
+  facts.stream = stream_.text;
   facts.has_pending_edits = edit_queue_.isBusy();
   if (computing_from_s_) facts.computing_s = log_.now_s() - *computing_from_s_;
   if (files_->is_opening) facts.opening = files_->opening;
