@@ -1,6 +1,7 @@
 #include "document/csv.h"
 
 #include <algorithm>
+#include <fstream>
 
 #include "document/text_file.h"
 
@@ -87,6 +88,20 @@ std::optional<CsvFault> headerFault(const std::vector<CsvCell>& header) {
       return CsvFault{header[i].column, "column " + std::to_string(i + 1) + " has no name"};
   }
   return std::nullopt;
+}
+
+std::vector<std::string> csvColumnsOf(const std::string& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::string begin(4096, '\0');
+  stream.read(begin.data(), std::streamsize(begin.size()));
+  begin.resize(std::size_t(stream.gcount()));
+  if (begin.compare(0, 3, "\xEF\xBB\xBF") == 0) begin.erase(0, 3);
+  CsvReader reader(begin);
+  std::vector<std::string> names;
+  CsvRow row;
+  if (!reader.next(row)) return names;
+  for (const CsvCell& cell : row.cells) names.emplace_back(cell.text);
+  return names;
 }
 
 }  // namespace emscape::document

@@ -49,6 +49,10 @@ struct CsvFault {
   std::string message;
 };
 
+/// Names of the columns in the header of a file, which is searched for in its first 4096 bytes; none if the
+/// file cannot be read or has no header.
+std::vector<std::string> csvColumnsOf(const std::string& file);
+
 /// The fault that a header line has whatever its columns mean: another separator than commas, or a column
 /// without a name.
 std::optional<CsvFault> headerFault(const std::vector<CsvCell>& header);

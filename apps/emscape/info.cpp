@@ -12,6 +12,7 @@
 #include "apps/common/interrupt.h"
 #include "apps/emscape/subcommands.h"
 #include "base/files/json_writing.h"
+#include "document/csv.h"
 #include "emfield/excess/model_choices.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/solver/field_solver.h"
@@ -28,9 +29,8 @@
 #include "report/paths/refractivity_report.h"
 #include "report/paths/waveform_report.h"
 #include "report/runs/work_report.h"
+#include "scenario/air/refractivity_file.h"
 #include "scenario/antenna/shapes.h"
-#include "scenario/file/csv_columns.h"
-#include "scenario/file/refractivity_file.h"
 #include "volume/mesh/mesh_file.h"
 
 namespace emscape::app {
@@ -157,7 +157,7 @@ Description describeScenario(const std::string& file) {
   return {json, refractivity};
 }
 
-/// @param file  a CSV file of profiles, or IGRA 2 soundings
+/// @param file  a CSV file of profiles, or soundings
 Description describeRefractivity(const std::string& file) {
   constexpr double kGHz = 1e9;
   const scenario::RefractivityFile read =
@@ -278,7 +278,7 @@ Json describeElevation(const std::string& file) {
 
 /// @throws Error (bad_input) for other CSV files than an antenna's grid
 void requireAntennaColumns(const std::string& file) {
-  const std::vector<std::string> names = scenario::csvColumnsOf(file);
+  const std::vector<std::string> names = document::csvColumnsOf(file);
   if (names.size() < 2) return;  // an empty file, or another separator, which the reader reports
   for (const char* column : {"elevation_deg", "azimuth_deg", "attenuation_db"}) {
     if (std::find(names.begin(), names.end(), column) != names.end()) continue;
@@ -406,7 +406,7 @@ void addInfo(CLI::App& app, const GlobalOptions& global, Action& action) {
 Scenarios: .yaml .yml .json. Volumes: .vdb .nvdb .vti .raw .dat; fields on tetrahedra: .vtu; series:
 .pvd or a folder (its first step is described).
 Elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt. Antennas: .msi .pln .csv.
-Refractivity: .csv with a column height_msl_m; soundings of IGRA 2 (any ending; the last is described). Each duct is given with
+Refractivity: .csv with a column height_msl_m; soundings of IGRA 2 and the University of Wyoming (any ending; the last is described). Each duct is given with
 its heights, its strength, the largest trapped angle, the number of modes at 1, 3 and 10 GHz (of a scenario, at the frequencies of
 its emitters), and the frequency from which it traps.
 

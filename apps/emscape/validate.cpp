@@ -15,6 +15,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "report/paths/choices_report.h"
+#include "report/paths/refractivity_report.h"
 #include "report/runs/work_report.h"
 
 namespace emscape::app {
@@ -136,6 +137,7 @@ int validate(const ValidateCommand& command, const GlobalOptions& global) {
   const bool ok = std::none_of(result.problems.begin(), result.problems.end(),
                                [](const Problem& problem) { return problem.severity == Severity::error; });
 
+  const std::string air = result.scenario ? report::airSource(*result.scenario) : "";
   if (global.json) {
     Json problems = Json::array();
     for (const Problem& problem : result.problems) {
@@ -148,12 +150,14 @@ int validate(const ValidateCommand& command, const GlobalOptions& global) {
     printJson({{"ok", ok},
                {"problems", problems},
                {"choices", report::choicesJson(choices)},
+               {"air", air},
                {"work", work ? report::workJson(*work) : Json(nullptr)}});
   } else {
     for (const Problem& problem : result.problems) {
       print("{}: {}: {}\n", emscape::toString(problem.location), toString(problem.severity), problem.message);
     }
     if (ok && !global.quiet) {
+      if (!air.empty()) print("air: {}\n", air);
       for (const emfield::EmitterChoice& choice : choices)
         print("emitter '{}': {}: {} {}\n", choice.emitter, choice.model, choice.name, choice.text);
       if (work) print("{}\n", report::workText(*work));
@@ -178,7 +182,7 @@ Examples:
   emscape validate scenarios/jacksboro.yaml
   emscape validate mine.yaml --set "emitters.search radar.power_w=500"
   emscape validate mine.yaml --json        {"ok", "problems": [{"file", "line", "column", "severity", "message"}],
-                                            "choices": [{"emitter", "model", "name", "text"}],
+                                            "choices": [{"emitter", "model", "name", "text"}], "air",
                                             "work": {"memory_mib", "volumes_mib", "emitters_mib", "terrain_mib",
                                                      "available_mib", "steps", "step_mib", "time_s", "threads"}}
 

@@ -403,7 +403,7 @@ void App::takeScreenshot() {
   screenshot_.reset();
   try {
     render::writePng(file, window_.readPixels());
-    session_->tell("written: " + file);
+    session_->tellWritten(file);
   } catch (const Error& error) {
     session_->tell(error.what(), true);
   }

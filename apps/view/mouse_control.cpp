@@ -72,6 +72,7 @@ void MouseControl::move(const Area& picture, const Viewport& viewport, double ri
     plane_->moveTo(x_ - picture.x, y_ - picture.y, session);
     return;
   }
+  if (drag_ == Drag::pan || drag_ == Drag::look) session.stopFollowing();
   CameraControl& camera = session.camera();
   if (drag_ == Drag::orbit) camera.orbit(kOrbit_deg_px * right_px, kOrbit_deg_px * down_px, viewport);
   if (drag_ == Drag::pan) camera.pan(right_px, down_px, viewport);
@@ -99,7 +100,10 @@ void MouseControl::release(const Area& picture, Session& session) {
 void MouseControl::click(double x, double y, const SceneObject* object, Session& session) {
   static constexpr const char* kVerbs[] = {"", "measure", "draw_track", "place"};
   const char* const verb = kVerbs[static_cast<std::size_t>(session.tool().kind)];
-  if (session.tool().isOn()) return session.perform({verb, {{"x", x}, {"y", y}}});
+  if (session.tool().isOn()) {
+    session.perform({verb, {{"x", x}, {"y", y}}});
+    return;
+  }
   const std::string path = object != nullptr ? object->path : std::string();
   if (path == session.selected()) return;
   session.perform({"select", path.empty() ? Json::object() : Json{{"path", path}}});

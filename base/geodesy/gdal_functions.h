@@ -43,7 +43,8 @@ const LoadedLibrary& library();
   F(GDALGetDataTypeSizeBytes) F(GDALGetDatasetDriver) F(GDALGetDriverByName) F(GDALGetDriverShortName) \
   F(GDALGetFileList) F(GDALGetGeoTransform) F(GDALGetMaskBand) F(GDALGetMaskFlags) F(GDALGetMetadataItem) \
   F(GDALGetRasterBand) F(GDALGetRasterColorTable) F(GDALGetRasterCount) F(GDALGetRasterDataType) F(GDALGetRasterNoDataValue) \
-  F(GDALGetRasterOffset) F(GDALGetRasterScale) F(GDALGetRasterUnitType) F(GDALGetRasterXSize) \
+  F(GDALGetColorInterpretationName) F(GDALGetRasterColorInterpretation) F(GDALGetRasterOffset) \
+  F(GDALGetRasterScale) F(GDALGetRasterUnitType) F(GDALGetRasterXSize) \
   F(GDALGetRasterYSize) F(GDALGetSpatialRef) F(GDALGroupCreateAttribute) F(GDALGroupCreateDimension) \
   F(GDALGroupCreateMDArray) F(GDALGroupOpenMDArray) F(GDALGroupRelease) F(GDALIdentifyDriverEx) F(GDALInvGeoTransform) \
   F(GDALMDArrayCreateAttribute) F(GDALMDArrayGetTotalElementsCount) F(GDALMDArrayRead) \

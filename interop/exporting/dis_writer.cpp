@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/text/utc.h"
+#include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "interop/dis/datagrams.h"
@@ -21,6 +22,7 @@ using dis::Header;
 constexpr double kEntityHeartbeat_s = 5, kEmissionHeartbeat_s = 10, kTransmitterHeartbeat_s = 2;
 /// Systems of a PDU, so that it has less than 8192 bytes.
 constexpr std::size_t kMaxSystems = 100;
+constexpr double kEndOfCaptures_s = 4294967296;  // of their 32 bits, from 1970 on
 constexpr int kSearch = 1, kTrack = 4, kJam = 12;
 
 enum class Event { state, emission, transmitter };
@@ -243,12 +245,16 @@ long long writeDis(const ExportJob& job, const PduSink& sink, std::vector<Export
 }
 
 long long writeCapture(const ExportJob& job, std::ostream& stream, std::vector<ExportedRow>& rows) {
+  const double origin_s = originOf(job.scenario);
+  if (!(origin_s >= 0 && origin_s + job.scenario.clock.duration_s < kEndOfCaptures_s)) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: epoch: {}: captures hold times from 1970 to 2106; export to .acmi, or "
+                            "give another epoch, as with --set epoch=2000-01-01T00:00:00Z",
+                            job.scenario.file, job.scenario.clock.epoch_utc));
+  }
   dis::CaptureWriter capture(stream);
   return writeDis(
-      job,
-      [&, origin_s = originOf(job.scenario)](double t_s, const std::vector<std::uint8_t>& bytes) {
-        capture.write(origin_s + t_s, bytes);
-      },
+      job, [&](double t_s, const std::vector<std::uint8_t>& bytes) { capture.write(origin_s + t_s, bytes); },
       rows);
 }
 

@@ -11,6 +11,7 @@
 #include "emscape/base/units.h"
 #include "interop/importing/nodes.h"
 #include "scenario/file/source.h"
+#include "scenario/scan/scan_sweep.h"
 
 namespace emscape::interop {
 namespace {
@@ -93,11 +94,7 @@ BeamState beamStateAt(const scenario::Emitter& emitter, double t_s) {
   const scenario::ScanSpec& scan = emitter.scan;
   BeamState state;
   state.t_s = t_s;
-  state.is_on =
-      emitter.active_s.empty() || std::any_of(emitter.active_s.begin(), emitter.active_s.end(),
-                                              [t_s](const scenario::TimeInterval& interval) {
-                                                return t_s >= interval.begin_s && t_s < interval.end_s;
-                                              });
+  state.is_on = scenario::isActiveAt(emitter, t_s);
   state.frequency_hz = emitter.frequency_hz;
   state.bandwidth_hz = emitter.bandwidth_hz;
   state.erp_dbm = ratioToDb(emitter.power_w) + 30 + emitter.antenna->gain_dbi - emitter.losses_db;

@@ -86,11 +86,11 @@ std::vector<BeamPiece> piecesOf(const RecordedBeam& beam, const std::vector<Piec
     auto piece = std::find_if(pieces.begin(), pieces.end(),
                               [&](const BeamPiece& p) { return equalSettings(p.state, state); });
     if (piece == pieces.end()) {
-      if (pieces.size() < kMaxPieces) {
-        pieces.push_back({state, {}, {}});
-      } else {
+      if (pieces.size() >= kMaxPieces) {
         cut = true;
+        continue;
       }
+      pieces.push_back({state, {}, {}});
       piece = pieces.end() - 1;
     }
     const bool points = !std::isnan(state.azimuth_deg) || !std::isnan(state.elevation_deg);

@@ -27,6 +27,7 @@ constexpr double kAllAround_deg = 359;
 /// A half sweep from here on (deg) is a motion of the beam.
 constexpr double kSweeps_deg = 2;
 constexpr std::size_t kMaxDwells = 5000, kMaxActive = 10000;
+constexpr double kShortestActive_s = 1e-3;  // the decimals that are written
 
 bool known(double value) {
   return !std::isnan(value);
@@ -283,8 +284,13 @@ DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece*
   if (!is_always) {
     std::vector<DocumentNodePtr> spans;
     for (const PieceSpan& span : active) {
-      if (spans.size() < kMaxActive)
+      const bool is_written = span.end_s - std::max(span.begin_s, 0.0) >= kShortestActive_s;
+      if (spans.size() < kMaxActive && is_written)
         spans.push_back(listNode({decimalNode(std::max(span.begin_s, 0.0), 3), decimalNode(span.end_s, 3)}));
+    }
+    if (spans.empty()) {
+      fault = "on for less than 1 ms";
+      return nullptr;
     }
     emitter.set("active_s", listNode(spans));
   }

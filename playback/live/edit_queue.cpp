@@ -36,7 +36,8 @@ void EditQueue::cancelDrag() {
   if (std::exchange(is_dragging_, false)) push({Kind::cancel_drag, {}, {}});
 }
 
-void EditQueue::clear() {
+void EditQueue::clear(EditHistory& history) {
+  history.cancelDrag();
   waiting_.clear();
   is_asked_ = is_dragging_ = false;
 }

@@ -43,8 +43,8 @@ class EditQueue {
   bool isBusy() const { return !waiting_.empty(); }
   /// Executes the operations that are ready. @return the edits made or refused since the last call
   std::vector<Outcome> update(EditHistory& history);
-  /// Drops all pending requests.
-  void clear();
+  /// Drops all pending requests, and takes back a drag that is open.
+  void clear(EditHistory& history);
 
  private:
   enum class Kind { set, replace, move, begin_drag, end_drag, cancel_drag, callback };

@@ -153,7 +153,10 @@ void LiveCaster::applyView(const ViewRequest& request) {
       if (painter_.setColors(view)) raise(SceneEvent::transfer_function);
     });
   }
-  apply(change.ground, SceneEvent::mode, [&] { painter_.setScenery(view); });
+  if (change.ground) {
+    attempt([&] { painter_.setScenery(view); });
+    raise(SceneEvent::mode);  // also without the file that could not be read
+  }
   if (change.labels) attempt([&] { painter_.setScenery(view); });
   if (change.labels || request.on_device != before.on_device) changeLabels();
   apply(change.pattern, SceneEvent::mode, [&] {

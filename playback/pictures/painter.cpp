@@ -11,6 +11,7 @@
 #include "emscape/playback/frames/scene.h"
 #include "playback/frames/difference_series.h"
 #include "playback/frames/platform_tracks.h"
+#include "playback/pictures/followed_camera.h"
 #include "playback/pictures/scenery.h"
 
 namespace emscape::playback {
@@ -314,25 +315,12 @@ std::string Painter::note(render::Pattern pattern) const {
   return text;
 }
 
-/// The camera at the platform that it follows.
-render::CameraSpec Painter::followed(render::CameraSpec spec) const {
-  if (view_.follow.empty() || !scene_ || !frame_ || !frame_->grid().georeferenced) return spec;
-  const std::vector<scenario::Platform>& platforms = scene_->scenario->platforms;
-  const auto found =
-      std::find_if(platforms.begin(), platforms.end(),
-                   [&](const scenario::Platform& platform) { return platform.name == view_.follow; });
-  if (found == platforms.end()) return spec;
-  const scenario::Snapshot snapshot =
-      scenario::snapshotAt(scene_->scenario, scene_->terrain.get(), frame_->info().time_s);
-  const scenario::PlatformState& state =
-      snapshot.platforms[static_cast<std::size_t>(found - platforms.begin())];
-  spec.target_m = GeoFrame(frame_->grid().frame).toLocal(state.position);
-  if (view_.follow_mode == FollowMode::chase) spec.azimuth_deg += state.attitude.heading_deg;
-  return spec;
-}
-
 render::Camera Painter::cameraOf(const render::CameraSpec& given) const {
-  const render::CameraSpec spec = followed(given);
+  ViewState view = view_;
+  view.camera = given;
+  const render::CameraSpec spec = scene_ && frame_ ? followedCamera(view, scene_->scenario, scene_->terrain,
+                                                                    frame_->grid(), frame_->info().time_s)
+                                                   : given;
   return render::makeCamera(spec, sceneBox(), view_.size, render::overlayMargins(view_.size, annotations_));
 }
 

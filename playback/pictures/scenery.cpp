@@ -78,6 +78,7 @@ bool Scenery::updateGround(const ViewState& view) {
     marked_.reset();
   }
   if (!is_other && drawn_ && drawn_->light == is_light && drape_ == view.drape) return false;
+  if (!drawn_) marked_.reset();  // marks lie on the ground that is drawn
   auto drawn = std::make_shared<render::HeightField>(*ground_);
   drawn->light = is_light;
   if (!is_other && drawn_ && drape_ == view.drape) {

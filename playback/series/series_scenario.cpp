@@ -15,19 +15,22 @@ namespace {
 namespace fs = std::filesystem;
 
 bool isOfSeries(const fs::path& input, const fs::path& folder) {
-  return fs::is_directory(input) || input.extension() == ".pvd" ||
+  std::error_code ignored;
+  return fs::is_directory(input, ignored) || input.extension() == ".pvd" ||
          SeriesJournal(folder).fileNames().count(input.filename().string()) > 0;
 }
 
 /// The reason why the scenario is not that of the series; empty if it is.
 std::string obstacleOf(const std::string& file, const std::vector<scenario::Edit>& edits,
                        const SeriesState& state) {
-  if (!fs::exists(file)) return "is not there any more";
+  std::error_code error;
+  if (!fs::exists(file, error))
+    return error ? "cannot be reached: " + error.message() : "is not there any more";
   const auto found = scenario::parseScenario(file, edits).scenario;
   if (!found || found->hash != state.recipe.value("scenario hash", "")) return "has changed since";
   const std::vector<std::string> files = scenario::filesOf(*found);
-  const auto missing =
-      std::find_if(files.begin(), files.end(), [](const std::string& name) { return !fs::exists(name); });
+  const auto missing = std::find_if(files.begin(), files.end(),
+                                    [&](const std::string& name) { return !fs::exists(name, error); });
   return missing == files.end() ? "" : "names " + *missing + ", which is not there any more";
 }
 

@@ -13,6 +13,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "propagation/registry/model_info.h"
 #include "report/paths/profile_plot.h"
+#include "report/paths/refractivity_report.h"
 #include "report/paths/section_plot.h"
 #include "report/paths/waveform_report.h"
 #include "report/text.h"
@@ -219,6 +220,7 @@ Json toJson(const ProfileReport& report) {
           {"obstacles", obstacles},
           {"model", toString(budget.model)},
           {"model_why", budget.excess.why},
+          {"air", airSource(*report.snapshot.scenario)},
           {"excess_db", number(budget.excess.loss_db)},
           {"excess_parts_db", excess_parts},
           {"budget", terms},
@@ -242,6 +244,8 @@ std::string profileText(const ProfileReport& report) {
   addObstacles(out, budget);
   addBudget(out, budget);
   addCompared(out, report.compared, budget);
+  const std::string air = airSource(*report.snapshot.scenario);
+  if (!air.empty()) out.add("\nAir: {}\n", air);
   if (!budget.warnings.empty()) out.add("\n");
   for (const std::string& warning : budget.warnings) out.add("Warning: {}\n", warning);
   out.add("\n{}\n", budget.verdict);

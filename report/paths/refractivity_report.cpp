@@ -161,8 +161,13 @@ Json profilesJson(const RefractivityField& field, const std::vector<double>& fre
 
 Json refractivityJson(const Refractivity& refractivity, const std::vector<double>& frequencies_hz) {
   Json json{{"profiles", profilesJson(refractivity.air, frequencies_hz)}};
+  if (!refractivity.source.empty()) json["source"] = refractivity.source;
   if (!refractivity.members.empty()) json["members"] = membersJson(refractivity);
   return json;
+}
+
+std::string airSource(const scenario::Scenario& scenario) {
+  return scenario.atmosphere.refractivity ? scenario.atmosphere.refractivity->source : "";
 }
 
 void plotRefractivity(const Refractivity& refractivity, const std::string& title, render::ImageSize size,

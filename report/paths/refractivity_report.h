@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "emscape/render/picture/image.h"
+#include "emscape/scenario/model/scenario.h"
 #include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "report/json.h"
 
@@ -15,6 +16,10 @@ Json profilesJson(const propagation::RefractivityField& field, const std::vector
 /// The same for a scenario, with the ranges over the members of its ensemble.
 Json refractivityJson(const propagation::Refractivity& refractivity,
                       const std::vector<double>& frequencies_hz);
+
+/// Where the measured refractivity of a scenario comes from: "air.csv: 1 profile"; a sounding with station,
+/// time and distance; empty: it is not measured.
+std::string airSource(const scenario::Scenario& scenario);
 
 /// Plots M and N over height, with the layers in which M decreases; for several profiles, the layers of the
 /// first one.

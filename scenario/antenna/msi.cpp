@@ -32,6 +32,7 @@ namespace {
 
 struct MsiFile {
   std::string name;
+  std::string title;  ///< the first line that is no keyword, before the cuts
   std::optional<double> gain_dbi;
   std::optional<double> tilt_deg;  ///< downwards
   std::vector<CutRow> horizontal, vertical;
@@ -65,14 +66,24 @@ class MsiReader {
       content_.name = std::string(value.text);
     } else if (keyword == "TILT" || keyword == "ELECTRICAL_TILT") {
       // TILT often contains a word (ELECTRICAL, MECHANICAL) instead of an angle.
-      if (const auto tilt_deg = numberIn(value.text)) content_.tilt_deg = tilt_deg;
-    } else if (numberIn(words[0].text)) {
+      if (const auto tilt_deg = valueIn(value.text)) content_.tilt_deg = tilt_deg;
+    } else if (words.size() == 2 && valueIn(words[0].text) && valueIn(words[1].text)) {
       fail(line,
            fmt::format(
                "'{}' is a row of numbers outside a HORIZONTAL or VERTICAL cut; more rows than announced?",
                line.text));
+    } else if (content_.title.empty() && content_.horizontal.empty() && content_.vertical.empty()) {
+      content_.title = std::string(line.text);
     }
     // Other keywords do not describe the pattern; manufacturers add their own.
+  }
+
+  /// A number; also with a decimal comma.
+  static std::optional<double> valueIn(std::string_view text) {
+    std::string with_point(text);
+    if (std::count(text.begin(), text.end(), ',') == 1 && text.find('.') == std::string_view::npos)
+      std::replace(with_point.begin(), with_point.end(), ',', '.');
+    return numberIn(with_point);
   }
 
   void readCut(const std::vector<TextField>& words, std::vector<CutRow>& rows) {
@@ -106,7 +117,7 @@ class MsiReader {
 
   double numberWithin(const TextField& field, double lowest, double highest, const std::string& what,
                       const char* unit) const {
-    const std::optional<double> value = numberIn(field.text);
+    const std::optional<double> value = valueIn(field.text);
     if (!value) fail(field, fmt::format("{} '{}' is not a number", what, field.text));
     if (*value < lowest || *value > highest) {
       fail(field,
@@ -115,13 +126,20 @@ class MsiReader {
     return *value;
   }
 
-  /// "17.5 dBi", "15.35dBd" or "15.35" (in dBd).
+  /// "17.5 dBi", "15,35dBd", "[dBi] 17.5", "17.5 (dBi)" or "15.35" (in dBd).
   double gainIn(const TextField& field) const {
-    const std::size_t digits = std::min(field.text.find_first_not_of("+-.0123456789"), field.text.size());
-    const TextField unit = restOf(field, digits);
-    const TextField number = restOf({field.text.substr(0, digits), field.line, field.column}, 0);
-    const double gain = numberWithin(digits > 0 ? number : field, -100, 100, "GAIN", "dB");
-    const std::string unit_name = upperCase(unit.text);
+    constexpr const char* kNumber = "+-.,0123456789";
+    const std::size_t begin = std::min(field.text.find_first_of(kNumber), field.text.size());
+    const std::size_t end = std::min(field.text.find_first_not_of(kNumber, begin), field.text.size());
+    const TextField number{field.text.substr(begin, end - begin), field.line,
+                           field.column + static_cast<int>(begin)};
+    const double gain = numberWithin(begin < end ? number : field, -100, 100, "GAIN", "dB");
+    const TextField unit =
+        begin > 0 ? TextField{field.text.substr(0, begin), field.line, field.column} : restOf(field, end);
+    std::string unit_name;
+    for (const char c : upperCase(unit.text)) {
+      if (std::string_view("[]() \t").find(c) == std::string_view::npos) unit_name += c;
+    }
     if (unit_name == "DBI") return gain;
     if (unit_name.empty() || unit_name == "DBD") return gain + kDipoleGain_dbi;
     fail(unit, fmt::format("unit '{}' of GAIN; allowed are dBd (the default) and dBi", unit.text));
@@ -192,7 +210,9 @@ AntennaPtr readMsi(const std::string& file, double gain_dbi) {
     }
   }
   return makeGridAntenna(nodes, std::move(amplitudes), gain_dbi,
-                         content.name.empty() ? "MSI pattern" : content.name);
+                         !content.name.empty()    ? content.name
+                         : !content.title.empty() ? content.title
+                                                  : "MSI pattern");
 }
 
 AntennaPtr readMsi(const std::string& file) {

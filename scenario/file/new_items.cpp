@@ -15,7 +15,7 @@ namespace {
 
 using document::DocumentNode;
 
-constexpr double kNewHeight_m = 10, kNewTrackHeight_m = 100;
+constexpr double kNewHeight_m = 10;
 
 DocumentNode textNode(const std::string& text) {
   DocumentNode node;
@@ -60,9 +60,31 @@ void requireNewName(const std::string& name, const std::vector<std::string>& use
     throw Error(ErrorCode::bad_input, fmt::format("there is already one named '{}'", name));
 }
 
-std::string positionText(const GroundPosition& position, double height_agl_m) {
-  return fmt::format("latitude_deg: {:.7f}, longitude_deg: {:.7f}, height_agl_m: {:.10g}",
-                     position.latitude_deg, position.longitude_deg, height_agl_m);
+/// The keys of a position. It has one height.
+std::string positionText(const SitePosition& position) {
+  std::string text = fmt::format("latitude_deg: {:.7f}, longitude_deg: {:.7f}", position.latitude_deg,
+                                 position.longitude_deg);
+  const std::pair<const char*, std::optional<double>> heights[]{
+      {"height_agl_m", position.height_agl_m},
+      {"height_msl_m", position.height_msl_m},
+      {"height_ellipsoid_m", position.height_ellipsoid_m}};
+  for (const auto& [key, height_m] : heights) {
+    if (height_m) text += fmt::format(", {}: {:.10g}", key, *height_m);
+  }
+  return text;
+}
+
+SitePosition atHeight(const GroundPosition& position, double height_agl_m) {
+  return {position.latitude_deg, position.longitude_deg, {}, height_agl_m, {}};
+}
+
+/// The position of a drawn point, without a height of its own at that of the platform so far.
+SitePosition atHeight(const DrawnPoint& point, const SitePosition& platform) {
+  if (point.height_agl_m) return atHeight(point.position, *point.height_agl_m);
+  SitePosition position = platform;
+  position.latitude_deg = point.position.latitude_deg;
+  position.longitude_deg = point.position.longitude_deg;
+  return position;
 }
 
 /// The keys of a new item after name and platform.
@@ -104,8 +126,9 @@ document::ResolvedPath itemAt(const Scenario& scenario, const std::string& path)
 Edit newPlatform(const Scenario& scenario, const std::string& name,
                  const std::optional<GroundPosition>& position) {
   const GroundPosition origin{scenario.region.origin.latitude_deg, scenario.region.origin.longitude_deg};
-  return {"platforms." + pathStep(name), fmt::format("{{name: {}, position: {{{}}}}}", quotedText(name),
-                                                     positionText(position.value_or(origin), kNewHeight_m))};
+  return {"platforms." + pathStep(name),
+          fmt::format("{{name: {}, position: {{{}}}}}", quotedText(name),
+                      positionText(atHeight(position.value_or(origin), kNewHeight_m)))};
 }
 
 }  // namespace
@@ -199,11 +222,11 @@ std::vector<Edit> editsForTrack(const Scenario& scenario, const std::string& pla
   if (speed_mps && !(*speed_mps > 0)) throw Error(ErrorCode::bad_input, "the speed must be above 0 m/s");
   const double left_s = scenario.clock.duration_s - begin_s;
   const double speed = speed_mps ? *speed_mps : along_m.back() / (left_s > 0 ? left_s : 60);
-  const double height_m = moved.track.front().position.height_agl_m.value_or(kNewTrackHeight_m);
+  const SitePosition& first = moved.track.front().position;
   std::string list;
   for (std::size_t i = 0; i < points.size(); ++i) {
     list += fmt::format("{}{{t_s: {:.10g}, {}}}", list.empty() ? "" : ", ", begin_s + along_m[i] / speed,
-                        positionText(points[i].position, points[i].height_agl_m.value_or(height_m)));
+                        positionText(atHeight(points[i], first)));
   }
   const std::string path = "platforms." + pathStep(platform);
   std::vector<Edit> edits;

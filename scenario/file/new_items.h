@@ -39,7 +39,7 @@ Edit editToRemove(const Scenario& scenario, const std::string& path);
 /// A point of a drawn track.
 struct DrawnPoint {
   GroundPosition position;
-  std::optional<double> height_agl_m;  ///< none: that of the platform's first point, or 100 m
+  std::optional<double> height_agl_m;  ///< none: the height of the platform's first point, as it is given
 };
 
 /// The edits that let a platform move along points. The speed is constant.

@@ -1,5 +1,6 @@
 // Refractivity of a scenario: from its keys to profiles, and the members of an ensemble.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,8 @@
 #include "propagation/parabolic_equation/air/bulk_duct.h"
 #include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "propagation/registry/model_info.h"
+#include "scenario/air/refractivity_file.h"
 #include "scenario/file/parse_sections.h"
-#include "scenario/file/refractivity_file.h"
 
 namespace emscape::scenario {
 namespace {
@@ -195,6 +196,47 @@ void warnOfEnsemble(const Section& section, const Values& values, ParseContext& 
   }
 }
 
+constexpr double kFarInTime_h = 12, kFar_km = 300;
+
+/// "sounding of USM00072649, 2023-11-18T12:00:00Z, 6 h before the epoch and 312 km from the region's origin"
+/// @param wanted  what the sounding is nearest to: "epoch" or "time"
+std::string sourceOf(const RefractivityFile& file, const std::string& wanted, const std::string& wanted_utc,
+                     const Section& section, ParseContext& context) {
+  if (!file.sounding) return file.description;
+  const SoundingOrigin& sounding = *file.sounding;
+  std::vector<std::string> parts, far;
+  if (const auto wanted_ms = parseUtc_ms(wanted_utc)) {
+    const double after_h = static_cast<double>(sounding.time_ms - *wanted_ms) / 3.6e6,
+                 hours = std::abs(after_h);
+    const std::string text =
+        (hours < 72 ? fmt::format("{:.3g} h", hours) : fmt::format("{:.0f} days", hours / 24)) +
+        (after_h < 0 ? " before the " : " after the ") + wanted;
+    parts.push_back(hours == 0 ? "at the " + wanted : text);
+    if (hours > kFarInTime_h) far.push_back(text);
+  } else {
+    parts.push_back("the last one, as there is no epoch");
+  }
+  if (sounding.position) {
+    const GeodeticPosition& at = *sounding.position;
+    const double km = geodesicInverse(at.latitude_deg, at.longitude_deg, context.origin.latitude_deg,
+                                      context.origin.longitude_deg)
+                          .distance_m /
+                      1000;
+    parts.push_back(fmt::format("{:.0f} km from the region's origin", km));
+    if (km > kFar_km) far.push_back(parts.back());
+  } else {
+    parts.push_back("its place is not in the file");
+  }
+  if (!far.empty()) {
+    context.problems.addWarning(
+        section.locationOf("file"),
+        fmt::format("the sounding in use, of {} at {}, is {}: the air there and then may be another; give a "
+                    "nearer file, or the 'time' of one of its soundings",
+                    sounding.station, sounding.time_utc, fmt::join(far, " and ")));
+  }
+  return fmt::format("{}; {}", file.description, fmt::join(parts, ", "));
+}
+
 /// Height of a platform above sea level, if it is known without the terrain; empty if unknown.
 std::optional<double> highest_msl_m(const Platform& platform, bool has_terrain) {
   std::optional<double> highest_m;
@@ -256,14 +298,20 @@ std::shared_ptr<const Refractivity> parseRefractivity(const Section& atmosphere,
     is_sound = false;
   }
   RefractivityField measured;
+  std::string source;
   if (section.has("file")) {
     const auto file = fileOf(section, context);
     if (!file) return nullptr;
     measured = file->field;
+    const bool has_time = section.has("time");
+    source = section.text("file") + ": " +
+             sourceOf(*file, has_time ? "time" : "epoch", has_time ? section.text("time") : context.epoch_utc,
+                      section, context);
   }
   if (!is_sound) return nullptr;
   warnOfEnsemble(section, values, context);
   auto refractivity = std::make_shared<Refractivity>();
+  refractivity->source = source;
   try {
     values.selectMean();
     refractivity->air = fieldOf(section, values, measured);

@@ -33,6 +33,7 @@ struct ParseContext {
   NamedFiles files;  ///< content of the files from this reading
   propagation::Atmosphere atmosphere;  ///< of the scenario
   std::string epoch_utc;               ///< of the scenario; empty: none
+  FrameOrigin origin;                  ///< of its region
 
   /// Path of a file named in the scenario; relative names are relative to the scenario's folder.
   std::string resolve(const std::string& name) const;

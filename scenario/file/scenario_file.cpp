@@ -238,6 +238,7 @@ Scenario parseRoot(const Section& root, ParseContext& context) {
   scenario.clock = parseClock(root, context);
   context.epoch_utc = scenario.clock.epoch_utc;
   scenario.region = parseRegion(root.section("region"), context);
+  context.origin = scenario.region.origin;
   if (root.has("terrain")) scenario.terrain = parseTerrain(root.section("terrain"), context);
   scenario.atmosphere = context.atmosphere = parseAtmosphere(root.section("atmosphere"), context);
   scenario.ground = parseGround(root.section("ground"));

@@ -12,7 +12,7 @@
 #include "emscape/scenario/model/edit.h"
 #include "emscape/scenario/model/platform.h"
 #include "emscape/scenario/model/target.h"
-#include "scenario/file/refractivity_file.h"
+#include "scenario/air/refractivity_file.h"
 
 namespace emscape::scenario {
 

@@ -105,12 +105,9 @@ BeamPose mountPose(BeamPose pose, const Emitter& emitter) {
 
 /// True at t_s, or at some time of the duration that begins then.
 bool isActive(const Emitter& emitter, double t_s, double duration_s) {
-  if (!emitter.enabled) return false;
-  if (emitter.active_s.empty()) return true;
-  if (duration_s > 0) return activeTime_s(emitter, t_s, duration_s) > 0;
-  return std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [t_s](const TimeInterval& interval) {
-    return t_s >= interval.begin_s && t_s < interval.end_s;
-  });
+  if (duration_s > 0 && emitter.enabled && !emitter.active_s.empty())
+    return activeTime_s(emitter, t_s, duration_s) > 0;
+  return isActiveAt(emitter, t_s);
 }
 
 }  // namespace

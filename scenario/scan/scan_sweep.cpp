@@ -211,4 +211,11 @@ std::vector<TimedPass> lastPassesOf(const Emitter& emitter, double begin_s, doub
   return passes;
 }
 
+bool isActiveAt(const Emitter& emitter, double t_s) {
+  if (!emitter.enabled || emitter.active_s.empty()) return emitter.enabled;
+  return std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [t_s](const TimeInterval& interval) {
+    return t_s >= interval.begin_s && t_s < interval.end_s;
+  });
+}
+
 }  // namespace emscape::scenario

@@ -47,6 +47,9 @@ bool operator==(const ScanSweep& a, const ScanSweep& b);
 /// not move.
 double scanCycle_s(const ScanSpec& scan);
 
+/// True if an emitter is enabled and transmits at this time.
+bool isActiveAt(const Emitter& emitter, double t_s);
+
 /// Time (s) in [begin, begin + duration) at which an emitter is active. Times in several of Emitter::active_s
 /// count once, here and below.
 double activeTime_s(const Emitter& emitter, double begin_s, double duration_s);

@@ -51,7 +51,8 @@ const ObjectSpec& refractivitySpec() {
               "kind", choice(kinds),
               "standard: 118 M-units per km; linear: gradient_m_per_km; evaporation_duct: Paulus's "
               "profile; surface_duct: falling from the surface; trilinear: falling in a layer; profile: a "
-              "CSV file; soundings: a file of IGRA 2; bulk: similarity theory over the sea (NAVSLaM 2.0)"),
+              "CSV file; soundings: a file of IGRA 2 or of the University of Wyoming; bulk: similarity "
+              "theory over the sea (NAVSLaM 2.0)"),
           byDefault("surface_m_units", spread(number("M-units").from(200).to(500)),
                     propagation::kSurface_m_units, "M at the surface; only differences bend rays",
                     {"standard", "linear", "evaporation_duct", "surface_duct", "trilinear"}),
@@ -69,7 +70,8 @@ const ObjectSpec& refractivitySpec() {
                    "relative_humidity_percent; for several profiles range_m (from each emitter), or "
                    "latitude_deg and longitude_deg",
                    {"profile"}),
-          required("file", textOf(ValueType::file, 4096), "soundings of one station, as IGRA 2 gives them",
+          required("file", textOf(ValueType::file, 4096),
+                   "soundings, as IGRA 2 or the University of Wyoming (list or CSV) gives them",
                    {"soundings"}),
           optional("time", simple(ValueType::timestamp),
                    "the sounding nearest to it; by default to the epoch, else the file's last",

@@ -28,6 +28,8 @@ class TerrainFile {
   std::string crs() const;
   /// Notes for the user: bands left out, unit converted, positions transformed to WGS84.
   const std::vector<std::string>& notes() const;
+  /// What was assumed and may be wrong.
+  const std::vector<std::string>& warnings() const;
 
   const PostLattice& lattice() const;
   int columns() const;
@@ -41,9 +43,6 @@ class TerrainFile {
   /// Reads a window of the file, a strip of rows at a time; passes each row once.
   /// @throws Error (bad_input) if reading fails
   void read(const PostWindow& window, const RowSink& take) const;
-
-  /// True if posts read so far are -9999 without being declared void: they are known, at that height.
-  bool hasUndeclaredVoids() const;
 
   /// True: the lattice is of WGS84 longitudes and latitudes (deg). False: of the plane of the file's
   /// projection.

@@ -24,8 +24,6 @@ namespace fs = std::filesystem;
 
 /// Values that mean void in HGT and DTED whatever a file's header says.
 constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
-/// Value that means void in many files. It is no height on earth, but within kMaxHeightOnEarth_m.
-constexpr float kUsualVoid = -9999.0f;
 /// Largest height or depth on earth (m), with a margin; values beyond are undeclared voids.
 constexpr float kMaxHeightOnEarth_m = 20000.0f;
 /// Positions of another datum count as WGS84 if they are closer than this (posts).
@@ -43,8 +41,7 @@ constexpr double kMaxLongitude_deg = 1080;
 constexpr int kMaxPostsPerAxis = 1 << 22;  ///< the whole earth in a third of an arc second
 
 /// Metres of a band's unit; 0 if it is unknown.
-double metresOf(std::string unit) {
-  for (char& c : unit) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+double metresOf(const std::string& unit) {
   struct Unit {
     const char* name;
     double metres;
@@ -76,7 +73,7 @@ double metresOf(std::string unit) {
                                     {"u.s. survey foot", kUsSurveyFoot_m},
                                     {"foot_us", kUsSurveyFoot_m}};
   for (const Unit& known : kUnits) {
-    if (unit == known.name) return known.metres;
+    if (EQUAL(unit.c_str(), known.name)) return known.metres;
   }
   return 0.0;
 }
@@ -126,11 +123,11 @@ int transformPoints(void* transformation, int /*backwards*/, int count, double* 
 struct TerrainFile::Impl {
   std::string name;
   SourceLocation location;
-  std::vector<std::string> notes;
+  std::vector<std::string> notes, warnings;
   std::string format;
   int columns = 0, rows = 0;
   double scale = 1.0, offset = 0.0, unit_m = 1.0;
-  bool has_undeclared_voids = false;  ///< of the posts read so far
+  bool has_unit = false;  ///< the file states the unit of its heights
 
   double pixel_to_crs[6] = {0, 1, 0, 0, 0, 1};
   bool turned =
@@ -219,6 +216,14 @@ void TerrainFile::Impl::readHead() {
 
 void TerrainFile::Impl::readBand(GDALRasterBandH band) {
   if (GDALDataTypeIsComplex(GDALGetRasterDataType(band))) fail("holds complex numbers, not heights");
+  const GDALColorInterp meaning = GDALGetRasterColorInterpretation(band);
+  if (meaning != GCI_Undefined && meaning != GCI_GrayIndex) {
+    fail(std::string("is a picture, not heights: its first band is '") +
+         GDALGetColorInterpretationName(meaning) +
+         "'. Tiles that encode heights in colours become heights by gdal_calc.py -R FILE --R_band=1 -G FILE "
+         "--G_band=2 -B FILE --B_band=3 --type=Float32 --outfile=HEIGHTS.tif --calc=, for Terrain-RGB "
+         "'-10000+(R*65536.0+G*256.0+B)*0.1', for Terrarium 'R*256.0+G+B/256.0-32768'");
+  }
   scale = GDALGetRasterScale(band, nullptr);
   offset = GDALGetRasterOffset(band, nullptr);
   const std::string unit = GDALGetRasterUnitType(band);
@@ -226,6 +231,7 @@ void TerrainFile::Impl::readBand(GDALRasterBandH band) {
   if (unit_m == 0.0) {
     fail("heights are in '" + unit + "', a unit that is not known; known are m, ft and US survey ft");
   }
+  has_unit = !unit.empty();
   if (unit_m != 1.0) notes.push_back("heights in '" + unit + "' are converted to metres");
   if (scale != 1.0 || offset != 0.0) {
     notes.push_back("heights are stored with scale " + std::to_string(scale) + " and offset " +
@@ -287,6 +293,13 @@ void TerrainFile::Impl::placeOnEarth(OGRSpatialReferenceH given) {
     notes.push_back(std::string("says that its heights are of '") + datum + "'");
   } else if (OSRGetAxesCount(crs.get()) == 3 && !OSRIsGeocentric(crs.get())) {
     notes.push_back("says that its heights are above the ellipsoid");
+  }
+  char* unit = nullptr;
+  const double unit_of_plane_m = OSRIsProjected(crs.get()) ? OSRGetLinearUnits(crs.get(), &unit) : 1;
+  if (!has_unit && scale == 1 && std::abs(unit_of_plane_m - 0.3048) < 1e-5) {
+    warnings.push_back(std::string("its coordinates are in '") + unit +
+                       "', and it has no unit of heights: they are taken as metres. If they are feet, "
+                       "gdal_translate -a_scale 0.3048 makes a copy in metres");
   }
   OSRStripVertical(crs.get());
   OSRSetAxisMappingStrategy(crs.get(), OAMS_TRADITIONAL_GIS_ORDER);
@@ -406,8 +419,8 @@ int TerrainFile::columns() const {
 int TerrainFile::rows() const {
   return impl_->rows;
 }
-bool TerrainFile::hasUndeclaredVoids() const {
-  return impl_->has_undeclared_voids;
+const std::vector<std::string>& TerrainFile::warnings() const {
+  return impl_->warnings;
 }
 bool TerrainFile::isArea() const {
   return impl_->is_area;
@@ -448,7 +461,6 @@ void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
       const bool declared_void = mask[k] == 0 || strip[k] == kVoidValues[0] || strip[k] == kVoidValues[1];
       const double height_m = (strip[k] * impl_->scale + impl_->offset) * impl_->unit_m;
       const bool known = !declared_void && std::abs(height_m) <= kMaxHeightOnEarth_m;
-      if (known && strip[k] == kUsualVoid) impl_->has_undeclared_voids = true;
       strip[k] = known ? static_cast<float>(height_m) : std::numeric_limits<float>::quiet_NaN();
     }
     for (int row = 0; row < rows; ++row) {

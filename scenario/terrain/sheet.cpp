@@ -128,7 +128,9 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
     sheet.is_area = sheet.is_area || file.isArea();
     const int first_column = static_cast<int>(placed.column_begin - patch.column_begin) + 1;
     const int first_row = static_cast<int>(placed.row_begin - patch.row_begin) + 1;
+    FillValues fills(placed.tile->window.columns);
     file.read(placed.tile->window, [&](long long row, const float* heights_m) {
+      fills.add(heights_m);
       std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));
       for (long long column = 0; column < placed.tile->window.columns; ++column, ++post) {
         if (sheet.kinds[post] == PostKind::known) continue;
@@ -136,6 +138,17 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
         sheet.heights_m[post] = heights_m[column];
       }
     });
+    for (const FillValues::Found& fill : fills.found()) {
+      sheet.fills.push_back({placed.tile->file, fill});
+      for (long long row = 0; row < placed.tile->window.rows; ++row) {
+        std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));
+        for (long long column = 0; column < placed.tile->window.columns; ++column, ++post) {
+          if (sheet.heights_m[post] != fill.height_m) continue;
+          sheet.kinds[post] = PostKind::empty;
+          sheet.heights_m[post] = kNoHeight;
+        }
+      }
+    }
   }
   measureSpacing(sheet);
   return sheet;

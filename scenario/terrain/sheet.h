@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scenario/terrain/file.h"
+#include "scenario/terrain/fill_values.h"
 #include "scenario/terrain/posts.h"
 #include "scenario/terrain/view.h"
 
@@ -38,6 +39,12 @@ struct TerrainSheet {
       0;  ///< the smaller of both directions, but at least half the other: meridians converge near the poles
   std::vector<float> heights_m;  ///< south row first; NaN where not known
   std::vector<PostKind> kinds;
+  /// Fill values that files did not declare; their posts are void.
+  struct Fill {
+    TerrainFilePtr file;
+    FillValues::Found value;
+  };
+  std::vector<Fill> fills;
   double first_column, last_column, first_row, last_row;  ///< limits of lookups
 
   /// All posts absent.

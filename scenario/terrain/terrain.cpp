@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "base/geodesy/geoid_grid.h"
@@ -60,10 +61,13 @@ void toMeanSeaLevel(TerrainSheet& sheet, VerticalDatum datum, const SourceLocati
   });
 }
 
-/// The note on a file that hasUndeclaredVoids().
-constexpr const char* kUndeclaredVoids =
-    "has posts of -9999, which it does not declare as no data: they are ground at that height (gdal_edit.py "
-    "-a_nodata -9999 declares them void)";
+std::string fillText(const FillValues::Found& fill) {
+  return fmt::format(
+      "{} post{} of {:g} m {} more than {:g} m below all posts around: a fill value that the file "
+      "does not declare; void",
+      fill.posts, fill.posts == 1 ? "" : "s", fill.height_m, fill.posts == 1 ? "is" : "are",
+      FillValues::kStep_m);
+}
 
 /// Notes on elevation files; a note on many files is logged once.
 class FileNotes {
@@ -77,10 +81,11 @@ class FileNotes {
       notes_.push_back({note, file.name(), 1});
     }
   }
-  void log() const {
+  void log(LogLevel level) const {
     for (const Note& note : notes_) {
       const std::string others = note.files > 1 ? fmt::format(" and {} more", note.files - 1) : "";
-      logInfo(fmt::format("elevation file {}{}: {}", note.first_file, others, note.text));
+      const std::string text = fmt::format("elevation file {}{}: {}", note.first_file, others, note.text);
+      level == LogLevel::warning ? logWarning(text) : logInfo(text);
     }
   }
 
@@ -94,19 +99,19 @@ class FileNotes {
 
 /// Sheets of longitudes and latitudes, the finest first, with closed seams.
 std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& box) {
-  FileNotes notes, notes_on_heights;
-  std::vector<std::shared_ptr<const TerrainFile>> files;
+  FileNotes notes, warnings;
   std::vector<RasterTile> tiles;
   for (std::size_t k = 0; k < spec.files.size(); ++k) {
     const SourceLocation location = k < spec.locations.size() ? spec.locations[k] : SourceLocation{};
     const auto file = std::make_shared<const TerrainFile>(spec.files[k], location);
     for (const std::string& note : file->notes()) notes.add(*file, note);
-    files.push_back(file);
+    for (const std::string& warning : file->warnings()) warnings.add(*file, warning);
     for (RasterTile& tile : tilesWithin(file, box)) tiles.push_back(std::move(tile));
   }
-  notes.log();
+  notes.log(LogLevel::info);
   std::vector<TerrainSheet> sheets;
   for (TerrainSheet& sheet : readSheets(tiles)) {
+    for (const TerrainSheet::Fill& fill : sheet.fills) warnings.add(*fill.file, fillText(fill.value));
     if (sheet.file->isGeographic()) {
       sheets.push_back(std::move(sheet));
     } else {
@@ -114,10 +119,7 @@ std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& bo
         sheets.push_back(std::move(brought));
     }
   }
-  for (const auto& file : files) {
-    if (file->hasUndeclaredVoids()) notes_on_heights.add(*file, kUndeclaredVoids);
-  }
-  notes_on_heights.log();
+  warnings.log(LogLevel::warning);
   std::stable_sort(sheets.begin(), sheets.end(),
                    [](const TerrainSheet& a, const TerrainSheet& b) { return a.spacing_m < b.spacing_m; });
   if (spec.vertical_datum != VerticalDatum::egm96) {
@@ -240,22 +242,35 @@ void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
   const long long rows_of_strip = is_partial ? std::max(1LL, kMaxPosts / columns / kStrips) : rows;
   for (int strip = 0; strip < strips; ++strip) {
     const long long first_row = strip == 0 ? 0 : (rows - rows_of_strip) * strip / (strips - 1);
+    FillValues fills(columns);
+    // Heights that may be fill values count once they are known not to be.
+    std::map<float, long long> low_m;
     file.read({0, first_row, columns, rows_of_strip}, [&](long long, const float* heights_m) {
+      fills.add(heights_m);
       int voids = 0;
       float lowest_m = HUGE_VALF, highest_m = -HUGE_VALF;
       for (long long column = 0; column < columns; ++column) {
         const float height_m = heights_m[column];  // NaN is neither smaller nor larger
-        lowest_m = height_m < lowest_m ? height_m : lowest_m;
-        highest_m = height_m > highest_m ? height_m : highest_m;
+        if (height_m < FillValues::kBelow_m) ++low_m[height_m];
+        lowest_m = height_m < lowest_m && height_m >= FillValues::kBelow_m ? height_m : lowest_m;
+        highest_m = height_m > highest_m && height_m >= FillValues::kBelow_m ? height_m : highest_m;
         voids += std::isnan(height_m) ? 1 : 0;
       }
       info.void_posts += voids;
-      if (voids == columns) return;
+      if (lowest_m > highest_m) return;
       info.lowest_m = std::fmin(info.lowest_m, lowest_m);
       info.highest_m = std::fmax(info.highest_m, highest_m);
     });
+    for (const FillValues::Found& fill : fills.found()) {
+      info.notes.push_back(fillText(fill));
+      info.void_posts += fill.posts;
+      low_m.erase(fill.height_m);
+    }
+    if (!low_m.empty()) {
+      info.lowest_m = std::fmin(info.lowest_m, low_m.begin()->first);
+      info.highest_m = std::fmax(info.highest_m, low_m.rbegin()->first);
+    }
   }
-  if (file.hasUndeclaredVoids()) info.notes.push_back(kUndeclaredVoids);
   if (is_partial) {
     info.notes.push_back("is large: its range and voids are those of " +
                          std::to_string(strips * rows_of_strip) + " of its " + std::to_string(rows) +
@@ -280,6 +295,7 @@ TerrainFileInfo Terrain::describe(const std::string& name, bool read_heights) {
   info.rows = file.rows();
   info.pixel_is_area = file.isArea();
   info.notes = file.notes();
+  info.notes.insert(info.notes.end(), file.warnings().begin(), file.warnings().end());
   const double column = 0.5 * (file.columns() - 1), row = 0.5 * (file.rows() - 1);
   const PostLattice& lattice = file.lattice();
   std::vector<double> x{lattice.x(column - 0.5), lattice.x(column + 0.5), lattice.x(column),

@@ -7,8 +7,8 @@
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/scenario/model/target.h"
+#include "scenario/air/refractivity_file.h"
 #include "scenario/antenna/shapes.h"
-#include "scenario/file/refractivity_file.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 
@@ -170,7 +170,14 @@ const FuzzTargetsAdded added({
            "10 -9999  92500   830B   50B  600  -9999   310    60 \n"
            "20 -9999  85000  1520B   20B  400  -9999   320    80 \n"
            "10 -9999  70000  3100B  -80B  300  -9999   300   100 \n"
-           "10 -9999  50000  5700B -220B  200  -9999   290   150 \n"};
+           "10 -9999  50000  5700B -220B  200  -9999   290   150 \n",
+           "72200 Test Observations at 12Z 02 Jul 2020\n\n----------------------------\n"
+           "   PRES   HGHT   TEMP   DWPT   RELH   MIXR\n    hPa     m      C      C      %    g/kg\n"
+           "------------------------------\n 1000.0     94\n  998.0    112   25.0   20.0     74  15.01\n"
+           "  925.0    780   22.4   10.4     47   8.65\n\nStation latitude: 39.5\nStation longitude: -84.2\n",
+           "time,longitude,latitude,pressure_hPa,geopotential height_m,temperature_C,dew point "
+           "temperature_C,relative humidity_%\n2020-07-02 11:02:03,-84.25,39.5,998.0,112,25.0,20.0,74\n"
+           "2020-07-02 11:12:03,-84.25,39.5,850.0,1500,18.0,,39\n"};
      }},
 });
 

@@ -327,6 +327,20 @@ TEST(BeamPieces, EqualSettingsAreOnePieceDifferentOnesSeveral) {
   EXPECT_FALSE(cut);
 }
 
+TEST(BeamPieces, SettingsAboveTheirLargestNumberAreLeftOut) {
+  RecordedBeam beam;
+  for (int i = 0; i <= static_cast<int>(kMaxPieces); ++i) {
+    BeamState state = stateAt(i, true);
+    state.frequency_hz = 1e9 + i * 1e8;
+    beam.states.push_back(state);
+  }
+  bool cut = false;
+  const auto pieces = piecesOf(beam, {{0, 100}}, cut);
+  ASSERT_EQ(pieces.size(), kMaxPieces);
+  EXPECT_TRUE(cut);
+  EXPECT_EQ(pieces.back().active.back().end_s, static_cast<double>(kMaxPieces)) << "not beyond its own time";
+}
+
 class RoundTrip : public testing::TestWithParam<const char*> {};
 
 TEST_P(RoundTrip, PositionsAnglesAndEmittersStay) {
@@ -428,6 +442,30 @@ TEST_P(RoundTrip, SidesAndDurationOfFixedSitesStayAndTheRestIsTold) {
   if (is_dis) {
     EXPECT_EQ(after->platforms[2].name, "??d?");
   }
+}
+
+TEST(Export, OfAnEmitterThatIsSwitchedOffIsSilent) {
+  const test::TemporaryFolder folder;
+  scenario::Scenario off = *scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  for (const char* name : {"radar", "transmitter"})
+    off.set(std::string("emitters.") + name + ".enabled", "false");
+  const ExportResult exported =
+      exportScenario(std::make_shared<scenario::Scenario>(off), nullptr, folder / "off.pcap");
+  const Recording recording = readRecording(exported.file);
+  for (const RecordedBeam& beam : recording.beams) {
+    for (const BeamState& state : beam.states) EXPECT_FALSE(state.is_on) << beam.name;
+  }
+}
+
+TEST(Export, TimesThatACaptureCannotHoldAreRefused) {
+  const test::TemporaryFolder folder;
+  scenario::Scenario early = *scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  early.set("epoch", "1944-06-06T05:00:00Z");
+  const auto scenario = std::make_shared<scenario::Scenario>(early);
+  EXPECT_THAT(
+      test::errorOf([&] { exportScenario(scenario, nullptr, folder / "a.pcap"); }, ErrorCode::bad_input),
+      HasSubstr("epoch: 1944-06-06T05:00:00Z: captures hold times from 1970 to 2106"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.pcap"));
 }
 
 TEST(Export, UnknownEndingIsRefused) {

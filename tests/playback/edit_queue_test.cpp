@@ -77,6 +77,21 @@ TEST(EditQueue, ADragThatIsCancelledLeavesNoStep) {
   EXPECT_FALSE(edited.history.canUndo());
 }
 
+TEST(EditQueue, ClearingWithinADragTakesItBack) {
+  Edited edited;
+  edited.queue.drag({{"emitters.radar.power_w", "7"}});
+  edited.finish();
+  edited.queue.clear(edited.history);
+  EXPECT_EQ(edited.power_w(), 10000);
+  edited.queue.endDrag();
+  edited.queue.set({{"emitters.radar.power_w", "9"}});
+  edited.finish();
+  edited.undo();
+  edited.finish();
+  EXPECT_EQ(edited.power_w(), 10000);
+  EXPECT_FALSE(edited.history.canUndo());
+}
+
 TEST(EditQueue, RefusedEditKeepsTheScenarioAndHasAReason) {
   Edited edited;
   edited.queue.set({{"emitters.radar.power_w", "-5"}});
@@ -100,7 +115,7 @@ TEST(EditQueue, EditsApplyToScenarioOfTheHistory) {
   EXPECT_EQ(edited.history.scenario()->emitters.front().losses_db, 9);
   edited.queue.set({{"emitters.radar.power_w", "6"}});
   edited.queue.update(edited.history);
-  edited.queue.clear();
+  edited.queue.clear(edited.history);
   EXPECT_FALSE(edited.queue.isBusy());
   EXPECT_TRUE(edited.finish().empty());
   EXPECT_EQ(edited.power_w(), 5);

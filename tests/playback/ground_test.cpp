@@ -7,6 +7,7 @@
 
 #include "emscape/emfield/solver/field_solver.h"
 #include "playback/frames/ground_marks.h"
+#include "playback/pictures/scenery.h"
 #include "scenario/map/coast.h"
 #include "tests/playback/playback_samples.h"
 #include "tests/scenario/dem_file.h"
@@ -59,7 +60,7 @@ TEST(GroundOf, LandBelowSeaLevelIsNoSea) {
   EXPECT_EQ(waterPart(*groundOf(scene, gridOf(scene), nullptr, false).field), 0);
 }
 
-TEST(GroundOf, FlatTerrainThatIsLandByTheCoastsIsNoSeaAndDepthsAreWater) {
+TEST(GroundOf, FlatTerrainThatIsLandByTheCoastsIsNoSea) {
   const TemporaryFolder folder;
   const auto nowhere = scenario::Coast();  // all land
   const LoadedScenario polder = overTerrain(folder, [](double, double) { return 0.0; });
@@ -81,6 +82,25 @@ TEST(GroundOf, TheSmoothEarthIsSeaOrLandAsTheScenarioSays) {
   volume::Grid high = grid;
   high.first_center_m.z += 20000;
   EXPECT_FALSE(drawsSmoothEarth(scene, high)) << "far below the volume";
+}
+
+TEST(Scenery, HasItsLinesAgainWhenTheGroundIsShownAgain) {
+  const TemporaryFolder folder;
+  const LoadedScenario scene = loadScenarioWithTerrain(quickScenario(folder));
+  const volume::Grid grid = gridOf(scene);
+  Scenery scenery;
+  ViewState view;
+  const auto lines = [&](bool shows_ground) {
+    view.show_terrain = shows_ground;
+    scenery.update(view, &scene, grid);
+    render::Annotations annotations;
+    scenery.annotate(annotations, view, {});
+    return annotations.ground_lines.size();
+  };
+  const std::size_t graticule = lines(true);
+  EXPECT_GT(graticule, 0);
+  EXPECT_EQ(lines(false), 0);
+  EXPECT_EQ(lines(true), graticule);
 }
 
 TEST(GroundMarks, LieOnTheGroundWithinTheBox) {

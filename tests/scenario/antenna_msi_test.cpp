@@ -64,6 +64,17 @@ TEST(MsiAntenna, TakesGainInDbdUnlessTheFileSaysDbi) {
   EXPECT_NEAR(readText(sector("gain +15.5DBI  \n"))->gain_dbi, 15.5, 1e-12);
 }
 
+TEST(MsiAntenna, TakesTheLibertiesOfManufacturers) {
+  // Without NAME, with a title that begins with a number, decimal commas, and units in brackets.
+  const AntennaPtr antenna = readText(
+      "80010292 X-pol panel\nMAKE Acme\nFREQUENCY (MHz) 900\nGAIN [dBi] 15,5\nTILT ELECTRICAL\n"
+      "HORIZONTAL 4\n0 0,0\n90 10,5\n180 20\n270 10,5\nVERTICAL 4\n0 0\n90 15\n180 20\n270 16\n");
+  EXPECT_NEAR(antenna->gain_dbi, 15.5, 1e-12);
+  EXPECT_NEAR(lossAt_db(antenna, 90, 0), 10.5, 1e-4);
+  EXPECT_THAT(antenna->description, testing::StartsWith("80010292 X-pol panel, "));
+  EXPECT_NEAR(readText(sector("GAIN 15,35 (dBd)\n"))->gain_dbi, 17.5, 1e-12);
+}
+
 TEST(MsiAntenna, TakesAGainGivenBesideTheFile) {
   const TemporaryFile file("antenna.msi", sector(""));
   EXPECT_EQ(readMsi(file.path(), 12)->gain_dbi, 12);

@@ -153,6 +153,14 @@ TEST(DrawnTrack, MovesAFixedPlatformAlongItsPoints) {
   EXPECT_NEAR(edited.platforms[1].track[1].t_s, 1 + 11.126, 0.01);
 }
 
+TEST(DrawnTrack, KeepsTheKindOfHeightOfThePlatform) {
+  Scenario edited = *quick();
+  edited.set({{"platforms.mast.position", "{latitude_deg: 52, longitude_deg: 5, height_msl_m: 8000}"}});
+  edited.set(editsForTrack(edited, "mast", {{{52, 5}, {}}, {{52.01, 5}, {}}}, 0, {}));
+  EXPECT_EQ(edited.platforms[1].track[1].position.height_msl_m, 8000);
+  EXPECT_FALSE(edited.platforms[1].track[1].position.height_agl_m);
+}
+
 TEST(DrawnTrack, ReplacesTheFileOfATrack) {
   Scenario edited = *loadScenario(test::shippedScenario("jacksboro.yaml"));
   edited.set(editsForTrack(edited, "helicopter", {{{36.3, -84.4}, {}}, {{36.35, -84.4}, {}}}, 0, 40.0));

@@ -1,9 +1,11 @@
 // Profiles of refractivity in CSV files.
-#include "scenario/file/refractivity_file.h"
+#include "scenario/air/refractivity_file.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <optional>
 
 #include "tests/support/errors.h"
@@ -61,8 +63,8 @@ TEST_F(RefractivityFiles, ErrorsHaveLocations) {
   EXPECT_THAT(errorOf("height_msl_m,height_msl_m\n"),
               HasSubstr("air.csv:1:14: second column 'height_msl_m'"));
   EXPECT_THAT(errorOf("height_msl_m,m_units,n_units\n"), HasSubstr("air.csv:1:1: the header has"));
-  EXPECT_THAT(errorOf("height_msl_m,m_units\n"), HasSubstr("no levels; expected 2 .. 256"));
-  EXPECT_THAT(errorOf("height_msl_m,m_units\n0,330\n"), HasSubstr("has 1 level; expected 2 .. 256"));
+  EXPECT_THAT(errorOf("height_msl_m,m_units\n"), HasSubstr("no levels; expected 2 or more"));
+  EXPECT_THAT(errorOf("height_msl_m,m_units\n0,330\n"), HasSubstr("has 1 level; expected 2 or more"));
   EXPECT_THAT(errorOf("height_msl_m,m_units\n0,330\n5\n"), HasSubstr("air.csv:3:1: 1 values"));
   EXPECT_THAT(errorOf("height_msl_m,m_units\n0,330\nnan,331\n"),
               HasSubstr("air.csv:3:1: height_msl_m is 'nan'"));
@@ -198,6 +200,81 @@ TEST_F(Soundings, LeaveOutLevelsWithoutTemperatureOrHumidityAndAreDryAboveTheHig
   const propagation::RefractivityLevel& top = file.field.profiles.at(0).levels.back();
   EXPECT_NEAR(top.m_units - 0.15696 * top.height_msl_m, 77.6 * 700 / 269.15, 0.05);
   EXPECT_NEAR(top.height_msl_m, 2950, 60);
+}
+
+TEST_F(Soundings, OfWindAloneAreLeftOutForTheNearestUsableOne) {
+  const std::string wind =
+      "#USM00072649 2023 11 18 18 2303    2 ncdc-nws           448497  -935647\n"
+      "30 -9999  -9999   500 -9999 -9999 -9999   280   100 \n"
+      "30 -9999  -9999  1000 -9999 -9999 -9999   280   100 \n";
+  const RefractivityFile file = sounding(kChanhassen + wind);
+  EXPECT_EQ(file.sounding->time_utc, "2023-11-18T12:00:00Z");
+  EXPECT_THAT(file.warnings,
+              testing::ElementsAre(HasSubstr(
+                  "station.txt:8: the last sounding, that of 2023-11-18T18:00:00Z cannot be used: the "
+                  "sounding has no level with pressure")));
+  EXPECT_TRUE(sounding(kChanhassen + wind, kMidnight_ms).warnings.empty());
+  EXPECT_THAT(soundingError(wind + wind), HasSubstr("none of the 1 others in the file can be used either"));
+}
+
+// Made by the format's text. N of 998 hPa, 25 C, dew point 20 C: vapour 23.4 hPa, 77.6 / 298.15 (998 + 4810 *
+// 23.4 / 298.15) = 358.0.
+const char* const kList =
+    "<HTML><H2>72200 XYZ Test Observations at 12Z 02 Jul 2020</H2>\n<PRE>\n"
+    "-----------------------------------------------------------------------------\n"
+    "   PRES   HGHT   TEMP   DWPT   RELH   MIXR   DRCT   SKNT   THTA   THTE   THTV\n"
+    "    hPa     m      C      C      %    g/kg    deg   knot     K      K      K \n"
+    "-----------------------------------------------------------------------------\n"
+    " 1000.0     94                                                               \n"
+    "  998.0    112   25.0   20.0     74  15.01    150      7  298.3  342.0  301.0\n"
+    "  850.0   1500   18.0    4.0     39   6.02    200     25  304.9  324.2  306.1\n"
+    "</PRE><H3>Station information and sounding indices</H3><PRE>\n"
+    "                           Station latitude: 39.50\n"
+    "                          Station longitude: -84.25\n</PRE></HTML>\n";
+
+TEST_F(Soundings, AreReadFromListsOfWyoming) {
+  const RefractivityFile file = sounding(kList);
+  EXPECT_TRUE(isSoundingFile(folder_.write("w.html", kList)));
+  const propagation::RefractivityLevel& ground = file.field.profiles.at(0).levels.front();
+  EXPECT_NEAR(ground.m_units, 358.0 + 0.15696 * 112, 0.3);
+  EXPECT_NEAR(ground.height_msl_m, 112, 0.01);
+  EXPECT_EQ(file.sounding->time_utc, "2020-07-02T12:00:00Z");
+  EXPECT_EQ(file.sounding->position->latitude_deg, 39.5);
+  EXPECT_EQ(file.sounding->position->longitude_deg, -84.25);
+  EXPECT_THAT(file.description, HasSubstr("72200 XYZ Test, 2020-07-02T12:00:00Z (2 of 3 levels"));
+  std::string text = kList;
+  text.replace(text.find("    hPa     m      C "), 21, "    hPa     m      K ");
+  EXPECT_THAT(soundingError(text), HasSubstr("station.txt:5:15: TEMP is in 'K'; expected C"));
+  text = kList;
+  text.replace(text.find("12Z 02 Jul 2020"), 15, "12Z 02 Brumaire");
+  EXPECT_THAT(soundingError(text), HasSubstr("expected a time such as 12Z 02 Jul 2020"));
+}
+
+TEST_F(Soundings, AreReadFromCsvOfWyoming) {
+  const std::string csv =
+      "time,longitude,latitude,pressure_hPa,geopotential height_m,temperature_C,dew point "
+      "temperature_C,relative "
+      "humidity_%\n"
+      "2020-07-02 11:02:03,-84.25,39.5,998.0,112,25.0,20.0,74\n"
+      "2020-07-02 11:02:04,-84.25,39.5,,,25.0,20.0,74\n"
+      "2020-07-02 11:12:03,-84.25,39.5,850.0,1500,18.0,,39\n";
+  const RefractivityFile file = sounding(csv);
+  EXPECT_NEAR(file.field.profiles.at(0).levels.front().m_units, 358.0 + 0.15696 * 112, 0.3);
+  EXPECT_EQ(file.field.profiles.at(0).levels.size(), 2U);
+  EXPECT_EQ(file.sounding->time_utc, "2020-07-02T11:02:03Z");
+  EXPECT_EQ(file.sounding->position->latitude_deg, 39.5);
+}
+
+TEST_F(RefractivityFiles, OfManyLevelsAreThinned) {
+  std::string text = "height_msl_m,m_units\n";
+  for (int i = 0; i < 2000; ++i)
+    text += fmt::format("{},{}\n", 5 * i, 330 + 0.118 * 5 * i + 3 * std::sin(i / 60.0));
+  const RefractivityFile file = read(text);
+  const propagation::RefractivityProfile& profile = file.field.profiles.at(0);
+  EXPECT_LE(profile.levels.size(), kMaxProfileLevels);
+  EXPECT_THAT(file.description, HasSubstr("1 profile, thinned from 2000 to"));
+  for (int i = 0; i < 2000; ++i)
+    ASSERT_NEAR(profile.at(5 * i), 330 + 0.118 * 5 * i + 3 * std::sin(i / 60.0), 0.5) << i;
 }
 
 TEST_F(Soundings, ErrorsHaveLocations) {

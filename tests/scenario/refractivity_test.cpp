@@ -101,6 +101,26 @@ TEST_F(RefractivityKeys, TakeTheSoundingNearestToTheEpochOrToATime) {
       316, 0.1);
 }
 
+TEST_F(RefractivityKeys, SoundingInUseIsNamedAndAFarOneIsWarnedOf) {
+  const std::string levels =
+      "21     0  98107B  290    65B  350   143   360     0 \n"
+      "20    33  95916   476B   60B  325   152   224    73 \n";
+  folder_.write("near.txt",
+                "#USM00072649 2023 11 18 00 2303    2 ncdc-nws           360000  -835000\n" + levels);
+  EXPECT_EQ(
+      refractivityOf("{kind: soundings, file: near.txt}")->source,
+      "near.txt: sounding of USM00072649, 2023-11-18T00:00:00Z (2 of 2 levels; 1 sounding in the file); 1 h "
+      "before the epoch, 45 km from the region's origin");
+  EXPECT_THAT(problemsOf("{kind: soundings, file: near.txt}"),
+              testing::Not(testing::Contains(HasSubstr("the sounding in use"))));
+  folder_.write("far.txt",
+                "#USM00072649 2021 11 18 00 2303    2 ncdc-nws           448497  -935647\n" + levels);
+  EXPECT_THAT(
+      problemsOf("{kind: soundings, file: far.txt}"),
+      testing::Contains(HasSubstr("the sounding in use, of USM00072649 at 2021-11-18T00:00:00Z, is 730 days "
+                                  "before the epoch and 1273 km from the region's origin")));
+}
+
 TEST_F(RefractivityKeys, AddAnEvaporationDuct) {
   const auto refractivity = refractivityOf(
       "{kind: trilinear, base_m: 200, top_m: 300, deficit_m_units: 40, evaporation_duct_height_m: 14}");

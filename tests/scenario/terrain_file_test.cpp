@@ -1,4 +1,5 @@
 /// Elevation files: units, projections, errors.
+#include <fmt/core.h>
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -328,18 +329,55 @@ TEST_F(TerrainFileTest, HeightsOfAThreeDimensionalCrsAreAboveTheEllipsoid) {
   EXPECT_EQ(load({info.file}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100);
 }
 
-TEST_F(TerrainFileTest, UndeclaredVoidsAreNoted) {
+TEST_F(TerrainFileTest, FillValuesFarBelowTheirNeighboursAreVoid) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
-  file.value = [](int column, int) { return column == 3 ? -9999.0 : 100.0; };
-  const std::string undeclared = write("a.tif", file);
-  EXPECT_THAT(Terrain::describe(undeclared).notes, Contains(HasSubstr("has posts of -9999")));
-  std::vector<std::string> messages;
-  setLogSink([&](LogLevel, const std::string& message) { messages.push_back(message); });
-  load({undeclared}, {49, 50, 10, 11});
-  setLogSink({});
-  EXPECT_THAT(messages, ElementsAre(HasSubstr("elevation file " + undeclared + ": has posts of -9999")));
-  file.nodata = -9999;
-  EXPECT_TRUE(Terrain::describe(write("b.tif", file)).notes.empty());
+  for (const double fill : {-9999.0, -999.0, -10000.0}) {
+    file.value = [fill](int column, int) { return column == 3 || column == 4 ? fill : 100.0; };
+    const std::string undeclared = write("a.tif", file);
+    const TerrainFileInfo info = Terrain::describe(undeclared);
+    EXPECT_THAT(info.notes,
+                Contains(HasSubstr(fmt::format("20 posts of {:g} m are more than 500 m below", fill))));
+    EXPECT_EQ(info.lowest_m, 100);
+    EXPECT_EQ(info.void_posts, 20);
+    std::vector<std::string> messages;
+    setLogSink([&](LogLevel level, const std::string& message) {
+      if (level == LogLevel::warning) messages.push_back(message);
+    });
+    const TerrainPtr terrain = load({undeclared}, {49, 50, 10, 11});
+    setLogSink({});
+    EXPECT_THAT(messages, ElementsAre(HasSubstr("elevation file " + undeclared + ": 20 posts of")));
+    EXPECT_TRUE(std::isnan(terrain->heightMsl_m(49.55, 10.35)));
+    EXPECT_EQ(terrain->heightMsl_m(49.55, 10.75), 100);
+  }
+}
+
+TEST_F(TerrainFileTest, DepthsOfTheSeaAreNoFillValues) {
+  DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  // A trench, its bottom flat, with sides of up to 400 m from post to post.
+  file.value = [](int column, int) { return -1000.0 - 400.0 * std::min({column, 9 - column, 3}); };
+  const std::string sea = write("sea.tif", file);
+  EXPECT_TRUE(Terrain::describe(sea).notes.empty());
+  EXPECT_EQ(Terrain::describe(sea).lowest_m, -2200);
+  EXPECT_EQ(load({sea}, {49, 50, 10, 11})->heightMsl_m(49.55, 10.45), -2200);
+}
+
+TEST_F(TerrainFileTest, APictureIsNoTerrain) {
+  const std::string file = write("rgb.tif", geographicDem(10, 50, 0.1, 10, 10, flat));
+  GDALDatasetH dataset = GDALOpen(file.c_str(), GA_Update);
+  GDALSetRasterColorInterpretation(GDALGetRasterBand(dataset, 1), GCI_RedBand);
+  GDALClose(dataset);
+  EXPECT_THAT(test::errorOf([&] { Terrain::describe(file); }, ErrorCode::bad_input),
+              HasSubstr("is a picture, not heights: its first band is 'Red'"));
+}
+
+TEST_F(TerrainFileTest, HeightsOfAMapInFeetWithoutAUnitAreWarnedOf) {
+  DemFile file;
+  file.crs = "EPSG:2231";  // NAD83 / Colorado North (ftUS)
+  file.columns = file.rows = 10;
+  file.transform = {3000000, 1000, 0, 1300000, 0, -1000};
+  file.value = flat;
+  const TerrainFileInfo info = Terrain::describe(write("feet.tif", file));
+  EXPECT_THAT(info.notes, Contains(HasSubstr("it has no unit of heights: they are taken as metres")));
 }
 
 // --- faults

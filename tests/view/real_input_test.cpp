@@ -133,7 +133,7 @@ class RealInput : public Window {
   bool reports(const std::string& key, const std::function<bool(const Json&)>& condition) const {
     return comes([&] {
       const std::vector<Json> frames = log("frame");
-      return !frames.empty() && condition(frames.back()[key]);
+      return !frames.empty() && condition(frames.back().value(key, Json()));
     });
   }
   bool reports(const std::string& key, const Json& expected) const {

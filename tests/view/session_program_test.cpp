@@ -136,8 +136,40 @@ TEST_F(SessionProgram, FollowsPlatformsByTheirNameOrThatOfAnEmitter) {
   EXPECT_EQ(session->report()["following"], "");
   perform(R"({"do":"follow","name":"nobody"})");
   EXPECT_THAT(error(), HasSubstr("follow: there is no platform 'nobody'; there are radar site, mast"));
+  EXPECT_FALSE(session->perform({"follow", {{"platform", "mast"}}}));
+  EXPECT_EQ(error(), "follow: unknown argument 'platform'");
   perform(R"({"do":"trail","seconds":20})");
   EXPECT_EQ(session->report()["trail"], 20);
+}
+
+TEST_F(SessionProgram, TheCameraStaysWhereItFollowedAPlatform) {
+  perform(R"({"do":"follow","name":"mast","mode":"chase"})");
+  settle();
+  const render::Camera followed = session->picture()->camera;
+  perform(R"({"do":"follow","mode":"off"})");
+  settle();
+  EXPECT_NEAR(length(session->picture()->camera.eye_m - followed.eye_m), 0, 1e-6);
+  perform(R"({"do":"follow","name":"mast"})");
+  perform(R"({"do":"focus","emitter":"radar"})");
+  EXPECT_EQ(session->report()["following"], "") << "it looks at the radar";
+}
+
+TEST_F(SessionProgram, CancelWithinADragTakesTheDragBack) {
+  const auto before = session->scenario();
+  session->drag({{"emitters.radar.power_w", "7"}});
+  waitUntil([&] { return session->scenario() != before; });
+  session->drag({{"region.size_m", "[400000, 400000, 9000]"}});
+  if (session->report()["program"] == "COMPUTING") {
+    perform(R"({"do":"cancel"})");
+  }
+  session->endDrag();
+  settle();
+  perform(R"({"do":"set","path":"emitters.radar.losses_db","value":"3"})");
+  settle();
+  perform(R"({"do":"undo"})");
+  settle();
+  EXPECT_FALSE(session->canUndo()) << "the edit after the cancelled drag is one step, and the only one";
+  EXPECT_EQ(session->scenario(), before);
 }
 
 }  // namespace

@@ -96,6 +96,11 @@ TEST_F(Loss, AnExistingFileIsReplacedOnlyAfterAnAnswer) {
     shown_.perform(fmt::format(R"({{"do":"{}","file":"{}"}})", verb, file));
     EXPECT_FALSE(shown_->panels.replace) << verb << ": this window has written it";
     ASSERT_TRUE(shown_.settle());
+    folder_.write(fmt::format("{}.{}", verb, ending), "precious again");
+    fs::last_write_time(file, fs::last_write_time(file) + std::chrono::seconds(2));
+    shown_.perform(fmt::format(R"({{"do":"{}","file":"{}"}})", verb, file));
+    EXPECT_TRUE(shown_->panels.replace) << verb << ": another program has written it since";
+    shown_.perform(R"({"do":"back"})");
   }
 }
 
@@ -120,14 +125,16 @@ TEST(PictureFiles, AreNewAndInTheFolderOfPicturesOrOfTheInput) {
   setenv("HOME", home.path().c_str(), 1);
   unsetenv("XDG_CONFIG_HOME");
   const std::string input = home / "input.yaml";
-  EXPECT_EQ(newPictureFile(input), home / "emscape-0001.png");
+  std::set<std::string> given;
+  EXPECT_EQ(newPictureFile(input, given), home / "emscape-0001.png");
+  EXPECT_EQ(newPictureFile(input, given), home / "emscape-0002.png") << "given out, not yet written";
   fs::create_directories(home / "Pictures");
   home.write("Pictures/emscape-0001.png", "");
-  EXPECT_EQ(newPictureFile(input), home / "Pictures/emscape-0002.png");
+  EXPECT_EQ(newPictureFile(input, given), home / "Pictures/emscape-0002.png");
   fs::create_directories(home / "Bilder");
   fs::create_directories(home / ".config");
   home.write(".config/user-dirs.dirs", "# comment\nXDG_PICTURES_DIR=\"$HOME/Bilder\"\n");
-  EXPECT_EQ(newPictureFile(input), home / "Bilder/emscape-0001.png");
+  EXPECT_EQ(newPictureFile(input, given), home / "Bilder/emscape-0001.png");
   setenv("HOME", old_home.c_str(), 1);
 }
 

@@ -143,6 +143,16 @@ TEST(Tracks, NeedAPlatformAndTwoPoints) {
   EXPECT_EQ(sample.error(), "a track has at least two points; click them in the picture");
 }
 
+TEST_F(Pictured, ATrackThatIsRefusedKeepsItsPoints) {
+  const render::Projected at = pixelOf(*session, "emitters.radar");
+  perform(R"({"do":"draw_track","platform":"mast"})");
+  for (int i = 0; i < 2; ++i) session->perform({"draw_track", {{"x", at.x}, {"y", at.y}}});
+  EXPECT_EQ(error(), "");
+  perform(R"({"do":"draw_track"})");
+  EXPECT_EQ(error(), "points 1 and 2 of the track are the same");
+  EXPECT_EQ(session->tool().points.size(), 2U);
+}
+
 using Cursor = Pictured;
 
 TEST_F(Cursor, ValueIsReadWithoutThePanelOfTheProbe) {

@@ -76,7 +76,7 @@ Command parseCommand(const std::string& text);
 /// Checks a value against the type, limits, choices and check of its argument.
 /// @throws Error that names verb, argument, value and what is allowed; that of `check`
 void requireAllowed(const std::string& verb, const Argument& argument, const Json& value);
-/// The same for all arguments of a command.
+/// The same for all arguments of a command, which must be those of the verb.
 void requireAllowed(const Command& command);
 /// Text that parseCommand() reads.
 std::string toString(const Command& command);

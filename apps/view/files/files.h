@@ -40,7 +40,7 @@ struct Files {
   OpeningProgress opening;             ///< of that request
   bool cancels_opening = false;        ///< for the window, which resets it
   std::string record_output;           ///< chosen for the next recording; may be empty
-  std::set<std::string> written;       ///< absolute paths of the outputs of this window
+  std::set<std::string> pictures;      ///< names that newPictureFile() gave out
 };
 
 }  // namespace emscape::view

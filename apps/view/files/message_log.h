@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace emscape::view {
@@ -24,9 +25,10 @@ class MessageLog {
                                 }),
                  lines_.end());
   }
-  void clear() {
+  /// Replaces all lines. @return those before
+  std::vector<std::string> exchange(std::vector<std::string> lines) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    lines_.clear();
+    return std::exchange(lines_, std::move(lines));
   }
   std::vector<std::string> lines() const {
     const std::lock_guard<std::mutex> lock(mutex_);

@@ -45,12 +45,12 @@ fs::path pictureFolder(const std::string& input) {
 
 }  // namespace
 
-std::string newPictureFile(const std::string& input) {
+std::string newPictureFile(const std::string& input, std::set<std::string>& given) {
   const fs::path folder = pictureFolder(input);
   for (int number = 1;; ++number) {
-    const fs::path file = folder / fmt::format("emscape-{:04d}.png", number);
+    const std::string file = (folder / fmt::format("emscape-{:04d}.png", number)).string();
     std::error_code ignored;
-    if (!fs::exists(file, ignored)) return file.string();
+    if (!fs::exists(file, ignored) && given.insert(file).second) return file;
   }
 }
 

@@ -58,15 +58,19 @@ void openFile(Session& session, const std::optional<std::string>& file) {
   if (!file) return;
   switch (session.files().browser.purpose()) {
     case Purpose::input:
-      return session.perform({"open", {{"file", *file}}});
+      session.perform({"open", {{"file", *file}}});
+      break;
     case Purpose::view:
-      return session.perform({"load_state", {{"file", *file}}});
+      session.perform({"load_state", {{"file", *file}}});
+      break;
     case Purpose::scenario:
-      return session.perform({"add_scenario", {{"file", *file}}});
+      session.perform({"add_scenario", {{"file", *file}}});
+      break;
     case Purpose::save_scenario: {
       const bool has_ending = std::filesystem::path(*file).has_extension();
       const std::string ending = std::filesystem::path(session.usualScenarioFile()).extension().string();
-      return session.perform({"save", {{"file", has_ending ? *file : *file + ending}}});
+      session.perform({"save", {{"file", has_ending ? *file : *file + ending}}});
+      break;
     }
     case Purpose::record:
       session.files().record_output = *file;

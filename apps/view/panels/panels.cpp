@@ -183,7 +183,7 @@ void drawGoToTime(PanelContext& context) {
   static char typed[64] = "";
   if (!beginDialog(context, "Go to time", session.panels.time)) return;
   if (ImGui::IsWindowAppearing()) {
-    *fmt::format_to_n(typed, sizeof typed - 1, "{:g}", session.timeline().asked_s()).out = '\0';
+    *fmt::format_to_n(typed, sizeof typed - 1, "{:.9g}", session.timeline().asked_s()).out = '\0';
     ImGui::SetKeyboardFocusHere();
   }
   ImGui::SetNextItemWidth(160 * context.scale);
@@ -192,9 +192,7 @@ void drawGoToTime(PanelContext& context) {
                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   ImGui::SameLine();
   if (ImGui::Button("Go") || entered) {
-    const double told_s = session.notice().since_s;
-    session.perform({"seek", {{"time", typed}}});
-    session.panels.time = session.notice().is_error && session.notice().since_s != told_s;
+    session.panels.time = !session.perform({"seek", {{"time", typed}}});
   }
   endDialog();
 }

@@ -109,15 +109,9 @@ void drawTool(Overlay& overlay, const Session& session) {
                            bearingText(measured.bearing_deg) + (measured.is_blocked ? "  not in sight" : ""));
 }
 
-bool hasVerb(const char* name) {
-  const std::vector<Verb>& all = verbs();
-  return std::any_of(all.begin(), all.end(),
-                     [&](const Verb& verb) { return verb.name == std::string(name); });
-}
-
-/// An entry that runs a command; none if the program has no such verb.
+/// An entry that runs a command.
 void entry(PanelContext& context, const char* label, const Command& command) {
-  if (hasVerb(command.verb.c_str()) && ImGui::MenuItem(label)) context.session.perform(command);
+  if (ImGui::MenuItem(label)) context.session.perform(command);
 }
 
 /// Null if the scenario has no emitter of that name.
@@ -166,7 +160,8 @@ void drawMenuOfObject(PanelContext& context, const SceneObject& object) {
   const playback::ScenarioPtr scenario = session.scenario();
   const auto platform = static_cast<std::size_t>(object.platform);
   const bool has_platform = scenario && platform < scenario->platforms.size();
-  if (has_platform) entry(context, "Follow", {"follow", {{"platform", scenario->platforms[platform].name}}});
+  if (has_platform)
+    entry(context, "Follow", {"follow", {{"name", scenario->platforms[platform].name}, {"mode", "follow"}}});
   entry(context, "Probe from here",
         {"probe",
          {{"latitude_deg", object.position.latitude_deg},
@@ -175,7 +170,7 @@ void drawMenuOfObject(PanelContext& context, const SceneObject& object) {
   if (is_emitter) ringsEntry(context, object.name);
   entry(context, "Copy the position", {"copy_position", {{"path", object.path}}});
   ImGui::Separator();
-  if (has_platform && hasVerb("track"))
+  if (has_platform)
     entry(context, "Draw a track", {"draw_track", {{"platform", scenario->platforms[platform].name}}});
   entry(context, "Duplicate", {"duplicate", {{"path", object.path}}});
   entry(context, "Delete", {"remove", {{"path", object.path}}});
@@ -195,7 +190,7 @@ void drawMenuOfGround(PanelContext& context, const ContextMenu& menu) {
   entry(context, "Measure from here", {"measure", pixel});
   entry(context, "Copy the position", {"copy_position", pixel});
   const auto ground_m = context.session.groundAt(menu.x, menu.y);
-  if (!hasVerb("add") || !context.session.scenario() || !ground_m) return;
+  if (!context.session.scenario() || !ground_m) return;
   ImGui::Separator();
   const GeodeticPosition position = GeoFrame(context.session.picture()->grid().frame).toGeodetic(*ground_m);
   for (const char* what : {"radar", "transmitter", "jammer", "platform", "receiver", "target"}) {

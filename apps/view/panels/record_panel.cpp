@@ -54,6 +54,7 @@ constexpr SizePreset kSizes[]{
 
 /// Contents of the dialog's fields.
 struct Typed {
+  std::string input;  ///< which the file was proposed for
   char file[1024] = "";
   double begin_s = 0, end_s = 0, step_s = 0, frames_per_s = 10;
   std::size_t preset = 0;
@@ -84,7 +85,9 @@ void fillIn(Typed& typed, const Session& session) {
   typed.begin_s = times_s.front();
   typed.end_s = times_s.back();
   typed.step_s = times_s.size() > 1 ? times_s[1] - times_s[0] : 1;
-  if (typed.file[0] == '\0') typed.setFile(besideInput(session.view().input, ".mp4"));
+  if (std::exchange(typed.input, session.view().input) != session.view().input || typed.file[0] == '\0') {
+    typed.setFile(besideInput(session.view().input, ".mp4"));
+  }
 }
 
 void drawOutput(PanelContext& context, Typed& typed) {
@@ -151,10 +154,9 @@ void drawEstimate(const PanelContext& context, const Typed& typed) {
 /// The same on the command line.
 std::string commandLine(const Session& session, const Typed& typed) {
   const render::ImageSize size = typed.size(session);
-  return fmt::format(
-      "emscape render {} --state VIEW.json --times {:g}:{:g}:{:g} --size {}x{} --fps {:g} -o {}",
-      shellWord(session.view().input), typed.begin_s, typed.end_s, typed.step_s, size.width, size.height,
-      typed.frames_per_s, shellWord(typed.file));
+  return fmt::format("emscape render {} --state VIEW.json --times {}:{}:{} --size {}x{} --fps {:g} -o {}",
+                     shellWord(session.view().input), typed.begin_s, typed.end_s, typed.step_s, size.width,
+                     size.height, typed.frames_per_s, shellWord(typed.file));
 }
 
 }  // namespace

@@ -128,7 +128,9 @@ void drawPresets(PanelContext& context) {
 /// Name of a file to be read or written.
 void drawFile(PanelContext& context) {
   static char file[1024] = "";
+  static std::string input;  // which the name was typed for
   Session& session = context.session;
+  if (std::exchange(input, session.view().input) != session.view().input) file[0] = '\0';
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 116 * context.scale);
   ImGui::InputTextWithHint("##file", "file.json", file, sizeof file);
   ImGui::SameLine();

@@ -83,22 +83,25 @@ std::vector<Verb> Session::verbs() {
   return all;
 }
 
-void Session::perform(const Command& command) {
+bool Session::perform(const Command& command) {
   Json fields{{"do", command.verb}};
   fields.update(command.arguments);
   log_.write("command", fields);
   touched_ = true;
   const Verb& verb = verbNamed(command.verb);
   if (!verb.run) throw Error(ErrorCode::bad_input, command.verb + ": only a script can do that");
+  bool is_accepted = true;
   try {
     requireAllowed(command);
     verb.run(*this, command);
   } catch (const Error& error) {
+    is_accepted = false;
     tell(failureText(error), true);
   }
   noteSteps();
   status_ = live_.status();
   noteProgram();
+  return is_accepted;
 }
 
 void Session::tell(const std::string& text, bool is_error) {
@@ -187,6 +190,7 @@ bool Session::update() {
   }
   revertRejected();
   if (const auto recorded = files_->recorder.takeOutcome()) {
+    if (!recorded->is_error) noteWritten(files_->recorder.progress().output);
     tell(recorded->text, recorded->is_error);
     const bool is_asked = panels.unsaved && !isUnsaved();  // only about the recording
     if ((std::exchange(quits_when_recorded_, false) || is_asked) && !recorded->is_error) {

@@ -1,7 +1,9 @@
 /// State and commands of the window, without drawing or input: no OpenGL, no ImGui.
 #pragma once
 
+#include <filesystem>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -68,7 +70,8 @@ class Session {
   /// The verbs of perform(): one table per topic, session_TOPIC.cpp.
   static std::vector<Verb> verbs();
   /// Executes a command. Errors become the notice. Waiting, keys, mouse and expect belong to the script.
-  void perform(const Command& command);
+  /// @return false if the command was refused, which is told
+  bool perform(const Command& command);
   /// Changes values of the scenario while a control or a platform is dragged: one undo step.
   void drag(const std::vector<scenario::Edit>& edits);
   void dragValue(const std::string& path, const std::string& value) { drag({{path, value}}); }
@@ -167,6 +170,8 @@ class Session {
   CameraControl& camera() { return camera_; }
   const CameraControl& camera() const { return camera_; }
   void cameraMoved();
+  /// The camera stays where it is, to be moved freely.
+  void stopFollowing();
   const playback::Timeline& timeline() const { return timeline_; }
   const render::RenderSettings& settings() const { return view_.settings; }
   /// A plane through the middle of the box; a vertical one faces the viewer.
@@ -208,6 +213,8 @@ class Session {
   const FieldTimes& fieldTimes() const { return field_times_; }
   const Notice& notice() const { return notice_; }
   void tell(const std::string& text, bool is_error = false);
+  /// Tells that the program wrote this file, and remembers it.
+  void tellWritten(const std::string& file);
   /// Shows a notice that another session of the window has told and logged.
   void show(const Notice& notice) { notice_ = notice; }
   Panels panels;
@@ -251,7 +258,9 @@ class Session {
   void noteSavedView(const std::string& file);
   void saveScenario(const std::string& file);
   void quit(const Command& command);
-  /// True if the user is asked first, since the file exists and this window has not written it. With the
+  /// Remembers that the program wrote this file.
+  void noteWritten(const std::string& file);
+  /// True if the user is asked first, since the file exists and is not as this session wrote it. With the
   /// argument `replace`, which is the answer, and in scripts there is no question.
   bool asksToReplace(const Command& command, const std::string& file);
   void saveView(const std::string& file);
@@ -384,6 +393,7 @@ class Session {
   std::string picture_file_;                              // written when the picture is settled
   std::optional<render::TransferFunction> saved_colors_;  // as fitted, read or written last
   std::optional<Replacing> replacing_;
+  std::map<std::string, std::filesystem::file_time_type> written_;  // outputs of this session, absolute
   Json quit_answers_ = Json::object();
   bool quits_when_recorded_ = false;
   bool opened_unsaved_;    // with unsaved edits

@@ -36,6 +36,7 @@ void Session::focusEmitter(const std::optional<std::string>& name) {
 }
 
 void Session::focusObject(const SceneObject& object) {
+  stopFollowing();
   camera_.focus(object.position_m, kFocus_diagonals, *viewport());
   cameraMoved();
   tell(object.name);
@@ -44,6 +45,7 @@ void Session::focusObject(const SceneObject& object) {
 void Session::focusGround(double x, double y) {
   const std::optional<Vec3d> ground_m = groundAt(x, y);
   if (!ground_m) return;
+  stopFollowing();
   camera_.focus(*ground_m, std::min(kFocus_diagonals, camera_.spec().distance.value_or(kFocus_diagonals)),
                 *viewport());
   cameraMoved();
@@ -63,6 +65,7 @@ void Session::focusPosition(const std::string& text) {
   }
   const double ground_m = picture.ground ? heightAt_m(*picture.ground, target_m.x, target_m.y) : lower.z;
   target_m.z = std::isnan(ground_m) ? lower.z : std::max(ground_m, lower.z);
+  stopFollowing();
   camera_.focus(target_m, std::min(kFocus_diagonals, camera_.spec().distance.value_or(kFocus_diagonals)),
                 *viewport());
   cameraMoved();
@@ -86,6 +89,7 @@ std::vector<Verb> Session::cameraVerbs() {
        [](Session& session, const Command& command) {
          const std::optional<Viewport> view = session.viewport();
          if (!view) return;
+         session.stopFollowing();
          session.camera_.pan(command.number("right_px"), command.number("down_px"), *view);
          session.cameraMoved();
        }},
@@ -103,6 +107,7 @@ std::vector<Verb> Session::cameraVerbs() {
        {{"spec", kText, true, {}, {}, [](const std::string& text) { render::parseCamera(text); }}},
        "Sets the camera, as `emscape render --camera` does",
        [](Session& session, const Command& command) {
+         session.stopFollowing();
          session.camera_.set(render::parseCamera(command.text("spec")));
          session.cameraMoved();
        }},
@@ -123,6 +128,7 @@ std::vector<Verb> Session::cameraVerbs() {
        {},
        "Back to the camera of the start",
        [](Session& session, const Command&) {
+         session.stopFollowing();
          session.camera_.set(session.options_.view.camera);
          session.cameraMoved();
        }},
@@ -168,6 +174,7 @@ std::vector<Verb> Session::cameraVerbs() {
                        fmt::format("bookmark {} is empty: Ctrl+{} stores it", number, number));
          }
          const playback::Bookmark& stored = *session.bookmarks_[static_cast<std::size_t>(number - 1)];
+         session.stopFollowing();
          session.camera_.set(stored.camera);
          session.cameraMoved();
          if (stored.time_s) session.timeline_.seek(*stored.time_s);

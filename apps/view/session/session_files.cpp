@@ -102,7 +102,7 @@ void Session::saveScenario(const std::string& file) {
         opened_unsaved_ = false;
       }
       keep_at_s_ = log_.now_s();  // the autosave is obsolete
-      tell("written: " + file);
+      tellWritten(file);
     };
   });
 }

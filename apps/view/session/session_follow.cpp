@@ -7,6 +7,7 @@
 #include "apps/view/session/session.h"
 #include "emscape/base/enum_names.h"
 #include "emscape/base/error.h"
+#include "playback/pictures/followed_camera.h"
 
 namespace emscape::view {
 namespace {
@@ -43,7 +44,7 @@ std::string firstMoving(const scenario::Scenario& scenario) {
 /// @param mode  follow, chase, off or empty
 void Session::follow(const std::string& name, const std::string& mode) {
   if (mode == "off" || (name.empty() && mode.empty() && !view_.follow.empty())) {
-    change([](playback::ViewState& view) { view.follow.clear(); });
+    stopFollowing();
     tell("the camera stays");
     return;
   }
@@ -62,6 +63,18 @@ void Session::follow(const std::string& name, const std::string& mode) {
   });
   const bool chases = view_.follow_mode == playback::FollowMode::chase;
   tell(fmt::format("the camera {} {}", chases ? "chases" : "follows", platform));
+}
+
+void Session::stopFollowing() {
+  if (view_.follow.empty()) return;
+  if (picture_) {
+    camera_.set(playback::followedCamera(view_, picture_->scenario, picture_->terrain, picture_->grid(),
+                                         picture_->info().time_s));
+  }
+  change([&](playback::ViewState& view) {
+    view.follow.clear();
+    view.camera = camera_.spec();
+  });
 }
 
 std::vector<Verb> Session::followVerbs() {

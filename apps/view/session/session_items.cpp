@@ -114,9 +114,16 @@ std::vector<Verb> Session::itemVerbs() {
        "arrives "
        "at the end of the scenario",
        [](Session& session, const Command& command) {
+         const std::string path = "platforms." + scenario::pathStep(command.text("platform"));
+         const std::vector<SceneObject>& objects = session.objects();
+         const auto moved = std::find_if(objects.begin(), objects.end(),
+                                         [&](const SceneObject& object) { return object.path == path; });
          std::vector<scenario::DrawnPoint> points;
-         for (const Json& text : command.arguments["points"])
+         for (const Json& text : command.arguments["points"]) {
            points.push_back(drawnPointOf(text.get<std::string>()));
+           if (!points.back().height_agl_m && moved != objects.end())
+             points.back().height_agl_m = moved->height_agl_m;
+         }
          session.changeScenario(editsForTrack(session.requireScenario(), command.text("platform"), points,
                                               command.number("begin_s"),
                                               optionalNumber(command, "speed_m_s")));

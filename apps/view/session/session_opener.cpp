@@ -14,7 +14,8 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
   if (files_->request && !task_.active()) {
     OpenRequest request = *std::exchange(files_->request, std::nullopt);
     endBeside(std::move(next_));  // there is a newer request
-    files_->messages->clear();
+    std::vector<std::string> messages = files_->messages->exchange({});
+    if (!messages_before_) messages_before_ = std::move(messages);
     ViewOptions present = session->options();
     // A new input is shown with the options of the start, but with the present window.
     playback::ViewState fresh;
@@ -44,7 +45,7 @@ void SessionOpener::take(Session& session) {
     opening_ = task_.take();
     if (files_->request || !files_->is_opening) return;  // there is a newer request, or it was cancelled
     if (!opening_.colors.empty()) {
-      files_->is_opening = false;
+      giveUp();
       session.perform({"transfer", {{"file", opening_.colors}}});
       return;
     }
@@ -62,6 +63,7 @@ void SessionOpener::replace(std::unique_ptr<Session>& session) {
   session->leave(!takes_edits_along);
   endBeside(std::move(session));
   session = std::move(next_);
+  messages_before_.reset();
   files_->is_opening = files_->request.has_value();
   session->shown(opening_.left_out);
   if (!opening_.note.empty()) session->tell(opening_.note);
@@ -74,6 +76,9 @@ void SessionOpener::cancel(Session& session) {
 }
 
 void SessionOpener::giveUp() {
+  if (messages_before_ && !files_->request) {
+    files_->messages->exchange(*std::exchange(messages_before_, std::nullopt));
+  }
   endBeside(std::move(next_));
   files_->is_opening = files_->request.has_value();
 }

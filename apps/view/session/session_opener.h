@@ -37,6 +37,8 @@ class SessionOpener {
   const Make make_;
   AsyncTasks<Opening> task_;
   Opening opening_;
+  std::optional<std::vector<std::string>>
+      messages_before_;  // of the input that stays if the next one cannot be opened
   std::unique_ptr<Session> next_;
   Worker old_sessions_;
 };

@@ -49,10 +49,11 @@ void Session::cancel() {
   if (!state.can_cancel || !picture_)
     throw Error(ErrorCode::bad_input, "cancel: nothing is being computed or opened");
   timeline_.pause();
-  if (!status_.computing && edit_queue_.isBusy()) {
-    edit_queue_.clear();
-  } else if (status_.computing) {
-    edit_queue_.clear();
+  if (edits_) {
+    edit_queue_.clear(*edits_);
+    if (edits_->scenario() != shown_scenario_) showScenario();
+  }
+  if (status_.computing) {
     showLastQuantity();
     timeline_.seek(picture_->info().time_s);
     askTime();

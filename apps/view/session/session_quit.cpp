@@ -11,17 +11,26 @@ bool Session::hasUnsavedColors() const {
   return transfer_ && saved_colors_ && !(transfer_->function() == *saved_colors_);
 }
 
+void Session::noteWritten(const std::string& file) {
+  std::error_code ignored;
+  const fs::path path = fs::absolute(file, ignored).lexically_normal();
+  written_[path.string()] = fs::last_write_time(path, ignored);
+}
+
+void Session::tellWritten(const std::string& file) {
+  noteWritten(file);
+  tell("written: " + file);
+}
+
 bool Session::asksToReplace(const Command& command, const std::string& file) {
   std::error_code ignored;
   const fs::path path = fs::absolute(file, ignored).lexically_normal();
   const bool is_empty = fs::is_directory(path, ignored) && fs::is_empty(path, ignored);
-  const bool is_new = !fs::exists(path, ignored) || is_empty || files_->written.count(path.string()) > 0;
-  panels.replace = !is_new && !command.boolean("replace", !options_.script.empty());
-  if (panels.replace) {
-    replacing_ = {command, file};
-  } else {
-    files_->written.insert(path.string());
-  }
+  const auto written = written_.find(path.string());
+  const bool is_own = written != written_.end() && written->second == fs::last_write_time(path, ignored);
+  const bool asks = fs::exists(path, ignored) && !is_empty && !is_own;
+  panels.replace = asks && !command.boolean("replace", !options_.script.empty());
+  if (panels.replace) replacing_ = {command, file};
   return panels.replace;
 }
 

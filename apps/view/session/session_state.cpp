@@ -93,7 +93,7 @@ void Session::saveView(const std::string& file) {
       saved_file_ = file;
       saved_text_ = text;
       if (transfer_ && colors) saved_colors_ = colors;
-      tell("written: " + file);
+      tellWritten(file);
     };
   });
 }
@@ -119,7 +119,7 @@ void Session::writePendingPicture() {
   if (picture_file_.empty() || !isPictureSettled()) return;
   jobs_.run([this, file = std::exchange(picture_file_, ""), picture = picture_]() -> BackgroundJobs::Finish {
     render::writePng(file, picture->finished);
-    return [this, file] { tell("written: " + file); };
+    return [this, file] { tellWritten(file); };
   });
 }
 
@@ -152,7 +152,8 @@ std::vector<Verb> Session::stateVerbs() {
        [](Session& session, const Command& command) {
          session.requireInput();
          const std::string given = command.text("file");
-         const std::string file = given.empty() ? newPictureFile(session.view_.input) : given;
+         const std::string file =
+             given.empty() ? newPictureFile(session.view_.input, session.files_->pictures) : given;
          if (!session.asksToReplace(command, file)) session.picture_file_ = file;
        }},
       {"copy_command",

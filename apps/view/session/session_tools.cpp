@@ -121,9 +121,7 @@ void Session::drawTrack(const Command& command) {
     points.push_back(
         fmt::format("{:.7f},{:.7f}", point.end.position.latitude_deg, point.end.position.longitude_deg));
   }
-  const std::string platform = tool_.subject;
-  tool_ = {};
-  perform({"track", {{"platform", platform}, {"points", points}}});
+  if (perform({"track", {{"platform", tool_.subject}, {"points", points}}})) tool_ = {};
 }
 
 void Session::placeItem(const Command& command) {
@@ -135,11 +133,11 @@ void Session::placeItem(const Command& command) {
   if (tool_.kind != PickTool::Kind::place || !command.has("x") || !command.has("y"))
     throw Error(ErrorCode::bad_input, "place: expected what first, then x and y");
   const GeodeticPosition position = pointOf(command).end.position;
-  const std::string what = tool_.subject;
-  tool_ = {};
-  perform(
-      {"add",
-       {{"what", what}, {"latitude_deg", position.latitude_deg}, {"longitude_deg", position.longitude_deg}}});
+  const bool is_added = perform({"add",
+                                 {{"what", tool_.subject},
+                                  {"latitude_deg", position.latitude_deg},
+                                  {"longitude_deg", position.longitude_deg}}});
+  if (is_added) tool_ = {};
 }
 
 std::vector<Verb> Session::toolVerbs() {

@@ -156,7 +156,7 @@ void Session::saveTransfer(const std::string& file) {
     render::writeTransferFunction(file, function);
     return [this, file, function] {
       saved_colors_ = function;
-      tell("written: " + file);
+      tellWritten(file);
     };
   });
 }

@@ -85,7 +85,8 @@ std::vector<Verb> Session::windowVerbs() {
        "that of the input",
        [](Session& session, const Command& command) {
          const std::string given = command.text("file");
-         const std::string file = given.empty() ? newPictureFile(session.view_.input) : given;
+         const std::string file =
+             given.empty() ? newPictureFile(session.view_.input, session.files_->pictures) : given;
          if (!session.asksToReplace(command, file)) session.window_.screenshot(file);
        }},
       {"back",

@@ -78,6 +78,25 @@ void requireType(const std::string& verb, const Argument& argument, const Json& 
                                                 dumpJson(value), nameOf(argument.type)));
 }
 
+/// Requires that all arguments exist and fulfil a check, and that none is missing.
+template <class Check>
+void requireSignature(const Command& command, const Check& check) {
+  const std::vector<Argument>& arguments = verbNamed(command.verb).arguments;
+  for (const auto& [name, value] : command.arguments.items()) {
+    const auto argument = std::find_if(arguments.begin(), arguments.end(),
+                                       [&n = name](const Argument& known) { return n == known.name; });
+    if (argument == arguments.end()) {
+      throw Error(ErrorCode::bad_input, fmt::format("{}: unknown argument '{}'", command.verb, name));
+    }
+    check(command.verb, *argument, value);
+  }
+  for (const Argument& argument : arguments) {
+    if (argument.required && !command.has(argument.name)) {
+      throw Error(ErrorCode::bad_input, fmt::format("{}: {} is missing", command.verb, argument.name));
+    }
+  }
+}
+
 }  // namespace
 
 void requireAllowed(const std::string& verb, const Argument& argument, const Json& value) {
@@ -144,23 +163,10 @@ Command parseCommand(const Json& object) {
   if (!object.is_object() || !object.contains("do") || !object["do"].is_string()) {
     throw Error(ErrorCode::bad_input, "expected an object with \"do\": \"VERB\"");
   }
-  const Verb& verb = verbNamed(object["do"].get<std::string>());
-  Command command{verb.name, Json::object()};
-  for (const auto& [name, value] : object.items()) {
-    if (name == "do" || name == "at_s") continue;
-    const auto argument = std::find_if(verb.arguments.begin(), verb.arguments.end(),
-                                       [&n = name](const Argument& known) { return n == known.name; });
-    if (argument == verb.arguments.end()) {
-      throw Error(ErrorCode::bad_input, fmt::format("{}: unknown argument '{}'", verb.name, name));
-    }
-    requireType(verb.name, *argument, value);
-    command.arguments[name] = value;
-  }
-  for (const Argument& argument : verb.arguments) {
-    if (argument.required && !command.has(argument.name)) {
-      throw Error(ErrorCode::bad_input, fmt::format("{}: {} is missing", verb.name, argument.name));
-    }
-  }
+  Command command{object["do"].get<std::string>(), object};
+  command.arguments.erase("do");
+  command.arguments.erase("at_s");
+  requireSignature(command, requireType);
   return command;
 }
 
@@ -171,11 +177,9 @@ Command parseCommand(const std::string& text) {
 }
 
 void requireAllowed(const Command& command) {
-  for (const Argument& argument : verbNamed(command.verb).arguments) {
-    if (command.has(argument.name)) {
-      requireAllowed(command.verb, argument, command.arguments[argument.name]);
-    }
-  }
+  requireSignature(command, [](const std::string& verb, const Argument& argument, const Json& value) {
+    requireAllowed(verb, argument, value);
+  });
 }
 
 std::string toString(const Command& command) {

@@ -131,7 +131,7 @@ std::string csvOf(const ValueHistory& history, const std::string& channel) {
   for (std::size_t i = 0; i < history.computed; ++i) {
     const float value = history.values[i];
     const bool is_field = std::isfinite(value) && value > history.floor;
-    text += fmt::format("{:g},{}\n", history.times_s[i], is_field ? fmt::format("{:.3f}", value) : "");
+    text += fmt::format("{},{}\n", history.times_s[i], is_field ? fmt::format("{:.3f}", value) : "");
   }
   return text;
 }

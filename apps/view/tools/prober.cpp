@@ -198,7 +198,7 @@ std::string profileCommand(const ProbeResult& result, const std::string& emitter
   }
   scenario::indexOfNamed(result.scenario->emitters, emitter, "emitter");  // throws if there is none
   const GeodeticPosition& position = *result.reading->position;
-  return fmt::format("{} --emitter {} --to={:.7f},{:.7f},{:.2f} --time {:g}",
+  return fmt::format("{} --emitter {} --to={:.7f},{:.7f},{:.2f} --time {}",
                      playback::commandText("profile", *result.scenario), shellWord(emitter),
                      position.latitude_deg, position.longitude_deg, *result.reading->height_msl_m,
                      result.time_s);

@@ -42,7 +42,7 @@ bool same(const RefractivityField& a, const RefractivityField& b) {
 bool areSame(const std::shared_ptr<const Refractivity>& a, const std::shared_ptr<const Refractivity>& b) {
   if (a == b) return true;
   if (!a || !b) return false;
-  const auto& [air, members, quantile] = *a;
+  const auto& [air, members, quantile, source] = *a;  // the source is only told
   return same(air, b->air) && same(members, b->members) && quantile == b->quantile;
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "propagation/parabolic_equation/air/refractivity.h"
@@ -28,6 +29,7 @@ struct Refractivity {
   std::vector<RefractivityField> members;  ///< of an ensemble; empty: `air` alone
   /// Quantile of the members' powers (0..1); none: their mean.
   std::optional<double> quantile;
+  std::string source;  ///< of measured profiles, for people: the file, station, time and distance; else empty
 };
 
 /// True if both have the same values, or both are null.

@@ -147,7 +147,6 @@ class Painter {
   void setMarkers();
   void setTransferFunction(const render::TransferFunction& function);
   void setLegend();
-  render::CameraSpec followed(render::CameraSpec spec) const;
   render::Camera cameraOf(const render::CameraSpec& given) const;
   void fitCamera();
   render::TransferFunction functionFor(const Frame& frame) const;

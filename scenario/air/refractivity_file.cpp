@@ -1,4 +1,4 @@
-#include "scenario/file/refractivity_file.h"
+#include "scenario/air/refractivity_file.h"
 
 #include <fmt/core.h>
 
@@ -14,7 +14,6 @@
 #include "emscape/base/error.h"
 #include "propagation/air/moist_air.h"
 #include "scenario/antenna/text.h"
-#include "scenario/file/csv_columns.h"
 
 namespace emscape::scenario {
 namespace {
@@ -68,14 +67,20 @@ class CsvProfiles {
     RefractivityFile result;
     RefractivityField& field = result.field;
     field.profiles.clear();
-    for (std::vector<RefractivityLevel>& levels : levels_)
-      field.profiles.push_back(profileOfLevels(std::move(levels)));
+    std::string thinning;
+    for (const std::vector<RefractivityLevel>& levels : levels_) {
+      const bool is_too_long = levels.size() > kMaxProfileLevels;
+      ThinnedLevels few = is_too_long ? thinnedToLimit(levels) : ThinnedLevels{levels, levels.size(), 0};
+      if (thinning.empty()) thinning = few.text();
+      field.profiles.push_back(profileOfLevels(std::move(few.levels)));
+    }
     if (has(range)) field.ranges_m = ranges_m_;
     if (has(latitude)) field.positions = positions_;
     const std::size_t count = field.profiles.size();
     result.description = count == 1   ? "1 profile"
                          : has(range) ? fmt::format("{} profiles by range", count)
                                       : fmt::format("{} profiles by place", count);
+    result.description += thinning;
     if (has(m) && std::any_of(field.profiles.begin(), field.profiles.end(), looksLikeN)) {
       result.warnings.push_back(fmt::format(
           "{}: m_units falls with height at the top: these look like N-units (column n_units)", file_));
@@ -92,7 +97,7 @@ class CsvProfiles {
   }
 
  private:
-  static constexpr const char* kFewLevels = "no levels; expected 2 .. 256";
+  static constexpr const char* kFewLevels = "no levels; expected 2 or more";
 
   bool has(Column column) const { return position_[column].has_value(); }
 
@@ -184,10 +189,9 @@ class CsvProfiles {
   }
 
   void finishProfile() const {
-    if (levels_.empty() || (levels_.back().size() >= 2 && levels_.back().size() <= 256)) return;
+    if (levels_.empty() || levels_.back().size() >= 2) return;
     throw Error(ErrorCode::bad_input, {file_, row_.line, 0},
-                fmt::format("the profile that ends here has {} level{}; expected 2 .. 256",
-                            levels_.back().size(), levels_.back().size() == 1 ? "" : "s"));
+                "the profile that ends here has 1 level; expected 2 or more");
   }
 
   std::string file_, text_;
@@ -202,12 +206,26 @@ class CsvProfiles {
 
 }  // namespace
 
+std::string ThinnedLevels::text() const {
+  if (levels.size() == count_before) return "";
+  return fmt::format(", thinned from {} to {} within {:g} M-units", count_before, levels.size(), tolerance);
+}
+
+ThinnedLevels thinnedToLimit(const std::vector<RefractivityLevel>& levels) {
+  ThinnedLevels result{{}, levels.size(), 0.25};
+  do {
+    result.tolerance *= 2;
+    result.levels = thinned(levels, result.tolerance);
+  } while (result.levels.size() > kMaxProfileLevels);
+  return result;
+}
+
 RefractivityFile readRefractivity(const std::string& file) {
   return CsvProfiles(file).read();
 }
 
 bool isRefractivityCsv(const std::string& file) {
-  const std::vector<std::string> names = csvColumnsOf(file);
+  const std::vector<std::string> names = document::csvColumnsOf(file);
   const auto has = [&](const char* name) {
     return std::find(names.begin(), names.end(), name) != names.end();
   };
