@@ -14,8 +14,9 @@ struct StreamOptions {
   std::string dis, acmi, interface;
   playback::StreamRequest request;
 
-  /// @param base_name  the option of the base, for messages
-  void addTo(CLI::App& command, const std::string& base_name);
+  /// @param base      name of the option of the base; empty: none
+  /// @param database  name of the option of the emitter database
+  void addTo(CLI::App& command, const std::string& base, const std::string& database);
   bool isGiven() const { return !dis.empty() || !acmi.empty(); }
   /// The request; reads addresses, which may ask a name server. @throws Error (usage)
   playback::StreamRequest parse() const;

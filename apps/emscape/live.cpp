@@ -39,7 +39,7 @@ class LiveField {
   /// @return true if a field was computed
   bool update() {
     const playback::BattlefieldNow now = battlefield_.now();
-    if (solver_ && now.scenario == scenario_ && now.poses == poses_) return false;
+    if (now.scenario == scenario_ && now.poses == poses_) return false;
     const double begin_s = playback::steadyTime_s();
     Work work(&stopFlag());
     const WorkScope scope(&work);
@@ -183,7 +183,7 @@ Examples:
 
 Exit status: 0, also when Ctrl-C ends it; 2 for wrong options; 3 for a faulty base or database; 1 if the address cannot be used.)");
   auto arguments = std::make_shared<LiveArguments>();
-  arguments->stream.addTo(*command, "--base");
+  arguments->stream.addTo(*command, "--base", "--emitters");
   command->add_option("-o,--output", arguments->folder,
                       "Folder for live.yaml, the scenario, and live.vdb, its field, written each second that "
                       "changed it");

@@ -50,7 +50,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
       "View file: camera, colours, time, edits and the rest; options on the command line override it");
   app::addSetOption(app, typed.edits);
   typed.given.addTo(app, "--size");
-  typed.stream.addTo(app, "");
+  typed.stream.addTo(app, "", "--emitter-database");
   app.add_option("--size", typed.size,
                  "Window size in pixels, WxH; default: 1200x900, with --state as large as its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
@@ -88,7 +88,7 @@ void refuseOptionsOfInput(const CLI::App& app) {
 void takeStream(const app::StreamOptions& stream, const CLI::App& app, ViewOptions& options) {
   if (!stream.isGiven()) {
     for (const char* const name :
-         {"--interface", "--password", "--emitters", "--record", "--force", "--timeout"}) {
+         {"--interface", "--password", "--emitter-database", "--record", "--force", "--timeout"}) {
       if (app.count(name) > 0)
         throw Error(ErrorCode::usage,
                     std::string(name) + " needs --dis or --acmi\nTry 'emscape view --help'.");

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 
 namespace emscape::playback {
 namespace {
@@ -139,13 +140,19 @@ bool DatagramSender::send(const std::uint8_t* bytes, std::size_t size) {
   return true;
 }
 
-Connection Connection::to(const Address& address) {
+Connection Connection::to(const Address& address, const StopFlag* stop) {
   Descriptor socket(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!socket.isOpen()) fail("connect to", address);
   const sockaddr_in at = systemAddress(address);
   if (connect(socket.number(), reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0) {
     if (errno != EINPROGRESS) fail("connect to", address);
-    if (!isReady(socket.number(), POLLOUT, kConnect_s)) fail("connect to", address, ETIMEDOUT);
+    constexpr double kSlice_s = 0.1;
+    double waited_s = 0;
+    while (!isReady(socket.number(), POLLOUT, kSlice_s)) {
+      throwIfStopped(stop);
+      waited_s += kSlice_s;
+      if (waited_s > kConnect_s) fail("connect to", address, ETIMEDOUT);
+    }
     int cause = 0;
     socklen_t size = sizeof cause;
     if (getsockopt(socket.number(), SOL_SOCKET, SO_ERROR, &cause, &size) != 0 || cause != 0)

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/progress.h"
 #include "playback/sockets/address.h"
 
 namespace emscape::playback {
@@ -66,8 +67,9 @@ class DatagramSender {
 class Connection {
  public:
   explicit Connection(Descriptor socket) : socket_(std::move(socket)) {}
-  /// @throws Error (other) naming address and cause, also after 5 s without an answer
-  static Connection to(const Address& address);
+  /// @param stop  ends the waiting; may be null
+  /// @throws Error (other) naming address and cause, also after 5 s without an answer; Stopped
+  static Connection to(const Address& address, const StopFlag* stop = nullptr);
 
   const Descriptor& descriptor() const { return socket_; }
   /// Reads what has arrived, waiting for the first byte.

@@ -14,6 +14,7 @@
 #include "base/event.h"
 #include "base/text/count_text.h"
 #include "emscape/base/error.h"
+#include "emscape/base/work.h"
 #include "interop/acmi/acmi_handshake.h"
 #include "interop/live/live_acmi.h"
 #include "interop/live/live_dis.h"
@@ -116,7 +117,7 @@ struct LiveBattlefield::Impl {
   std::uint64_t lost = 0;
   double lost_at_s = -1e18;
 
-  std::atomic<bool> stops{false};
+  StopFlag stops{false};
   Event rebuild;
   std::thread receiver, builder;
 
@@ -127,11 +128,11 @@ struct LiveBattlefield::Impl {
         maker(asked),
         scenario(maker.base()) {
     if (!request.record.empty())
-      recorder = std::make_unique<StreamRecorder>(request.record, !is_dis, request.replace_record);
+      recorder = std::make_unique<StreamRecorder>(request.record, !is_dis, request.replaces);
     if (is_dis) {
       datagrams.emplace(request.address, request.interface);
     } else {
-      connect();
+      connect(request.stop);
     }
     restart();
     receiver = std::thread([this] { is_dis ? receiveDatagrams() : receiveText(); });
@@ -214,8 +215,8 @@ struct LiveBattlefield::Impl {
     }
   }
 
-  void connect() {
-    connection.emplace(Connection::to(request.address));
+  void connect(const StopFlag* stop) {
+    connection.emplace(Connection::to(request.address, stop));
     connection->write(interop::acmiClientHello("Emscape", request.password), 1);
   }
 
@@ -230,12 +231,13 @@ struct LiveBattlefield::Impl {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     if (stops) return;
     try {
-      connect();
+      connect(&stops);
       restart();
       const std::lock_guard<std::mutex> lock(mutex);
       connection_trouble.clear();
     } catch (const Error& error) {
       fail(error.message());
+    } catch (const Stopped&) {
     }
   }
 

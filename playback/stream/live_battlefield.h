@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "emscape/base/progress.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "interop/import_scenario.h"
 #include "interop/recording/read_recording.h"
@@ -22,11 +23,12 @@ struct StreamRequest {
   std::string password;         ///< of an ACMI host; empty: none
   interop::ReadOptions read;
   interop::BeamwidthMeaning beamwidth = interop::BeamwidthMeaning::by_size;
-  std::string base;      ///< scenario with region, terrain and further platforms
-  std::string emitters;  ///< emitter database; empty: the starter set
-  std::string record;    ///< file for what arrives, .pcap or .acmi; empty: none
-  bool replace_record = false;
-  std::string folder;  ///< of the scenario file; empty: a temporary one
+  std::string base;                ///< scenario with region, terrain and further platforms
+  std::string emitters;            ///< emitter database; empty: the starter set
+  std::string record;              ///< file for what arrives, .pcap or .acmi; empty: none
+  bool replaces = false;           ///< files that exist; else they are an error
+  std::string folder;              ///< of the scenario file; empty: a temporary one
+  const StopFlag* stop = nullptr;  ///< ends the waiting for a host; may be null
 };
 
 /// What has arrived so far.

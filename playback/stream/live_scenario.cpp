@@ -2,12 +2,15 @@
 
 #include <fmt/format.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "base/files/folder.h"
+#include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "interop/dis/pdu.h"
@@ -21,8 +24,18 @@ namespace fs = std::filesystem;
 /// Height (m) above the ground to which positions below it are raised, as by `import`.
 constexpr double kAboveGround_m = 2;
 
+/// A folder for files of the running program, in memory if there is one: each is flushed when it is written.
+fs::path runtimeFolder() {
+  std::error_code ignored;
+  const char* const named = std::getenv("XDG_RUNTIME_DIR");
+  for (const char* const folder : {named == nullptr ? "" : named, "/dev/shm"}) {
+    if (*folder == '/' && access(folder, W_OK) == 0 && fs::is_directory(folder, ignored)) return folder;
+  }
+  return fs::temp_directory_path();
+}
+
 std::string makeTemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "emscape-live-XXXXXX").string();
+  std::string name = (runtimeFolder() / "emscape-live-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr)
     throw Error(ErrorCode::other, {name, 0, 0}, "the temporary folder cannot be made");
   return name;
@@ -45,6 +58,7 @@ LiveScenarioMaker::LiveScenarioMaker(const StreamRequest& request)
   } else {
     makeFolder(request.folder);
     file_ = (fs::path(request.folder) / "live.yaml").string();
+    if (!request.replaces) requireNew({file_, fs::path(request.folder) / "live.vdb"});
   }
   scenario::saveScenario(*base_.scenario, file_);
 }

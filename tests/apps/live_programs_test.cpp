@@ -46,7 +46,7 @@ TEST(LivePrograms, AnExerciseOfOneProgramIsTheFieldOfTheOther) {
   const ProgramResult result = live.wait();
   ASSERT_EQ(result.status, 0) << result.err;
   const std::vector<json> lines = linesOf(result.out);
-  ASSERT_GE(lines.size(), 4u);
+  ASSERT_GE(lines.size(), 2u);
   const json& last = lines.back();
   for (const char* key :
        {"t_s", "pdus", "per_s", "bytes", "lost", "bad", "late", "duplicates", "forgotten", "entities",

@@ -61,7 +61,7 @@ class Maker:
         body += struct.pack(">BBHBBBB", *kind) + self.random.randbytes(8)
         body += struct.pack(">3f3d3fIB", *velocity, *place, *angles, appearance, algorithm) + self.random.randbytes(15)
         body += struct.pack(">3f3fB", *acceleration, *turn, 1) + marking.encode().ljust(11, b"\0") + self.random.randbytes(4)
-        return values, body + self.random.randbytes(16 * parts)
+        return values, body + b"".join(b"\0" + self.random.randbytes(15) for _ in range(parts))
 
     def beam(self):
         values = [self.bits(8), self.bits(16), [self.number(1e9) for _ in range(9)], self.random.randrange(1, 20),
@@ -184,8 +184,7 @@ def for_tshark(values):
     if kind == 23:
         _, entity, event, _, systems = values
         beams = [beam for system in systems for beam in system[4]]
-        # The event has the sender's site.
-        sites = [entity[0], entity[0]] + [target[0] for beam in beams for target in beam[4]]
+        sites = [entity[0]] + [target[0] for beam in beams for target in beam[4]]
         lists = [sites, [event]] + [[s[part] for s in systems] for part in range(3)]
         lists += [[s[3][axis] for s in systems] for axis in range(3)]
         lists += [[b[0] for b in beams], [b[1] for b in beams]]

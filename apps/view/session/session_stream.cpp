@@ -38,6 +38,7 @@ void Session::takeStream() {
   }
   const playback::BattlefieldNow now = options_.stream->now();
   const bool is_other = now.scenario != stream_.scenario;
+  if (is_other && (edit_queue_.isBusy() || isDragging())) return;  // after the edit
   stream_.is_moving = now.poses != stream_.poses;
   if (!is_other && !stream_.is_moving) return;
   stream_.poses = now.poses;
@@ -57,7 +58,7 @@ void Session::adoptStreamed(const playback::BattlefieldNow& now) {
   } catch (const Error& error) {
     tell("the edits do not apply to the present objects, and are dropped: " + failureText(error), true);
   }
-  edit_queue_.clear();
+  edit_queue_.clear(*edits_);
   edits_.emplace(scenario);
   undo_order_.forget(History::scenario);
   opened_unsaved_ = scenario != now.scenario;
