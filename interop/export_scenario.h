@@ -25,7 +25,7 @@ struct ExportResult {
   std::vector<std::string> notes;  ///< what the recording does not carry
 };
 
-/// Endings of the formats that are written: ".acmi", ".zip.acmi", ".pcap".
+/// Endings of the formats that are written: ".acmi", ".pcap", ".asi", ..., longer ones first.
 std::vector<std::string> exportFormats();
 
 /// Writes a recording, whose format its ending tells, and FILE.emitters.yaml, an emitter database for

@@ -4,18 +4,38 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
-#include <filesystem>
+#include <memory>
 
 #include "base/text/count_text.h"
 #include "emscape/base/error.h"
 #include "interop/acmi/acmi_reader.h"
+#include "interop/cot/cot_reader.h"
 #include "interop/dis/dis_recorder.h"
+#include "interop/recording/samples.h"
+#include "interop/simdis/asi_reader.h"
+#include "interop/tracks/track_formats.h"
 
 namespace emscape::interop {
 namespace {
 
-enum class Format { unknown, acmi, zip, seven_zip, capture, hex_log, session };
+enum class Format {
+  unknown,
+  acmi,
+  seven_zip,
+  capture,
+  hex_log,
+  session,
+  asi,
+  cot,
+  gpx,
+  kml,
+  stk,
+  nmea,
+  czml,
+  table
+};
+
+constexpr std::string_view kZipBegin = "PK\x03\x04";
 
 bool beginsWith(std::string_view text, std::string_view begin) {
   return text.substr(0, begin.size()) == begin;
@@ -42,75 +62,132 @@ bool isSession(std::string_view head) {
   return bytes[0] == 0 && bytes[1] == 0 && size == length && bytes[10] >= 1 && bytes[10] <= 7;
 }
 
-Format formatOf(std::string_view head) {
+/// A sentence of NMEA 0183: $GPRMC,...
+bool isNmea(std::string_view head) {
+  return head.size() > 7 && (head[0] == '$' || head[0] == '!') &&
+         head.substr(1, 5).find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string_view::npos &&
+         head[6] == ',';
+}
+
+/// The format of an XML file or of CZML; unknown for others.
+Format markupOf(std::string_view head) {
+  const std::size_t begin = head.find_first_not_of("\xEF\xBB\xBF \t\r\n");
+  if (begin == std::string_view::npos) return Format::unknown;
+  const auto has = [head](std::string_view text) { return head.find(text) != std::string_view::npos; };
+  if (head[begin] == '[' && has("\"id\"")) return Format::czml;
+  if (head[begin] != '<') return Format::unknown;
+  if (has("<gpx")) return Format::gpx;
+  if (has("<kml")) return Format::kml;
+  return isCot(head) ? Format::cot : Format::unknown;
+}
+
+Format formatOf(std::string_view head, const ReadOptions& options) {
   if (beginsWith(head,
                  "\xEF\xBB\xBF"
                  "FileType=") ||
       beginsWith(head, "FileType="))
     return Format::acmi;
-  if (beginsWith(head, "PK\x03\x04")) return Format::zip;
   if (beginsWith(head, "7z\xBC\xAF\x27\x1C")) return Format::seven_zip;
   for (const std::string_view magic :
        {"\xA1\xB2\xC3\xD4", "\xD4\xC3\xB2\xA1", "\xA1\xB2\x3C\x4D", "\x4D\x3C\xB2\xA1", "\x0A\x0D\x0D\x0A"}) {
     if (beginsWith(head, magic)) return Format::capture;
   }
   if (isHexLog(head)) return Format::hex_log;
-  return isSession(head) ? Format::session : Format::unknown;
+  if (isSession(head)) return Format::session;
+  if (beginsWith(head, "stk.v.")) return Format::stk;
+  if (isNmea(head)) return Format::nmea;
+  const Format markup = markupOf(head);
+  if (markup != Format::unknown) return markup;
+  if (isAsi(head)) return Format::asi;
+  return isTrackTable(head, options) ? Format::table : Format::unknown;
 }
+
+/// Tells the progress of reading as the source is read.
+class Reporter {
+ public:
+  Reporter(const ByteSource& source, const std::string& file, const ProgressSink& progress)
+      : source_(source), file_(file), progress_(progress) {}
+
+  void operator()() {
+    if (!progress_ || source_.fraction() < reported_) return;
+    progress_("reading " + file_, source_.fraction());
+    reported_ = source_.fraction() + 0.01;
+  }
+
+ private:
+  const ByteSource& source_;
+  const std::string& file_;
+  const ProgressSink& progress_;
+  double reported_ = 0;
+};
 
 Recording readDis(ByteSource& source, Format format, const std::string& file, const ReadOptions& options,
                   const ProgressSink& progress) {
   dis::DisRecorder recorder(options);
-  double reported = 0;
+  Reporter report(source, file, progress);
   const dis::DatagramSink sink = [&](const dis::Datagram& datagram) {
-    if (progress && source.fraction() >= reported) {
-      progress("reading " + file, source.fraction());
-      reported = source.fraction() + 0.01;
-    }
+    report();
     recorder.take(datagram);
   };
-  try {
-    if (format == Format::capture) dis::readCapture(source, recorder.tally(), sink);
-    if (format == Format::hex_log) dis::readHexLog(source, recorder.tally(), sink);
-    if (format == Format::session) dis::readSession(source, recorder.tally(), sink);
-  } catch (const Error& error) {
-    throw Error(error.code(), {file, 0, 0}, error.message());
-  }
+  if (format == Format::capture) dis::readCapture(source, recorder.tally(), sink);
+  if (format == Format::hex_log) dis::readHexLog(source, recorder.tally(), sink);
+  if (format == Format::session) dis::readSession(source, recorder.tally(), sink);
   if (!source.failure().empty()) recorder.tally().torn = source.failure();
   return recorder.finish();
 }
 
+/// The source of a file, or of the recording in a zip file.
+std::unique_ptr<ByteSource> openRecording(const std::string& file) {
+  std::array<char, kZipBegin.size()> begin{};
+  const bool is_zip = openFile(file)->read(begin.data(), begin.size()) == begin.size() &&
+                      std::string_view(begin.data(), begin.size()) == kZipBegin;
+  return is_zip ? openZip(file) : openFile(file);
+}
+
+Recording readFormat(Format format, const std::string& file, const ReadOptions& options,
+                     const ProgressSink& progress) {
+  const std::unique_ptr<ByteSource> source = openRecording(file);
+  switch (format) {
+    case Format::acmi:
+      return readAcmi(*source, file, progress);
+    case Format::asi:
+      return readAsi(*source, options);
+    case Format::cot:
+      return readCot(*source, options);
+    case Format::gpx:
+      return readGpx(*source, file, options);
+    case Format::kml:
+      return readKml(*source, file, options);
+    case Format::stk:
+      return readStkEphemeris(*source, file, options);
+    case Format::nmea:
+      return readNmea(*source, file, options);
+    case Format::czml:
+      return readCzml(*source, file, options);
+    case Format::table:
+      return readTrackTable(*source, file, options);
+    case Format::seven_zip:
+      throw Error(ErrorCode::bad_input, "a 7z archive; unpack it with 7z x and give the recording in it");
+    case Format::unknown:
+      throw Error(
+          ErrorCode::bad_input,
+          "no recording of a known format: ACMI 2.0 to 2.2 (.acmi, .zip.acmi), DIS as .pcap, .pcapng, "
+          "hexadecimal log or .session, SIMDIS .asi, Cursor on Target, or tracks as GPX, KML, CZML, STK .e, "
+          "NMEA "
+          "or CSV. From other programs export one of these, or record the network with tcpdump -w FILE.pcap "
+          "udp");
+    default:
+      return readDis(*source, format, file, options, progress);
+  }
+}
+
 /// Removes the objects of which no position is known, with their beams.
 void dropWithoutPosition(Recording& recording) {
-  std::vector<std::size_t> kept_as(recording.objects.size());
-  std::vector<RecordedObject> objects;
-  long long dropped = 0;
-  for (std::size_t i = 0; i < recording.objects.size(); ++i) {
-    kept_as[i] = objects.size();
-    if (recording.objects[i].poses.empty()) {
-      kept_as[i] = recording.objects.size();
-      ++dropped;
-    } else {
-      objects.push_back(std::move(recording.objects[i]));
-    }
-  }
-  if (dropped == 0) {
-    recording.objects = std::move(objects);
-    return;
-  }
-  std::vector<RecordedBeam> beams;
-  for (RecordedBeam& beam : recording.beams) {
-    if (kept_as[beam.object] == recording.objects.size()) continue;
-    beam.object = kept_as[beam.object];
-    for (BeamState& state : beam.states) {
-      if (state.target == kNoTarget) continue;
-      const bool is_kept = kept_as[state.target] != recording.objects.size();
-      state.target = is_kept ? kept_as[state.target] : kNoTarget;
-    }
-    beams.push_back(std::move(beam));
-  }
-  recording.objects = std::move(objects);
-  recording.beams = std::move(beams);
+  std::vector<bool> has_position;
+  for (const RecordedObject& object : recording.objects) has_position.push_back(!object.poses.empty());
+  const auto dropped = std::count(has_position.begin(), has_position.end(), false);
+  if (dropped == 0) return;
+  keepObjects(recording, has_position);
   recording.tally.notes.push_back(
       fmt::format("{} without a position, left out", countText(dropped, "object", "objects")));
 }
@@ -119,27 +196,15 @@ void dropWithoutPosition(Recording& recording) {
 
 Recording readRecording(const std::string& file, const ReadOptions& options, const ProgressSink& progress) {
   std::array<char, 16384> head{};
-  const std::size_t size = openFile(file)->read(head.data(), head.size());
-  const Format format = formatOf({head.data(), size});
+  const std::unique_ptr<ByteSource> source = openRecording(file);
+  std::size_t size = 0;
+  while (const std::size_t count = source->read(head.data() + size, head.size() - size)) size += count;
   Recording recording;
-  switch (format) {
-    case Format::acmi:
-      recording = readAcmi(*openFile(file), file, progress);
-      break;
-    case Format::zip:
-      recording = readAcmi(*openZip(file), file, progress);
-      break;
-    case Format::seven_zip:
-      throw Error(ErrorCode::bad_input, {file, 0, 0},
-                  "a 7z archive; unpack it with 7z x and give the recording in it");
-    case Format::unknown:
-      throw Error(
-          ErrorCode::bad_input, {file, 0, 0},
-          "no recording of a known format: ACMI 2.0 to 2.2 (.acmi, .zip.acmi), DIS as .pcap, .pcapng, "
-          "hexadecimal log or .session. From other programs export one of these, or record the network "
-          "with tcpdump -w FILE.pcap udp");
-    default:
-      recording = readDis(*openFile(file), format, file, options, progress);
+  try {
+    recording = readFormat(formatOf({head.data(), size}, options), file, options, progress);
+  } catch (const Error& error) {
+    if (!error.location().file.empty()) throw;
+    throw Error(error.code(), {file, 0, 0}, error.message());
   }
   recording.file = file;
   dropWithoutPosition(recording);
@@ -156,14 +221,24 @@ Recording readRecording(const std::string& file, const ReadOptions& options, con
 Recording merged(std::vector<Recording> recordings) {
   if (recordings.size() == 1) return std::move(recordings.front());
   Recording all;
-  const bool have_epochs = std::all_of(recordings.begin(), recordings.end(),
-                                       [](const Recording& r) { return r.epoch_ms.has_value(); });
-  if (have_epochs) {
-    for (const Recording& r : recordings)
-      all.epoch_ms = std::min(all.epoch_ms.value_or(*r.epoch_ms), *r.epoch_ms);
+  // A recording of fixed objects alone has no times that could be shifted.
+  const auto needsEpoch = [](const Recording& r) {
+    const TimeSpan span = spanOf(r);
+    return !r.epoch_ms && span.begin_s < span.end_s;
+  };
+  std::string without;
+  for (const Recording& r : recordings) {
+    if (needsEpoch(r)) without += (without.empty() ? "" : ", ") + r.file;
+    if (r.epoch_ms) all.epoch_ms = std::min(all.epoch_ms.value_or(*r.epoch_ms), *r.epoch_ms);
+  }
+  if (!without.empty()) {
+    all.epoch_ms.reset();
+    all.tally.notes.push_back(
+        fmt::format("no common epoch, as {} has none: each recording begins at its own t = 0", without));
   }
   for (Recording& recording : recordings) {
-    const double shift_s = have_epochs ? static_cast<double>(*recording.epoch_ms - *all.epoch_ms) / 1000 : 0;
+    const bool is_shifted = all.epoch_ms && recording.epoch_ms;
+    const double shift_s = is_shifted ? static_cast<double>(*recording.epoch_ms - *all.epoch_ms) / 1000 : 0;
     const std::size_t first = all.objects.size();
     for (RecordedObject& object : recording.objects) {
       for (PoseSample& pose : object.poses) pose.t_s += shift_s;

@@ -51,7 +51,7 @@ void addExport(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->fallthrough();
   command->footer(R"(
 The ending of the file tells the format: .acmi and .zip.acmi (Tacview's ACMI 2.2), .pcap (DIS version 7 as UDP datagrams to port
-3000). Beside it FILE.emitters.yaml is written, an emitter database for `emscape import --emitters`, as recordings tell neither
+3000), .asi (SIMDIS), .cot (Cursor on Target events), .czml (Cesium) and .kml (Google Earth). Beside it FILE.emitters.yaml is written, an emitter database for `emscape import --emitters`, as recordings tell neither
 antennas nor receivers.
 
 Examples:
@@ -63,7 +63,10 @@ Exit status: 0; 2 for wrong options; 3 for a faulty scenario.)");
   auto arguments = std::make_shared<ExportArguments>();
   command->add_option("SCENARIO", arguments->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, arguments->edits);
-  command->add_option("-o,--output", arguments->file, "The recording: .acmi, .zip.acmi or .pcap")->required();
+  command
+      ->add_option("-o,--output", arguments->file,
+                   "The recording: .acmi, .zip.acmi, .pcap, .asi, .cot, .czml or .kml")
+      ->required();
   command->add_flag("--force", arguments->options.replace, "Replace the recording and its emitter database");
   command
       ->add_option("--step", arguments->options.step_s,

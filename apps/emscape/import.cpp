@@ -11,6 +11,7 @@
 #include "document/schema_check.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "interop/emitters/emitter_names.h"
 #include "interop/import_scenario.h"
 #include "interop/recording/read_recording.h"
 #include "report/runs/import_report.h"
@@ -23,6 +24,7 @@ struct ImportArguments {
   std::string region = "auto";
   std::string times;
   std::string beamwidth = "by_size";
+  std::string names;
   interop::ReadOptions read;
   interop::ImportOptions options;
 };
@@ -59,9 +61,11 @@ int import(const ImportArguments& arguments, const GlobalOptions& global) {
   options.beamwidth = parseName<interop::BeamwidthMeaning>("meaning of beamwidths", arguments.beamwidth);
   if (!options.replace) requireNew({options.scenario});  // before the work
   const ProgressSink progress = stoppingProgress(global);
+  interop::ReadOptions read = arguments.read;
+  if (!arguments.names.empty()) read.emitter_names = interop::readEmitterNames(arguments.names);
   std::vector<interop::Recording> recordings;
   for (const std::string& file : arguments.files)
-    recordings.push_back(interop::readRecording(file, arguments.read, progress));
+    recordings.push_back(interop::readRecording(file, read, progress));
   const interop::ImportResult result =
       interop::importRecording(interop::merged(std::move(recordings)), options, progress);
   check(options.scenario);
@@ -79,8 +83,9 @@ void addImport(CLI::App& app, const GlobalOptions& global, Action& action) {
   CLI::App* command = app.add_subcommand("import", "Make a scenario of a recording of another program");
   command->fallthrough();
   command->footer(R"(
-Reads ACMI 2.0 to 2.2 (Tacview; .acmi, .zip.acmi) and DIS (.pcap, .pcapng, hexadecimal logs, .session), and writes a scenario with
-CSV tracks in STEM_tracks beside it. What recordings do not tell of their emitters is taken from a database; a starter set is built
+Reads ACMI 2.0 to 2.2 (Tacview; .acmi, .zip.acmi), DIS (.pcap, .pcapng, hexadecimal logs, .session), SIMDIS .asi, Cursor on Target,
+and tracks (GPX, KML and KMZ, CZML, STK .e, NMEA, CSV with a line of names), and writes a scenario with CSV tracks in STEM_tracks
+beside it. What recordings do not tell of their emitters is taken from a database; a starter set is built
 in (scenarios/data/emitters.yaml). Ends with a table of the objects, the emitters that were matched or not, and what was lost,
 torn or ignored.
 
@@ -89,6 +94,8 @@ Examples:
   emscape import exercise.pcap -o exercise.yaml --emitters mine.yaml --times 600:1200
   emscape import flight.acmi -o added.yaml --base scenarios/jacksboro.yaml --only "F-14*,Air+Rotorcraft"
   emscape import flight.acmi -o flight.yaml --json
+  emscape import ship.gpx aircraft.kml -o walk.yaml --base scenarios/jacksboro.yaml
+  emscape import log.csv -o log.yaml --columns "time=Zeit,latitude=Breite,longitude=Laenge,height=Hoehe:ft" --gap 60
 
 Exit status: 0; 2 for wrong options; 3 for a recording, database or base that cannot be used.)");
   auto arguments = std::make_shared<ImportArguments>();
@@ -112,6 +119,19 @@ Exit status: 0; 2 for wrong options; 3 for a recording, database or base that ca
       ->add_option("--timeout", arguments->read.emission_timeout_s,
                    "Seconds without update after which an emission of DIS ends")
       ->check(CLI::Range(0.1, 1e6));
+  command->add_option(
+      "--names", arguments->names,
+      "SISO-REF-010.xml: names of the emitters of DIS in messages and tables, else their numbers");
+  command->add_option(
+      "--columns", arguments->read.columns,
+      "Columns of a CSV file: ROLE=NAME[:UNIT],... with the roles time, latitude, longitude, height, "
+      "height_ellipsoid, height_pressure, heading, pitch, roll and id; by default by common names");
+  command
+      ->add_option("--gap", arguments->read.gap_s,
+                   "Seconds without a position after which a track (GPX, KML, CZML, STK, NMEA, CSV) has "
+                   "ended until the "
+                   "next one; by default gaps are bridged")
+      ->check(CLI::Range(0.0, 1e8));
   command->callback([arguments, &global, &action] {
     action = [arguments, &global] { return import(*arguments, global); };
   });

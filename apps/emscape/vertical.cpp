@@ -16,6 +16,7 @@
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "render/annotate/plot.h"
+#include "report/maps/areps_files.h"
 #include "report/maps/output_files.h"
 #include "report/maps/vertical_report.h"
 #include "report/warnings.h"
@@ -38,6 +39,7 @@ struct VerticalCommand {
   double time_s = 0;
   std::vector<int> grid{600, 300};
   std::string size;
+  std::string areps;  ///< folder; empty: no such files
 };
 
 study::VerticalRequest requestOf(const VerticalCommand& command, const scenario::Scenario& scenario) {
@@ -58,6 +60,10 @@ study::VerticalRequest requestOf(const VerticalCommand& command, const scenario:
 }
 
 int vertical(const VerticalCommand& command, const GlobalOptions& global) {
+  if (command.outputs.empty() && command.areps.empty())
+    throw Error(ErrorCode::usage, "-o FILE or --areps FOLDER is required");
+  if (!command.areps.empty() && command.axis != "msl")
+    throw Error(ErrorCode::usage, "--areps writes heights above mean sea level; leave out --height-axis agl");
   const render::ImageSize size = command.size.empty() ? study::verticalPlotSize(command.azimuths_deg.size())
                                                       : render::parseImageSize(command.size);
   if (std::any_of(command.outputs.begin(), command.outputs.end(), render::isPlotFile))
@@ -68,15 +74,26 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
   const study::VerticalRequest request = requestOf(command, *scenario);
   const scenario::TerrainPtr terrain = study::loadVerticalTerrain(*scenario, request);
   stopIfInterrupted();
-  const study::VerticalDiagram diagram = openOnTarget(global, "float", [&](const ComputeTarget& target) {
-    return study::computeVertical(scenario, terrain, request, target.fieldOptions());
-  });
+  const auto compute = [&](const study::VerticalRequest& wanted) {
+    return openOnTarget(global, "float", [&](const ComputeTarget& target) {
+      return study::computeVertical(scenario, terrain, wanted, target.fieldOptions());
+    });
+  };
+  const study::VerticalDiagram diagram = compute(request);
   report::logWarnings(diagram.warnings);
   stopIfInterrupted();
   writeStudyOutputs(command.outputs,
                     {[&](const std::string& file) { study::plotVertical(diagram, size, file); },
                      [&](const std::string& file) { report::writeVerticalCsv(diagram, file); },
                      [&] { return dumpJson(report::verticalJson(diagram, true)); }});
+  if (!command.areps.empty()) {
+    study::VerticalRequest strength = request;
+    const bool is_radar =
+        scenario->emitters[static_cast<std::size_t>(request.emitter)].kind == scenario::EmitterKind::radar;
+    strength.quantity = is_radar ? scenario::Quantity::snr_db : scenario::Quantity::power_density_dbwm2;
+    for (const std::string& file : report::writeAreps(compute(strength), *scenario, command.areps))
+      logInfo("wrote " + file);
+  }
   if (global.json) {
     printJson(report::verticalJson(diagram, false));
   } else {
@@ -102,6 +119,7 @@ Examples:
   emscape vertical scenarios/jacksboro.yaml --emitter "search radar" --azimuth 30 --height-axis agl --max-height 1000 -o low.svg
   emscape vertical scenarios/jacksboro.yaml --emitter jammer --time 80 --azimuth 200 --threshold -50 -o jammer.png -o jammer.csv
   emscape vertical scenarios/jacksboro.yaml --emitter "search radar" --azimuth 0 --blake --range 100000 --max-height 10000 -o blake.png
+  emscape vertical scenarios/jacksboro.yaml --emitter "search radar" --azimuth 0,10,20,30 --grid 200,100 --areps areps
 
 Exit status: 0, whether the threshold is reached or not; 2 for an unknown emitter, one that is off, or a quantity that it does
 not have by itself.)");
@@ -117,6 +135,7 @@ not have by itself.)");
       ->check(CLI::Range(-360.0, 360.0))
       ->required();
   addStudyOutputs(*command, options->outputs);
+  command->get_option("--output")->required(false);  // --areps may stand alone
   command->add_option("--height-axis", options->axis, "Heights above mean sea level (msl) or ground (agl)")
       ->check(CLI::IsMember({"msl", "agl"}));
   command->add_flag("--blake", options->blake, "Chart over a smooth earth, with elevation angles");
@@ -135,6 +154,10 @@ not have by itself.)");
       "--quantity", options->quantity,
       "A quantity of one emitter; default: detection_probability of radars, power_density_dbwm2 of others");
   addThresholdOption(*command, options->threshold);
+  command->add_option(
+      "--areps", options->areps,
+      "Folder for a text file of AREPS for each azimuth, with loss, propagation factor and, of radars, "
+      "the losses for probabilities of detection; SIMDIS draws them");
   command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
   command->add_option("--grid", options->grid, "Number of points of the grid: RANGES,HEIGHTS")
       ->delimiter(',')

@@ -4,16 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "base/geodesy/position_limits.h"
 #include "base/text/utc.h"
-#include "base/text/utf8.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "interop/acmi/acmi_text.h"
+#include "interop/acmi/carried_beams.h"
 #include "interop/recording/samples.h"
 #include "interop/recording/tally.h"
+#include "interop/recording/text.h"
 
 namespace emscape::interop {
 namespace {
@@ -23,44 +23,21 @@ constexpr double kMaxFrame_s = 1e8;  ///< of a time after ReferenceTime: what a 
 /// Frames of several threads are written out of order by some seconds.
 constexpr double kMaxStepBack_s = 100;
 
-bool hasTag(std::string_view type, std::string_view tag) {
-  for (;;) {
-    const std::size_t at = type.find('+');
-    if (type.substr(0, at) == tag) return true;
-    if (at == std::string_view::npos) return false;
-    type.remove_prefix(at + 1);
-  }
-}
-
-bool isBeam(const std::string& type) {
-  return hasTag(type, "Beam");
-}
-
 /// @see the table "Object Types" of the documentation of ACMI 2.2
 Domain domainOf(const std::string& type) {
   for (const char* tag : {"Navaid", "Misc", "Bullseye", "Waypoint", "Explosion", "Decoy", "Shrapnel",
                           "Projectile", "Container", "Parachutist"}) {
-    if (hasTag(type, tag)) return Domain::scenery;
+    if (hasAcmiTag(type, tag)) return Domain::scenery;
   }
-  if (hasTag(type, "Weapon")) return Domain::weapon;
-  if (hasTag(type, "Air")) return Domain::air;
-  if (hasTag(type, "Ground")) return Domain::land;
-  if (hasTag(type, "Submarine")) return Domain::subsurface;
-  return hasTag(type, "Sea") ? Domain::sea : Domain::other;
-}
-
-/// The property Color tells how a side is shown; the names of coalitions are free.
-Side sideOf(const std::string& color) {
-  if (color == "Blue") return Side::friendly;
-  if (color == "Red") return Side::opposing;
-  if (color.empty()) return Side::unknown;
-  return Side::neutral;
+  if (hasAcmiTag(type, "Weapon")) return Domain::weapon;
+  if (hasAcmiTag(type, "Air")) return Domain::air;
+  if (hasAcmiTag(type, "Ground")) return Domain::land;
+  if (hasAcmiTag(type, "Submarine")) return Domain::subsurface;
+  return hasAcmiTag(type, "Sea") ? Domain::sea : Domain::other;
 }
 
 std::string printable(std::string_view text) {
-  std::string value = xmlCharacters(acmiValue(text));
-  if (value.size() > 150) value = value.substr(0, 150);
-  return xmlCharacters(value);
+  return printableText(acmiValue(text));
 }
 
 /// Without the byte order mark.
@@ -98,7 +75,7 @@ void AcmiReader::take(std::string_view line, long long line_number) {
   bool removes = line.front() == '-';
   if (line.front() == '#') {
     line.remove_prefix(1);
-    const auto time_s = acmiNumber(line);
+    const auto time_s = numberIn(line);
     const auto id = line.size() > 1 && line.front() == '-' ? acmiId(line.substr(1)) : std::nullopt;
     // Some programs write #-1001 for -1001; a frame is not so long before the last one.
     removes = id && states_.count(*id) != 0 && (!time_s || *time_s < time_s_ - kMaxStepBack_s);
@@ -140,7 +117,7 @@ void AcmiReader::takeGlobal(std::string_view properties) {
     const std::string_view name = part.substr(0, at), value = part.substr(at + 1);
     if (name == "ReferenceLongitude" || name == "ReferenceLatitude") {
       const bool is_longitude = name == "ReferenceLongitude";
-      const auto number = acmiNumber(value);
+      const auto number = numberIn(value);
       if (number && std::abs(*number) <= (is_longitude ? 360 : 90))
         (is_longitude ? reference_longitude_deg_ : reference_latitude_deg_) = *number;
     } else if (name == "ReferenceTime") {
@@ -219,7 +196,7 @@ void AcmiReader::takeProperty(State& state, std::string_view name, std::string_v
     object.type = printable(value);
     object.keys.acmi_type = object.type;
     object.domain = domainOf(object.type);
-    if (isBeam(object.type)) takeRadarProperty(state, "RadarMode", "1");
+    if (isAcmiBeam(object.type)) takeRadarProperty(state, "RadarMode", "1");
   } else if (name == "Name") {
     if (!object.keys.acmi_name.empty()) return;
     object.keys.acmi_name = printable(value);
@@ -228,18 +205,18 @@ void AcmiReader::takeProperty(State& state, std::string_view name, std::string_v
     const std::string told = printable(value);
     if (!told.empty() && object.name == object.keys.acmi_name && told != object.name)
       object.name += " " + told;
-  } else if (name == "Color") {
-    object.side = sideOf(printable(value));
+  } else if (name == "Color" || name == "Coalition") {
+    (name == "Color" ? state.color : state.coalition) = printable(value);
+    object.side = acmiSide(state.color, state.coalition);
   } else if (name == "Parent") {
-    state.parent = printable(value);
-    carried_.emplace_back(state.object, state.parent);
+    if (const auto parent = acmiId(value)) parents_[state.object] = fmt::format("{:x}", *parent);
   } else if (name == "Visible" || name == "Disabled") {
-    const auto number = acmiNumber(value);
+    const auto number = numberIn(value);
     if (number) addPresence(object.presence, time_s_, (*number != 0) == (name == "Visible"));
   } else if (name == "LockedTarget") {
     state.locked = acmiId(value);
   } else if (name == "LockedTargetMode") {
-    state.is_locked = acmiNumber(value).value_or(0) != 0;
+    state.is_locked = numberIn(value).value_or(0) != 0;
   } else if (!takeRadarProperty(state, name, value)) {
     countIgnored(recording_.tally, "property " + printable(name.substr(0, 40)));
   }
@@ -253,7 +230,7 @@ bool AcmiReader::takeRadarProperty(State& state, std::string_view name, std::str
   if (name == "RadarHorizontalBeamwidth") angle = &state.radar.beamwidth_az_deg;
   if (name == "RadarVerticalBeamwidth") angle = &state.radar.beamwidth_el_deg;
   if (angle == nullptr && name != "RadarMode") return name == "RadarRange" || name == "RadarRoll";
-  const auto number = acmiNumber(value);
+  const auto number = numberIn(value);
   if (!number || std::abs(*number) > 360) return true;
   if (angle != nullptr) {
     *angle = *number;
@@ -317,22 +294,6 @@ void AcmiReader::place(State& state, std::string_view value, const std::string& 
   }
 }
 
-void AcmiReader::nameCarriedBeams() {
-  std::unordered_map<std::string, std::size_t> by_id;
-  for (std::size_t i = 0; i < recording_.objects.size(); ++i) by_id[recording_.objects[i].id] = i;
-  for (const auto& [index, parent_id] : carried_) {
-    RecordedObject& object = recording_.objects[index];
-    const auto id = acmiId(parent_id);
-    const auto found = id ? by_id.find(fmt::format("{:x}", *id)) : by_id.end();
-    if (!isBeam(object.type) || found == by_id.end() || found->second == index) continue;
-    const RecordedObject& parent = recording_.objects[found->second];
-    object.name = joinedName(parent.name, object.name.empty() ? "beam" : object.name);
-    if (object.keys.acmi_name.empty()) object.keys.acmi_name = parent.keys.acmi_name;
-    object.keys.acmi_type = parent.keys.acmi_type;
-    object.side = parent.side;
-  }
-}
-
 std::size_t AcmiReader::keepLatest(std::size_t max_objects) {
   std::vector<std::pair<double, std::uint64_t>> by_time;
   for (const auto& [id, state] : states_) {
@@ -369,11 +330,11 @@ std::size_t AcmiReader::keepLatest(std::size_t max_objects) {
     keep(beam.object);
     for (BeamState& state : beam.states) keep(state.target);
   }
-  std::map<std::size_t, std::string> carried;  // of several parents told the last one
-  for (auto& [index, parent] : carried_) {
-    if (kept_as[index] != kNoTarget) carried[kept_as[index]] = std::move(parent);
+  std::unordered_map<std::size_t, std::string> parents;
+  for (auto& [index, parent] : parents_) {
+    if (kept_as[index] != kNoTarget) parents[kept_as[index]] = std::move(parent);
   }
-  carried_.assign(carried.begin(), carried.end());
+  parents_ = std::move(parents);
   recording_.objects = std::move(objects);
   recording_.beams = std::move(beams);
   samples_ = recording_.objects.size() + recording_.beams.size();
@@ -381,10 +342,8 @@ std::size_t AcmiReader::keepLatest(std::size_t max_objects) {
 }
 
 Recording AcmiReader::finish() {
-  nameCarriedBeams();
   long long outside = 0;
   for (RecordedObject& object : recording_.objects) {
-    if (object.name.empty()) object.name = object.type.empty() ? "object " + object.id : object.type;
     std::vector<PoseSample> sound;
     sound.reserve(object.poses.size());
     for (PoseSample& pose : object.poses) {
@@ -400,6 +359,10 @@ Recording AcmiReader::finish() {
     sortByTime(object);
   }
   for (RecordedBeam& beam : recording_.beams) sortByTime(beam);
+  joinCarriedBeams(recording_, parents_);
+  for (RecordedObject& object : recording_.objects) {
+    if (object.name.empty()) object.name = object.type.empty() ? "object " + object.id : object.type;
+  }
   if (outside > 0) {
     recording_.tally.bad += outside;
     if (recording_.tally.first_bad.empty())

@@ -42,7 +42,7 @@ class AcmiReader {
     bool has_mode = false;                ///< RadarMode was told
     std::optional<std::uint64_t> locked;  ///< id of the target
     bool is_locked = true;                ///< LockedTargetMode
-    std::string parent;                   ///< id of the object that carries this beam
+    std::string color, coalition;
   };
 
   void takeHeader(std::string_view line, long long line_number);
@@ -55,12 +55,10 @@ class AcmiReader {
   void remove(std::uint64_t id);
   State& stateOf(std::uint64_t id);
   RecordedObject& objectOf(const State& state) { return recording_.objects[state.object]; }
-  /// Gives the beams that are objects of their own the names and types of the objects that carry them.
-  void nameCarriedBeams();
 
   Recording recording_;
   std::unordered_map<std::uint64_t, State> states_;
-  std::vector<std::pair<std::size_t, std::string>> carried_;  ///< beams' objects, with their parents' ids
+  std::unordered_map<std::size_t, std::string> parents_;  ///< of objects: the ids of their parents
   int header_lines_ = 0;
   double time_s_ = 0;
   std::size_t samples_ = 0;

@@ -2,27 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
+
+#include "interop/recording/text.h"
 
 namespace emscape::interop {
-namespace {
-
-std::string_view trimmed(std::string_view text) {
-  while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-  return text;
-}
-
-}  // namespace
-
-std::optional<double> acmiNumber(std::string_view text) {
-  text = trimmed(text);
-  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-  double value = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
 
 std::optional<std::uint64_t> acmiId(std::string_view text) {
   text = trimmed(text);
@@ -58,6 +41,30 @@ std::string escapedAcmi(const std::string& text) {
   return escaped;
 }
 
+bool hasAcmiTag(std::string_view type, std::string_view tag) {
+  for (;;) {
+    const std::size_t at = type.find('+');
+    if (type.substr(0, at) == tag) return true;
+    if (at == std::string_view::npos) return false;
+    type.remove_prefix(at + 1);
+  }
+}
+
+scenario::Side acmiSide(const std::string& color, const std::string& coalition) {
+  using scenario::Side;
+  if (color == "Blue") return Side::friendly;
+  if (color == "Red") return Side::hostile;
+  if (!color.empty()) return Side::neutral;
+  const std::string name = lowerCase(coalition);
+  const auto isOneOf = [&name](std::initializer_list<const char*> names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (isOneOf({"friend", "friends", "friendly", "blue", "blufor", "allies"})) return Side::friendly;
+  if (isOneOf({"hostile", "hostiles", "enemy", "enemies", "red", "opfor"})) return Side::hostile;
+  if (isOneOf({"neutral", "neutrals", "green", "white", "grey"})) return Side::neutral;
+  return Side::unknown;
+}
+
 std::optional<AcmiPlace> acmiPlace(std::string_view text) {
   std::array<std::string_view, 9> parts;
   std::size_t count = 0;
@@ -74,7 +81,7 @@ std::optional<AcmiPlace> acmiPlace(std::string_view text) {
       count >= 6;  // 5 parts: a position in a plane follows; 9: attitude, then the plane
   for (std::size_t i = 0; i < (has_attitude ? 6u : std::min<std::size_t>(count, 3)); ++i) {
     if (parts[i].empty()) continue;
-    place.values[i] = acmiNumber(parts[i]);
+    place.values[i] = numberIn(parts[i]);
     if (!place.values[i]) return std::nullopt;
   }
   return place;

@@ -7,10 +7,9 @@
 #include <string>
 #include <string_view>
 
-namespace emscape::interop {
+#include "emscape/scenario/model/platform.h"
 
-/// The number that a text is, blanks around it apart; none for another text, infinities and NaN.
-std::optional<double> acmiNumber(std::string_view text);
+namespace emscape::interop {
 
 /// The 64-bit hexadecimal id of an object; none for another text.
 std::optional<std::uint64_t> acmiId(std::string_view text);
@@ -24,6 +23,17 @@ std::string acmiValue(std::string_view text);
 
 /// A text as a value: commas and line ends escaped.
 std::string escapedAcmi(const std::string& text);
+
+/// True if a Type has a tag.
+bool hasAcmiTag(std::string_view type, std::string_view tag);
+/// True for the Type of an object that stands for the beam of another.
+inline bool isAcmiBeam(std::string_view type) {
+  return hasAcmiTag(type, "Beam");
+}
+
+/// The side that Color tells; without it Coalition, whose names are free: only the common ones are known.
+/// DCS calls its red side Allies: the colour comes before the name.
+scenario::Side acmiSide(const std::string& color, const std::string& coalition);
 
 /// The parts of a T property, in the order longitude, latitude, altitude, roll, pitch, yaw; parts that are
 /// empty or missing have no value.

@@ -12,6 +12,7 @@
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "interop/dis/dead_reckoning.h"
+#include "interop/dis/force.h"
 #include "interop/recording/samples.h"
 #include "interop/recording/tally.h"
 
@@ -46,11 +47,6 @@ Domain domainOf(const std::array<int, 7>& type) {
     default:
       return Domain::other;
   }
-}
-
-Side sideOf(int force) {
-  constexpr Side kSides[] = {Side::unknown, Side::friendly, Side::opposing, Side::neutral};
-  return force >= 0 && force <= 3 ? kSides[force] : Side::unknown;
 }
 
 std::string textOf(const EntityId& id) {
@@ -245,6 +241,12 @@ void DisRecorder::takeState(const EntityState& state, double time_s) {
   entity.is_known = true;
 }
 
+std::string DisRecorder::emitterText(int name) const {
+  const auto found = options_.emitter_names.find(name);
+  return found == options_.emitter_names.end() ? fmt::format("{}", name)
+                                               : fmt::format("{} ({})", name, found->second);
+}
+
 DisRecorder::Beam& DisRecorder::beamOf(const EntityId& id, int system, int number) {
   const std::size_t object = entityOf(id).object;
   const auto [found, is_new] = systemOf(id, system).try_emplace(number);
@@ -290,7 +292,7 @@ void DisRecorder::takeEmission(const Emission& emission, double time_s, int vers
     for (const EmissionBeam& told : system.beams) {
       Beam& beam = beamOf(emission.entity, system.number, told.number);
       RecordedBeam& record = recording_.beams[beam.beam];
-      record.name = fmt::format("emitter {}, beam {}", system.name, told.number);
+      record.name = fmt::format("emitter {}, beam {}", emitterText(system.name), told.number);
       record.kind = kindOf(told.function);
       record.keys = {system.name, system.function, told.function, told.parameter_index, std::nullopt};
       if (std::isfinite(system.location_m.z))

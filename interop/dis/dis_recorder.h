@@ -51,6 +51,8 @@ class DisRecorder {
   /// @param system  number of the system; -1 - radio for a transmitter
   System& systemOf(const EntityId& id, int system) { return systems_[id.key()][system]; }
   Beam& beamOf(const EntityId& id, int system, int number);
+  /// The number of an emitter name, with the name where it is known.
+  std::string emitterText(int name) const;
   void countSample();
 
   ReadOptions options_;

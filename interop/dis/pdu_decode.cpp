@@ -59,6 +59,81 @@ EmissionBeam emissionBeam(BigEndianReader& reader, std::uint8_t version) {
   return beam;
 }
 
+void readBody(BigEndianReader& reader, std::uint8_t, EntityState& state) {
+  state.id = entityId(reader);
+  state.force = reader.u8();
+  reader.skip(1);  // articulation parameters, at the end
+  state.type = entityType(reader);
+  reader.skip(8);  // alternative type
+  state.velocity_mps = reader.floats();
+  state.position_m = reader.doubles();
+  state.orientation_rad = reader.floats();
+  state.appearance = reader.u32();
+  state.algorithm = reader.u8();
+  reader.skip(15);
+  state.acceleration_mps2 = reader.floats();
+  state.turn_radps = reader.floats();
+  reader.skip(1);  // character set
+  for (std::size_t i = 0; i < kMarkingBytes; ++i) state.marking += static_cast<char>(reader.u8());
+  state.marking.resize(std::min(state.marking.find('\0'), state.marking.size()));
+  reader.u32();  // capabilities
+}
+
+void readBody(BigEndianReader& reader, std::uint8_t version, Emission& emission) {
+  emission.entity = entityId(reader);
+  reader.skip(4);  // site and application of the event
+  emission.event = reader.u16();
+  emission.is_change = reader.u8() != 0;
+  const std::size_t systems = reader.u8();
+  reader.skip(2);
+  for (std::size_t i = 0; i < systems && reader.left() >= kSystemBytes; ++i) {
+    EmissionSystem system;
+    reader.skip(1);
+    const std::size_t beams = reader.u8();
+    reader.skip(2);
+    system.name = reader.u16();
+    system.function = reader.u8();
+    system.number = reader.u8();
+    system.location_m = reader.floats();
+    for (std::size_t b = 0; b < beams && reader.left() >= kBeamBytes; ++b)
+      system.beams.push_back(emissionBeam(reader, version));
+    if (system.beams.size() < beams) reader.skip(kMaxPduBytes);  // not sound
+    emission.systems.push_back(std::move(system));
+  }
+  if (emission.systems.size() < systems) reader.skip(kMaxPduBytes);  // not sound
+}
+
+void readBody(BigEndianReader& reader, std::uint8_t, Transmitter& transmitter) {
+  transmitter.entity = entityId(reader);
+  transmitter.radio = reader.u16();
+  transmitter.type = entityType(reader);
+  transmitter.state = reader.u8();
+  reader.skip(3);  // source; count of variable parameters (version 7), at the end
+  transmitter.antenna_m = reader.doubles();
+  transmitter.relative_antenna_m = reader.floats();
+  transmitter.antenna_pattern = reader.u16();
+  reader.skip(2);  // length of the antenna pattern, at the end
+  transmitter.frequency_hz = reader.u64();
+  transmitter.bandwidth_hz = reader.f32();
+  transmitter.power_dbm = reader.f32();
+  for (std::uint16_t& modulation : transmitter.modulation) modulation = reader.u16();
+  reader.skip(8);  // crypto system and key, length of the modulation parameters, padding
+}
+
+/// The body of a PDU. The fault, if there is one: "WHAT of N bytesREASON".
+template <class Pdu>
+std::optional<Pdu> decodeBody(const std::uint8_t* bytes, std::size_t size, const std::string& what,
+                              const std::string& reason, std::string& fault) {
+  BigEndianReader reader(bytes, size);
+  const std::uint8_t version = reader.u8();
+  reader.skip(kHeaderBytes - 1);
+  Pdu pdu;
+  readBody(reader, version, pdu);
+  if (reader.isSound()) return pdu;
+  fault = what + " of " + std::to_string(size) + " bytes" + reason;
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::string nameOf(std::uint8_t type) {
@@ -98,98 +173,25 @@ std::optional<Header> decodeHeader(const std::uint8_t* bytes, std::size_t size) 
 
 std::optional<EntityState> decodeEntityState(const std::uint8_t* bytes, std::size_t size,
                                              std::string& fault) {
-  BigEndianReader reader(bytes, size);
-  reader.skip(kHeaderBytes);
-  EntityState state;
-  state.id = entityId(reader);
-  state.force = reader.u8();
-  reader.skip(1);  // articulation parameters, at the end
-  state.type = entityType(reader);
-  reader.skip(8);  // alternative type
-  state.velocity_mps = reader.floats();
-  state.position_m = reader.doubles();
-  state.orientation_rad = reader.floats();
-  state.appearance = reader.u32();
-  state.algorithm = reader.u8();
-  reader.skip(15);
-  state.acceleration_mps2 = reader.floats();
-  state.turn_radps = reader.floats();
-  reader.skip(1);  // character set
-  for (std::size_t i = 0; i < kMarkingBytes; ++i) state.marking += static_cast<char>(reader.u8());
-  state.marking.resize(std::min(state.marking.find('\0'), state.marking.size()));
-  reader.u32();  // capabilities
-  if (!reader.isSound()) {
-    fault = "an Entity State PDU of " + std::to_string(size) + " bytes; it has at least 144";
-    return std::nullopt;
-  }
-  const double radius_m = length(state.position_m);
-  if (!(radius_m > 6.2e6 && radius_m < 5e7) || !isFinite(state.velocity_mps) ||
-      !isFinite(state.orientation_rad) || !isFinite(state.acceleration_mps2) || !isFinite(state.turn_radps)) {
-    fault =
-        "an Entity State PDU whose position is not near the earth, or that has values that are no numbers";
-    return std::nullopt;
-  }
-  return state;
+  auto state = decodeBody<EntityState>(bytes, size, "an Entity State PDU", "; it has at least 144", fault);
+  if (!state) return state;
+  const double radius_m = length(state->position_m);
+  const bool is_sound = radius_m > 6.2e6 && radius_m < 5e7 && isFinite(state->velocity_mps) &&
+                        isFinite(state->orientation_rad) && isFinite(state->acceleration_mps2) &&
+                        isFinite(state->turn_radps);
+  if (is_sound) return state;
+  fault = "an Entity State PDU whose position is not near the earth, or that has values that are no numbers";
+  return std::nullopt;
 }
 
 std::optional<Emission> decodeEmission(const std::uint8_t* bytes, std::size_t size, std::string& fault) {
-  const std::uint8_t version = bytes[0];
-  BigEndianReader reader(bytes, size);
-  reader.skip(kHeaderBytes);
-  Emission emission;
-  emission.entity = entityId(reader);
-  reader.skip(4);  // site and application of the event
-  emission.event = reader.u16();
-  emission.is_change = reader.u8() != 0;
-  const std::size_t systems = reader.u8();
-  reader.skip(2);
-  for (std::size_t i = 0; i < systems && reader.left() >= kSystemBytes; ++i) {
-    EmissionSystem system;
-    reader.skip(1);
-    const std::size_t beams = reader.u8();
-    reader.skip(2);
-    system.name = reader.u16();
-    system.function = reader.u8();
-    system.number = reader.u8();
-    system.location_m = reader.floats();
-    for (std::size_t b = 0; b < beams && reader.left() >= kBeamBytes; ++b)
-      system.beams.push_back(emissionBeam(reader, version));
-    if (system.beams.size() < beams) reader.skip(kMaxPduBytes);  // not sound
-    emission.systems.push_back(std::move(system));
-  }
-  if (emission.systems.size() < systems) reader.skip(kMaxPduBytes);  // not sound
-  if (!reader.isSound()) {
-    fault = "an Electromagnetic Emission PDU that counts more systems, beams or targets than its " +
-            std::to_string(size) + " bytes hold";
-    return std::nullopt;
-  }
-  return emission;
+  return decodeBody<Emission>(bytes, size, "an Electromagnetic Emission PDU",
+                              " that counts more systems, beams or targets than they hold", fault);
 }
 
 std::optional<Transmitter> decodeTransmitter(const std::uint8_t* bytes, std::size_t size,
                                              std::string& fault) {
-  BigEndianReader reader(bytes, size);
-  reader.skip(kHeaderBytes);
-  Transmitter transmitter;
-  transmitter.entity = entityId(reader);
-  transmitter.radio = reader.u16();
-  transmitter.type = entityType(reader);
-  transmitter.state = reader.u8();
-  reader.skip(3);  // source; count of variable parameters (version 7), at the end
-  transmitter.antenna_m = reader.doubles();
-  transmitter.relative_antenna_m = reader.floats();
-  transmitter.antenna_pattern = reader.u16();
-  reader.skip(2);  // length of the antenna pattern, at the end
-  transmitter.frequency_hz = reader.u64();
-  transmitter.bandwidth_hz = reader.f32();
-  transmitter.power_dbm = reader.f32();
-  for (std::uint16_t& modulation : transmitter.modulation) modulation = reader.u16();
-  reader.skip(8);  // crypto system and key, length of the modulation parameters, padding
-  if (!reader.isSound()) {
-    fault = "a Transmitter PDU of " + std::to_string(size) + " bytes; it has at least 104";
-    return std::nullopt;
-  }
-  return transmitter;
+  return decodeBody<Transmitter>(bytes, size, "a Transmitter PDU", "; it has at least 104", fault);
 }
 
 }  // namespace emscape::interop::dis

@@ -33,30 +33,44 @@ EmitterMatch matchOf(const Section& section) {
   match.dis_entity_type = section.text("dis_entity_type");
   match.acmi_name = section.text("acmi_name");
   match.acmi_type = section.text("acmi_type");
+  match.asi_beam = section.text("asi_beam");
+  match.object_name = section.text("object_name");
+  match.beam_name = section.text("beam_name");
+  match.cot_type = section.text("cot_type");
   return match;
 }
 
-bool matches(const EmitterMatch& match, const ObjectKeys& keys) {
+/// An object or beam that tells no name or type has none that could match.
+bool holds(const std::string& pattern, const std::string& text) {
+  return pattern.empty() || (!text.empty() && matchesPattern(pattern, text));
+}
+
+/// @param beam  null: none
+bool matches(const EmitterMatch& match, const RecordedObject& object, const BeamKeys* beam) {
+  const ObjectKeys& keys = object.keys;
   if (!match.dis_entity_type.empty()) {
     if (!keys.dis_entity_type) return false;
     if (!matchesPattern(match.dis_entity_type, fmt::format("{}", fmt::join(*keys.dis_entity_type, "."))))
       return false;
   }
-  // An object that tells no name or type has none that could match.
-  const auto holds = [](const std::string& pattern, const std::string& text) {
-    return pattern.empty() || (!text.empty() && matchesPattern(pattern, text));
-  };
-  return holds(match.acmi_name, keys.acmi_name) && holds(match.acmi_type, keys.acmi_type);
+  const bool has_own_name = beam != nullptr && !beam->acmi_name.empty();
+  const bool has_own_type =
+      beam != nullptr && !match.acmi_type.empty() && holds(match.acmi_type, beam->acmi_type);
+  return holds(match.acmi_name, has_own_name ? beam->acmi_name : keys.acmi_name) &&
+         (has_own_type || holds(match.acmi_type, keys.acmi_type)) && holds(match.object_name, object.name) &&
+         keys.cot_type.compare(0, match.cot_type.size(), match.cot_type) == 0;
 }
 
-bool matches(const EmitterMatch& match, const BeamKeys& keys) {
+bool matches(const EmitterMatch& match, const RecordedBeam& beam) {
+  const BeamKeys& keys = beam.keys;
   const auto isOneOf = [](const std::vector<int>& allowed, const std::optional<int>& value) {
     return allowed.empty() || (value && std::find(allowed.begin(), allowed.end(), *value) != allowed.end());
   };
   return (!match.dis_name || match.dis_name == keys.dis_name) &&
          (!match.dis_radio || match.dis_radio == keys.dis_radio) &&
          (!match.function || match.function == keys.dis_function) &&
-         isOneOf(match.beam_function, keys.dis_beam_function) && isOneOf(match.index, keys.dis_index);
+         isOneOf(match.beam_function, keys.dis_beam_function) && isOneOf(match.index, keys.dis_index) &&
+         holds(match.asi_beam, keys.asi_beam) && holds(match.beam_name, beam.name);
 }
 
 }  // namespace
@@ -75,8 +89,8 @@ const EmitterRow* findRow(const EmitterDatabase& database, const RecordedObject&
                           const RecordedBeam* beam) {
   for (const EmitterRow& row : database.rows) {
     if (row.is_starter && beam == nullptr && !database.starter_serves_objects) continue;
-    const bool holds = beam == nullptr ? !row.match.isOfBeams() : matches(row.match, beam->keys);
-    if (holds && matches(row.match, object.keys)) return &row;
+    const bool fits = beam == nullptr ? !row.match.isOfBeams() : matches(row.match, *beam);
+    if (fits && matches(row.match, object, beam == nullptr ? nullptr : &beam->keys)) return &row;
   }
   return nullptr;
 }

@@ -25,13 +25,15 @@ constexpr auto namesOf(Unmatched) {
 /// Conditions of a row; all that are given must hold.
 struct EmitterMatch {
   std::optional<int> dis_name, dis_radio, function;
-  std::vector<int> beam_function, index;              ///< one of them; empty: any
-  std::string dis_entity_type, acmi_name, acmi_type;  ///< patterns; empty: any
+  std::vector<int> beam_function, index;  ///< one of them; empty: any
+  /// Patterns; empty: any.
+  std::string dis_entity_type, acmi_name, acmi_type, asi_beam, object_name, beam_name;
+  std::string cot_type;  ///< beginning; empty: any
 
   /// True if a condition is of the beam, not of the object.
   bool isOfBeams() const {
     return dis_name.has_value() || dis_radio.has_value() || function.has_value() || !beam_function.empty() ||
-           !index.empty();
+           !index.empty() || !asi_beam.empty() || !beam_name.empty();
   }
 };
 

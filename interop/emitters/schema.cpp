@@ -66,6 +66,10 @@ const ObjectSpec& matchSpec() {
                    "DIS: kind.domain.country.category.subcategory.specific.extra; patterns, as 1.2.225.*"),
           optional("acmi_name", pattern, "ACMI: Name of the object; patterns with * and ?, separated by |"),
           optional("acmi_type", pattern, "ACMI: Type of the object, as Sea+*"),
+          optional("asi_beam", pattern, "SIMDIS: description of the beam; patterns"),
+          optional("cot_type", pattern, "Cursor on Target: beginning of the type, as a-f-S"),
+          optional("beam_name", pattern, "name of the beam, in any format; patterns"),
+          optional("object_name", pattern, "name of the object, in any format; patterns"),
       }};
   return spec;
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "document/text_edit.h"
 #include "interop/acmi/acmi_text.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
@@ -31,14 +30,6 @@ std::string sideOf(const scenario::Platform& platform) {
   return "";
 }
 
-/// A pattern that matches a text alone.
-std::string patternOf(std::string text) {
-  for (char& c : text) {
-    if (c == '*' || c == '[' || c == '|' || c == '?') c = '?';
-  }
-  return text;
-}
-
 /// An object of the recording.
 struct AcmiObject {
   int id = 0;
@@ -58,20 +49,16 @@ std::string placeOf(const PoseSample& pose) {
 /// The beam's properties; of one that sweeps the beamwidth of the sector, as other programs write it.
 std::string radarOf(const scenario::Emitter& emitter, double t_s) {
   const BeamState state = beamStateAt(emitter, t_s);
-  const bool sweeps = state.azimuth_half_sweep_deg > 0;
+  const BeamWidths widths = widthsOf(state);
   return fmt::format(
       "RadarMode={},RadarAzimuth={},RadarElevation={},RadarHorizontalBeamwidth={},RadarVerticalBeamwidth={}",
       state.is_on ? 1 : 0, decimalText(state.azimuth_deg, 2), decimalText(state.elevation_deg, 2),
-      decimalText(sweeps ? 2 * state.azimuth_half_sweep_deg : state.beamwidth_az_deg, 3),
-      decimalText(std::max(state.beamwidth_el_deg, 2 * state.elevation_half_sweep_deg), 3));
+      decimalText(widths.azimuth_deg, 3), decimalText(widths.elevation_deg, 3));
 }
 
 std::vector<AcmiObject> objectsOf(const ExportJob& job, std::vector<ExportedRow>& rows) {
   const scenario::Scenario& scenario = job.scenario;
   std::vector<AcmiObject> objects;
-  const auto quoted = [](const std::string& text) {
-    return document::flowText(*textNode(patternOf(text)), true);
-  };
   for (const scenario::Platform& platform : scenario.platforms) {
     AcmiObject object;
     object.id = static_cast<int>(objects.size()) + 1;
@@ -85,7 +72,7 @@ std::vector<AcmiObject> objectsOf(const ExportJob& job, std::vector<ExportedRow>
     AcmiObject& carrier = objects[static_cast<std::size_t>(emitter.platform)];
     if (emitter.kind == scenario::EmitterKind::radar && carrier.emitter == nullptr) {
       carrier.emitter = &emitter;
-      rows.push_back({fmt::format("{{acmi_name: {}}}", quoted(carrier.platform->name)), i});
+      rows.push_back({fmt::format("{{acmi_name: {}}}", quotedPattern(carrier.platform->name)), i});
       continue;
     }
     AcmiObject beam;
@@ -93,9 +80,14 @@ std::vector<AcmiObject> objectsOf(const ExportJob& job, std::vector<ExportedRow>
     beam.platform = carrier.platform;
     beam.emitter = &emitter;
     beam.properties = fmt::format(",Type=Beam,Name={},Parent={:x}", escapedAcmi(emitter.name), carrier.id);
-    rows.push_back({fmt::format("{{acmi_name: {}}}", quoted(emitter.name)), i});
+    rows.push_back({fmt::format("{{acmi_type: Beam, acmi_name: {}, object_name: {}}}",
+                                quotedPattern(emitter.name), quotedPattern(carrier.platform->name)),
+                    i});
     objects.push_back(beam);
   }
+  // A platform may have the name of an emitter: the rows of objects of type Beam come first.
+  std::stable_partition(rows.begin(), rows.end(),
+                        [](const ExportedRow& row) { return row.match.rfind("{acmi_type", 0) == 0; });
   return objects;
 }
 

@@ -8,6 +8,7 @@
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "interop/dis/datagrams.h"
+#include "interop/dis/force.h"
 #include "interop/dis/orientation.h"
 #include "interop/dis/pdu.h"
 #include "interop/exporting/writers.h"
@@ -23,6 +24,7 @@ constexpr double kEntityHeartbeat_s = 5, kEmissionHeartbeat_s = 10, kTransmitter
 /// Systems of a PDU, so that it has less than 8192 bytes.
 constexpr std::size_t kMaxSystems = 100;
 constexpr double kEndOfCaptures_s = 4294967296;  // of their 32 bits, from 1970 on
+constexpr std::size_t kMaxNumber = 255;          ///< of a system
 constexpr int kSearch = 1, kTrack = 4, kJam = 12;
 
 enum class Event { state, emission, transmitter };
@@ -56,21 +58,6 @@ std::vector<double> withHeartbeats(std::vector<double> times, double end_s, doub
 Vec3d ecefOf(const PoseSample& pose) {
   return toEcef({pose.latitude_deg, pose.longitude_deg,
                  pose.height_msl_m + geoidUndulation_m(pose.latitude_deg, pose.longitude_deg)});
-}
-
-/// The force of an entity (UID 6); 0: other.
-std::uint8_t forceOf(const scenario::Platform& platform) {
-  switch (platform.side.value_or(scenario::Side::unknown)) {
-    case scenario::Side::friendly:
-      return 1;
-    case scenario::Side::hostile:
-      return 2;
-    case scenario::Side::neutral:
-      return 3;
-    case scenario::Side::unknown:
-      break;
-  }
-  return 0;
 }
 
 /// A name in ASCII, with one ? for each other character, cut to a marking's length.
@@ -132,6 +119,14 @@ class DisWriter {
       if (!is_radio) systems_[platform].push_back(i);
       rows.push_back({fmt::format(is_radio ? "{{dis_radio: {}}}" : "{{dis_name: {}}}", i + 1), i});
     }
+    for (std::size_t i = 0; i < systems_.size(); ++i) {
+      if (systems_[i].size() <= kMaxNumber) continue;
+      throw Error(
+          ErrorCode::bad_input,
+          fmt::format("the platform '{}' has {} radars and jammers, more than the {} that DIS can number; "
+                      "give some of them another platform",
+                      scenario_.platforms[i].name, systems_[i].size(), kMaxNumber));
+    }
     std::sort(due_.begin(), due_.end());
     due_.erase(std::unique(due_.begin(), due_.end()), due_.end());
   }
@@ -143,7 +138,7 @@ class DisWriter {
     const PoseSample pose = poseOf(platform, job_.terrain, t_s);
     EntityState state;
     state.id = idOf(index);
-    state.force = forceOf(platform);
+    state.force = dis::forceOf(platform.side.value_or(scenario::Side::unknown));
     const Domain domain = domains_[index];
     state.type = {1, domain == Domain::air ? 2 : domain == Domain::sea ? 3 : 1, 0, 0, 0, 0, 0};
     state.position_m = ecefOf(pose);

@@ -29,6 +29,32 @@ bool endsWith(const std::string& text, const std::string& end) {
   throw Error(ErrorCode::other, {file.string(), 0, 0}, messages.explain("cannot write the zip file"));
 }
 
+struct ExportFormat {
+  const char* ending;
+  const char* name;
+  /// Null for a capture, which is no text.
+  long long (*write)(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
+  bool has_beams = true;
+  bool is_zip = false;
+};
+constexpr ExportFormat kFormats[] = {
+    {".zip.acmi", "ACMI 2.2", writeAcmi, true, true},
+    {".acmi", "ACMI 2.2", writeAcmi},
+    {".pcap", "DIS version 7", nullptr},
+    {".asi", "SIMDIS ASI", writeAsi},
+    {".cot", "Cursor on Target", writeCot},
+    {".czml", "CZML 1.0", writeCzml, false},
+    {".kml", "KML 2.2", writeKml, false},
+};
+
+const ExportFormat& formatOf(const std::string& file) {
+  for (const ExportFormat& format : kFormats) {
+    if (endsWith(file, format.ending)) return format;
+  }
+  throw Error(ErrorCode::usage, fmt::format("'{}' is no name of a recording; it ends in {}", file,
+                                            fmt::join(exportFormats(), ", ")));
+}
+
 /// Writes an ACMI text into a zip file.
 long long writeZip(const ExportJob& job, const fs::path& file, std::vector<ExportedRow>& rows) {
   UnfinishedFile unfinished(file);
@@ -63,9 +89,15 @@ long long writeZip(const ExportJob& job, const fs::path& file, std::vector<Expor
   return records;
 }
 
-/// What the scenario has and no recording can carry.
-std::string missingText(const scenario::Scenario& scenario) {
+/// What the scenario has and the recording cannot carry.
+std::string missingText(const scenario::Scenario& scenario, const ExportFormat& format, std::size_t rows) {
   std::vector<std::string> missing;
+  if (!format.has_beams) {
+    missing.emplace_back("times and directions of emitters");
+    if (rows < scenario.emitters.size())
+      missing.emplace_back(
+          fmt::format("all emitters of a platform but the first ({})", scenario.emitters.size() - rows));
+  }
   if (scenario.terrain) missing.emplace_back("terrain (import --terrain)");
   if (!scenario.targets.empty()) missing.emplace_back("targets");
   if (!scenario.receivers.empty()) missing.emplace_back("receivers");
@@ -76,21 +108,19 @@ std::string missingText(const scenario::Scenario& scenario) {
 }  // namespace
 
 std::vector<std::string> exportFormats() {
-  return {".acmi", ".zip.acmi", ".pcap"};
+  std::vector<std::string> endings;
+  for (const ExportFormat& format : kFormats) endings.emplace_back(format.ending);
+  return endings;
 }
 
 ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& scenario,
                             const scenario::Terrain* terrain, const std::string& file,
                             const ExportOptions& options, const ProgressSink& progress) {
-  const bool is_zip = endsWith(file, ".zip.acmi"), is_acmi = endsWith(file, ".acmi"),
-             is_capture = endsWith(file, ".pcap");
-  if (!is_acmi && !is_capture) {
-    throw Error(ErrorCode::usage,
-                fmt::format("'{}' is no name of a recording; it ends in .acmi, .zip.acmi or .pcap", file));
-  }
+  const ExportFormat& format = formatOf(file);
+  const bool is_capture = format.write == nullptr;
   ExportResult result;
   result.file = file;
-  result.format = is_acmi ? "ACMI 2.2" : "DIS version 7";
+  result.format = format.name;
   const ExportJob job{*scenario, terrain, options.step_s > 0 ? options.step_s : 1, progress};
   const double records = scenario->clock.duration_s / std::min(job.step_s, kShortestHeartbeat_s) *
                          static_cast<double>(scenario->platforms.size() + scenario->emitters.size());
@@ -105,20 +135,23 @@ ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& sce
   result.emitters = file + ".emitters.yaml";
   if (!options.replace) requireNew({file, result.emitters});
   std::vector<ExportedRow> rows;
-  if (is_zip) {
+  if (format.is_zip) {
     result.records = writeZip(job, file, rows);
   } else {
     writeWhole(file, [&](std::ostream& stream) {
       result.records = is_capture ? writeCapture(job, stream, rows)
-                                  : writeAcmi(
+                                  : format.write(
                                         job, [&](const std::string& piece) { stream << piece; }, rows);
     });
   }
   const std::string database =
       databaseText(*scenario, rows, fs::absolute(result.emitters).parent_path().string());
   writeWhole(result.emitters, [&](std::ostream& stream) { stream << database; });
-  const std::string missing = missingText(*scenario);
+  const std::string missing = missingText(*scenario, format, rows.size());
   if (!missing.empty()) result.notes.push_back(missing);
+  const bool needs_epoch = !endsWith(file, ".acmi") && !is_capture && !endsWith(file, ".asi");
+  if (needs_epoch && scenario->clock.epoch_utc.empty())
+    result.notes.emplace_back("the scenario has no epoch: t = 0 is written as 1970-01-01T00:00:00Z");
   const int changed = is_capture ? countChangedMarkings(*scenario) : 0;
   if (changed > 0) {
     result.notes.push_back(fmt::format(

@@ -9,7 +9,9 @@
 #include "document/text_edit.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
+#include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
+#include "interop/recording/text.h"
 #include "scenario/file/source.h"
 #include "scenario/scan/scan_sweep.h"
 
@@ -154,6 +156,49 @@ std::vector<double> timesOfChanges(const scenario::Scenario& scenario, const sce
   std::sort(times.begin(), times.end());
   times.erase(std::unique(times.begin(), times.end()), times.end());
   return times;
+}
+
+BeamWidths widthsOf(const BeamState& state) {
+  const bool sweeps = state.azimuth_half_sweep_deg > 0;
+  return {sweeps ? 2 * state.azimuth_half_sweep_deg : state.beamwidth_az_deg,
+          std::max(state.beamwidth_el_deg, 2 * state.elevation_half_sweep_deg)};
+}
+
+Vec3d velocityAt_mps(const scenario::Platform& platform, const scenario::Terrain* terrain,
+                     const std::vector<double>& times, std::size_t index) {
+  if (!platform.moves() || index + 1 >= times.size()) return {0, 0, 0};
+  const PoseSample a = poseOf(platform, terrain, times[index]),
+                   b = poseOf(platform, terrain, times[index + 1]);
+  const GeodesicInverse way =
+      geodesicInverse(a.latitude_deg, a.longitude_deg, b.latitude_deg, b.longitude_deg);
+  const double time_s = b.t_s - a.t_s, ground_mps = way.distance_m / time_s;
+  return {ground_mps * std::sin(way.azimuth_rad), ground_mps * std::cos(way.azimuth_rad),
+          (b.height_msl_m - a.height_msl_m) / time_s};
+}
+
+double drawnRange_m(const scenario::Scenario& scenario) {
+  return std::round(scenario.region.size_m.x / 4);
+}
+
+double epochOf_s(const scenario::Scenario& scenario) {
+  return utcSeconds(scenario.clock.epoch_utc).value_or(0);
+}
+
+void addRowsOfPlatforms(const scenario::Scenario& scenario, std::vector<ExportedRow>& rows) {
+  std::vector<bool> has_row(scenario.platforms.size(), false);
+  for (std::size_t i = 0; i < scenario.emitters.size(); ++i) {
+    const auto platform = static_cast<std::size_t>(scenario.emitters[i].platform);
+    if (has_row[platform]) continue;
+    has_row[platform] = true;
+    rows.push_back({"{object_name: " + quotedPattern(scenario.platforms[platform].name) + "}", i});
+  }
+}
+
+std::string quotedPattern(std::string text) {
+  for (char& c : text) {
+    if (c == '*' || c == '[' || c == '|' || c == '?') c = '?';
+  }
+  return document::flowText(*textNode(text), true);
 }
 
 std::string databaseText(const scenario::Scenario& scenario, const std::vector<ExportedRow>& rows,

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "emscape/base/vec.h"
 #include "emscape/scenario/model/scenario.h"
 #include "interop/recording/recording.h"
 
@@ -27,6 +28,25 @@ BeamState beamStateAt(const scenario::Emitter& emitter, double t_s);
 /// Times (s) at which an emitter's state changes: switching, and dwells at most every step_s.
 std::vector<double> timesOfChanges(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                    double step_s);
+
+/// Widths (deg) of a beam as recordings tell them: those of the beam, or of the sector that it sweeps.
+struct BeamWidths {
+  double azimuth_deg = 0, elevation_deg = 0;
+};
+BeamWidths widthsOf(const BeamState& state);
+
+/// Velocity (m/s) east, north and up on the way to the next of some times; zero at the last one.
+Vec3d velocityAt_mps(const scenario::Platform& platform, const scenario::Terrain* terrain,
+                     const std::vector<double>& times, std::size_t index);
+
+/// Length (m) of a drawn beam: recordings have one, the scenario has not. A quarter of the region's width.
+double drawnRange_m(const scenario::Scenario& scenario);
+
+/// Seconds from 1970 to t = 0; 0 for a scenario without an epoch.
+double epochOf_s(const scenario::Scenario& scenario);
+
+/// A text in double quotes as a pattern of an emitter database that matches it alone.
+std::string quotedPattern(std::string text);
 
 /// A row of the emitter database for an emitter of the scenario.
 struct ExportedRow {

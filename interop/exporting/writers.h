@@ -30,7 +30,14 @@ using PduSink = std::function<void(double t_s, const std::vector<std::uint8_t>& 
 /// @return number of records
 long long writeAcmi(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
 long long writeDis(const ExportJob& job, const PduSink& sink, std::vector<ExportedRow>& rows);
+long long writeAsi(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
+long long writeCot(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
+long long writeCzml(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
+long long writeKml(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
 long long writeCapture(const ExportJob& job, std::ostream& stream, std::vector<ExportedRow>& rows);
+
+/// Rows of a format that tells objects but no beams: one for the first emitter of each platform.
+void addRowsOfPlatforms(const scenario::Scenario& scenario, std::vector<ExportedRow>& rows);
 
 /// Number of platforms whose names are longer than a marking of DIS, or not in ASCII.
 int countChangedMarkings(const scenario::Scenario& scenario);

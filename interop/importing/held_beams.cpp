@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "emscape/base/units.h"
-#include "interop/dis/orientation.h"
+#include "interop/beams/directions.h"
 
 namespace emscape::interop {
 namespace {
@@ -12,31 +11,7 @@ namespace {
 constexpr double kStep_s = 1;
 constexpr double kMaxSteps = 2000;
 
-/// Heights above the sea stand for those above the ellipsoid: the geoid below both objects is nearly the
-/// same.
-Vec3d spotOf(const PoseSample& pose) {
-  return toEcef({pose.latitude_deg, pose.longitude_deg, pose.height_msl_m});
-}
-
-/// The heading of an object that tells none is along its track.
-double courseAt_deg(const RecordedObject& object, double t_s) {
-  const PoseSample a = poseAt(object, t_s - 0.5), b = poseAt(object, t_s + 0.5);
-  return radToDeg(
-      geodesicInverse(a.latitude_deg, a.longitude_deg, b.latitude_deg, b.longitude_deg).azimuth_rad);
-}
-
 }  // namespace
-
-RelativeDirection directionAt(const RecordedObject& from, const RecordedObject& to, double t_s) {
-  const PoseSample pose = poseAt(from, t_s);
-  const bool is_told = !std::isnan(pose.heading_deg);
-  const dis::LocalAttitude attitude{is_told ? pose.heading_deg : courseAt_deg(from, t_s),
-                                    is_told ? pose.pitch_deg : 0, is_told ? pose.roll_deg : 0};
-  const dis::BodyAxes axes = dis::axesOf(attitude, pose.latitude_deg, pose.longitude_deg);
-  const Vec3d towards = axes.toBody(spotOf(poseAt(to, t_s)) - spotOf(pose));
-  return {radToDeg(std::atan2(towards.y, towards.x)),
-          radToDeg(std::atan2(-towards.z, std::hypot(towards.x, towards.y)))};
-}
 
 std::vector<BeamState> withDirections(const RecordedBeam& beam, const std::vector<RecordedObject>& objects) {
   const RecordedObject& carrier = objects[beam.object];

@@ -258,7 +258,7 @@ void Importer::makeTracks() {
   const TimeSpan window{window_.begin_s - origin_s_, window_.end_s - origin_s_};
   for (std::size_t i = 0; i < chosen_.size(); ++i) {
     tell("writing tracks", static_cast<double>(i) / static_cast<double>(chosen_.size()));
-    chosen_[i].track = trackOf(*chosen_[i].object, window, 0, raise_m_[i], terrain_.get(), raised);
+    chosen_[i].track = trackOf(*chosen_[i].object, window, raise_m_[i], terrain_.get(), raised);
   }
   if (raised.without_ground > 0) {
     result_.notes.push_back(

@@ -56,8 +56,8 @@ DocumentNodePtr regionNode(const GeodeticPosition& centre, double width_m, doubl
 
 }  // namespace
 
-std::vector<PoseSample> trackOf(const RecordedObject& object, const TimeSpan& window, double origin_s,
-                                double raise_m, const scenario::Terrain* terrain, Raised& raised) {
+std::vector<PoseSample> trackOf(const RecordedObject& object, const TimeSpan& window, double raise_m,
+                                const scenario::Terrain* terrain, Raised& raised) {
   const auto& poses = object.poses;
   const auto earlier = [](const PoseSample& pose, double t_s) { return pose.t_s < t_s; };
   auto begin = std::lower_bound(poses.begin(), poses.end(), window.begin_s, earlier);
@@ -66,7 +66,6 @@ std::vector<PoseSample> trackOf(const RecordedObject& object, const TimeSpan& wi
   if (end != poses.end()) ++end;
   std::vector<PoseSample> track(begin, end);
   for (PoseSample& pose : track) {
-    pose.t_s -= origin_s;
     pose.height_msl_m += raise_m;
     double ground_m = terrain == nullptr ? 0 : terrain->heightMsl_m(pose.latitude_deg, pose.longitude_deg);
     if (std::isnan(ground_m)) {
@@ -125,10 +124,7 @@ DocumentNodePtr platformNode(const std::string& name, Side side, const PoseSampl
                              const std::string& track_file) {
   MapBuilder platform;
   platform.set("name", textNode(name));
-  if (side != Side::unknown) {
-    constexpr const char* kNames[] = {"unknown", "friend", "hostile", "neutral"};
-    platform.set("side", textNode(kNames[static_cast<int>(side)]));
-  }
+  if (side != Side::unknown) platform.set("side", textNode(toString(side)));
   if (!track_file.empty()) {
     platform.set("track", MapBuilder().set("file", textNode(track_file)).node());
     return platform.node();
@@ -179,11 +175,6 @@ DocumentNodePtr regionAround(const std::vector<std::vector<PoseSample>>& tracks)
 DocumentNodePtr regionOf(double latitude_deg, double longitude_deg, double size_m,
                          const std::vector<std::vector<PoseSample>>& tracks) {
   return regionNode({latitude_deg, longitude_deg, 0}, size_m, size_m, tracks);
-}
-
-double widthOf(const DocumentNodePtr& region) {
-  const DocumentNodePtr size = MapBuilder(region).find("size_m");
-  return size && !size->items.empty() ? std::stod(size->items[0]->text) : 0;
 }
 
 }  // namespace emscape::interop

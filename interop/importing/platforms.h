@@ -17,12 +17,11 @@ struct Raised {
   long long without_ground = 0;
 };
 
-/// Poses with times from `origin_s` on, of those within a window and one more at each side; raised by a
-/// height, and to 2 m above the ground where they are below it.
-/// @param window  in the recording's time
+/// Poses within a window and one more at each side; raised by a height, and to 2 m above the ground where
+/// they are below it.
 /// @param terrain  null: the ground is at mean sea level
-std::vector<PoseSample> trackOf(const RecordedObject& object, const TimeSpan& window, double origin_s,
-                                double raise_m, const scenario::Terrain* terrain, Raised& raised);
+std::vector<PoseSample> trackOf(const RecordedObject& object, const TimeSpan& window, double raise_m,
+                                const scenario::Terrain* terrain, Raised& raised);
 
 /// True if an object does not move or turn.
 bool isFixed(const std::vector<PoseSample>& track);
@@ -39,7 +38,5 @@ DocumentNodePtr platformNode(const std::string& name, Side side, const PoseSampl
 DocumentNodePtr regionAround(const std::vector<std::vector<PoseSample>>& tracks);
 DocumentNodePtr regionOf(double latitude_deg, double longitude_deg, double size_m,
                          const std::vector<std::vector<PoseSample>>& tracks);
-/// Extent of a region's node along x (m).
-double widthOf(const DocumentNodePtr& region);
 
 }  // namespace emscape::interop

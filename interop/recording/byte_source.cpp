@@ -80,6 +80,17 @@ std::unique_ptr<ByteSource> openText(std::string_view text) {
   return std::make_unique<TextSource>(text);
 }
 
+std::string readAll(ByteSource& source, const std::string& name, std::size_t most) {
+  std::string text;
+  std::vector<char> piece(std::size_t{1} << 16);
+  while (const std::size_t count = source.read(piece.data(), piece.size())) {
+    text.append(piece.data(), count);
+    if (text.size() > most)
+      failReading(name, "the file has more than " + std::to_string(most >> 20) + " MiB; cut it into parts");
+  }
+  return text;
+}
+
 bool LineReader::fill() {
   begin_ = 0;
   end_ = source_.read(buffer_.data(), buffer_.size());

@@ -24,12 +24,17 @@ class ByteSource {
 
 /// Opens a regular file. @throws Error (bad_input) that names it and the cause
 std::unique_ptr<ByteSource> openFile(const std::string& file);
-/// Opens the recording in a zip file: the first file in it whose name ends in .acmi, else the first file.
+/// Opens the recording in a zip file: the first file in it whose name ends in .acmi or .kml, else the first
+/// one whose size does not stand before it.
 /// The directory at the end of the zip file is not needed, so that one that was cut is read to the cut.
 /// @throws Error (bad_input)
 std::unique_ptr<ByteSource> openZip(const std::string& file);
 /// A text in memory, which must outlive the source.
 std::unique_ptr<ByteSource> openText(std::string_view text);
+
+/// All bytes of a source.
+/// @param name  of the file, for messages  @throws Error (bad_input) if there are more than `most`
+std::string readAll(ByteSource& source, const std::string& name, std::size_t most);
 
 /// Reads lines. They end in LF or CRLF.
 class LineReader {

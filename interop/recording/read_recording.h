@@ -1,6 +1,7 @@
 /// Reads recordings of other programs.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,13 @@ struct ReadOptions {
   double emission_timeout_s = 24;
   /// The same of an entity. Its heartbeat is 5 s.
   double entity_timeout_s = 12;
+  /// A track (GPX, KML, CZML, STK, NMEA, CSV) without a position for longer than this time (s) has ended, and
+  /// begins again with the next one; 0: the gap is bridged.
+  double gap_s = 0;
+  /// Columns of a table of tracks: "latitude=Breite,longitude=Laenge,height=Hoehe:ft"; empty: by their names.
+  std::string columns;
+  /// Names of the emitters of DIS by number, for messages. @see readEmitterNames()
+  std::map<int, std::string> emitter_names;
 };
 
 /// Reads a recording whose format is told by its content: Tacview's ACMI 2.0 to 2.2 (text, or zipped), DIS in

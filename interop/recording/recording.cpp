@@ -86,6 +86,27 @@ void sortByTime(RecordedBeam& beam) {
                    [](const BeamState& a, const BeamState& b) { return a.t_s < b.t_s; });
 }
 
+void keepObjects(Recording& recording, const std::vector<bool>& is_kept) {
+  std::vector<std::size_t> kept_as(recording.objects.size(), kNoTarget);
+  std::vector<RecordedObject> objects;
+  for (std::size_t i = 0; i < recording.objects.size(); ++i) {
+    if (!is_kept[i]) continue;
+    kept_as[i] = objects.size();
+    objects.push_back(std::move(recording.objects[i]));
+  }
+  std::vector<RecordedBeam> beams;
+  for (RecordedBeam& beam : recording.beams) {
+    if (kept_as[beam.object] == kNoTarget) continue;
+    beam.object = kept_as[beam.object];
+    for (BeamState& state : beam.states) {
+      if (state.target != kNoTarget) state.target = kept_as[state.target];
+    }
+    beams.push_back(std::move(beam));
+  }
+  recording.objects = std::move(objects);
+  recording.beams = std::move(beams);
+}
+
 TimeSpan spanOf(const Recording& recording) {
   TimeSpan span{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   const auto include = [&span](double t_s) {

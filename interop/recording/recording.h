@@ -11,10 +11,12 @@
 #include <vector>
 
 #include "emscape/base/enum_names.h"
+#include "emscape/scenario/model/platform.h"
 
 namespace emscape::interop {
 
 using emscape::toString;
+using scenario::Side;
 
 /// A value that the recording does not have.
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -23,11 +25,6 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 enum class Domain { other, land, air, sea, subsurface, space, weapon, scenery };
 constexpr auto namesOf(Domain) {
   return std::array{"other", "land", "air", "sea", "subsurface", "space", "weapon", "scenery"};
-}
-
-enum class Side { unknown, friendly, opposing, neutral };
-constexpr auto namesOf(Side) {
-  return std::array{"unknown", "friendly", "opposing", "neutral"};
 }
 
 /// Position and attitude at one time.
@@ -52,6 +49,7 @@ struct ObjectKeys {
   std::optional<std::array<int, 7>> dis_entity_type;  ///< kind, domain, country, category, ..., extra
   std::string acmi_name;
   std::string acmi_type;  ///< tags separated by +
+  std::string cot_type;   ///< "a-f-G-E-S"
 };
 
 struct RecordedObject {
@@ -95,13 +93,16 @@ struct BeamState {
 /// True if nothing but the time differs; two unknown values are equal.
 bool sameState(const BeamState& a, const BeamState& b);
 
-/// Numbers by which an emitter database recognises a beam of a DIS emission.
+/// Properties by which an emitter database recognises a beam; empty where the format has none.
 struct BeamKeys {
   std::optional<int> dis_name;           ///< emitter name, SISO-REF-010, UID 75
   std::optional<int> dis_function;       ///< function of the system, UID 76
   std::optional<int> dis_beam_function;  ///< function of the beam, UID 78
   std::optional<int> dis_index;          ///< beam parameter index
   std::optional<int> dis_radio;          ///< number of the radio, of a transmitter
+  std::string acmi_name{};               ///< of an object of type Beam; comes before that of its carrier
+  std::string acmi_type{};               ///< of the same; a row may name that of the carrier, too
+  std::string asi_beam{};                ///< description of a beam of SIMDIS
 };
 
 struct RecordedBeam {

@@ -30,4 +30,8 @@ void addPresence(std::vector<PresenceSample>& presence, double t_s, bool is_pres
 void sortByTime(RecordedObject& object);
 void sortByTime(RecordedBeam& beam);
 
+/// Removes objects, with their beams; beams that are held on one of them are held on nothing.
+/// @param is_kept  of each object
+void keepObjects(Recording& recording, const std::vector<bool>& is_kept);
+
 }  // namespace emscape::interop

@@ -29,6 +29,10 @@ std::uint32_t little(const std::vector<std::uint8_t>& bytes, std::size_t at, std
   return value;
 }
 
+bool endsWith(const std::string& name, std::string_view end) {
+  return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+}
+
 class ZipSource : public ByteSource {
  public:
   explicit ZipSource(const std::string& file) : name_(file), file_(openFile(file)), reader_(*file_) {
@@ -82,12 +86,11 @@ class ZipSource : public ByteSource {
     for (;;) {
       if (!readEntry()) fail("the zip file is damaged, or has no recording in it");
       const bool is_folder = !entry_.name.empty() && entry_.name.back() == '/';
-      const bool is_recording =
-          entry_.name.size() > 5 && entry_.name.compare(entry_.name.size() - 5, 5, ".acmi") == 0;
+      const bool is_recording = endsWith(entry_.name, ".acmi") || endsWith(entry_.name, ".kml");
       const bool can_be_skipped = entry_.is_size_known && entry_.packed_size != 0xFFFFFFFF;
       if (is_recording || (!is_folder && !can_be_skipped)) break;
       if (!can_be_skipped || !reader_.skip(entry_.packed_size))
-        fail("the zip file has no file that ends in .acmi");
+        fail("the zip file has no file that ends in .acmi or .kml");
     }
     if (entry_.is_encrypted) fail("the zip file is encrypted; unpack it, and give the recording in it");
     const bool is_size_told = entry_.is_size_known && entry_.packed_size != 0xFFFFFFFF;

@@ -41,7 +41,8 @@ InputKind inputKindOf(const std::string& file) {
   static const std::set<std::string> kElevations{".tif", ".tiff", ".hgt", ".dt0", ".dt1",
                                                  ".dt2", ".vrt",  ".asc", ".dem", ".bil"};
   static const std::set<std::string> kAntennas{".msi", ".pln", ".csv"};
-  static const std::set<std::string> kRecordings{".acmi", ".pcap", ".pcapng", ".session"};
+  static const std::set<std::string> kRecordings{".acmi", ".pcap", ".pcapng", ".session", ".asi", ".cot",
+                                                 ".kml",  ".kmz",  ".gpx",    ".czml",    ".e",   ".nmea"};
   if (ending == ".yaml" || ending == ".yml" || ending == ".json") return InputKind::scenario;
   if (ending == ".pvd" || volume::isVolumeFile(file)) return InputKind::volume;
   if (kElevations.count(ending) != 0) return InputKind::elevation;

@@ -201,6 +201,52 @@ void warnOfKilometres(const Scenario& scenario, const Section& root, ParseContex
   warning.addTo(context.problems);
 }
 
+/// "before 100 s and after 160 s"; empty if [begin, end] is within the track's time.
+std::string timesOutside(const std::vector<TrackPoint>& track, const Clock& clock) {
+  const double first_s = track.front().t_s, last_s = track.back().t_s;
+  std::string text = first_s > 0 ? fmt::format("before {:g} s", first_s) : "";
+  if (last_s < clock.duration_s) text += fmt::format("{}after {:g} s", text.empty() ? "" : " and ", last_s);
+  return text;
+}
+
+void warnOfTracksThatEndEarly(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("platforms");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Platform& platform = scenario.platforms[i];
+    if (!platform.moves()) continue;
+    const std::string outside = timesOutside(platform.track, scenario.clock);
+    if (outside.empty()) continue;
+    warning.add(
+        sections[i].locationOf("track"), platform.name,
+        fmt::format("the track of '{}' runs from {:g} to {:g} s, the scenario from 0 to {:g} s: {} the "
+                    "platform stands still at the track's end, with all that is on it; 'active_s' switches "
+                    "its emitters off then",
+                    platform.name, platform.track.front().t_s, platform.track.back().t_s,
+                    scenario.clock.duration_s, outside));
+  }
+  warning.addTo(context.problems);
+}
+
+void warnOfActiveTimesOutside(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& emitter = scenario.emitters[i];
+    const bool is_ever_active =
+        emitter.active_s.empty() ||
+        std::any_of(emitter.active_s.begin(), emitter.active_s.end(), [&](const TimeInterval& active) {
+          return active.begin_s <= scenario.clock.duration_s && active.end_s > 0;
+        });
+    if (is_ever_active || !emitter.enabled) continue;
+    warning.add(sections[i].locationOf("active_s"), emitter.name,
+                fmt::format("emitter '{}' is active from {:g} s, but the scenario ends at {:g} s: it never "
+                            "transmits",
+                            emitter.name, emitter.active_s.front().begin_s, scenario.clock.duration_s));
+  }
+  warning.addTo(context.problems);
+}
+
 /// Reminds once of the emitters that are switched off.
 void tellOfDisabledEmitters(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<Section> sections = root.sections("emitters");
@@ -223,6 +269,8 @@ void tellOfDisabledEmitters(const Scenario& scenario, const Section& root, Parse
 }  // namespace
 
 void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseContext& context) {
+  warnOfTracksThatEndEarly(scenario, root, context);
+  warnOfActiveTimesOutside(scenario, root, context);
   tellOfDisabledEmitters(scenario, root, context);
   warnOfEmittersWithoutBand(scenario, root, context);
   warnOfIdleJammers(scenario, root, context);

@@ -61,7 +61,8 @@ TEST(MeshSeries, SLOW_IsReproducible) {
   }
   EXPECT_EQ(readFile(folder / "one.png"), readFile(folder / "two.png"));
   EXPECT_EQ(render({"-o", folder / "frames"}).status, 0);
-  EXPECT_TRUE(std::filesystem::exists(folder / "frames/a_0003.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "frames/jacksboro_0003.png"))
+      << "named by the scenario, which the series knows";
 
   const auto refusal = [&](const Arguments& more) {
     Arguments arguments{"-o", folder / "no.png"};

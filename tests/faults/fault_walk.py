@@ -22,6 +22,7 @@ import hashlib
 import os
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -168,6 +169,10 @@ class Walk:
         return subprocess.run([self.command[0], "-q", "info", str(path)], capture_output=True).returncode == 0
 
     def check(self, inject, status, stderr, out, expected):
+        # GLib, below the library that sets texts, ends the program where a thread cannot be created. As after a kill,
+        # temporary files stay; the run after it, which is checked, removes them.
+        if status == -signal.SIGTRAP and "creating thread '[pango]" in stderr:
+            return
         found = files_of(out)
         left = [name for name in found if ".part-" in name]
         if left:

@@ -5,9 +5,11 @@
 
 #include "emscape/scenario/file/scenario_file.h"
 #include "interop/acmi/acmi_reader.h"
+#include "interop/cot/cot_reader.h"
 #include "interop/dis/datagrams.h"
 #include "interop/dis/dis_recorder.h"
 #include "interop/emitters/emitter_database.h"
+#include "interop/emitters/emitter_names.h"
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
 #include "interop/live/live_acmi.h"
@@ -60,11 +62,21 @@ void readRecordingFile(const fs::path& file, const std::string&) {
   for (const interop::RecordedObject& object : recording.objects) checkFuzzMessage(object.name);
 }
 
+/// An emitter for every object, so that objects without beams become scenarios, too.
+void writeDatabaseForAll(const fs::path& folder) {
+  writeFile(folder / "all.yaml",
+            "schema_version: 1\nemitters:\n  - match: {object_name: \"*\"}\n    emitter: {kind: transmitter, "
+            "frequency_hz: 1.0e9, power_w: 1, antenna: {pattern: isotropic}}\n");
+}
+
 /// Whatever a recording has, the scenario that is written of it is valid.
 void importRecordingFile(const fs::path& file, const std::string&) {
   interop::ImportOptions options;
   options.scenario = file.parent_path() / "out.yaml";
   options.replace = true;
+  const fs::path database = file.parent_path() / "all.yaml";
+  if (!fs::exists(database)) writeDatabaseForAll(file.parent_path());
+  options.emitters = database;
   interop::importRecording(interop::readRecording(file), options);
   for (const scenario::Problem& problem : scenario::parseScenario(options.scenario).problems) {
     if (problem.severity == scenario::Severity::error)
@@ -159,6 +171,83 @@ const FuzzTargetsAdded added({
        takeStream(live, bytes);
      },
      [] { return std::vector<std::string>{std::string(1, '\x05') + recordingOf(".acmi")}; }},
+    {"asi", "input.asi", importRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           recordingOf(".asi"),
+           "ReferenceYear 2012\nDegreeAngles 0\nCoordSystem \"ECEF\"\nPlatformID 1\nPlatformType 1 ship\n"
+           "PlatformData 1 -1 3872000 338000 5004000 1 2 3 0 0 0\nPlatformID 2\nPlatformCoordSystem 2 LLA\n"
+           "PlatformData 2 \"001 2012 00:01:40\" 52 5 50 0 0 0 0 0 0\nBeamID 1 9\nBeamType 9 TARGET\n"
+           "BeamTargetIDCmd 9 100 2\nBeamOnOffCmd 9 101 0\nBeamID 2 8\nBeamDataRAE 8 100 1 0.1 99\n"};
+     }},
+    {"cot", "input.cot", importRecordingFile, [] { return std::vector<std::string>{recordingOf(".cot")}; }},
+    {"kml", "input.kml", importRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           recordingOf(".kml"),
+           "<kml><Placemark><name>a</name><TimeStamp><when>2026-06-01T06:00:00Z</when></TimeStamp><Point>"
+           "<coordinates>5,52,9</coordinates></Point></Placemark></kml>"};
+     }},
+    {"czml", "input.czml", importRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           recordingOf(".czml"),
+           "[{\"id\":\"a\",\"availability\":[\"2026-06-01T06:00:00Z/2026-06-01T06:01:00Z\"],\"position\":"
+           "{\"epoch\":\"2026-06-01T06:00:00Z\",\"interpolationAlgorithm\":\"LAGRANGE\","
+           "\"interpolationDegree\""
+           ":3,\"cartesian\":[0,3872000,338000,5004000,9,3872000,338900,5004000,20,3872000,339999,5004000]}}"
+           "]"};
+     }},
+    {"gpx", "input.gpx", importRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           "<gpx><wpt lat='52' lon='5'><name>m</name></wpt><trk><trkseg><trkpt lat='52' lon='5'><ele>9</ele>"
+           "<time>2026-06-01T06:00:00Z</time></trkpt><trkpt lat='52' "
+           "lon='5.1'><time>2026-06-01T08:00:09+02:00"
+           "</time></trkpt></trkseg></trk></gpx>"};
+     }},
+    {"stk_ephemeris", "input.e", importRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           "stk.v.4.3\nBEGIN Ephemeris\nScenarioEpoch 1 Jun 2026 06:00:00.0\nInterpolationOrder "
+           "5\nCentralBody "
+           "Earth\nCoordinateSystem Fixed\nDistanceUnit Kilometers\nEphemerisTimePos\n0 3872 338 5004\n10 "
+           "3872 339 "
+           "5004\n20 3871 341 5004\nEND Ephemeris\n",
+           "stk.v.11.0\nEphemerisLLATimePos\n0 52 5 100\n9 52.1 5 200\n"};
+     }},
+    {"nmea", "input.nmea", importRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           "$GPGGA,235958,5200.000,N,00500.000,E,1,8,1.0,12.5,M,46.0,M,,\n$GPRMC,235958,A,5200.000,N,00500."
+           "000,E,10.0,"
+           "90.0,310526,,\n$GPZDA,000002,01,06,2026,00,00\n$GPGNS,000002,5200.1,N,00500.1,E,AA,8,1,13,46,,"
+           "\n"};
+     }},
+    {"track_table", "input.csv", importRecordingFile,
+     [] {
+       return std::vector<std::string>{
+           "time,icao24,lat,lon,heading,baroaltitude,geoaltitude\n1748000000,a,52,5,31,3000,3052\n1748000009,"
+           "a,52.1,5,,"
+           "3000,\n",
+           "t_s;Lat (deg);lon;altitude_ft\n0;52,5;5,1;1000\n9;52,6;5,1;1000\n"};
+     }},
+    {"cot_stream", "",
+     [](const fs::path&, const std::string& bytes) {
+       interop::CotReader reader{interop::ReadOptions{}};
+       interop::CotSplitter splitter;
+       // Two halves, as a stream may bring them.
+       for (const std::string& part : {bytes.substr(0, bytes.size() / 2), bytes.substr(bytes.size() / 2)})
+         splitter.take(part, [&](std::string_view event) { reader.takeEvent(event); });
+       checkFuzzMessage(reader.finish().tally.first_bad);
+     },
+     [] { return std::vector<std::string>{recordingOf(".cot")}; }},
+    {"emitter_names", "input.xml",
+     [](const fs::path& file, const std::string&) { interop::readEmitterNames(file); },
+     [] {
+       return std::vector<std::string>{
+           "<ebv><enum uid=\"75\"><enumrow value=\"3\" description=\"AN/SPS-49\"/></enum></ebv>"};
+     }},
     {"import_acmi", "input.acmi", importRecordingFile,
      [] {
        return std::vector<std::string>{

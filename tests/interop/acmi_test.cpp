@@ -110,14 +110,51 @@ TEST(Acmi, RadarIsABeamOfItsObject) {
   EXPECT_FALSE(r.beams[0].states[1].is_on);
 }
 
-TEST(Acmi, BeamThatIsAnObjectHasTheKeysOfTheObjectThatCarriesIt) {
+TEST(Acmi, ObjectOfTypeBeamIsABeamOfTheObjectThatCarriesIt) {
+  // By its parent; without one by its place.
+  for (const std::string parent : {"Parent=a,", ""}) {
+    const Recording r = readLines(
+        "c,T=1.1|2|3,Type=Air+FixedWing,Name=F-16\na,T=1|2|3,Type=Air+FixedWing,Name=F-14B\n"
+        "b,T=1|2|3,Type=Beam," +
+        parent + "Name=AWG-9,RadarHorizontalBeamwidth=120\n");
+    ASSERT_EQ(r.objects.size(), 2u) << parent;
+    ASSERT_EQ(r.beams.size(), 1u);
+    EXPECT_EQ(r.objects[r.beams[0].object].keys.acmi_name, "F-14B");
+    EXPECT_EQ(r.beams[0].keys.acmi_name, "AWG-9");
+    EXPECT_TRUE(r.beams[0].states.at(0).is_on);
+  }
+}
+
+TEST(Acmi, BeamWithoutACarrierStaysAnObject) {
+  const Recording r =
+      readLines("a,T=1|2|3,Type=Air+FixedWing,Name=F-14B\nb,T=1|2.1|3,Type=Beam,Name=AWG-9\n");
+  EXPECT_EQ(r.objects.size(), 2u);
+}
+
+TEST(Acmi, DirectionOfABeamIsThatOfItsObjectInTheAxesOfItsCarrier) {
   const Recording r = readLines(
-      "a,T=1|2|3,Type=Air+FixedWing,Name=F-14B\nb,T=1|2|3|0|0|90,Type=Beam,Parent=a,RadarHorizontalBeamwidth="
-      "120\n");
+      "a,T=1|2|3000|0|0|90,Type=Air+FixedWing,Name=F-14B\n"
+      "b,T=1|2|3000|0|5|120,Type=Beam,Parent=a,RadarAzimuth=10\n#10\nb,T=|||0|0|60\n#20\n-b\n");
   ASSERT_EQ(r.beams.size(), 1u);
-  EXPECT_EQ(r.objects[r.beams[0].object].keys.acmi_name, "F-14B");
-  EXPECT_EQ(r.objects[r.beams[0].object].name, "F-14B beam");
-  EXPECT_TRUE(r.beams[0].states.at(0).is_on);
+  const auto& states = r.beams[0].states;
+  ASSERT_EQ(states.size(), 3u);
+  EXPECT_NEAR(states[0].azimuth_deg, 40, 0.05);
+  EXPECT_NEAR(states[0].elevation_deg, 5, 0.15) << "10 degrees beside the nose, that is pitched up";
+  EXPECT_EQ(states[1].t_s, 10);
+  EXPECT_NEAR(states[1].azimuth_deg, -20, 0.05);
+  EXPECT_NEAR(states[1].elevation_deg, 0, 0.01);
+  EXPECT_EQ(states[2].t_s, 20);
+  EXPECT_FALSE(states[2].is_on) << "its object was removed";
+}
+
+TEST(Acmi, SideIsThatOfTheColourElseOfTheCoalition) {
+  const Recording r = readLines(
+      "1,T=1|2|3,Coalition=Allies,Color=Red\n2,T=1|2|3,Coalition=Hostile\n3,T=1|2|3,Coalition=Friend\n"
+      "4,T=1|2|3,Coalition=Neutrals\n5,T=1|2|3,Coalition=Some Country\n6,T=1|2|3\n");
+  std::vector<Side> sides;
+  for (const RecordedObject& object : r.objects) sides.push_back(object.side);
+  EXPECT_THAT(sides, testing::ElementsAre(Side::hostile, Side::hostile, Side::friendly, Side::neutral,
+                                          Side::unknown, Side::unknown));
 }
 
 TEST(Acmi, TornEndIsToldAndWhatWasReadIsKept) {

@@ -4,8 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "interop/emitters/emitter_names.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::interop {
 namespace {
@@ -77,6 +79,51 @@ TEST(EmitterDatabase, StarterSetIsTheShippedFileAndEveryRowNamesItsSource) {
   ASSERT_GT(starter.rows.size(), 8u);
   for (const EmitterRow& row : starter.rows) EXPECT_FALSE(row.source.empty()) << row.name;
   EXPECT_EQ(starter.unmatched, Unmatched::warn);
+}
+
+TEST(EmitterNames, AreThoseOfTheListOfEmitters) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder.write(
+      "names.xml",
+      "<?xml version=\"1.0\"?><!DOCTYPE ebv [<!ENTITY secret SYSTEM \"file:///etc/passwd\">]>\n"
+      "<ebv xmlns=\"http://example.org\"><enum uid=\"4\" name=\"Protocol\"><enumrow value=\"7\" "
+      "description=\"seven\"/></enum>\n<enum uid=\"75\" name=\"Emitter Name\"><enumrow value=\"28665\" "
+      "description=\"AN/SPS-49\"/><enumrow value=\"3\" description=\"a &secret; b\"/></enum></ebv>");
+  const auto names = readEmitterNames(file);
+  ASSERT_EQ(names.size(), 2u);
+  EXPECT_EQ(names.at(28665), "AN/SPS-49");
+  EXPECT_EQ(names.at(3), "a &secret; b") << "entities are not resolved";
+  const std::string other = folder.write("other.xml", "<a><b></a>");
+  EXPECT_THAT(test::errorOf([&] { readEmitterNames(other); }, ErrorCode::bad_input),
+              HasSubstr("other.xml: line 1: no XML"));
+  const std::string empty = folder.write("empty.xml", "<ebv/>");
+  EXPECT_THAT(test::errorOf([&] { readEmitterNames(empty); }, ErrorCode::bad_input),
+              HasSubstr("give the file SISO-REF-010.xml"));
+}
+
+TEST(EmitterDatabase, NamesOfBeamsAndObjectsMatchInAnyFormat) {
+  const EmitterDatabase database =
+      databaseOf({"{object_name: \"ship*\", beam_name: search}", "{cot_type: a-h-A}", "{asi_beam: \"trk*\"}",
+                  "{acmi_name: AWG-9}", "{object_name: \"ship*\"}"});
+  RecordedObject object;
+  object.name = "ship 1";
+  RecordedBeam beam;
+  beam.name = "search";
+  EXPECT_EQ(matchOf(database, object, &beam), "row 0");
+  EXPECT_EQ(matchOf(database, object, nullptr), "row 4");
+  object.name = "x";
+  object.keys.cot_type = "a-h-A-M";
+  EXPECT_EQ(matchOf(database, object, nullptr), "row 1");
+  object.keys.cot_type = "a-f-A-M";
+  EXPECT_EQ(matchOf(database, object, nullptr), "none");
+  beam.keys.asi_beam = "trk 3";
+  EXPECT_EQ(matchOf(database, object, &beam), "row 2");
+  beam.keys = {};
+  object.keys.acmi_name = "F-14";
+  beam.keys.acmi_name = "AWG-9";
+  EXPECT_EQ(matchOf(database, object, &beam), "row 3") << "its own name";
+  beam.keys.acmi_name = "";
+  EXPECT_EQ(matchOf(database, object, &beam), "none");
 }
 
 }  // namespace

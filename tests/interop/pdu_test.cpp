@@ -141,7 +141,7 @@ TEST(Pdu, LengthsAndCountsThatLieAreFaults) {
   Bytes more_systems = bytes;
   more_systems[25] = 200;
   EXPECT_FALSE(decodeEmission(more_systems.data(), more_systems.size(), fault));
-  EXPECT_THAT(fault, HasSubstr("counts more systems, beams or targets than its"));
+  EXPECT_THAT(fault, HasSubstr("counts more systems, beams or targets than they"));
   Bytes more_beams = bytes;
   more_beams[29] = 255;
   EXPECT_FALSE(decodeEmission(more_beams.data(), more_beams.size(), fault));

@@ -121,7 +121,7 @@ def check_cf_of(programs, file):
 
 
 def check_czml():
-    """The document is valid by the JSON Schema of CZML."""
+    """The documents of emscape coverage and emscape export are valid by the JSON Schema of CZML."""
     try:
         from jsonschema import Draft7Validator, RefResolver
     except ImportError:
@@ -141,8 +141,9 @@ def check_czml():
             store[file.resolve().as_uri()] = content
     root = (schema / "Document.json").resolve().as_uri()
     validator = Draft7Validator(store[root], resolver=RefResolver(root, store[root], store=store))
-    errors = list(validator.iter_errors(json.loads((MAPS / "coverage.czml").read_text())))
-    series.check(not errors, "; ".join(f"{list(error.path)}: {error.message}" for error in errors[:3]))
+    for file in (MAPS / "coverage.czml", FOLDER.with_name(FOLDER.name + "_exported.czml")):
+        errors = list(validator.iter_errors(json.loads(file.read_text())))
+        series.check(not errors, f"{file}: " + "; ".join(f"{list(error.path)}: {error.message}" for error in errors[:3]))
 
 
 {"cog": check_cog, "gdal": check_gdal, "qgis": check_qgis, "cf": check_cf, "czml": check_czml}[sys.argv[2]]()

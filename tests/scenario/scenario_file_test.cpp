@@ -298,6 +298,27 @@ TEST_F(ScenarioYaml, MistypedPlacesAndLengthsAreWarningsOfOneLine) {
               HasSubstr("the region is 29 m by 29 m: 'size_m' is in metres, not in kilometres"));
 }
 
+TEST(ScenarioWarnings, NameWhatIsOutsideOfTheTimesOfTheScenario) {
+  const auto warningsOf = [](const std::vector<Edit>& edits) {
+    std::string all;
+    for (const Problem& problem : parseScenario(test::shippedScenario("quick.yaml"), edits).problems)
+      all += problem.message + "\n";
+    return all;
+  };
+  const std::string track =
+      "{points: [{t_s: 1, latitude_deg: 52, longitude_deg: 5, height_agl_m: 50}, {t_s: 3, latitude_deg: 52, "
+      "longitude_deg: 5.1, height_agl_m: 50}]}";
+  EXPECT_THAT(
+      warningsOf({{"platforms.mast.position", "null"}, {"platforms.mast.track", track}}),
+      HasSubstr(
+          "the track of 'mast' runs from 1 to 3 s, the scenario from 0 to 4 s: before 1 s and after 3 s "
+          "the platform stands still"));
+  EXPECT_THAT(
+      warningsOf({{"emitters.radar.active_s", "[[10, 20]]"}}),
+      HasSubstr("emitter 'radar' is active from 10 s, but the scenario ends at 4 s: it never transmits"));
+  EXPECT_THAT(warningsOf({{"emitters.radar.active_s", "[[2, 20]]"}}), Not(HasSubstr("never transmits")));
+}
+
 TEST_F(ScenarioYaml, EmitterOutsideAllBandsIsAWarning) {
   const std::string text = replaced(valid_, "begin_hz: 8.0e9", "begin_hz: 9.5e9");
   const ParseResult result = parseScenario(folder_.write("scenario.yaml", text));

@@ -1,0 +1,23 @@
+/// Vertical coverage as text files of AREPS, which SIMDIS draws.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/model/scenario.h"
+#include "emscape/study/vertical/vertical.h"
+
+namespace emscape::report {
+
+/// Writes a file for each azimuth into a folder, NAME_APM_AZIMUTH.txt: loss and propagation factor of the
+/// path to an isotropic antenna, both with the emitter's antenna pattern relative to its gain, and for radars
+/// the largest losses for probabilities of detection of 1 to 100 % (0.999).
+/// @param diagram  of snr_db for a radar, whose beam is on the target, else of power_density_dbwm2; above
+/// mean sea level, of this scenario
+/// @return the written files
+/// @throws Error (other) naming the file
+std::vector<std::string> writeAreps(const study::VerticalDiagram& diagram, const scenario::Scenario& scenario,
+                                    const std::filesystem::path& folder);
+
+}  // namespace emscape::report

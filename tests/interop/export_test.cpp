@@ -1,0 +1,255 @@
+// Recordings of scenarios, and scenarios of those.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/snapshot.h"
+#include "interop/export_scenario.h"
+#include "interop/import_scenario.h"
+#include "interop/recording/read_recording.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::interop {
+namespace {
+
+using testing::HasSubstr;
+using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
+
+class RoundTrip : public testing::TestWithParam<const char*> {};
+
+TEST_P(RoundTrip, PositionsAnglesAndEmittersStay) {
+  const test::TemporaryFolder folder;
+  const ScenarioPtr before = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
+  const std::string file = folder / (std::string("a") + GetParam());
+  const ExportResult exported = exportScenario(before, terrain.get(), file);
+  EXPECT_GT(exported.records, 100);
+  ImportOptions options;
+  options.scenario = folder / "back.yaml";
+  options.emitters = exported.emitters;
+  const ImportResult result = importRecording(readRecording(file), options);
+  EXPECT_EQ(result.tally.bad, 0) << result.tally.first_bad;
+  const ScenarioPtr after = scenario::loadScenario(options.scenario);
+  EXPECT_EQ(after->clock.epoch_utc.substr(0, 19), before->clock.epoch_utc.substr(0, 19));
+  EXPECT_NEAR(after->clock.duration_s, before->clock.duration_s, 0.01);
+  EXPECT_EQ(after->platforms.size(), before->platforms.size());
+  const bool is_dis = std::string(GetParam()) == ".pcap";
+  const double position_m = is_dis ? 0.01 : 0.02, height_m = is_dis ? 0.01 : 0.006;
+  for (const double t_s : {0.0, 37.0, 81.0, 119.0}) {
+    const scenario::Snapshot a = scenario::instantAt(before, terrain.get(), t_s);
+    const scenario::Snapshot b = scenario::instantAt(after, nullptr, t_s);
+    for (std::size_t i = 0; i < before->emitters.size(); ++i) {
+      const scenario::Emitter& emitter = before->emitters[i];
+      std::size_t match = after->emitters.size();
+      for (std::size_t j = 0; j < after->emitters.size(); ++j) {
+        const std::string& name = after->emitters[j].name;
+        if (name.size() >= emitter.name.size() &&
+            name.compare(name.size() - emitter.name.size(), std::string::npos, emitter.name) == 0 &&
+            after->emitters[j].frequency_hz > 0.999 * emitter.frequency_hz)
+          match = j;
+      }
+      ASSERT_LT(match, after->emitters.size()) << emitter.name;
+      const scenario::Emitter& found = after->emitters[match];
+      const scenario::EmitterState &x = a.emitters[i], &y = b.emitters[match];
+      const double apart_m = geodesicInverse(x.position.latitude_deg, x.position.longitude_deg,
+                                             y.position.latitude_deg, y.position.longitude_deg)
+                                 .distance_m;
+      EXPECT_LT(apart_m, position_m) << emitter.name << " at " << t_s;
+      EXPECT_NEAR(x.height_msl_m, y.height_msl_m, height_m) << emitter.name << " at " << t_s;
+      EXPECT_NEAR(dot(x.beam.forward, y.beam.forward), 1, 1e-7) << emitter.name << " at " << t_s;
+      EXPECT_EQ(x.active, y.active);
+      EXPECT_NEAR(10 * std::log10(found.power_w / emitter.power_w), 0, 0.01) << emitter.name;
+      EXPECT_NEAR(found.frequency_hz / emitter.frequency_hz, 1, 1e-6);
+      EXPECT_EQ(found.antenna->gain_dbi, emitter.antenna->gain_dbi);
+      EXPECT_EQ(found.polarization, emitter.polarization);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, RoundTrip, testing::Values(".acmi", ".zip.acmi", ".pcap", ".asi", ".cot"),
+                         [](const auto& format) {
+                           std::string name;
+                           for (const char c : std::string(format.param)) {
+                             if (c != '.') name += c;
+                           }
+                           return name;
+                         });
+
+constexpr const char* kFixedSites = R"(schema_version: 1
+name: sites
+duration_s: 30
+region:
+  origin: {latitude_deg: 52, longitude_deg: 5}
+  size_m: [20000, 20000, 5000]
+  dims: [10, 10, 5]
+platforms:
+  - {name: ours, side: friend, position: {latitude_deg: 52, longitude_deg: 5, height_agl_m: 40}}
+  - {name: theirs, side: hostile, position: {latitude_deg: 52.01, longitude_deg: 5, height_agl_m: 40}}
+  - {name: Łódź, side: neutral, position: {latitude_deg: 52.02, longitude_deg: 5, height_agl_m: 40}}
+  - {name: a name of many letters, position: {latitude_deg: 52.03, longitude_deg: 5, height_agl_m: 40}}
+emitters:
+  - {name: beacon, platform: ours, kind: transmitter, frequency_hz: 1.0e8, power_w: 9, antenna: {pattern: isotropic}}
+targets:
+  - {name: drone, platform: theirs, rcs_m2: 1}
+output: {quantities: [field_strength_dbuvm]}
+)";
+
+TEST_P(RoundTrip, SidesAndDurationOfFixedSitesStayAndTheRestIsTold) {
+  const test::TemporaryFolder folder;
+  const ScenarioPtr before = scenario::loadScenario(folder.write("sites.yaml", kFixedSites));
+  const ExportResult exported = exportScenario(before, nullptr, folder / (std::string("a") + GetParam()));
+  const bool is_dis = std::string(GetParam()) == ".pcap";
+  const bool needs_epoch = std::string(GetParam()) == ".cot";
+  ASSERT_EQ(exported.notes.size(), is_dis || needs_epoch ? 2u : 1u);
+  EXPECT_EQ(exported.notes[0], "not in the recording: targets");
+  if (is_dis) {
+    EXPECT_THAT(exported.notes[1], HasSubstr("not ASCII: 2"));
+  }
+  ImportOptions options;
+  options.scenario = folder / "back.yaml";
+  options.emitters = exported.emitters;
+  importRecording(readRecording(exported.file), options);
+  const ScenarioPtr after = scenario::loadScenario(options.scenario);
+  EXPECT_NEAR(after->clock.duration_s, 30, 1e-3);
+  std::vector<std::optional<scenario::Side>> sides;
+  for (const scenario::Platform& platform : after->platforms) {
+    sides.push_back(platform.side);
+    EXPECT_FALSE(platform.moves());
+  }
+  using scenario::Side;
+  EXPECT_THAT(sides, testing::ElementsAre(Side::friendly, Side::hostile, Side::neutral, std::nullopt));
+  if (is_dis) {
+    EXPECT_EQ(after->platforms[2].name, "??d?");
+  }
+}
+
+class TracksThereAndBack : public testing::TestWithParam<const char*> {};
+
+TEST_P(TracksThereAndBack, PositionsStayAndTheRestIsTold) {
+  const test::TemporaryFolder folder;
+  const ScenarioPtr before = scenario::loadScenario(test::shippedScenario("jamming.yaml"));
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
+  const ExportResult exported =
+      exportScenario(before, terrain.get(), folder / (std::string("a") + GetParam()));
+  ASSERT_EQ(exported.notes.size(), 1u);
+  EXPECT_THAT(exported.notes[0], HasSubstr("not in the recording: times and directions of emitters"));
+  ImportOptions options;
+  options.scenario = folder / "back.yaml";
+  options.emitters = exported.emitters;
+  const ImportResult result = importRecording(readRecording(exported.file), options);
+  EXPECT_EQ(result.tally.bad, 0) << result.tally.first_bad;
+  const ScenarioPtr after = scenario::loadScenario(options.scenario);
+  ASSERT_EQ(after->platforms.size(), before->platforms.size());
+  ASSERT_EQ(after->emitters.size(), before->emitters.size());
+  EXPECT_EQ(after->clock.epoch_utc.substr(0, 19), before->clock.epoch_utc.substr(0, 19));
+  EXPECT_NEAR(after->clock.duration_s, before->clock.duration_s, 0.01);
+  const double tolerance_m = std::string(GetParam()) == ".czml" ? 1 : 0.02;
+  for (double t_s = 0; t_s < 60; t_s += 0.7) {
+    const scenario::Snapshot a = scenario::instantAt(before, terrain.get(), t_s);
+    const scenario::Snapshot b = scenario::instantAt(after, nullptr, t_s);
+    for (std::size_t i = 0; i < before->platforms.size(); ++i) {
+      const GeodeticPosition &x = a.platforms[i].position, &y = b.platforms[i].position;
+      EXPECT_LT(length(toEcef(x) - toEcef(y)), tolerance_m) << before->platforms[i].name << " at " << t_s;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, TracksThereAndBack, testing::Values(".kml", ".czml"),
+                         [](const auto& format) { return std::string(format.param).substr(1); });
+
+TEST(Export, OfAnEmitterThatIsSwitchedOffIsSilent) {
+  const test::TemporaryFolder folder;
+  scenario::Scenario off = *scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  for (const char* name : {"radar", "transmitter"})
+    off.set(std::string("emitters.") + name + ".enabled", "false");
+  const ExportResult exported =
+      exportScenario(std::make_shared<scenario::Scenario>(off), nullptr, folder / "off.pcap");
+  const Recording recording = readRecording(exported.file);
+  for (const RecordedBeam& beam : recording.beams) {
+    for (const BeamState& state : beam.states) EXPECT_FALSE(state.is_on) << beam.name;
+  }
+}
+
+TEST(Export, TimesThatACaptureCannotHoldAreRefused) {
+  const test::TemporaryFolder folder;
+  scenario::Scenario early = *scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  early.set("epoch", "1944-06-06T05:00:00Z");
+  const auto scenario = std::make_shared<scenario::Scenario>(early);
+  EXPECT_THAT(
+      test::errorOf([&] { exportScenario(scenario, nullptr, folder / "a.pcap"); }, ErrorCode::bad_input),
+      HasSubstr("epoch: 1944-06-06T05:00:00Z: captures hold times from 1970 to 2106"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.pcap"));
+}
+
+TEST(Export, UnknownEndingIsRefused) {
+  const ScenarioPtr scenario = scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  EXPECT_THAT(test::errorOf([&] { exportScenario(scenario, nullptr, "a.hla"); }, ErrorCode::usage),
+              HasSubstr("'a.hla' is no name of a recording; it ends in .zip.acmi, .acmi, .pcap, .asi, .cot"));
+}
+
+TEST(Export, EmittersOfOneNameWithTheirPlatformStayApart) {
+  const test::TemporaryFolder folder;
+  const ScenarioPtr before = scenario::loadScenario(folder.write("twins.yaml", R"(schema_version: 1
+name: twins
+duration_s: 30
+region:
+  origin: {latitude_deg: 52, longitude_deg: 5}
+  size_m: [20000, 20000, 5000]
+  dims: [10, 10, 5]
+platforms:
+  - {name: jammer, position: {latitude_deg: 52, longitude_deg: 5, height_agl_m: 40}}
+  - {name: silent, position: {latitude_deg: 52.1, longitude_deg: 5, height_agl_m: 40}}
+emitters:
+  - {name: jammer, platform: jammer, kind: jammer, frequency_hz: 2.0e9, bandwidth_hz: 1.0e6, power_w: 20, antenna: {pattern: isotropic}}
+  - name: radar
+    platform: jammer
+    kind: radar
+    frequency_hz: 3.0e9
+    power_w: 30
+    antenna: {pattern: gaussian, beamwidth_az_deg: 3, beamwidth_el_deg: 3}
+    receiver: {noise_figure_db: 4, bandwidth_hz: 1.0e6}
+  - {name: silent, platform: jammer, kind: jammer, frequency_hz: 4.0e9, bandwidth_hz: 1.0e6, power_w: 40, antenna: {pattern: isotropic}}
+output: {quantities: [power_density_dbwm2]}
+)"));
+  for (const char* ending : {".acmi", ".pcap", ".asi", ".cot"}) {
+    const ExportResult exported =
+        exportScenario(before, nullptr, folder / (std::string("a") + ending), {1, true});
+    ImportOptions options;
+    options.scenario = folder / "back.yaml";
+    options.replace = true;
+    options.emitters = exported.emitters;
+    importRecording(readRecording(exported.file), options);
+    const ScenarioPtr after = scenario::loadScenario(options.scenario);
+    std::vector<double> frequencies;
+    for (const scenario::Emitter& emitter : after->emitters) {
+      EXPECT_EQ(after->platforms[static_cast<std::size_t>(emitter.platform)].name, "jammer") << ending;
+      EXPECT_NEAR(emitter.power_w, emitter.frequency_hz / 1e8, 1e-3) << ending << " " << emitter.name;
+      frequencies.push_back(emitter.frequency_hz);
+    }
+    EXPECT_THAT(frequencies, testing::UnorderedElementsAre(2e9, 3e9, 4e9)) << ending;
+  }
+}
+
+TEST(Export, MoreEmittersThanDisCanNumberAreRefused) {
+  const test::TemporaryFolder folder;
+  std::string text = kFixedSites;
+  const std::size_t at = text.find("targets:");
+  std::string emitters;
+  for (int i = 0; i < 256; ++i) {
+    emitters +=
+        "  - {name: j" + std::to_string(i) +
+        ", platform: ours, kind: jammer, frequency_hz: 1.0e9, bandwidth_hz: 1.0e6, power_w: 1, antenna: "
+        "{pattern: isotropic}}\n";
+  }
+  const ScenarioPtr many = scenario::loadScenario(folder.write("many.yaml", text.insert(at, emitters)));
+  EXPECT_THAT(
+      test::errorOf([&] { exportScenario(many, nullptr, folder / "a.pcap"); }, ErrorCode::bad_input),
+      HasSubstr("the platform 'ours' has 256 radars and jammers, more than the 255 that DIS can number"));
+}
+
+}  // namespace
+}  // namespace emscape::interop
