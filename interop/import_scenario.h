@@ -3,12 +3,14 @@
 
 #include <array>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "emscape/base/enum_names.h"
 #include "emscape/base/progress.h"
+#include "emscape/scenario/model/scenario.h"
 #include "interop/recording/recording.h"
 
 namespace emscape::interop {
@@ -30,12 +32,13 @@ struct RegionRequest {
 RegionRequest parseRegion(const std::string& text);
 
 struct ImportOptions {
-  std::string scenario;                 ///< the file to write; the tracks go into STEM_tracks beside it
-  std::string emitters;                 ///< emitter database; empty: the starter set
-  std::string base;                     ///< scenario to which the recording is added; empty: none
-  std::vector<std::string> terrain;     ///< elevation files
-  std::optional<RegionRequest> region;  ///< none: around all platforms, or that of the base
-  std::optional<TimeSpan> times;        ///< part of the recording, in its own seconds
+  std::string scenario;  ///< the file to write; the tracks go into STEM_tracks beside it
+  std::string emitters;  ///< emitter database; empty: the starter set
+  std::string base;      ///< scenario to which the recording is added; empty: none
+  std::shared_ptr<const scenario::Scenario> loaded_base;  ///< the same as it was read; null: it is read
+  std::vector<std::string> terrain;                       ///< elevation files
+  std::optional<RegionRequest> region;                    ///< none: around all platforms, or that of the base
+  std::optional<TimeSpan> times;                          ///< part of the recording, in its own seconds
   std::vector<std::string> only;  ///< patterns of names and types of objects; empty: see importRecording()
   BeamwidthMeaning beamwidth = BeamwidthMeaning::by_size;
   bool replace = false;  ///< files that exist; else they are an error
@@ -57,6 +60,13 @@ struct ImportedEmitters {
   int count = 0;
 };
 
+/// A platform of the scenario.
+struct ImportedPlatform {
+  std::string object;  ///< RecordedObject::id
+  std::string name;    ///< of the platform
+  double raise_m = 0;  ///< its height above the object's: that of the highest antenna
+};
+
 struct ImportResult {
   std::string scenario;  ///< the written file
   std::string tracks;    ///< folder of the written tracks; empty: no platform moves
@@ -67,6 +77,7 @@ struct ImportResult {
   double duration_s = 0;  ///< of the scenario
   std::vector<ImportedType> types;
   std::vector<ImportedEmitters> emitters;
+  std::vector<ImportedPlatform> platforms;
   std::map<std::string, int> left_out;  ///< objects, by reason
   ReadingTally tally;
   std::vector<std::string> notes;  ///< assumptions of the conversion, each with its effect

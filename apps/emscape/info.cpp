@@ -359,6 +359,10 @@ Description describe(const std::string& name) {
       return {describeMeshFiles(file), nullptr};
     case playback::InputKind::elevation:
       return {describeElevation(file), nullptr};
+    case playback::InputKind::recording:
+      throw Error(ErrorCode::usage, file +
+                                        " is a recording: `emscape import` makes a scenario of it and tells "
+                                        "what is in it");
     case playback::InputKind::antenna:
       break;
   }

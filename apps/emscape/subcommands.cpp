@@ -34,6 +34,8 @@ void addSubcommands(CLI::App& app, const GlobalOptions& global, Action& action) 
   addStudy(app, global, action);
   addImport(app, global, action);
   addExport(app, global, action);
+  addLive(app, global, action);
+  addPlay(app, global, action);
   addCheck(app, global, action);
   addProgram(app, "bench", "Measure speed, and the error of interpolated pixels", kBenchProgram, global,
              action);

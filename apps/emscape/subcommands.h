@@ -18,6 +18,8 @@ void addCompare(CLI::App& app, const GlobalOptions& global, Action& action);
 void addStudy(CLI::App& app, const GlobalOptions& global, Action& action);
 void addImport(CLI::App& app, const GlobalOptions& global, Action& action);
 void addExport(CLI::App& app, const GlobalOptions& global, Action& action);
+void addLive(CLI::App& app, const GlobalOptions& global, Action& action);
+void addPlay(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCheck(CLI::App& app, const GlobalOptions& global, Action& action);
 
 /// Adds all of them, with those that start another program: view and bench.

@@ -7,6 +7,7 @@
 #include "apps/common/interrupt.h"
 #include "apps/view/app.h"
 #include "apps/view/files/message_log.h"
+#include "apps/view/files/recordings.h"
 #include "base/text/failure_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
@@ -34,6 +35,19 @@ void show(ViewOptions options) {
   });
   setThreadLimit(options.threads);
   app::handleSignals();
+  if (options.stream_request) {
+    if (playback::inputKindOf(options.view.input) != playback::InputKind::scenario)
+      throw Error(ErrorCode::usage, options.view.input + ": the objects of a stream are added to a scenario");
+    options.stream = std::make_shared<playback::LiveBattlefield>(*options.stream_request, nullptr);
+    options.view.input = options.stream->file();
+    options.offers_kept_view = false;
+  }
+  std::string note;
+  if (!options.view.input.empty() &&
+      playback::inputKindOf(options.view.input) == playback::InputKind::recording) {
+    options.view.input = importRecordingFile(options.view.input, note);
+    logInfo(note);
+  }
   if (!options.view.input.empty()) playback::addOwnScenario(options.view);
   // A wrong name and all errors in a scenario are reported before a window appears.
   using playback::InputKind;
@@ -50,6 +64,7 @@ void show(ViewOptions options) {
     scenario::loadScenario(options.view.input, options.view.edits);
   }
   App(options, messages).run();
+  if (options.stream) options.stream->finishRecording();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "apps/common/arguments.h"
 #include "apps/common/command.h"
+#include "apps/common/stream_options.h"
 #include "apps/common/view_arguments.h"
 #include "apps/view/commands/action.h"
 #include "apps/view/view_parser.h"
@@ -24,6 +25,7 @@ Examples:
   emscape view scenarios/jacksboro.yaml --state jacksboro.view.json
   emscape view out/jacksboro.pvd --scenario scenarios/jacksboro.yaml --scale 2
   emscape view scenarios/jacksboro.yaml --mesh terrain:32,4
+  emscape view scenarios/jamming.yaml --dis 127.0.0.1:3000 --record exercise.pcap
   emscape view scenarios/jacksboro.yaml --set emitters.jammer.power_w=500 --script tour.jsonl --log tour.log
 
 Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectation of the script was not met.)";
@@ -32,13 +34,15 @@ Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectati
 struct Typed {
   std::string state, size;
   app::ViewArguments given;
+  app::StreamOptions stream;
   std::vector<scenario::Edit> edits;
 };
 
 void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   app.add_option(
       "INPUT", options.view.input,
-      "Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd or folder of them; "
+      "Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd or folder of them, "
+      "recording (.acmi .pcap .pcapng .session); "
       "without it the window asks for one");
   app::addMeshOptions(app, options.view.mesh, options.view.cells);
   app.add_option(
@@ -46,6 +50,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
       "View file: camera, colours, time, edits and the rest; options on the command line override it");
   app::addSetOption(app, typed.edits);
   typed.given.addTo(app, "--size");
+  typed.stream.addTo(app, "", "--emitter-database");
   app.add_option("--size", typed.size,
                  "Window size in pixels, WxH; default: 1200x900, with --state as large as its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
@@ -76,6 +81,27 @@ void refuseOptionsOfInput(const CLI::App& app) {
                             name == "--allow-missing-terrain";
     if (needs_none || app.count(name) == 0) continue;
     throw Error(ErrorCode::usage, name + " needs INPUT\nTry 'emscape view --help'.");
+  }
+}
+
+/// @throws Error (usage)
+void takeStream(const app::StreamOptions& stream, const CLI::App& app, ViewOptions& options) {
+  if (!stream.isGiven()) {
+    for (const char* const name :
+         {"--interface", "--password", "--emitter-database", "--record", "--force", "--timeout"}) {
+      if (app.count(name) > 0)
+        throw Error(ErrorCode::usage,
+                    std::string(name) + " needs --dis or --acmi\nTry 'emscape view --help'.");
+    }
+    return;
+  }
+  options.stream_request = stream.parse();
+  options.stream_request->base = options.view.input;
+  if (options.view.input.empty()) {
+    throw Error(
+        ErrorCode::usage,
+        "--dis and --acmi need INPUT: a scenario with the region and the terrain, to which the objects "
+        "of the stream are added; any of scenarios/ will do to begin with");
   }
 }
 
@@ -138,6 +164,7 @@ std::optional<ViewOptions> parseOptions(int argc, char** argv) {
     return std::nullopt;
   }
   if (line.options.view.input.empty()) refuseOptionsOfInput(line.app);
+  takeStream(line.typed.stream, line.app, line.options);
   readView(line.typed, line.options);
   return line.options;
 }

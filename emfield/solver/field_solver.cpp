@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "base/memory.h"
 #include "emfield/excess/emitter_excess.h"
@@ -11,6 +12,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/base/work.h"
+#include "emscape/scenario/model/poses.h"
 
 namespace emscape::emfield {
 namespace {
@@ -251,6 +253,21 @@ void FieldSolver::setQuantities(std::vector<std::string> quantities,
   makePlan(std::move(next), options);  // throws
   impl_->options.quantities = std::move(options.quantities);
   impl_->has_other_quantities = true;
+}
+
+FieldChanged FieldSolver::update(double time_s, const std::vector<scenario::PlatformPose>& poses) {
+  const FieldSetup& setup = impl_->setup;
+  const scenario::Snapshot snapshot =
+      scenario::snapshotAt(setup.scenario, setup.terrain.get(), time_s, poses);
+  const double tolerance_m = std::exchange(impl_->options.move_tolerance_m, 0);
+  try {
+    const FieldChanged changed = impl_->update(snapshot, std::nullopt);
+    impl_->options.move_tolerance_m = tolerance_m;
+    return changed;
+  } catch (...) {
+    impl_->options.move_tolerance_m = tolerance_m;
+    throw;
+  }
 }
 
 MemoryUse FieldSolver::memoryUse() const {

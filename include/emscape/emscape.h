@@ -57,6 +57,7 @@
 #include "emscape/scenario/model/emitter.h"
 #include "emscape/scenario/model/interval.h"
 #include "emscape/scenario/model/platform.h"
+#include "emscape/scenario/model/poses.h"
 #include "emscape/scenario/model/quantities.h"
 #include "emscape/scenario/model/receiver.h"
 #include "emscape/scenario/model/scenario.h"

@@ -294,6 +294,53 @@ void AcmiReader::place(State& state, std::string_view value, const std::string& 
   }
 }
 
+std::size_t AcmiReader::keepLatest(std::size_t max_objects) {
+  std::vector<std::pair<double, std::uint64_t>> by_time;
+  for (const auto& [id, state] : states_) {
+    const auto& poses = objectOf(state).poses;
+    by_time.emplace_back(poses.empty() ? -1e9 : poses.back().t_s, id);
+  }
+  const std::size_t dropped = by_time.size() > max_objects ? by_time.size() - max_objects : 0;
+  std::sort(by_time.begin(), by_time.end());
+  for (std::size_t i = 0; i < dropped; ++i) states_.erase(by_time[i].second);
+  std::vector<std::size_t> kept_as(recording_.objects.size(), kNoTarget);
+  std::vector<RecordedObject> objects;
+  std::vector<RecordedBeam> beams;
+  std::vector<State*> kept;
+  for (auto& [id, state] : states_) kept.push_back(&state);
+  std::sort(kept.begin(), kept.end(), [](const State* a, const State* b) { return a->object < b->object; });
+  for (State* const state : kept) {
+    kept_as[state->object] = objects.size();
+    RecordedObject& object = objects.emplace_back(std::move(objectOf(*state)));
+    if (object.poses.size() > 1) object.poses = {object.poses.back()};
+    if (object.presence.size() > 1) object.presence = {object.presence.back()};
+    if (!state->beam) continue;
+    RecordedBeam& beam = beams.emplace_back(std::move(recording_.beams[*state->beam]));
+    if (beam.states.size() > 1) beam.states = {beam.states.back()};
+    state->beam = beams.size() - 1;
+  }
+  const auto keep = [&kept_as](std::size_t& index) {
+    if (index != kNoTarget) index = kept_as[index];
+  };
+  for (auto& [id, state] : states_) {
+    keep(state.object);
+    keep(state.radar.target);
+  }
+  for (RecordedBeam& beam : beams) {
+    keep(beam.object);
+    for (BeamState& state : beam.states) keep(state.target);
+  }
+  std::unordered_map<std::size_t, std::string> parents;
+  for (auto& [index, parent] : parents_) {
+    if (kept_as[index] != kNoTarget) parents[kept_as[index]] = std::move(parent);
+  }
+  parents_ = std::move(parents);
+  recording_.objects = std::move(objects);
+  recording_.beams = std::move(beams);
+  samples_ = recording_.objects.size() + recording_.beams.size();
+  return dropped;
+}
+
 Recording AcmiReader::finish() {
   long long outside = 0;
   for (RecordedObject& object : recording_.objects) {

@@ -25,6 +25,10 @@ class AcmiReader {
   /// live streams may send late. Call once.
   Recording finish();
 
+  /// For streams: drops all but the last pose and state of each object, the objects that were removed, and of
+  /// the others all but the last ones that were told of. @return how many of the others
+  std::size_t keepLatest(std::size_t max_objects);
+
   ReadingTally& tally() { return recording_.tally; }
 
  private:

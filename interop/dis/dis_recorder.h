@@ -20,6 +20,10 @@ class DisRecorder {
   explicit DisRecorder(const ReadOptions& options) : options_(options) {}
 
   void take(const Datagram& datagram);
+  /// The same of a decoded PDU. @param time_s  of the recording
+  void takeState(const EntityState& state, double time_s);
+  void takeEmission(const Emission& emission, double time_s, int version);
+  void takeTransmitter(const Transmitter& transmitter, double time_s);
   /// Call once.
   Recording finish();
   ReadingTally& tally() { return recording_.tally; }
@@ -39,9 +43,6 @@ class DisRecorder {
   using System = std::unordered_map<int, Beam>;
 
   void takePdu(const Header& header, const std::uint8_t* bytes, double arrival_s);
-  void takeState(const EntityState& state, double time_s);
-  void takeEmission(const Emission& emission, double time_s, int version);
-  void takeTransmitter(const Transmitter& transmitter, double time_s);
   void fillGap(const Entity& before, const EntityState& state, double time_s);
   void addPose(Entity& entity, const Vec3d& position_m, const struct BodyAxes& axes, double time_s);
   void setState(Beam& beam, const BeamState& state);

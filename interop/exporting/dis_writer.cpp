@@ -71,19 +71,16 @@ std::string markingOf(const std::string& name) {
   return marking;
 }
 
+/// The scenario's t = 0 (s since 1970); 0 without an epoch.
+double originOf(const scenario::Scenario& scenario) {
+  const auto epoch_ms = parseUtc_ms(scenario.clock.epoch_utc);
+  return epoch_ms ? static_cast<double>(*epoch_ms) / 1000 : 0;
+}
+
 class DisWriter {
  public:
-  DisWriter(const ExportJob& job, std::ostream& stream)
-      : job_(job), scenario_(job.scenario), capture_(stream) {
-    const auto epoch_ms = parseUtc_ms(scenario_.clock.epoch_utc);
-    if (epoch_ms) origin_s_ = static_cast<double>(*epoch_ms) / 1000;
-    const double last_s = origin_s_ + scenario_.clock.duration_s;
-    if (!(origin_s_ >= 0 && last_s < kEndOfCaptures_s)) {
-      throw Error(ErrorCode::bad_input,
-                  fmt::format("{}: epoch: {}: captures hold times from 1970 to 2106; export to .acmi, or "
-                              "give another epoch, as with --set epoch=2000-01-01T00:00:00Z",
-                              scenario_.file, scenario_.clock.epoch_utc));
-    }
+  DisWriter(const ExportJob& job, const PduSink& sink) : job_(job), scenario_(job.scenario), sink_(sink) {
+    origin_s_ = originOf(scenario_);
   }
 
   long long run(std::vector<ExportedRow>& rows) {
@@ -220,13 +217,13 @@ class DisWriter {
     header.timestamp =
         static_cast<std::uint32_t>(std::llround(past_hour * dis::kTimestampsPerHour) % (1ll << 31)) << 1 |
         (origin_s_ > 0 ? 1u : 0u);
-    capture_.write(origin_s_ + t_s, dis::encode(header, pdu));
+    sink_(t_s, dis::encode(header, pdu));
     ++records_;
   }
 
   const ExportJob& job_;
   const scenario::Scenario& scenario_;
-  dis::CaptureWriter capture_;
+  const PduSink& sink_;
   double origin_s_ = 0;
   std::vector<Due> due_;
   std::vector<std::vector<double>> times_;  ///< of the platforms' states
@@ -238,8 +235,22 @@ class DisWriter {
 
 }  // namespace
 
+long long writeDis(const ExportJob& job, const PduSink& sink, std::vector<ExportedRow>& rows) {
+  return DisWriter(job, sink).run(rows);
+}
+
 long long writeCapture(const ExportJob& job, std::ostream& stream, std::vector<ExportedRow>& rows) {
-  return DisWriter(job, stream).run(rows);
+  const double origin_s = originOf(job.scenario);
+  if (!(origin_s >= 0 && origin_s + job.scenario.clock.duration_s < kEndOfCaptures_s)) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("{}: epoch: {}: captures hold times from 1970 to 2106; export to .acmi, or "
+                            "give another epoch, as with --set epoch=2000-01-01T00:00:00Z",
+                            job.scenario.file, job.scenario.clock.epoch_utc));
+  }
+  dis::CaptureWriter capture(stream);
+  return writeDis(
+      job, [&](double t_s, const std::vector<std::uint8_t>& bytes) { capture.write(origin_s + t_s, bytes); },
+      rows);
 }
 
 int countChangedMarkings(const scenario::Scenario& scenario) {

@@ -1,6 +1,7 @@
 /// Writers of recordings, one per format.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <ostream>
 #include <string>
@@ -22,9 +23,13 @@ struct ExportJob {
 /// Receives the text of a file in pieces.
 using TextSink = std::function<void(const std::string& piece)>;
 
+/// Receives PDUs in the order of their times (s of the scenario).
+using PduSink = std::function<void(double t_s, const std::vector<std::uint8_t>& bytes)>;
+
 /// @param rows  receives the rows of the emitter database
 /// @return number of records
 long long writeAcmi(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
+long long writeDis(const ExportJob& job, const PduSink& sink, std::vector<ExportedRow>& rows);
 long long writeAsi(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
 long long writeCot(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);
 long long writeCzml(const ExportJob& job, const TextSink& sink, std::vector<ExportedRow>& rows);

@@ -132,7 +132,8 @@ class Importer {
 };
 
 void Importer::choose() {
-  if (!options_.base.empty())
+  base_ = options_.loaded_base;
+  if (!base_ && !options_.base.empty())
     base_ = scenario::loadScenario(options_.base, {}, scenario::ReadFor::chosen_times);
   std::vector<int> beam_counts(recording_.objects.size());
   for (const RecordedBeam& beam : recording_.beams) ++beam_counts[beam.object];
@@ -189,6 +190,7 @@ void Importer::makeEmitters() {
     double height_m = 0;
     chosen.emitters = maker.make(*chosen.object, chosen.beams, chosen.name, height_m);
     raise_m_.push_back(height_m);
+    result_.platforms.push_back({chosen.object->id, chosen.name, height_m});
     ImportedType& type = types[shifted_[i].type];
     type.type = shifted_[i].type.empty() ? "without a type" : shifted_[i].type;
     type.domain = shifted_[i].domain;

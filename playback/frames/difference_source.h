@@ -42,6 +42,7 @@ class DifferenceSource : public FrameSource {
   }
   std::vector<std::string> quantities() const override { return source_->quantities(); }
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override;
+  void setPoses(PosesPtr poses) override { source_->setPoses(std::move(poses)); }
   void setQuantity(const std::string& quantity) override;
   void setComparison(Comparison comparison) override { comparison_ = comparison; }
   std::optional<Frame> withoutField(double time_s) override { return source_->withoutField(time_s); }

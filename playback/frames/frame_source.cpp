@@ -80,7 +80,7 @@ class ComputedFrames : public FrameSource {
  public:
   ComputedFrames(const LoadedScenario& input, const FrameSelection& selection, const ComputeTarget& target,
                  const StopFlag* stop)
-      : selection_(selection), mesh_(selection.mesh, input) {
+      : selection_(selection), mesh_(selection.mesh, input), unposed_(input) {
     emfield::FieldOptions options = fieldOptionsOf(selection, target, *input.scenario);
     options.surface = mesh_.surface();
     series_ = std::make_unique<FieldSeries>(input, timesOf(selection, input.scenario->clock), options, stop);
@@ -117,17 +117,23 @@ class ComputedFrames : public FrameSource {
 
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
     std::vector<double> times_s = timesOf(selection_, scenario->clock);
-    LoadedScenario edited = withScenario(series_->input(), std::move(scenario));
-    if (mesh_.mesh && !sameGround(series_->input(), edited)) {
+    LoadedScenario edited = withScenario(unposed_, std::move(scenario));
+    const bool has_same_ground = sameGround(unposed_, edited);
+    if (mesh_.mesh && !has_same_ground) {
       const ComputedMesh mesh(selection_.mesh, edited);
       emfield::FieldOptions options = series_->options();
       options.surface = mesh.surface();
-      series_ =
-          std::make_unique<FieldSeries>(std::move(edited), std::move(times_s), options, series_->stopFlag());
+      series_ = std::make_unique<FieldSeries>(edited, std::move(times_s), options, series_->stopFlag());
       mesh_ = mesh;
-      return;
+    } else {
+      series_->setScenario(edited, std::move(times_s));
     }
-    series_->setScenario(std::move(edited), std::move(times_s));
+    unposed_ = std::move(edited);
+  }
+  void setPoses(PosesPtr poses) override {
+    LoadedScenario moved = unposed_;
+    if (poses) moved.scenario = scenario::withPoses(*unposed_.scenario, *poses);
+    series_->setScenario(std::move(moved), series_->times_s());
   }
   void setQuantity(const std::string& quantity) override {
     const scenario::Scenario& scenario = *series_->input().scenario;
@@ -156,6 +162,7 @@ class ComputedFrames : public FrameSource {
 
   FrameSelection selection_;
   ComputedMesh mesh_;
+  LoadedScenario unposed_;  ///< without the poses of setPoses()
   std::unique_ptr<FieldSeries> series_;
   PlatformTracks tracks_;
 };
@@ -264,6 +271,10 @@ void FrameSource::setScenario(std::shared_ptr<const scenario::Scenario> /*scenar
   throw Error(ErrorCode::usage, name() + ": volumes without a scenario cannot be edited");
 }
 
+void FrameSource::setPoses(PosesPtr poses) {
+  if (poses) throw Error(ErrorCode::usage, name() + ": the fields of files do not move with platforms");
+}
+
 void FrameSource::setComparison(Comparison comparison) {
   if (comparison != Comparison::none)
     throw Error(ErrorCode::usage, name() + ": there is nothing to compare with");
@@ -303,6 +314,9 @@ std::unique_ptr<FrameSource> openField(const FrameSelection& selection, const Co
     case InputKind::volume:
     case InputKind::mesh:
       return std::make_unique<StoredFrames>(selection, stop);
+    case InputKind::recording:
+      throw Error(ErrorCode::usage,
+                  selection.input + " is a recording: `emscape import` makes a scenario of it");
     default:
       throw Error(ErrorCode::usage, selection.input + " is neither a scenario nor a volume");
   }

@@ -41,15 +41,20 @@ InputKind inputKindOf(const std::string& file) {
   static const std::set<std::string> kElevations{".tif", ".tiff", ".hgt", ".dt0", ".dt1",
                                                  ".dt2", ".vrt",  ".asc", ".dem", ".bil"};
   static const std::set<std::string> kAntennas{".msi", ".pln", ".csv"};
+  static const std::set<std::string> kRecordings{".acmi", ".pcap", ".pcapng", ".session", ".asi", ".cot",
+                                                 ".kml",  ".kmz",  ".gpx",    ".czml",    ".e",   ".nmea"};
   if (ending == ".yaml" || ending == ".yml" || ending == ".json") return InputKind::scenario;
   if (ending == ".pvd" || volume::isVolumeFile(file)) return InputKind::volume;
   if (kElevations.count(ending) != 0) return InputKind::elevation;
   if (kAntennas.count(ending) != 0) return InputKind::antenna;
+  if (kRecordings.count(ending) != 0) return InputKind::recording;
   throw Error(
       ErrorCode::bad_input, {file, 0, 0},
       "ending '" + ending +
           "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .vtu .pvd .raw .dat; "
-          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv");
+          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv; recordings: .acmi .pcap "
+          ".pcapng "
+          ".session");
 }
 
 JsonContent jsonContentOf(const std::string& file) {

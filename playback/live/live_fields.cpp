@@ -135,7 +135,7 @@ void LiveFields::open() {
     if (!source_) return;
     if (const LoadedScenario* scene = source_->scene()) opened_scenario_ = scene->scenario;
     Content content;
-    content.shown = {opened_scenario_, "", wanted_.view.comparison()};
+    content.shown = {opened_scenario_, nullptr, "", wanted_.view.comparison()};
     content.shown.quantity = shownOf(wanted_).quantity;
     content_ = std::make_shared<const Content>(content);
     noteContent();
@@ -231,7 +231,7 @@ bool LiveFields::serveFromMemory(const Shown& wanted) {
 
 /// What a request shows. Without a quantity it is the first of the computed scenario.
 LiveFields::Shown LiveFields::shownOf(const FieldRequest& request) const {
-  Shown shown{request.scenario ? request.scenario : opened_scenario_, request.view.quantity,
+  Shown shown{request.scenario ? request.scenario : opened_scenario_, request.poses, request.view.quantity,
               request.view.comparison()};
   const bool is_computed = source_->scene() != nullptr && request.view.scenario.empty();
   if (shown.quantity.empty() && is_computed) shown.quantity = shown.scenario->output.quantities.front();
@@ -248,6 +248,12 @@ void LiveFields::change(const Shown& wanted) {
   if (wanted.scenario != content.shown.scenario) {
     source_->setScenario(wanted.scenario);
     content.shown.scenario = wanted.scenario;
+    content.shown.poses = nullptr;
+    changed();
+  }
+  if (wanted.poses != content.shown.poses) {
+    source_->setPoses(wanted.poses);
+    content.shown.poses = wanted.poses;
     changed();
   }
   if (wanted.quantity != content.shown.quantity) {

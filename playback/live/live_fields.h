@@ -28,6 +28,7 @@ struct FieldRequest {
   ViewState view;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
   bool has_field = true;                               ///< false: the ground and the emitters alone
+  PosesPtr poses = {};                                 ///< of a live source; null: those of the scenario
   long long search = 0;                  ///< number of the requested search of the series' range; 0: none
   double patience_ms = Patience::kNone;  ///< with the field in progress
 };
@@ -115,11 +116,13 @@ class LiveFields {
   /// What the source shows, apart from the time.
   struct Shown {
     std::shared_ptr<const scenario::Scenario> scenario;
+    PosesPtr poses;
     std::string quantity;
     Comparison comparison = Comparison::none;
 
     bool operator==(const Shown& other) const {
-      return scenario == other.scenario && quantity == other.quantity && comparison == other.comparison;
+      return scenario == other.scenario && poses == other.poses && quantity == other.quantity &&
+             comparison == other.comparison;
     }
   };
   /// The same with what the source has for it.

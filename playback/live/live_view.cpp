@@ -221,6 +221,14 @@ void LiveView::showWithoutField() {
   });
 }
 
+void LiveView::pose(PosesPtr poses, std::shared_ptr<const scenario::Scenario> scenario) {
+  impl_->ask(impl_->field, impl_->fields, [&] {
+    impl_->field.patience_ms = Patience::kEndless;
+    impl_->field.poses = std::move(poses);
+    if (scenario) impl_->field.scenario = std::move(scenario);
+  });
+}
+
 void LiveView::keepOnDevice(bool keep) {
   impl_->ask(impl_->view, impl_->caster, [&] { impl_->view.on_device = keep; });
 }

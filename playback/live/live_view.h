@@ -12,6 +12,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
 #include "emscape/playback/frames/compute_target.h"
+#include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/frames/shown_field.h"
 #include "emscape/playback/pictures/painter.h"
 #include "emscape/render/annotate/overlay.h"
@@ -161,6 +162,10 @@ class LiveView {
   /// Abandons the field of the last view: the picture shows its ground and its emitters until another field
   /// is requested. For computed grids before the first field.
   void showWithoutField();
+  /// Shows platforms at the poses of a live source; the field in progress is completed first. Null: where the
+  /// scenario has them.
+  /// @param scenario  of the poses; null: that which is shown
+  void pose(PosesPtr poses, std::shared_ptr<const scenario::Scenario> scenario = nullptr);
   /// Sets whether busy pictures of a GPU stay in its memory, to be displayed from there; false at first.
   void keepOnDevice(bool keep);
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import datetime
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ._arguments import PathName, distinct, listed, path_text
+from ._errors import UsageError
 from ._native import native
 from ._scenario import Scenario, utc_time
 
@@ -260,7 +261,9 @@ class Solver:
         """Warnings of the models so far, each listed once with its count."""
         return self._handle.warnings()
 
-    def at(self, time_s: float, scenario: Scenario | None = None) -> Field:
+    def at(
+        self, time_s: float, scenario: Scenario | None = None, *, poses: Mapping[str, Sequence[float]] | None = None
+    ) -> Field:
         """The field at a time.
 
         Only what has changed since the last call is computed: an emitter that has moved, a beam that has turned, or what an edit
@@ -268,12 +271,21 @@ class Solver:
 
         :param time_s: seconds since the epoch
         :param scenario: an edited scenario (``Scenario.with_set``), from now on; None: the last one
+        :param poses: platforms that are elsewhere in this call, by name: latitude, longitude (deg), height above mean sea level (m),
+            and optionally heading, pitch and roll (deg; 0). The field is that of a scenario with fixed sites there
         Raises InputError for a platform below ground, missing terrain, or a value that a model rejects; DeviceError.
         """
-        return Field(self._handle.at(time_s, scenario._handle if scenario is not None else None))
+        placed = {name: _pose(name, values) for name, values in (poses or {}).items()}
+        return Field(self._handle.at(time_s, scenario._handle if scenario is not None else None, placed))
 
     def __repr__(self) -> str:
         return f"<emscape.Solver of {self.scenario.name!r} on {self.backend}>"
+
+
+def _pose(platform: str, values: Sequence[float]) -> list[float]:
+    if not 3 <= len(values) <= 6:
+        raise UsageError(f"the pose of {platform!r} has {len(values)} numbers; allowed: 3 to 6")
+    return [*map(float, values), *[0.0] * (6 - len(values))]
 
 
 def read(file: PathName) -> Field:

@@ -6,11 +6,14 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 #include <mutex>
 
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/solver/field_solver.h"
+#include "emscape/scenario/model/poses.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/volume/format/file.h"
 #include "emscape/volume/statistics.h"
@@ -109,7 +112,10 @@ class Solver {
     });
   }
 
-  std::shared_ptr<Field> at(double t_s, const std::optional<ScenarioHandle>& edited) {
+  /// Latitude, longitude (deg), height above mean sea level (m), heading, pitch and roll (deg) by platform.
+  using Poses = std::map<std::string, std::array<double, 6>>;
+
+  std::shared_ptr<Field> at(double t_s, const std::optional<ScenarioHandle>& edited, const Poses& poses) {
     refuseForkedProcess();
     const nb::gil_scoped_release unlocked;
     const std::lock_guard<std::mutex> one_at_a_time(mutex_);
@@ -118,15 +124,18 @@ class Solver {
       playback::LoadedScenario scene = edited && edited->scenario != scene_.scenario
                                            ? playback::withScenario(scene_, edited->scenario)
                                            : scene_;
+      playback::LoadedScenario posed = scene;
+      if (!poses.empty())
+        posed.scenario = scenario::withPoses(*scene.scenario, posesOf(*scene.scenario, poses));
       const emfield::FieldChanged changed =
-          solver_->update(scenario::snapshotAt(scene.scenario, scene.terrain.get(), t_s), scene.terrain);
+          solver_->update(scenario::snapshotAt(posed.scenario, posed.terrain.get(), t_s), posed.terrain);
       scene_ = std::move(scene);
       if (changed.grid) {
         const std::vector<float>& ground = solver_->groundHeights_m();
         ground_ = ground.empty() ? nullptr : std::make_shared<const std::vector<float>>(ground);
       }
       field = fieldOf(namesOf(*solver_), solver_->volumes(), t_s);
-      field->scene = scene_;
+      field->scene = std::move(posed);
       field->ground_msl_m = ground_;
     });
     return field;
@@ -146,6 +155,16 @@ class Solver {
   }
 
  private:
+  static std::vector<scenario::PlatformPose> posesOf(const scenario::Scenario& of, const Poses& poses) {
+    std::vector<scenario::PlatformPose> list;
+    for (const auto& [name, at] : poses) {
+      list.push_back({scenario::platformNamed(of, name),
+                      scenario::positionMsl(at[0], at[1], at[2]),
+                      {at[3], at[4], at[5]}});
+    }
+    return list;
+  }
+
   /// Runs work within the arena of this solver's threads; rethrows its exceptions.
   template <class Work>
   void within(const Work& work) {
@@ -295,7 +314,7 @@ void bindField(nb::module_& module) {
                     double>(),
            nb::arg("scenario"), nb::arg("backend"), nb::arg("threads"), nb::arg("quantities"),
            nb::arg("allow_missing_terrain"), nb::arg("cache_mib"), nb::arg("move_tolerance_m"))
-      .def("at", &Solver::at, nb::arg("t_s"), nb::arg("scenario").none())
+      .def("at", &Solver::at, nb::arg("t_s"), nb::arg("scenario").none(), nb::arg("poses"))
       .def_prop_ro("scenario", &Solver::scenario)
       .def_prop_ro("backend", &Solver::backend)
       .def_prop_ro("quantities", &Solver::quantities)

@@ -7,6 +7,7 @@
 
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
+#include "scenario/model/posed_platform.h"
 #include "scenario/scan/scan_sweep.h"
 
 namespace emscape::scenario {
@@ -136,14 +137,17 @@ namespace {
 
 /// @param interval  in which emitters are active
 Snapshot snapshotOf(const std::shared_ptr<const Scenario>& scenario, const IntervalSpec& interval,
-                    const Terrain* terrain, double t_s) {
+                    const Terrain* terrain, double t_s, const std::vector<PlatformPose>& poses = {}) {
   requireTime(scenario->clock, t_s);
   Snapshot snapshot;
   snapshot.time_s = t_s;
   snapshot.time_utc = utcAt(scenario->clock, t_s);
   snapshot.scenario = scenario;
-  for (const Platform& platform : scenario->platforms) {
-    snapshot.platforms.push_back(stateAt(*scenario, terrain, platform, t_s));
+  const std::vector<const PlatformPose*> pose_of = posesByPlatform(*scenario, poses);
+  for (std::size_t p = 0; p < scenario->platforms.size(); ++p) {
+    const Platform& platform = scenario->platforms[p];
+    snapshot.platforms.push_back(
+        stateAt(*scenario, terrain, pose_of[p] == nullptr ? platform : posed(platform, *pose_of[p]), t_s));
   }
   for (const Emitter& emitter : scenario->emitters) {
     const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(emitter.platform)];
@@ -169,6 +173,11 @@ Snapshot snapshotOf(const std::shared_ptr<const Scenario>& scenario, const Inter
 
 Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s) {
   return snapshotOf(scenario, scenario->output.interval, terrain, t_s);
+}
+
+Snapshot snapshotAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s,
+                    const std::vector<PlatformPose>& poses) {
+  return snapshotOf(scenario, scenario->output.interval, terrain, t_s, poses);
 }
 
 Snapshot instantAt(const std::shared_ptr<const Scenario>& scenario, const Terrain* terrain, double t_s) {

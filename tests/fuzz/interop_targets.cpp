@@ -1,4 +1,6 @@
 // Recordings of other programs, and databases of emitters.
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "emscape/scenario/file/scenario_file.h"
@@ -10,6 +12,8 @@
 #include "interop/emitters/emitter_names.h"
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
+#include "interop/live/live_acmi.h"
+#include "interop/live/live_dis.h"
 #include "interop/recording/read_recording.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
@@ -81,6 +85,30 @@ void importRecordingFile(const fs::path& file, const std::string&) {
   fs::remove_all(file.parent_path() / "out_tracks");
 }
 
+/// A live stream in pieces of the size that its first byte tells; then all that is asked of its state.
+void takeStream(interop::LiveState& live, const std::string& bytes) {
+  if (bytes.empty()) return;
+  const auto* const data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  const std::size_t piece = data[0] == 0 ? bytes.size() : 16 * std::size_t{data[0]};
+  double time_s = 0;
+  for (std::size_t at = 1; at < bytes.size(); at += piece, time_s += 0.5)
+    live.take(data + at, std::min(piece, bytes.size() - at), time_s);
+  live.expire(time_s);
+  const interop::LiveRecording now = live.recording(time_s);
+  if (now.keys.size() != now.recording.objects.size() || now.keys.size() > interop::LiveLimits::kObjects ||
+      now.keys.size() != live.objectCount() || now.keys.size() != live.poses(time_s).size())
+    throw std::logic_error("the live state has other objects than its recording");
+  for (const interop::RecordedBeam& beam : now.recording.beams) {
+    if (beam.object >= now.keys.size()) throw std::logic_error("a beam of no object");
+  }
+  for (const interop::LivePose& at : live.poses(time_s + 5)) {
+    if (!(std::abs(at.pose.latitude_deg) <= 90) || !std::isfinite(at.pose.height_msl_m))
+      throw std::logic_error("a pose that is nowhere");
+  }
+  checkFuzzMessage(live.counts().first_bad);
+  live.expire(time_s + 20);
+}
+
 const FuzzTargetsAdded added({
     {"acmi", "input.acmi", readRecordingFile,
      [] {
@@ -122,6 +150,27 @@ const FuzzTargetsAdded added({
        checkFuzzMessage(recorder.finish().tally.first_bad);
      },
      pdus},
+    {"dis_stream", "",
+     [](const fs::path&, const std::string& bytes) {
+       interop::LiveDis live{interop::ReadOptions{}};
+       takeStream(live, bytes);
+     },
+     [] {
+       std::string bundle(1, '\0');
+       std::vector<std::string> seeds;
+       for (const std::string& pdu : pdus()) {
+         seeds.push_back(std::string(1, '\0') + pdu);
+         if (bundle.size() < 8000) bundle += pdu;
+       }
+       seeds.push_back(bundle);
+       return seeds;
+     }},
+    {"acmi_stream", "",
+     [](const fs::path&, const std::string& bytes) {
+       interop::LiveAcmi live;
+       takeStream(live, bytes);
+     },
+     [] { return std::vector<std::string>{std::string(1, '\x05') + recordingOf(".acmi")}; }},
     {"asi", "input.asi", importRecordingFile,
      [] {
        return std::vector<std::string>{

@@ -61,6 +61,25 @@ def test_a_later_update_does_not_change_an_earlier_field(quick):
     assert not np.shares_memory(values, second.numpy())
 
 
+def test_a_posed_platform_equals_a_fixed_site_there(jamming):
+    platform = jamming.platforms[0]
+    solver = em.Solver(jamming, "cpu")
+    before = solver.at(0).numpy().copy()
+    posed = solver.at(0, poses={platform: (36.28, -84.24, 900, 90)}).numpy()
+    edits = {
+        f"platforms.{platform}.position": {"latitude_deg": 36.28, "longitude_deg": -84.24, "height_msl_m": 900},
+        f"platforms.{platform}.attitude": {"heading_deg": 90},
+    }
+    fixed = em.Solver(jamming.with_set(edits), "cpu").at(0).numpy()
+    assert np.array_equal(posed, fixed, equal_nan=True)
+    assert not np.array_equal(posed, before, equal_nan=True)
+    assert np.array_equal(solver.at(0).numpy(), before, equal_nan=True), "poses are of one call"
+    with pytest.raises(em.UsageError, match="2 numbers"):
+        solver.at(0, poses={platform: (1, 2)})
+    with pytest.raises(em.InputError, match="no platform 'nobody'"):
+        solver.at(0, poses={"nobody": (1, 2, 3)})
+
+
 def test_an_edited_scenario_equals_a_new_solver(jamming):
     edited = jamming.with_set({"emitters.stand-off jammer.power_w": 1000})
     solver = em.Solver(jamming, "cpu")

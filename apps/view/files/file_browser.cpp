@@ -73,6 +73,8 @@ FileKind fileKindOf(const fs::path& file, bool is_folder) {
       case playback::InputKind::volume:
       case playback::InputKind::mesh:
         return FileKind::volume;
+      case playback::InputKind::recording:
+        return FileKind::recording;
       default:
         return FileKind::other;
     }

@@ -29,6 +29,8 @@ const char* nameOf(FileKind kind) {
       return "picture";
     case FileKind::places:
       return "places";
+    case FileKind::recording:
+      return "recording";
     case FileKind::other:
       break;
   }

@@ -72,7 +72,8 @@ void drawStart(PanelContext& context, const Area& picture) {
   ImGui::PushTextWrapPos(width - 12 * s);
   ImGui::TextUnformatted(
       "Open a scenario (.yaml, .json), whose field is computed, or volumes of any program: a file "
-      "(.vdb .nvdb .vti .raw .dat), a series (.pvd) or a folder.");
+      "(.vdb .nvdb .vti .raw .dat), a series (.pvd) or a folder; or a recording of a battlefield (.acmi, "
+      ".pcap).");
   ImGui::PopTextWrapPos();
   if (ImGui::Button("Open (Ctrl+O)")) perform(context, R"({"do":"open"})");
   ImGui::SameLine(0, 16 * s);

@@ -41,6 +41,7 @@ std::vector<std::string> partsOf(const Session& session, const ProgramState& sta
     if (!text.empty()) parts.push_back(text);
   };
   if (session.picture() && volume::isDifference(session.picture()->info())) add("DIFFERENCE");
+  add(state.stream);
   add(state.what);
   add(state.picture);
   if (!session.picture()) return parts;

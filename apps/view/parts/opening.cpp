@@ -1,5 +1,6 @@
 #include "apps/view/parts/opening.h"
 
+#include "apps/view/files/recordings.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/inputs.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -48,6 +49,7 @@ void checkInput(const ViewOptions& options, Opening& opening) {
       break;
     case playback::InputKind::elevation:
     case playback::InputKind::antenna:
+    case playback::InputKind::recording:  // became a scenario
       throw Error(ErrorCode::bad_input, {options.view.input, 0, 0},
                   "neither a scenario nor a volume: open the scenario that names it");
   }
@@ -55,11 +57,15 @@ void checkInput(const ViewOptions& options, Opening& opening) {
 
 }  // namespace
 
-Opening prepareOpening(const OpenRequest& request, const ViewOptions& present) {
-  playback::inputKindOf(request.file);  // throws if there is no such file
+Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
+  OpenRequest request = asked;
   Opening opening;
+  if (playback::inputKindOf(request.file) ==
+      playback::InputKind::recording)  // throws if there is no such file
+    request.file = importRecordingFile(request.file, opening.note);
   opening.options = present;
   ViewOptions& options = opening.options;
+  if (request.file != present.view.input) options.stream.reset();
   using playback::JsonContent;
   switch (playback::jsonContentOf(request.file)) {
     case JsonContent::transfer:

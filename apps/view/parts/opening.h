@@ -14,6 +14,7 @@ struct Opening {
   std::string colors;   ///< a transfer function for the present session; else empty
   /// Edits that no longer apply, each with the reason; may be empty.
   std::string left_out;
+  std::string note;  ///< of the import of a recording; may be empty
 };
 
 /// Examines the file: kind by name and content, errors in a scenario, edits that still apply. Reads files: to

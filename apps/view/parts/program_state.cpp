@@ -57,6 +57,7 @@ std::string pictureText(const playback::LiveStatus& status, bool is_computing) {
 ProgramState programState(const ProgramFacts& facts, const playback::LiveStatus& status) {
   ProgramState state;
   state.activity = activityOf(facts, status);
+  state.stream = facts.stream;
   state.badge = emscape::toString(state.activity);
   const bool is_long = facts.computing_s > kExplainedAfter_s;
   switch (state.activity) {

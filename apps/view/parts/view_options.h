@@ -1,10 +1,12 @@
 /// Options of emscape-view.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "emscape/playback/view/view_state.h"
+#include "playback/stream/live_battlefield.h"
 #include "render/patterns/frame_controller.h"
 
 namespace emscape::view {
@@ -21,6 +23,9 @@ struct ViewOptions {
   std::optional<render::ImageSize> window_size = render::ImageSize{1200, 900};
   double scale = 0;  ///< of text and controls; 0: the screen's scale
   render::ControllerOptions controller;
+  /// A battlefield that another program streams, of which `view` shows the scenario; null: none.
+  std::shared_ptr<playback::LiveBattlefield> stream;
+  std::optional<playback::StreamRequest> stream_request;  ///< of the command line
   std::string script, log;
   bool share_gpu =
       true;  ///< busy pictures are passed from CUDA to OpenGL on the GPU if both use the same one

@@ -65,8 +65,13 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       has_kept_(options.unsaved_edits),
       file_watch_(wake_),
       jobs_(wake_) {
+  if (options_.stream) options_.stream->setWake(wake_);
   watchFiles();
   showView(options.view);
+}
+
+Session::~Session() {
+  if (options_.stream) options_.stream->setWake({});
 }
 
 std::vector<Verb> Session::verbs() {
@@ -166,6 +171,7 @@ bool Session::update() {
   askTime();
   if (timeline_.times_s().empty()) takeScenario();
   takeEdits();
+  takeStream();
   const playback::LiveStatus before = status_;
   status_ = live_.status();
   field_times_.add(status_.fields_computed, status_.field_ms);
@@ -219,6 +225,7 @@ std::optional<double> Session::nextUpdate_s() const {
   if (timeline_.playing())
     return timeline_.isContinuous() ? kRedraw_s
                                     : std::min(2 * kRedraw_s, timeline_.untilNextStep_s().value_or(1));
+  if (options_.stream) return untilStream_s();
   if (computing_from_s_) return kProgress_s;
   if (!notice_.text.empty()) return 0.5;
   if (files_->recorder.running() || files_->browser.reading()) return 0.1;

@@ -33,6 +33,7 @@
 #include "playback/editing/transfer_editor.h"
 #include "playback/live/edit_queue.h"
 #include "playback/live/live_view.h"
+#include "playback/stream/live_battlefield.h"
 
 namespace emscape::view {
 
@@ -63,7 +64,7 @@ class Session {
   Session(const ViewOptions& options, const playback::ComputeTarget& target, WindowControl& window,
           EventLog& log, std::function<void()> wake, std::shared_ptr<Files> files = nullptr);
   /// Waits until the files are written.
-  ~Session() = default;
+  ~Session();
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
@@ -295,6 +296,9 @@ class Session {
   std::string recordTimes(const RecordRange& range) const;
   void finishJobs();
   void askTime();
+  void takeStream();
+  void adoptStreamed(const playback::BattlefieldNow& now);
+  double untilStream_s() const;
   void takeScenario();
   void takePicture();
   void showScenario();
@@ -383,6 +387,15 @@ class Session {
     std::string quantity, compare;
     double split = 0, iso_value = 0;
   } last_shown_;  // of the view of the last computed field
+  struct {
+    playback::ScenarioPtr scenario;  // as the stream has it
+    playback::PosesPtr poses;
+    std::string text;  // of its status
+    double told_s = -1e9;
+    long long records = 0;
+    std::size_t entities = 0;
+    bool has_trouble = false, is_moving = false;
+  } stream_;
   std::optional<Rejection> rejection_;
   std::string selected_;
   mutable std::vector<SceneObject> objects_;  // of ...

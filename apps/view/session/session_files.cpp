@@ -38,6 +38,7 @@ void Session::ask(OpenRequest request) {
 
 void Session::shown(const std::string& left_out) {
   is_on_screen_ = true;
+  if (options_.stream) return;  // its file is not the user's
   if (!left_out.empty()) tell("these edits do not apply any more: " + left_out, true);
   jobs_.run([this, input = options_.view.input]() -> BackgroundJobs::Finish {
     auto examples = input.empty() ? findExamples() : std::vector<Example>();
@@ -53,6 +54,7 @@ void Session::shown(const std::string& left_out) {
 // --- changes on the disk ---
 
 void Session::watchFiles() {
+  if (options_.stream) return;
   std::vector<std::string> files;
   for (const std::string& file : {options_.view.input, options_.view.scenario}) {
     if (!file.empty()) files.push_back(file);

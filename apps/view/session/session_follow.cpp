@@ -15,7 +15,7 @@ namespace {
 constexpr double kDistance_diagonals = 0.35;  // of a camera that was fitted to the whole box
 
 /// The platform of that name, or of the emitter of that name. @throws Error (bad_input) that lists them
-std::string platformNamed(const scenario::Scenario& scenario, const std::string& name) {
+std::string followedPlatform(const scenario::Scenario& scenario, const std::string& name) {
   std::vector<std::string> names;
   for (const scenario::Platform& platform : scenario.platforms) {
     if (platform.name == name) return name;
@@ -50,7 +50,7 @@ void Session::follow(const std::string& name, const std::string& mode) {
   }
   const playback::ScenarioPtr shown = scenario();
   if (!shown) throw Error(ErrorCode::bad_input, "follow: there is no scenario");
-  const std::string platform = !name.empty()          ? platformNamed(*shown, name)
+  const std::string platform = !name.empty()          ? followedPlatform(*shown, name)
                                : view_.follow.empty() ? firstMoving(*shown)
                                                       : view_.follow;
   render::CameraSpec camera = camera_.spec();

@@ -71,6 +71,7 @@ void SessionOpener::replace(std::unique_ptr<Session>& session) {
   messages_before_.reset();
   files_->is_opening = files_->request.has_value();
   session->shown(opening_.left_out);
+  if (!opening_.note.empty()) session->tell(opening_.note);
 }
 
 void SessionOpener::cancel(Session& session) {

@@ -15,6 +15,7 @@ ProgramState Session::programState() const {
   facts.has_field = hasField();
   facts.is_playing = timeline_.playing();
   facts.rate = timeline_.rate();
+  facts.stream = stream_.text;
   facts.has_pending_edits = edit_queue_.isBusy();
   if (computing_from_s_) facts.computing_s = log_.now_s() - *computing_from_s_;
   if (files_->is_opening) facts.opening = files_->opening;

@@ -94,6 +94,11 @@ Json Session::report() const {
     report["quantity"] = picture_->info().quantity;
     report["range_max"] = picture_->transfer.highest();
   }
+  if (options_.stream) {
+    report["stream"] = stream_.text;
+    report["stream_records"] = stream_.records;
+    report["stream_entities"] = stream_.entities;
+  }
   report.update(probeReport());
   report.update(selectionReport());
   report.update(transferReport());

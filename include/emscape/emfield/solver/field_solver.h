@@ -15,6 +15,10 @@
 #include "emscape/volume/device_volume.h"
 #include "emscape/volume/volume.h"
 
+namespace emscape::scenario {
+struct PlatformPose;
+}
+
 namespace emscape::emfield {
 
 /// Contents of one volume of the output.
@@ -139,6 +143,12 @@ class FieldSolver {
   /// @param next  scenario of the next update
   /// @throws Error (bad_input) as the constructor; nothing is changed then
   void setQuantities(std::vector<std::string> quantities, std::shared_ptr<const scenario::Scenario> next);
+  /// Computes the field at a time with platforms at the poses that a program states, in place of their sites
+  /// and tracks (emscape/scenario/model/poses.h): for hosts that move platforms themselves. Scenario and
+  /// terrain are those of the last update. Poses are exact: what has moved at all is computed again, and the
+  /// field is that of a scenario with fixed sites there.
+  /// @throws as the others, and as scenario::snapshotAt()
+  FieldChanged update(double time_s, const std::vector<scenario::PlatformPose>& poses);
 
   /// The channels' volumes after the last update, in the order of channels(), in the memory where they were
   /// computed: host or GPU. Later updates do not change them: a caller may keep one while the next is

@@ -13,8 +13,11 @@
 #include "emscape/playback/frames/shown_field.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/scenario/model/edit.h"
+#include "emscape/scenario/model/poses.h"
 
 namespace emscape::playback {
+
+using PosesPtr = std::shared_ptr<const std::vector<scenario::PlatformPose>>;
 
 struct Frame;
 
@@ -126,6 +129,9 @@ class FrameSource : public VolumeSeries {
   /// @throws Error (bad_input) if its ground cannot be read, (usage) without a scenario; nothing is changed
   /// then
   virtual void setScenario(std::shared_ptr<const scenario::Scenario> scenario);
+  /// Platforms are at these poses, whatever the time; null: where the scenario has them. As setScenario(),
+  /// which comes first if it changes the platforms. @throws Error (usage) for fields from files
+  virtual void setPoses(PosesPtr poses);
   /// Another quantity or channel; empty: the first. As setScenario().
   /// @throws Error (bad_input, usage, device); nothing is changed then
   virtual void setQuantity(const std::string& quantity);

@@ -10,7 +10,7 @@
 
 namespace emscape::playback {
 
-enum class InputKind { scenario, volume, mesh, elevation, antenna };
+enum class InputKind { scenario, volume, mesh, elevation, antenna, recording };
 
 /// The kind of an input, by the file's extension. A folder is a series of volumes, or of meshes
 /// (holdsMeshes()).

@@ -1,0 +1,236 @@
+/// emscape play: streams a scenario or a recording to other programs.
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <thread>
+
+#include "apps/common/console.h"
+#include "apps/common/interrupt.h"
+#include "apps/emscape/subcommands.h"
+#include "base/text/count_text.h"
+#include "emscape/base/error.h"
+#include "emscape/base/work.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "interop/dis/datagrams.h"
+#include "interop/exporting/writers.h"
+#include "interop/recording/byte_source.h"
+#include "playback/sockets/socket.h"
+#include "playback/stream/acmi_server.h"
+
+namespace emscape::app {
+namespace {
+
+using Wait = std::function<void(double seconds)>;
+
+struct PlayArguments {
+  std::string input, dis_out, acmi_server, interface, password;
+  std::vector<scenario::Edit> edits;
+  double rate = 1, step_s = 1;
+  int ttl = 0;
+};
+
+/// Time of the scenario or the recording, at a rate.
+class Pace {
+ public:
+  /// @param wait  for at most so long; does other work meanwhile
+  Pace(double rate, Wait wait) : rate_(rate), wait_(std::move(wait)) {}
+
+  /// Waits until it is t_s, counted from the first call's. @throws Stopped by the user
+  void waitFor(double t_s) {
+    if (!has_begun_) {
+      has_begun_ = true;
+      first_s_ = t_s;
+      begin_ = Clock::now();
+    }
+    for (;;) {
+      stopIfInterrupted();
+      const std::chrono::duration<double> past = Clock::now() - begin_;
+      const double left_s = (t_s - first_s_) / rate_ - past.count();
+      if (left_s <= 0) return;
+      wait_(std::min(left_s, 0.05));
+    }
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double rate_;
+  Wait wait_;
+  bool has_begun_ = false;
+  double first_s_ = 0;
+  Clock::time_point begin_;
+};
+
+bool endsWith(const std::string& text, const std::string& end) {
+  return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// A scenario with its terrain, as the writers take it.
+struct Played {
+  std::shared_ptr<const scenario::Scenario> scenario;
+  scenario::TerrainPtr terrain;
+
+  explicit Played(const PlayArguments& arguments)
+      : scenario(scenario::loadScenario(arguments.input, arguments.edits, scenario::ReadFor::chosen_times)),
+        terrain(scenario::loadTerrain(*scenario)) {}
+};
+
+int playDis(const PlayArguments& arguments, const GlobalOptions& global) {
+  const playback::Address address = playback::parseAddress(arguments.dis_out, "--dis-out");
+  playback::DatagramSender sender(
+      address,
+      playback::parseHost(arguments.interface.empty() ? playback::kLoopback : arguments.interface,
+                          "--interface"),
+      arguments.ttl);
+  Pace pace(arguments.rate,
+            [](double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); });
+  long long sent = 0, refused = 0;
+  const auto send = [&](double t_s, const std::uint8_t* bytes, std::size_t size) {
+    pace.waitFor(t_s);
+    (sender.send(bytes, size) ? sent : refused) += 1;
+  };
+  if (endsWith(arguments.input, ".pcap") || endsWith(arguments.input, ".pcapng")) {
+    const auto source = interop::openFile(arguments.input);
+    interop::ReadingTally tally;
+    interop::dis::readCapture(*source, tally, [&](const interop::dis::Datagram& datagram) {
+      send(datagram.arrival_s, datagram.bytes, datagram.size);
+    });
+    if (!tally.torn.empty()) printMessage("emscape: {}: {}\n", arguments.input, tally.torn);
+  } else {
+    const Played played(arguments);
+    std::vector<interop::ExportedRow> rows;
+    interop::writeDis(
+        {*played.scenario, played.terrain.get(), arguments.step_s, {}},
+        [&](double t_s, const std::vector<std::uint8_t>& bytes) { send(t_s, bytes.data(), bytes.size()); },
+        rows);
+  }
+  if (global.json) {
+    printJson({{"to", address.text()}, {"sent", sent}, {"refused", refused}});
+  } else if (!global.quiet) {
+    print("{} sent to {}{}\n", countText(sent, "datagram", "datagrams"), address.text(),
+          refused > 0 ? fmt::format("; {} were refused by the system", refused) : "");
+  }
+  return 0;
+}
+
+int playAcmi(const PlayArguments& arguments, const GlobalOptions& global) {
+  const playback::Address address = playback::parseAddress(arguments.acmi_server, "--acmi-server");
+  if (address.isMulticast())
+    throw Error(ErrorCode::usage, "--acmi-server " + arguments.acmi_server + ": TCP has no multicast groups");
+  playback::AcmiServer server(address, arguments.password);
+  const auto serve = [&](double seconds) {
+    server.serve(seconds);
+    for (const std::string& event : server.takeEvents()) {
+      if (!global.quiet) printMessage("emscape: {}\n", event);
+    }
+  };
+  if (!global.quiet) printMessage("emscape: waiting for a client at {}\n", address.text());
+  while (server.clientCount() == 0) {
+    stopIfInterrupted();
+    serve(0.05);
+  }
+  Pace pace(arguments.rate, serve);
+  long long lines = 0;
+  const auto send = [&](std::string_view line) {
+    if (!line.empty() && line.front() == '#') {
+      // Frames out of order are sent at once.
+      try {
+        pace.waitFor(std::stod(std::string(line.substr(1))));
+      } catch (const std::logic_error&) {  // no time: the reader decides
+      }
+    }
+    server.send(line);
+    if (++lines % 256 == 0) serve(0);
+  };
+  if (endsWith(arguments.input, ".acmi")) {
+    const bool is_zip = endsWith(arguments.input, ".zip.acmi");
+    const auto source = is_zip ? interop::openZip(arguments.input) : interop::openFile(arguments.input);
+    interop::LineReader reader(*source);
+    for (std::string_view line; reader.next(line);) send(line);
+  } else {
+    const Played played(arguments);
+    std::vector<interop::ExportedRow> rows;
+    interop::writeAcmi(
+        {*played.scenario, played.terrain.get(), arguments.step_s, {}},
+        [&](const std::string& piece) {
+          std::string_view rest = piece;
+          while (!rest.empty()) {
+            const std::size_t end = rest.find('\n');
+            send(rest.substr(0, end));
+            rest.remove_prefix(std::min(end == std::string_view::npos ? rest.size() : end + 1, rest.size()));
+          }
+        },
+        rows);
+  }
+  serve(0.5);
+  if (global.json) {
+    printJson({{"at", address.text()}, {"lines", lines}, {"clients", server.clientCount()}});
+  } else if (!global.quiet) {
+    print("{} sent at {} to {}\n", countText(lines, "line", "lines"), address.text(),
+          countText(server.clientCount(), "client", "clients"));
+  }
+  return 0;
+}
+
+int play(const PlayArguments& arguments, const GlobalOptions& global) {
+  if (arguments.dis_out.empty() == arguments.acmi_server.empty()) {
+    throw Error(ErrorCode::usage,
+                "expected either --dis-out [HOST:]PORT or --acmi-server [HOST:]PORT, such as --dis-out "
+                "127.0.0.1:3000");
+  }
+  const bool is_dis = !arguments.dis_out.empty();
+  const bool is_capture = endsWith(arguments.input, ".pcap") || endsWith(arguments.input, ".pcapng");
+  const bool is_acmi = endsWith(arguments.input, ".acmi");
+  if (is_dis ? is_acmi : is_capture) {
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("{}: a recording is played in its own format; `emscape import` makes a scenario of "
+                    "it, which is played in any",
+                    arguments.input));
+  }
+  if ((is_capture || is_acmi) && !arguments.edits.empty())
+    throw Error(ErrorCode::usage, "--set changes a scenario, not a recording");
+  return is_dis ? playDis(arguments, global) : playAcmi(arguments, global);
+}
+
+}  // namespace
+
+void addPlay(CLI::App& app, const GlobalOptions& global, Action& action) {
+  CLI::App* command = app.add_subcommand("play", "Stream a scenario or a recording to other programs");
+  command->fallthrough();
+  command->footer(R"(
+Sends DIS version 7 by UDP, or is a host of Tacview's real-time telemetry by TCP, which waits for its first client. Recordings
+(.pcap, .pcapng; .acmi, .zip.acmi) are sent as they are. Sends to and listens on this computer alone unless an address is given.
+
+Examples:
+  emscape play scenarios/jamming.yaml --dis-out 127.0.0.1:3000
+  emscape play exercise.pcap --dis-out 239.1.2.3:3000 --rate 10
+  emscape play scenarios/jamming.yaml --acmi-server 42674
+
+Exit status: 0; 2 for wrong options; 3 for a faulty scenario or recording; 1 if the address cannot be used; 128 + N stopped by
+signal N (130 after Ctrl-C).)");
+  auto arguments = std::make_shared<PlayArguments>();
+  command->add_option("INPUT", arguments->input, "Scenario, or recording: .pcap, .pcapng, .acmi, .zip.acmi")
+      ->required();
+  addSetOption(*command, arguments->edits);
+  command->add_option("--dis-out", arguments->dis_out,
+                      "[HOST:]PORT: send DIS by UDP to a host or multicast group (127.0.0.1)");
+  command->add_option("--acmi-server", arguments->acmi_server,
+                      "[HOST:]PORT: serve ACMI by TCP at an address of this computer (127.0.0.1)");
+  command->add_option("--rate", arguments->rate, "Times real time")->check(CLI::Range(1e-3, 1e6));
+  command
+      ->add_option("--step", arguments->step_s,
+                   "Largest time between positions of a moving platform of a scenario (s)")
+      ->check(CLI::Range(0.01, 3600.0));
+  command->add_option("--ttl", arguments->ttl, "Hops of multicast; 0: it stays on this computer")
+      ->check(CLI::Range(0, 255));
+  command->add_option("--interface", arguments->interface,
+                      "Address of the interface from which multicast is sent (127.0.0.1)");
+  command->add_option("--password", arguments->password, "Password that clients of ACMI must give");
+  command->callback(
+      [arguments, &global, &action] { action = [arguments, &global] { return play(*arguments, global); }; });
+}
+
+}  // namespace emscape::app

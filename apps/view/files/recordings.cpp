@@ -1,0 +1,42 @@
+#include "apps/view/files/recordings.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "base/files/folder.h"
+#include "base/text/count_text.h"
+#include "interop/import_scenario.h"
+#include "interop/recording/read_recording.h"
+#include "playback/editing/autosave.h"
+
+namespace emscape::view {
+
+namespace fs = std::filesystem;
+
+std::string importRecordingFile(const std::string& file, std::string& note) {
+  const fs::path recording = fs::absolute(file).lexically_normal();
+  const std::string stem = recording.filename().string().substr(0, recording.filename().string().find('.'));
+  const std::size_t number = std::hash<std::string>()(recording.string());
+  const fs::path folder = playback::stateFolder() / "imported" /
+                          fmt::format("{}-{:016x}", stem.empty() ? "recording" : stem, number);
+  makeFolder(folder);
+  interop::ImportOptions options;
+  options.scenario = (folder / ((stem.empty() ? "recording" : stem) + ".yaml")).string();
+  options.replace = true;
+  const std::string database = file + ".emitters.yaml";
+  std::error_code ignored;
+  if (fs::exists(database, ignored)) options.emitters = database;
+  const interop::ImportResult result = interop::importRecording(interop::readRecording(file), options);
+  int unmatched = 0;
+  for (const interop::ImportedEmitters& use : result.emitters) unmatched += use.fault.empty() ? 0 : use.count;
+  note =
+      fmt::format("{}: {}, emitters of {}{}; `emscape import` has further options (terrain, region)",
+                  recording.filename().string(), countText(result.platforms.size(), "platform", "platforms"),
+                  options.emitters.empty() ? "the starter set" : fs::path(database).filename().string(),
+                  unmatched > 0 ? fmt::format(", {} left out", countText(unmatched, "beam", "beams")) : "");
+  return options.scenario;
+}
+
+}  // namespace emscape::view

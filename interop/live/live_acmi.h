@@ -1,0 +1,34 @@
+/// The present state of a real-time ACMI stream.
+#pragma once
+
+#include <string>
+#include <unordered_map>
+
+#include "interop/acmi/acmi_reader.h"
+#include "interop/live/live_state.h"
+
+namespace emscape::interop {
+
+/// Takes the text that follows the handshake. Objects stay until the stream removes them.
+class LiveAcmi : public LiveState {
+ public:
+  void take(const std::uint8_t* bytes, std::size_t size, double arrival_s) override;
+  /// What was taken since the last call becomes the present state.
+  void expire(double now_s) override;
+  LiveRecording recording(double now_s) override;
+  std::vector<LivePose> poses(double now_s) const override;
+  std::size_t objectCount() const override { return latest_.objects.size(); }
+
+ private:
+  void takeLine();
+  void note();
+
+  AcmiReader reader_;
+  std::string line_;  ///< not ended yet
+  bool is_too_long_ = false;
+  bool is_noted_ = true;  ///< latest_ has all lines so far
+  Recording latest_;
+  std::size_t structure_ = 0;
+};
+
+}  // namespace emscape::interop

@@ -1,0 +1,90 @@
+/// A battlefield that another program streams, as a scenario and poses of its platforms.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "emscape/base/progress.h"
+#include "emscape/playback/frames/frame_source.h"
+#include "interop/import_scenario.h"
+#include "interop/recording/read_recording.h"
+#include "playback/sockets/address.h"
+
+namespace emscape::playback {
+
+enum class StreamKind { dis, acmi };
+
+struct StreamRequest {
+  StreamKind kind = StreamKind::dis;
+  Address address;              ///< to listen to (DIS), or to connect to (ACMI)
+  std::uint32_t interface = 0;  ///< on which a multicast group is joined
+  std::string password;         ///< of an ACMI host; empty: none
+  interop::ReadOptions read;
+  interop::BeamwidthMeaning beamwidth = interop::BeamwidthMeaning::by_size;
+  std::string base;                ///< scenario with region, terrain and further platforms
+  std::string emitters;            ///< emitter database; empty: the starter set
+  std::string record;              ///< file for what arrives, .pcap or .acmi; empty: none
+  bool replaces = false;           ///< files that exist; else they are an error
+  std::string folder;              ///< of the scenario file; empty: a temporary one
+  const StopFlag* stop = nullptr;  ///< ends the waiting for a host; may be null
+};
+
+/// What has arrived so far.
+struct StreamStatus {
+  long long records = 0;  ///< PDUs or lines
+  long long bytes = 0, bad = 0, late = 0, duplicates = 0;
+  long long lost = 0;       ///< datagrams that the system dropped
+  long long forgotten = 0;  ///< objects and beams beyond the limits
+  std::size_t entities = 0, emitters = 0;
+  int unmatched = 0;            ///< beams that no row of the emitter database matches
+  double records_per_s = 0;     ///< of the last second or two
+  std::optional<double> age_s;  ///< of the last record; none: none came
+  std::string trouble;          ///< one line: what is wrong with the stream now; empty: nothing
+
+  /// "DIS: 120 PDU/s, 14 entities, last 0.1 s ago", and the trouble.
+  std::string text() const;
+  StreamKind kind = StreamKind::dis;
+};
+
+/// The battlefield at one instant.
+struct BattlefieldNow {
+  std::shared_ptr<const scenario::Scenario> scenario;  ///< without the poses; another object: other platforms
+  PosesPtr poses;                                      ///< the same object as before if nothing has moved
+  double arrival_s = 0;                                ///< of the last record in it (steady clock)
+};
+
+/// Receives a stream on a thread of its own and keeps the present battlefield.
+///
+/// Objects become platforms of the base scenario, with emitters by the database, as `import` does. An object
+/// with the name of a platform of the base moves that platform instead, whose emitters are those of the base.
+/// When objects or beams change, the scenario is made anew on another thread, at most twice a second;
+/// between, only the poses change. Memory and work are bounded whatever arrives (interop::LiveLimits).
+class LiveBattlefield {
+ public:
+  /// @param wake  called on a thread of this object when something has changed, at most 60 times a second
+  /// @throws Error (usage, bad_input, other): the address cannot be used, the base or the database has
+  /// faults, the recording exists
+  LiveBattlefield(const StreamRequest& request, std::function<void()> wake);
+  /// Ends within a fraction of a second, and completes the recording.
+  ~LiveBattlefield();
+  LiveBattlefield(const LiveBattlefield&) = delete;
+  LiveBattlefield& operator=(const LiveBattlefield&) = delete;
+
+  /// Another function to call; empty: none. Returns when the last call has ended.
+  void setWake(std::function<void()> wake);
+
+  BattlefieldNow now();
+  StreamStatus status() const;
+  /// File of the scenario, without the poses: the base at first.
+  std::string file() const;
+  /// Completes the recording. @throws Error (other)
+  void finishRecording();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace emscape::playback

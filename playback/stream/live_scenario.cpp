@@ -1,0 +1,162 @@
+#include "playback/stream/live_scenario.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/files/folder.h"
+#include "base/files/whole_file.h"
+#include "emscape/base/error.h"
+#include "emscape/scenario/file/scenario_file.h"
+#include "interop/dis/pdu.h"
+#include "interop/emitters/emitter_database.h"
+
+namespace emscape::playback {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Height (m) above the ground to which positions below it are raised, as by `import`.
+constexpr double kAboveGround_m = 2;
+
+/// A folder for files of the running program, in memory if there is one: each is flushed when it is written.
+fs::path runtimeFolder() {
+  std::error_code ignored;
+  const char* const named = std::getenv("XDG_RUNTIME_DIR");
+  for (const char* const folder : {named == nullptr ? "" : named, "/dev/shm"}) {
+    if (*folder == '/' && access(folder, W_OK) == 0 && fs::is_directory(folder, ignored)) return folder;
+  }
+  return fs::temp_directory_path();
+}
+
+std::string makeTemporaryFolder() {
+  std::string name = (runtimeFolder() / "emscape-live-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr)
+    throw Error(ErrorCode::other, {name, 0, 0}, "the temporary folder cannot be made");
+  return name;
+}
+
+/// True if an object of the stream is a platform: markings of DIS are cut.
+bool isNamed(const std::string& object, const std::string& platform) {
+  return object == platform ||
+         (object.size() == interop::dis::kMarkingBytes && platform.compare(0, object.size(), object) == 0);
+}
+
+}  // namespace
+
+LiveScenarioMaker::LiveScenarioMaker(const StreamRequest& request)
+    : request_(request), base_(loadScenarioWithTerrain(request.base)), last_(base_) {
+  interop::loadEmitterDatabase(request.emitters);  // throws its faults
+  if (request.folder.empty()) {
+    folder_ = makeTemporaryFolder();
+    file_ = (fs::path(folder_) / "live.yaml").string();
+  } else {
+    makeFolder(request.folder);
+    file_ = (fs::path(request.folder) / "live.yaml").string();
+    if (!request.replaces) requireNew({file_, fs::path(request.folder) / "live.vdb"});
+  }
+  scenario::saveScenario(*base_.scenario, file_);
+}
+
+LiveScenarioMaker::~LiveScenarioMaker() {
+  std::error_code ignored;
+  if (!folder_.empty()) fs::remove_all(folder_, ignored);
+}
+
+std::shared_ptr<const LiveScenario> LiveScenarioMaker::base() const {
+  auto made = std::make_shared<LiveScenario>();
+  made->loaded = base_;
+  made->emitters = static_cast<int>(base_.scenario->emitters.size());
+  return made;
+}
+
+std::shared_ptr<const LiveScenario> LiveScenarioMaker::make(interop::LiveRecording live) {
+  auto made = std::make_shared<LiveScenario>();
+  interop::Recording& recording = live.recording;
+  // Platforms of the base that the stream moves.
+  std::vector<bool> is_of_base(recording.objects.size());
+  for (std::size_t i = 0; i < recording.objects.size(); ++i) {
+    const auto& platforms = base_.scenario->platforms;
+    for (std::size_t p = 0; p < platforms.size() && !is_of_base[i]; ++p) {
+      if (!isNamed(recording.objects[i].name, platforms[p].name)) continue;
+      is_of_base[i] = true;
+      made->platforms[live.keys[i]] = {static_cast<int>(p), 0};
+    }
+  }
+  auto& beams = recording.beams;
+  beams.erase(std::remove_if(beams.begin(), beams.end(),
+                             [&](const interop::RecordedBeam& beam) { return is_of_base[beam.object]; }),
+              beams.end());
+  bool adds = !beams.empty();
+  for (std::size_t i = 0; i < recording.objects.size(); ++i) {
+    const interop::Domain domain = recording.objects[i].domain;
+    adds =
+        adds || (!is_of_base[i] && domain != interop::Domain::scenery && domain != interop::Domain::weapon);
+  }
+  if (!adds) {
+    scenario::saveScenario(*base_.scenario, file_);
+    made->loaded = last_ = base_;
+    made->emitters = static_cast<int>(base_.scenario->emitters.size());
+    return made;
+  }
+  std::unordered_map<std::string, std::uint64_t> key_of;
+  for (std::size_t i = 0; i < recording.objects.size(); ++i) {
+    interop::RecordedObject& object = recording.objects[i];
+    key_of[object.id] = live.keys[i];
+    if (is_of_base[i]) {
+      object.domain = interop::Domain::scenery;  // which is left out
+      continue;
+    }
+    // Present over the time of the base.
+    if (object.presence.empty()) object.presence.push_back({0, true});
+    object.presence.push_back({base_.scenario->clock.duration_s, object.presence.back().is_present});
+  }
+  recording.file = request_.address.text();
+  interop::ImportOptions options;
+  options.scenario = file_;
+  options.base = request_.base;
+  options.loaded_base = base_.scenario;
+  options.emitters = request_.emitters;
+  options.beamwidth = request_.beamwidth;
+  options.replace = true;
+  const interop::ImportResult result = interop::importRecording(recording, options);
+  scenario::ParseResult parsed = scenario::parseScenario(file_);
+  if (!parsed.scenario) scenario::loadScenario(file_);  // throws
+  made->loaded = last_ = withScenario(last_, parsed.scenario);
+  for (const interop::ImportedPlatform& platform : result.platforms) {
+    made->platforms[key_of[platform.object]] = {scenario::platformNamed(*parsed.scenario, platform.name),
+                                                platform.raise_m};
+  }
+  made->emitters = static_cast<int>(parsed.scenario->emitters.size());
+  for (const interop::ImportedEmitters& use : result.emitters)
+    made->unmatched += use.fault.empty() ? 0 : use.count;
+  return made;
+}
+
+std::vector<scenario::PlatformPose> platformPoses(const LiveScenario& scenario,
+                                                  const std::vector<interop::LivePose>& poses) {
+  std::vector<scenario::PlatformPose> result;
+  const scenario::Terrain* const terrain = scenario.loaded.terrain.get();
+  for (const interop::LivePose& live : poses) {
+    const auto found = scenario.platforms.find(live.key);
+    if (found == scenario.platforms.end()) continue;
+    const interop::PoseSample& at = live.pose;
+    double ground_m = terrain == nullptr ? 0 : terrain->heightMsl_m(at.latitude_deg, at.longitude_deg);
+    if (std::isnan(ground_m)) ground_m = 0;
+    double height_m = at.height_msl_m + found->second.raise_m;
+    if (height_m < ground_m) height_m = ground_m + kAboveGround_m;
+    result.push_back({found->second.index,
+                      scenario::positionMsl(at.latitude_deg, at.longitude_deg, height_m),
+                      {at.heading_deg, at.pitch_deg, at.roll_deg}});
+  }
+  std::sort(result.begin(), result.end(),
+            [](const auto& a, const auto& b) { return a.platform < b.platform; });
+  return result;
+}
+
+}  // namespace emscape::playback

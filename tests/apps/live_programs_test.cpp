@@ -1,0 +1,100 @@
+// emscape live and play: two programs over the loopback interface.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <thread>
+
+#include "tests/apps/program.h"
+
+namespace emscape::test {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+
+std::string freePort() {
+  static int next = 20000 + getpid() % 20000;
+  return std::to_string(++next);
+}
+
+/// The objects of lines of JSON.
+std::vector<json> linesOf(const std::string& text) {
+  std::vector<json> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(json::parse(line));
+  return lines;
+}
+
+void pause(int milliseconds) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+}
+
+TEST(LivePrograms, AnExerciseOfOneProgramIsTheFieldOfTheOther) {
+  const TemporaryFolder folder;
+  const std::string port = freePort(), record = folder / "seen.pcap";
+  RunningProgram live({"live", "--dis", port, "--base", quick(), "--json", "--duration", "8", "-o",
+                       folder / "now", "--record", record});
+  pause(1500);
+  const ProgramResult played =
+      run({"play", shippedScenario("jamming.yaml"), "--dis-out", port, "--set", "duration_s=2", "--json"});
+  EXPECT_EQ(played.status, 0) << played.err;
+  const ProgramResult result = live.wait();
+  ASSERT_EQ(result.status, 0) << result.err;
+  const std::vector<json> lines = linesOf(result.out);
+  ASSERT_GE(lines.size(), 2u);
+  const json& last = lines.back();
+  for (const char* key :
+       {"t_s", "pdus", "per_s", "bytes", "lost", "bad", "late", "duplicates", "forgotten", "entities",
+        "emitters", "unmatched", "fields", "field_ms", "latency_ms", "age_s", "trouble"})
+    EXPECT_TRUE(last.contains(key)) << key;
+  EXPECT_EQ(last["pdus"], json::parse(played.out)["sent"]);
+  EXPECT_GT(last["entities"], 1);
+  EXPECT_GT(last["fields"], 1);
+  EXPECT_EQ(last["bad"], 0);
+  EXPECT_EQ(last["lost"], 0);
+  EXPECT_EQ(run({"validate", folder / "now/live.yaml"}).status, 0);
+  EXPECT_EQ(run({"info", folder / "now/live.vdb"}).status, 0);
+  EXPECT_EQ(run({"import", record, "-o", folder / "again.yaml"}).status, 0);
+}
+
+TEST(LivePrograms, CtrlCEndsThemWithinASecond) {
+  const TemporaryFolder folder;
+  const std::string port = freePort();
+  const auto secondsToEnd = [](RunningProgram&& program, int status) {
+    pause(1500);
+    const auto begin = std::chrono::steady_clock::now();
+    program.signal(SIGINT);
+    const ProgramResult result = program.wait();
+    EXPECT_EQ(result.status, status) << result.err;
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  };
+  EXPECT_LT(secondsToEnd(RunningProgram({"live", "--dis", port, "--base", quick(), "--quiet"}), 0), 1.0);
+  EXPECT_LT(secondsToEnd(RunningProgram({"play", quick(), "--dis-out", port, "--rate", "0.01"}), 130), 1.0);
+  EXPECT_LT(secondsToEnd(RunningProgram({"play", quick(), "--acmi-server", port}), 130), 1.0);
+}
+
+TEST(LivePrograms, FaultsNameOptionValueAndRemedy) {
+  const auto errorOf = [](const Arguments& arguments, int status) {
+    const ProgramResult result = run(arguments);
+    EXPECT_EQ(result.status, status) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(errorOf({"live", "--base", quick()}, 2), HasSubstr("--dis 127.0.0.1:3000"));
+  EXPECT_THAT(errorOf({"live", "--dis", "3000"}, 2), HasSubstr("--base is needed"));
+  EXPECT_THAT(errorOf({"live", "--dis", "99999", "--base", quick()}, 2), HasSubstr("the port 1..65535"));
+  EXPECT_THAT(errorOf({"live", "--dis", "203.0.113.1:3000", "--base", quick()}, 1),
+              HasSubstr("this computer has no such address"));
+  EXPECT_THAT(errorOf({"live", "--acmi", freePort(), "--base", quick()}, 1),
+              HasSubstr("no program listens there"));
+  EXPECT_THAT(errorOf({"play", quick()}, 2), HasSubstr("--dis-out"));
+  EXPECT_THAT(errorOf({"play", "a.pcap", "--acmi-server", "3000"}, 2),
+              HasSubstr("`emscape import` makes a scenario"));
+}
+
+}  // namespace
+}  // namespace emscape::test
