@@ -16,6 +16,7 @@
 #include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/inputs.h"
+#include "emscape/render/picture/image.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/clock.h"
 
@@ -56,6 +57,9 @@ class ScratchFolder {
 ViewTrial trialOf(const BenchViewOptions& options) {
   ViewTrial trial;
   trial.idle_s = options.idle_s;
+  const render::ImageSize size = render::parseImageSize(options.size);
+  trial.width = size.width;
+  trial.height = size.height;
   if (playback::inputKindOf(options.input) != playback::InputKind::scenario) return trial;
   const auto scenario = scenario::loadScenario(options.input, options.edits);
   trial.times_s = scenario::timesOf(scenario->clock);
@@ -81,6 +85,12 @@ Json framesJson(const std::vector<double>& values) {
   return {{"median", medianOf(values)}, {"p99", quantileOf(values, 0.99)}, {"max", quantileOf(values, 1)}};
 }
 
+/// Processes that ran or waited for a processor, in the mean of the last minute, with those of the benchmark.
+double load() {
+  double average = 0;
+  return getloadavg(&average, 1) == 1 ? average : 0;
+}
+
 Json jsonOf(const ViewTimes& times) {
   return {{"device", times.device},
           {"gl_renderer", times.gl_renderer},
@@ -92,6 +102,7 @@ Json jsonOf(const ViewTimes& times) {
           {"ui_computing_ms", framesJson(times.ui_computing)},
           {"frame_ms", framesJson(times.frame)},
           {"frame_computing_ms", framesJson(times.frame_computing)},
+          {"interface_fps", times.interface_fps},
           {"orbit_fps", times.orbit_fps},
           {"input_to_picture_ms", medianJson(times.input_to_picture)},
           {"input_to_exact_ms", medianJson(times.input_to_exact)},
@@ -108,7 +119,8 @@ Json jsonOf(const ViewTimes& times) {
           {"play_fields_per_s", times.play_fields_per_s},
           {"play_edit_to_picture_ms", medianJson(times.play_edit_to_picture)},
           {"idle_cpu_percent", times.idle_cpu_percent},
-          {"rss_mib", times.rss_mib}};
+          {"rss_mib", times.rss_mib},
+          {"load", load()}};
 }
 
 void printTable(const ViewTimes& times) {
@@ -129,6 +141,7 @@ void printTable(const ViewTimes& times) {
   frames("  while a field is computed", times.ui_computing);
   frames("  with the display", times.frame);
   frames("  with the display, while a field is computed", times.frame_computing);
+  row("cursor over the panels: frames in a second", fmt::format("{:.1f}", times.interface_fps));
   row("orbit: pictures in a second", fmt::format("{:.1f}", times.orbit_fps));
   median("input to its first picture", times.input_to_picture);
   median("last input to exact", times.input_to_exact);
@@ -147,6 +160,7 @@ void printTable(const ViewTimes& times) {
   median("power changed while playing to picture with it", times.play_edit_to_picture);
   row("idle: of one core", fmt::format("{:.2f} %", times.idle_cpu_percent));
   row("resident memory", fmt::format("{:.0f} MiB", times.rss_mib));
+  row("load of the machine, of the last minute", fmt::format("{:.1f}", load()));
 }
 
 int benchView(const BenchViewOptions& options, const GlobalOptions& global) {

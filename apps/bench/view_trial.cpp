@@ -20,6 +20,7 @@ constexpr int kSeeksAtOnce = 5;  // between two frames of the window
 constexpr double kManySeeks_s = 2;
 constexpr double kPlay_s = 8;
 constexpr int kPlayEdits = 6;
+constexpr double kInterface_s = 3;
 
 class ScriptText {
  public:
@@ -58,6 +59,18 @@ void addCameraTrial(ScriptText& script) {
     script.orbit();
     script.waitFor("exact");
   }
+}
+
+/// The cursor moves over the rows of the side panel.
+void addInterfaceTrial(ScriptText& script, const ViewTrial& trial) {
+  script.mark("interface");
+  for (int n = 0; n < kInterface_s / kMouseInterval_s; ++n) {
+    script.add({{"do", "mouse"},
+                {"x", trial.width - 150 + n % 40},
+                {"y", trial.height * (0.15 + 0.45 * (n % 100) / 100)}});
+    script.wait(kMouseInterval_s);
+  }
+  script.mark("interface ends");
 }
 
 void addEditTrial(ScriptText& script, const ViewTrial& trial) {
@@ -177,6 +190,15 @@ void readCamera(const Lines& lines, ViewTimes& times) {
   });
 }
 
+void readInterface(const Lines& lines, ViewTimes& times) {
+  const std::size_t begin = find(lines, 0, [](const Json& l) { return isMark(l, "interface"); });
+  const std::size_t end = find(lines, begin, [](const Json& l) { return isMark(l, "interface ends"); });
+  if (end >= lines.size()) return;
+  const auto frames = std::count_if(lines.begin() + static_cast<std::ptrdiff_t>(begin),
+                                    lines.begin() + static_cast<std::ptrdiff_t>(end), isFrame);
+  times.interface_fps = 1000 * static_cast<double>(frames) / (time_ms(lines[end]) - time_ms(lines[begin]));
+}
+
 void readEdits(const Lines& lines, ViewTimes& times) {
   forMarks(lines, "edit", [&](std::size_t mark) {
     const Json frame = lines[mark]["frame"], fields = lines[mark]["fields_computed"];
@@ -279,6 +301,7 @@ void readFrames(const Lines& lines, ViewTimes& times) {
 std::string trialScript(const ViewTrial& trial) {
   ScriptText script;
   script.waitFor("exact");
+  addInterfaceTrial(script, trial);
   addCameraTrial(script);
   if (trial.edit) addEditTrial(script, trial);
   if (trial.times_s.size() > 1) {
@@ -303,6 +326,7 @@ ViewTimes trialTimes(const std::string& log) {
   }
   ViewTimes times;
   readFrames(lines, times);
+  readInterface(lines, times);
   readCamera(lines, times);
   readEdits(lines, times);
   readSeeks(lines, times);

@@ -14,9 +14,10 @@ namespace emscape::app {
 struct ViewTrial {
   std::vector<double> times_s;  ///< of the steps; fewer than two: no seeking
   std::optional<scenario::Edit>
-      edit;               ///< a value of the scenario that is doubled and restored; none: no edits
-  double edit_value = 0;  ///< the present value
-  double idle_s = 10;     ///< duration of the idle phase
+      edit;                        ///< a value of the scenario that is doubled and restored; none: no edits
+  double edit_value = 0;           ///< the present value
+  double idle_s = 10;              ///< duration of the idle phase
+  int width = 1200, height = 900;  ///< of the window
 };
 
 /// The script for emscape-view.
@@ -31,7 +32,9 @@ struct ViewTimes {
   std::vector<double> ui;                      ///< frames of the window: events, panels, drawing commands
   std::vector<double> ui_computing;            ///< `ui` while a field was computed
   std::vector<double> frame, frame_computing;  ///< `ui`, until the frame is displayed
-  double orbit_fps = 0;                        ///< pictures per second while the camera turns
+  double interface_fps =
+      0;                 ///< frames per second while the cursor moves over the panels, without a new field
+  double orbit_fps = 0;  ///< pictures per second while the camera turns
   std::vector<double> input_to_picture, input_to_exact, abort;
   std::vector<double> edit_to_picture, edit_to_exact;
   std::vector<double> seek, seek_field, seek_cached;  ///< seek_field: the field's part of seek

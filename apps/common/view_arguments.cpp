@@ -11,25 +11,32 @@ using playback::ViewState;
 
 void ViewArguments::addTo(CLI::App& command, const std::string& but) {
   for (const ViewSetting& setting : playback::viewSettings()) {
-    const std::string &name = setting.option, &help = setting.option_help;
-    if (name.empty() || name == but) continue;
-    const auto take = [this, &setting](const auto& value) { given_.emplace_back(&setting, value); };
-    const std::string usual = setting.isSwitch() || setting.isNumber() ? setting.text(ViewState{}) : "";
-    if (setting.isSwitch() && usual == "off") {
-      command.add_flag_function(
-          name, [take](std::int64_t count) { take(count > 0); }, help);
-    } else if (setting.isSwitch()) {
-      command.add_option_function<bool>(name, take, help)->default_str(usual);
-    } else if (setting.isNumber()) {
-      CLI::Option* option = command.add_option_function<double>(name, take, help);
-      if (usual == "nan") continue;
-      option->check(CLI::Range(setting.spec.minimum, setting.spec.maximum))->default_str(usual);
-    } else if (setting.isListOfTexts()) {
-      command.add_option_function<std::vector<std::string>>(name, take, help)->allow_extra_args(false);
-    } else {
-      CLI::Option* option = command.add_option_function<std::string>(name, take, help);
-      if (setting.isChoice()) option->check(CLI::IsMember(setting.spec.choices));
-    }
+    if (!setting.option.empty() && setting.option != but) add(command, setting);
+  }
+}
+
+void ViewArguments::addSomeTo(CLI::App& command, const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) add(command, playback::settingOfKey(key));
+}
+
+void ViewArguments::add(CLI::App& command, const ViewSetting& setting) {
+  const std::string &name = setting.option, &help = setting.option_help;
+  const auto take = [this, &setting](const auto& value) { given_.emplace_back(&setting, value); };
+  const std::string usual = setting.isSwitch() || setting.isNumber() ? setting.text(ViewState{}) : "";
+  if (setting.isSwitch() && usual == "off") {
+    command.add_flag_function(
+        name, [take](std::int64_t count) { take(count > 0); }, help);
+  } else if (setting.isSwitch()) {
+    command.add_option_function<bool>(name, take, help)->default_str(usual);
+  } else if (setting.isNumber()) {
+    CLI::Option* option = command.add_option_function<double>(name, take, help);
+    if (usual == "nan") return;
+    option->check(CLI::Range(setting.spec.minimum, setting.spec.maximum))->default_str(usual);
+  } else if (setting.isListOfTexts()) {
+    command.add_option_function<std::vector<std::string>>(name, take, help)->allow_extra_args(false);
+  } else {
+    CLI::Option* option = command.add_option_function<std::string>(name, take, help);
+    if (setting.isChoice()) option->check(CLI::IsMember(setting.spec.choices));
   }
 }
 

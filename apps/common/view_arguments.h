@@ -15,10 +15,14 @@ class ViewArguments {
  public:
   /// Adds the options to a command, which refers to this object. @param but  name of an option to leave out
   void addTo(CLI::App& command, const std::string& but);
+  /// The same of some settings, by their keys.
+  void addSomeTo(CLI::App& command, const std::vector<std::string>& keys);
   /// Changes a view by the options that were given. @throws Error (usage) for a value that is not allowed
   void apply(playback::ViewState& view) const;
 
  private:
+  void add(CLI::App& command, const playback::ViewSetting& setting);
+
   std::vector<std::pair<const playback::ViewSetting*, playback::SettingValue>> given_;
 };
 

@@ -34,6 +34,7 @@ struct CompareCommand {
   std::vector<scenario::Edit> edits, edits_b;
   std::string folder;
   report::MapOptions maps;
+  ViewArguments view;
   std::string volume;
   int areas = 3;
   std::set<std::string> given;  ///< names of the options on the command line
@@ -112,8 +113,9 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
 /// For folders of maps only these options are allowed: the contents of the maps were chosen when they were
 /// computed.
 void checkFolderOptions(const CompareCommand& command) {
-  static const std::set<std::string> kAllowed{"A",         "B",       "--output", "--products",
-                                              "--heights", "--times", "--format", "--explain"};
+  static const std::set<std::string> kAllowed{
+      "A",         "B",       "--output", "--products",    "--heights", "--times",     "--format",
+      "--explain", "--drape", "--places", "--range-rings", "--units",   "--field-unit"};
   for (const std::string& option : command.given) {
     if (kAllowed.count(option) > 0) continue;
     throw Error(ErrorCode::usage,
@@ -151,7 +153,8 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
                            a.quantity,
                            a.threshold,
                            {times_s.begin(), times_s.end()},
-                           heights},
+                           heights,
+                           command.maps.view},
                           command.maps.formats);
   if (!global.json) printHeading(command.a, command.b, *a.grid, a.quantity, a.threshold);
   const study::Comparison comparison = study::compareFolders(
@@ -216,7 +219,7 @@ DIR has maps, report.html, report.json and study.json, as `emscape coverage` wri
   addSetOption(*command, options->edits);
   addSetOption(*command, options->edits_b, "--set-b", "changes a value of B only");
   command->add_option("-o,--output", options->folder, "Folder to write")->required();
-  addMapOptions(*command, options->maps);
+  addMapOptions(*command, options->maps, options->view);
   command->add_option("--volume", options->volume,
                       "Volume of B less A in A's region at the first time: a .vdb, .vti or .nvdb file");
   command
@@ -227,7 +230,10 @@ DIR has maps, report.html, report.json and study.json, as `emscape coverage` wri
     for (const CLI::Option* option : command->get_options()) {
       if (option->count() > 0) options->given.insert(option->get_name());
     }
-    action = [options, &global] { return compare(*options, global); };
+    action = [options, &global] {
+      options->view.apply(options->maps.view);
+      return compare(*options, global);
+    };
   });
 }
 

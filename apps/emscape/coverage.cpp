@@ -27,16 +27,20 @@ struct CoverageCommand {
   std::vector<scenario::Edit> edits;
   std::string folder;
   report::MapOptions maps;
+  ViewArguments view;
 };
 
 void printRow(const study::MapRecord& record) {
   const study::Map& map = record.map;
   const study::MapSummary& summary = record.summary;
   const std::string time = map.time_s ? fmt::format("{} s", *map.time_s) : "all";
-  const std::string area =
-      map.area_class < 0 ? ""
-                         : fmt::format("{:.1f} km2, {:.1f} % of known", summary.class_area_m2 / 1e6,
-                                       100 * summary.class_area_m2 / std::max(summary.known_area_m2, 1.0));
+  std::string area;
+  if (map.area_class >= 0) {
+    area = fmt::format("{:.1f} km2, {:.1f} % of known", summary.class_area_m2 / 1e6,
+                       100 * summary.class_area_m2 / std::max(summary.known_area_m2, 1.0));
+    if (summary.unknown_area_m2 > 0)
+      area += fmt::format(", {:.1f} km2 unknown", summary.unknown_area_m2 / 1e6);
+  }
   print("  {:<16} {:<26} {:>8}  {:<28} {}\n", map.name, map.height ? study::describe(*map.height) : "", time,
         area, record.files.empty() ? "" : record.files.front());
 }
@@ -60,7 +64,8 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
                            request.quantity,
                            request.threshold,
                            request.times_s,
-                           request.heights},
+                           request.heights,
+                           command.maps.view},
                           command.maps.formats);
   if (!global.json) {
     const scenario::QuantityInfo& quantity = scenario::info(request.quantity);
@@ -127,9 +132,13 @@ Examples:
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
   command->add_option("-o,--output", options->folder, "Folder to write")->required();
-  addMapOptions(*command, options->maps);
-  command->callback(
-      [options, &global, &action] { action = [options, &global] { return coverage(*options, global); }; });
+  addMapOptions(*command, options->maps, options->view);
+  command->callback([options, &global, &action] {
+    action = [options, &global] {
+      options->view.apply(options->maps.view);
+      return coverage(*options, global);
+    };
+  });
 }
 
 }  // namespace emscape::app

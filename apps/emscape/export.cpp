@@ -1,29 +1,119 @@
 /// emscape export: writes a scenario as a recording for other programs.
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "apps/common/console.h"
+#include "apps/common/target.h"
 #include "apps/emscape/subcommands.h"
+#include "base/files/file_reading.h"
+#include "base/files/json_writing.h"
+#include "base/files/unfinished_file.h"
+#include "base/files/whole_file.h"
 #include "base/text/count_text.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "emscape/study/maps/coverage.h"
 #include "interop/export_scenario.h"
+#include "report/maps/map_options.h"
+#include "report/warnings.h"
+#include "study/files/czml.h"
 
 namespace emscape::app {
 namespace {
 
 struct ExportArguments {
   std::string scenario, file;
+  std::string coverage;  ///< heights; empty: none
   std::vector<scenario::Edit> edits;
   interop::ExportOptions options;
 };
 
+constexpr int kCoverageSteps = 10;  ///< of the scenario's time
+constexpr std::size_t kMaxOutlineBytes = std::size_t{1} << 30;
+
+using Json = nlohmann::ordered_json;
+
+report::MapOptions outlineOptions(const ExportArguments& arguments, const scenario::Scenario& scenario) {
+  report::MapOptions options;
+  options.heights = arguments.coverage;
+  options.products = {"covered"};
+  const double duration_s = scenario.clock.duration_s;
+  for (int i = 0; i <= (duration_s > 0 ? kCoverageSteps : 0); ++i)
+    options.times_s.push_back(duration_s * i / kCoverageSteps);
+  return options;
+}
+
+/// @throws Error (usage) if no outlines can be written
+void checkCoverage(const ExportArguments& arguments, const scenario::Scenario& scenario) {
+  if (std::filesystem::path(arguments.file).extension() != ".czml")
+    throw Error(ErrorCode::usage,
+                "--coverage is written into .czml alone; emscape coverage has other formats");
+  const auto isRadar = [](const scenario::Emitter& emitter) {
+    return emitter.kind == scenario::EmitterKind::radar;
+  };
+  if (!std::any_of(scenario.emitters.begin(), scenario.emitters.end(), isRadar)) {
+    throw Error(
+        ErrorCode::usage,
+        "--coverage is that of radars, and the scenario has none; emscape coverage --quantity has others");
+  }
+  study::checkRequest(report::requestOf(outlineOptions(arguments, scenario), scenario.clock), scenario);
+}
+
+/// Adds the outlines of what the radars detect to a CZML document.
+void addOutlines(const ExportArguments& arguments, const std::shared_ptr<const scenario::Scenario>& scenario,
+                 const GlobalOptions& global) {
+  const report::MapOptions options = outlineOptions(arguments, *scenario);
+  const study::CoverageRequest request = report::requestOf(options, scenario->clock);
+  const study::MapArea area = report::areaOf(options, *scenario);
+  const auto grid = report::gridOf(options, *scenario, area);
+  const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
+  study::MapStudy study;
+  study.command = "coverage";
+  study.title = "Coverage of " + scenario->name;
+  study.scenarios = {scenario};
+  study.terrain = terrain;
+  study.grid = grid;
+  study.quantity = request.quantity;
+  study.threshold = request.threshold;
+  study.times_s = request.times_s;
+  study.heights = request.heights;
+  const UnfinishedFile scratch(arguments.file + ".coverage.czml");  // removed at the end
+  const auto outlines = study::makeCzml(scratch.temporary(), study);
+  const std::vector<std::string> warnings = openOnTarget(global, "float", [&](const ComputeTarget& target) {
+    return study::computeCoverage(
+        scenario, terrain, *grid, request, target.fieldOptions(),
+        [&](const study::CoverageMap& map) { outlines->add(map); }, stoppingProgress(global));
+  });
+  report::logWarnings(warnings);
+  outlines->finish();
+  Json packets = Json::parse(readWholeText(arguments.file, kMaxOutlineBytes));
+  for (Json& packet : Json::parse(readWholeText(scratch.temporary(), kMaxOutlineBytes))) {
+    // Its document, tracks and emitters are there.
+    if (packet.contains("polygon") || packet["id"].get<std::string>().rfind("group/", 0) == 0)
+      packets.push_back(std::move(packet));
+  }
+  writeWhole(arguments.file, [&](std::ostream& out) {
+    const char* before = "[\n";
+    for (const Json& packet : packets) {
+      out << before << dumpJson(packet);
+      before = ",\n";
+    }
+    out << "\n]\n";
+  });
+}
+
 int writeRecording(const ExportArguments& arguments, const GlobalOptions& global) {
   const auto scenario =
       scenario::loadScenario(arguments.scenario, arguments.edits, scenario::ReadFor::chosen_times);
+  if (!arguments.coverage.empty()) checkCoverage(arguments, *scenario);
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const interop::ExportResult result = interop::exportScenario(scenario, terrain.get(), arguments.file,
                                                                arguments.options, stoppingProgress(global));
+  if (!arguments.coverage.empty()) addOutlines(arguments, scenario, global);
   if (global.json) {
     printJson({{"file", result.file},
                {"format", result.format},
@@ -57,6 +147,7 @@ antennas nor receivers.
 Examples:
   emscape export scenarios/jacksboro.yaml -o jacksboro.zip.acmi
   emscape export scenarios/jacksboro.yaml -o jacksboro.pcap --step 0.5
+  emscape export scenarios/jacksboro.yaml -o jacksboro.czml --coverage agl:150
   emscape import jacksboro.pcap --emitters jacksboro.pcap.emitters.yaml -o back.yaml
 
 Exit status: 0; 2 for wrong options; 3 for a faulty scenario.)");
@@ -68,6 +159,10 @@ Exit status: 0; 2 for wrong options; 3 for a faulty scenario.)");
                    "The recording: .acmi, .zip.acmi, .pcap, .asi, .cot, .czml or .kml")
       ->required();
   command->add_flag("--force", arguments->options.replace, "Replace the recording and its emitter database");
+  command->add_option(
+      "--coverage", arguments->coverage,
+      "Heights, as agl:150 or msl:1000: .czml gets outlines of where radars detect the target there, at "
+      "11 times");
   command
       ->add_option("--step", arguments->options.step_s,
                    "Largest time between positions of a moving platform (s; 1)")

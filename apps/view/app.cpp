@@ -159,8 +159,9 @@ double App::waitTime_s() const {
   return std::max(wait_s, 1e-3);
 }
 
-void App::failIfNothingOpens() const {
-  if (session_->picture() || session_->status().error.empty()) return;
+void App::failIfNothingOpens() {
+  has_opened_ = has_opened_ || session_->isOpened();
+  if (has_opened_ || session_->status().error.empty()) return;
   throw Error(session_->status().error_code, session_->status().error);
 }
 
@@ -201,6 +202,7 @@ void App::handleRequests() {
   for (const std::string& file : window_.takeDropped()) session_->perform({"open", {{"file", file}}});
   if (window_.takeCloseRequest()) session_->perform({"quit"});
   if (!opener_.update(session_)) return;
+  has_opened_ = true;
   shown_picture_ = 0;
   window_fits_ = 0;
   frames_left_ = kFramesAfterEvent;

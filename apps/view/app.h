@@ -46,7 +46,7 @@ class App : private WindowControl {
   void showFromDevice(const render::DevicePicture& picture);
   void takeScreenshot();
   double waitTime_s() const;
-  void failIfNothingOpens() const;
+  void failIfNothingOpens();
   /// Creates the session on the GPU or, if that fails and the backend is automatic, on the CPU.
   std::unique_ptr<Session> makeFirstSession(const ViewOptions& options);
   std::unique_ptr<Session> makeSession(const ViewOptions& options);
@@ -67,6 +67,7 @@ class App : private WindowControl {
   SessionOpener opener_;
   MouseControl mouse_;
 
+  bool has_opened_ = false;  // an input, or one was replaced: its errors do not end the program
   bool quits_ = false;
   bool flies_ = false;
   int frames_left_ = 3;  // after an event, since ImGui needs two frames for a layout

@@ -24,6 +24,13 @@ bool isInside(const Area& area, double x, double y) {
   return x >= area.x && y >= area.y && x < area.x + area.width && y < area.y + area.height;
 }
 
+/// True if a pixel of the picture is on the line of a split view.
+bool isOnSplit(const Session& session, double x) {
+  constexpr double kReach_px = 5;
+  return session.picture() && session.picture()->split_column > 0 &&
+         std::abs(x - session.picture()->split_column) <= kReach_px;
+}
+
 /// The object under a pixel of the picture; null if there is none, or if emitters are not drawn.
 const SceneObject* objectUnder(const Session& session, double x, double y) {
   if (!session.picture() || !session.view().show_emitters) return nullptr;
@@ -68,6 +75,7 @@ void MouseControl::move(const Area& picture, const Viewport& viewport, double ri
   if (!is_moved_ && std::hypot(x_ - pressed_x_, y_ - pressed_y_) < kClick_px) return;
   if (drag_ == Drag::platform) return movePlatform(picture, session);
   is_moved_ = true;
+  if (drag_ == Drag::split) return session.moveSplit(x_ - picture.x);
   if (drag_ == Drag::plane) {
     plane_->moveTo(x_ - picture.x, y_ - picture.y, session);
     return;
@@ -84,6 +92,7 @@ void MouseControl::release(const Area& picture, Session& session) {
   const Drag drag = std::exchange(drag_, Drag::none);
   if (drag == Drag::platform && is_moved_) session.endDrag();
   if (drag == Drag::plane && is_moved_) plane_->finish(session);
+  if (drag == Drag::split && is_moved_) session.perform({"split", {{"position", session.view().split}}});
   if (is_moved_) return;
   const double x = pressed_x_ - picture.x, y = pressed_y_ - picture.y;
   const SceneObject* const object = objectUnder(session, x, y);
@@ -135,6 +144,8 @@ void MouseControl::press(const InputEvent& event, const Area& picture, Session& 
   } else if (const auto plane = planeHandleAt(session, x, y)) {
     plane_.emplace(session, *plane, x, y);
     drag_ = Drag::plane;
+  } else if (isOnSplit(session, x)) {
+    drag_ = Drag::split;
   }
 }
 
@@ -197,6 +208,7 @@ void MouseControl::showCursor(const Area& picture, bool panels_want_mouse, const
     ImGui::SetTooltip("%s", platform_text_.c_str());
     return;
   }
+  if (drag_ == Drag::split) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   if (drag_ == Drag::plane) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
   if (drag_ != Drag::none || panels_want_mouse || !session.picture() || !isInside(picture, x_, y_)) return;
   const double x = x_ - picture.x, y = y_ - picture.y;
@@ -205,6 +217,8 @@ void MouseControl::showCursor(const Area& picture, bool panels_want_mouse, const
     ImGui::SetTooltip("%s", tooltipOf(*object, session.view()).c_str());
   } else if (!session.tool().isOn() && planeHandleAt(session, x, y)) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+  } else if (!session.tool().isOn() && isOnSplit(session, x)) {
+    ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
   }
 }
 

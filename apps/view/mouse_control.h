@@ -25,7 +25,7 @@ class MouseControl {
   bool fly(const Window& window, double elapsed_s, Session& session);
 
  private:
-  enum class Drag { none, orbit, pan, look, platform, plane };
+  enum class Drag { none, orbit, pan, look, platform, plane, split };
   void move(const Area& picture, const Viewport& viewport, double right_px, double down_px, Session& session);
   void release(const Area& picture, Session& session);
   void press(const InputEvent& event, const Area& picture, Session& session);

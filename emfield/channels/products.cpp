@@ -105,6 +105,30 @@ const char* scaleOf(Quantity quantity) {
   }
 }
 
+bool emittersOnlyRaise(Quantity quantity) {
+  switch (quantity) {
+    case Quantity::power_density_dbwm2:
+    case Quantity::mean_power_density_dbwm2:
+    case Quantity::field_strength_dbuvm:
+    case Quantity::received_power_dbm:
+    case Quantity::intercept_margin_db:
+    case Quantity::snr_db:
+    case Quantity::sclnr_db:
+    case Quantity::detection_probability:
+    case Quantity::burn_through_margin_db:
+    case Quantity::emitter_count:
+    case Quantity::occupancy:
+      return true;
+    case Quantity::sinr_db:  // others interfere
+    case Quantity::jammer_to_signal_db:
+    case Quantity::detection_age_s:  // of the latest
+    case Quantity::dominant_emitter:
+    case Quantity::dominant_model:
+      break;
+  }
+  return false;
+}
+
 std::string legendNoteOf(Quantity quantity, const scenario::Scenario& scenario) {
   switch (quantity) {
     case Quantity::jammer_to_signal_db:

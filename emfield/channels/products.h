@@ -59,6 +59,10 @@ constexpr float kMaxJammerToSignal = 1e10f;
 /// The colour scale of a quantity (a value of volume::kScaleKey); null: none.
 const char* scaleOf(scenario::Quantity quantity);
 
+/// True if one more emitter never lowers the quantity: the value of some of a channel's emitters is at most
+/// that of all. Jamming is part of each radar's own value.
+bool emittersOnlyRaise(scenario::Quantity quantity);
+
 /// Line of the legend about the quantity's bounds or its signal (volume::kLegendNoteKey); empty: none.
 std::string legendNoteOf(scenario::Quantity quantity, const scenario::Scenario& scenario);
 

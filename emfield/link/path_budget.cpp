@@ -358,6 +358,7 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   if (with_detection && emitter.kind == scenario::EmitterKind::radar && state.active) {
     radar = radarAtPoint(snapshot, emitter_index, ray, budget, terrain);
     budget.look_pattern_db = radar->look_pattern_db;
+    budget.jamming = radar->jamming;
   }
   budget.terms = termsOf(snapshot, emitter_index, budget, radar);
   budget.verdict = verdictOf(budget);

@@ -160,11 +160,26 @@ RadarAtPoint radarAtPoint(const scenario::Snapshot& snapshot, int radar, const V
     result.clutter->sclnr_db = 2 * ratioToDb(point.accumulated(channel, {}));
   }
   channel.quantity = Quantity::jammer_to_signal_db;
-  const double signal_to_jammer = point.accumulated(channel, jammers);
-  const bool is_jammed = signal_to_jammer > 0 && signal_to_jammer < static_cast<double>(RadarTask{}.ceiling);
-  result.jammer_to_signal_db = is_jammed ? -ratioToDb(signal_to_jammer) : -HUGE_VAL;
+  const auto jammerToSignal_db = [&](const std::vector<JammerPath>& by) {
+    const double signal_to_jammer = point.accumulated(channel, by);
+    const bool is_jammed =
+        signal_to_jammer > 0 && signal_to_jammer < static_cast<double>(RadarTask{}.ceiling);
+    return is_jammed ? -ratioToDb(signal_to_jammer) : -HUGE_VAL;
+  };
+  result.jammer_to_signal_db = jammerToSignal_db(jammers);
+  double largest_db = -HUGE_VAL;
+  for (const JammerPath& jammer : jammers) {
+    const double alone_db = jammerToSignal_db({jammer});
+    if (std::isinf(alone_db)) continue;
+    if (!result.jamming.strongest.empty()) ++result.jamming.others;
+    if (alone_db <= largest_db) continue;
+    largest_db = alone_db;
+    result.jamming.strongest = snapshot.scenario->emitters[static_cast<std::size_t>(jammer.jammer)].name;
+  }
   channel.quantity = Quantity::detection_probability;
   result.detection_probability = point.accumulated(channel, jammers);
+  result.jamming.unjammed_probability =
+      jammers.empty() ? result.detection_probability : point.accumulated(channel, {});
   return result;
 }
 

@@ -15,6 +15,7 @@ struct RadarAtPoint {
   double snr_db = 0;                 ///< -infinity without an echo
   double jammer_to_signal_db = 0;    ///< -infinity without jamming; 100 with jamming and without an echo
   double detection_probability = 0;  ///< against clutter, noise and jamming
+  PathJamming jamming;
   /// Of a beam that follows the target: its gain towards it, relative to its maximum (dB), <= 0.
   std::optional<double> look_pattern_db;
 

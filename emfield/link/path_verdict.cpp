@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "emscape/base/units.h"
@@ -77,6 +78,24 @@ std::string pointingText(const PathBudget& budget) {
                      radToDeg(pointing.off_axis_rad), -pattern_db);
 }
 
+/// The jammers: "'helicopter' and 2 more".
+std::string jammersText(const PathJamming& jamming) {
+  return "'" + jamming.strongest + "'" +
+         (jamming.others > 0 ? fmt::format(" and {} more", jamming.others) : "");
+}
+
+/// The cause that comes before the path: jamming that takes the detection away.
+std::string jammedText(const PathBudget& budget) {
+  constexpr double kDetected = 0.5;
+  const BudgetTerm* probability = budget.find("detection_probability");
+  if (probability == nullptr || budget.jamming.strongest.empty()) return "";
+  if (probability->value >= kDetected || budget.jamming.unjammed_probability < kDetected) return "";
+  return fmt::format(
+      "Jammed by {}: J/S {:.1f} dB, without which a target there is detected with probability {:.2f}; ",
+      jammersText(budget.jamming), budget.find("jammer_to_signal_db")->value,
+      budget.jamming.unjammed_probability);
+}
+
 /// The probability of detection, with its causes: jamming and clutter near or above the level of the echo.
 std::string detectionText(const PathBudget& budget) {
   constexpr double kWorthSaying_db = -20;  // jamming over the echo, from which it is mentioned
@@ -90,7 +109,7 @@ std::string detectionText(const PathBudget& budget) {
     ratios += fmt::format(", with clutter {:.1f} dB", with_clutter->value);
   const BudgetTerm* jamming = budget.find("jammer_to_signal_db");
   if (jamming != nullptr && jamming->value > kWorthSaying_db)
-    ratios += fmt::format(", J/S {:.1f} dB", jamming->value);
+    ratios += fmt::format(", J/S {:.1f} dB by {}", jamming->value, jammersText(budget.jamming));
   return fmt::format("; a target there is detected with probability {:.2f} ({})", probability->value, ratios);
 }
 
@@ -104,7 +123,10 @@ std::string pathVerdictOf(const PathBudget& budget) {
 
 std::string verdictOf(const PathBudget& budget) {
   if (!budget.active) return pathVerdictOf(budget);
-  return pathText(budget) + pointingText(budget) + detectionText(budget) + ".";
+  std::string path = pathText(budget);
+  const std::string jammed = jammedText(budget);
+  if (!jammed.empty()) path[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(path[0])));
+  return jammed + path + pointingText(budget) + detectionText(budget) + ".";
 }
 
 }  // namespace emscape::emfield

@@ -10,7 +10,8 @@ namespace emscape::emfield {
 /// Gain of an antenna, relative to its maximum, below which its beam misses a point.
 constexpr double kBeamMisses_db = -6;
 
-/// Names the dominant cause: inactive emitter, obstacle, antenna pattern, or distance.
+/// Names the dominant cause: inactive emitter, jamming that takes the detection away, obstacle, antenna
+/// pattern, or distance.
 std::string verdictOf(const PathBudget& budget);
 
 /// The same without the antenna's pattern and without detection.

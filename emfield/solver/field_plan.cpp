@@ -53,9 +53,14 @@ FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario, const Fie
   return plan;
 }
 
-bool haveSameChannels(const FieldPlan& a, const FieldPlan& b) {
+bool haveSameNames(const FieldPlan& a, const FieldPlan& b) {
+  return std::equal(a.channels.begin(), a.channels.end(), b.channels.begin(), b.channels.end(),
+                    [](const Channel& x, const Channel& y) { return x.name == y.name; });
+}
+
+bool haveSameSums(const FieldPlan& a, const FieldPlan& b) {
   const auto sameChannel = [](const Channel& x, const Channel& y) {
-    return x.quantity == y.quantity && x.name == y.name && x.emitters == y.emitters && x.jammers == y.jammers;
+    return x.quantity == y.quantity && x.emitters == y.emitters && x.jammers == y.jammers;
   };
   const auto sameSums = [](const ChannelPlan& x, const ChannelPlan& y) {
     return x.reduction == y.reduction && x.reducesPower() == y.reducesPower();

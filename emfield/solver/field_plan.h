@@ -24,7 +24,9 @@ struct FieldPlan {
 /// @throws Error (bad_input) for a scenario that the field or its models cannot compute
 FieldPlan makePlan(std::shared_ptr<const scenario::Scenario> scenario, const FieldOptions& options);
 
-/// True if two plans have the same channels, with sums of the same kinds.
-bool haveSameChannels(const FieldPlan& a, const FieldPlan& b);
+/// True if the channels of two plans have the same names.
+bool haveSameNames(const FieldPlan& a, const FieldPlan& b);
+/// True if two plans have the same channels apart from their names, with sums of the same kinds.
+bool haveSameSums(const FieldPlan& a, const FieldPlan& b);
 
 }  // namespace emscape::emfield

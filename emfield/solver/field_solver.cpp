@@ -178,16 +178,11 @@ void FieldSolver::Impl::checkHoles() const {
 
 /// True if an edited scenario can be computed with the present grid, slots and choice of cached emitters.
 bool FieldSolver::Impl::canKeep(const FieldPlan& plan, const scenario::TerrainPtr& terrain) const {
-  const auto sameName = [](const scenario::Emitter& a, const scenario::Emitter& b) {
-    return a.name == b.name;
-  };
-  const std::vector<scenario::Emitter>& old = setup.scenario->emitters;
-  const std::vector<scenario::Emitter>& edited = plan.scenario->emitters;
   const bool same_positions =
       options.surface != nullptr || sameRegion(setup.scenario->region, plan.scenario->region);
   if (terrain != setup.terrain || !same_positions ||
       (setup.columns.on_device != nullptr && needsHostColumns(*plan.scenario)) ||
-      !std::equal(old.begin(), old.end(), edited.begin(), edited.end(), sameName)) {
+      setup.scenario->emitters.size() != plan.scenario->emitters.size()) {
     return false;
   }
   const std::vector<bool> cached = chooseCached(plan, nullptr);
@@ -224,6 +219,9 @@ StageTimes FieldSolver::stageTimes() const {
 const std::vector<volume::Volume>& FieldSolver::volumes() const {
   return impl_->volumes;
 }
+const std::vector<std::uint8_t>& FieldSolver::partlyUnknown(std::size_t channel) const {
+  return impl_->masks[channel].partly_unknown;
+}
 
 FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
   const scenario::Scenario& old = *impl_->setup.scenario;
@@ -236,7 +234,8 @@ FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot) {
 }
 
 FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot, scenario::TerrainPtr terrain) {
-  if (snapshot.scenario == impl_->setup.scenario && terrain == impl_->setup.terrain) {
+  const bool is_same_plan = snapshot.scenario == impl_->setup.scenario && !impl_->has_other_quantities;
+  if (is_same_plan && terrain == impl_->setup.terrain) {
     return impl_->update(snapshot, std::nullopt);
   }
   FieldPlan plan = makePlan(snapshot.scenario, impl_->options);
@@ -245,6 +244,15 @@ FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot, scenario::T
   const FieldChanged changed = fresh->update(snapshot, std::nullopt);
   impl_ = std::move(fresh);
   return changed;
+}
+
+void FieldSolver::setQuantities(std::vector<std::string> quantities,
+                                std::shared_ptr<const scenario::Scenario> next) {
+  FieldOptions options = impl_->options;
+  options.quantities = std::move(quantities);
+  makePlan(std::move(next), options);  // throws
+  impl_->options.quantities = std::move(options.quantities);
+  impl_->has_other_quantities = true;
 }
 
 FieldChanged FieldSolver::update(double time_s, const std::vector<scenario::PlatformPose>& poses) {

@@ -32,6 +32,12 @@ struct EmitterCache {
   WarningCounts warnings, jamming_warnings;
 };
 
+/// Columns of a channel that are unknown to its emitters.
+struct ChannelMask {
+  std::vector<std::uint16_t> first_valid_k;  ///< as in DenseVolume; empty: that of all channels
+  std::vector<std::uint8_t> partly_unknown;  ///< as FieldSolver::partlyUnknown()
+};
+
 struct FieldSolver::Impl {
   FieldOptions options;
   FieldSetup setup;
@@ -40,7 +46,7 @@ struct FieldSolver::Impl {
       engine;  ///< one slot per emitter plus a shared one for emitters that are not cached
   MemoryEstimate estimate;
   std::vector<EmitterCache> emitters;
-  std::vector<std::vector<std::uint16_t>> masks;  ///< of channels with unknown columns
+  std::vector<ChannelMask> masks;  ///< one per channel
   std::vector<volume::Volume> volumes;
   PatternReaches reaches;
 
@@ -49,7 +55,8 @@ struct FieldSolver::Impl {
   /// Number of unchanged emitters that were combined again since the static sum was last computed.
   int recombined_since = 0;
   bool is_first = true;
-  bool is_stale = false;  ///< an update failed: all results are invalid
+  bool is_stale = false;              ///< an update failed: all results are invalid
+  bool has_other_quantities = false;  ///< the options have, since the plan was made
 
   Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
        FieldOptions options_in);
@@ -66,6 +73,7 @@ struct FieldSolver::Impl {
   struct Changes {
     FieldChanged report;
     bool all = false;                   ///< everything is recomputed
+    bool all_sums = false;              ///< the channels have other sums
     bool is_edited = false;             ///< the scenario is a different object
     const FieldPlan* before = nullptr;  ///< the plan before an edit
     std::vector<bool> emitters;         ///< true if its contribution to some channel changed
@@ -86,6 +94,7 @@ struct FieldSolver::Impl {
   void findProducts(Changes& changes);
   void computeGeometry(const std::vector<int>& chosen, bool into_scratch);
   void takeGeometry(int e, GeometryResult found);
+  void noteWarnings(int e);
   void chooseResting(const std::vector<bool>& changed);
   void combine(int begin, int end, const std::vector<bool>& channel_chosen, bool into_static_sums);
   CombinePass::Member combineMember(int e, double t_s);
@@ -93,7 +102,7 @@ struct FieldSolver::Impl {
   std::vector<OccupancyShare> occupancyShares(int e, double t_s);
   void makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes);
   VolumeRequest volumeRequest(int channel, const scenario::Snapshot& snapshot);
-  const std::vector<std::uint16_t>& maskOf(const Channel& channel, std::vector<std::uint16_t>& own) const;
+  const std::vector<std::uint16_t>& maskOf(const Channel& channel, ChannelMask& mask) const;
 };
 
 }  // namespace emscape::emfield

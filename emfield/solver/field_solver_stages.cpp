@@ -56,22 +56,31 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   cache.geometry = geometryInputs(setup, e, cache.state);
   cache.geometry_result = std::move(found);
   const GeometryResult& geometry_result = cache.geometry_result;
+  if (geometry_result.unknown_columns > 0 && !options.allow_missing_terrain) {
+    const auto first = std::find(geometry_result.unknown.begin(), geometry_result.unknown.end(), 1);
+    throw Error(
+        ErrorCode::bad_input, {setup.scenario->file},
+        fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
+                    emitter.name, placeOf(static_cast<std::size_t>(first - geometry_result.unknown.begin())),
+                    geometry_result.unknown_columns - 1),
+        Hint::allow_missing_terrain);
+  }
+  noteWarnings(e);
+}
+
+/// Adds the warnings of an emitter's geometry; they contain its name.
+void FieldSolver::Impl::noteWarnings(int e) {
+  const Emitter& emitter = setup.scenario->emitters[e];
+  EmitterCache& cache = emitters[e];
+  const GeometryResult& geometry_result = cache.geometry_result;
   if (geometry_result.unknown_columns > 0) {
-    if (!options.allow_missing_terrain) {
-      const auto first = std::find(geometry_result.unknown.begin(), geometry_result.unknown.end(), 1);
-      throw Error(ErrorCode::bad_input, {setup.scenario->file},
-                  fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
-                              emitter.name,
-                              placeOf(static_cast<std::size_t>(first - geometry_result.unknown.begin())),
-                              geometry_result.unknown_columns - 1),
-                  Hint::allow_missing_terrain);
-    }
     ++cache.warnings[fmt::format("emitter '{}': columns seen across missing terrain have no field",
                                  emitter.name)];
   }
   const Station station =
-      makeStation(cache.state.position, cache.state.height_msl_m, setup.scenario->atmosphere);
-  const propagation::PathInputs inputs = pathInputs(*setup.scenario, emitter, cache.state.beam, station,
+      makeStation(cache.geometry->position, cache.geometry->height_msl_m, setup.scenario->atmosphere);
+  const scenario::BeamPose& beam = cache.state.beam;
+  const propagation::PathInputs inputs = pathInputs(*setup.scenario, emitter, beam, station,
                                                     setup.terrain.get(), pathExtent(station, setup.columns));
   for (const std::string& warning : pathWarnings(emitter, inputs, geometry_result.warnings)) {
     ++cache.warnings[warning];
@@ -193,31 +202,41 @@ void FieldSolver::Impl::combine(int begin, int end, const std::vector<bool>& cha
 }
 
 /// First valid layers of a channel's columns: those above ground; none in columns that are unknown to one of
-/// its emitters.
-/// @param own  receives the result if it differs from that of the other channels
-const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& channel,
-                                                            std::vector<std::uint16_t>& own) const {
+/// its emitters, or, if the others' value is kept, to all.
+/// @param mask  receives what is the channel's own
+const std::vector<std::uint16_t>& FieldSolver::Impl::maskOf(const Channel& channel, ChannelMask& mask) const {
   const std::vector<std::uint16_t>& above_ground = setup.columns.first_valid_k;
-  own.clear();
+  mask = {};
+  std::vector<const std::vector<std::uint8_t>*> unknown;
+  std::size_t active = 0;
   for (int e : channel.emitters) {
-    const std::vector<std::uint8_t>& unknown = emitters[e].geometry_result.unknown;
-    if (!emitters[e].state.active || unknown.empty()) continue;
-    const std::vector<std::uint16_t>& now = own.empty() ? above_ground : own;
-    const auto none_k = static_cast<std::uint16_t>(setup.grid.dims.z);
-    std::size_t c = 0;  // the first unknown column that is not masked yet
-    while (c < unknown.size() && (unknown[c] == 0 || (!now.empty() && now[c] == none_k))) ++c;
-    if (c == unknown.size()) continue;
-    if (own.empty()) own = above_ground;
-    own.resize(unknown.size(), 0);
-    for (; c < unknown.size(); ++c) own[c] = unknown[c] != 0 ? none_k : own[c];
+    if (!emitters[e].state.active) continue;
+    ++active;
+    if (!emitters[e].geometry_result.unknown.empty()) unknown.push_back(&emitters[e].geometry_result.unknown);
   }
-  return own.empty() ? above_ground : own;
+  const bool keeps_partly = options.keep_partly_unknown && emittersOnlyRaise(channel.quantity);
+  const std::size_t masking = keeps_partly ? active : 1;
+  const auto none_k = static_cast<std::uint16_t>(setup.grid.dims.z);
+  for (std::size_t c = 0; !unknown.empty() && c < unknown.front()->size(); ++c) {
+    const auto count = static_cast<std::size_t>(std::count_if(
+        unknown.begin(), unknown.end(), [&](const auto* of_emitter) { return (*of_emitter)[c] != 0; }));
+    if (count == 0 || (!above_ground.empty() && above_ground[c] == none_k)) continue;
+    if (count < masking) {
+      mask.partly_unknown.resize(unknown.front()->size(), 0);
+      mask.partly_unknown[c] = 1;
+      continue;
+    }
+    if (mask.first_valid_k.empty()) mask.first_valid_k = above_ground;
+    mask.first_valid_k.resize(unknown.front()->size(), 0);
+    mask.first_valid_k[c] = none_k;
+  }
+  return mask.first_valid_k.empty() ? above_ground : mask.first_valid_k;
 }
 
 /// Makes the volumes of changed channels. After an edit the other volumes get the name and metadata of the
 /// edited scenario.
 void FieldSolver::Impl::makeVolumes(const scenario::Snapshot& snapshot, const Changes& changes) {
-  if (changes.report.channels) {
+  if (changes.all_sums) {
     volumes.assign(setup.channels.size(), {});
     masks.assign(setup.channels.size(), {});
   }

@@ -40,15 +40,16 @@ FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::
   changes.is_edited = edited.has_value();
   changes.all = is_first || is_stale;
   changes.report.grid = is_first;
-  changes.report.channels = changes.all;
+  changes.all_sums = changes.report.channels = changes.all;
   FieldPlan before;
   try {
     if (edited) {
-      changes.report.channels = changes.all || !haveSameChannels(setup, *edited);
+      changes.all_sums = changes.all || !haveSameSums(setup, *edited);
+      changes.report.channels = changes.all_sums || !haveSameNames(setup, *edited);
       before = std::exchange(static_cast<FieldPlan&>(setup), std::move(*edited));
       changes.before = &before;
     }
-    if (changes.is_edited || is_stale) setEnginePlan(changes.report.channels);
+    if (changes.is_edited || is_stale) setEnginePlan(changes.all_sums);
     compute(snapshot, changes);
   } catch (const Stopped&) {
     if (changes.before != nullptr) static_cast<FieldPlan&>(setup) = std::move(before);
@@ -65,7 +66,7 @@ FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::
     info.time_utc = snapshot.time_utc;
     volume.setInfo(std::move(info));
   }
-  is_first = is_stale = false;
+  is_first = is_stale = has_other_quantities = false;
   return changes.report;
 }
 
@@ -135,6 +136,12 @@ void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& c
       cache.geometry_result = {};
       cache.warnings.clear();
     }
+    const bool is_renamed = changes.before != nullptr &&
+                            changes.before->scenario->emitters[e].name != setup.scenario->emitters[e].name;
+    if (is_renamed && cache.geometry) {
+      cache.warnings.clear();
+      noteWarnings(static_cast<int>(e));
+    }
     const bool has_geometry = setup.needs[e].any;
     const bool has_moved =
         now.active && has_geometry &&
@@ -173,9 +180,8 @@ void FieldSolver::Impl::findIntervals(const scenario::Snapshot& snapshot) {
 /// Finds the emitters whose contribution to some channel changed, and those channels.
 void FieldSolver::Impl::findCombined(const scenario::Snapshot& snapshot, Changes& changes) {
   FieldChanged& report = changes.report;
-  const bool is_all = changes.all || report.channels;
-  changes.emitters.assign(emitters.size(), is_all);
-  changes.sums.assign(setup.channels.size(), is_all);
+  changes.emitters.assign(emitters.size(), changes.all_sums);
+  changes.sums.assign(setup.channels.size(), changes.all_sums);
   std::vector<bool> reported(emitters.size());
   for (const std::vector<int>* list : {&report.moved, &report.turned}) {
     for (int e : *list) reported[e] = true;

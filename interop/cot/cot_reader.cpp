@@ -170,8 +170,8 @@ void CotReader::takeObject(Event& event) {
   if (!heading_deg) heading_deg = attributeOf(childOf(event.detail, "track"), "course");
   if (heading_deg) {
     event.pose.heading_deg = *heading_deg;
-    event.pose.pitch_deg = std::clamp(attributeOf(attitude, "pitch").value_or(0), -90.0, 90.0);
-    event.pose.roll_deg = attributeOf(attitude, "roll").value_or(0);
+    event.pose.pitch_deg = attributeOf(attitude, "pitch").value_or(kUnknown);
+    event.pose.roll_deg = attributeOf(attitude, "roll").value_or(kUnknown);
   }
   if (object.is_present && event.time_s > object.stale_s) addPresence(record.presence, object.stale_s, false);
   addPresence(record.presence, event.time_s, true);

@@ -17,7 +17,7 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 /// Positions that are nearer (m) to the straight line between those around them are left out.
-constexpr double kOnLine_m = 0.9;
+constexpr double kOnLine_m = 0.8;
 constexpr std::size_t kMaxSkipped = 2000;
 constexpr int kMaxShapes = 200;  ///< of a beam over time
 constexpr int kArcParts = 12;
@@ -56,11 +56,21 @@ std::vector<TimedPlace> reducedPlaces(const std::vector<TimedPlace>& places) {
   return kept;
 }
 
-/// Longitude, latitude (1e-7 degrees) and height above the ellipsoid (cm).
+/// A number in short form: whole ones without a decimal.
+void addNumber(OrderedJson& list, double value, double steps) {
+  const double rounded = std::round(value * steps) / steps;
+  if (rounded == std::floor(rounded)) {
+    list.push_back(std::llround(rounded));
+  } else {
+    list.push_back(rounded);
+  }
+}
+
+/// Longitude, latitude (1e-6 degrees) and height above the ellipsoid (0.1 m).
 void addTo(OrderedJson& list, const GeodeticPosition& at) {
-  list.push_back(std::round(at.longitude_deg * 1e7) / 1e7);
-  list.push_back(std::round(at.latitude_deg * 1e7) / 1e7);
-  list.push_back(std::round(at.height_ellipsoid_m * 100) / 100);
+  addNumber(list, at.longitude_deg, 1e6);
+  addNumber(list, at.latitude_deg, 1e6);
+  addNumber(list, at.height_ellipsoid_m, 10);
 }
 
 OrderedJson rgba(scenario::EmitterKind kind, int alpha) {
@@ -110,7 +120,7 @@ class CzmlWriter {
     OrderedJson samples = OrderedJson::array();
     const std::vector<TimedPlace> kept = reducedPlaces(places);
     for (const TimedPlace& place : kept) {
-      if (platform.moves()) samples.push_back(std::round(place.t_s * 1000) / 1000);
+      if (platform.moves()) addNumber(samples, place.t_s, 1000);
       addTo(samples, place.position);
       ++records_;
     }

@@ -92,6 +92,12 @@ bool TrackRecorder::isPosition(PoseSample& pose, const std::string& location) {
     return false;
   }
   pose.longitude_deg = wrapLongitude_deg(pose.longitude_deg);
+  // A heading alone is that of a level object.
+  const bool has_heading = !std::isnan(pose.heading_deg);
+  pose.pitch_deg = !has_heading                 ? kUnknown
+                   : std::isnan(pose.pitch_deg) ? 0
+                                                : std::clamp(pose.pitch_deg, -90.0, 90.0);
+  pose.roll_deg = !has_heading ? kUnknown : std::isnan(pose.roll_deg) ? 0 : pose.roll_deg;
   return true;
 }
 

@@ -26,7 +26,8 @@ class TrackRecorder {
   std::size_t addBeam(std::size_t object);
   RecordedBeam& beam(std::size_t index) { return recording_.beams[index]; }
 
-  /// Adds a pose. One that is no position is counted as bad; of two at one time the later one is kept.
+  /// Adds a pose. With a heading unknown angles are 0; one that is no position is counted as bad; of two at
+  /// one time the later one is kept.
   /// @param pose  t_s counts from any begin, or from that of hasUtc()
   /// @param location  in the file, for messages
   void add(std::size_t object, PoseSample pose, const std::string& location);

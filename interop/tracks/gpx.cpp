@@ -63,11 +63,7 @@ class GpxReader {
     const auto time_s = utcSeconds(textOf(point, "time"));
     if (!time_s) return countBad(recorder_.tally(), location, "it has no time (ISO 8601)");
     pose.t_s = *time_s;
-    const auto course = numberIn(textOf(point, "course"));  // of GPX 1.0
-    if (course) {
-      pose.heading_deg = *course;
-      pose.pitch_deg = pose.roll_deg = 0;
-    }
+    pose.heading_deg = numberIn(textOf(point, "course")).value_or(kUnknown);  // of GPX 1.0
     recorder_.add(object, pose, location);
   }
 

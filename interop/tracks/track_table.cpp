@@ -262,8 +262,8 @@ class TableReader {
     }
     if (const auto heading_deg = valueOf(cells, Column::heading)) {
       pose.heading_deg = *heading_deg;
-      pose.pitch_deg = std::clamp(valueOf(cells, Column::pitch).value_or(0), -90.0, 90.0);
-      pose.roll_deg = valueOf(cells, Column::roll).value_or(0);
+      pose.pitch_deg = valueOf(cells, Column::pitch).value_or(kUnknown);
+      pose.roll_deg = valueOf(cells, Column::roll).value_or(kUnknown);
     }
     const auto id = columns_.find(Column::id);
     const bool has_id = id != columns_.end() && id->second.index < cells.size();

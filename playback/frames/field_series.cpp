@@ -41,6 +41,12 @@ void FieldSeries::setScenario(LoadedScenario input, std::vector<double> times_s)
   updated_s_.reset();
 }
 
+void FieldSeries::setQuantities(const std::vector<std::string>& quantities) {
+  solver_.setQuantities(quantities, input_.scenario);
+  options_.quantities = quantities;
+  updated_s_.reset();
+}
+
 void FieldSeries::compareWith(const LoadedScenario& reference, const std::string& name) {
   emfield::FieldOptions options = options_;
   options.move_tolerance_m = 0;  // else a step would depend on the previous steps

@@ -94,6 +94,27 @@ class ComputedFrames : public FrameSource {
   const LoadedScenario* scene() const override { return &series_->input(); }
   std::vector<std::string> warnings() const override { return series_->warnings(); }
 
+  std::optional<Frame> withoutField(double time_s) override {
+    if (mesh_.mesh) return std::nullopt;
+    const scenario::Scenario& scenario = *series_->input().scenario;
+    const std::vector<emfield::Channel> channels =
+        emfield::channelsOf(scenario, quantitiesOf(selection_.quantity, scenario));
+    const emfield::Channel& channel = channels[channelOf(channels, selection_.quantity)];
+    volume::DenseVolume none;
+    none.grid = emfield::gridOf(scenario.region);
+    none.info.quantity = channel.name;
+    none.info.unit = scenario::info(channel.quantity).unit;
+    none.info.time_s = time_s;
+    none.info.time_utc = scenario::utcAt(scenario.clock, time_s);
+    none.values.resize(static_cast<std::size_t>(none.grid.dims.count()));
+    std::fill(none.values.begin(), none.values.end(), none.info.floor);
+    none.first_valid_k.assign(static_cast<std::size_t>(none.grid.dims.x) * none.grid.dims.y,
+                              static_cast<std::uint16_t>(none.grid.dims.z));
+    Frame frame{{volume::Volume(std::move(none)), nullptr}, {}, {}, true, false, {}};
+    setObjects(frame, time_s);
+    return frame;
+  }
+
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
     std::vector<double> times_s = timesOf(selection_, scenario->clock);
     LoadedScenario edited = withScenario(unposed_, std::move(scenario));
@@ -115,12 +136,10 @@ class ComputedFrames : public FrameSource {
     series_->setScenario(std::move(moved), series_->times_s());
   }
   void setQuantity(const std::string& quantity) override {
-    emfield::FieldOptions options = series_->options();
-    options.quantities = quantitiesOf(quantity, *series_->input().scenario);
-    auto series =
-        std::make_unique<FieldSeries>(series_->input(), series_->times_s(), options, series_->stopFlag());
-    channelOf(series->channels(), quantity);  // throws if there is none
-    series_ = std::move(series);
+    const scenario::Scenario& scenario = *series_->input().scenario;
+    const std::vector<std::string> quantities = quantitiesOf(quantity, scenario);
+    channelOf(emfield::channelsOf(scenario, quantities), quantity);  // throws if there is none
+    series_->setQuantities(quantities);
     selection_.quantity = quantity;
   }
 
@@ -129,14 +148,18 @@ class ComputedFrames : public FrameSource {
   Frame makeFrameAt(double time_s) override {
     const std::vector<volume::Volume> volumes = series_->computeAt(time_s);
     const std::size_t channel = channelOf(series_->channels(), selection_.quantity);
-    Frame frame{mesh_.shown(volumes[channel]), {}, {}, series_->changed(), {}};
-    const LoadedScenario& input = series_->input();
-    frame.markers = markersOf(series_->snapshotAt(time_s), input.terrain, frame.grid());
-    frame.tracks = tracks_.at(time_s, input, frame.grid());
+    Frame frame{mesh_.shown(volumes[channel]), {}, {}, series_->changed(), true, {}};
+    setObjects(frame, time_s);
     return frame;
   }
 
  private:
+  void setObjects(Frame& frame, double time_s) {
+    const LoadedScenario& input = series_->input();
+    frame.markers = markersOf(series_->snapshotAt(time_s), input.terrain, frame.grid());
+    frame.tracks = tracks_.at(time_s, input, frame.grid());
+  }
+
   FrameSelection selection_;
   ComputedMesh mesh_;
   LoadedScenario unposed_;  ///< without the poses of setPoses()
@@ -190,7 +213,7 @@ class StoredFrames : public FrameSource {
   Frame makeFrame(int index) override {
     throwIfStopped(stop_);
     const VolumeFile& file = files_[static_cast<std::size_t>(index)];
-    Frame frame{holds_meshes_ ? readCells(file) : readVoxels(file), {}, {}, true, {}};
+    Frame frame{holds_meshes_ ? readCells(file) : readVoxels(file), {}, {}, true, true, {}};
     if (scene_ && frame.grid().georeferenced) {
       const double time_s = frame.info().time_s;
       const scenario::Snapshot snapshot =
@@ -252,8 +275,9 @@ void FrameSource::setPoses(PosesPtr poses) {
   if (poses) throw Error(ErrorCode::usage, name() + ": the fields of files do not move with platforms");
 }
 
-void FrameSource::setComparison(bool on) {
-  if (on) throw Error(ErrorCode::usage, name() + ": there is nothing to compare with");
+void FrameSource::setComparison(Comparison comparison) {
+  if (comparison != Comparison::none)
+    throw Error(ErrorCode::usage, name() + ": there is nothing to compare with");
 }
 
 void FrameSource::setQuantity(const std::string& quantity) {
@@ -327,7 +351,7 @@ std::unique_ptr<FrameSource> openComparison(const FrameSelection& selection, con
       !compares || selection.compare == kOriginal ? "the original scenario" : selection.compare;
   return std::make_unique<DifferenceSource>(openField(field, target, stop), openReference,
                                             DifferenceReference{name, is_scenario, selection.cache_bytes},
-                                            compares);
+                                            selection.comparison());
 }
 
 /// The range of the values of a series.

@@ -76,41 +76,49 @@ std::vector<Vec3d> cutPolygon(const std::vector<Vec3d>& ring, Coordinate coordin
 
 }  // namespace
 
-GroundMarks::GroundMarks(const volume::Grid& grid, const render::HeightField* ground,
-                         const LoadedScenario* scene)
-    : grid_(grid),
-      ground_(ground),
-      scene_(scene),
-      frame_(grid.frame),
-      lower_(grid.lower_m()),
-      upper_(grid.upper_m()) {}
+MarkedPlane markedPlane(const volume::Grid& grid, const render::HeightField* ground,
+                        const LoadedScenario* scene) {
+  const GeoFrame frame(grid.frame);
+  const Vec3d lower_m = grid.lower_m();
+  const bool is_smooth = scene == nullptr || !scene->terrain;
+  return {lower_m,
+          grid.upper_m(),
+          boxOf(grid),
+          [frame](const std::vector<GeodeticPosition>& positions) {
+            std::vector<Vec3d> local;
+            local.reserve(positions.size());
+            for (const GeodeticPosition& position : positions) local.push_back(frame.toLocal(position));
+            return local;
+          },
+          [=](double x_m, double y_m) -> Vec3d {
+            if (ground != nullptr) return {x_m, y_m, heightAt_m(*ground, x_m, y_m)};
+            const double z_m = scene != nullptr ? groundHeight(*scene, frame, x_m, y_m).z_m : lower_m.z;
+            return {x_m, y_m, std::max(z_m, lower_m.z)};
+          },
+          is_smooth ? kPointsOnSmoothEarth : kPointsOnTerrain};
+}
 
-Vec3d GroundMarks::onGround(double x_m, double y_m) const {
-  if (ground_ != nullptr) return {x_m, y_m, heightAt_m(*ground_, x_m, y_m)};
-  const double z_m = scene_ != nullptr ? groundHeight(*scene_, frame_, x_m, y_m).z_m : lower_.z;
-  return {x_m, y_m, std::max(z_m, lower_.z)};
+std::vector<RingCenter> ringCenters(const std::vector<render::Marker>& markers, const FrameOrigin& frame) {
+  const GeoFrame geo_frame(frame);
+  std::vector<RingCenter> centers;
+  for (const render::Marker& marker : markers)
+    centers.push_back({marker.label, geo_frame.toGeodetic(marker.position_m)});
+  return centers;
 }
 
 bool GroundMarks::isInside(const Vec3d& at_m) const {
-  return at_m.x >= lower_.x && at_m.x <= upper_.x && at_m.y >= lower_.y && at_m.y <= upper_.y;
-}
-
-std::vector<Vec3d> GroundMarks::localOf(const std::vector<GeodeticPosition>& positions) const {
-  std::vector<Vec3d> local;
-  local.reserve(positions.size());
-  for (const GeodeticPosition& position : positions) local.push_back(frame_.toLocal(position));
-  return local;
+  return at_m.x >= plane_.lower_m.x && at_m.x <= plane_.upper_m.x && at_m.y >= plane_.lower_m.y &&
+         at_m.y <= plane_.upper_m.y;
 }
 
 void GroundMarks::addLeg(std::vector<Vec3d>& line_m, const Vec3d& from_m, const Vec3d& to_m) const {
-  const bool is_smooth = scene_ == nullptr || !scene_->terrain;
-  const double longest_m = std::max(upper_.x - lower_.x, upper_.y - lower_.y) /
-                           (is_smooth ? kPointsOnSmoothEarth : kPointsOnTerrain);
+  const Vec3d size_m = plane_.upper_m - plane_.lower_m;
+  const double longest_m = std::max(size_m.x, size_m.y) / plane_.parts;
   const int parts =
       std::max(1, static_cast<int>(std::ceil(std::hypot(to_m.x - from_m.x, to_m.y - from_m.y) / longest_m)));
   for (int part = line_m.empty() ? 0 : 1; part <= parts; ++part) {
     const Vec3d at = from_m + (to_m - from_m) * (static_cast<double>(part) / parts);
-    line_m.push_back(onGround(at.x, at.y));
+    line_m.push_back(plane_.onGround(at.x, at.y));
   }
 }
 
@@ -123,7 +131,7 @@ void GroundMarks::addLine(const std::vector<Vec3d>& line_m, const GroundLine& li
   };
   for (std::size_t i = 0; i + 1 < line_m.size(); ++i) {
     Vec3d from = line_m[i], to = line_m[i + 1];
-    if (!clip(lower_, upper_, from, to)) {
+    if (std::isnan(from.x + to.x) || !clip(plane_.lower_m, plane_.upper_m, from, to)) {
       flush();
       continue;
     }
@@ -143,10 +151,12 @@ void GroundMarks::addLine(const std::vector<Vec3d>& line_m, const GroundLine& li
 void GroundMarks::addArea(std::vector<Vec3d> ring_m, const GroundLine& like) {
   const auto east = [](const Vec3d& p) { return p.x; };
   const auto north = [](const Vec3d& p) { return p.y; };
-  ring_m = cutPolygon(ring_m, east, lower_.x, true);
-  ring_m = cutPolygon(ring_m, east, upper_.x, false);
-  ring_m = cutPolygon(ring_m, north, lower_.y, true);
-  ring_m = cutPolygon(ring_m, north, upper_.y, false);
+  const auto hasNoImage = [](const Vec3d& p) { return std::isnan(p.x); };
+  if (std::any_of(ring_m.begin(), ring_m.end(), hasNoImage)) return;
+  ring_m = cutPolygon(ring_m, east, plane_.lower_m.x, true);
+  ring_m = cutPolygon(ring_m, east, plane_.upper_m.x, false);
+  ring_m = cutPolygon(ring_m, north, plane_.lower_m.y, true);
+  ring_m = cutPolygon(ring_m, north, plane_.upper_m.y, false);
   if (ring_m.size() < 3) return;
   GroundLine area = like;
   area.is_area = true;
@@ -156,7 +166,7 @@ void GroundMarks::addArea(std::vector<Vec3d> ring_m, const GroundLine& like) {
 }
 
 void GroundMarks::addGraticule(PositionFormat format) {
-  const scenario::GeoBox box = boxOf(grid_);
+  const scenario::GeoBox& box = plane_.box;
   const double lat_step_deg = graticuleStep((box.north_deg - box.south_deg) / kLinesAcross, format);
   const double lon_step_deg = graticuleStep((box.east_deg - box.west_deg) / kLinesAcross, format);
   const auto addLines = [&](bool is_latitude, double first_deg, double last_deg, double step_deg,
@@ -170,7 +180,7 @@ void GroundMarks::addGraticule(PositionFormat format) {
                                    : GeodeticPosition{along_deg, n * step_deg, 0});
       }
       const double shown_deg = is_latitude ? n * step_deg : wrapLongitude_deg(n * step_deg);
-      addLine(localOf(line),
+      addLine(plane_.at(line),
               {GroundInk::graticule,
                {},
                coordinateText(shown_deg, is_latitude, format, is_latitude ? lat_step_deg : lon_step_deg)});
@@ -182,7 +192,7 @@ void GroundMarks::addGraticule(PositionFormat format) {
 
 void GroundMarks::addCoast(const scenario::Coast& coast, bool lakes) {
   for (const scenario::CoastLine& line : coast.lines()) {
-    if (line.level == 1 || lakes) addLine(localOf(line.points), {GroundInk::coast, {}, ""});
+    if (line.level == 1 || lakes) addLine(plane_.at(line.points), {GroundInk::coast, {}, ""});
   }
 }
 
@@ -191,30 +201,31 @@ void GroundMarks::addPlaces(const std::vector<scenario::Place>& places) {
     const GroundLine like{GroundInk::place, {}, place.name};
     bool is_first = true;
     for (const std::vector<GeodeticPosition>& part : place.parts) {
-      const std::vector<Vec3d> at = localOf(part);
+      const std::vector<Vec3d> at = plane_.at(part);
       if (place.kind == scenario::Place::Kind::line) addLine(at, like);
       if (place.kind == scenario::Place::Kind::area && is_first) addArea(at, like);
       if (place.kind == scenario::Place::Kind::area && !is_first) addLine(at, {GroundInk::place, {}, ""});
       is_first = false;
       if (place.kind != scenario::Place::Kind::point) continue;
       for (const Vec3d& point : at) {
-        const Vec3d ground = onGround(point.x, point.y);
+        const Vec3d ground = plane_.onGround(point.x, point.y);
         if (isInside(point) && !std::isnan(ground.z)) points.push_back({ground, place.name});
       }
     }
   }
 }
 
-void GroundMarks::addRings(const std::vector<RangeRings>& rings, const std::vector<render::Marker>& markers,
+void GroundMarks::addRings(const std::vector<RangeRings>& rings, const std::vector<RingCenter>& centers,
                            Units units) {
   for (const RangeRings& ring : rings) {
-    const auto marker = std::find_if(markers.begin(), markers.end(),
-                                     [&](const render::Marker& m) { return m.label == ring.emitter; });
-    if (marker == markers.end()) continue;
-    const GeodeticPosition center = frame_.toGeodetic(marker->position_m);
-    const double farthest_m =
-        std::hypot(std::max(upper_.x - marker->position_m.x, marker->position_m.x - lower_.x),
-                   std::max(upper_.y - marker->position_m.y, marker->position_m.y - lower_.y));
+    const auto found = std::find_if(centers.begin(), centers.end(),
+                                    [&](const RingCenter& of) { return of.name == ring.emitter; });
+    if (found == centers.end()) continue;
+    const GeodeticPosition& center = found->position;
+    const Vec3d at = plane_.at({center}).front();
+    const double farthest_m = std::hypot(std::max(plane_.upper_m.x - at.x, at.x - plane_.lower_m.x),
+                                         std::max(plane_.upper_m.y - at.y, at.y - plane_.lower_m.y));
+    if (std::isnan(farthest_m)) continue;
     const int most =
         std::min(static_cast<int>(farthest_m / ring.spacing_m), ring.count > 0 ? ring.count : kMaxRings);
     for (int n = 1; n <= most; ++n) {
@@ -223,7 +234,7 @@ void GroundMarks::addRings(const std::vector<RangeRings>& rings, const std::vect
         circle.push_back(geodesicDirect(center.latitude_deg, center.longitude_deg,
                                         2 * kPi * corner / kRingCorners, n * ring.spacing_m));
       }
-      addLine(localOf(circle), {GroundInk::ring, {}, roundDistanceText(n * ring.spacing_m, units)});
+      addLine(plane_.at(circle), {GroundInk::ring, {}, roundDistanceText(n * ring.spacing_m, units)});
     }
   }
 }

@@ -1,6 +1,9 @@
 /// Lines and points on the ground that tell where it is.
 #pragma once
 
+#include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "emscape/base/geodesy/geo_frame.h"
@@ -14,40 +17,53 @@
 
 namespace emscape::playback {
 
-/// Puts lines on the ground of a grid: cuts them at the sides of the box, and divides them so that they
-/// follow the ground. For one thread; the ground and the scene must live as long as it.
+/// A rectangle of a plane on which marks are drawn: the frame of a grid, or the projection of a map.
+struct MarkedPlane {
+  Vec3d lower_m, upper_m;  ///< opposite corners
+  scenario::GeoBox box;    ///< that contains it
+  /// Points of the plane at positions; NaN without an image.
+  std::function<std::vector<Vec3d>(const std::vector<GeodeticPosition>&)> at;
+  /// The point on the ground, which may be of a height.
+  std::function<Vec3d(double x_m, double y_m)> onGround;
+  int parts = 1;  ///< into which a line across the plane is divided so that it follows the ground
+};
+/// @param ground  as drawn; null: lines are at the surface of the scene, without one at the bottom of the
+/// box. Ground and scene must live as long as the plane
+MarkedPlane markedPlane(const volume::Grid& grid, const render::HeightField* ground,
+                        const LoadedScenario* scene);
+
+/// A centre of range rings.
+struct RingCenter {
+  std::string name;
+  GeodeticPosition position;
+};
+/// The emitters' positions, by their labels.
+std::vector<RingCenter> ringCenters(const std::vector<render::Marker>& markers, const FrameOrigin& frame);
+
+/// Puts lines on a plane: cuts them at its sides, and divides them. For one thread.
 class GroundMarks {
  public:
-  /// @param ground  as drawn; null: lines are at the surface of the scene, without one at the bottom of the
-  /// box
-  GroundMarks(const volume::Grid& grid, const render::HeightField* ground, const LoadedScenario* scene);
+  explicit GroundMarks(MarkedPlane plane) : plane_(std::move(plane)) {}
 
   void addGraticule(PositionFormat format);
   /// @param lakes  also the shores of lakes
   void addCoast(const scenario::Coast& coast, bool lakes);
   void addPlaces(const std::vector<scenario::Place>& places);
-  /// Rings about the markers of the emitters that are named.
-  void addRings(const std::vector<RangeRings>& rings, const std::vector<render::Marker>& markers,
-                Units units);
+  /// Rings about the centres that are named.
+  void addRings(const std::vector<RangeRings>& rings, const std::vector<RingCenter>& centers, Units units);
 
   std::vector<render::GroundLine> lines;
   std::vector<render::GroundPoint> points;
 
  private:
-  Vec3d onGround(double x_m, double y_m) const;
   bool isInside(const Vec3d& at_m) const;
-  std::vector<Vec3d> localOf(const std::vector<GeodeticPosition>& positions) const;
   /// @param like  its ink, and the label of its longest part
   void addLine(const std::vector<Vec3d>& line_m, const render::GroundLine& like);
   void addArea(std::vector<Vec3d> ring_m, const render::GroundLine& like);
   /// Adds the end of a leg to a line, after as many points as it needs.
   void addLeg(std::vector<Vec3d>& line_m, const Vec3d& from_m, const Vec3d& to_m) const;
 
-  const volume::Grid grid_;
-  const render::HeightField* const ground_;
-  const LoadedScenario* const scene_;
-  const GeoFrame frame_;
-  const Vec3d lower_, upper_;
+  const MarkedPlane plane_;
 };
 
 }  // namespace emscape::playback

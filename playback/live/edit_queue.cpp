@@ -53,6 +53,12 @@ bool EditQueue::makeEdits(EditHistory& history, std::vector<Outcome>& outcomes) 
       return true;
     }
   }
+  begin(history);
+  return false;
+}
+
+void EditQueue::begin(const EditHistory& history) {
+  if (waiting_.empty() || !isEdit(waiting_.front().kind) || task_.active()) return;
   const bool replaces = waiting_.front().kind == Kind::replace;
   task_.start([base = history.scenario(), edits = waiting_.front().edits, replaces] {
     Result result{base, nullptr, ""};
@@ -64,7 +70,6 @@ bool EditQueue::makeEdits(EditHistory& history, std::vector<Outcome>& outcomes) 
     return result;
   });
   is_asked_ = true;
-  return false;
 }
 
 std::vector<EditQueue::Outcome> EditQueue::update(EditHistory& history) {

@@ -41,6 +41,9 @@ class EditQueue {
   bool isDragging() const { return is_dragging_; }
   /// True if a request is pending.
   bool isBusy() const { return !waiting_.empty(); }
+  /// Begins with the first request before the next update(), if it is an edit and no other one is in
+  /// progress.
+  void begin(const EditHistory& history);
   /// Executes the operations that are ready. @return the edits made or refused since the last call
   std::vector<Outcome> update(EditHistory& history);
   /// Drops all pending requests, and takes back a drag that is open.
@@ -58,6 +61,7 @@ class EditQueue {
     std::string error;
   };
 
+  static bool isEdit(Kind kind) { return kind == Kind::set || kind == Kind::replace || kind == Kind::move; }
   void push(Operation operation) { waiting_.push_back(std::move(operation)); }
   bool makeEdits(EditHistory& history, std::vector<Outcome>& outcomes);
 

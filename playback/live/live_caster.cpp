@@ -19,6 +19,8 @@ using render::SceneEvent;
 using SteadyClock = std::chrono::steady_clock;
 
 constexpr std::size_t kMaxStateChanges = 1000;
+/// Interval at which a deferred restoration is tried again.
+constexpr std::chrono::milliseconds kDeferral{20};
 
 double between_ms(SteadyClock::time_point begin, SteadyClock::time_point end) {
   return std::chrono::duration<double, std::milli>(end - begin).count();
@@ -28,6 +30,11 @@ double between_ms(SteadyClock::time_point begin, SteadyClock::time_point end) {
 ViewState drawable(ViewState view) {
   if (view.size.count() == 0) view.size = {1, 1};
   return view;
+}
+
+bool sameBeside(const Frame& a, const Frame& b) {
+  if (!a.beside || !b.beside) return !a.beside && !b.beside;
+  return sameValues(*a.beside->frame, *b.beside->frame);
 }
 
 }  // namespace
@@ -82,8 +89,15 @@ void LiveCaster::run() {
   while (!closing_) {
     try {
       takeMail();
-      act(canDraw() ? controller_.next(now_ms())
-                    : ControllerAction{ControllerAction::Kind::wait, {}, INFINITY});
+      const ControllerAction action = canDraw()
+                                          ? controller_.next(now_ms())
+                                          : ControllerAction{ControllerAction::Kind::wait, {}, INFINITY};
+      if (action.kind == ControllerAction::Kind::restore && defers()) {
+        controller_.restoreDone(false);
+        event_.waitUntil(SteadyClock::now() + kDeferral);
+      } else {
+        act(action);
+      }
     } catch (const std::exception& error) {
       controller_ = render::FrameController(controllerOptions());
       is_drawing_ = false;
@@ -153,6 +167,7 @@ void LiveCaster::applyView(const ViewRequest& request) {
       if (painter_.setColors(view)) raise(SceneEvent::transfer_function);
     });
   }
+  apply(change.split, SceneEvent::view, [&] { painter_.setSplit(view.split); });
   if (change.ground) {
     attempt([&] { painter_.setScenery(view); });
     raise(SceneEvent::mode);  // also without the file that could not be read
@@ -173,7 +188,8 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
   const bool is_other_grid = field_ && field_->frame.grid() != delivery.frame.grid();
   const scenario::TerrainPtr ground = field_ && field_->scene ? field_->scene->terrain : nullptr;
   const bool is_other_ground = ground != (delivery.scene ? delivery.scene->terrain : nullptr);
-  const bool is_same_field = !is_first && !is_other_ground && sameValues(field_->frame, delivery.frame);
+  const bool is_same_field = !is_first && !is_other_ground && sameValues(field_->frame, delivery.frame) &&
+                             sameBeside(field_->frame, delivery.frame);
   const render::Camera before = is_first ? render::Camera{} : painter_.camera();
   painter_.setScene(delivery.title, delivery.scene ? &*delivery.scene : nullptr);
   field_ = delivery;
@@ -194,7 +210,7 @@ void LiveCaster::applyField(const FieldDelivery& delivery) {
   } else if (before.eye_m != painter_.camera().eye_m || before.forward != painter_.camera().forward) {
     raise(SceneEvent::view);  // it follows a platform
   }
-  if (is_other_quantity) painter_.setColors({});
+  if (is_other_quantity && !is_same_field) painter_.setColors({});  // else it only has another name
   if (refused) std::rethrow_exception(refused);
 }
 
@@ -327,6 +343,9 @@ void LiveCaster::publish() {
   picture.transfer = painter_.transferFunction();
   picture.settings = painter_.settings();
   static_cast<ShownField&>(picture) = field_->frame;
+  picture.split_column = painter_.splitColumn();
+  if (picture.split_column > 0) picture.beside = field_->frame.beside->frame;
+  picture.has_field = field_->frame.has_field;
   if (field_->scene) {
     picture.scenario = field_->scene->scenario;
     picture.terrain = field_->scene->terrain;

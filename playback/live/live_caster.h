@@ -50,6 +50,8 @@ class LiveCaster {
     /// Receives the picture, with the status known to this thread.
     std::function<void(LivePicture, PictureProgress)> publish;
     std::function<void()> changed;  ///< of the status
+    /// True while a field is computed that restorations leave the processor to; empty: never.
+    std::function<bool()> is_field_hurried;
   };
 
   /// @param threads   of loops; 0: all
@@ -63,6 +65,8 @@ class LiveCaster {
 
   /// Any thread calls these.
   void request(ViewRequest request);
+  /// Stops a restoration, which begins again when no field is hurried.
+  void defer() { stop_restoration_ = true; }
   void deliver(FieldDelivery delivery, Mailbox<FieldDelivery>::Time asked);
   /// Stops the work in progress soon.
   void stop();
@@ -90,6 +94,7 @@ class LiveCaster {
   void noteInput(Time since);
   // Requests of the controller
   bool canDraw() const;
+  bool defers() const { return events_.is_field_hurried && events_.is_field_hurried(); }
   /// Tetrahedra have no patterns: incomplete pictures are projected, or there are none.
   render::ControllerOptions controllerOptions() const;
   void act(const render::ControllerAction& action);

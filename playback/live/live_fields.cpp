@@ -35,6 +35,8 @@ std::vector<double> timesOf(const FrameSource& source) {
 constexpr double kQuiet_ms = 150;
 /// A field that takes longer leaves a core free even if it is not needed yet.
 constexpr double kLongField_ms = 200;
+/// Time for which a request without patience delays other work.
+constexpr double kHurry_ms = 250;
 /// Patience of a request after a field was abandoned.
 constexpr double kLongPatience_ms = 1000;
 
@@ -86,8 +88,14 @@ FieldsStatus LiveFields::status() const {
 void LiveFields::request(FieldRequest request) {
   const std::lock_guard<std::mutex> lock(patience_mutex_);
   pending_patience_ms_ = std::min(pending_patience_ms_, request.patience_ms);
+  if (request.patience_ms == Patience::kNone)
+    hurried_until_ = (SteadyClock::now() + milliseconds(kHurry_ms)).time_since_epoch().count();
   box_.put(std::move(request));
   applyPatience();
+}
+
+bool LiveFields::isHurried() const {
+  return SteadyClock::now().time_since_epoch().count() < hurried_until_;
 }
 
 /// Stops the field in progress if a request is pending. The mutex is locked.
@@ -127,7 +135,7 @@ void LiveFields::open() {
     if (!source_) return;
     if (const LoadedScenario* scene = source_->scene()) opened_scenario_ = scene->scenario;
     Content content;
-    content.shown = {opened_scenario_, nullptr, "", !wanted_.view.compare.empty()};
+    content.shown = {opened_scenario_, nullptr, "", wanted_.view.comparison()};
     content.shown.quantity = shownOf(wanted_).quantity;
     content_ = std::make_shared<const Content>(content);
     noteContent();
@@ -166,11 +174,13 @@ void LiveFields::serve() {
   }
   try {
     const Shown wanted = shownOf(wanted_);
-    if (serveFromMemory(wanted)) return;
+    if (wanted_.has_field && serveFromMemory(wanted)) return;
     const bool is_other = !(wanted == content_->shown);
     begin(fmt::format("{} at {:.6g} s", wanted.quantity.empty() ? content_->title : wanted.quantity,
                       wanted_.view.time_s));
     if (is_other) change(wanted);
+    if (!wanted_.has_field && deliverWithoutField(wanted_.revision)) return;
+    if (!last_ && options_.begins_without_field) deliverWithoutField(0);
     if (!is_other && field_begin_) {
       const bool plays = std::isinf(wanted_.patience_ms);
       const Time may_begin =
@@ -222,7 +232,7 @@ bool LiveFields::serveFromMemory(const Shown& wanted) {
 /// What a request shows. Without a quantity it is the first of the computed scenario.
 LiveFields::Shown LiveFields::shownOf(const FieldRequest& request) const {
   Shown shown{request.scenario ? request.scenario : opened_scenario_, request.poses, request.view.quantity,
-              !request.view.compare.empty()};
+              request.view.comparison()};
   const bool is_computed = source_->scene() != nullptr && request.view.scenario.empty();
   if (shown.quantity.empty() && is_computed) shown.quantity = shown.scenario->output.quantities.front();
   return shown;
@@ -251,9 +261,9 @@ void LiveFields::change(const Shown& wanted) {
     content.shown.quantity = wanted.quantity;
     changed();
   }
-  if (wanted.compares != content.shown.compares) {
-    source_->setComparison(wanted.compares);
-    content.shown.compares = wanted.compares;
+  if (wanted.comparison != content.shown.comparison) {
+    source_->setComparison(wanted.comparison);
+    content.shown.comparison = wanted.comparison;
     changed();
   }
   if (range_search_.next()) beginSearch();
@@ -287,7 +297,7 @@ Frame LiveFields::compute(double time_s) {
   const FieldsStatus before = status();
   const bool shares = (events_.is_shared && events_.is_shared()) || before.field_ms > kLongField_ms;
   Frame frame;
-  const bool leaves_a_core = options_.threads == 0 && shares && before.fields_computed > 0;
+  const bool leaves_a_core = options_.threads == 0 && shares && before.fields_computed > 0 && !isHurried();
   const int step = content_->stepAt(time_s);
   (leaves_a_core ? narrow_arena_ : arena_).run([&] {
     const WorkScope scope(&work_);  // the arena may run it on another thread
@@ -316,6 +326,10 @@ Frame LiveFields::compute(double time_s) {
 
 void LiveFields::deliver(const ContentPtr& content, const Frame& frame) {
   is_due_ = false;
+  {
+    const std::lock_guard<std::mutex> lock(patience_mutex_);
+    if (pending_patience_ms_ > Patience::kNone) hurried_until_ = 0;
+  }
   last_ = content;
   last_frame_ = frame;
   FieldDelivery delivery{wanted_.revision, content->title, content->scene, content->shown.quantity, frame};
@@ -325,6 +339,21 @@ void LiveFields::deliver(const ContentPtr& content, const Frame& frame) {
   }
   events_.deliver(std::move(delivery), asked_);
   events_.changed();
+}
+
+/// @param revision  of the delivery
+/// @return false if the source has nothing to show without a field
+bool LiveFields::deliverWithoutField(long long revision) {
+  const std::optional<Frame> frame = source_->withoutField(content_->timeOf(wanted_.view.time_s));
+  if (!frame) return false;
+  if (revision > 0) {
+    is_due_ = false;
+    const std::lock_guard<std::mutex> lock(patience_mutex_);
+    begun_.reset();
+  }
+  events_.deliver({revision, content_->title, content_->scene, content_->shown.quantity, *frame}, asked_);
+  events_.changed();
+  return true;
 }
 
 void LiveFields::fail(const std::string& line, ErrorCode code) {

@@ -27,6 +27,7 @@ struct FieldRequest {
   long long revision = 0;  ///< counts requests
   ViewState view;
   std::shared_ptr<const scenario::Scenario> scenario;  ///< null: as it was opened
+  bool has_field = true;                               ///< false: the ground and the emitters alone
   PosesPtr poses = {};                                 ///< of a live source; null: those of the scenario
   long long search = 0;                  ///< number of the requested search of the series' range; 0: none
   double patience_ms = Patience::kNone;  ///< with the field in progress
@@ -34,7 +35,7 @@ struct FieldRequest {
 
 /// A field and its data.
 struct FieldDelivery {
-  long long revision = 0;  ///< of its request
+  long long revision = 0;  ///< of its request; 0: shown until the requested field is ready
   std::string title;
   std::optional<LoadedScenario> scene;
   std::string quantity;
@@ -77,7 +78,8 @@ class LiveFields {
     double min_seek_interval_ms = 0;
     double min_play_interval_ms = 0;  ///< the same for requests with endless patience
     int steps_ahead = 0;
-    int threads = 0;  ///< 0: one fewer than all while other threads need them
+    bool begins_without_field = false;  ///< delivers FrameSource::withoutField() before the first field
+    int threads = 0;                    ///< 0: one fewer than all while other threads need them
     int niceness = 0;
   };
   /// Called on the thread of this object. `deliver` and `changed` are required.
@@ -104,6 +106,9 @@ class LiveFields {
   /// stop(), and waits for the end.
   void close();
   FieldsStatus status() const;
+  /// True for a moment after a request without patience, until its field is delivered: other work that can
+  /// wait leaves the processor to it.
+  bool isHurried() const;
 
  private:
   using Time = Mailbox<FieldRequest>::Time;
@@ -113,11 +118,11 @@ class LiveFields {
     std::shared_ptr<const scenario::Scenario> scenario;
     PosesPtr poses;
     std::string quantity;
-    bool compares = false;
+    Comparison comparison = Comparison::none;
 
     bool operator==(const Shown& other) const {
       return scenario == other.scenario && poses == other.poses && quantity == other.quantity &&
-             compares == other.compares;
+             comparison == other.comparison;
     }
   };
   /// The same with what the source has for it.
@@ -147,6 +152,7 @@ class LiveFields {
   void begin(const std::string& what);
   void applyPatience();
   void deliver(const ContentPtr& content, const Frame& frame);
+  bool deliverWithoutField(long long revision);
   void fail(const std::string& line, ErrorCode code);
   void beginSearch();
   void endSearch(const ValueRange& range);
@@ -165,6 +171,7 @@ class LiveFields {
   StopFlag stop_{false};
   Work work_{&stop_};
 
+  std::atomic<Time::rep> hurried_until_{0};
   std::mutex patience_mutex_;                        // of the next four
   double pending_patience_ms_ = Patience::kEndless;  // smallest of the requests in the box
   std::optional<Time> begun_;                        // a field that may be abandoned is being computed

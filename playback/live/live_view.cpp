@@ -1,6 +1,7 @@
 #include "playback/live/live_view.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <deque>
 #include <mutex>
@@ -83,6 +84,7 @@ struct LiveView::Impl {
   PictureProgress progress;  // of the picture
   mutable FieldRate rate;
 
+  std::atomic<bool> is_built{false};  // the caster's thread begins before `fields`
   LiveCaster caster;
   LiveFields fields;
 
@@ -94,18 +96,21 @@ struct LiveView::Impl {
         caster(view, options.target, controllerOptionsOf(options, shown), options.cast_threads,
                options.niceness,
                {[this](LivePicture made, PictureProgress of_made) { publish(std::move(made), of_made); },
-                [this] { tell(); }}),
+                [this] { tell(); }, [this] { return is_built && fields.isHurried(); }}),
         fields(
             [selection = selectionOf(shown, options), target = options.target](const StopFlag& stop) {
               return selection.input.empty() ? nullptr : openFrameSource(selection, target, {}, &stop);
             },
             field,
             {options.cache_bytes, options.min_seek_interval_ms, options.min_play_interval_ms,
-             options.steps_ahead, options.solve_threads, solveNiceness(options)},
+             options.steps_ahead, options.begins_without_field, options.solve_threads,
+             solveNiceness(options)},
             {[this](FieldDelivery delivery, Mailbox<FieldRequest>::Time asked) {
                caster.deliver(std::move(delivery), asked);
              },
-             [this] { tell(); }, [this] { return caster.isDrawing(); }}) {}
+             [this] { tell(); }, [this] { return caster.isDrawing(); }}) {
+    is_built = true;
+  }
 
   /// Each thread calls the object of the other one: both end before either object is destroyed.
   ~Impl() {
@@ -194,15 +199,25 @@ void LiveView::show(const ViewState& view, std::shared_ptr<const scenario::Scena
         change.time &&
         (fields.times_s.empty() || fieldTime_s(fields, view.time_s) != fieldTime_s(fields, before.time_s));
     is_other_view = change.size || change.camera || change.settings || change.colors || change.ground ||
-                    change.labels || change.pattern;
-    is_other_field = change.field || is_other_time || (edited && edited != impl_->field.scenario);
+                    change.labels || change.pattern || change.split;
+    is_other_field = change.field || before.comparison() != view.comparison() || is_other_time ||
+                     (edited && edited != impl_->field.scenario);
     impl_->view.view = impl_->field.view = view;
   }
   if (is_other_view) impl_->ask(impl_->view, impl_->caster, [] {});
   if (!is_other_field) return;
+  if (patience_ms == Patience::kNone) impl_->caster.defer();
   impl_->ask(impl_->field, impl_->fields, [&] {
     impl_->field.patience_ms = patience_ms;
+    impl_->field.has_field = true;
     if (edited) impl_->field.scenario = std::move(edited);
+  });
+}
+
+void LiveView::showWithoutField() {
+  impl_->ask(impl_->field, impl_->fields, [&] {
+    impl_->field.patience_ms = Patience::kNone;
+    impl_->field.has_field = false;
   });
 }
 

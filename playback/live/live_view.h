@@ -41,6 +41,8 @@ struct LiveOptions {
   /// Number of steps computed ahead of the one on screen, while steps are requested in sequence and there is
   /// no other work.
   int steps_ahead = 2;
+  /// Until the first field is computed, the pictures show the ground and the emitters.
+  bool begins_without_field = false;
   /// Threads of loops; 0: all, but fields leave one core free while pictures are cast.
   int solve_threads = 0;
   int cast_threads = 0;
@@ -99,6 +101,10 @@ struct StateChange {
 
 /// A picture with the field that it shows; info().range_* is the range of that field. Immutable.
 struct LivePicture : ShownField {
+  std::shared_ptr<const Frame>
+      beside;  ///< field of the columns left of `split_column`; null if there are none
+  int split_column = 0;
+  bool has_field = true;  ///< false: LiveOptions::begins_without_field, LiveView::showWithoutField()
   render::ImageSize size;
   /// With background and labels. Of a settled picture: as `emscape render` writes it.
   render::Image8 finished;
@@ -153,6 +159,9 @@ class LiveView {
   /// @param patience_ms  with the field in progress, if another one is requested: see Patience
   void show(const ViewState& view, std::shared_ptr<const scenario::Scenario> edited = nullptr,
             double patience_ms = Patience::kNone);
+  /// Abandons the field of the last view: the picture shows its ground and its emitters until another field
+  /// is requested. For computed grids before the first field.
+  void showWithoutField();
   /// Shows platforms at the poses of a live source; the field in progress is completed first. Null: where the
   /// scenario has them.
   /// @param scenario  of the poses; null: that which is shown

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/text/display_units.h"
 #include "base/text/time_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
@@ -13,6 +14,7 @@
 #include "playback/frames/platform_tracks.h"
 #include "playback/pictures/followed_camera.h"
 #include "playback/pictures/scenery.h"
+#include "playback/pictures/split_picture.h"
 
 namespace emscape::playback {
 namespace {
@@ -53,7 +55,8 @@ Painter::Painter(const ViewState& view, const ComputeTarget& target, bool must_s
     : view_(view),
       must_show_isosurface_(must_show_isosurface),
       scenery_(std::make_unique<Scenery>()),
-      renderer_(target.rendererOptions()) {
+      renderer_(target.rendererOptions()),
+      renderer_options_(target.rendererOptions()) {
   renderer_.setSettings(view.settings);
   annotations_.theme = view.theme;
   annotations_.planes = view.settings.planes;
@@ -61,6 +64,13 @@ Painter::Painter(const ViewState& view, const ComputeTarget& target, bool must_s
 }
 
 Painter::~Painter() = default;
+
+template <class Use>
+void Painter::onRenderer(const Use& use) {
+  if (cells_) return use(*cells_);
+  use(renderer_);
+  if (split_) use(split_->left());
+}
 
 void Painter::setScene(const std::string& title, const LoadedScenario* scene) {
   annotations_.title = title;
@@ -86,9 +96,9 @@ void Painter::prepareCells(const Frame& frame) {
 
 void Painter::setFrame(const Frame& frame) {
   prepareCells(frame);
-  const bool is_first_of_colors = !has_colors_;
-  if (is_first_of_colors) onRenderer([&](auto& to) { to.setTransferFunction(functionFor(frame)); });
-  has_colors_ = true;
+  const bool is_first_of_colors = !has_colors_ && frame.has_field;
+  if (!has_colors_) onRenderer([&](auto& to) { to.setTransferFunction(functionFor(frame)); });
+  has_colors_ = has_colors_ || frame.has_field;
   const bool is_other_grid = !frame_ || frame_->grid() != frame.grid();
   if (frame.cells) {
     cells_->setField(frame.cells->field, frame.cells->faces);
@@ -96,6 +106,7 @@ void Painter::setFrame(const Frame& frame) {
     renderer_.setVolume(frame.volume);
   }
   frame_ = frame;
+  updateSplit();
   const volume::VolumeInfo& info = frame.info();
   const double span_s = scene_ ? scene_->scenario->clock.duration_s : 0;
   annotations_.time = info.has_time ? "t = " + timeText(info.time_s, span_s) : "";
@@ -104,8 +115,10 @@ void Painter::setFrame(const Frame& frame) {
   annotations_.subtitle = subtitleOf(info);
   annotations_.georeferenced = frame.grid().georeferenced;
   setMarkers();
-  setLegend();
   setGround();
+  setLegend();
+  if (is_first_of_colors && view_.settings.map_height_agl_m && !showsMap())
+    logWarning("map_layer: no ground is drawn below the field; nothing is painted on it");
   if (is_other_grid || !view_.follow.empty()) fitCamera();
   if (is_first_of_colors && view_.settings.mode == render::CompositingMode::iso) {
     const std::string missing =
@@ -119,12 +132,43 @@ void Painter::setFrame(const Frame& frame) {
 void Painter::setAzimuth(double azimuth_deg) {
   render::CameraSpec spec = view_.camera;
   spec.azimuth_deg = azimuth_deg;
-  onRenderer([&](auto& to) { to.setCamera(cameraOf(spec)); });
+  setView(cameraOf(spec));
 }
 
 void Painter::setCamera(const render::CameraSpec& spec) {
-  if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(spec)); });
+  if (frame_) setView(cameraOf(spec));
   view_.camera = spec;
+}
+
+void Painter::setView(const render::Camera& camera) {
+  camera_ = camera;
+  if (split_) return split_->setView(camera, view_.size, view_.split, renderer_);
+  onRenderer([&](auto& to) { to.setCamera(camera); });
+}
+
+void Painter::setSplit(double split) {
+  view_.split = split;
+  updateSplit();
+}
+
+int Painter::splitColumn() const {
+  return split_ ? split_->column() : 0;
+}
+
+void Painter::updateSplit() {
+  const bool splits = frame_ && frame_->beside && view_.split > 0 && view_.size.width > 1;
+  if (!splits) {
+    if (std::exchange(split_, nullptr)) setView(camera_);
+    return;
+  }
+  if (!split_) {
+    split_ = std::make_unique<SplitPicture>(renderer_options_);
+    split_->left().setSettings(view_.settings);
+    split_->left().setTransferFunction(renderer_.transferFunction());
+    split_->left().setHeightField(scenery_->heightField());
+  }
+  split_->left().setVolume(frame_->beside->frame->volume);
+  setView(camera_);
 }
 
 void Painter::setFollowed(const ViewState& view) {
@@ -135,13 +179,14 @@ void Painter::setFollowed(const ViewState& view) {
 
 void Painter::setSize(render::ImageSize size) {
   view_.size = size;
+  updateSplit();
   fitCamera();
 }
 
 void Painter::setSettings(const render::RenderSettings& settings) {
   if (cells_) render::checkCellSettings(settings);
   renderer_.setSettings(settings);
-  if (cells_) cells_->setSettings(settings);
+  onRenderer([&](auto& to) { to.setSettings(settings); });
   view_.settings = settings;
   annotations_.planes = settings.planes;
   setLegend();
@@ -223,6 +268,10 @@ render::FrameReport Painter::draw(const render::FramePlan& plan, const StopFlag*
     report.pattern = plan.pattern;
     return report;
   }
+  if (split_) {
+    fetched_ = true;
+    return split_->draw(plan, renderer_, image_, stop);
+  }
   // A picture in host memory need not be fetched.
   fetched_ = renderer_.backend() == Backend::cpu;
   return fetched_ ? renderer_.draw(plan, view_.size, image_, stop) : renderer_.draw(plan, view_.size, stop);
@@ -230,6 +279,10 @@ render::FrameReport Painter::draw(const render::FramePlan& plan, const StopFlag*
 
 render::FrameReport Painter::restore(const StopFlag* stop) {
   if (cells_) return drawCells(true, stop);
+  if (split_) {
+    fetched_ = true;
+    return split_->restore(renderer_, image_, stop);
+  }
   fetched_ = renderer_.backend() == Backend::cpu;
   return fetched_ ? renderer_.restore(image_, stop) : renderer_.restore(stop);
 }
@@ -254,25 +307,40 @@ render::Image Painter::fullCast() {
     drawCells(true, nullptr);
     return std::exchange(image_, std::move(kept));
   }
-  return renderer_.render(view_.size);
+  return split_ ? split_->fullCast(renderer_) : renderer_.render(view_.size);
 }
 
 render::Image8 Painter::picture(const std::string& note) {
   annotations_.note = note;
-  return render::compose(image(), camera(), sceneBox(), annotations_,
-                         [this](const Vec3d& position_m) { return isHidden(position_m); });
+  return composed(image());
 }
 
 render::Image8 Painter::annotated(const render::Image8& fetched, const std::string& note) {
   annotations_.note = note;
-  return render::compose(fetched, camera(), sceneBox(), annotations_,
-                         [this](const Vec3d& position_m) { return isHidden(position_m); });
+  return composed(fetched);
+}
+
+template <class AnyImage>
+render::Image8 Painter::composed(const AnyImage& cast) {
+  const auto compose = [&](const render::Annotations& annotations) {
+    return render::compose(cast, camera_, sceneBox(), annotations,
+                           [this](const Vec3d& position_m) { return isHidden(position_m); });
+  };
+  render::Image8 picture = compose(annotations_);
+  if (!split_) return picture;
+  const FieldBeside& beside = *frame_->beside;
+  render::Annotations of_left = annotations_;
+  mark(of_left, *beside.frame);
+  scenery_->annotate(of_left, view_, beside.frame->markers);
+  render::joinParts(compose(of_left), split_->column(), {beside.caption, beside.own_caption}, annotations_,
+                    picture);
+  return picture;
 }
 
 std::shared_ptr<const render::DevicePicture> Painter::annotatedOnDevice(const std::string& note) {
-  if (cells_ || renderer_.backend() == Backend::cpu) return nullptr;
+  if (cells_ || split_ || renderer_.backend() == Backend::cpu) return nullptr;
   annotations_.note = note;
-  render::drawLayers(layers_, view_.size, renderer_.camera(), renderer_.sceneBox(), annotations_,
+  render::drawLayers(layers_, view_.size, camera_, renderer_.sceneBox(), annotations_,
                      [this](const Vec3d& position_m) { return renderer_.isHidden(position_m); });
   return renderer_.compose(layers_);
 }
@@ -292,9 +360,6 @@ render::TransferFunction Painter::functionFor(const Frame& frame) const {
 const render::TransferFunction& Painter::transferFunction() const {
   return cells_ ? cells_->transferFunction() : renderer_.transferFunction();
 }
-const render::Camera& Painter::camera() const {
-  return cells_ ? cells_->camera() : renderer_.camera();
-}
 render::SceneBox Painter::sceneBox() const {
   return cells_ ? cells_->sceneBox() : renderer_.sceneBox();
 }
@@ -303,6 +368,7 @@ bool Painter::isHidden(const Vec3d& frame_m) const {
 }
 
 std::string Painter::note(render::Pattern pattern) const {
+  if (frame_ && !frame_->has_field) return "without the field";
   const char* const mode = wordsOf(view_.settings.mode);
   if (frame_ && frame_->cells) {
     return fmt::format("{}, {} tetrahedra{}", mode, frame_->cells->field.mesh->cells.size(),
@@ -325,7 +391,7 @@ render::Camera Painter::cameraOf(const render::CameraSpec& given) const {
 }
 
 void Painter::fitCamera() {
-  if (frame_) onRenderer([&](auto& to) { to.setCamera(cameraOf(view_.camera)); });
+  if (frame_) setView(cameraOf(view_.camera));
 }
 
 void Painter::setGround() {
@@ -339,18 +405,25 @@ const std::shared_ptr<const render::HeightField>& Painter::heightField() const {
   return scenery_->heightField();
 }
 
+bool Painter::showsMap() const {
+  return view_.settings.map_height_agl_m && heightField() != nullptr;
+}
+
 void Painter::setMarkers() {
-  const bool shows = view_.show_emitters && frame_;
-  annotations_.markers = shows ? frame_->markers : std::vector<render::Marker>{};
-  annotations_.tracks = shows ? frame_->tracks : std::vector<render::Track>{};
+  if (frame_) mark(annotations_, *frame_);
+}
+
+void Painter::mark(render::Annotations& annotations, const Frame& frame) const {
+  annotations.markers = view_.show_emitters ? frame.markers : std::vector<render::Marker>{};
+  annotations.tracks = view_.show_emitters ? frame.tracks : std::vector<render::Track>{};
   if (view_.trail_s > 0) {
-    const double time_s = frame_ ? frame_->info().time_s : 0;
-    for (render::Track& track : annotations_.tracks) track = partOf(track, time_s - view_.trail_s, time_s);
+    const double time_s = frame.info().time_s;
+    for (render::Track& track : annotations.tracks) track = partOf(track, time_s - view_.trail_s, time_s);
   }
   const auto isShown = [this](render::Affiliation side) {
     return view_.sides == ShownSides::all || static_cast<int>(view_.sides) == static_cast<int>(side);
   };
-  for (render::Marker& marker : annotations_.markers) {
+  for (render::Marker& marker : annotations.markers) {
     marker.is_shown = isShown(marker.side);
     if (view_.labels != Labels::all) {
       marker.detail.clear();
@@ -358,7 +431,7 @@ void Painter::setMarkers() {
     }
     if (view_.labels == Labels::off) marker.label.clear();
   }
-  std::vector<render::Track>& tracks = annotations_.tracks;
+  std::vector<render::Track>& tracks = annotations.tracks;
   tracks.erase(
       std::remove_if(tracks.begin(), tracks.end(), [&](const auto& track) { return !isShown(track.side); }),
       tracks.end());
@@ -366,9 +439,16 @@ void Painter::setMarkers() {
 
 void Painter::setLegend() {
   if (!frame_) return;
+  annotations_.reserves_legend = !frame_->has_field;
+  if (!frame_->has_field) return annotations_.legend.reset();
   annotations_.legend = render::legendOf(frame_->info(), transferFunction(), view_.field_unit);
   if (view_.settings.mode == render::CompositingMode::iso)
     annotations_.legend->iso_value = renderer_.isoValue();
+  if (showsMap()) {
+    const DisplayUnit unit = heightUnit(view_.units);
+    annotations_.legend->map_note = fmt::format("map: at {:.4g} {} above ground",
+                                                *view_.settings.map_height_agl_m / unit.factor, unit.name);
+  }
   if (frame_->info().categorical) {
     annotations_.legend->categories =
         categoriesOf(frame_->info(), render::colorRangeOf(frame_->info(), frame_->color_range),

@@ -118,7 +118,7 @@ void Scenery::updateMarks(const ViewState& view) {
   lines_.clear();
   points_.clear();
   if (!grid_->georeferenced) return;
-  GroundMarks marks(*grid_, drawn_.get(), scene());
+  GroundMarks marks(markedPlane(*grid_, drawn_.get(), scene()));
   const bool is_smooth = scene_ && !scene_->terrain;
   if (coast_ && (view.coast == Shown::on || !is_sea_by_heights_))
     marks.addCoast(*coast_, view.coast == Shown::on);
@@ -155,8 +155,8 @@ void Scenery::annotate(render::Annotations& annotations, const ViewState& view,
         shortCoordinate(wrapLongitude_deg(origin.longitude_deg), false, view.positions);
   }
   if (view.range_rings.empty()) return;
-  GroundMarks rings(*grid_, drawn_.get(), scene());
-  rings.addRings(view.range_rings, markers, view.units);
+  GroundMarks rings(markedPlane(*grid_, drawn_.get(), scene()));
+  rings.addRings(view.range_rings, ringCenters(markers, origin), view.units);
   std::move(rings.lines.begin(), rings.lines.end(), std::back_inserter(annotations.ground_lines));
 }
 

@@ -36,6 +36,23 @@ std::string sizeText(const render::ImageSize& size) {
   return fmt::format("{}x{}", size.width, size.height);
 }
 
+std::optional<double> parseMapLayer(const std::string& text) {
+  if (text == "off") return std::nullopt;
+  char* end = nullptr;
+  const double height_m = std::strtod(text.c_str(), &end);
+  const render::SettingLimits& limits = render::kMapHeightLimits;
+  if (text.empty() || *end != '\0' || !(height_m >= limits.min && height_m <= limits.max)) {
+    throw Error(ErrorCode::usage, fmt::format("map layer '{}': expected off, or a height above ground of "
+                                              "{:g}..{:g} m",
+                                              text, limits.min, limits.max));
+  }
+  return height_m;
+}
+
+std::string mapLayerText(const std::optional<double>& height_m) {
+  return height_m ? fmt::format("{}", *height_m) : "off";
+}
+
 std::string rangeText(const std::optional<ValueRange>& range) {
   return range ? fmt::format("{}:{}", range->min, range->max) : "";
 }
@@ -213,6 +230,20 @@ void addRenderSettings(Table& table) {
                   "Cuts the volume open: horizontal:altitude_m=..[,keep=below|above] or "
                   "vertical:bearing_deg=..[,x_m=..,y_m=..,offset_m=..,keep=left|right] "
                   "(docs/view-state.md); may be given 3 times");
+  table
+      .parsed(
+          "map_layer", Table::textSpec(1), [](auto& view) -> auto& { return view.settings.map_height_agl_m; },
+          parseMapLayer, mapLayerText,
+          "[map layer](viewer.md#map-layer): the values at this height above the ground (m), painted on the "
+          "ground")
+      .withTexts("`\"off\"`, or 0..100000 m as text: `\"100\"`", "`\"off\"`")
+      .withOption("--map-layer",
+                  "Paint the values at a height above the ground on it: the height in metres, or off");
+  table
+      .member(
+          "map_opacity", within(render::kMapOpacityLimits),
+          [](auto& view) -> auto& { return view.settings.map_opacity; }, "opacity of the map layer")
+      .withOption("--map-opacity", "Opacity of the map layer");
   for (std::size_t row = first; row < table.rows.size(); ++row) {
     table.rows[row].affects = &ViewChange::settings;
   }
@@ -306,13 +337,26 @@ void addFieldAndWindow(Table& table) {
           "compare", Table::textSpec(), [](auto& view) -> auto& { return view.compare; },
           "`original` or a file (relative to the folder of the view file; if there is none, to the working "
           "folder): the difference to it is drawn, as with `--compare`; `transfer`, `range` and `iso_value` "
-          "are then in the unit of differences")
+          "are then in the unit of differences. See also `split`")
       .withTexts("text", "none")
       .withEffect(&ViewChange::field)
       .withOption("--compare",
                   "Draw what differs from the scenario without the --set edits (original), or from another "
                   "scenario on the same grid (FILE)")
       .withChange(changeComparison);
+  table
+      .member(
+          "split", spec::number().from(0).to(1), [](auto& view) -> auto& { return view.split; },
+          "[split view](viewer.md#split-view): the part of the picture's width, at the left, in which the "
+          "reference of `compare` is drawn instead of the difference to it; 0: the difference")
+      .withEffect(&ViewChange::split)
+      .withOption(
+          "--split",
+          "Draw the reference of --compare (without one: the scenario without the --set edits) in this "
+          "part of the picture's width, 0..1, at the left, instead of the difference to it");
+  table.rows.back().change = [](ViewState& view, const SettingValue& value) {
+    changeSplit(view, std::get<double>(value));
+  };
   table
       .member(
           "open_panels", spec::listOf(Table::textSpec(1), 0, kMaxItems),

@@ -18,6 +18,7 @@ using SettingValue = std::variant<bool, double, std::string, std::vector<std::st
 /// What differs between two views.
 struct ViewChange {
   bool field = false;  ///< the shown field, without edits of the scenario
+  bool split = false;  ///< the part of the picture with the reference
   bool time = false;
   bool size = false;
   bool camera = false;

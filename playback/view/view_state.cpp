@@ -72,9 +72,21 @@ void changeQuantity(ViewState& view, const std::string& quantity) {
   dropColors(view);
 }
 
-void changeComparison(ViewState& view, const std::string& compare) {
-  if (compare.empty() != view.compare.empty()) dropColors(view);
+namespace {
+void setComparison(ViewState& view, const std::string& compare, double split) {
+  const bool was_difference = view.comparison() == Comparison::difference;
   view.compare = compare;
+  view.split = split;
+  if ((view.comparison() == Comparison::difference) != was_difference) dropColors(view);
+}
+}  // namespace
+
+void changeComparison(ViewState& view, const std::string& compare) {
+  setComparison(view, compare, view.split);
+}
+
+void changeSplit(ViewState& view, double split) {
+  setComparison(view, split > 0 && view.compare.empty() ? kOriginal : view.compare, split);
 }
 
 void changeRange(ViewState& view, const ValueRange& range) {

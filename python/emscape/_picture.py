@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Union
 
 import numpy as np
@@ -40,6 +40,7 @@ def render(
     iso_value: float | None = None,
     exaggeration: float = 0.0,
     note: str = "",
+    **settings: bool | float | str | Sequence[str],
 ) -> npt.NDArray[np.uint8]:
     """Draws a field with the ray caster, with ground, emitters, legend and time; casts every ray.
 
@@ -52,6 +53,8 @@ def render(
     :param iso_value: of the isosurface, in the quantity's unit; None: the middle of the colours
     :param exaggeration: of heights, up to 100; 0: chosen from the shape of the region
     :param note: small text at the bottom
+    :param settings: further settings of the picture by their keys in view files (docs/view-state.md), such as
+        ``map_layer=100``, ``labels="all"``, ``units="nautical"`` or ``range_rings=["radar:spacing_m=10000"]``
     :return: (height, width, 4) uint8: red, green, blue and opacity, rows from the top
     Raises UsageError for an argument that is not allowed, InputError for an invalid transfer function file.
     """
@@ -70,4 +73,5 @@ def render(
         iso_value,
         exaggeration,
         note,
+        settings,
     )

@@ -1,7 +1,11 @@
 /// Pictures of fields as arrays of pixels.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
+#include <typeinfo>
+#include <utility>
 
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
@@ -9,6 +13,7 @@
 #include "emscape/playback/pictures/painter.h"
 #include "emscape/render/scene/render_settings.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "playback/view/view_settings.h"
 #include "python/extension/field.h"
 #include "python/extension/module.h"
 
@@ -47,13 +52,65 @@ playback::Frame frameOf(const Field& field, std::size_t index,
   return frame;
 }
 
+using Settings = std::vector<std::pair<const playback::ViewSetting*, playback::SettingValue>>;
+
+/// @throws std::bad_cast for another type
+playback::SettingValue typedValue(const playback::ViewSetting& setting, nb::handle value) {
+  if (setting.isSwitch()) return nb::cast<bool>(value, false);
+  if (setting.isListOfTexts()) return nb::cast<std::vector<std::string>>(value);
+  if (!setting.isNumber()) return nb::cast<std::string>(nb::str(value));
+  const double number = nb::cast<double>(value);
+  requireWithin(setting.key.c_str(), number, setting.spec.minimum, setting.spec.maximum,
+                setting.spec.unit.c_str());
+  return number;
+}
+
+playback::SettingValue valueOf(const playback::ViewSetting& setting, nb::handle value) {
+  const std::vector<std::string>& choices = setting.spec.choices;
+  try {
+    playback::SettingValue typed = typedValue(setting, value);
+    if (!setting.isChoice() ||
+        std::find(choices.begin(), choices.end(), std::get<std::string>(typed)) != choices.end())
+      return typed;
+  } catch (const std::bad_cast&) {
+  }
+  const std::string expected = setting.isSwitch()   ? "True or False"
+                               : setting.isNumber() ? "a number"
+                               : setting.isChoice() ? fmt::format("{}", fmt::join(choices, ", "))
+                                                    : "a list of texts";
+  throw Error(ErrorCode::usage, fmt::format("{} {}: expected {}", setting.key,
+                                            nb::cast<std::string>(nb::str(value)), expected));
+}
+
+/// @throws Error (usage) for an unknown setting, or one that is not of a still picture
+Settings settingsOf(const nb::dict& given) {
+  Settings settings;
+  for (const auto& [key, value] : given) {
+    const std::string name = nb::cast<std::string>(key);
+    const std::vector<playback::ViewSetting>& all = playback::viewSettings();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const auto& row) {
+      const bool is_of_field =
+          row.affects == &playback::ViewChange::field || row.affects == &playback::ViewChange::time;
+      return row.key == name && row.set && row.affects != nullptr && !is_of_field;
+    });
+    if (found == all.end()) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("render: no setting '{}' of pictures; docs/view-state.md lists them", name));
+    }
+    settings.emplace_back(&*found, valueOf(*found, value));
+  }
+  return settings;
+}
+
 nb::object render(const Field& field, const std::string& quantity, std::pair<int, int> size,
                   const std::string& camera, const std::string& mode,
                   const std::optional<std::pair<float, float>>& range, const std::string& transfer,
                   const std::string& theme, bool terrain, bool emitters, bool shading,
-                  std::optional<double> iso_value, double exaggeration, const std::string& note) {
+                  std::optional<double> iso_value, double exaggeration, const std::string& note,
+                  const nb::dict& others) {
   refuseForkedProcess();
   checkValues(range, iso_value, exaggeration);
+  const Settings settings = settingsOf(others);
   render::Image8 picture;
   {
     const nb::gil_scoped_release unlocked;
@@ -69,6 +126,7 @@ nb::object render(const Field& field, const std::string& quantity, std::pair<int
     if (range) view.range = playback::ValueRange{range->first, range->second};
     view.show_terrain = terrain;
     view.show_emitters = emitters;
+    for (const auto& [setting, value] : settings) setting->set(view, value);
     const playback::Frame frame = frameOf(field, field.indexOf(quantity), range);
     const auto draw = [&](const ResolvedBackend& choice) {
       playback::Painter painter(view, ComputeTarget{choice});
@@ -92,10 +150,11 @@ void bindPicture(nb::module_& module) {
       "render", &render, nb::arg("field"), nb::arg("quantity"), nb::arg("size"), nb::arg("camera"),
       nb::arg("mode"), nb::arg("range").none(), nb::arg("transfer"), nb::arg("theme"), nb::arg("terrain"),
       nb::arg("emitters"), nb::arg("shading"), nb::arg("iso_value").none(), nb::arg("exaggeration"),
-      nb::arg("note"),
+      nb::arg("note"), nb::arg("settings"),
       nb::sig("def render(field: Field, quantity: str, size: tuple[int, int], camera: str, mode: str, "
               "range: tuple[float, float] | None, transfer: str, theme: str, terrain: bool, emitters: bool, "
-              "shading: bool, iso_value: float | None, exaggeration: float, note: str) -> "
+              "shading: bool, iso_value: float | None, exaggeration: float, note: str, "
+              "settings: dict[str, object]) -> "
               "numpy.typing.NDArray[numpy.uint8]"));
 }
 

@@ -10,6 +10,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "render/annotate/hatching.h"
 #include "render/annotate/overlay_parts.h"
 
 namespace emscape::render {
@@ -152,6 +153,12 @@ void drawHeading(Canvas& canvas, const Style& style, const Legend& legend, doubl
   }
 }
 
+std::vector<std::string> notesOf(const Legend& legend) {
+  std::vector<std::string> notes = linesOf(legend.map_note, 15);
+  if (!legend.note.empty()) notes.push_back(legend.note);
+  return notes;
+}
+
 double contentWidth(const Style& style, const Legend& legend) {
   double content = 0;
   if (legend.function.categorical) {
@@ -164,15 +171,39 @@ double contentWidth(const Style& style, const Legend& legend) {
     for (const BarTick& tick : ticksOf(legend, 8, 0)) numbers.push_back(tick.text);
     content = (kOpacityWidth + kBarWidth + 14) * style.unit + widestText(numbers, style.small_px);
   }
+  if (!legend.hatched.empty()) {
+    const double hatched = (kSwatch + kSwatchGap) * style.unit + widestText({legend.hatched}, style.small_px);
+    content = std::max(content, std::min(hatched, style.name_px));
+  }
   const double heading = widestText(headingOf(legend), style.text_px) * 1.08;
-  const double note = widestText({legend.note}, style.small_px);
+  const double note = widestText(notesOf(legend), style.small_px);
   return std::max(content, std::min(std::max(heading, note), style.name_px));
 }
 
-void drawNote(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
+void drawNotes(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
   const double size_px = style.small_px;
-  canvas.textWithRim(shortenedText(canvas, legend.note, size_px, style.name_px), {left, y}, size_px,
-                     style.mutedInk(), style.rimInk());
+  for (const std::string& note : notesOf(legend)) {
+    canvas.textWithRim(shortenedText(canvas, note, size_px, style.name_px), {left, y}, size_px,
+                       style.mutedInk(), style.rimInk());
+    y += kLine * size_px;
+  }
+}
+
+/// The swatch and the name of what is hatched. @return whether there is any
+bool drawHatched(Canvas& canvas, const Style& style, const Legend& legend, double left, double y) {
+  if (legend.hatched.empty()) return false;
+  const double side = kSwatch * style.unit, top = y - side / 2, step = kHatchStep * style.unit;
+  for (double sum = step / 2; sum < 2 * side; sum += step) {  // of the distances to the left and upper edges
+    const double far = std::min(sum, side);
+    canvas.line({left + sum - far, top + far}, {left + far, top + sum - far}, kHatchInk,
+                kHatchWidth * style.unit);
+  }
+  canvas.outline({{left, top}, {left + side, top}, {left + side, top + side}, {left, top + side}},
+                 style.mutedInk(0.8), style.unit, true);
+  canvas.textWithRim(shortenedText(canvas, legend.hatched, style.small_px, nameRoom(style)),
+                     {left + side + kSwatchGap * style.unit, y}, style.small_px, style.textInk(),
+                     style.rimInk());
+  return true;
 }
 
 /// A line across the bar with an arrowhead at its left end.
@@ -231,7 +262,9 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
     canvas.textWithRim("opacity", {left, bottom + 10 * style.unit + 0.6 * style.small_px}, style.small_px,
                        style.mutedInk(), style.rimInk());
   }
-  drawNote(canvas, style, legend, left, bottom + 14 * style.unit + 1.9 * style.small_px);
+  double below = bottom + 14 * style.unit + 1.9 * style.small_px;
+  if (drawHatched(canvas, style, legend, left, below)) below += kRowHeight * style.unit;
+  drawNotes(canvas, style, legend, left, below);
 }
 
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
@@ -246,7 +279,9 @@ void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, do
                        {left + swatch + kSwatchGap * style.unit, y}, style.small_px, style.textInk(),
                        style.rimInk());
   }
-  drawNote(canvas, style, legend, left, y + kRowHeight * style.unit);
+  y += kRowHeight * style.unit;
+  if (drawHatched(canvas, style, legend, left, y)) y += kRowHeight * style.unit;
+  drawNotes(canvas, style, legend, left, y);
 }
 
 }  // namespace
@@ -329,11 +364,11 @@ std::string quantityTitle(const std::string& quantity, const std::string& unit) 
 
 double FieldScale::shown(double stored) const {
   const double decibels = stored + offset_db;
-  return is_amplitude ? std::pow(10.0, decibels / 20) : decibels;
+  return is_amplitude ? std::pow(10.0, decibels / 20) : factor * decibels;
 }
 
 double FieldScale::stored(double shown) const {
-  return (is_amplitude ? 20 * std::log10(shown) : shown) - offset_db;
+  return (is_amplitude ? 20 * std::log10(shown) : shown / factor) - offset_db;
 }
 
 FieldScale fieldScale(const std::string& stored_unit, FieldUnit unit) {
@@ -342,20 +377,24 @@ FieldScale fieldScale(const std::string& stored_unit, FieldUnit unit) {
   if (unit == FieldUnit::stored || (!is_density && !is_strength)) return {stored_unit};
   if (unit == FieldUnit::dbm)
     return {"dBm/m2", kMilli_db - (is_strength ? kFieldStrengthOfPowerDensity_db : 0)};
-  return {"V/m", (is_density ? kFieldStrengthOfPowerDensity_db : 0) - kMicro_db, true};
+  return {"V/m", (is_density ? kFieldStrengthOfPowerDensity_db : 0) - kMicro_db, 1, true};
 }
 
-Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function, FieldUnit unit) {
-  Legend legend;
-  legend.scale = fieldScale(info.unit, unit);
-  legend.quantity = quantityTitle(info.quantity, info.unit);
-  if (legend.scale.unit != info.unit) {  // that of the other quantity
+void setFieldUnit(Legend& legend, const std::string& stored_unit, FieldUnit unit) {
+  legend.scale = fieldScale(stored_unit, unit);
+  if (legend.scale.unit != stored_unit) {  // that of the other quantity
     const bool is_strength = legend.scale.is_amplitude;
     replaceAll(legend.quantity, is_strength ? "Power density" : "Field strength",
                is_strength ? "Field strength" : "Power density");
     if (is_strength) replaceAll(legend.quantity, "power density", "field strength");
   }
   legend.unit = unitText(legend.scale.unit);
+}
+
+Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function, FieldUnit unit) {
+  Legend legend;
+  legend.quantity = quantityTitle(info.quantity, info.unit);
+  setFieldUnit(legend, info.unit, unit);
   legend.function = function;
   const auto note = info.extra.find(volume::kLegendNoteKey);
   if (note != info.extra.end()) legend.note = note->second;
@@ -370,7 +409,8 @@ double legendWidth(const Style& style, const Legend& legend) {
 double legendHeight(const Style& style, const Legend& legend) {
   if (!legend.function.categorical) return 0;
   const double rows = kRowHeight * style.unit *
-                      (static_cast<double>(legend.categories.size()) + (legend.note.empty() ? 1 : 2));
+                      static_cast<double>(legend.categories.size() + notesOf(legend).size() + 1 +
+                                          (legend.hatched.empty() ? 0 : 1));
   return std::max(rows / (1 - kBarTop), leastTop(style, legend) + rows);
 }
 

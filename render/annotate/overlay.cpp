@@ -120,7 +120,16 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     const Point2 at{left, canvas.size().height - (kMargin + 30) * style.unit};
     drawScaleBar(canvas, style, projector, annotations.units, at, taken);
   }
-  drawGroundMarks(canvas, style, projector, annotations, hidden, taken);
+  const auto project = [&](const Vec3d& at_m) {
+    Point2 at;
+    return projector.project(at_m, at) ? std::optional(at) : std::nullopt;
+  };
+  std::vector<Point2> symbols;
+  for (const Marker& marker : annotations.markers) {
+    if (const std::optional<Point2> at = project(marker.position_m)) symbols.push_back(*at);
+  }
+  drawGroundMarks(canvas, style, project, annotations.ground_lines, annotations.ground_points, symbols,
+                  hidden, taken);
   if (annotations.legend) drawLegend(canvas, style, *annotations.legend);
   drawTracks(canvas, style, projector, annotations.tracks, hidden);
   drawMarkers(canvas, style, projector, annotations.markers, annotations.units, hidden, taken);
@@ -193,10 +202,10 @@ FrameMargins overlayMargins(ImageSize size, const Annotations& annotations) {
   const bool has_texts = !annotations.title.empty() || !annotations.time.empty();
   FrameMargins margins;
   margins.left = side_px / size.width;
-  margins.right =
-      (annotations.legend ? std::min(kLegendRoom * style.unit, kMaxLegendRoom * size.width) + 0.3 * axis_px
-                          : side_px) /
-      size.width;
+  margins.right = (annotations.legend || annotations.reserves_legend
+                       ? std::min(kLegendRoom * style.unit, kMaxLegendRoom * size.width) + 0.3 * axis_px
+                       : side_px) /
+                  size.width;
   margins.top = (has_texts ? headerHeight(style) : side_px) / size.height;
   margins.bottom = (1.1 * kMargin * style.unit + axis_px) / size.height;
   return margins;
@@ -228,6 +237,34 @@ Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, con
 Image8 compose(const Image8& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
                const HiddenTest& hidden) {
   return composed(cast, camera, box, annotations, hidden);
+}
+
+void joinParts(const Image8& left, int column, const std::array<std::string, 2>& captions,
+               const Annotations& annotations, Image8& picture) {
+  const ImageSize size = picture.size;
+  for (int y = 0; y < size.height; ++y) {
+    const std::size_t begin = 4 * static_cast<std::size_t>(y) * size.width;
+    std::memcpy(&picture.rgba[begin], &left.rgba[begin], 4 * static_cast<std::size_t>(column));
+  }
+  Canvas canvas(size);
+  drawCast(canvas, picture);
+  const Style style(size, annotations.theme, annotations.scale);
+  const double x = column;
+  const double bottom = size.height;
+  canvas.line({x, 0}, {x, bottom}, style.rimInk(), 4 * style.unit);
+  canvas.line({x, 0}, {x, bottom}, style.textInk(), 1.5 * style.unit);
+  canvas.disc({x, bottom / 2}, 6 * style.unit, style.textInk());
+  const double gap = 12 * style.unit;
+  const double y = headerHeight(style) + style.text_px;
+  const double legend_px = annotations.legend ? legendWidth(style, *annotations.legend) : 0;
+  const double room[] = {x - 2 * gap, size.width - legend_px - x - 2 * gap};
+  for (const int part : {0, 1}) {
+    const std::string text = shortenedText(canvas, captions[static_cast<std::size_t>(part)], style.text_px,
+                                           room[part], Weight::bold);
+    canvas.textWithRim(text, {part == 0 ? x - gap : x + gap, y}, style.text_px, style.textInk(),
+                       style.rimInk(), part == 0 ? Align::right : Align::left, Weight::bold);
+  }
+  picture = canvas.pixels();
 }
 
 }  // namespace emscape::render

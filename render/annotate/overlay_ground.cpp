@@ -38,22 +38,25 @@ struct Vertex {
   bool is_visible = false;
 };
 
-std::vector<Vertex> verticesOf(const GroundLine& line, const Projector& projector, const HiddenTest& hidden) {
+std::vector<Vertex> verticesOf(const GroundLine& line, const GroundProjection& project,
+                               const HiddenTest& hidden) {
   std::vector<Vertex> vertices;
   for (const Vec3d& point_m : line.points_m) {
-    Vertex& vertex = vertices.emplace_back();
     const bool is_known = std::isfinite(point_m.z);  // no hole of the ground
-    vertex.is_visible = is_known && projector.project(point_m, vertex.at) && !(hidden && hidden(point_m));
+    const std::optional<Point2> at = is_known ? project(point_m) : std::nullopt;
+    vertices.push_back({at.value_or(Point2{}), at && !(hidden && hidden(point_m))});
   }
   if (line.is_area && !vertices.empty()) vertices.push_back(vertices.front());
   return vertices;
 }
 
-void fillArea(Canvas& canvas, const GroundLine& line, const Projector& projector, const LineLook& look) {
+void fillArea(Canvas& canvas, const GroundLine& line, const GroundProjection& project, const LineLook& look) {
   std::vector<Point2> corners;
   for (const Vec3d& point_m : line.points_m) {
     if (!std::isfinite(point_m.z)) continue;
-    if (!projector.project(point_m, corners.emplace_back())) return;
+    const std::optional<Point2> at = project(point_m);
+    if (!at) return;
+    corners.push_back(*at);
   }
   constexpr double kFill = 0.16;
   canvas.polygon(corners, {look.line.color, kFill});
@@ -96,8 +99,12 @@ std::vector<Point2> labelPoints(const Style& style, const GroundLine& line,
     return {sum * (1.0 / static_cast<double>(vertices.size()))};
   }
   const auto isLower = [](const Vertex& a, const Vertex& b) { return a.at.y < b.at.y; };
-  if (line.ink == GroundInk::ring)
-    return visible(*std::max_element(vertices.begin(), vertices.end(), isLower));
+  if (line.ink == GroundInk::ring) {
+    const auto [highest, lowest] = std::minmax_element(vertices.begin(), vertices.end(), isLower);
+    std::vector<Point2> points = visible(*lowest);
+    if (highest->is_visible) points.push_back(highest->at);
+    return points;
+  }
   if (line.ink == GroundInk::graticule) {  // inside the end nearer to the viewer
     const bool at_front = isLower(vertices.back(), vertices.front());
     const Vertex& end = at_front ? vertices.front() : vertices.back();
@@ -147,21 +154,17 @@ void drawPointName(Canvas& canvas, const Style& style, const std::string& name, 
 
 }  // namespace
 
-void drawGroundMarks(Canvas& canvas, const Style& style, const Projector& projector,
-                     const Annotations& annotations, const HiddenTest& hidden, std::vector<Rect>& taken) {
-  // Symbols of emitters, which are drawn later.
+void drawGroundMarks(Canvas& canvas, const Style& style, const GroundProjection& project,
+                     const std::vector<GroundLine>& lines, const std::vector<GroundPoint>& points,
+                     const std::vector<Point2>& symbols, const HiddenTest& hidden, std::vector<Rect>& taken) {
   const auto first_symbol = static_cast<std::ptrdiff_t>(taken.size());
-  for (const Marker& marker : annotations.markers) {
-    Point2 at;
-    const double reach = kSymbol * style.unit;
-    if (projector.project(marker.position_m, at))
-      taken.push_back({at.x - reach, at.y - reach, 2 * reach, 2 * reach});
-  }
+  const double reach = kSymbol * style.unit;
+  for (const Point2& at : symbols) taken.push_back({at.x - reach, at.y - reach, 2 * reach, 2 * reach});
   const auto end_of_symbols = static_cast<std::ptrdiff_t>(taken.size());
-  for (const GroundLine& line : annotations.ground_lines) {
+  for (const GroundLine& line : lines) {
     const LineLook look = lookOf(style, line.ink);
-    const std::vector<Vertex> vertices = verticesOf(line, projector, hidden);
-    if (line.is_area) fillArea(canvas, line, projector, look);
+    const std::vector<Vertex> vertices = verticesOf(line, project, hidden);
+    if (line.is_area) fillArea(canvas, line, project, look);
     drawVisible(canvas, style, vertices, look);
     if (line.label.empty()) continue;
     for (const Point2& at : labelPoints(style, line, vertices)) {
@@ -169,12 +172,12 @@ void drawGroundMarks(Canvas& canvas, const Style& style, const Projector& projec
     }
   }
   const LineLook look = lookOf(style, GroundInk::place);
-  for (const GroundPoint& point : annotations.ground_points) {
-    Point2 at;
-    if (!projector.project(point.position_m, at) || (hidden && hidden(point.position_m))) continue;
-    canvas.disc(at, kDot * style.unit, look.line);
-    canvas.circle(at, kDot * style.unit, style.rimInk(0.9), style.unit);
-    drawPointName(canvas, style, point.label, at, look.text, taken);
+  for (const GroundPoint& point : points) {
+    const std::optional<Point2> at = project(point.position_m);
+    if (!at || (hidden && hidden(point.position_m))) continue;
+    canvas.disc(*at, kDot * style.unit, look.line);
+    canvas.circle(*at, kDot * style.unit, style.rimInk(0.9), style.unit);
+    drawPointName(canvas, style, point.label, *at, look.text, taken);
   }
   taken.erase(taken.begin() + first_symbol, taken.begin() + end_of_symbols);
 }

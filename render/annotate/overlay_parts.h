@@ -1,6 +1,8 @@
 /// The parts of a finished picture's annotations; internal to this library.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "emscape/render/annotate/overlay.h"
@@ -57,10 +59,14 @@ void drawTracks(Canvas& canvas, const Style& style, const Projector& projector,
 void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
                  const std::vector<Marker>& markers, Units units, const HiddenTest& hidden,
                  const std::vector<Rect>& taken);
-/// Lines and points on the ground, where it does not hide them. Labels avoid `taken`; those that find no room
-/// are left out.
-void drawGroundMarks(Canvas& canvas, const Style& style, const Projector& projector,
-                     const Annotations& annotations, const HiddenTest& hidden, std::vector<Rect>& taken);
+/// The point of the picture at a position; none if it is behind the camera.
+using GroundProjection = std::function<std::optional<Point2>(const Vec3d&)>;
+
+/// Lines and points on the ground, where it does not hide them. Labels avoid `taken` and `symbols`, which are
+/// drawn later; those that find no room are left out.
+void drawGroundMarks(Canvas& canvas, const Style& style, const GroundProjection& project,
+                     const std::vector<GroundLine>& lines, const std::vector<GroundPoint>& points,
+                     const std::vector<Point2>& symbols, const HiddenTest& hidden, std::vector<Rect>& taken);
 /// A bar of a round length, as it is in the middle of the ground. @param left  its left end
 void drawScaleBar(Canvas& canvas, const Style& style, const Projector& projector, Units units,
                   const Point2& left, std::vector<Rect>& taken);

@@ -19,7 +19,8 @@ namespace emscape::render {
 /// Intersection of a ray with the ground.
 struct GroundHit {
   bool found = false;
-  double distance = 0;  ///< along the ray
+  bool is_surface = false;  ///< a point of the terrain or smooth earth; else a side, a cut or a pit
+  double distance = 0;      ///< along the ray
   Rgba color;
 };
 
@@ -50,8 +51,8 @@ struct GroundView {
 
  private:
   struct PostRay;  // the ray in post space from `begin` on
-  EMSCAPE_HD bool hitsCell(const PostRay& ray, int i, int j, float enter, float leave, float& distance,
-                           Rgba& color) const;
+  /// @param hit  its distance is counted from the ray's entry into the block
+  EMSCAPE_HD bool hitsCell(const PostRay& ray, int i, int j, float enter, float leave, GroundHit& hit) const;
   EMSCAPE_HD Rgba surfaceColor(int i, int j, float x, float y) const;
   EMSCAPE_HD Rgba wallColor(float z, float x, float y) const;
   EMSCAPE_HD Rgba pitColor(float x, float y) const;

@@ -69,7 +69,7 @@ EMSCAPE_HD inline Rgba GroundView::pitColor(float x, float y) const {
 }
 
 EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, float enter, float leave,
-                                            float& distance, Rgba& color) const {
+                                            GroundHit& hit) const {
   using namespace ground_detail;
   const float* post = heights + static_cast<long long>(j) * columns + i;
   const float h00 = post[0];
@@ -83,21 +83,21 @@ EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, fl
   if (!(twist == twist)) {  // a pit: only its floor
     const bool enters_floor = z <= base;
     if (!enters_floor && !(ray.dz < 0.0F && z + ray.dz * (leave - enter) <= base + kRounding)) return false;
-    distance = enters_floor ? enter : enter + (base - z) / ray.dz;
-    color = pitColor(ray.x + ray.dx * distance, ray.y + ray.dy * distance);
+    const float distance = enters_floor ? enter : enter + (base - z) / ray.dz;
+    hit = {true, false, distance, pitColor(ray.x + ray.dx * distance, ray.y + ray.dy * distance)};
     return true;
   }
   const float above = z - (h00 + slope_x * x + slope_y * y + twist * x * y);
   if (above <= -kRounding) {
-    distance = enter;
     const float west = held(static_cast<float>(i), static_cast<float>((lower.x - first_x) * scale_x), 1e9F);
     const float east =
         held(static_cast<float>(i + 1), -1e9F, static_cast<float>((upper.x - first_x) * scale_x));
     const float south = held(static_cast<float>(j), static_cast<float>((lower.y - first_y) * scale_y), 1e9F);
     const float north =
         held(static_cast<float>(j + 1), -1e9F, static_cast<float>((upper.y - first_y) * scale_y));
-    color = wallColor(z, distanceTo(ray.x + ray.dx * enter, west, east),
-                      distanceTo(ray.y + ray.dy * enter, south, north));
+    hit = {true, false, enter,
+           wallColor(z, distanceTo(ray.x + ray.dx * enter, west, east),
+                     distanceTo(ray.y + ray.dy * enter, south, north))};
     return true;
   }
   float s = 0.0F;
@@ -106,8 +106,8 @@ EMSCAPE_HD inline bool GroundView::hitsCell(const PostRay& ray, int i, int j, fl
     s = firstRoot(-twist * ray.dx * ray.dy, b, above, leave - enter);
     if (s < 0.0F) return false;
   }
-  distance = enter + s;
-  color = surfaceColor(i, j, held(x + ray.dx * s, 0.0F, 1.0F), held(y + ray.dy * s, 0.0F, 1.0F));
+  hit = {true, true, enter + s,
+         surfaceColor(i, j, held(x + ray.dx * s, 0.0F, 1.0F), held(y + ray.dy * s, 0.0F, 1.0F))};
   return true;
 }
 
@@ -141,10 +141,8 @@ EMSCAPE_HD inline GroundHit GroundView::firstHit(const Vec3d& origin, const Vec3
         --level;
         continue;
       }
-      float distance = 0.0F;
-      if (hitsCell(ray, i, j, at, leave, distance, hit.color)) {
-        hit.found = true;
-        hit.distance = begin + distance;
+      if (hitsCell(ray, i, j, at, leave, hit)) {
+        hit.distance += begin;
         return hit;
       }
     }

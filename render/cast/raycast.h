@@ -99,6 +99,7 @@ EMSCAPE_HD inline GroundHit groundHit(const GroundView& ground, const CutView& c
   if (!(left.end > left.begin)) return {};
   GroundHit hit = ground.firstHit(ray.origin, ray.direction, left.begin, left.end);
   if (left.begins_at_plane && hit.found && hit.distance == left.begin) {
+    hit.is_surface = false;
     hit.color = ground.cutColor(static_cast<float>(ray.origin.z + ray.direction.z * left.begin));
   }
   return hit;
@@ -108,6 +109,13 @@ EMSCAPE_HD inline GroundHit groundHit(const GroundView& ground, const CutView& c
 struct TableColors {
   const Rgba* samples = nullptr;
   EMSCAPE_HD const Rgba& at(int index) const { return samples[index]; }
+};
+
+/// The layer of values at a height above the ground that is painted on it.
+struct MapLayerView {
+  bool on = false;
+  float height_voxels = 0;
+  float opacity = 1;
 };
 
 /// A scene ready to be cast. Sampler: TrilinearSampler or NearestSampler; Compositor: see compositing.h.
@@ -120,6 +128,7 @@ struct RaycastTask {
   CutView cut;
   ShadingView shading;
   IsoView iso;
+  MapLayerView map;
   float step_voxels = 1;
   float mida_gamma = 0;
   float volume_highest_f = 1;
@@ -130,6 +139,22 @@ struct RaycastTask {
   /// Intersection of a pixel's ray with the ground.
   EMSCAPE_HD GroundHit groundAt(int x, int y) const {
     return ground.heights != nullptr ? groundHit(ground, cut, camera.ray(x, y)) : GroundHit{};
+  }
+
+  /// The colour of a point on the ground's surface with the map layer, which has the colours of sections. It
+  /// is transparent where the volume has no value; planes do not cut it.
+  /// @param distance  of the point, along the ray of the pixel  @param ground  its colour without the layer
+  template <class Sampler>
+  EMSCAPE_HD Rgba mapColor(int x, int y, float distance, const Rgba& ground_color) const {
+    const Ray ray = camera.ray(x, y);
+    Vec3d at = ray.origin + ray.direction * static_cast<double>(distance);
+    at.z += static_cast<double>(map.height_voxels);
+    const Vec3d lower = volume.lower(), upper = volume.upper();
+    const bool inside = at.x >= lower.x && at.y >= lower.y && at.z >= lower.z && at.x <= upper.x &&
+                        at.y <= upper.y && at.z <= upper.z;
+    float value = 0;
+    if (!inside || !Sampler::sample(volume, vecCast<float>(at), value)) return ground_color;
+    return over(cut.color(transfer, true, value) * map.opacity, ground_color);
   }
 
   /// The part of a pixel's ray that the planes keep in front of the ground; all up to `limit` if they do not

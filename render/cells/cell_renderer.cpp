@@ -23,6 +23,7 @@ void checkCellSettings(const RenderSettings& settings) {
                                       ": fields on tetrahedra support only mode dvr");
   }
   if (settings.shading) refuse("shading");
+  if (settings.map_height_agl_m) refuse("map_layer");
   if (std::any_of(settings.planes.begin(), settings.planes.end(), [](const CutPlane& p) { return p.on; }))
     refuse("plane");
 }

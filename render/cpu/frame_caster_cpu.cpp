@@ -3,7 +3,6 @@
 
 #include "base/stopwatch.h"
 #include "emscape/base/error.h"
-#include "emscape/base/parallel.h"
 #include "render/cpu/raycast_cpu.h"
 #include "render/patterns/adaptive.h"
 #include "render/scene/frame_caster.h"
@@ -34,7 +33,6 @@ class CpuFrameCaster : public FrameCaster {
   bool drawAdaptive(const Scene& scene, const FramePlan& plan, bool shows_ground, Image& image,
                     FrameReport& report, const StopFlag* stop);
   bool castMissing(const Scene& scene, FrameReport& report, const StopFlag* stop);
-  void composeGround();
 
   PreparedVolume volume_;
   SkipLevels skip_;
@@ -52,6 +50,7 @@ class CpuFrameCaster : public FrameCaster {
 void CpuFrameCaster::setVolume(std::shared_ptr<const volume::DenseVolume> volume) {
   volume_.set(std::move(volume));
   skip_current_ = false;
+  ground_layer_.dropMap();
 }
 
 void CpuFrameCaster::setVolume(std::shared_ptr<const volume::DeviceVolume> volume) {
@@ -63,8 +62,10 @@ RaycastTask CpuFrameCaster::prepare(const Scene& scene, ImageSize size) {
   if (!skip_current_) skip_ = skipLevels(scene.skipRule(), volume_.bricks());
   skip_current_ = true;
   if (scene.versions().view != seen_.view) ground_layer_.size = {};
+  if (scene.versions().table != seen_.table || scene.versions().map != seen_.map) ground_layer_.dropMap();
   seen_ = scene.versions();
   if (scene.ground() && ground_layer_.size != size) ground_layer_.reset(size);
+  if (scene.isMapped()) ground_layer_.beginMap();
 
   RaycastTask task = scene.task(size);
   task.volume = volume_.view();
@@ -146,7 +147,10 @@ FrameReport CpuFrameCaster::draw(const Scene& scene, const FramePlan& plan, Imag
   ground_layer_.complete |= plan.pattern == Pattern::full;
   Stopwatch watch;
   interpolate(plan.pattern, plan.interpolation, target);
-  if (in_layers) composeGround();
+  if (in_layers) {
+    const RaycastTask prepared = prepare(scene, size);
+    composeGround(castOf(scene, prepared, true), target, picture_);
+  }
   report.interpolate_ms += watch.lap_ms();
   return report;
 }
@@ -170,17 +174,6 @@ bool CpuFrameCaster::castMissing(const Scene& scene, FrameReport& report, const 
   if (report.complete) report.rays = static_cast<long long>(missing.size());
   report.cast_ms = watch.lap_ms();
   return report.complete;
-}
-
-/// The ground behind every pixel of the volume's layer.
-void CpuFrameCaster::composeGround() {
-  constexpr int kRowGrain = 16;
-  parallelFor(picture_.size.height, kRowGrain, [&](int begin, int end) {
-    const std::size_t last = ground_layer_.index(0, end);
-    for (std::size_t pixel = ground_layer_.index(0, begin); pixel < last; ++pixel) {
-      picture_.pixels[pixel] = ground_layer_.behind(volume_layer_.pixels[pixel], pixel);
-    }
-  });
 }
 
 }  // namespace

@@ -58,6 +58,13 @@ CastPlain plainOf(CompositingMode mode) {
   return castPlain<&RaycastTask::castVolume<DvrCompositor, Sampler>>;
 }
 
+using MapPixel = Rgba (*)(const RaycastTask&, Pixel, float, const Rgba&);
+
+template <class Sampler>
+Rgba mapOf(const RaycastTask& task, Pixel pixel, float distance, const Rgba& ground) {
+  return task.mapColor<Sampler>(pixel.x, pixel.y, distance, ground);
+}
+
 using CutPixel = CutRay (*)(const RaycastTask&, Pixel, float);
 
 template <class Sampler>
@@ -76,7 +83,8 @@ class GroupCaster {
       : cast_(cast),
         in_packets_(!cast.plain && !cast.nearest && packetsCanCast(cast.task.volume)),
         plain_(cast.nearest ? plainOf<NearestSampler>(cast.mode) : plainOf<TrilinearSampler>(cast.mode)),
-        cut_(cast.nearest ? cutOf<NearestSampler> : cutOf<TrilinearSampler>) {}
+        cut_(cast.nearest ? cutOf<NearestSampler> : cutOf<TrilinearSampler>),
+        map_(cast.nearest ? mapOf<NearestSampler> : mapOf<TrilinearSampler>) {}
 
   /// @return number of samples, if counted
   long long operator()(const Pixel* pixels, int count, Image& image) const {
@@ -104,11 +112,22 @@ class GroupCaster {
     for (int n = 0; n < count; ++n) {
       const auto i = static_cast<std::size_t>(n);
       const Rgba front = cuts ? over(fronts[i], cut[i].section) : fronts[i];
-      const int x = pixels[n].x;
-      const int y = pixels[n].y;
-      image.at(x, y) = shows_ground ? cast_.ground->behind(front, cast_.ground->index(x, y)) : front;
+      image.at(pixels[n].x, pixels[n].y) = shows_ground ? withGround(front, pixels[n]) : front;
     }
     return samples;
+  }
+
+  /// The colour of a pixel whose volume has the colour `front`. Its ground must be known.
+  Rgba withGround(const Rgba& front, Pixel pixel) const {
+    GroundLayer& ground = *cast_.ground;
+    const std::size_t index = ground.index(pixel.x, pixel.y);
+    if (!(ground.distances[index] < GroundLayer::kNone)) return front;
+    if (!cast_.task.map.on || ground.is_surface[index] == 0) return over(front, ground.colors[index]);
+    if (ground.is_mapped[index] == 0) {
+      ground.mapped[index] = map_(cast_.task, pixel, ground.distances[index], ground.colors[index]);
+      ground.is_mapped[index] = 1;
+    }
+    return over(front, ground.mapped[index]);
   }
 
  private:
@@ -119,6 +138,7 @@ class GroupCaster {
       const GroundHit hit = cast_.task.groundAt(pixel.x, pixel.y);
       distance = hit.found ? static_cast<float>(hit.distance) : GroundLayer::kNone;
       if (hit.found) cast_.ground->colors[index] = hit.color;
+      cast_.ground->is_surface[index] = hit.is_surface ? 1 : 0;
     }
     return distance;
   }
@@ -127,6 +147,7 @@ class GroupCaster {
   const bool in_packets_;
   const CastPlain plain_;
   const CutPixel cut_;
+  const MapPixel map_;
 };
 
 }  // namespace
@@ -172,6 +193,19 @@ bool castCpu(const CpuCast& cast, const std::vector<Pixel>& pixels, Image& image
   });
   samples += taken;
   return !isSet(stop);
+}
+
+void composeGround(const CpuCast& cast, const Image& volume, Image& picture) {
+  constexpr int kRowGrain = 16;
+  const GroupCaster group(cast);
+  parallelFor(picture.size.height, kRowGrain, [&](int begin, int end) {
+    for (int y = begin; y < end; ++y) {
+      for (int x = 0; x < picture.size.width; ++x) {
+        picture.at(x, y) =
+            group.withGround(volume.at(x, y), {static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(y)});
+      }
+    }
+  });
 }
 
 }  // namespace emscape::render

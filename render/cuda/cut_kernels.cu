@@ -29,15 +29,36 @@ __global__ void __launch_bounds__(kTileThreads)
 }
 
 template <class Sampler>
+__global__ void __launch_bounds__(kTileThreads)
+    mapGround(const __grid_constant__ RaycastTask task, const __grid_constant__ MapLayer layer) {
+  const ImageSize size = task.camera.size;
+  int x = 0, y = 0;
+  if (!pixelOfThread(size, x, y)) return;
+  const long long index = pixelIndex(size, x, y);
+  const float distance = layer.distances[index];
+  if (!(distance < INFINITY)) return;
+  const Rgba ground = toRgba(layer.colors[index]);
+  layer.mapped[index] =
+      toFloat4(layer.is_surface[index] ? task.mapColor<Sampler>(x, y, distance, ground) : ground);
+}
+
+template <class Sampler>
 void start(const RaycastTask& task, const CutLayer& layer, cudaStream_t stream) {
   const ImageSize size = task.camera.size;
   cutRays<Sampler><<<tileCount(size), kTileThreads, 0, stream>>>(task, layer);
   emscape::cuda::checkLaunch("cutRays");
 }
 
-}  // namespace
+template <class Sampler>
+void start(const RaycastTask& task, const MapLayer& layer, cudaStream_t stream) {
+  const ImageSize size = task.camera.size;
+  mapGround<Sampler><<<tileCount(size), kTileThreads, 0, stream>>>(task, layer);
+  emscape::cuda::checkLaunch("mapGround");
+}
 
-void castCut(const RaycastTask& task, Sampling sampling, const CutLayer& layer, cudaStream_t stream) {
+/// Starts the kernel of a layer with the sampler that is as accurate as the CPU's.
+template <class Layer>
+void startAccurate(const RaycastTask& task, Sampling sampling, const Layer& layer, cudaStream_t stream) {
   switch (sampling) {
     case Sampling::sparse:
       return start<TrilinearSamplerOf<GridVoxels>>(task, layer, stream);
@@ -50,6 +71,16 @@ void castCut(const RaycastTask& task, Sampling sampling, const CutLayer& layer, 
       break;
   }
   return start<AccurateSampler>(task, layer, stream);
+}
+
+}  // namespace
+
+void castCut(const RaycastTask& task, Sampling sampling, const CutLayer& layer, cudaStream_t stream) {
+  startAccurate(task, sampling, layer, stream);
+}
+
+void castMap(const RaycastTask& task, Sampling sampling, const MapLayer& layer, cudaStream_t stream) {
+  startAccurate(task, sampling, layer, stream);
 }
 
 }  // namespace emscape::render::cuda

@@ -51,6 +51,7 @@ class CudaFrameCaster : public FrameCaster {
   void beginTime();
   CastLaunch prepare(const Scene& scene, ImageSize size);
   void findGround(const Scene& scene, const CastLaunch& launch);
+  void findMap(const CastLaunch& launch);
   void findSections(CastLaunch& launch);
   void findInside(const Scene& scene, ImageSize size);
   void finish(FrameReport& report);
@@ -93,6 +94,8 @@ class CudaFrameCaster : public FrameCaster {
   View ground_view_, inside_view_;
   Buffer<float> ground_distances_;
   Buffer<float4> ground_colors_;
+  Buffer<bool> ground_is_surface_;
+  Buffer<float4> mapped_colors_;  ///< of the ground, with the map layer
   Buffer<float> cut_begins_, cut_limits_, cut_distances_;
   Buffer<float4> cut_colors_;
   Silhouette silhouette_;
@@ -150,7 +153,7 @@ bool CudaFrameCaster::isStopped(const StopFlag* stop) {
 CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, const StopFlag* stop,
                                   double max_samples) {
   volume_->storage().beginReading(stream_);
-  const bool is_prepared = scene_.isCurrent(scene) && !scene.isCut() &&
+  const bool is_prepared = scene_.isCurrent(scene) && !scene.isCut() && !scene.isMapped() &&
                            (!scene.ground() || ground_view_.holds(scene.versions().view, size));
   is_begun_ = is_cast_ = false;
   if (!is_prepared) beginTime();
@@ -189,6 +192,7 @@ CastLaunch CudaFrameCaster::prepare(const Scene& scene, ImageSize size) {
     layers_.ground_distances = ground_distances_.data();
     layers_.ground_colors = ground_colors_.data();
   }
+  if (scene.isMapped()) findMap(launch);
   if (scene.isCut()) findSections(launch);
   return launch;
 }
@@ -199,8 +203,22 @@ void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
   if (ground_view_.holds(version, size)) return;
   ground_distances_.resize(static_cast<std::size_t>(size.count()));
   ground_colors_.resize(static_cast<std::size_t>(size.count()));
-  cuda::castGround(launch.task, ground_distances_.data(), ground_colors_.data(), stream_);
+  ground_is_surface_.resize(static_cast<std::size_t>(size.count()));
+  cuda::castGround(launch.task, ground_distances_.data(), ground_colors_.data(), ground_is_surface_.data(),
+                   stream_);
   ground_view_ = {version, size};
+}
+
+/// Computed for every frame, because the map layer shows the volume's values.
+void CudaFrameCaster::findMap(const CastLaunch& launch) {
+  mapped_colors_.resize(picture8_.size());
+  RaycastTask task = launch.task;
+  task.volume.texture = volume_->storage().pointTexture();
+  cuda::castMap(
+      task, sampling_,
+      {ground_distances_.data(), ground_colors_.data(), ground_is_surface_.data(), mapped_colors_.data()},
+      stream_);
+  layers_.ground_colors = mapped_colors_.data();
 }
 
 /// Computed for every frame, because sections show the volume's values.

@@ -87,8 +87,20 @@ void castPixels(const CastLaunch& launch, CompositingMode mode, Sampling samplin
 /// The same, only for a sparse sampling.
 void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling sampling, cudaStream_t stream);
 
-/// Distance at which every pixel's ray meets the ground (infinity: none), and the colour there.
-void castGround(const RaycastTask& task, float* distances, float4* colors, cudaStream_t stream);
+/// Distance at which every pixel's ray meets the ground (infinity: none), the colour there, and whether it is
+/// the ground's surface.
+void castGround(const RaycastTask& task, float* distances, float4* colors, bool* is_surface,
+                cudaStream_t stream);
+
+/// The ground with the map layer; arrays with one element per pixel.
+struct MapLayer {
+  const float* distances = nullptr;  ///< as of castGround(), as the next two
+  const float4* colors = nullptr;
+  const bool* is_surface = nullptr;
+  float4* mapped = nullptr;  ///< receives the colours of hits
+};
+/// @param task  its texture does not filter
+void castMap(const RaycastTask& task, Sampling sampling, const MapLayer& layer, cudaStream_t stream);
 
 /// The part of every pixel's ray that planes keep; arrays with one element per pixel.
 struct CutLayer {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -17,19 +18,29 @@ struct GroundLayer {
   ImageSize size;
   std::vector<float> distances;  ///< along the ray; kNone: it misses the ground; kUnknown: not yet computed
   std::vector<Rgba> colors;      ///< of hits
-  bool complete = false;         ///< no pixel is unknown
+  std::vector<std::uint8_t> is_surface;  ///< of hits: see GroundHit
+  std::vector<Rgba> mapped;              ///< colours of hits with the map layer; empty without one
+  std::vector<std::uint8_t> is_mapped;   ///< the colour in `mapped` is known
+  bool complete = false;                 ///< no pixel is unknown
 
   void reset(ImageSize image_size) {
     size = image_size;
     distances.assign(static_cast<std::size_t>(size.count()), kUnknown);
     colors.resize(distances.size());
+    is_surface.resize(distances.size());
+    dropMap();
     complete = false;
   }
-  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * size.width + x; }
-  /// The colour of a pixel whose volume has the colour `front`. Its ground must be known.
-  Rgba behind(const Rgba& front, std::size_t pixel) const {
-    return distances[pixel] < kNone ? over(front, colors[pixel]) : front;
+  void dropMap() {
+    mapped.clear();
+    is_mapped.clear();
   }
+  void beginMap() {
+    if (!mapped.empty()) return;
+    mapped.resize(colors.size());
+    is_mapped.assign(colors.size(), 0);
+  }
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y) * size.width + x; }
 };
 
 }  // namespace emscape::render

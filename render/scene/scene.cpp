@@ -109,12 +109,17 @@ void Scene::setSettings(const RenderSettings& settings) {
   kMidaGammaLimits.require(settings.mida_gamma);
   kExaggerationLimits.require(settings.vertical_exaggeration);
   kIsoOpacityLimits.require(settings.iso_opacity);
+  if (settings.map_height_agl_m) kMapHeightLimits.require(*settings.map_height_agl_m);
+  kMapOpacityLimits.require(settings.map_opacity);
   if (std::isinf(settings.iso_value)) throw Error(ErrorCode::bad_input, "iso value: must be finite");
   checkCutPlanes(settings.planes);
   if (planesOfGround(settings.planes) != planesOfGround(settings_.planes)) ++versions_.view;
   if (settings.step_voxels != settings_.step_voxels) table_.reset();
   if (settings.vertical_exaggeration != settings_.vertical_exaggeration) dropGround();
   if (settings.mode != settings_.mode || settings.iso_value != settings_.iso_value) ++versions_.levels;
+  if (settings.map_height_agl_m != settings_.map_height_agl_m ||
+      settings.map_opacity != settings_.map_opacity)
+    ++versions_.map;
   settings_ = settings;
 }
 
@@ -182,6 +187,10 @@ RaycastTask Scene::task(ImageSize size) const {
   if (ground_) task.ground = ground_->view();
   task.cut = cutView();
   task.cut.colors = table_->opaque().data();
+  if (isMapped()) {
+    task.map = {true, static_cast<float>(*settings_.map_height_agl_m / grid().spacing_m.z),
+                static_cast<float>(settings_.map_opacity)};
+  }
   task.step_voxels = static_cast<float>(settings_.step_voxels);
   task.mida_gamma = static_cast<float>(settings_.mida_gamma);
   task.opaque_enough = settings_.exact ? kNeverOpaqueEnough : kOpaqueEnough;

@@ -23,6 +23,7 @@ class Scene {
     unsigned table = 0;   ///< the transfer function's table
     unsigned levels = 0;  ///< the result of skipRule()
     unsigned ground = 0;
+    unsigned map = 0;   ///< height and opacity of the map layer
     unsigned view = 0;  ///< the camera, the ground, or its cuts by planes
   };
 
@@ -57,6 +58,8 @@ class Scene {
   RaycastTask task(ImageSize size) const;
   /// True if planes cut the volume.
   bool isCut() const;
+  /// True if the map layer is painted on the ground.
+  bool isMapped() const { return ground_ && settings_.map_height_agl_m; }
   /// True if rays with only transparent samples are transparent.
   bool transparentShowsNothing() const;
 

@@ -218,7 +218,8 @@ ScenarioComparison::ScenarioComparison(std::shared_ptr<const scenario::Scenario>
                       request().quantity,
                       request().threshold,
                       request().times_s,
-                      request().heights},
+                      request().heights,
+                      maps.view},
       maps.formats);
 }
 

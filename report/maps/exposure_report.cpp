@@ -98,7 +98,9 @@ std::string exposureText(const Exposure& exposure) {
   }
   row(exposure.together, "");
   if (exposure.together.unknown_fraction > 0) {
-    out.add("Unknown where a path crosses missing terrain; 'reached' is of the known time.\n");
+    out.add(
+        "Unknown where a path crosses missing terrain and no other emitter reaches the threshold; 'reached' "
+        "is of the known time.\n");
   }
   return out.take();
 }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/playback/view/view_state.h"
 #include "emscape/study/maps/area.h"
 #include "emscape/study/maps/coverage.h"
 
@@ -22,7 +23,8 @@ struct MapOptions {
   std::string area;             ///< empty: the scenario's region
   std::string crs = "utm";
   std::vector<std::string> formats{"cog", "png"};
-  std::string prefix;  ///< of the names of these options in messages: "--" on a command line
+  playback::ViewState view;  ///< of pictures, as MapStudy::view
+  std::string prefix;        ///< of the names of these options in messages: "--" on a command line
 };
 
 /// @throws Error (usage) that names the option and its allowed values

@@ -14,6 +14,7 @@ namespace emscape::scenario {
 namespace {
 
 using document::DocumentNode;
+using document::DocumentNodePtr;
 
 constexpr double kNewHeight_m = 10;
 
@@ -168,6 +169,38 @@ std::vector<Edit> editsToAdd(const Scenario& scenario, const NewItem& item) {
   return edits;
 }
 
+std::vector<Edit> editsWithReferences(const Scenario& scenario, const Edit& edit) {
+  std::vector<Edit> edits{edit};
+  if (!scenario.source || !scenario.source->root) return edits;
+  document::NodePath steps;
+  try {
+    steps = document::resolvePath(edit.path, scenario.source->root, scenarioSpec()).steps;
+  } catch (const Error&) {
+    return edits;  // whoever applies it reports the fault
+  }
+  if (steps.size() != 3 || steps.back() != document::PathStep("name")) return edits;
+  const auto& list = std::get<std::string>(steps.front());
+  const auto index = std::get<std::size_t>(steps[1]);
+  const DocumentNodePtr name = document::valueAt(scenario.source->root, steps);
+  if (!name) return edits;
+  const auto add = [&](const std::string& of, const auto& items) {
+    for (const auto& item : items) {
+      if (item.platform == static_cast<int>(index))
+        edits.push_back({of + "." + pathStep(item.name) + ".platform", edit.value});
+    }
+  };
+  if (list == "platforms") {
+    add("emitters", scenario.emitters);
+    add("receivers", scenario.placed_receivers);
+    add("targets", scenario.targets);
+  }
+  const char* const of_output = list == "emitters" ? "wanted_emitter" : "receiver";
+  const DocumentNodePtr named = document::valueAt(scenario.source->root, {"output", of_output});
+  if ((list == "emitters" || list == "receivers") && named && named->text == name->text)
+    edits.push_back({std::string("output.") + of_output, edit.value});
+  return edits;
+}
+
 Edit editToRemove(const Scenario& scenario, const std::string& path) {
   const document::ResolvedPath found = itemAt(scenario, path);
   if (std::get<std::string>(found.steps.front()) == "platforms") {
@@ -192,7 +225,7 @@ Edit editToRemove(const Scenario& scenario, const std::string& path) {
 
 Edit editToDuplicate(const Scenario& scenario, const std::string& path, const std::string& name) {
   const document::ResolvedPath found = itemAt(scenario, path);
-  const document::DocumentNodePtr node = document::valueAt(scenario.source->root, found.steps);
+  const DocumentNodePtr node = document::valueAt(scenario.source->root, found.steps);
   const auto key = std::find_if(node->entries.begin(), node->entries.end(),
                                 [](const document::MapEntry& entry) { return entry.key == "name"; });
   const std::string list = std::get<std::string>(found.steps.front());

@@ -1,4 +1,5 @@
-/// Edits that add, copy and move the items of a scenario. Values are common ones, to be changed afterwards.
+/// Edits that add, copy, rename and move the items of a scenario. Values are common ones, to be changed
+/// afterwards.
 #pragma once
 
 #include <optional>
@@ -32,6 +33,9 @@ std::vector<Edit> editsToAdd(const Scenario& scenario, const NewItem& item);
 /// @param name  of the copy; empty: one that is not used
 /// @throws Error (bad_input) if there is no such item
 Edit editToDuplicate(const Scenario& scenario, const std::string& path, const std::string& name);
+
+/// An edit and, if it gives an item another name, the edits of the values that contain the name.
+std::vector<Edit> editsWithReferences(const Scenario& scenario, const Edit& edit);
 
 /// @throws Error (bad_input) if there is no such item, or other items are on the platform
 Edit editToRemove(const Scenario& scenario, const std::string& path);

@@ -20,6 +20,7 @@ class Pair {
     row.is_area = info(a.product).area_class >= 0;
     row.mean_difference = row.min_difference = row.max_difference = NAN;
     map = a;
+    setAnswers();
     map.labels.clear();
     map.colors.clear();
     map.area_class = -1;
@@ -34,6 +35,24 @@ class Pair {
   ComparisonRow row;
 
  private:
+  /// Unknown where that of one map is. The difference of a bound is unknown, too.
+  void setAnswers() {
+    if (a_.answers.empty() || b_.answers.empty()) {
+      map.answers.clear();
+      return;
+    }
+    for (std::size_t p = 0; p < map.answers.size(); ++p) {
+      const auto isOf = [&](PixelAnswer answer) {
+        return a_.answers[p] == answer || b_.answers[p] == answer;
+      };
+      const bool is_unknown = isOf(PixelAnswer::unknown) || (!row.is_area && isOf(PixelAnswer::bound));
+      map.answers[p] = is_unknown                 ? PixelAnswer::unknown
+                       : isOf(PixelAnswer::none)  ? PixelAnswer::none
+                       : isOf(PixelAnswer::bound) ? PixelAnswer::bound
+                                                  : PixelAnswer::exact;
+    }
+  }
+
   void change() {
     constexpr int kGreen = 2, kVermilion = 5, kSkyBlue = 1;
     map.name += "_change";
@@ -75,6 +94,7 @@ class Pair {
     map.values.assign(grid_.pixels(), NAN);
     for (std::size_t p = 0; p < grid_.pixels(); ++p) {
       if (std::isnan(a_.values[p]) || std::isnan(b_.values[p])) continue;
+      if (!map.answers.empty() && map.answers[p] == PixelAnswer::unknown) continue;
       const auto area_m2 = static_cast<double>(grid_.areas_m2[p]);
       row.known_area_m2 += area_m2;
       visit(p, area_m2);

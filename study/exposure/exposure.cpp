@@ -59,7 +59,7 @@ class Track {
     scenario_ = own;
     options_.quantities.clear();
     options_.also_per_emitter = true;
-    options_.allow_missing_terrain = true;
+    options_.allow_missing_terrain = options_.keep_partly_unknown = true;
     const std::vector<emfield::Channel> channels =
         emfield::channelsOf(*own, own->output.quantities, scenario::CombineMode::per_emitter);
     for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -155,6 +155,9 @@ class Track {
                             : static_cast<double>(terrain_->heightMsl_m(row.latitude_deg, row.longitude_deg));
     row.height_agl_m = state.height_msl_m - ground_m;
     row.value = valueOf(0);
+    const std::vector<std::uint8_t>& partly_unknown = solver.partlyUnknown(0);
+    const bool is_bound = !partly_unknown.empty() && partly_unknown[index] != 0;
+    if (is_bound && row.value < request_.threshold) row.value = NAN;  // the others may reach it
     row.state = stateOf(row.value, request_.threshold);
     const double floor = scenario_->output.floor;
     double largest = -HUGE_VAL;

@@ -11,6 +11,7 @@
 #include "emscape/base/units.h"
 #include "emscape/playback/frames/scene.h"
 #include "emscape/render/picture/image.h"
+#include "render/annotate/hatching.h"
 #include "render/annotate/overlay_parts.h"
 #include "study/maps/gdal_support.h"
 #include "study/picture/map_colors.h"
@@ -24,6 +25,8 @@ struct Overlay {
   render::Image8 image;
   double north_deg = 0, south_deg = 0, east_deg = 0, west_deg = 0;
 };
+
+constexpr std::size_t kHatchPixels = 4;  ///< of the map, from line to line
 
 std::array<std::uint8_t, 4> bytesOf(const std::optional<render::Rgb>& color) {
   if (!color) return {0, 0, 0, 0};
@@ -71,8 +74,11 @@ Overlay overlayOf(const MapGrid& grid, const Map& map, const render::Legend& leg
   const gdal::Dataset raster = memoryRaster(grid, GDT_Byte, file);
   for (int channel = 1; channel < 4; ++channel) GDALAddBand(raster.get(), GDT_Byte, nullptr);
   std::vector<std::uint8_t> rgba;
-  for (const float value : map.values) {
-    for (const std::uint8_t byte : bytesOf(colorOf(map, legend, value))) rgba.push_back(byte);
+  for (std::size_t p = 0; p < map.values.size(); ++p) {
+    const std::size_t column = p % static_cast<std::size_t>(grid.width), row = p / grid.width;
+    const bool is_line = isUnknown(map, p) && (column + row) % kHatchPixels == 0;
+    const auto color = is_line ? std::optional(render::kHatchInk.color) : colorOf(map, legend, map.values[p]);
+    for (const std::uint8_t byte : bytesOf(color)) rgba.push_back(byte);
   }
   if (GDALDatasetRasterIO(raster.get(), GF_Write, 0, 0, grid.width, grid.height, rgba.data(), grid.width,
                           grid.height, GDT_Byte, 4, nullptr, 4, 4 * grid.width, 1) != CE_None) {

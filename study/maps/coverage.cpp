@@ -291,7 +291,9 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
         map.time_s = time_s;
         double unreached_m2 = 0;
         for (std::size_t p = 0; p < least_m[n].size(); ++p) {
-          if (impl_->least_heights->isKnown()[p] && std::isnan(least_m[n][p]))
+          map.answers.push_back(impl_->least_heights->answer(p, least_m[n][p]));
+          const bool is_inside = !std::isnan(impl_->grid.positions[p].latitude_deg);
+          if (is_inside && map.answers.back() == PixelAnswer::none)
             unreached_m2 += static_cast<double>(impl_->grid.areas_m2[p]);
         }
         map.unreached_area_m2 = unreached_m2;

@@ -58,17 +58,22 @@ class Strip {
     });
   }
 
-  /// Adds for each position whether it has a value at any height.
-  /// @param volume  as in search()
-  void addKnown(int steps, const volume::DenseVolume& volume, std::vector<bool>& is_known) const {
+  /// Adds what is known of each position over all heights: exact, or bound if some emitters are unknown.
+  /// @param volume, partly_unknown  as in search(), as FieldSolver::partlyUnknown()
+  void addKnown(int steps, const volume::DenseVolume& volume, const std::vector<std::uint8_t>& partly_unknown,
+                std::vector<PixelAnswer>& known) const {
     const std::size_t positions = surface_.positions.size();
     for (std::size_t p = 0; p < positions; ++p) {
-      bool known = false;
-      const bool is_inside = !std::isnan(surface_.positions[p].latitude_deg);
+      bool has_value = false;
       std::size_t k = volume.first_valid_k.empty() ? 0 : volume.first_valid_k[p];
-      for (; is_inside && !known && k <= static_cast<std::size_t>(steps); ++k)
-        known = !std::isnan(volume.values[k * positions + p]);
-      is_known.push_back(known);
+      for (; !has_value && k <= static_cast<std::size_t>(steps); ++k)
+        has_value = !std::isnan(volume.values[k * positions + p]);
+      const bool is_inside = !std::isnan(surface_.positions[p].latitude_deg);
+      const bool is_bound = !partly_unknown.empty() && partly_unknown[p] != 0;
+      known.push_back(!is_inside   ? PixelAnswer::none
+                      : !has_value ? PixelAnswer::unknown
+                      : is_bound   ? PixelAnswer::bound
+                                   : PixelAnswer::exact);
     }
   }
 
@@ -84,7 +89,7 @@ class Strip {
 LeastHeights::LeastHeights(const MapGrid& grid, std::vector<double> thresholds,
                            const emfield::FieldOptions& options)
     : grid_(grid), thresholds_(std::move(thresholds)), options_(options) {
-  options_.allow_missing_terrain = true;
+  options_.allow_missing_terrain = options_.keep_partly_unknown = true;
 }
 
 std::vector<std::vector<float>> LeastHeights::compute(
@@ -103,17 +108,18 @@ std::vector<std::vector<float>> LeastHeights::compute(
     return solver->volumes().front().host();
   };
   std::vector<std::vector<float>> heights_m(thresholds_.size());
-  is_known_.clear();
+  known_.clear();
   for (int row = 0; row < grid_.height; row += rows_at_once) {
     Strip all(grid_, row, std::min(rows_at_once, grid_.height - row));
     std::shared_ptr<const volume::DenseVolume> first;
     constexpr double kFirstStep_m = kHighestSearched_m / kFirstSteps;
     if (all.hasPositions()) {
       std::optional<emfield::FieldSolver> own;
-      first = solve(all.surfaceOf(kFirstStep_m, kFirstSteps), is_kept ? first_steps_ : own);
-      all.addKnown(kFirstSteps, *first, is_known_);
+      std::optional<emfield::FieldSolver>& solver = is_kept ? first_steps_ : own;
+      first = solve(all.surfaceOf(kFirstStep_m, kFirstSteps), solver);
+      all.addKnown(kFirstSteps, *first, solver->partlyUnknown(0), known_);
     } else {
-      is_known_.resize(is_known_.size() + all.found_m().size(), false);
+      known_.resize(known_.size() + all.found_m().size(), PixelAnswer::none);
     }
     for (std::size_t t = 0; t < thresholds_.size(); ++t) {
       Strip strip = all;
@@ -128,6 +134,14 @@ std::vector<std::vector<float>> LeastHeights::compute(
     }
   }
   return heights_m;
+}
+
+PixelAnswer LeastHeights::answer(std::size_t position, float height_m) const {
+  const PixelAnswer known = known_[position];
+  if (!std::isnan(height_m)) return known;
+  return known == PixelAnswer::exact   ? PixelAnswer::none
+         : known == PixelAnswer::bound ? PixelAnswer::unknown
+                                       : known;
 }
 
 }  // namespace emscape::study

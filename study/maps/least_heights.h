@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "emscape/emfield/solver/field_solver.h"
+#include "emscape/study/maps/map.h"
 #include "emscape/study/maps/map_grid.h"
 
 namespace emscape::study {
@@ -32,15 +33,17 @@ class LeastHeights {
   std::vector<std::vector<float>> compute(const std::shared_ptr<const scenario::Scenario>& scenario,
                                           const scenario::TerrainPtr& terrain, double time_s);
 
-  /// Of the last compute(): which positions have a field value at any height.
-  const std::vector<bool>& isKnown() const { return is_known_; }
+  /// What a height of the last compute() says: exact; bound if emitters whose path is unknown may reach the
+  /// threshold below it; of NaN unknown, or none: no height reaches the threshold, or the position is left
+  /// out.
+  PixelAnswer answer(std::size_t position, float height_m) const;
 
  private:
   const MapGrid& grid_;
   std::vector<double> thresholds_;
   emfield::FieldOptions options_;
   std::optional<emfield::FieldSolver> first_steps_;
-  std::vector<bool> is_known_;
+  std::vector<PixelAnswer> known_;  ///< one per position
 };
 
 }  // namespace emscape::study

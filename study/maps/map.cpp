@@ -30,8 +30,9 @@ MapSummary summaryOf(const MapGrid& grid, const Map& map) {
     summary.label_areas_m2.assign(map.labels.size(), 0);
   for (std::size_t p = 0; p < grid.pixels(); ++p) {
     const auto value = static_cast<double>(map.values[p]);
-    if (std::isnan(value)) continue;
     const auto area_m2 = static_cast<double>(grid.areas_m2[p]);
+    if (!map.answers.empty() && map.answers[p] == PixelAnswer::unknown) summary.unknown_area_m2 += area_m2;
+    if (std::isnan(value)) continue;
     summary.known_area_m2 += area_m2;
     if (map.area_class >= 0 && value == map.area_class) summary.class_area_m2 += area_m2;
     if (value >= 0 && value < static_cast<double>(summary.label_areas_m2.size()))

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/playback/view/view_state.h"
 #include "emscape/scenario/model/quantities.h"
 #include "emscape/scenario/model/scenario.h"
 #include "emscape/study/maps/map.h"
@@ -22,6 +23,7 @@ struct MapStudy {
   double threshold = 0.5;
   std::vector<double> times_s;     ///< ascending, one or more; of all maps
   std::vector<MapHeight> heights;  ///< of all maps
+  playback::ViewState view;        ///< of the pictures: places, drape, range rings and units
 };
 
 }  // namespace emscape::study

@@ -47,6 +47,21 @@ std::vector<float> valuesOfPixels(const MapGrid& grid, const Value& valueAtPixel
   return values;
 }
 
+/// True for products that the emitters with a known path do not decide although they reach the threshold.
+bool needsAllEmitters(Product product) {
+  return product == Product::best;
+}
+
+/// The answers of a product, and its values: NaN where there is none.
+void setAnswers(CoverageMap& map, std::vector<PixelAnswer> answers, std::vector<float>& values) {
+  for (std::size_t p = 0; p < values.size(); ++p) {
+    const bool has_value = answers[p] == PixelAnswer::exact || answers[p] == PixelAnswer::bound;
+    if (has_value && std::isnan(values[p])) answers[p] = PixelAnswer::none;
+    if (!has_value) values[p] = NAN;
+  }
+  map.answers = std::move(answers);
+}
+
 template <class Test>
 bool hasAny(const std::vector<Product>& products, const Test& test) {
   return std::any_of(products.begin(), products.end(), test);
@@ -121,6 +136,7 @@ SurfaceField::SurfaceField(const MapGrid& grid, const std::vector<CoverageReques
                            surface->heights_m.end());
   options_.surface = surface;
   options_.allow_missing_terrain = true;  // masked, and reported as the maps' known area
+  options_.keep_partly_unknown = true;
 }
 
 std::size_t SurfaceField::layerOf(const MapHeight& height) const {
@@ -137,6 +153,9 @@ SurfaceValues SurfaceField::at(const std::shared_ptr<const scenario::Scenario>& 
   const std::vector<volume::Volume>& volumes = solver_->volumes();
   SurfaceValues values;
   values.all = volumes.front().host();
+  values.partly_unknown = solver_->partlyUnknown(0);
+  if (options_.surface->reference == HeightReference::mean_sea_level)
+    values.ground_msl_m = solver_->groundHeights_m();
   if (options_.also_unjammed) values.unjammed = volumes.back().host();
   const std::size_t end = volumes.size() - (options_.also_unjammed ? 1 : 0);
   for (std::size_t c = 1; c < end; ++c) {
@@ -171,19 +190,34 @@ void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenari
                           const SurfaceValues& values, double time_s, const MapSink& take) {
   State& state = states_[index];
   state.scenario = scenario;
-  state.last = isOverTime(request_) ? values.all : nullptr;
+  state.answers.resize(isOverTime(request_) ? layers_.size() : 0);
   for (std::size_t n = 0; n < layers_.size(); ++n) {
     const std::size_t k = layers_[n].k;
+    std::vector<PixelAnswer> answers(grid_.pixels());
+    parallelFor(static_cast<int>(grid_.pixels()), 1 << 14, [&](int begin, int end) {
+      for (int p = begin; p < end; ++p)
+        answers[p] = answerAt(values, layers_[n], static_cast<std::size_t>(p));
+    });
     if (isOverTime(request_)) {
-      state.figures[n].add(time_s, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); });
+      state.figures[n].add(time_s, [&](std::size_t p) {
+        return answers[p] == PixelAnswer::unknown      ? TimeFigures::Coverage::unknown
+               : isCovered(valueAt(*values.all, k, p)) ? TimeFigures::Coverage::yes
+                                                       : TimeFigures::Coverage::no;
+      });
     }
     for (const Product product : request_.products) {
       if (info(product).over_time || !info(product).at_heights) continue;
       CoverageMap map = emptyMap(*scenario, request_, product, layers_[n].height);
       map.time_s = time_s;
-      setValues(map, grid_, valuesOf(product, values, k));
+      std::vector<PixelAnswer> of_product = answers;
+      if (needsAllEmitters(product))
+        std::replace(of_product.begin(), of_product.end(), PixelAnswer::bound, PixelAnswer::unknown);
+      std::vector<float> shown = valuesOf(product, values, k, of_product);
+      setAnswers(map, std::move(of_product), shown);
+      setValues(map, grid_, std::move(shown));
       take(std::move(map));
     }
+    if (isOverTime(request_)) state.answers[n] = std::move(answers);
   }
 }
 
@@ -193,22 +227,40 @@ void SurfaceMaps::finish(std::size_t index, const MapSink& take) {
     for (const Product product : request_.products) {
       if (!info(product).over_time) continue;
       CoverageMap map = emptyMap(*state.scenario, request_, product, layers_[n].height);
-      setValues(map, grid_, valuesOfPixels(grid_, [&](std::size_t p) {
-                  return std::isnan(valueAt(*state.last, layers_[n].k, p))
-                             ? NAN
-                             : state.figures[n].figure(product, p);
-                }));
+      const TimeFigures& figures = state.figures[n];
+      std::vector<PixelAnswer> answers = state.answers[n];
+      for (std::size_t p = 0; p < answers.size(); ++p)
+        if (answers[p] != PixelAnswer::none) answers[p] = figures.answer(product, p);
+      std::vector<float> values =
+          valuesOfPixels(grid_, [&](std::size_t p) { return figures.figure(product, p); });
+      setAnswers(map, std::move(answers), values);
+      setValues(map, grid_, std::move(values));
       take(std::move(map));
     }
   }
 }
 
-std::vector<float> SurfaceMaps::valuesOf(Product product, const SurfaceValues& values, std::size_t k) const {
+PixelAnswer SurfaceMaps::answerAt(const SurfaceValues& values, const Layer& layer, std::size_t p) const {
+  if (std::isnan(grid_.positions[p].latitude_deg)) return PixelAnswer::none;
+  const float value = valueAt(*values.all, layer.k, p);
+  if (std::isnan(value)) {
+    constexpr double kSame_m = 0.01;
+    const bool is_above_sea = layer.height.reference == HeightReference::mean_sea_level;
+    const double ground_m = values.ground_msl_m.empty() ? 0 : static_cast<double>(values.ground_msl_m[p]);
+    const bool is_below = is_above_sea && layer.height.metres < ground_m + kSame_m;
+    return is_below ? PixelAnswer::none : PixelAnswer::unknown;
+  }
+  if (values.partly_unknown.empty() || values.partly_unknown[p] == 0) return PixelAnswer::exact;
+  return isCovered(value) ? PixelAnswer::bound : PixelAnswer::unknown;
+}
+
+std::vector<float> SurfaceMaps::valuesOf(Product product, const SurfaceValues& values, std::size_t k,
+                                         const std::vector<PixelAnswer>& answers) const {
   /// @param ofKnown(value, p)  of a pixel with a value
   const auto from = [&](const auto& ofKnown) {
     return valuesOfPixels(grid_, [&](std::size_t p) {
-      const float value = valueAt(*values.all, k, p);
-      return std::isnan(value) ? value : ofKnown(value, p);
+      const bool has_value = answers[p] == PixelAnswer::exact || answers[p] == PixelAnswer::bound;
+      return has_value ? ofKnown(valueAt(*values.all, k, p), p) : NAN;
     });
   };
   const auto isCoveredUnjammed = [&](std::size_t p) { return isCovered(valueAt(*values.unjammed, k, p)); };

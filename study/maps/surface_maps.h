@@ -38,6 +38,9 @@ struct SurfaceValues {
     FastGeodesy geodesy;  ///< from its position
   };
   std::shared_ptr<const volume::DenseVolume> all;
+  /// Pixels that are unknown to some emitters and have the value of the others: 1; empty: none.
+  std::vector<std::uint8_t> partly_unknown;
+  std::vector<float> ground_msl_m;                      ///< for heights above the sea; empty: none is known
   std::vector<OfOne> each;                              ///< if a product needs them
   std::shared_ptr<const volume::DenseVolume> unjammed;  ///< if a product needs it
 };
@@ -51,6 +54,8 @@ class SurfaceField {
 
   /// False: no request has a height of the reference.
   bool hasHeights() const { return !options_.surface->heights_m.empty(); }
+  /// Of a layer.
+  double height_m(std::size_t k) const { return options_.surface->heights_m[k]; }
   /// Index of a height in the values' layers.
   std::size_t layerOf(const MapHeight& height) const;
   SurfaceValues at(const std::shared_ptr<const scenario::Scenario>& scenario,
@@ -89,8 +94,8 @@ class SurfaceMaps {
   /// A scenario between its times.
   struct State {
     std::shared_ptr<const scenario::Scenario> scenario;
-    std::vector<TimeFigures> figures;  ///< one per layer
-    std::shared_ptr<const volume::DenseVolume> last;
+    std::vector<TimeFigures> figures;               ///< one per layer
+    std::vector<std::vector<PixelAnswer>> answers;  ///< of the last time, one per layer
   };
 
   bool isCovered(float value) const { return static_cast<double>(value) >= request_.threshold; }
@@ -100,8 +105,10 @@ class SurfaceMaps {
     return is_valid ? volume.values[k * grid_.pixels() + p] : NAN;
   }
 
-  /// Of a layer.
-  std::vector<float> valuesOf(Product product, const SurfaceValues& values, std::size_t k) const;
+  /// What the value of all emitters says. That of some of them is an answer if it reaches the threshold.
+  PixelAnswer answerAt(const SurfaceValues& values, const Layer& layer, std::size_t p) const;
+  std::vector<float> valuesOf(Product product, const SurfaceValues& values, std::size_t k,
+                              const std::vector<PixelAnswer>& answers) const;
   float ofEmitters(Product product, const std::vector<SurfaceValues::OfOne>& each, std::size_t k,
                    std::size_t p) const;
 

@@ -13,7 +13,7 @@ TimeFigures::TimeFigures(std::size_t positions, std::vector<double> times_s) : t
   pixels_.assign(positions, none);
 }
 
-void TimeFigures::add(double time_s, const std::function<bool(std::size_t)>& isCovered) {
+void TimeFigures::add(double time_s, const std::function<Coverage(std::size_t)>& coverageOf) {
   const std::size_t at = next_++;
   const auto since_first_s = static_cast<float>(time_s - times_s_.front());
   const auto length_s = static_cast<float>(at + 1 < times_s_.size() ? times_s_[at + 1] - times_s_[at] : 0);
@@ -21,7 +21,9 @@ void TimeFigures::add(double time_s, const std::function<bool(std::size_t)>& isC
     for (int p = begin; p < end; ++p) {
       Pixel& pixel = pixels_[p];
       const bool was_covered = pixel.is_covered;
-      pixel.is_covered = isCovered(static_cast<std::size_t>(p));
+      const Coverage coverage = coverageOf(static_cast<std::size_t>(p));
+      pixel.is_covered = coverage == Coverage::yes;
+      pixel.has_unknown = pixel.has_unknown || coverage == Coverage::unknown;
       if (pixel.is_covered) {
         if (std::isnan(pixel.first_s)) pixel.first_s = since_first_s;
         if (!was_covered) {
@@ -61,6 +63,14 @@ float TimeFigures::figure(Product product, std::size_t p) const {
     default:
       return pixel.gaps > 0 ? pixel.all_gaps_s / static_cast<float>(pixel.gaps) : 0.0f;
   }
+}
+
+PixelAnswer TimeFigures::answer(Product product, std::size_t p) const {
+  const Pixel& pixel = pixels_[p];
+  if (!pixel.has_unknown) return PixelAnswer::exact;
+  const bool is_bounded = product == Product::first_detection || product == Product::fraction ||
+                          product == Product::longest_gap || product == Product::response;
+  return is_bounded && !std::isnan(pixel.first_s) ? PixelAnswer::bound : PixelAnswer::unknown;
 }
 
 }  // namespace emscape::study

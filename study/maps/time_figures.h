@@ -14,16 +14,23 @@ namespace emscape::study {
 /// gap at the last time ends there.
 class TimeFigures {
  public:
+  enum class Coverage { no, yes, unknown };
+
   /// @param places   0: nothing is computed
   /// @param times_s  ascending
   TimeFigures(std::size_t positions, std::vector<double> times_s);
 
   /// Adds the next of the times.
-  void add(double time_s, const std::function<bool(std::size_t pixel)>& isCovered);
+  void add(double time_s, const std::function<Coverage(std::size_t pixel)>& coverageOf);
 
-  /// A product over time, after the last of the times. NaN: first_detection of a position that is never
-  /// covered, revisit of a position that is covered less than twice.
+  /// A product over time, after the last of the times; unknown times are as without coverage. NaN:
+  /// first_detection of a position that is never covered, revisit of a position that is covered less than
+  /// twice.
   float figure(Product product, std::size_t pixel) const;
+
+  /// What a figure says: that of a position with unknown times is a bound for products that these can only
+  /// change in one direction, if the position is covered at another time; else it is unknown.
+  PixelAnswer answer(Product product, std::size_t pixel) const;
 
  private:
   struct Pixel {
@@ -35,7 +42,8 @@ class TimeFigures {
     float last_begin_s = 0;     ///< of the latest coverage
     std::uint32_t gaps = 0;
     std::uint32_t coverages = 0;
-    bool is_covered = false;  ///< at the previous time
+    bool is_covered = false;   ///< at the previous time
+    bool has_unknown = false;  ///< at any time
   };
   std::vector<double> times_s_;
   std::size_t next_ = 0;

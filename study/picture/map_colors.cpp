@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "base/text/display_units.h"
+
 namespace emscape::study {
 namespace {
 
@@ -36,12 +38,10 @@ std::string nameOfTransparent(const Map& map) {
   return map.labels.front() == "no" ? "no " + map.title : map.labels.front();
 }
 
-}  // namespace
-
-render::Legend legendOf(const Map& map) {
+/// The colours and their values.
+render::Legend colorsOf(const Map& map) {
   render::Legend legend;
   legend.quantity = render::quantityTitle(map.title, map.unit);
-  legend.unit = render::unitText(map.unit);
   float least = INFINITY, largest = -INFINITY;
   std::set<int> present;  // whole numbers
   float previous = NAN;
@@ -91,6 +91,26 @@ render::Legend legendOf(const Map& map) {
   const char* const colors = map.kind == MapKind::difference ? "diverging" : "viridis";
   setColors(legend, colors, low, high);
   return legend;
+}
+
+}  // namespace
+
+render::Legend legendOf(const Map& map, Units units, FieldUnit field_unit) {
+  render::Legend legend = colorsOf(map);
+  render::setFieldUnit(legend, map.unit, field_unit);
+  if (map.unit == "m" && units == Units::nautical) {
+    const bool is_distance = map.name.rfind(info(Product::max_range).name, 0) == 0;
+    const DisplayUnit unit = is_distance ? distanceUnit(units) : heightUnit(units);
+    legend.unit = unit.name;
+    legend.scale.factor = 1 / unit.factor;
+  }
+  if (std::find(map.answers.begin(), map.answers.end(), PixelAnswer::unknown) != map.answers.end())
+    legend.hatched = "unknown";
+  return legend;
+}
+
+bool isUnknown(const Map& map, std::size_t pixel) {
+  return !map.answers.empty() && map.answers[pixel] == PixelAnswer::unknown;
 }
 
 std::optional<render::Rgb> colorOf(const Map& map, const render::Legend& legend, float value) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/text/display_units.h"
 #include "render/annotate/plot.h"
 
 namespace emscape::study {
@@ -42,11 +43,11 @@ bool isKnown(const Point2& point) {
   return std::isfinite(point.x) && std::isfinite(point.y);
 }
 
-/// Round length of a scale bar, at most `most_m`: 1, 2 or 5 times a power of ten.
-double barLength_m(double most_m) {
-  const double power = std::pow(10.0, std::floor(std::log10(most_m)));
+/// The largest of 1, 2 or 5 times a power of ten up to a length.
+double roundLength(double most) {
+  const double power = std::pow(10.0, std::floor(std::log10(most)));
   for (const double factor : {5.0, 2.0})
-    if (factor * power <= most_m) return factor * power;
+    if (factor * power <= most) return factor * power;
   return power;
 }
 
@@ -137,11 +138,13 @@ void MapFrame::drawGraticule(Canvas& canvas) const {
   }
 }
 
-double MapFrame::drawScaleBar(Canvas& canvas, double right, double y, double metres_per_metre) const {
+double MapFrame::drawScaleBar(Canvas& canvas, double right, double y, double metres_per_metre,
+                              Units units) const {
   const double pixels_per_m = pixelsPerMetre() / metres_per_metre;
-  const double bar_m = barLength_m(0.24 * frame_.width / pixels_per_m);
+  const double unit_m = distanceUnit(units).factor;
+  const double bar_m = unit_m * roundLength(0.24 * frame_.width / pixels_per_m / unit_m);
   const double width = bar_m * pixels_per_m, height = 6 * style_.unit;
-  const std::string text = bar_m < 1000 ? fmt::format("{:g} m", bar_m) : fmt::format("{:g} km", bar_m / 1000);
+  const std::string text = roundDistanceText(bar_m, units);
   const double text_px = canvas.textBox(text, style_.small_px).width;
   const double left = right - text_px / 2 - width;
   canvas.rectangle({left, y - height / 2, width / 2, height}, style_.textInk());
@@ -167,13 +170,14 @@ void MapFrame::drawNorthArrow(Canvas& canvas, const Point2& center, double north
               render::Weight::bold);
 }
 
-void MapFrame::drawFoot(Canvas& canvas, const std::string& remark) const {
+void MapFrame::drawFoot(Canvas& canvas, Units units, const std::string& remark) const {
   const double bottom = frame_.y + frame_.height, right = frame_.x + frame_.width;
   double end = right;
   if (!grid_.wkt.empty()) {
     const MapPlane::Scale scale = plane_.scale();
     drawNorthArrow(canvas, {right - 14 * style_.unit, bottom + 52 * style_.unit}, scale.north_rad);
-    end = drawScaleBar(canvas, right - 44 * style_.unit, bottom + 62 * style_.unit, scale.metres_per_metre);
+    end = drawScaleBar(canvas, right - 44 * style_.unit, bottom + 62 * style_.unit, scale.metres_per_metre,
+                       units);
   }
   std::string text =
       fmt::format("{}; pixels of {:g} m; latitudes and longitudes of WGS 84", plane_.name(), grid_.cell_m);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/units.h"
 #include "render/annotate/overlay_parts.h"
 #include "study/picture/map_plane.h"
 
@@ -29,7 +30,7 @@ class MapFrame {
   void drawLine(render::Canvas& canvas, const std::vector<render::Point2>& points, const render::Ink& ink,
                 double width) const;
   /// Scale bar, north arrow and a remark, below the frame.
-  void drawFoot(render::Canvas& canvas, const std::string& remark) const;
+  void drawFoot(render::Canvas& canvas, Units units, const std::string& remark) const;
 
   /// Height needed below the frame (pixels).
   static double footHeight(const render::Style& style) { return 98 * style.unit; }
@@ -37,7 +38,8 @@ class MapFrame {
  private:
   double pixelsPerMetre() const { return frame_.width / (grid_.width * grid_.cell_m); }
   /// @return the bar's left end
-  double drawScaleBar(render::Canvas& canvas, double right, double y, double metres_per_metre) const;
+  double drawScaleBar(render::Canvas& canvas, double right, double y, double metres_per_metre,
+                      Units units) const;
   void drawNorthArrow(render::Canvas& canvas, const render::Point2& center, double north_rad) const;
 
   const MapGrid& grid_;

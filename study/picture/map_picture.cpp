@@ -9,12 +9,13 @@
 
 #include "emscape/base/parallel.h"
 #include "emscape/playback/frames/scene.h"
+#include "render/annotate/hatching.h"
+#include "render/annotate/label_placement.h"
 #include "render/annotate/overlay_parts.h"
 #include "scenario/map/coast.h"
 #include "study/maps/contour_lines.h"
 #include "study/picture/map_colors.h"
 #include "study/picture/map_frame.h"
-#include "study/picture/map_labels.h"
 #include "study/picture/map_relief.h"
 
 namespace emscape::study {
@@ -38,13 +39,13 @@ class MapPicture {
       : grid_(grid),
         map_(map),
         options_(options),
-        legend_(legendOf(map)),
+        legend_(legendOf(map, options.units, options.field_unit)),
         style_({options.width, options.width * 3 / 4}, render::Theme::light),
         relief_{grid.width * options.refinement, grid.height * options.refinement,
                 grid.cell_m / options.refinement, options.ground_msl_m},
         sea_(options.water.empty() ? seaOf(relief_) : options.water) {
-    const std::string unknown = hasUnknown() ? "no value" : "";
-    if (!unknown.empty()) legend_.note += (legend_.note.empty() ? "no colour: " : ", or ") + unknown;
+    if (hasNoValue())
+      legend_.note += std::string(legend_.note.empty() ? "no colour: " : ", or ") + "no value";
     const double left = 84 * style_.unit, top = 96 * style_.unit;
     const double room =
         options.width - left - std::max(190 * style_.unit, render::legendWidth(style_, legend_));
@@ -64,8 +65,12 @@ class MapPicture {
     drawShore(canvas, frame);
     frame.drawGraticule(canvas);
     frame.drawOutline(canvas);
-    const std::size_t nameless = drawMarkers(canvas, frame);
-    frame.drawFoot(canvas, nameless == 0 ? "" : fmt::format("{} names have no room", nameless));
+    const auto shown = shownMarkers(frame);
+    std::vector<Rect> taken;
+    drawMarks(canvas, frame, shown, taken);
+    const std::size_t nameless = drawMarkers(canvas, shown, taken);
+    frame.drawFoot(canvas, options_.units,
+                   nameless == 0 ? "" : fmt::format("{} names have no room", nameless));
     render::drawLegend(canvas, style_, legend_);
     drawTitle(canvas);
     canvas.text(options_.subtitle, {rect_.x, 64 * style_.unit}, style_.text_px, style_.mutedInk());
@@ -73,10 +78,10 @@ class MapPicture {
   }
 
  private:
-  /// True if a pixel of the area has no value.
-  bool hasUnknown() const {
+  /// True if a pixel of the area has no value and is not hatched.
+  bool hasNoValue() const {
     for (std::size_t p = 0; p < map_.values.size(); ++p)
-      if (std::isnan(map_.values[p]) && !isLeftOut(p)) return true;
+      if (std::isnan(map_.values[p]) && !isLeftOut(p) && !isUnknown(map_, p)) return true;
     return false;
   }
 
@@ -100,14 +105,19 @@ class MapPicture {
       const int j = static_cast<int>(std::floor((y + 0.5 - rect_.y) / square));
       if (j < 0 || j >= relief_.height) return;
       int last = -1;
-      std::uint32_t color = 0;
+      Rgb color;
+      bool is_hatched = false;
       for (int x = 0; x < size_.width; ++x) {
         const int i = static_cast<int>(std::floor((x + 0.5 - rect_.x) / square));
         if (i < 0 || i >= relief_.width) continue;
         const std::size_t post = static_cast<std::size_t>(j) * relief_.width + i;
-        if (i != last) color = pixelAt(shownAt(i / parts, j / parts), shades[post], sea_[post] != 0);
+        if (i != last) {
+          const std::size_t p = shownAt(i / parts, j / parts);
+          color = colorAt(p, post, shades[post]);
+          is_hatched = isUnknown(map_, p);
+        }
         last = i;
-        row[x] = color;
+        row[x] = encoded(is_hatched ? hatched(color, x, y) : color);
       }
     });
   }
@@ -127,11 +137,26 @@ class MapPicture {
     return here;
   }
 
-  std::uint32_t pixelAt(std::size_t p, float shade, bool is_sea) const {
+  /// @param post  square of the relief
+  Rgb colorAt(std::size_t p, std::size_t post, float shade) const {
+    if (isLeftOut(p)) return {1, 1, 1};
     const std::optional<Rgb> of_value = colorOf(map_, legend_, map_.values[p]);
-    const Rgb color = isLeftOut(p) ? Rgb{1, 1, 1}
-                      : of_value   ? shadedColor(*of_value, shade)
-                                   : groundColor(shade, is_sea);
+    const std::uint32_t image = options_.drape.empty() ? 0 : options_.drape[post];
+    if ((image >> 24) == 0)
+      return of_value ? shadedColor(*of_value, shade) : groundColor(shade, sea_[post] != 0);
+    const Rgb drawn{static_cast<float>(image & 255U) / 255, static_cast<float>(image >> 8 & 255U) / 255,
+                    static_cast<float>(image >> 16 & 255U) / 255};
+    return of_value ? drapedColor(*of_value, drawn) : drawn;
+  }
+
+  Rgb hatched(const Rgb& color, int x, int y) const {
+    const auto part = static_cast<float>(render::kHatchInk.alpha * render::hatchAt(x, y, style_.unit));
+    const Rgb& ink = render::kHatchInk.color;
+    return {color.r + part * (ink.r - color.r), color.g + part * (ink.g - color.g),
+            color.b + part * (ink.b - color.b)};
+  }
+
+  static std::uint32_t encoded(const Rgb& color) {
     const auto level = [](float part) {
       return static_cast<std::uint32_t>(std::lround(255 * std::clamp(part, 0.0F, 1.0F)));
     };
@@ -153,40 +178,77 @@ class MapPicture {
     }
   }
 
-  /// @return the number of names that have no room
-  std::size_t drawMarkers(Canvas& canvas, const MapFrame& frame) const {
-    constexpr double kRadius = 7.5;
-    const double radius = kRadius * style_.unit;
+  /// Places and range rings, on the map. @param taken  receives the boxes of their names
+  void drawMarks(Canvas& canvas, const MapFrame& frame,
+                 const std::vector<std::pair<const MapMarker*, Point2>>& shown,
+                 std::vector<Rect>& taken) const {
+    const double right = rect_.x + rect_.width, bottom = rect_.y + rect_.height;
+    const std::vector<Rect> around{{0, 0, static_cast<double>(size_.width), rect_.y},
+                                   {0, bottom, static_cast<double>(size_.width), size_.height - bottom},
+                                   {0, 0, rect_.x, static_cast<double>(size_.height)},
+                                   {right, 0, size_.width - right, static_cast<double>(size_.height)}};
+    taken = around;
+    std::vector<Point2> symbols;
+    for (const auto& [marker, at] : shown) symbols.push_back(at);
+    render::drawGroundMarks(
+        canvas, style_,
+        [&](const Vec3d& at) {
+          return std::optional(frame.at(PlanePoint{at.x, at.y}));
+        },
+        options_.lines, options_.points, symbols, {}, taken);
+    taken.erase(taken.begin(), taken.begin() + static_cast<std::ptrdiff_t>(around.size()));
+  }
+
+  /// The markers on the map, and their points.
+  std::vector<std::pair<const MapMarker*, Point2>> shownMarkers(const MapFrame& frame) const {
     std::vector<GeoPoint> positions;
     for (const MapMarker& marker : options_.markers)
       positions.push_back({marker.latitude_deg, marker.longitude_deg});
     const std::vector<Point2> points = frame.at(positions);
-    std::vector<const MapMarker*> shown;
-    std::vector<Point2> at;
-    std::vector<std::string> names;
-    std::vector<Rect> extents;
+    std::vector<std::pair<const MapMarker*, Point2>> shown;
     for (std::size_t m = 0; m < points.size(); ++m) {
       const bool is_inside = points[m].x >= rect_.x && points[m].x <= rect_.x + rect_.width &&
                              points[m].y >= rect_.y && points[m].y <= rect_.y + rect_.height;
-      if (!is_inside) continue;
-      shown.push_back(&options_.markers[m]);
-      at.push_back(points[m]);
-      names.push_back(render::shortenedText(canvas, shown.back()->label, style_.small_px,
-                                            std::min(style_.name_px, 0.6 * rect_.width)));
-      extents.push_back({0, 0, canvas.textBox(names.back(), style_.small_px).width, 1.2 * style_.small_px});
+      if (is_inside) shown.emplace_back(&options_.markers[m], points[m]);
     }
+    return shown;
+  }
+
+  /// Symbols, names, and lines between them. @param taken  what names avoid, in the picture
+  /// @return the number of names that have no room
+  std::size_t drawMarkers(Canvas& canvas, const std::vector<std::pair<const MapMarker*, Point2>>& shown,
+                          const std::vector<Rect>& taken) const {
+    constexpr double kRadius = 7.5, kGap = 4;
+    const double radius = kRadius * style_.unit;
     double reach = 1;  // of the largest symbol, in radii
-    for (const MapMarker* marker : shown)
+    for (const auto& [marker, at] : shown)
       reach = std::max(reach, render::symbolSize(symbolOf(*marker)) - 0.2);
-    const auto places = placeLabels(at, reach * radius, extents, rect_);
-    for (std::size_t m = 0; m < shown.size(); ++m) {
-      if (places[m]) drawLeader(canvas, at[m], *places[m], 2 * reach * radius);
+    const Point2 corner{rect_.x, rect_.y};
+    std::vector<std::string> names;
+    std::vector<render::LabelRequest> requests;
+    for (const auto& [marker, at] : shown) {
+      names.push_back(render::shortenedText(canvas, marker->label, style_.small_px,
+                                            std::min(style_.name_px, 0.6 * rect_.width)));
+      requests.push_back({at - corner, reach * radius, canvas.textBox(names.back(), style_.small_px).width,
+                          1.2 * style_.small_px});
     }
-    for (std::size_t m = 0; m < shown.size(); ++m)
-      render::drawMark(canvas, symbolOf(*shown[m]), at[m], radius);
+    std::vector<Rect> taken_on_map;
+    for (const Rect& rect : taken)
+      taken_on_map.push_back({rect.x - corner.x, rect.y - corner.y, rect.width, rect.height});
+    const auto places =
+        render::placeLabels(requests, {static_cast<int>(rect_.width), static_cast<int>(rect_.height)},
+                            kGap * style_.unit, taken_on_map);
+    for (std::size_t m = 0; m < shown.size(); ++m) {
+      if (!places[m] || !places[m]->needs_line) continue;
+      const Point2 &at = shown[m].second, end = render::nearestIn(places[m]->rect, at - corner) + corner;
+      canvas.line(at, end, kNameRim, 3 * style_.unit);
+      canvas.line(at, end, kNameInk, style_.unit);
+    }
+    for (const auto& [marker, at] : shown) render::drawMark(canvas, symbolOf(*marker), at, radius);
     for (std::size_t m = 0; m < shown.size(); ++m) {
       if (!places[m]) continue;
-      canvas.textWithRim(names[m], {places[m]->x, places[m]->y + places[m]->height / 2}, style_.small_px,
+      const Rect& name = places[m]->rect;
+      canvas.textWithRim(names[m], corner + Point2{name.x, name.y + name.height / 2}, style_.small_px,
                          kNameInk, kNameRim);
     }
     return static_cast<std::size_t>(std::count(places.begin(), places.end(), std::nullopt));
@@ -200,15 +262,6 @@ class MapPicture {
     return symbol;
   }
 
-  /// From a symbol to a name that is not beside it.
-  void drawLeader(Canvas& canvas, const Point2& at, const Rect& name, double beside) const {
-    const Point2 end{std::clamp(at.x, name.x, name.x + name.width),
-                     std::clamp(at.y, name.y, name.y + name.height)};
-    if (length(end - at) <= beside) return;
-    canvas.line(at, end, kNameRim, 3 * style_.unit);
-    canvas.line(at, end, kNameInk, style_.unit);
-  }
-
   const MapGrid& grid_;
   const Map& map_;
   const MapPictureOptions& options_;
@@ -220,6 +273,22 @@ class MapPicture {
   double scale_ = 1;               ///< pixels of the picture in one of the map
   render::ImageSize size_;
 };
+
+/// Of a closed shore: the longer side of its box; of a part of a shore infinity.
+double extent_m(const scenario::CoastLine& line) {
+  const GeodeticPosition &first = line.points.front(), &last = line.points.back();
+  if (first.latitude_deg != last.latitude_deg || first.longitude_deg != last.longitude_deg) return INFINITY;
+  const auto [south, north] =
+      std::minmax_element(line.points.begin(), line.points.end(),
+                          [](const auto& a, const auto& b) { return a.latitude_deg < b.latitude_deg; });
+  const auto [west, east] =
+      std::minmax_element(line.points.begin(), line.points.end(),
+                          [](const auto& a, const auto& b) { return a.longitude_deg < b.longitude_deg; });
+  constexpr double kDegree_m = 111.2e3;
+  return kDegree_m *
+         std::max(north->latitude_deg - south->latitude_deg,
+                  (east->longitude_deg - west->longitude_deg) * std::cos(degToRad(first.latitude_deg)));
+}
 
 }  // namespace
 
@@ -271,7 +340,12 @@ void addCoast(const MapGrid& grid, const MapGrid& squares, MapPictureOptions& op
       if (!std::isnan(latitude_deg)) options.water[p] = coast->isWater(latitude_deg, longitude_deg) ? 1 : 0;
     }
   });
+  constexpr double kSeen_px = 12;  // of a lake, so that it is no sliver
+  const double squares_px = 0.75 * options.width / squares.width;
+  const int seen = static_cast<int>(std::ceil(kSeen_px / squares_px));
+  dropSmallWater(options.water, squares.width, squares.height, seen);
   for (const scenario::CoastLine& line : coast->lines()) {
+    if (line.level > 1 && extent_m(line) < seen * squares.cell_m) continue;
     for (const GeodeticPosition& point : line.points)
       options.shores.push_back({point.latitude_deg, point.longitude_deg});
     options.shores.push_back({NAN, NAN});

@@ -5,10 +5,12 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/units.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/picture/image.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "emscape/study/maps/map.h"
+#include "scenario/map/map_image.h"
 #include "study/picture/map_plane.h"
 
 namespace emscape::study {
@@ -32,6 +34,12 @@ struct MapPictureOptions {
   /// unknown.
   std::vector<std::uint8_t> water;
   std::vector<GeoPoint> shores;
+  scenario::MapColors drape;  ///< colours of the squares, instead of the ground; empty: none
+  /// Marks in metres of the plane (marksOf()).
+  std::vector<render::GroundLine> lines;
+  std::vector<render::GroundPoint> points;
+  Units units = Units::metric;
+  FieldUnit field_unit = FieldUnit::stored;
 };
 
 /// The active emitters of an instant, and the platforms that have a side but no emitter.

@@ -16,9 +16,7 @@ namespace emscape::study {
 namespace {
 
 /// Transforms points one by one; those without an image become NaN.
-void transform(const gdal::SpatialReference& from, const gdal::SpatialReference& to, std::vector<double>& x,
-               std::vector<double>& y) {
-  const gdal::Transformation transformation = scenario::transformationBetween(from, to);
+void transform(const gdal::Transformation& transformation, std::vector<double>& x, std::vector<double>& y) {
   const scenario::GdalMessages messages;
   std::vector<int> done(x.size());
   OCTTransformEx(transformation.get(), static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
@@ -58,7 +56,10 @@ std::vector<DegreeTick> degreeTicks(double lowest_deg, double highest_deg, int c
   return ticks;
 }
 
-MapPlane::MapPlane(const MapGrid& grid) : grid_(grid) {}
+MapPlane::MapPlane(const MapGrid& grid) : grid_(grid) {
+  if (!grid.wkt.empty())
+    to_plane_ = scenario::transformationBetween(scenario::wgs84Reference(), referenceOf(grid));
+}
 
 std::vector<PlanePoint> MapPlane::pointsAt(const std::vector<GeoPoint>& positions) const {
   if (grid_.wkt.empty()) return std::vector<PlanePoint>(positions.size(), PlanePoint{NAN, NAN});
@@ -67,7 +68,7 @@ std::vector<PlanePoint> MapPlane::pointsAt(const std::vector<GeoPoint>& position
     x.push_back(position.longitude_deg);
     y.push_back(position.latitude_deg);
   }
-  transform(scenario::wgs84Reference(), referenceOf(grid_), x, y);
+  transform(to_plane_, x, y);
   std::vector<PlanePoint> points;
   for (std::size_t i = 0; i < x.size(); ++i) points.push_back({x[i], y[i]});
   return points;
@@ -80,7 +81,7 @@ std::vector<GeoPoint> MapPlane::positionsAt(const std::vector<PlanePoint>& point
     x.push_back(point.east_m);
     y.push_back(point.north_m);
   }
-  transform(referenceOf(grid_), scenario::wgs84Reference(), x, y);
+  transform(scenario::transformationBetween(referenceOf(grid_), scenario::wgs84Reference()), x, y);
   std::vector<GeoPoint> positions;
   for (std::size_t i = 0; i < x.size(); ++i) positions.push_back({y[i], x[i]});
   return positions;

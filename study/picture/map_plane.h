@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/geodesy/gdal.h"
 #include "emscape/emfield/columns/surface.h"
 #include "emscape/study/maps/map_grid.h"
 
@@ -55,6 +56,7 @@ class MapPlane {
   bool isInFrame(const PlanePoint& point) const;
 
   const MapGrid& grid_;
+  gdal::Transformation to_plane_;  ///< null without a projection
 };
 
 /// Round steps of degrees in [lowest, highest], about `count` of them, with texts: "84.3°W".

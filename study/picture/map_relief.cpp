@@ -76,10 +76,45 @@ std::vector<std::uint8_t> seaOf(const Relief& relief) {
   return sea;
 }
 
+void dropSmallWater(std::vector<std::uint8_t>& water, int width, int height, int smallest) {
+  std::vector<std::uint8_t> is_done(water.size(), 0);
+  std::vector<std::size_t> part;
+  for (std::size_t start = 0; start < water.size(); ++start) {
+    if (water[start] == 0 || is_done[start] != 0) continue;
+    int left = width, right = -1, top = height, bottom = -1;
+    part.assign(1, start);
+    is_done[start] = 1;
+    for (std::size_t n = 0; n < part.size(); ++n) {
+      const int i = static_cast<int>(part[n] % width), j = static_cast<int>(part[n] / width);
+      left = std::min(left, i);
+      right = std::max(right, i);
+      top = std::min(top, j);
+      bottom = std::max(bottom, j);
+      for (int y = std::max(j - 1, 0); y <= std::min(j + 1, height - 1); ++y) {
+        for (int x = std::max(i - 1, 0); x <= std::min(i + 1, width - 1); ++x) {
+          const std::size_t near = static_cast<std::size_t>(y) * width + x;
+          if (water[near] == 0 || is_done[near] != 0) continue;
+          is_done[near] = 1;
+          part.push_back(near);
+        }
+      }
+    }
+    const bool is_small = right - left + 1 < smallest && bottom - top + 1 < smallest;
+    const bool is_at_edge = left == 0 || top == 0 || right == width - 1 || bottom == height - 1;
+    if (!is_small || is_at_edge) continue;
+    for (const std::size_t p : part) water[p] = 0;
+  }
+}
+
 render::Rgb shadedColor(const render::Rgb& color, float shade) {
   if (shade == 0) return color;
   constexpr double kSteepness = 3;  // of the change with small shades
   return render::withLightness(color, kMaxRelief * std::tanh(kSteepness * static_cast<double>(shade)));
+}
+
+render::Rgb drapedColor(const render::Rgb& color, const render::Rgb& picture) {
+  constexpr double kMiddle = 0.7;  // lightness of usual charts and photographs
+  return shadedColor(color, static_cast<float>(render::oklabOf(picture).lightness - kMiddle));
 }
 
 render::Rgb groundColor(float shade, bool is_sea) {

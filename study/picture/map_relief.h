@@ -24,12 +24,20 @@ std::vector<float> shadesOf(const Relief& relief);
 /// The sea: level ground at mean sea level, wider than a square. 1 sea, 0 land or unknown.
 std::vector<std::uint8_t> seaOf(const Relief& relief);
 
+/// Makes land of connected water that is neither as wide nor as high as a number of squares and does not
+/// reach the edge of the map.
+void dropSmallWater(std::vector<std::uint8_t>& water, int width, int height, int smallest);
+
 /// Largest change of the lightness of a map's colours (OKLab, where black is 0 and white 1) by the relief.
 constexpr double kMaxRelief = 0.07;
 
 /// The colour of a value under a shade: hue and chroma are kept, the lightness differs by at most
 /// kMaxRelief. Level ground has the colour itself.
 render::Rgb shadedColor(const render::Rgb& color, float shade);
+
+/// The colour of a value over a picture on the ground: hue and chroma are kept, the lightness follows that of
+/// the picture, by at most kMaxRelief.
+render::Rgb drapedColor(const render::Rgb& color, const render::Rgb& picture);
 
 /// The colour of ground, or of the sea, without a value.
 render::Rgb groundColor(float shade, bool is_sea);

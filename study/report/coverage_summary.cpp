@@ -44,8 +44,8 @@ struct Covered {
   }
 };
 
-/// The names of the emitters of a kind that are active at one of the study's times.
-std::vector<std::string> activeNames(const MapStudy& study, scenario::EmitterKind kind) {
+/// The emitters of a kind that are active at one of the study's times.
+std::vector<const scenario::Emitter*> activeEmitters(const MapStudy& study, scenario::EmitterKind kind) {
   const auto& scenario = study.scenarios.front();
   std::set<std::size_t> active;
   for (const double time_s : study.times_s) {
@@ -54,17 +54,22 @@ std::vector<std::string> activeNames(const MapStudy& study, scenario::EmitterKin
       if (snapshot.emitters[e].active && scenario->emitters[e].kind == kind) active.insert(e);
     }
   }
+  std::vector<const scenario::Emitter*> emitters;
+  for (const std::size_t e : active) emitters.push_back(&scenario->emitters[e]);
+  return emitters;
+}
+
+std::vector<std::string> namesOf(const std::vector<const scenario::Emitter*>& emitters) {
   std::vector<std::string> names;
-  for (const std::size_t e : active) names.push_back(scenario->emitters[e].name);
+  for (const scenario::Emitter* emitter : emitters) names.push_back(emitter->name);
   return names;
 }
 
 /// "a target of 5 m²"; the radars may be defined for different targets.
-std::string targetText(const MapStudy& study) {
+std::string targetText(const std::vector<const scenario::Emitter*>& radars) {
   Spread rcs_m2;
-  for (const scenario::Emitter& emitter : study.scenarios.front()->emitters) {
-    if (emitter.kind == scenario::EmitterKind::radar) rcs_m2.add(emitter.receiver.target_rcs_m2);
-  }
+  for (const scenario::Emitter* radar : radars) rcs_m2.add(radar->receiver.target_rcs_m2);
+  if (!rcs_m2.isAny()) return "a target";
   return rcs_m2.min == rcs_m2.max ? fmt::format("a target of {:g} m²", rcs_m2.min)
                                   : fmt::format("their targets of {:g} to {:g} m²", rcs_m2.min, rcs_m2.max);
 }
@@ -72,9 +77,10 @@ std::string targetText(const MapStudy& study) {
 /// What a covered pixel means: "'search radar' detects a target of 5 m² with a probability of at least 0.5".
 std::string meaningOf(const MapStudy& study) {
   if (study.quantity == scenario::Quantity::detection_probability) {
-    const std::vector<std::string> radars = activeNames(study, scenario::EmitterKind::radar);
-    const std::string who = radars.empty() ? "no radar" : namesText(radars, "or", "one of the {} radars");
-    return fmt::format("{} detects {} with a probability of at least {:g}", who, targetText(study),
+    const auto radars = activeEmitters(study, scenario::EmitterKind::radar);
+    const std::string who =
+        radars.empty() ? "no radar" : namesText(namesOf(radars), "or", "one of the {} radars");
+    return fmt::format("{} detects {} with a probability of at least {:g}", who, targetText(radars),
                        study.threshold);
   }
   return fmt::format("{} is at least {}", titleOf(study.quantity),
@@ -119,7 +125,7 @@ std::vector<std::string> coverageSummary(const MapStudy& study, const std::vecto
       std::accumulate(study.grid->areas_m2.begin(), study.grid->areas_m2.end(), 0.0,
                       [](double sum, float pixel_m2) { return sum + static_cast<double>(pixel_m2); });
   const std::string meaning = meaningOf(study);
-  const std::vector<std::string> jammers = activeNames(study, scenario::EmitterKind::jammer);
+  const std::vector<std::string> jammers = namesOf(activeEmitters(study, scenario::EmitterKind::jammer));
   Spread known;
   for (const MapHeight& height : study.heights) {
     Covered covered, jammed;
@@ -178,7 +184,7 @@ std::vector<std::string> coverageSummary(const MapStudy& study, const std::vecto
   if (known.isAny() && area_m2 > 0 && known.min < (1 - kWorthSaying) * area_m2) {
     sentences.push_back(fmt::format(
         "Shares are of the pixels with a known answer, {} % of the area: the others are below the ground, or "
-        "elevation data are missing there or on the path.",
+        "elevation data are missing there or on a path that decides.",
         spreadText({100 * known.min / area_m2, 100 * known.max / area_m2}, 1)));
   } else if (known.isAny()) {
     sentences.push_back(

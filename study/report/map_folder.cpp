@@ -21,6 +21,7 @@
 #include "study/files/map_collection.h"
 #include "study/files/map_metadata.h"
 #include "study/files/netcdf.h"
+#include "study/picture/map_marks.h"
 #include "study/picture/map_picture.h"
 #include "study/report/coverage_summary.h"
 #include "study/report/earlier_outputs.h"
@@ -103,6 +104,7 @@ struct MapFolder::State {
   MapStudy study;
   bool has_cog = false, has_png = false;
   MapPictureOptions background;  ///< of all pictures: what is below the colours
+  std::optional<MapMarks> marks;
   std::vector<Collection> collections;
   std::vector<MapRecord> records;
   std::vector<Picture> pictures;
@@ -115,19 +117,22 @@ struct MapFolder::State {
         earlier_outputs(path),
         study(std::move(of)) {
     for (const std::filesystem::path& written : {path, path / "maps"}) removeAbandonedFiles(written);
+    marks.emplace(study);
     setBackground();
   }
 
   /// Ground, or water and shores, of all pictures.
   void setBackground() {
     const MapGrid& grid = *study.grid;
-    const int parts = background.refinement = refinementOf(grid, background.width);
+    const bool has_drape = !study.view.drape.empty();  // with finer squares
+    const int parts = background.refinement = refinementOf(grid, (has_drape ? 2 : 1) * background.width);
     std::optional<MapGrid> finer;
     if (parts > 1) {
       finer = mapGridAt(grid.wkt, grid.crs, grid.cell_m / parts, grid.left_m, grid.top_m, grid.width * parts,
                         grid.height * parts);
     }
     const MapGrid& squares = finer ? *finer : grid;
+    if (has_drape) background.drape = drapeOf(squares, study.view.drape);
     if (study.terrain != nullptr) {
       background.ground_msl_m = groundOf(squares, *study.terrain);
     } else {
@@ -169,9 +174,13 @@ struct MapFolder::State {
     const scenario::Scenario& scenario = *study.scenarios.front();
     const double time_s = map.time_s.value_or(study.times_s.front());
     MapPictureOptions options = background;
-    options.title = fmt::format("{}: {}", scenario.name, render::displayText(map.description));
+    options.title =
+        fmt::format("{}: {}", scenario.name, render::displayText(descriptionOf(map, study.view.units)));
     options.subtitle = timesText(map);
-    options.markers = markersOf(scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), time_s));
+    const scenario::Snapshot snapshot =
+        scenario::snapshotAt(study.scenarios.front(), study.terrain.get(), time_s);
+    options.markers = markersOf(snapshot);
+    marks->addTo(options, snapshot);
     return drawMap(*study.grid, map, options);
   }
 

@@ -43,6 +43,7 @@ Json toJson(const MapRecord& record) {
   json["min"] = number(record.summary.min);
   json["max"] = number(record.summary.max);
   json["known_area_km2"] = record.summary.known_area_m2 / 1e6;
+  json["unknown_area_km2"] = record.summary.unknown_area_m2 / 1e6;
   if (map.area_class >= 0 || map.unreached_area_m2) {
     json["area_km2"] = record.summary.class_area_m2 / 1e6;
     json["share_of_known"] = number(record.summary.class_area_m2 / record.summary.known_area_m2);
@@ -197,6 +198,10 @@ ReportTable tableOf(const std::vector<MapRecord>& records) {
   ReportTable table;
   table.columns = {"product", "height", "time (s)", "area (km²)", "share of the known (%)",
                    "min",     "max",    "unit"};
+  const bool has_unknown = std::any_of(records.begin(), records.end(), [](const MapRecord& record) {
+    return record.summary.unknown_area_m2 > 0;
+  });
+  if (has_unknown) table.columns.emplace_back("unknown (km²)");
   table.caption =
       "Areas are those of the ellipsoid; the share is of the pixels with a known answer. Min and max are "
       "over "
@@ -220,6 +225,7 @@ ReportTable tableOf(const std::vector<MapRecord>& records) {
           {name, map.height ? describe(*map.height) : "", map.time_s ? fmt::format("{}", *map.time_s) : "all",
            area_m2 ? figureText(*area_m2 / 1e6, "km2") : "", area_m2 ? figureText(share, "percent") : "",
            text(summary.min), text(summary.max), render::unitText(map.unit)});
+      if (has_unknown) table.rows.back().push_back(figureText(summary.unknown_area_m2 / 1e6, "km2"));
     };
     if (hasRowPerLabel(map)) {
       // Of categories those that occur; of classes all but the first, which is nothing.

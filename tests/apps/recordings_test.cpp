@@ -107,6 +107,35 @@ TEST(Recordings, FilesThatExistAreReplacedOnlyWithForce) {
   expectKept(write, database);
 }
 
+TEST(Recordings, CoverageIsAddedToCzml) {
+  const TemporaryFolder folder;
+  const std::string file = folder / "a.czml";
+  const ProgramResult result = run({"export", shippedScenario("jamming.yaml"), "-o", file, "--coverage",
+                                    "agl:150", "--set", "region.dims=[24,24,8]"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  int outlines = 0, beams = 0, documents = 0;
+  for (const json& packet : json::parse(readFile(file))) {
+    const std::string id = packet["id"];
+    documents += id == "document" ? 1 : 0;
+    beams += id.rfind("beam/", 0) == 0 ? 1 : 0;
+    outlines += packet.contains("polygon") && packet.contains("parent") &&
+                        packet["parent"].get<std::string>().rfind("group/", 0) == 0
+                    ? 1
+                    : 0;
+  }
+  EXPECT_EQ(documents, 1);
+  EXPECT_EQ(beams, 2);
+  EXPECT_GE(outlines, 11) << "one for each time at least";
+  EXPECT_EQ(folder.files().size(), 2u) << "the document and its emitter database";
+  const ProgramResult other =
+      run({"export", shippedScenario("jamming.yaml"), "-o", folder / "a.kml", "--coverage", "agl:150"});
+  EXPECT_EQ(other.status, 2);
+  EXPECT_THAT(other.err, HasSubstr("--coverage is written into .czml alone"));
+  EXPECT_EQ(
+      run({"export", shippedScenario("jamming.yaml"), "-o", folder / "b.czml", "--coverage", "x"}).status, 2);
+  EXPECT_EQ(folder.files().size(), 2u) << "nothing is written";
+}
+
 /// The lines of a file after one that begins with a text.
 std::vector<std::string> linesAfter(const std::string& text, const std::string& begin) {
   std::istringstream stream(text);

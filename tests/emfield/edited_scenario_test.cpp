@@ -65,6 +65,7 @@ struct Edit {
 const std::vector<Edit>& emitterEdits() {
   using propagation::Polarization;
   static const std::vector<Edit> edits{
+      {"name", [](Scenario&, Emitter& e, Random&) { e.name += "'"; }},
       {"power_w", [](Scenario&, Emitter& e, Random& r) { e.power_w = between(r, 1, 1e5); }},
       {"losses_db", [](Scenario&, Emitter& e, Random& r) { e.losses_db = between(r, 0, 5); }},
       {"frequency_hz",
@@ -581,6 +582,21 @@ TEST_F(EditedOnce, QuantitiesKeepTheGeometry) {
   EXPECT_THAT(changed.volumes, ElementsAre(0, 1));
 }
 
+TEST_F(EditedOnce, OtherQuantitiesOfTheOptionsKeepTheGeometry) {
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario_, nullptr, 0);
+  EXPECT_THROW(solver_->setQuantities({"nonsense"}, scenario_), Error);
+  EXPECT_FALSE(solver_->update(snapshot).any);
+  solver_->setQuantities({"snr_db", "emitter_count"}, scenario_);
+  EXPECT_EQ(solver_->channels().size(), 1U) << "until the next update";
+  EXPECT_THAT(solver_->update(snapshot).moved, IsEmpty());
+  FieldOptions options;
+  options.quantities = {"snr_db", "emitter_count"};
+  FieldSolver fresh(scenario_, nullptr, options);
+  fresh.update(snapshot);
+  expectEqualSolvers(*solver_, fresh);
+  EXPECT_FALSE(solver_->update(snapshot).any);
+}
+
 TEST_F(EditedOnce, RegionRepeatsEverything) {
   EXPECT_TRUE(after([](Scenario& s) { s.region.dims = {9, 9, 4}; }).grid);
   EXPECT_EQ(solver_->grid().dims.x, 9);
@@ -603,6 +619,30 @@ TEST_F(EditedOnce, ValueWithoutEffectComputesNoVolume) {
   EXPECT_FALSE(changed.any);
   EXPECT_EQ(solver_->volumes().front().dense(), before);
   EXPECT_EQ(solver_->volumes().front().info().extra.at("scenario_hash"), "another");
+}
+
+TEST_F(EditedOnce, NamesSidesAndSymbolsComputeNoVolume) {
+  after([](Scenario& s) {
+    s.output.combine = CombineMode::per_emitter;
+    s.emitters[3].antenna = scenario::makeSinc(45, 0.3, 0.3, -60);
+    s.emitters[3].frequency_hz = 9e9;
+  });
+  const auto before = solver_->volumes()[3].dense();
+  const FieldChanged changed = after([](Scenario& s) {
+    s.emitters[3].name = "renamed";
+    s.platforms[0].name = "elsewhere";
+    s.platforms[0].side = scenario::Side::hostile;
+    s.platforms[0].sidc = "10031000001101000000";
+  });
+  EXPECT_TRUE(changed.channels) << "by its name";
+  EXPECT_THAT(changed.moved, IsEmpty());
+  EXPECT_THAT(changed.turned, IsEmpty());
+  EXPECT_THAT(changed.volumes, IsEmpty());
+  EXPECT_EQ(solver_->volumes()[3].dense(), before);
+  EXPECT_EQ(solver_->channels()[3].name, "power_density_dbwm2:renamed");
+  EXPECT_EQ(solver_->volumes()[3].info().quantity, "power_density_dbwm2:renamed");
+  EXPECT_THAT(solver_->warnings(), ::testing::Contains(HasSubstr("'renamed': voxels closer than")));
+  EXPECT_THAT(solver_->warnings(), ::testing::Not(::testing::Contains(HasSubstr("'radio'"))));
 }
 
 TEST_F(EditedOnce, ResolvedWarningsDisappear) {

@@ -288,11 +288,11 @@ TEST(PathBudget, VerdictNamesJamming) {
   scenario->terrain.reset();
   scenario->emitters[0].kind = scenario::EmitterKind::radar;
   const PathEnd point{{44.1, -71.4, 400}, 400};
-  const auto verdict = [&] {
+  const auto budget = [&] {
     return pathBudget(scenario::snapshotAt(scenario, nullptr, 0), 0, point, PropagationModel::free_space,
-                      nullptr)
-        .verdict;
+                      nullptr);
   };
+  const auto verdict = [&] { return budget().verdict; };
   EXPECT_THAT(verdict(), ::testing::Not(HasSubstr("J/S")));
   scenario::Platform elsewhere = scenario->platforms[0];
   elsewhere.track[0].position.latitude_deg += 0.3;
@@ -304,7 +304,27 @@ TEST(PathBudget, VerdictNamesJamming) {
   jammer.kind = scenario::EmitterKind::jammer;
   jammer.platform = static_cast<int>(scenario->platforms.size()) - 1;
   scenario->emitters.push_back(jammer);
-  EXPECT_THAT(verdict(), ::testing::ContainsRegex("\\(SNR -?[0-9.]+ dB, J/S -?[0-9.]+ dB\\)\\."));
+  EXPECT_THAT(verdict(), ::testing::ContainsRegex("\\(SNR -?[0-9.]+ dB, J/S -?[0-9.]+ dB by 'jammer'\\)\\."));
+  const auto scale = [&](std::size_t emitter, const char* key, double wanted_db) {
+    const double now_db = budget().find(key)->value;
+    scenario->emitters[emitter].power_w *= dbToRatio(wanted_db - now_db);
+  };
+  scale(0, "snr_db", 35);
+  scale(1, "jammer_to_signal_db", 20);
+  EXPECT_THAT(verdict(),
+              ::testing::ContainsRegex(
+                  "^Jammed by 'jammer': J/S 20.0 dB, without which a target there is detected with "
+                  "probability [0-9.]+; [a-z].* is detected with probability 0.0"))
+      << "it decides";
+  scenario->emitters.push_back(scenario->emitters[1]);
+  scenario->emitters[2].name = "stronger";
+  scenario->emitters[2].power_w *= 3;
+  EXPECT_THAT(verdict(), ::testing::StartsWith("Jammed by 'stronger' and 1 more: "));
+  scenario->emitters.pop_back();
+  scale(1, "jammer_to_signal_db", -18);
+  EXPECT_THAT(verdict(),
+              ::testing::AllOf(HasSubstr("J/S -18.0 dB by 'jammer'"), ::testing::Not(HasSubstr("Jammed"))))
+      << "detected in spite of jamming";
   scenario->emitters[1].power_w = 1e-12;
   EXPECT_THAT(verdict(), ::testing::Not(HasSubstr("J/S"))) << "too weak to matter";
 }

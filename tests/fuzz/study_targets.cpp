@@ -67,7 +67,8 @@ void writeMaps(const fs::path& folder) {
                          request.quantity,
                          request.threshold,
                          request.times_s,
-                         request.heights},
+                         request.heights,
+                         {}},
                         {"cog"});
   maps.finish(study::computeCoverage(scenario, nullptr, *grid, request, {},
                                      [&](const study::CoverageMap& map) { maps.add(map); }));

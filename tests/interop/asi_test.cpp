@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "interop/simdis/asi_reader.h"
@@ -32,6 +34,15 @@ TEST(Asi, PlatformsHaveNamesSidesAndHeightsAboveTheSea) {
   EXPECT_NEAR(r.objects[0].poses[0].height_msl_m, 50 - geoidUndulation_m(52, 5), 1e-9);
   EXPECT_EQ(r.objects[0].poses[0].heading_deg, 90);
   EXPECT_EQ(r.tally.bad, 0) << r.tally.first_bad;
+}
+
+TEST(Asi, HeadingAloneIsThatOfALevelPlatform) {
+  const Recording r = readLines("PlatformID 1\nPlatformData 1 0 52 5 50 90 100\nPlatformData 1 1 52 5 50\n");
+  ASSERT_EQ(r.objects.at(0).poses.size(), 2u);
+  EXPECT_EQ(r.objects[0].poses[0].heading_deg, 90);
+  EXPECT_EQ(r.objects[0].poses[0].pitch_deg, 90) << "at most straight up";
+  EXPECT_EQ(r.objects[0].poses[0].roll_deg, 0);
+  EXPECT_TRUE(std::isnan(r.objects[0].poses[1].roll_deg));
 }
 
 TEST(Asi, EcefAndLatitudeLongitudeAreTheSamePlace) {

@@ -234,6 +234,19 @@ output: {quantities: [power_density_dbwm2]}
   }
 }
 
+TEST(Export, ShippedRecordingAndItsDatabaseAreWhatItWrites) {
+  const test::TemporaryFolder folder;
+  const ScenarioPtr scenario = scenario::loadScenario(test::shippedScenario("jamming.yaml"));
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
+  const ExportResult exported = exportScenario(scenario, terrain.get(), folder / "jamming.zip.acmi");
+  const std::string shipped = test::shippedScenario("recordings/jamming.zip.acmi");
+  EXPECT_EQ(test::readFile(exported.emitters), test::readFile(shipped + ".emitters.yaml"));
+  const Recording a = readRecording(exported.file), b = readRecording(shipped);
+  ASSERT_EQ(a.objects.size(), b.objects.size());
+  for (std::size_t i = 0; i < a.objects.size(); ++i)
+    EXPECT_EQ(a.objects[i].poses.size(), b.objects[i].poses.size());
+}
+
 TEST(Export, MoreEmittersThanDisCanNumberAreRefused) {
   const test::TemporaryFolder folder;
   std::string text = kFixedSites;

@@ -71,18 +71,45 @@ TEST(DifferenceSource, AnEditDoesNotComputeTheReferenceAgain) {
         reference = frames.get();
         return frames;
       },
-      {"the other"}, false);
+      {"the other"}, Comparison::none);
   source.frame(0);
   EXPECT_EQ(opened, 0) << "nothing is compared yet";
-  source.setComparison(true);
+  source.setComparison(Comparison::difference);
   EXPECT_EQ(source.frame(1).volume.host()->values, UnsetVector<float>(MadeFrames::kVoxels, 0.0F));
   source.frame(1);
-  source.setComparison(false);
+  source.setComparison(Comparison::none);
   EXPECT_EQ(source.frame(1).volume.info().quantity, "made");
-  source.setComparison(true);
+  source.setComparison(Comparison::difference);
   source.frame(1);
   EXPECT_EQ(opened, 1);
   EXPECT_EQ(reference->asked(), std::vector<int>{1});
+}
+
+TEST(DifferenceSource, BesideAFieldIsTheReferenceAtItsTime) {
+  const TemporaryFolder folder;
+  FrameSelection selection = selectionOf(quickScenario(folder, kSmall));
+  FrameSelection original = selection, changed = selection;
+  original.compare.clear();
+  selection.edits = changed.edits = tenfold();
+  changed.compare.clear();
+  selection.split = 0.5;
+  const Frame frame = openFrameSource(selection, {})->frame(2);
+  ASSERT_TRUE(frame.beside);
+  const Frame& beside = *frame.beside->frame;
+  EXPECT_EQ(frame.volume.host()->values, openFrameSource(changed, {})->frame(2).volume.host()->values);
+  EXPECT_EQ(beside.volume.host()->values, openFrameSource(original, {})->frame(2).volume.host()->values);
+  EXPECT_EQ(beside.info().time_s, frame.info().time_s);
+  EXPECT_EQ(beside.markers.size(), frame.markers.size());
+  EXPECT_EQ(frame.beside->caption, "the original scenario");
+  EXPECT_EQ(frame.beside->own_caption, "with the changes");
+}
+
+TEST(DifferenceSource, FieldsOnDifferentGridsAreNotSideBySide) {
+  const TemporaryFolder folder, other;
+  FrameSelection selection = selectionOf(quickScenario(folder, kSmall));
+  selection.compare = quickScenario(other, {{"[40, 40, 20]", "[9, 8, 6]"}});
+  selection.split = 0.5;
+  EXPECT_THAT(errorOf([&] { openFrameSource(selection, {})->frame(0); }), HasSubstr("another grid"));
 }
 
 TEST(DifferenceSource, TheReferenceMustHaveTheSameSteps) {
@@ -91,7 +118,7 @@ TEST(DifferenceSource, TheReferenceMustHaveTheSameSteps) {
       [] {
         return made({0, 1, 2});
       },
-      {"the other"}, true);
+      {"the other"}, Comparison::difference);
   EXPECT_NO_THROW(source.frame(0));
   EXPECT_EQ(errorOf([&] { source.frame(1); }),
             "the other has no step at 1.25 s to compare with; the nearest is at 1 s");
@@ -109,9 +136,9 @@ TEST(DifferenceSource, FieldOnTetrahedraIsRefusedOnEitherSide) {
       [] {
         return made({0, 1, 2, 3});
       },
-      {"the other"}, true);
+      {"the other"}, Comparison::difference);
   EXPECT_THAT(errorOf([&] { of_mesh.frame(0); }), HasSubstr("fields on tetrahedra are not compared"));
-  DifferenceSource to_mesh(made({0, 1, 2, 3}), open, {"the mesh"}, true);
+  DifferenceSource to_mesh(made({0, 1, 2, 3}), open, {"the mesh"}, Comparison::difference);
   EXPECT_THAT(errorOf([&] { to_mesh.frame(0); }), HasSubstr("fields on tetrahedra are not compared"));
 }
 

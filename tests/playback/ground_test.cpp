@@ -109,7 +109,7 @@ TEST(GroundMarks, LieOnTheGroundWithinTheBox) {
       overTerrain(folder, [](double latitude_deg, double) { return 500 + 3000 * (latitude_deg - 52); });
   const volume::Grid grid = gridOf(scene);
   const Ground ground = groundOf(scene, grid, nullptr, false);
-  GroundMarks marks(grid, ground.field.get(), &scene);
+  GroundMarks marks(markedPlane(grid, ground.field.get(), &scene));
   marks.addGraticule(PositionFormat::decimal);
   const std::size_t graticule = marks.lines.size();
   EXPECT_GE(graticule, 6U);
@@ -117,7 +117,8 @@ TEST(GroundMarks, LieOnTheGroundWithinTheBox) {
   render::Marker marker;
   marker.label = "radar: 1";
   marker.position_m = {2000, 1000, 700};
-  marks.addRings({{"radar: 1", 3000, 2}, {"other", 1000, 1}}, {marker}, Units::metric);
+  marks.addRings({{"radar: 1", 3000, 2}, {"other", 1000, 1}}, ringCenters({marker}, grid.frame),
+                 Units::metric);
   ASSERT_EQ(marks.lines.size(), graticule + 2);
   EXPECT_EQ(marks.lines[graticule].label, "3 km");
   const Vec3d lower = grid.lower_m(), upper = grid.upper_m();
@@ -136,7 +137,7 @@ TEST(GroundMarks, PlacesAreCutAtTheSidesOfTheBox) {
   const TemporaryFolder folder;
   const LoadedScenario scene = loadScenarioWithTerrain(quickScenario(folder));
   const volume::Grid grid = gridOf(scene);
-  GroundMarks marks(grid, nullptr, &scene);
+  GroundMarks marks(markedPlane(grid, nullptr, &scene));
   using Place = scenario::Place;
   marks.addPlaces({{Place::Kind::point, "inside", {{{52, 5, 0}}}},
                    {Place::Kind::point, "outside", {{{53, 5, 0}}}},

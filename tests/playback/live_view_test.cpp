@@ -296,6 +296,66 @@ TEST(LiveView, EveryKindOfEventSettlesOnFullCast) {
   live.view->show(expected.view);
   expectSettled("quantity");
   EXPECT_EQ(live.view->picture()->volume.info().quantity, "snr_db");
+
+  expected.view.settings.map_height_agl_m = 400;
+  live.view->show(expected.view);
+  expectSettled("map layer");
+
+  changeSplit(expected.view, 0.25);
+  live.view->show(expected.view);
+  expectSettled("split");
+  EXPECT_EQ(live.view->picture()->split_column, 40);
+  ASSERT_NE(live.view->picture()->beside, nullptr);
+  EXPECT_EQ(live.view->picture()->info().quantity, "snr_db") << "no difference";
+
+  const long long computed = live.view->status().fields_computed;
+  expected.view.split = 0.75;
+  live.view->show(expected.view);
+  expectSettled("line of a split");
+  EXPECT_EQ(live.view->picture()->split_column, 120);
+  EXPECT_EQ(live.view->status().fields_computed, computed);
+
+  expected.view.split = 0;
+  changeComparison(expected.view, "");
+  live.view->show(expected.view);
+  expectSettled("field again");
+  EXPECT_EQ(live.view->picture()->split_column, 0);
+}
+
+/// A scenario whose field takes long.
+ViewState slowView() {
+  ViewState view = smallView(emscape::test::shippedScenario("quick.yaml"));
+  view.edits = {{"emitters.radar.propagation", "parabolic_equation"},
+                {"emitters.transmitter.propagation", "parabolic_equation"},
+                {"region.size_m", "[200000, 200000, 9000]"},
+                {"region.dims", "[200, 200, 100]"}};
+  return view;
+}
+
+TEST(LiveView, BeforeTheFirstFieldTheGroundAndTheEmittersAreShown) {
+  LiveOptions options = fastOptions();
+  options.begins_without_field = true;
+  Live live(slowView(), options);
+  live.waitUntil([&](const LiveStatus& status) { return status.frame > 0; });
+  const auto first = live.view->picture();
+  EXPECT_FALSE(first->has_field);
+  EXPECT_EQ(first->annotations.markers.size(), 2U);
+  EXPECT_FALSE(first->annotations.legend.has_value());
+  EXPECT_TRUE(live.view->status().computing);
+  EXPECT_FALSE(live.view->status().exact);
+  live.view->showWithoutField();
+  const auto cancelled = live.settled();
+  EXPECT_FALSE(cancelled->has_field);
+  EXPECT_EQ(live.view->status().fields_computed, 0);
+  // Another field is requested and shown, with its own colours, in the same place.
+  auto edited = std::make_shared<scenario::Scenario>(*cancelled->scenario);
+  edited->set("emitters.radar.propagation", "free_space");
+  edited->set("emitters.transmitter.propagation", "free_space");
+  live.view->show(live.shown, edited);
+  const auto shown = live.settled();
+  EXPECT_TRUE(shown->has_field);
+  EXPECT_EQ(shown->camera.eye_m.x, cancelled->camera.eye_m.x) << "the legend's room was free before";
+  EXPECT_EQ(shown->transfer, shown->defaultColors());
 }
 
 TEST(LiveView, EventStopsRestorationAndSettledPictureShowsIt) {

@@ -32,6 +32,34 @@ TEST(Painter, LabelsAreDrawnOverTheCastPictureOrByTheCaller) {
   EXPECT_TRUE(bare.rgba == render::quantize(cast).rgba);
 }
 
+TEST(Painter, PartsOfASplitPictureAreThoseOfTheTwoFields) {
+  const TemporaryFolder folder;
+  ViewState view;
+  view.input = quickScenario(folder);
+  view.size = {160, 120};
+  view.range = ValueRange{-90, -30};
+  const auto castOf = [&](double split, const std::vector<scenario::Edit>& edits) {
+    ViewState shown = view;
+    shown.edits = edits;
+    changeSplit(shown, split);
+    const auto source = openFrameSource(FrameSelection(shown), {});
+    Painter painter(shown, *source, {});
+    painter.setFrame(source->frame(1));
+    EXPECT_EQ(painter.splitColumn(), static_cast<int>(split * 160));
+    painter.draw({});
+    return render::quantize(painter.image());
+  };
+  const std::vector<scenario::Edit> edits{{"emitters.radar.power_w", "1000000"}};
+  const render::Image8 original = castOf(0, {}), changed = castOf(0, edits), split = castOf(0.35, edits);
+  int differ = 0;
+  for (std::size_t i = 0; i < split.rgba.size(); ++i) {
+    const int column = static_cast<int>(i / 4 % 160);
+    EXPECT_NEAR(split.rgba[i], (column < 56 ? original : changed).rgba[i], 1) << column;
+    differ += original.rgba[i] != changed.rgba[i] ? 1 : 0;
+  }
+  EXPECT_GT(differ, 1000);
+}
+
 TEST(Painter, ReturningCameraGivesSamePicture) {
   MadeFrames source(seconds(2));
   ViewState view;

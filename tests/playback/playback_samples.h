@@ -69,7 +69,7 @@ class MadeFrames : public FrameSource {
       volume.values.push_back(
           std::fmod(static_cast<float>(index) + 0.5F + 0.37F * static_cast<float>(voxel), greatest));
     }
-    return {{volume::Volume(std::move(volume)), nullptr}, {}, {}, changes, {}};
+    return {{volume::Volume(std::move(volume)), nullptr}, {}, {}, changes, true, {}};
   }
   std::string name() const override { return "made"; }
   const LoadedScenario* scene() const override { return nullptr; }

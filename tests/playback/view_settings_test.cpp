@@ -19,6 +19,7 @@ TEST(ViewSettings, DocumentationHoldsTheTable) {
 SettingValue otherValue(const ViewSetting& setting) {
   if (setting.isNumber()) return setting.spec.maximum / 2;
   if (setting.key == "camera") return std::string("orbit:azimuth_deg=1");
+  if (setting.key == "map_layer") return std::string("50");
   if (setting.key == "size") return std::string("3x4");
   if (setting.key == "range") return std::string("-1:2.5");
   if (setting.key == "planes") return std::vector<std::string>{"horizontal:altitude_m=5,keep=above"};

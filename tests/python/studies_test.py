@@ -217,6 +217,17 @@ def test_a_picture_has_ground_field_and_labels(jamming):
         em.render(field, camera={"azimuth_degrees": 3})
 
 
+def test_a_picture_takes_the_settings_of_view_files(quick):
+    field = em.Solver(quick, "cpu").at(0)
+    size = (160, 120)
+    plain = em.render(field, size=size)
+    for settings in ({"map_layer": 500}, {"labels": "off"}, {"show_compass": False}, {"planes": ["horizontal:altitude_m=1500"]}):
+        assert not np.array_equal(plain, em.render(field, size=size, **settings)), settings
+    for settings in ({"map_layer": "high"}, {"labels": "some"}, {"map_opacity": 2}, {"planes": 3}, {"quantity_of": 1}, {"time_s": 1}):
+        with pytest.raises(em.UsageError):
+            em.render(field, size=size, **settings)
+
+
 @pytest.mark.parametrize("bounds", [(10, -10), (5, 5), (float("nan"), 1), (0, float("inf")), (0, 1e300)])
 def test_a_range_of_colours_has_ascending_numbers(quick, bounds):
     field = em.Solver(quick, "cpu").at(0)

@@ -48,6 +48,10 @@ inline void setRandomScene(Renderer& renderer, std::mt19937& random, ImageSize s
   camera.elevation_deg = between(-30, 90);
   camera.projection = between(0, 3) == 0 ? Projection::orthographic : Projection::perspective;
   renderer.setCamera(makeCamera(camera, renderer.sceneBox(), size));
+  if (between(0, 2) > 0) return;
+  settings.map_height_agl_m = 40.0 * between(0, 5);
+  settings.map_opacity = 0.25 * between(1, 4);
+  renderer.setSettings(settings);
 }
 
 /// One to three planes through the box of the renderer's volume.

@@ -89,6 +89,24 @@ TEST(NewItems, AtAPositionHaveAPlatformThere) {
   EXPECT_EQ(platform.track.front().position.latitude_deg, 52.01);
 }
 
+TEST(RenamedItem, IsAlsoNamedByThoseThatReferToIt) {
+  const auto original = quick();
+  const std::vector<Edit> edits = editsWithReferences(*original, {"platforms.mast.name", "tower"});
+  ASSERT_GT(edits.size(), 1U);
+  const Scenario edited = *withEdits(*original, edits);
+  EXPECT_EQ(edited.platforms[1].name, "tower");
+  EXPECT_EQ(edited.emitters[1].platform, 1);
+  Scenario wants = *original;
+  wants.set("output.wanted_emitter", "radar");
+  EXPECT_THAT(
+      editsWithReferences(wants, {"emitters.radar.name", "\"a: b\""}),
+      ElementsAre(Edit{"emitters.radar.name", "\"a: b\""}, Edit{"output.wanted_emitter", "\"a: b\""}));
+  EXPECT_THAT(editsWithReferences(wants, {"emitters.radar.power_w", "5"}),
+              ElementsAre(Edit{"emitters.radar.power_w", "5"}));
+  EXPECT_THAT(editsWithReferences(wants, {"name", "x"}), ElementsAre(Edit{"name", "x"}));
+  EXPECT_THAT(editsWithReferences(wants, {"nonsense", "x"}), ElementsAre(Edit{"nonsense", "x"}));
+}
+
 TEST(NewItems, ThatExistAreRefused) {
   const auto scenario = quick();
   EXPECT_THAT(test::errorOf(

@@ -50,6 +50,19 @@ TEST(CoverageSummary, NamesShareTargetThresholdAndTheUnknownPixels) {
   EXPECT_THAT(sentences[1], HasSubstr("80.0 % of the area"));
 }
 
+TEST(CoverageSummary, TheTargetIsThatOfTheRadarsThatAreOn) {
+  MapStudy study = smallStudy();
+  auto scenario = std::make_shared<scenario::Scenario>(*study.scenarios.front());
+  scenario::Emitter off = scenario->emitters.front();
+  off.name = "reserve";
+  off.receiver.target_rcs_m2 = 77;
+  off.active_s = {{1000, 1001}};
+  scenario->emitters.push_back(off);
+  study.scenarios = {scenario};
+  EXPECT_THAT(coverageSummary(study, {recordOf("covered", 40, 80)}).front(),
+              ::testing::Not(::testing::AnyOf(HasSubstr("77"), HasSubstr("reserve"))));
+}
+
 TEST(CoverageSummary, BurnThroughSaysWhatJammingTakesAway) {
   const MapStudy study = smallStudy();
   const std::vector<std::string> sentences =

@@ -54,7 +54,7 @@ struct Fixture {
             {scenario}, loadTerrain(*scenario, area),
             grid,       scenario::Quantity::detection_probability,
             0.5,        {70, 80},
-            {height}};
+            {height},   {}};
   }
   /// Values that rise and fall over the grid; none outside the area and at one pixel inside.
   Map map(MapKind kind, double time_s, double low, double high) const {

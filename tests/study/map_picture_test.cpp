@@ -1,12 +1,12 @@
 // Properties of a map's picture that do not depend on its values.
 #include "study/picture/map_picture.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <random>
 #include <string>
 
 #include "emscape/study/maps/area.h"
@@ -14,8 +14,10 @@
 #include "render/transfer/oklab.h"
 #include "study/picture/map_colors.h"
 #include "study/picture/map_frame.h"
-#include "study/picture/map_labels.h"
+#include "study/picture/map_marks.h"
 #include "study/picture/map_relief.h"
+#include "tests/support/errors.h"
+#include "tests/support/temporary_folder.h"
 
 namespace emscape::study {
 namespace {
@@ -265,32 +267,6 @@ TEST(MapPicture, DegreesGoOnAcrossTheAntimeridian) {
   EXPECT_EQ(texts, (std::vector<std::string>{"1°S", "0°", "1°N"}));
 }
 
-TEST(MapPicture, LabelsNeitherOverlapNorLeaveTheMap) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> x(0, 900), y(0, 700), width(30, 160);
-  std::vector<render::Point2> at;
-  std::vector<render::Rect> extents;
-  for (int n = 0; n < 300; ++n) {
-    at.push_back({x(random), y(random)});
-    extents.push_back({0, 0, width(random), 15});
-  }
-  const render::Rect bounds{0, 0, 900, 700};
-  constexpr double kRadius = 7;
-  const auto places = placeLabels(at, kRadius, extents, bounds);
-  int placed = 0;
-  for (std::size_t n = 0; n < places.size(); ++n) {
-    if (!places[n]) continue;
-    ++placed;
-    const render::Rect& box = *places[n];
-    EXPECT_TRUE(box.x >= 0 && box.y >= 0 && box.x + box.width <= 900 && box.y + box.height <= 700);
-    for (std::size_t m = 0; m < places.size(); ++m) {
-      EXPECT_FALSE(m != n && places[m] && overlap(box, *places[m]));
-      EXPECT_FALSE(overlap(box, {at[m].x - kRadius, at[m].y - kRadius, 2 * kRadius, 2 * kRadius}));
-    }
-  }
-  EXPECT_GT(placed, 50);
-}
-
 TEST(MapPicture, LabelsStayOnTheMap) {
   MapGrid grid = makeMapGrid(circularArea({10, 20, 5000}), 500, "local");
   Map map = jamLoss(grid);
@@ -317,6 +293,119 @@ TEST(MapPicture, ASlopeIsShadedUpToTheEdges) {
   const int y = image.size.height / 2, middle = image.size.width / 2;
   const int left = 90 * options.width / 1200;  // in the first column of pixels, right of the frame
   EXPECT_TRUE(std::equal(image.at(left, y), image.at(left, y) + 4, image.at(middle, y)));
+}
+
+/// Number of pixels near a colour in a rectangle of the picture's map.
+int countNear(const render::Image8& image, const render::Rgb& color) {
+  int count = 0;
+  for (int y = 0; y < image.size.height; ++y) {
+    for (int x = 0; x < image.size.width; ++x) {
+      const std::uint8_t* const at = image.at(x, y);
+      const float off = std::abs(static_cast<float>(at[0]) - 255 * color.r) +
+                        std::abs(static_cast<float>(at[1]) - 255 * color.g) +
+                        std::abs(static_cast<float>(at[2]) - 255 * color.b);
+      count += off < 6 ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+TEST(MapPicture, UnknownPixelsAreHatchedAndInTheLegend) {
+  const MapGrid grid = smallGrid();
+  Map map = jamLoss(grid);
+  const int nothing_px = countNear(drawMap(grid, map, {}), groundColor(0, false));
+  map.answers.assign(grid.pixels(), PixelAnswer::exact);
+  EXPECT_EQ(legendOf(map).hatched, "");
+  for (std::size_t p = 0; p < grid.pixels() / 2; ++p) {
+    map.answers[p] = PixelAnswer::unknown;
+    map.values[p] = NAN;
+  }
+  EXPECT_EQ(legendOf(map).hatched, "unknown");
+  const int left_px = countNear(drawMap(grid, map, {}), groundColor(0, false));
+  EXPECT_LT(left_px, 0.95 * nothing_px) << "lines";
+  EXPECT_GT(left_px, 0.8 * nothing_px) << "and the ground between them";
+  map.answers.assign(grid.pixels(), PixelAnswer::none);
+  EXPECT_EQ(legendOf(map).hatched, "") << "below the ground";
+}
+
+TEST(MapPicture, LengthsAndFieldsAreShownInTheChosenUnits) {
+  Map map;
+  map.kind = MapKind::level;
+  map.unit = "m";
+  map.values = {0, 304.8F};
+  map.name = map.title = "min_height";
+  render::Legend legend = legendOf(map, Units::nautical);
+  EXPECT_EQ(legend.unit, "ft");
+  EXPECT_NEAR(legend.scale.shown(304.8), 1000, 1e-9);
+  map.name = "max_range";
+  legend = legendOf(map, Units::nautical);
+  EXPECT_EQ(legend.unit, "NM");
+  EXPECT_NEAR(legend.scale.stored(legend.scale.shown(1852)), 1852, 1e-9);
+  EXPECT_EQ(legendOf(map).unit, "m");
+  map.title = "power density";
+  map.unit = "dBW/m2";
+  legend = legendOf(map, Units::metric, FieldUnit::v_per_m);
+  EXPECT_EQ(legend.unit, "V/m");
+  EXPECT_EQ(legend.quantity, "Field strength");
+  map.height = MapHeight{emfield::HeightReference::ground, 150};
+  map.description = "coverage (SNR >= 10 dB) at 150 m above ground";
+  EXPECT_EQ(descriptionOf(map, Units::nautical), "coverage (SNR >= 10 dB) at 492 ft above ground");
+  EXPECT_EQ(descriptionOf(map, Units::metric), map.description);
+}
+
+TEST(MapPicture, APictureOnTheGroundShowsWhereTheMapHasNoColor) {
+  const MapGrid grid = smallGrid();
+  Map map = jamLoss(grid);
+  map.values[5] = 1;
+  MapPictureOptions options;
+  options.drape.assign(grid.pixels(), 0xff00ff00U);
+  const render::Image8 image = drawMap(grid, map, options);
+  EXPECT_GT(countNear(image, {0, 1, 0}), 1000);
+  options.drape.assign(grid.pixels(), 0x0000ff00U);
+  EXPECT_EQ(countNear(drawMap(grid, map, options), {0, 1, 0}), 0) << "outside of the picture";
+}
+
+TEST(MapPicture, PlacesAndRingsAreWhereTheyAreOnTheEarth) {
+  const test::TemporaryFolder folder;
+  const std::string places = folder.write("places.geojson",
+                                          R"({"type": "FeatureCollection", "features": [
+         {"type": "Feature", "properties": {"name": "Town"}, "geometry": {"type": "Point", "coordinates": [20.02, 10.01]}},
+         {"type": "Feature", "properties": {"name": "Far"}, "geometry": {"type": "Point", "coordinates": [22, 10]}}]})");
+  const MapGrid grid = makeMapGrid(circularArea({10, 20, 8000}), 500, "local");
+  auto scenario = std::make_shared<scenario::Scenario>();
+  scenario->emitters.emplace_back().name = "radar";
+  MapStudy study;
+  study.scenarios = {scenario};
+  study.grid = std::make_shared<const MapGrid>(grid);
+  study.view.places = {places};
+  study.view.range_rings = {playback::parseRangeRings("radar:spacing_m=3000,count=2")};
+  scenario::Snapshot snapshot;
+  snapshot.scenario = scenario;
+  snapshot.emitters.resize(1);
+  snapshot.emitters[0].position = {10, 20, 0};
+  MapPictureOptions options;
+  MapMarks(study).addTo(options, snapshot);
+  ASSERT_EQ(options.points.size(), 1U);
+  const double east_m = geodesicInverse(10, 20, 10, 20.02).distance_m;
+  EXPECT_NEAR(options.points[0].position_m.x, east_m, 1);
+  ASSERT_EQ(options.lines.size(), 2U);
+  EXPECT_EQ(options.lines[1].label, "6 km");
+  for (const Vec3d& point : options.lines[1].points_m) EXPECT_NEAR(std::hypot(point.x, point.y), 6000, 12);
+  study.view.range_rings = {playback::parseRangeRings("raddar:spacing_m=3000")};
+  EXPECT_THAT(test::errorOf([&] { MapMarks marks(study); }, ErrorCode::usage),
+              ::testing::HasSubstr("there is no emitter 'raddar'; the scenario has 'radar'"));
+}
+
+TEST(MapPicture, LakesThatCannotBeSeenAreLand) {
+  const std::vector<std::uint8_t> map{0, 0, 0, 0, 0, 0, 0, 1,  //
+                                      0, 1, 1, 0, 0, 0, 0, 0,  //
+                                      0, 0, 1, 0, 1, 1, 1, 0,  //
+                                      0, 0, 0, 0, 0, 0, 0, 0};
+  std::vector<std::uint8_t> water = map;
+  dropSmallWater(water, 8, 4, 3);
+  std::vector<std::uint8_t> expected = map;
+  expected[9] = expected[10] = expected[18] = 0;
+  EXPECT_EQ(water, expected) << "but one at the edge, and one that is wide enough, stay";
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 /// Real keys and mouse buttons: X events of the server, in a window that a window manager manages.
+#include "tests/view/real_input.h"
+
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <filesystem>
-#include <functional>
-
-#include "tests/view/window_fixture.h"
 
 namespace emscape::test {
 namespace {
@@ -15,147 +14,11 @@ using testing::EndsWith;
 using testing::Ge;
 using testing::Lt;
 
-/// Position in the window.
-struct Place {
-  int x, y;
-};
 // With quick.yaml in a window of 1000 x 800 pixels
 constexpr Place kSwitch{933, 118}, kFrequency{890, 258}, kBandwidth{890, 285}, kPower{850, 312},
     kLosses{950, 339}, kGain{850, 493};
 constexpr Place kRate{228, 648}, kPicture{120, 150}, kLowerPicture{120, 480}, kTimeLine{500, 722},
     kFileMenu{27, 12}, kOpenItem{50, 35};
-
-std::string at(const Place& place) {
-  return " mousemove --window $w " + std::to_string(place.x) + " " + std::to_string(place.y);
-}
-std::string click(const Place& place) {
-  return at(place) + " click 1";
-}
-std::string controlClick(const Place& place) {
-  return at(place) + " keydown ctrl click 1 keyup ctrl";
-}
-std::string doubleClick(const Place& place) {
-  return at(place) + " click --repeat 2 --delay 60 1";
-}
-std::string drag(const Place& place, int right_px) {
-  return at(place) + " mousedown 1" + at({place.x + right_px / 2, place.y}) +
-         at({place.x + right_px, place.y}) + " mouseup 1";
-}
-std::string type(const std::string& text) {
-  return " type --args 1 --delay 20 -- '" + text + "'";
-}
-
-class WindowManager {
- public:
-  explicit WindowManager(const std::string& display) : process_(fork()) {
-    if (process_ != 0) return;
-    setenv("DISPLAY", display.c_str(), 1);
-    const int nowhere = open("/dev/null", O_RDWR);
-    dup2(nowhere, STDOUT_FILENO);
-    dup2(nowhere, STDERR_FILENO);
-    execlp("openbox", "openbox", "--sm-disable", static_cast<char*>(nullptr));
-    _exit(127);
-  }
-  ~WindowManager() {
-    ::kill(process_, SIGTERM);
-    waitpid(process_, nullptr, 0);
-  }
-  WindowManager(const WindowManager&) = delete;
-  WindowManager& operator=(const WindowManager&) = delete;
-
- private:
-  const pid_t process_;
-};
-
-class RealInput : public Window {
- protected:
-  void SetUp() override {
-    for (const char* program : {"xdotool", "openbox"}) {
-      if (!hasProgram(program)) GTEST_SKIP() << program << " is not installed";
-    }
-    Window::SetUp();
-    if (IsSkipped() || HasFatalFailure()) return;
-    manager_ = std::make_unique<WindowManager>(display_->name());
-    ASSERT_TRUE(comes([&] { return xdotool("get_desktop"); })) << "openbox did not start";
-  }
-  void TearDown() override {
-    if (program_) kill(SIGKILL);
-    manager_.reset();
-  }
-
-  /// Opens an input, and waits until it is shown and has the focus.
-  void open(const std::string& input) {
-    start(viewOf(input, R"({"do":"wait_state","state":"exact"}
-{"do":"mark","text":"ready"}
-{"do":"wait_s","seconds":300}
-)"));
-    ASSERT_TRUE(comesToLog("mark"));
-    activate();
-  }
-  /// The same as a user does, without a script: questions are asked.
-  void openByHand(const std::string& input) {
-    start({"view", input, "--size", "", "--backend", "cpu", "--log", logFile()});
-    ASSERT_TRUE(reports("program", "IDLE"));
-    activate();
-  }
-  void start(Arguments arguments) {
-    std::filesystem::remove(logFile());
-    arguments[3] = "1000x800";
-    program_ = std::make_unique<RunningProgram>(arguments, environment());
-  }
-  void activate() const {
-    ASSERT_TRUE(xdotool("search --sync --onlyvisible --name emscape windowactivate --sync"));
-  }
-  /// Runs commands of xdotool; $w is the window.
-  bool xdotool(const std::string& commands) const {
-    const std::string line = environment() + "w=$(xdotool search --onlyvisible --name emscape);" +
-                             "timeout 60 xdotool " + commands + " >/dev/null 2>&1";
-    return std::system(line.c_str()) == 0;
-  }
-  void kill(int signal) {
-    program_->signal(signal);
-    EXPECT_EQ(program_->wait().status, 128 + signal);
-    program_.reset();
-  }
-  /// Ends the program as a session's end does. @return its last report
-  Json end() {
-    kill(SIGTERM);
-    const std::vector<Json> reports = log("end");
-    return reports.empty() ? Json() : reports.front();
-  }
-
-  /// Waits until the log meets a condition, at most a minute.
-  static bool comes(const std::function<bool()>& condition) {
-    for (int i = 0; i < 600 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    return condition();
-  }
-  /// Waits until a value of the report, which each frame logs, meets a condition.
-  bool reports(const std::string& key, const std::function<bool(const Json&)>& condition) const {
-    return comes([&] {
-      const std::vector<Json> frames = log("frame");
-      return !frames.empty() && condition(frames.back().value(key, Json()));
-    });
-  }
-  bool reports(const std::string& key, const Json& expected) const {
-    return reports(key, [&](const Json& value) { return value == expected; });
-  }
-  /// The commands since the input was shown.
-  std::string commands() const {
-    std::string names;
-    for (const Json& line : log()) {
-      if (line["event"] == "mark") names.clear();
-      if (line["event"] == "command" && line["do"] != "wait_s")
-        names += (names.empty() ? "" : " ") + line["do"].get<std::string>();
-    }
-    return names;
-  }
-  bool commandsBecome(const std::string& names) const {
-    return comes([&] { return commands().size() >= names.size(); }) && commands() == names;
-  }
-
-  std::unique_ptr<WindowManager> manager_;
-  std::unique_ptr<RunningProgram> program_;
-};
 
 struct TypedNumber {
   const char* name;
@@ -306,6 +169,23 @@ TEST_F(RealInput, ShiftAndDragPanThePictureAndAPlainDragTurnsIt) {
   EXPECT_EQ(log("frame").back()["azimuth_deg"], before["azimuth_deg"]);
   ASSERT_TRUE(xdotool(drag(kLowerPicture, 60)));  // elsewhere: no double click
   EXPECT_TRUE(reports("azimuth_deg", [&](const Json& value) { return value != before["azimuth_deg"]; }));
+}
+
+TEST_F(RealInput, KeysPaintTheMapAndSplitThePictureByALineThatIsDragged) {
+  open(quick());
+  ASSERT_TRUE(xdotool("key shift+l"));
+  EXPECT_TRUE(reports("map_layer", 100));
+  ASSERT_TRUE(xdotool("key shift+c"));
+  ASSERT_TRUE(reports("split", 0.5));
+  const int width = log("frame").back()["picture_width"].get<int>();
+  ASSERT_TRUE(comes([&] { return log("frame").back()["exact"] == true; }));
+  const Json before = log("frame").back();
+  ASSERT_TRUE(xdotool(drag({width / 2 + 1, 480}, -80)));
+  EXPECT_TRUE(reports("split", [&](const Json& value) {
+    return std::abs(value.get<double>() - (0.5 - 79.0 / width)) < 0.01;
+  }));
+  EXPECT_EQ(log("frame").back()["azimuth_deg"], before["azimuth_deg"]) << "the camera stays";
+  EXPECT_EQ(commands(), "map_layer split split");
 }
 
 class Selecting : public RealInput {

@@ -83,6 +83,52 @@ TEST(SessionEdits, ItemsAreSwitchedAddedCopiedAndRemovedWithUndo) {
               HasSubstr("point '52': expected LAT,LON"));
 }
 
+TEST(SessionEdits, ANewNameComputesNothingAndIsFollowed) {
+  SessionSample session("quick.yaml");
+  const std::string channel = "snr_db:radar";
+  session.perform(
+      R"({"do":"set_together","edits":["output.quantities=[snr_db]","output.combine=per_emitter"]})");
+  session.perform(R"({"do":"quantity","name":")" + channel + "\"}");
+  session.perform(R"({"do":"select","path":"emitters.radar"})");
+  session.perform(R"({"do":"follow","name":"radar site"})");
+  session.perform(R"({"do":"range_rings","rings":["radar:spacing_m=2000,count=3"]})");
+  session.settle();
+  const auto before = session->picture()->volume.dense();
+  session.perform(R"({"do":"set","path":"emitters.radar.name","value":"eye"})");
+  session.perform(R"({"do":"set","path":"platforms.radar site.name","value":"hill"})");
+  session.settle();
+  EXPECT_EQ(session.error(), "");
+  EXPECT_EQ(session->picture()->volume.dense(), before) << "not computed again";
+  EXPECT_EQ(session->selected(), "emitters.eye");
+  EXPECT_EQ(session->view().quantity, "snr_db:eye");
+  EXPECT_EQ(session->shownQuantity(), "snr_db:eye");
+  EXPECT_EQ(session->view().follow, "hill");
+  EXPECT_EQ(session->view().range_rings.front().emitter, "eye");
+  session.perform(R"({"do":"undo"})");
+  session.perform(R"({"do":"undo"})");
+  session.settle();
+  EXPECT_EQ(session->selected(), "emitters.radar");
+  EXPECT_EQ(session->view().quantity, channel);
+}
+
+TEST(SessionEdits, RangeRingsOfARemovedEmitterEnd) {
+  SessionSample session("quick.yaml");
+  session.perform(R"({"do":"range_rings","rings":["radar:spacing_m=2000","transmitter:spacing_m=3000"]})");
+  session.perform(R"({"do":"remove","path":"emitters.transmitter"})");
+  session.settle();
+  ASSERT_EQ(session->view().range_rings.size(), 1U);
+  EXPECT_EQ(session->view().range_rings.front().emitter, "radar");
+}
+
+TEST(RenamedItems, HaveTheirEditsUnderTheNewName) {
+  EXPECT_THAT(editedPaths({{"emitters.radar.power_w", "5"},
+                           {"emitters.radar.name", "\"a.b\""},
+                           {"emitters.\"a.b\".losses_db", "2"},
+                           {"name", "x"}}),
+              testing::ElementsAre("emitters.\"a.b\".losses_db", "emitters.\"a.b\".name",
+                                   "emitters.\"a.b\".power_w", "name"));
+}
+
 TEST(SessionEdits, RevertTakesBackOneOrAllInOneStep) {
   SessionSample sample("quick.yaml");
   sample.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"5"})");

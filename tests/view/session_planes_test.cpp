@@ -91,6 +91,101 @@ TEST_F(Planes, HandleIsMissingWhereThePlaneCannotBeMovedInThePicture) {
   EXPECT_FALSE(planeHandle(*session->picture(), session->settings().planes[0]));
 }
 
+TEST_F(Planes, ADragOfOneIsOneUndoStep) {
+  session->setPictureSize({480, 360});
+  perform(R"({"do":"plane","kind":"horizontal"})");
+  settle();
+  const auto handle = planeHandle(*session->picture(), session->settings().planes[0]);
+  ASSERT_TRUE(handle);
+  const PlaneDrag drag(*session, 0, handle->x, handle->y);
+  for (const int up_px : {4, 8, 12}) drag.moveTo(handle->x, handle->y - up_px, *session);
+  drag.finish(*session);
+  const double dragged_m = session->settings().planes[0].altitude_m;
+  ASSERT_GT(dragged_m, 2500);
+  perform(R"({"do":"undo"})");
+  EXPECT_EQ(session->settings().planes[0].altitude_m, 2500);
+  perform(R"({"do":"undo"})");
+  EXPECT_TRUE(session->settings().planes.empty());
+  perform(R"({"do":"redo"})");
+  perform(R"({"do":"redo"})");
+  EXPECT_EQ(session->settings().planes[0].altitude_m, dragged_m);
+  EXPECT_FALSE(session->canRedo());
+}
+
+using Map = SessionTest;
+
+TEST_F(Map, LayerIsSwitchedAndKeepsItsHeight) {
+  perform(R"({"do":"map_layer"})");
+  EXPECT_EQ(session->report()["map_layer"], 100);
+  perform(R"({"do":"map_layer","height_agl_m":250,"opacity":0.5})");
+  perform(R"({"do":"map_layer"})");
+  EXPECT_TRUE(session->report()["map_layer"].is_null());
+  perform(R"({"do":"map_layer","opacity":0.75})");
+  EXPECT_TRUE(session->report()["map_layer"].is_null()) << "opacity alone does not switch it";
+  perform(R"({"do":"map_layer","on":true})");
+  settle();
+  EXPECT_EQ(session->picture()->settings.map_height_agl_m, 250);
+  EXPECT_EQ(session->picture()->settings.map_opacity, 0.75);
+  EXPECT_EQ(session->picture()->annotations.legend->map_note, "map: at 250 m above ground");
+  perform(R"({"do":"reset_switches"})");
+  EXPECT_TRUE(session->report()["map_layer"].is_null());
+  EXPECT_EQ(error(), "");
+  perform(R"({"do":"map_layer","height_agl_m":-1})");
+  EXPECT_EQ(error(), "map_layer: height_agl_m -1: expected a number 0..100000");
+}
+
+using Split = SessionTest;
+
+TEST_F(Split, ShowsTheFieldWithoutEditsAtTheLeft) {
+  perform(R"({"do":"set","path":"emitters.radar.power_w","value":"100000"})");
+  settle();
+  const render::TransferFunction colors = session->picture()->transfer;
+  perform(R"({"do":"split"})");
+  settle();
+  const auto& picture = *session->picture();
+  EXPECT_EQ(picture.split_column, picture.size.width / 2);
+  EXPECT_EQ(picture.transfer, colors);
+  ASSERT_NE(picture.beside, nullptr);
+  EXPECT_NE(picture.beside->values()->values, picture.values()->values);
+  session->moveSplit(0.25 * picture.size.width);
+  settle();
+  EXPECT_EQ(session->report()["split"], 0.25);
+  perform(R"({"do":"compare"})");
+  settle();
+  EXPECT_EQ(session->report()["quantity"], "power_density_difference_db");
+  EXPECT_EQ(session->report()["split"], 0);
+  perform(R"({"do":"split"})");
+  settle();
+  EXPECT_EQ(session->report()["quantity"], "power_density_dbwm2");
+  EXPECT_EQ(session->report()["split"], 0.25) << "where it was";
+  perform(R"({"do":"split"})");
+  settle();
+  EXPECT_EQ(session->picture()->split_column, 0);
+  EXPECT_EQ(session->viewState().compare, "");
+  EXPECT_EQ(error(), "");
+}
+
+TEST_F(Split, CursorReadsTheHalfUnderIt) {
+  perform(R"({"do":"set","path":"emitters.radar.power_w","value":"100000"})");
+  settle();
+  session->cursor().turnOn(true);
+  const double x = session->picture()->size.width * 0.45, y = session->picture()->size.height * 0.55;
+  double nudge = 0;
+  const auto valueUnderCursor = [&] {
+    settle();
+    session->cursor().hover(render::Projected{x + (nudge += 1e-3), y});
+    waitUntil([&] { return !session->cursor().isBusy(); });
+    const ProbeResult* const result = session->cursor().result();
+    return result && result->reading ? result->reading->sample.value : 0.0F;
+  };
+  const float changed = valueUnderCursor();
+  perform(R"({"do":"split","position":0.8})");
+  const float original = valueUnderCursor();
+  perform(R"({"do":"split","position":0.1})");
+  EXPECT_NEAR(valueUnderCursor(), changed, 0.1);
+  EXPECT_LT(original, changed);
+}
+
 using Comparison = SessionTest;
 
 TEST_F(Comparison, ShowsTheDifferenceWithColoursOfItsOwnAndTheFieldAgain) {

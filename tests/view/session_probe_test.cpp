@@ -1,3 +1,4 @@
+#include "apps/view/values/position_text.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {
@@ -22,6 +23,15 @@ TEST(SessionProbe, LocksAtAPositionAndExplainsItsValue) {
   EXPECT_GE(result.contributions[0].value, result.contributions[1].value);
   EXPECT_THAT(result.contributions[0].text, HasSubstr("dBW/m2"));
   EXPECT_FALSE(result.reading->emitters[0].budget->verdict.empty());
+}
+
+TEST(SessionProbe, ContributionsHaveTheUnitInWhichFieldsAreShown) {
+  playback::ViewState view;
+  EXPECT_EQ(valueText(-60, "dBW/m2", "-60 dBW/m2", view), "-60 dBW/m²");
+  view.field_unit = FieldUnit::dbm;
+  EXPECT_EQ(valueText(-60, "dBW/m2", "-60 dBW/m2", view), "-30 dBm/m²");
+  EXPECT_EQ(valueText(12, "dB", "12 dB", view), "12 dB");
+  EXPECT_EQ(valueText(-INFINITY, "", "no field", view), "no field");
 }
 
 TEST(SessionProbe, FollowsTimeAndEdits) {

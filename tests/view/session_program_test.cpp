@@ -14,7 +14,7 @@ playback::LiveStatus settledStatus() {
 
 ProgramFacts shownFacts() {
   ProgramFacts facts;
-  facts.has_input = facts.has_picture = true;
+  facts.has_input = facts.has_picture = facts.has_field = true;
   return facts;
 }
 
@@ -52,6 +52,14 @@ TEST(ProgramState, IsNeverIdleWithWorkLeft) {
   EXPECT_TRUE(programState(opens, settledStatus()).can_cancel);
   first.has_picture = false;
   EXPECT_EQ(programState(first, {}).activity, Activity::opening);
+  EXPECT_TRUE(programState(first, {}).can_cancel);
+  first.has_picture = true;
+  first.has_field = false;
+  playback::LiveStatus computing;
+  computing.computing = true;
+  EXPECT_EQ(programState(first, computing).activity, Activity::opening) << "up to the first field";
+  EXPECT_EQ(programState(first, computing).picture, "without the field");
+  EXPECT_EQ(programState(first, settledStatus()).activity, Activity::idle) << "the field was cancelled";
   EXPECT_EQ(programState({}, {}).badge, "EMPTY");
   playback::LiveStatus status;
   EXPECT_EQ(programState(shown, status).activity, Activity::restore) << "not exact yet";
@@ -102,6 +110,30 @@ TEST_F(SessionProgram, CancelGoesBackToWhatThePictureShows) {
   EXPECT_EQ(session->status().fields_abandoned, 1);
   perform(R"({"do":"cancel"})");
   EXPECT_EQ(error(), "cancel: nothing is being computed or opened");
+}
+
+TEST(SessionOpening, ShowsTheGroundFirstAndCanBeCancelled) {
+  ViewOptions options = optionsFor(shippedScenario("quick.yaml"), {160, 120});
+  options.view.edits = {{"emitters.radar.propagation", "parabolic_equation"},
+                        {"region.size_m", "[200000, 200000, 9000]"},
+                        {"region.dims", "[200, 200, 100]"}};
+  SessionSample sample(options);
+  EXPECT_EQ(sample->report()["program"], "OPENING");
+  sample.waitUntil([&] { return sample->picture() != nullptr; });
+  EXPECT_FALSE(sample->hasField());
+  EXPECT_EQ(sample->objects().size(), 4U) << "they can be selected";
+  EXPECT_EQ(sample->transfer(), nullptr);
+  EXPECT_EQ(sample->report()["program"], "OPENING");
+  EXPECT_EQ(sample.perform(R"({"do":"cancel"})"), "");
+  sample.waitUntil([&] { return sample->settled(); });
+  EXPECT_EQ(sample->report()["program"], "IDLE");
+  EXPECT_EQ(sample->programState().picture, "without the field");
+  EXPECT_EQ(sample->status().fields_computed, 0);
+  EXPECT_EQ(sample.perform(R"({"do":"choose","path":"emitters.radar.propagation","value":"free_space"})"),
+            "");
+  sample.settle();
+  EXPECT_TRUE(sample->hasField());
+  EXPECT_NE(sample->transfer(), nullptr);
 }
 
 TEST_F(SessionProgram, AnUndoneFieldIsAbandonedAndNeverShown) {

@@ -43,7 +43,7 @@ void addThresholdOption(CLI::App& command, double& threshold) {
       ->default_str("");
 }
 
-void addMapOptions(CLI::App& command, report::MapOptions& options) {
+void addMapOptions(CLI::App& command, report::MapOptions& options, ViewArguments& view) {
   options.prefix = "--";
   command.add_option(
       "--heights", options.heights,
@@ -66,6 +66,7 @@ void addMapOptions(CLI::App& command, report::MapOptions& options) {
   for (const study::MapFormat& format : study::mapFormats()) formats.emplace_back(format.name);
   addListOption(command, "--format", options.formats, "Formats of maps, with commas between them")
       ->check(CLI::IsMember(formats));
+  view.addSomeTo(command, {"drape", "places", "range_rings", "units", "field_unit"});
 }
 
 }  // namespace emscape::app

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "apps/common/command.h"
+#include "apps/common/view_arguments.h"
 #include "report/maps/map_options.h"
 
 namespace emscape::app {
@@ -24,7 +25,8 @@ void writeStudyOutputs(const std::vector<std::string>& files, const StudyOutputs
 /// Adds --threshold. @param threshold  NAN: not given
 void addThresholdOption(CLI::App& command, double& threshold);
 
-/// Adds the options of coverage maps. @param options  must live as long as the command
-void addMapOptions(CLI::App& command, report::MapOptions& options);
+/// Adds the options of coverage maps. @param options, view  must live as long as the command; the caller
+/// applies the view's to the options
+void addMapOptions(CLI::App& command, report::MapOptions& options, ViewArguments& view);
 
 }  // namespace emscape::app

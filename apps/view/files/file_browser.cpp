@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>
+#include <initializer_list>
 
 #include "base/text/failure_text.h"
 #include "emscape/base/error.h"
@@ -34,7 +35,14 @@ bool mayChoose(FileBrowser::Purpose purpose, FileKind kind) {
   if (kind == FileKind::folder) return true;
   switch (purpose) {
     case FileBrowser::Purpose::input:
-      return true;
+      return kind != FileKind::image && kind != FileKind::places;
+    case FileBrowser::Purpose::colors:
+    case FileBrowser::Purpose::save_colors:
+      return kind == FileKind::colors;
+    case FileBrowser::Purpose::drape:
+      return kind == FileKind::image;
+    case FileBrowser::Purpose::places:
+      return kind == FileKind::places;
     case FileBrowser::Purpose::view:
       return kind == FileKind::view;
     case FileBrowser::Purpose::scenario:
@@ -50,7 +58,14 @@ bool mayChoose(FileBrowser::Purpose purpose, FileKind kind) {
 
 FileKind fileKindOf(const fs::path& file, bool is_folder) {
   if (is_folder) return FileKind::folder;
-  if (endsWith(lowerCase(file.filename().string()), ".view.json")) return FileKind::view;
+  const std::string name = lowerCase(file.filename().string());
+  const auto hasOneOf = [&](std::initializer_list<const char*> endings) {
+    return std::any_of(endings.begin(), endings.end(), [&](const char* end) { return endsWith(name, end); });
+  };
+  if (endsWith(name, ".view.json")) return FileKind::view;
+  if (endsWith(name, ".transfer.json")) return FileKind::colors;
+  if (hasOneOf({".tif", ".tiff", ".mbtiles", ".vrt", ".png", ".jpg", ".jpeg"})) return FileKind::image;
+  if (hasOneOf({".geojson", ".gpkg", ".shp", ".kml", ".gml"})) return FileKind::places;
   try {
     switch (playback::inputKindOf(file.string())) {
       case playback::InputKind::scenario:

@@ -10,8 +10,8 @@
 
 namespace emscape::view {
 
-/// Files that the window can open, by their extension.
-enum class FileKind { folder, scenario, volume, view, recording, other };
+/// Files that the window reads, by their extension: image and places are on the ground.
+enum class FileKind { folder, scenario, volume, view, colors, image, places, other };
 FileKind fileKindOf(const std::filesystem::path& file, bool is_folder);
 
 struct FolderEntry {
@@ -27,15 +27,15 @@ std::vector<FolderEntry> listFolder(const std::filesystem::path& folder);
 /// Reads folders on a separate thread, because the disk may be slow. For use by the window's thread.
 class FileBrowser {
  public:
-  /// What a file is chosen for. With the last two it may be new.
-  enum class Purpose { input, view, scenario, save_scenario, record };
+  /// What a file is chosen for. With the last three it may be new.
+  enum class Purpose { input, view, scenario, colors, drape, places, save_scenario, save_colors, record };
 
   /// Rereads the last visited folder, at first the given one.
   /// @param proposed  the typed path at first; may be empty
   void open(Purpose purpose, const std::filesystem::path& first_folder, const std::string& proposed = "");
   const std::string& proposed() const { return proposed_; }
   /// True if a typed name may be that of a new file.
-  bool savesFile() const { return purpose_ == Purpose::save_scenario || purpose_ == Purpose::record; }
+  bool savesFile() const { return purpose_ >= Purpose::save_scenario; }
   Purpose purpose() const { return purpose_; }
   void enter(const std::filesystem::path& folder);
   void goUp() { enter(folder_.parent_path()); }

@@ -23,6 +23,12 @@ const char* nameOf(FileKind kind) {
       return "volume";
     case FileKind::view:
       return "view";
+    case FileKind::colors:
+      return "colours";
+    case FileKind::image:
+      return "picture";
+    case FileKind::places:
+      return "places";
     case FileKind::recording:
       return "recording";
     case FileKind::other:
@@ -46,6 +52,14 @@ PurposeText textOf(Purpose purpose) {
       return {"Add the scenario###open", "Add"};
     case Purpose::save_scenario:
       return {"Save the scenario as###open", "Save"};
+    case Purpose::colors:
+      return {"Load colours###open", "Load"};
+    case Purpose::save_colors:
+      return {"Save colours as###open", "Save"};
+    case Purpose::drape:
+      return {"Picture on the ground###open", "Show"};
+    case Purpose::places:
+      return {"Add places###open", "Add"};
     case Purpose::record:
       return {"Record into###open", "Choose"};
     case Purpose::input:
@@ -54,8 +68,17 @@ PurposeText textOf(Purpose purpose) {
   return {"Open###open", "Open"};
 }
 
+/// A typed name without an ending gets one.
+std::string withEnding(const std::string& file, const std::string& ending) {
+  return std::filesystem::path(file).has_extension() ? file : file + ending;
+}
+
 void openFile(Session& session, const std::optional<std::string>& file) {
   if (!file) return;
+  const auto performAndClose = [&](const Command& command) {
+    session.panels.open = false;
+    session.perform(command);
+  };
   switch (session.files().browser.purpose()) {
     case Purpose::input:
       session.perform({"open", {{"file", *file}}});
@@ -66,12 +89,26 @@ void openFile(Session& session, const std::optional<std::string>& file) {
     case Purpose::scenario:
       session.perform({"add_scenario", {{"file", *file}}});
       break;
-    case Purpose::save_scenario: {
-      const bool has_ending = std::filesystem::path(*file).has_extension();
-      const std::string ending = std::filesystem::path(session.usualScenarioFile()).extension().string();
-      session.perform({"save", {{"file", has_ending ? *file : *file + ending}}});
+    case Purpose::colors:
+      performAndClose({"transfer", {{"file", *file}}});
+      break;
+    case Purpose::drape:
+      performAndClose({"drape", {{"file", *file}}});
+      break;
+    case Purpose::places: {
+      std::vector<std::string> files = session.view().places;
+      files.push_back(*file);
+      performAndClose({"places", {{"files", files}}});
       break;
     }
+    case Purpose::save_scenario: {
+      const std::string ending = std::filesystem::path(session.usualScenarioFile()).extension().string();
+      session.perform({"save", {{"file", withEnding(*file, ending)}}});
+      break;
+    }
+    case Purpose::save_colors:
+      performAndClose({"save_transfer", {{"file", withEnding(*file, ".transfer.json")}}});
+      break;
     case Purpose::record:
       session.files().record_output = *file;
       session.panels.open = false;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <optional>
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/widgets/names.h"
@@ -31,14 +32,19 @@ void endMapDialog() {
 }
 
 /// A text field with a button. @return true if Enter or the button took the text
+/// @param browses  purpose of a button that opens the file browser; none: there is no such button
 bool textAndButton(PanelContext& context, const char* id, const char* hint, TypedMapText& typed,
-                   const char* button) {
+                   const char* button, std::optional<FileBrowser::Purpose> browses = std::nullopt) {
   ImGui::PushID(id);
   ImGui::SetNextItemWidth(kFieldWidth * context.scale);
   const bool entered = ImGui::InputTextWithHint("##text", hint, typed.data(), typed.size(),
                                                 ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine();
   const bool pressed = ImGui::Button(button);
+  if (browses) {
+    ImGui::SameLine();
+    if (ImGui::Button("Browse")) context.session.browse(*browses);
+  }
   ImGui::PopID();
   return entered || pressed;
 }
@@ -69,7 +75,7 @@ void drawDrape(PanelContext& context) {
   ImGui::TextDisabled("Picture on the ground (GeoTIFF, MBTiles)");
   if (!session.view().drape.empty() && listToRemove({session.view().drape}) == 0)
     performed(session, {"drape", {{"file", ""}}});
-  if (textAndButton(context, "drape", "file", typed, "Show") && typed[0] != '\0')
+  if (textAndButton(context, "drape", "file", typed, "Show", FileBrowser::Purpose::drape) && typed[0] != '\0')
     performed(session, {"drape", {{"file", typed.data()}}});
 }
 
@@ -83,7 +89,8 @@ void drawPlaces(PanelContext& context) {
     files.erase(files.begin() + static_cast<std::ptrdiff_t>(removed));
     performed(session, {"places", {{"files", files}}});
   }
-  if (textAndButton(context, "places", "file", typed, "Add") && typed[0] != '\0') {
+  if (textAndButton(context, "places", "file", typed, "Add", FileBrowser::Purpose::places) &&
+      typed[0] != '\0') {
     files.emplace_back(typed.data());
     performed(session, {"places", {{"files", files}}});
   }

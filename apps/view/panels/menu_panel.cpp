@@ -21,11 +21,13 @@ bool isChecked(const Session& session, const std::string& name) {
   for (const playback::ViewSetting& setting : playback::viewSettings()) {
     if (setting.isSwitch() && setting.action == name) return std::get<bool>(setting.get(session.view()));
   }
+  if (name == "Map layer") return session.settings().map_height_agl_m.has_value();
   if (name == "Isosurface") return session.settings().mode == render::CompositingMode::iso;
   if (name == "Scenario: what if") return panels.scenario && !panels.hidden;
   if (name == "Colours and opacity") return panels.colors && !panels.hidden;
   if (name == "Cutting planes") return panels.planes && !panels.hidden;
   if (name == "Compare with the original") return session.compares();
+  if (name == "Split: original and changed") return session.isSplit();
   if (name == "Probe") return panels.probe && !panels.hidden;
   if (name == "Lock or unlock the probe") return session.prober().isLocked();
   if (name == "Timeline") return panels.timeline && !panels.hidden;
@@ -150,6 +152,12 @@ void drawViewMenu(PanelContext& context) {
       for (const Action& other : actions()) {
         if (other.menu != std::string("View") || other.section != section) continue;
         if (!drawChoicesOf(context, other)) drawAction(context, other);
+      }
+      if (section == "Map") {
+        ImGui::Separator();
+        const Action& places = *actionOf(parseChord("Ctrl+Shift+G"));
+        if (ImGui::MenuItem("Places, picture, range rings", keyOf(places).c_str(), session.panels.map))
+          perform(context, places.command.c_str());
       }
       ImGui::EndMenu();
     }

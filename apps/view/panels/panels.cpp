@@ -4,7 +4,10 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+#include <utility>
 
 #include "apps/view/panels/picture_overlay.h"
 #include "apps/view/widgets/dialog.h"
@@ -19,6 +22,18 @@ namespace {
 void place(const Area& area) {
   ImGui::SetNextWindowPos({area.x, area.y});
   ImGui::SetNextWindowSize({area.width, area.height});
+}
+
+/// Scrolls by as much as the panels above the scenario's rows have grown: the rows stay under the cursor.
+/// @param has_same_panels  as in the frame before
+void keepRowsInPlace(bool has_rows, bool has_same_panels) {
+  static float top_before = -1;
+  const float top = has_rows ? ImGui::GetCursorPosY() : -1;
+  const float scroll = ImGui::GetScrollY();
+  const bool are_rows_in_sight = top_before >= 0 && scroll > top_before - ImGui::GetWindowHeight() / 2;
+  if (has_rows && has_same_panels && are_rows_in_sight && scroll > 0 && top != top_before)
+    ImGui::SetScrollY(scroll + top - top_before);
+  top_before = top;
 }
 
 bool isMeasuring(const Session& session) {
@@ -36,14 +51,15 @@ Layout layoutOf(const Session& session, float width, float height, float scale) 
   }
   // The picture keeps the largest part of the window. Where that leaves too little for the side panel, it
   // lies over the picture while it is used, and the time line is reduced to its buttons.
-  const bool is_narrow = width < 620 * scale, is_low = height < 420 * scale;
+  const bool is_narrow = width < 720 * scale, is_low = height < 420 * scale;
   const float status_height = 30 * scale;
   layout.has_side = session.hasInput() && (panels.scenario || panels.colors || panels.planes ||
                                            panels.probe || isMeasuring(session));
   layout.side_is_over = layout.has_side && is_narrow;
   const float side_width = !layout.has_side ? 0
                            : is_narrow      ? panels.side ? std::min(340 * scale, 0.85F * width) : 0
-                                            : std::min(340 * scale, std::max(310 * scale, 0.36F * width));
+                                       : std::max(std::min(340 * scale, std::max(310 * scale, 0.36F * width)),
+                                                  std::min(420 * scale, 0.3F * width));
   layout.menu_height = ImGui::GetFrameHeight();
   const float room = std::max(1.0F, height - status_height - layout.menu_height);
   const float timeline_height = timelineHeight(session, scale, is_low ? 0 : 0.3F * room);
@@ -77,29 +93,31 @@ void drawSidePanel(PanelContext& context, const Layout& layout) {
   ImGui::Begin(layout.side_is_over ? "side over" : "side", nullptr, flags);
   const Panels& panels = context.session.panels;
   // All panels share the scroll bar of the side; only that of the scenario, if it is alone, has its own.
-  const bool measures = isMeasuring(context.session);
-  const auto separator = [&](bool more) {
-    if (!more) return;
+  struct Section {
+    bool is_open;
+    void (*draw)(PanelContext& context);
+  };
+  const std::array<Section, 4> sections{{{panels.colors, drawColorsPanel},
+                                         {panels.planes, drawPlanesPanel},
+                                         {isMeasuring(context.session), drawMeasurePanel},
+                                         {panels.probe, drawProbePanel}}};
+  static std::array<bool, 4> was_open{};
+  bool has_same_panels = true;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const bool is_open = sections[i].is_open, is_other = std::exchange(was_open[i], is_open) != is_open;
+    has_same_panels = has_same_panels && !is_other;
+    if (!is_open) continue;
+    if (is_other) ImGui::SetScrollY(ImGui::GetCursorPosY() - ImGui::GetStyle().WindowPadding.y);
+    sections[i].draw(context);
+    const bool has_more =
+        panels.scenario || std::any_of(sections.begin() + static_cast<std::ptrdiff_t>(i) + 1, sections.end(),
+                                       [](const Section& s) { return s.is_open; });
+    if (!has_more) continue;
     ImGui::Spacing();
     ImGui::Separator();
     ImGui::Spacing();
-  };
-  if (panels.colors) {
-    drawColorsPanel(context);
-    separator(panels.planes || panels.scenario || panels.probe || measures);
   }
-  if (panels.planes) {
-    drawPlanesPanel(context);
-    separator(panels.scenario || panels.probe || measures);
-  }
-  if (measures) {
-    drawMeasurePanel(context);
-    separator(panels.scenario || panels.probe);
-  }
-  if (panels.probe) {
-    drawProbePanel(context);
-    separator(panels.scenario);
-  }
+  keepRowsInPlace(panels.scenario, has_same_panels);
   if (panels.scenario) drawScenarioPanel(context);
   ImGui::End();
 }
@@ -111,9 +129,10 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   place(area);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(12 * s, 5 * s));
   ImGui::Begin("status", nullptr, kFixedPanel | ImGuiWindowFlags_NoScrollbar);
-  // The picture and the buttons of the time line state the time; here only what differs.
+  // The picture and the buttons of the time line state the time; here only what differs, without that line.
+  const bool has_times = session.panels.timeline && !session.panels.hidden;
   std::string right;
-  if (session.picture() && status.shown_s != status.asked_s && !session.timeline().playing()) {
+  if (!has_times && session.picture() && status.shown_s != status.asked_s && !session.timeline().playing()) {
     const double span_s = session.timeline().end_s();
     right = fmt::format("requested {}, shown {}", timeText(status.asked_s, span_s),
                         timeText(status.shown_s, span_s));

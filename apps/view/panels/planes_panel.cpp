@@ -1,4 +1,4 @@
-/// Cutting planes: position and kept side.
+/// Cutting planes: position and kept side. The map layer.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -35,15 +35,15 @@ bool drawVertical(const PanelContext& context, CutPlane& plane, const render::Sc
 const char* keptText(const CutPlane& plane) {
   switch (plane.keep) {
     case CutPlane::Side::below:
-      return "keeps what is below";
+      return "keeps below";
     case CutPlane::Side::above:
-      return "keeps what is above";
+      return "keeps above";
     case CutPlane::Side::left:
-      return "keeps the left";
+      return "keeps left";
     case CutPlane::Side::right:
       break;
   }
-  return "keeps the right";
+  return "keeps right";
 }
 
 void drawPlane(PanelContext& context, std::size_t index, const render::SceneBox& box) {
@@ -67,8 +67,23 @@ void drawPlane(PanelContext& context, std::size_t index, const render::SceneBox&
   }
   if (horizontal ? drawHorizontal(context, plane, box) : drawVertical(context, plane, box)) {
     plane.on = true;
-    session.setPlanes(planes);
+    session.dragPlanes(planes);
   }
+}
+
+void drawMapLayer(PanelContext& context, const render::SceneBox& box) {
+  Session& session = context.session;
+  const render::RenderSettings& settings = session.settings();
+  ImGui::TextColored(accentColor(session.theme()), "Map layer");
+  bool on = settings.map_height_agl_m.has_value();
+  if (ImGui::Checkbox("values painted on the ground", &on)) session.perform({"map_layer", {{"on", on}}});
+  if (!settings.map_height_agl_m) return;
+  double height_m = *settings.map_height_agl_m, opacity = settings.map_opacity;
+  if (slide(context, "##map height", height_m, 0, box.upper_m.z - box.lower_m.z, "%.0f m above ground"))
+    session.perform(
+        {"map_layer", {{"height_agl_m", std::clamp(height_m, 0.0, render::kMapHeightLimits.max)}}});
+  if (slide(context, "##map opacity", opacity, 0, 1, "opacity %.2f"))
+    session.perform({"map_layer", {{"opacity", std::clamp(opacity, 0.0, 1.0)}}});
 }
 
 }  // namespace
@@ -80,6 +95,7 @@ void drawPlanesPanel(PanelContext& context) {
     ImGui::TextDisabled("no picture yet");
     return;
   }
+  if (!ImGui::IsMouseDown(ImGuiMouseButton_Left)) session.endPlaneDrag();
   const std::size_t count = session.settings().planes.size();
   for (std::size_t index = 0; index < count && index < session.settings().planes.size(); ++index) {
     ImGui::PushID(static_cast<int>(index));
@@ -96,6 +112,8 @@ void drawPlanesPanel(PanelContext& context) {
     }
   }
   ImGui::EndDisabled();
+  ImGui::Spacing();
+  drawMapLayer(context, session.picture()->box);
 }
 
 }  // namespace emscape::view

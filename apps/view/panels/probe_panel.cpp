@@ -130,7 +130,8 @@ void drawEmitters(PanelContext& context, const ProbeResult& result) {
     pushNameId(emitter.emitter);
     const bool is_open = headingOfName("emitter", emitter.emitter);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    const std::string value = render::unitText(contribution.text);
+    const std::string value =
+        valueText(contribution.value, contribution.unit, contribution.text, context.session.view());
     const ImVec2 text = ImGui::CalcTextSize(value.c_str());
     const float free = high.x - low.x - ImGui::CalcTextSize(emitter.emitter.c_str()).x - 48 * context.scale;
     if (text.x < free) {

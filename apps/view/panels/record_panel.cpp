@@ -1,6 +1,7 @@
 /// The recording dialog, and the progress of a recording.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -117,6 +118,25 @@ void drawSize(const PanelContext& context, Typed& typed) {
   ImGui::EndCombo();
 }
 
+/// How the camera moves; with the bookmarks that it flies along.
+void drawCameraPath(PanelContext& context) {
+  Session& session = context.session;
+  const auto& bookmarks = session.bookmarks();
+  const auto count = std::count_if(bookmarks.begin(), bookmarks.end(),
+                                   [](const auto& bookmark) { return bookmark.has_value(); });
+  const bool flies = session.view().camera_path == playback::CameraPath::bookmarks;
+  const std::string along = fmt::format("from bookmark to bookmark ({})", count);
+  ImGui::SetNextItemWidth(260 * context.scale);
+  if (ImGui::BeginCombo("camera", flies ? along.c_str() : "as on screen")) {
+    if (ImGui::Selectable("as on screen", !flies)) perform(context, R"({"do":"camera_path","path":"fixed"})");
+    if (ImGui::Selectable(along.c_str(), flies))
+      perform(context, R"({"do":"camera_path","path":"bookmarks"})");
+    ImGui::EndCombo();
+  }
+  if (flies && count < 2)
+    ImGui::TextColored(errorColor(session.theme()), "two bookmarks are needed: Ctrl+1, Ctrl+2, ...");
+}
+
 std::string bytesText(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.2g} MB", std::max(0.1, bytes / 1e6))
                      : fmt::format("{:.2g} GB", bytes / 1e9);
@@ -169,6 +189,7 @@ void drawRecording(PanelContext& context, const Area& picture) {
   if (ImGui::IsWindowAppearing()) fillIn(typed, session);
   drawOutput(context, typed);
   drawSize(context, typed);
+  drawCameraPath(context);
   const auto number = [&](const char* name, double& value) {
     ImGui::SetNextItemWidth(120 * context.scale);
     ImGui::InputDouble(name, &value, 0, 0, "%.6g");

@@ -8,6 +8,7 @@
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/parameter_rows.h"
+#include "apps/view/parts/renamed_items.h"
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
 #include "emscape/base/error.h"
@@ -52,14 +53,16 @@ struct PanelState {
   void take(const playback::ScenarioPtr& next) {
     if (next == scenario) return;
     const bool is_edited_further = scenario && scenario->file == next->file;
+    const std::vector<RenamedItem> renamed =
+        is_edited_further ? renamedItems(*scenario, *next) : std::vector<RenamedItem>();
+    rename(renamed);
     std::unordered_set<std::string> before;
     for (const SectionGroup& group : section_groups) {
-      for (const Section& section : group.sections) before.insert(section.path);
+      for (const Section& section : group.sections) before.insert(renamedPath(renamed, section.path));
     }
     scenario = next;
     groups.clear();
-    edited.clear();
-    for (const scenario::Edit& edit : next->edits()) edited.insert(edit.path);
+    edited = editedPaths(next->edits());
     SectionGroup emitters{"Emitters", {"radar", "transmitter", "jammer"}};
     disabled_count = 0;
     for (const scenario::Emitter& emitter : next->emitters) {
@@ -92,6 +95,17 @@ struct PanelState {
     }
     if (std::exchange(is_new, false) && !emitters.sections.empty())
       open.insert(emitters.sections.front().path);
+  }
+
+  /// Sections and rows with another name stay as they are.
+  void rename(const std::vector<RenamedItem>& renamed) {
+    if (renamed.empty()) return;
+    const auto nameOf = [&](const std::string& path) { return renamedPath(renamed, path); };
+    std::unordered_set<std::string> open_now;
+    for (const std::string& path : open) open_now.insert(nameOf(path));
+    open = std::move(open_now);
+    selected = nameOf(selected);
+    scenarioFocus().rename(nameOf);
   }
 
   /// Opens the section of what is selected, once.
@@ -344,7 +358,6 @@ void drawHead(PanelContext& context, const PanelState& state) {
   const float spacing = ImGui::GetStyle().ItemSpacing.x;
   button("undo", R"({"do":"undo"})", session.canUndo(), "Ctrl+Z", 2 * spacing);
   button("redo", R"({"do":"redo"})", session.canRedo(), "Ctrl+Shift+Z", spacing);
-  button("copy as command", R"({"do":"copy_command"})", true, "Ctrl+Shift+C", spacing);
   const std::size_t count = state.scenario->edits().size();
   const std::string changes =
       count == 0 ? "nothing changed" : fmt::format("{} value{} changed …", count, count == 1 ? "" : "s");
@@ -353,10 +366,12 @@ void drawHead(PanelContext& context, const PanelState& state) {
   ImGui::EndDisabled();
   if (count > 0 && ImGui::IsItemHovered()) ImGui::SetTooltip("the changes; undo one or all");
   drawEdits(context, state);
-  if (state.disabled_count > 0) {
-    ImGui::SameLine();
-    ImGui::TextDisabled("%zu emitter%s off", state.disabled_count, state.disabled_count == 1 ? "" : "s");
-  }
+  button("copy as command", R"({"do":"copy_command"})", true, "Ctrl+Shift+C", spacing);
+  if (state.disabled_count == 0) return;
+  const std::string off =
+      fmt::format("{} emitter{} off", state.disabled_count, state.disabled_count == 1 ? "" : "s");
+  sameLineIfRoom(ImGui::CalcTextSize(off.c_str()).x, spacing);
+  ImGui::TextDisabled("%s", off.c_str());
 }
 
 bool isDialogOpen(const Panels& panels) {

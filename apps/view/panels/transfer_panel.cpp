@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/panels/transfer_plot.h"
@@ -125,22 +126,16 @@ void drawPresets(PanelContext& context) {
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("of all points (Shift+Up)");
 }
 
-/// Name of a file to be read or written.
-void drawFile(PanelContext& context) {
-  static char file[1024] = "";
-  static std::string input;  // which the name was typed for
+void drawFiles(PanelContext& context) {
   Session& session = context.session;
-  if (std::exchange(input, session.view().input) != session.view().input) file[0] = '\0';
-  ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 116 * context.scale);
-  ImGui::InputTextWithHint("##file", "file.json", file, sizeof file);
+  if (ImGui::Button("Load …")) session.browse(FileBrowser::Purpose::colors);
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("a transfer function, as --transfer");
   ImGui::SameLine();
-  ImGui::BeginDisabled(file[0] == '\0');
-  if (ImGui::Button("Load")) session.perform({"transfer", {{"file", file}}});
-  ImGui::EndDisabled();
-  ImGui::SameLine();
-  if (ImGui::Button("Save")) session.perform({"save_transfer", {{"file", file}}});
-  if (ImGui::IsItemHovered())
-    ImGui::SetTooltip("for --transfer; without a name NAME.transfer.json (Ctrl+Shift+T)");
+  if (ImGui::Button("Save as …")) {
+    const std::filesystem::path usual = session.usualColorsFile();
+    session.browse(FileBrowser::Purpose::save_colors, usual.filename().string());
+  }
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("for --transfer; Ctrl+Shift+T: as NAME.transfer.json");
 }
 
 void drawIso(PanelContext& context) {
@@ -191,7 +186,7 @@ void drawColorsPanel(PanelContext& context) {
     drawPoint(context);
     drawRange(context);
     drawPresets(context);
-    drawFile(context);
+    drawFiles(context);
     ImGui::Separator();
   } else {
     ImGui::TextDisabled("categories have colours of their own");

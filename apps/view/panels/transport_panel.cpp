@@ -7,7 +7,6 @@
 #include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/theme.h"
 #include "base/text/time_text.h"
-#include "emscape/scenario/model/clock.h"
 
 namespace emscape::view {
 namespace {
@@ -110,7 +109,7 @@ void drawRate(PanelContext& context) {
   if (ImGui::Checkbox("loop", &loop)) session.perform({"loop", {{"on", loop}}});
 }
 
-/// The requested time, and the time on screen while it differs, if there is room.
+/// The requested time, and the time on screen while it differs, if there is room. The picture has the UTC.
 void drawTimes(const PanelContext& context) {
   const Session& session = context.session;
   const playback::Timeline& timeline = session.timeline();
@@ -121,16 +120,13 @@ void drawTimes(const PanelContext& context) {
     ImGui::SameLine(0, spacing);
     ImGui::TextColored(color, "%s", drawable(text).c_str());
   };
-  const ImVec4 ink = ImGui::GetStyleColorVec4(ImGuiCol_Text), muted = mutedColor(session.theme());
+  const ImVec4 ink = ImGui::GetStyleColorVec4(ImGuiCol_Text);
   draw("t = " + timeText(asked_s, span_s), ink);
   if (session.picture() && session.status().shown_s != asked_s && !timeline.playing()) {
     draw("shown " + timeText(session.status().shown_s, span_s), stateColor(render::ControllerState::busy));
   }
   if (!timeline.playing() && !timeline.times_s().empty() && timeline.step_s() == asked_s) {
     draw(fmt::format("step {} of {}", timeline.step() + 1, timeline.times_s().size()), ink);
-  }
-  if (const auto scenario = session.scenario(); scenario && !scenario->clock.epoch_utc.empty()) {
-    draw(scenario::utcAt(scenario->clock, asked_s), muted);
   }
 }
 

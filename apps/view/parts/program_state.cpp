@@ -15,7 +15,8 @@ namespace {
 constexpr double kExplainedAfter_s = 0.3;
 
 Activity activityOf(const ProgramFacts& facts, const playback::LiveStatus& status) {
-  if (facts.opening || (facts.has_input && !facts.has_picture)) return Activity::opening;
+  const bool begins = facts.has_input && (!facts.has_picture || (!facts.has_field && status.computing));
+  if (facts.opening || begins) return Activity::opening;
   if (!facts.has_picture) return Activity::empty;
   if (facts.is_playing) return Activity::playing;
   if (status.computing || status.searching || facts.has_pending_edits) return Activity::computing;
@@ -65,7 +66,7 @@ ProgramState programState(const ProgramFacts& facts, const playback::LiveStatus&
       state.what = textOf(progress);
       if (facts.opening) state.what = facts.opening->file + (state.what.empty() ? "" : ": " + state.what);
       state.fraction = progress.fraction;
-      state.can_cancel = facts.opening && facts.has_picture;
+      state.can_cancel = true;
       break;
     }
     case Activity::playing:
@@ -90,8 +91,11 @@ ProgramState programState(const ProgramFacts& facts, const playback::LiveStatus&
       break;
   }
   if (state.fraction >= 0) state.badge += fmt::format(" {:.0f} %", std::floor(100 * state.fraction));
-  if (facts.has_picture && state.activity != Activity::playing)
+  if (facts.has_picture && !facts.has_field) {
+    state.picture = "without the field";
+  } else if (facts.has_picture && state.activity != Activity::playing) {
     state.picture = pictureText(status, state.activity == Activity::computing && status.computing);
+  }
   return state;
 }
 

@@ -12,7 +12,7 @@ namespace emscape::view {
 
 enum class Activity {
   empty,      ///< nothing is open
-  opening,    ///< an input is being opened
+  opening,    ///< an input is being opened, up to its first field
   computing,  ///< a field is requested that no picture shows yet
   playing,
   busy,  ///< as render::ControllerState
@@ -27,6 +27,7 @@ constexpr auto namesOf(Activity) {
 struct ProgramFacts {
   bool has_input = false;
   bool has_picture = false;
+  bool has_field = true;  ///< the picture shows a field
   bool is_playing = false;
   double rate = 1;
   bool has_pending_edits = false;

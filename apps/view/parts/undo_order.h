@@ -8,7 +8,7 @@
 
 namespace emscape::view {
 
-enum class History { scenario, transfer };
+enum class History { scenario, transfer, planes };
 
 /// Keeps the order of the steps of several histories.
 class UndoOrder {
@@ -46,7 +46,7 @@ class UndoOrder {
     return to.back();
   }
 
-  std::array<long long, 2> noted_{};
+  std::array<long long, 3> noted_{};
   std::vector<History> done_, undone_;
 };
 

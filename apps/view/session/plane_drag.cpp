@@ -84,10 +84,11 @@ void PlaneDrag::moveTo(double x, double y, Session& session) const {
   }
   if (!render::frameOf(moved, picture.box) || moved == planes[index_]) return;
   planes[index_] = moved;
-  session.setPlanes(planes);
+  session.dragPlanes(planes);
 }
 
 void PlaneDrag::finish(Session& session) const {
+  session.endPlaneDrag();
   if (index_ >= session.settings().planes.size()) return;
   const render::CutPlane& plane = session.settings().planes[index_];
   const bool is_horizontal = plane.kind == render::CutPlane::Kind::horizontal;

@@ -119,7 +119,7 @@ bool Script::waitIsOver(const Line& line, const Session& session, double now_s) 
   const std::string state = command.text("state");
   bool over = false;
   if (command.verb == "wait_frame") {
-    over = session.picture() != nullptr;
+    over = session.hasField();
   } else if (state == "IDLE" || state == "exact") {
     over = session.settled();
   } else if (state == "recorded") {

@@ -31,6 +31,7 @@ playback::LiveOptions liveOptionsOf(const ViewOptions& options, const playback::
   live.controller = options.controller;
   live.cache_bytes = cache_bytes;
   live.niceness = kNiceness;
+  live.begins_without_field = true;
   return live;
 }
 
@@ -58,6 +59,7 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       prober_(Prober::Detail::explained, wake_),
       cursor_(Prober::Detail::value, wake_),
       history_(wake_),
+      planes_(view_.settings.planes),
       files_(files ? std::move(files) : std::make_shared<Files>()),
       opened_unsaved_(options.unsaved_edits),
       has_kept_(options.unsaved_edits),
@@ -143,9 +145,11 @@ void Session::takeScenario() {
 void Session::takePicture() {
   const std::shared_ptr<const playback::LivePicture> next = live_.picture();
   if (!next || next == picture_) return;
-  const bool is_first = !picture_;
+  const bool is_first = !hasField() && next->has_field;
+  is_opened_ = is_opened_ || is_first;
   picture_ = next;
   takeScenario();
+  if (!hasField()) return;
   if (takes_colors_) takeColors();
   if (is_first) log_.write("first_picture", {{"device", picture_->status.device}});
   if (is_first && !options_.state.empty()) noteSavedView(options_.state);

@@ -17,6 +17,7 @@
 #include "apps/view/parts/background_jobs.h"
 #include "apps/view/parts/open_panels.h"
 #include "apps/view/parts/program_state.h"
+#include "apps/view/parts/renamed_items.h"
 #include "apps/view/parts/undo_order.h"
 #include "apps/view/parts/view_options.h"
 #include "apps/view/tools/camera_control.h"
@@ -97,6 +98,10 @@ class Session {
 
   // --- state on screen ---
   const playback::LivePicture* picture() const { return picture_.get(); }
+  /// False before the first picture with a field: at first pictures show the ground and the emitters.
+  bool hasField() const { return picture_ && picture_->has_field; }
+  /// True once the first field was shown or cancelled.
+  bool isOpened() const { return is_opened_; }
   /// True if the input is files, not a scenario whose field is computed.
   bool showsFiles() const { return hasInput() && !status_.quantities.empty(); }
   /// The quantities that can be shown. Computed again for another scenario.
@@ -176,10 +181,17 @@ class Session {
   const render::RenderSettings& settings() const { return view_.settings; }
   /// A plane through the middle of the box; a vertical one faces the viewer.
   render::CutPlane newPlane(render::CutPlane::Kind kind) const;
-  /// @throws Error (bad_input) for too many, or values out of their range
+  /// Changes the planes: one undo step. @throws Error (bad_input) for too many, or values out of their range
   void setPlanes(const std::vector<render::CutPlane>& planes);
+  /// The same while one is dragged: all changes until endPlaneDrag() are one undo step.
+  void dragPlanes(const std::vector<render::CutPlane>& planes);
+  void endPlaneDrag();
   /// True if the difference to the reference is requested instead of the field.
-  bool compares() const { return !view_.compare.empty(); }
+  bool compares() const { return view_.comparison() == playback::Comparison::difference; }
+  /// True if the reference is requested beside the field.
+  bool isSplit() const { return view_.comparison() == playback::Comparison::side_by_side; }
+  /// Moves the line of a split view. @param x  pixel of the picture
+  void moveSplit(double x);
   /// Colours and opacities; null before the first picture, and for categories, which have fixed colours.
   const playback::TransferEditor* transfer() const { return transfer_ ? &*transfer_ : nullptr; }
   /// Statistics of the values of the picture's volume, or of the previous one while they are computed; null
@@ -206,9 +218,9 @@ class Session {
   const Prober& prober() const { return prober_; }
   /// Values over time at the locked probe, while its panel is open.
   const ValueHistory& history() const { return history_.values(); }
-  /// True if there is a change of the scenario or of the colours.
-  bool canUndo() const { return undo_order_.canUndo() || dragging_ || isDragging(); }
-  bool canRedo() const { return undo_order_.canRedo() && !dragging_ && !isDragging(); }
+  /// True if there is a change of the scenario, of the colours or of the planes.
+  bool canUndo() const { return undo_order_.canUndo() || dragging_ || isDragging() || planes_.dragged(); }
+  bool canRedo() const { return undo_order_.canRedo() && !dragging_ && !isDragging() && !planes_.dragged(); }
   const std::vector<std::optional<playback::Bookmark>>& bookmarks() const { return bookmarks_; }
   const FieldTimes& fieldTimes() const { return field_times_; }
   const Notice& notice() const { return notice_; }
@@ -241,6 +253,10 @@ class Session {
 
   void switchPlanes(const Command& command);
   void changePlane(const Command& command);
+  void changeMapLayer(const Command& command);
+  void changeComparison(bool compares);
+  void changeSplit(double split);
+  void showPlanes();
   void changeSetting(const Command& command);
   void showQuantity(const std::string& name);
   void revertRejected();
@@ -286,6 +302,7 @@ class Session {
   void takeScenario();
   void takePicture();
   void showScenario();
+  void followNames(const std::vector<RenamedItem>& renamed);
   /// Takes effect with one of the next updates.
   void changeScenario(const std::vector<scenario::Edit>& edits);
   /// @throws Error (bad_input) if there is none
@@ -345,6 +362,7 @@ class Session {
   std::string reported_error_;
   render::ControllerState logged_state_ = render::ControllerState::idle;
   Activity logged_activity_ = Activity::empty;
+  bool is_opened_ = false;
   bool is_on_screen_ = false;               // else it is opened beside the one on screen
   std::string noted_words_;                 // of the program's state at the last update
   std::optional<double> computing_from_s_;  // when the pending field was requested
@@ -352,6 +370,8 @@ class Session {
   playback::Timeline timeline_;
   double advanced_at_s_ = 0;
   render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // mode to which the key I returns
+  double last_map_height_agl_m_ = 100;  // to which the key of the map layer returns
+  double last_split_ = 0.5;             // to which the key of the split view returns
   std::optional<playback::TransferEditor> transfer_;
   bool takes_colors_ = true;  // true: takes the colours of the next pictures, which are fitted again
   std::shared_ptr<const ValueSummary> values_;
@@ -365,7 +385,7 @@ class Session {
   playback::ScenarioPtr shown_scenario_;  // the scenario of the live view
   struct {
     std::string quantity, compare;
-    double iso_value = 0;
+    double split = 0, iso_value = 0;
   } last_shown_;  // of the view of the last computed field
   struct {
     playback::ScenarioPtr scenario;  // as the stream has it
@@ -383,6 +403,7 @@ class Session {
   PickTool tool_;
   Prober prober_, cursor_;
   ProbeHistory history_;
+  playback::UndoStack<std::vector<render::CutPlane>> planes_;  // those of the view
   UndoOrder undo_order_;
   bool dragging_ = false;  // the colours
   bool touched_ = false;   // by a command since the last update()

@@ -160,8 +160,11 @@ std::vector<Verb> Session::cameraVerbs() {
        "Stores camera and time under a number, 1..9",
        [](Session& session, const Command& command) {
          const int number = bookmarkNumber(command);
+         const std::optional<Viewport> viewport = session.viewport();
+         const render::CameraSpec camera =
+             viewport ? session.camera_.settledSpec(*viewport) : session.camera_.spec();
          session.bookmarks_[static_cast<std::size_t>(number - 1)] =
-             playback::Bookmark{std::to_string(number), session.camera_.spec(), session.timeline_.asked_s()};
+             playback::Bookmark{std::to_string(number), camera, session.timeline_.asked_s()};
          session.tell(fmt::format("bookmark {} stored", number));
        }},
       {"recall",

@@ -10,7 +10,11 @@
 namespace emscape::view {
 
 bool SessionOpener::update(std::unique_ptr<Session>& session) {
-  if (std::exchange(files_->cancels_opening, false)) cancel(*session);
+  if (std::exchange(files_->cancels_opening, false)) {
+    const bool closes = !files_->is_opening && !session->picture();
+    cancel(*session);
+    if (closes) return close(session);
+  }
   if (files_->request && !task_.active()) {
     OpenRequest request = *std::exchange(files_->request, std::nullopt);
     endBeside(std::move(next_));  // there is a newer request
@@ -30,7 +34,8 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
   files_->opening.progress = next_->status().progress;
   next_->setPictureSize(session->pictureSize());
   next_->update();
-  if (next_->picture()) {
+  const bool is_other_input = session->view().input != opening_.options.view.input;
+  if (next_->hasField() || (next_->picture() && is_other_input)) {
     replace(session);
     return true;
   }
@@ -70,9 +75,25 @@ void SessionOpener::replace(std::unique_ptr<Session>& session) {
 }
 
 void SessionOpener::cancel(Session& session) {
+  const std::string file = files_->is_opening ? files_->opening.file : session.view().input;
   files_->request.reset();
   giveUp();
-  session.tell(fmt::format("cancelled: {} is not opened", files_->opening.file));
+  session.tell(fmt::format("cancelled: {} is not opened", file));
+}
+
+/// Shows the start panel in place of an input without a picture.
+bool SessionOpener::close(std::unique_ptr<Session>& session) {
+  const Notice notice = session->notice();
+  ViewOptions nothing = session->options();
+  nothing.view = {};
+  nothing.view.theme = session->theme();
+  nothing.state.clear();
+  session->leave(true);
+  endBeside(std::move(session));
+  session = make_(nothing);
+  session->shown("");
+  session->show(notice);
+  return true;
 }
 
 void SessionOpener::giveUp() {

@@ -31,6 +31,7 @@ class SessionOpener {
   void replace(std::unique_ptr<Session>& session);
   void giveUp();
   void cancel(Session& session);
+  bool close(std::unique_ptr<Session>& session);
   void endBeside(std::unique_ptr<Session> session);
 
   std::shared_ptr<Files> files_;

@@ -84,7 +84,7 @@ std::string Session::chosenQuantity() const {
 void Session::revertRejected() {
   if (!status_.failed) {
     if (picture_ && !status_.computing)
-      last_shown_ = {view_.quantity, view_.compare, view_.settings.iso_value};
+      last_shown_ = {view_.quantity, view_.compare, view_.split, view_.settings.iso_value};
     return;
   }
   showLastQuantity();
@@ -93,11 +93,14 @@ void Session::revertRejected() {
 
 /// Returns to quantity and comparison of the last field.
 void Session::showLastQuantity() {
-  if (last_shown_.quantity == view_.quantity && last_shown_.compare == view_.compare) return;
+  if (last_shown_.quantity == view_.quantity && last_shown_.compare == view_.compare &&
+      last_shown_.split == view_.split)
+    return;
   takes_colors_ = true;
   change([this](playback::ViewState& view) {
     view.quantity = last_shown_.quantity;
     view.compare = last_shown_.compare;
+    view.split = last_shown_.split;
     view.settings.iso_value = last_shown_.iso_value;
   });
 }
@@ -130,16 +133,23 @@ std::vector<Verb> Session::pictureVerbs() {
        "and comparison; camera, quantity and colours stay",
        [](Session& session, const Command&) {
          const playback::ViewState& first = session.options_.view;
-         const bool compares = session.compares();
          session.change([&](playback::ViewState& view) {
            for (const playback::ViewSetting& setting : playback::viewSettings()) {
              const bool is_size_of_texts = setting.key == "label_scale";
              if (!setting.verb.empty() && !is_size_of_texts) setting.set(view, setting.get(first));
            }
-           view.settings.planes = first.settings.planes;
+           view.settings.map_height_agl_m = first.settings.map_height_agl_m;
+           view.settings.map_opacity = first.settings.map_opacity;
            view.pattern = first.pattern;
          });
-         if (compares != !first.compare.empty()) session.perform({"compare", {{"on", !compares}}});
+         session.setPlanes(first.settings.planes);
+         if (session.view_.comparison() != first.comparison()) {
+           session.takes_colors_ = true;
+           session.change([&](playback::ViewState& view) {
+             playback::changeComparison(view, first.compare);
+             playback::changeSplit(view, first.split);
+           });
+         }
          session.tell("all switches of the view are as they were at the start");
        }},
       {"quantity",

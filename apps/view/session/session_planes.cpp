@@ -1,4 +1,4 @@
-/// Verbs of comparison and cutting planes.
+/// Verbs of comparison, cutting planes and the map layer.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -69,7 +69,23 @@ CutPlane Session::newPlane(CutPlane::Kind kind) const {
 
 void Session::setPlanes(const std::vector<CutPlane>& planes) {
   render::checkCutPlanes(planes);
-  change([&](playback::ViewState& view) { view.settings.planes = planes; });
+  if (planes == planes_.state()) return;
+  planes_.set(planes);
+  showPlanes();
+}
+
+void Session::dragPlanes(const std::vector<CutPlane>& planes) {
+  if (planes_.dragged() == nullptr) planes_.beginDrag();
+  setPlanes(planes);
+}
+
+void Session::endPlaneDrag() {
+  planes_.endDrag();
+  noteSteps();
+}
+
+void Session::showPlanes() {
+  change([&](playback::ViewState& view) { view.settings.planes = planes_.state(); });
 }
 
 void Session::switchPlanes(const Command& command) {
@@ -115,8 +131,61 @@ void Session::changePlane(const Command& command) {
   setPlanes(planes);
 }
 
+void Session::changeMapLayer(const Command& command) {
+  const bool is_on = view_.settings.map_height_agl_m.has_value();
+  const bool turns_on =
+      command.boolean("on", command.has("height_agl_m") || (command.has("opacity") ? is_on : !is_on));
+  if (is_on) last_map_height_agl_m_ = *view_.settings.map_height_agl_m;
+  last_map_height_agl_m_ = command.number("height_agl_m", last_map_height_agl_m_);
+  change([&](playback::ViewState& view) {
+    view.settings.map_height_agl_m = turns_on ? std::optional(last_map_height_agl_m_) : std::nullopt;
+    view.settings.map_opacity = command.number("opacity", view.settings.map_opacity);
+  });
+  if (turns_on && picture_ && !picture_->ground) tell("no ground is drawn: nothing is painted on it");
+}
+
+void Session::changeComparison(bool compares) {
+  if (compares == this->compares()) return;
+  takes_colors_ = true;
+  const std::string& first = options_.view.compare;
+  const std::string reference = first.empty() ? playback::kOriginal : first;
+  change([&](playback::ViewState& view) {
+    playback::changeSplit(view, 0);
+    playback::changeComparison(view, compares ? reference : std::string());
+  });
+  const bool is_of_itself = reference == playback::kOriginal && viewState().edits.empty();
+  if (compares && is_of_itself) tell("nothing is changed: no difference");
+}
+
+void Session::changeSplit(double split) {
+  if (picture_ && picture_->cells)
+    throw Error(ErrorCode::bad_input, "split: fields on tetrahedra are not drawn side by side");
+  const std::string& first = options_.view.compare;
+  const bool was_difference = compares();
+  if (split > 0) last_split_ = split;
+  change([&](playback::ViewState& view) {
+    if (split > 0 && view.compare.empty() && !first.empty()) playback::changeComparison(view, first);
+    playback::changeSplit(view, split);
+    if (split <= 0) playback::changeComparison(view, "");
+  });
+  if (was_difference != compares()) takes_colors_ = true;
+}
+
+void Session::moveSplit(double x) {
+  if (!picture_ || picture_->size.width < 2) return;
+  constexpr double kMargin = 0.02;
+  changeSplit(std::clamp(x / picture_->size.width, kMargin, 1 - kMargin));
+}
+
 std::vector<Verb> Session::planeVerbs() {
+  const render::SettingLimits &height = render::kMapHeightLimits, &opacity = render::kMapOpacityLimits;
   return {
+      {"map_layer",
+       {{"height_agl_m", kNumber, false, {height.min, height.max}},
+        {"opacity", kNumber, false, {opacity.min, opacity.max}},
+        {"on", kBoolean, false}},
+       "Paints the values at a height above the ground on it; nothing: on or off, at the last height",
+       [](Session& session, const Command& command) { session.changeMapLayer(command); }},
       {"plane",
        {{"spec", kText, false, {}, {}, [](const std::string& text) { render::parseCutPlane(text); }},
         {"kind", kText, false, {}, {"horizontal", "vertical"}},
@@ -140,16 +209,16 @@ std::vector<Verb> Session::planeVerbs() {
        {{"on", kBoolean, false}},
        "Shows the difference to the scenario as it was opened (or to that of --compare), or the field again",
        [](Session& session, const Command& command) {
-         const bool compares = command.boolean("on", !session.compares());
-         if (compares == session.compares()) return;
-         session.takes_colors_ = true;
-         const std::string& first = session.options_.view.compare;
-         const std::string reference = first.empty() ? playback::kOriginal : first;
-         session.change([&](playback::ViewState& view) {
-           playback::changeComparison(view, compares ? reference : std::string());
-         });
-         const bool is_of_itself = reference == playback::kOriginal && session.viewState().edits.empty();
-         if (compares && is_of_itself) session.tell("nothing is changed: no difference");
+         session.changeComparison(command.boolean("on", !session.compares()));
+       }},
+      {"split",
+       {{"position", kNumber, false, {0, 1}}, {"on", kBoolean, false}},
+       "Shows the scenario as it was opened (or that of --compare) at the left of the field, up to a part of "
+       "the "
+       "width, 0..1; nothing: on or off",
+       [](Session& session, const Command& command) {
+         const bool turns_on = command.boolean("on", command.has("position") || !session.isSplit());
+         session.changeSplit(turns_on ? command.number("position", session.last_split_) : 0);
        }},
   };
 }

@@ -12,6 +12,7 @@ ProgramState Session::programState() const {
   ProgramFacts facts;
   facts.has_input = hasInput();
   facts.has_picture = picture_ != nullptr;
+  facts.has_field = hasField();
   facts.is_playing = timeline_.playing();
   facts.rate = timeline_.rate();
   facts.stream = stream_.text;
@@ -40,18 +41,22 @@ void Session::noteProgram() {
 }
 
 void Session::cancel() {
-  if (files_->is_opening) {
+  if (files_->is_opening || (hasInput() && !picture_)) {
     files_->cancels_opening = true;
     wake_();
     return;
   }
   const ProgramState state = programState();
-  if (!state.can_cancel || !picture_)
-    throw Error(ErrorCode::bad_input, "cancel: nothing is being computed or opened");
+  if (!state.can_cancel) throw Error(ErrorCode::bad_input, "cancel: nothing is being computed or opened");
   timeline_.pause();
   if (edits_) {
     edit_queue_.clear(*edits_);
     if (edits_->scenario() != shown_scenario_) showScenario();
+  }
+  if (!hasField()) {
+    is_opened_ = true;
+    live_.showWithoutField();
+    return tell("cancelled: the field is computed after the next change or step, or with F5");
   }
   if (status_.computing) {
     showLastQuantity();

@@ -1,6 +1,7 @@
 /// Verbs of the scenario: edits and undo.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "apps/view/session/session.h"
@@ -8,6 +9,7 @@
 #include "apps/view/values/shown_quantity.h"
 #include "emscape/base/error.h"
 #include "scenario/file/named_items.h"
+#include "scenario/file/new_items.h"
 #include "scenario/file/parameters.h"
 
 namespace emscape::view {
@@ -43,10 +45,13 @@ std::vector<scenario::Edit> movesOf(const scenario::Scenario& scenario, const st
 void Session::changeScenario(const std::vector<scenario::Edit>& edits) {
   requireScenario();
   edit_queue_.set(edits);
+  edit_queue_.begin(*edits_);
 }
 
 void Session::drag(const std::vector<scenario::Edit>& edits) {
-  if (edits_) edit_queue_.drag(edits);
+  if (!edits_) return;
+  edit_queue_.drag(edits);
+  edit_queue_.begin(*edits_);
 }
 
 void Session::endDrag() {
@@ -81,10 +86,12 @@ void Session::takeEdits() {
 void Session::noteSteps() {
   if (edits_) undo_order_.note(History::scenario, edits_->stepsMade());
   if (transfer_) undo_order_.note(History::transfer, transfer_->stepsMade());
+  undo_order_.note(History::planes, planes_.stepsMade());
 }
 
 void Session::askUndo(bool undo) {
   endDrag();
+  endPlaneDrag();
   if (edit_queue_.isBusy()) {
     edit_queue_.then([this, undo] { undoOrRedo(undo); });
   } else {
@@ -100,13 +107,42 @@ void Session::undoOrRedo(bool undo) {
     showScenario();
   } else if (history == History::transfer) {
     changeTransfer([undo](playback::TransferEditor& editor) { undo ? editor.undo() : editor.redo(); });
+  } else if (history == History::planes) {
+    undo ? planes_.undo() : planes_.redo();
+    showPlanes();
   }
+}
+
+/// Selection, followed platform, range rings and channel keep their items, which have another name now; those
+/// of items that are gone end.
+void Session::followNames(const std::vector<RenamedItem>& renamed) {
+  selected_ = renamedPath(renamed, selected_);
+  for (const RenamedItem& item : renamed) {
+    if (item.list == "platforms" && view_.follow == item.before) view_.follow = item.now;
+    if (item.list != "emitters") continue;
+    for (playback::RangeRings& rings : view_.range_rings) {
+      if (rings.emitter == item.before) rings.emitter = item.now;
+    }
+    for (std::string* quantity : {&view_.quantity, &last_shown_.quantity}) {
+      const std::size_t at = quantity->find(':');
+      if (at != std::string::npos && quantity->substr(at + 1) == item.before)
+        *quantity = quantity->substr(0, at + 1) + item.now;
+    }
+  }
+  if (!scenario::findNamed(shown_scenario_->platforms, view_.follow)) view_.follow.clear();
+  std::vector<playback::RangeRings>& rings = view_.range_rings;
+  rings.erase(std::remove_if(rings.begin(), rings.end(),
+                             [this](const playback::RangeRings& each) {
+                               return !scenario::findNamed(shown_scenario_->emitters, each.emitter);
+                             }),
+              rings.end());
 }
 
 void Session::showScenario() {
   touched_ = true;
   const playback::ScenarioPtr before = std::exchange(shown_scenario_, edits_->scenario());
   view_.edits = edits_->edits();
+  followNames(renamedItems(*before, *shown_scenario_));
   watchFiles();
   timeline_.setScenario(*shown_scenario_);
   if (computedScenario()) {
@@ -128,9 +164,11 @@ std::vector<Verb> Session::scenarioVerbs() {
   return {
       {"set",
        {{"path", kText}, {"value", kText}},
-       "Changes a value of the scenario, as `--set PATH=VALUE` does",
+       "Changes a value of the scenario, as `--set PATH=VALUE` does; a new name also where others refer to "
+       "it",
        [](Session& session, const Command& command) {
-         session.changeScenario({{command.text("path"), command.text("value")}});
+         session.changeScenario(
+             editsWithReferences(session.requireScenario(), {command.text("path"), command.text("value")}));
        }},
       {"set_together",
        {{"edits", ArgumentType::texts}},

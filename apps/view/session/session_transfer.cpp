@@ -62,7 +62,7 @@ void Session::takeColors() {
 }
 
 playback::TransferEditor& Session::requireTransfer() {
-  if (!picture_) throw Error(ErrorCode::bad_input, "there is no picture yet");
+  if (!hasField()) throw Error(ErrorCode::bad_input, "there is no field yet");
   if (!transfer_) throw Error(ErrorCode::bad_input, "categories have their own colours");
   return *transfer_;
 }
@@ -88,7 +88,7 @@ void Session::dragTransfer(const std::function<void(playback::TransferEditor&)>&
 
 void Session::countValues() {
   const bool wanted = (fit_ && fit_ != Fit::series) || (panels.colors && !panels.hidden);
-  if (!wanted || counting_ || !picture_ || picture_->info().categorical) return;
+  if (!wanted || counting_ || !hasField() || picture_->info().categorical) return;
   if (values_ && sameValues(values_->field, *picture_)) return;
   counting_ = true;
   jobs_.run([this, field = playback::ShownField(*picture_)]() -> BackgroundJobs::Finish {

@@ -21,6 +21,12 @@ class CameraControl {
 
   const render::CameraSpec& spec() const { return spec_; }
   void set(const render::CameraSpec& spec) { spec_ = spec; }
+  /// The same view as an orbit with a distance and a target: films can fly between such cameras.
+  render::CameraSpec settledSpec(const Viewport& viewport) const {
+    CameraControl copy = *this;
+    copy.settle(viewport);
+    return copy.spec_;
+  }
 
   /// Turns the camera about its target. Elevation is clamped to -90..90.
   /// @param azimuth_deg  clockwise as seen from above

@@ -18,17 +18,17 @@ GeodesicInverse geodesic(const emfield::PathEnd& from, const emfield::PathEnd& t
 
 std::string verdictOf(const Measurement& measurement) {
   const std::vector<emfield::PathObstacle>& obstacles = measurement.path.obstacles;
-  const auto nearest = std::min_element(obstacles.begin(), obstacles.end(), [](const auto& a, const auto& b) {
-    return a.clearance_m < b.clearance_m;
-  });
-  if (nearest == obstacles.end()) return "In sight.";
-  const char* const thing = nearest->is_earth_bulge ? "the earth's bulge" : "the terrain";
-  if (nearest->clearance_m < 0) {
+  // The one that the profile's plot marks.
+  const auto decisive =
+      std::find_if(obstacles.begin(), obstacles.end(), [](const auto& obstacle) { return obstacle.decides; });
+  if (decisive == obstacles.end()) return "In sight.";
+  const char* const thing = decisive->is_earth_bulge ? "the earth's bulge" : "the terrain";
+  if (decisive->clearance_m < 0) {
     return fmt::format("Not in sight: {} at {:.2f} km is {:.0f} m above the line.", thing,
-                       nearest->range_m / 1000, -nearest->clearance_m);
+                       decisive->range_m / 1000, -decisive->clearance_m);
   }
-  return fmt::format("In sight: {} at {:.2f} km is {:.0f} m below the line.", thing, nearest->range_m / 1000,
-                     nearest->clearance_m);
+  return fmt::format("In sight: {} at {:.2f} km is {:.0f} m below the line.", thing, decisive->range_m / 1000,
+                     decisive->clearance_m);
 }
 
 }  // namespace

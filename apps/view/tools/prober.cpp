@@ -44,11 +44,12 @@ class Prober::Reader {
     Answer answer;
     answer.lock = question.lock;
     ProbeResult& result = answer.result;
-    result.scenario = picture.scenario;
+    const bool is_beside = question.pixel && question.pixel->x < picture.split_column;
+    result.scenario = is_beside ? nullptr : picture.scenario;
     result.quantity = picture.info().quantity;
     result.time_s = picture.info().time_s;
     try {
-      const volume::DenseVolume& volume = hostOf(question.picture);
+      const volume::DenseVolume& volume = is_beside ? besideOf(picture) : hostOf(question.picture);
       std::optional<Vec3d> position_m = question.position_m;
       if (question.pixel) {
         const auto picked =
@@ -64,8 +65,9 @@ class Prober::Reader {
       }
       if (position_m) {
         result.reading =
-            playback::probe(*position_m, volume, detail_ == Detail::explained ? picture.scenario : nullptr,
+            playback::probe(*position_m, volume, detail_ == Detail::explained ? result.scenario : nullptr,
                             picture.terrain.get());
+        if (!picture.has_field) result.reading->text = "no field yet";
         result.contributions = contributionsOf(*result.reading, result.quantity);
       }
     } catch (const std::exception& error) {
@@ -82,9 +84,17 @@ class Prober::Reader {
     return *host_;
   }
 
+  const volume::DenseVolume& besideOf(const playback::LivePicture& picture) {
+    if (beside_of_ != picture.beside) beside_ = picture.beside->volume.host();
+    beside_of_ = picture.beside;
+    return *beside_;
+  }
+
   const Detail detail_;
   PicturePtr picture_;
   std::shared_ptr<const volume::DenseVolume> host_;
+  std::shared_ptr<const playback::Frame> beside_of_;
+  std::shared_ptr<const volume::DenseVolume> beside_;
 };
 
 Prober::Prober(Detail detail, std::function<void()> wake)
@@ -175,7 +185,7 @@ std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading,
   std::vector<Contribution> contributions;
   for (std::size_t e = 0; e < reading.emitters.size(); ++e) {
     const playback::EmitterProbe& emitter = reading.emitters[e];
-    Contribution contribution{e, -std::numeric_limits<double>::infinity(), emitter.refusal};
+    Contribution contribution{e, -std::numeric_limits<double>::infinity(), "", emitter.refusal};
     if (emitter.budget && !emitter.budget->active) {
       contribution.text = "off";
     } else if (emitter.budget) {
@@ -183,7 +193,8 @@ std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading,
       if (term == nullptr) term = emitter.budget->find("power_density_dbwm2");
       contribution.value = term->value;
       contribution.text = std::isinf(term->value) ? "no field" : emfield::valueText(term->value);
-      if (!term->unit.empty() && !std::isinf(term->value)) contribution.text += " " + term->unit;
+      if (!std::isinf(term->value)) contribution.unit = term->unit;
+      if (!contribution.unit.empty()) contribution.text += " " + contribution.unit;
     }
     contributions.push_back(std::move(contribution));
   }

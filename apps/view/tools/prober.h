@@ -18,6 +18,7 @@ namespace emscape::view {
 struct Contribution {
   std::size_t emitter = 0;  ///< index into ProbeReading::emitters
   double value = 0;         ///< -infinity without a field
+  std::string unit;         ///< of the value; empty if there is none
   std::string text;         ///< value with unit, or the reason why there is none
 };
 /// The contributions, strongest first. @param quantity  to list; power density for emitters without a term of

@@ -24,11 +24,15 @@ std::string distanceText(double distance_m, const playback::ViewState& view) {
 
 std::string valueText(const playback::ProbeReading& reading, const volume::VolumeInfo& info,
                       const playback::ViewState& view) {
-  const render::FieldScale scale = render::fieldScale(info.unit, view.field_unit);
-  const bool is_converted = reading.sample.kind == playback::VolumeSample::Kind::value && !info.categorical &&
-                            scale.unit != info.unit;
-  return render::unitText(
-      is_converted ? fmt::format("{:.4g} {}", scale.shown(reading.sample.value), scale.unit) : reading.text);
+  const bool has_unit = reading.sample.kind == playback::VolumeSample::Kind::value && !info.categorical;
+  return valueText(reading.sample.value, has_unit ? info.unit : "", reading.text, view);
+}
+
+std::string valueText(double stored, const std::string& unit, const std::string& text,
+                      const playback::ViewState& view) {
+  const render::FieldScale scale = render::fieldScale(unit, view.field_unit);
+  return render::unitText(scale.unit != unit ? fmt::format("{:.4g} {}", scale.shown(stored), scale.unit)
+                                             : text);
 }
 
 std::string bearingText(double bearing_deg) {

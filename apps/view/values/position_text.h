@@ -18,6 +18,9 @@ std::string distanceText(double distance_m, const playback::ViewState& view);
 /// The value of the volume in the unit in which fields are shown, or the reason for a missing one.
 std::string valueText(const playback::ProbeReading& reading, const volume::VolumeInfo& info,
                       const playback::ViewState& view);
+/// A value in the unit in which fields are shown. @param text  in the unit of the quantity, or other words
+std::string valueText(double stored, const std::string& unit, const std::string& text,
+                      const playback::ViewState& view);
 /// "087.5°". @param bearing_deg  any angle, clockwise from north
 std::string bearingText(double bearing_deg);
 

@@ -22,6 +22,13 @@ class RowFocus {
   void add(const std::string& row) { rows_.push_back(row); }
   bool has(const std::string& row) const { return row == focused_; }
   void take(const std::string& row) { focused_ = row; }
+  /// Keeps the focus on a row that gets another name. @param renamed  gives the new name of a row
+  template <class Renamed>
+  void rename(const Renamed& renamed) {
+    for (std::string* row : {&focused_, &last_, &typing_, &next_typing_}) *row = renamed(*row);
+    for (std::string& row : rows_before_) row = renamed(row);
+    for (std::string& row : rows_) row = renamed(row);
+  }
   /// Lets Tab begin at a row that does not take the focus.
   void startAt(const std::string& row) { last_ = row; }
   /// True in the frame in which the focus came to a row by a key: the row must become visible.

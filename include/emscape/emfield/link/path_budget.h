@@ -39,6 +39,13 @@ struct PathPointing : RayPointing {
   std::optional<RayPointing> reflected;
 };
 
+/// What jamming does to a radar's detection.
+struct PathJamming {
+  std::string strongest;            ///< the jammer with the most power at the radar; empty: no jamming
+  int others = 0;                   ///< number of further jammers in its band
+  double unjammed_probability = 0;  ///< of detection
+};
+
 /// One line of the budget.
 struct BudgetTerm {
   enum class Kind { part, sum };
@@ -62,6 +69,7 @@ struct PathBudget {
   /// For the terms of detection of a radar whose beam follows the target (RadarLook::target, not a fixed
   /// scan): gain of that beam towards the end of the path, relative to its maximum (dB), <= 0.
   std::optional<double> look_pattern_db;
+  PathJamming jamming;  ///< of the terms of detection
   std::vector<PathObstacle> obstacles;
   propagation::PropagationModel model = propagation::PropagationModel::free_space;
   PathExcess excess;

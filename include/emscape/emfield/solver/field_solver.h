@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -47,6 +48,10 @@ struct FieldOptions {
   bool also_unjammed = false;
   bool allow_missing_terrain =
       false;  ///< true: columns over holes, and those that are seen only across one, are masked
+  /// A column that is unknown to some of a channel's active emitters, but not to all. True: it has the value
+  /// of the others, if emitters can only raise the channel's quantity: the value is then at least that
+  /// (FieldSolver::partlyUnknown()). False, and for other quantities: it is masked.
+  bool keep_partly_unknown = false;
   Backend backend = Backend::cpu;  ///< automatic: the GPU if there is one with enough memory, else the CPU
   /// Null: the field is computed at the voxels of the scenario's region. Else at the points of this surface:
   /// volumes then have the dimensions width x height x number of heights, and no position on the earth.
@@ -133,6 +138,11 @@ class FieldSolver {
   /// @throws Error (bad_input) also if the snapshot's scenario names other elevation files
   FieldChanged update(const scenario::Snapshot& snapshot);
 
+  /// Sets FieldOptions::quantities for the next update, which treats the scenario as edited; until then
+  /// channels() and volumes() stay.
+  /// @param next  scenario of the next update
+  /// @throws Error (bad_input) as the constructor; nothing is changed then
+  void setQuantities(std::vector<std::string> quantities, std::shared_ptr<const scenario::Scenario> next);
   /// Computes the field at a time with platforms at the poses that a program states, in place of their sites
   /// and tracks (emscape/scenario/model/poses.h): for hosts that move platforms themselves. Scenario and
   /// terrain are those of the last update. Poses are exact: what has moved at all is computed again, and the
@@ -145,6 +155,9 @@ class FieldSolver {
   /// computed. info().range_* is the range of each volume, info().time_s the time of the last update. Empty
   /// handles before the first update.
   const std::vector<volume::Volume>& volumes() const;
+  /// The columns of a channel's volume that are unknown to some of its emitters and have the value of the
+  /// others (FieldOptions::keep_partly_unknown): 1, else 0; empty: none. Valid until the next update.
+  const std::vector<std::uint8_t>& partlyUnknown(std::size_t channel) const;
   /// cpu or cuda.
   Backend backend() const;
 

@@ -50,6 +50,11 @@ class FieldSeries : public VolumeSeries {
   /// @param times_s  ascending
   void setScenario(LoadedScenario input, std::vector<double> times_s);
 
+  /// Computes other quantities from now on; channels() has them after the next compute(). The same faults are
+  /// thrown here. Must not be called after compareWith().
+  /// @throws Error (bad_input); nothing is changed then
+  void setQuantities(const std::vector<std::string>& quantities);
+
   /// From now on compute() gives differences (volume::difference()) to the volumes of a reference at the same
   /// times. setScenario() must not be called after it.
   /// @param name  of the reference, for legends

@@ -19,12 +19,30 @@ namespace emscape::playback {
 
 using PosesPtr = std::shared_ptr<const std::vector<scenario::PlatformPose>>;
 
+struct Frame;
+
+/// The field beside a frame's, for a split picture.
+struct FieldBeside {
+  std::shared_ptr<const Frame> frame;  ///< on the same grid, at the same time
+  std::string caption;                 ///< of that field
+  std::string own_caption;             ///< of the frame's field
+};
+
 /// One instant.
 struct Frame : ShownField {
   std::vector<render::Marker> markers;
   std::vector<render::Track> tracks;  ///< of moving platforms
   bool changed = true;                ///< false: the field's values are those of the previous call
+  bool has_field = true;              ///< false: FrameSource::withoutField()
   render::ColorRange color_range;     ///< of the series; none: that of the field's values
+  std::optional<FieldBeside> beside = std::nullopt;
+};
+
+/// What frames show of a field and its reference.
+enum class Comparison {
+  none,         ///< the field
+  difference,   ///< their difference
+  side_by_side  ///< the field, and the reference beside it (Frame::beside)
 };
 
 /// The field to show.
@@ -37,9 +55,17 @@ struct FieldChoice {
   std::string quantity;               ///< quantity or channel; empty: the first
   render::ColorRange range;           ///< of the colours; none: that of the series
   std::vector<scenario::Edit> edits;  ///< to the scenario, in order
-  /// Frames are differences to this reference: kOriginal (the scenario without the edits), or a scenario or
-  /// volumes on the same grid. Empty: no comparison, but setComparison() can start one with the original.
+  /// The reference of a comparison: kOriginal (the scenario without the edits), or a scenario or volumes on
+  /// the same grid. Empty: no comparison, but setComparison() can start one with the original.
   std::string compare;
+  /// With a reference: the part of the picture's width, 0..1, in which the reference is drawn, at the left;
+  /// 0: the difference is drawn.
+  double split = 0;
+
+  Comparison comparison() const {
+    if (compare.empty()) return Comparison::none;
+    return split > 0 ? Comparison::side_by_side : Comparison::difference;
+  }
 };
 
 /// The frames of a field to draw.
@@ -79,6 +105,10 @@ class FrameSource : public VolumeSeries {
     made.color_range = color_range_;
     return made;
   }
+  /// The ground and the emitters at a time of frameAt(), without waiting for the field: all voxels are
+  /// masked. None if the source has no such frame. As frame(). @throws Error (usage) if there is no such
+  /// channel
+  virtual std::optional<Frame> withoutField(double /*time_s*/) { return std::nullopt; }
   /// Sets the range of the colours of all frames; none: each has that of its values.
   void setColorRange(const render::ColorRange& range) { color_range_ = range; }
   /// The volume of frame(). @throws Error, Stopped; as comparableVolume()
@@ -106,10 +136,10 @@ class FrameSource : public VolumeSeries {
   /// @throws Error (bad_input, usage, device); nothing is changed then
   virtual void setQuantity(const std::string& quantity);
 
-  /// Shows the difference to the reference (FieldChoice::compare) instead of the field; for independent
+  /// Shows the field, its difference to the reference (FieldChoice::compare), or both fields; for independent
   /// frames. As setScenario(); frame() throws if the two cannot be compared. @throws Error (usage) if there
   /// is no reference
-  virtual void setComparison(bool on);
+  virtual void setComparison(Comparison comparison);
 
   /// Memory of cached volumes (bytes).
   virtual std::size_t cachedBytes() const { return 0; }

@@ -18,6 +18,7 @@
 namespace emscape::playback {
 
 class Scenery;
+class SplitPicture;
 
 /// Method and cost of the last picture of a field on tetrahedra.
 struct CellPicture {
@@ -91,6 +92,11 @@ class Painter {
   /// @throws Error (bad_input) for a file of places or of a picture on the ground; it is left out
   void setScenery(const ViewState& view);
 
+  /// Moves the line between the two fields of frames that have one beside them (ViewState::split).
+  void setSplit(double split);
+  /// Columns of the picture left of that line; 0: there is none.
+  int splitColumn() const;
+
   render::FrameReport draw(const render::FramePlan& plan, const StopFlag* stop = nullptr);
   /// Casts the pixels that the last draw() interpolated.
   render::FrameReport restore(const StopFlag* stop = nullptr);
@@ -108,7 +114,7 @@ class Painter {
   // Of the picture.
   const render::RenderSettings& settings() const { return view_.settings; }
   const render::TransferFunction& transferFunction() const;
-  const render::Camera& camera() const;
+  const render::Camera& camera() const { return camera_; }
   render::SceneBox sceneBox() const;
   bool isHidden(const Vec3d& frame_m) const;
   /// cpu or cuda.
@@ -131,20 +137,22 @@ class Painter {
  private:
   /// The renderer of tetrahedra, if the frame has some. @throws Error as setFrame()
   void prepareCells(const Frame& frame);
-  /// Calls use() for the renderer of the frames.
+  /// Calls use() for the renderers of the frames.
   template <class Use>
-  void onRenderer(const Use& use) {
-    if (cells_) {
-      use(*cells_);
-    } else {
-      use(renderer_);
-    }
-  }
+  void onRenderer(const Use& use);
+  /// Splits the picture if the frame and the view want that, or joins it again.
+  void updateSplit();
+  void setView(const render::Camera& camera);
+  template <class AnyImage>
+  render::Image8 composed(const AnyImage& cast);
   /// Draws the tetrahedra into image_.
   render::FrameReport drawCells(bool is_complete, const StopFlag* stop);
   /// Sets the ground of the scene below the grid of the frame, and what is drawn on it.
   void setGround();
   void setMarkers();
+  void mark(render::Annotations& annotations, const Frame& frame) const;
+  /// True if the map layer is painted on the ground.
+  bool showsMap() const;
   void setTransferFunction(const render::TransferFunction& function);
   void setLegend();
   render::Camera cameraOf(const render::CameraSpec& given) const;
@@ -156,7 +164,10 @@ class Painter {
   std::optional<LoadedScenario> scene_;
   std::optional<Frame> frame_;
   std::unique_ptr<Scenery> scenery_;
-  render::Renderer renderer_;                    ///< of volumes
+  render::Renderer renderer_;  ///< of volumes
+  const render::RendererOptions renderer_options_;
+  std::unique_ptr<SplitPicture> split_;          ///< null if the picture is not split
+  render::Camera camera_;                        ///< of the whole picture
   std::unique_ptr<render::CellRenderer> cells_;  ///< of tetrahedra; null if the frames are volumes
   bool projects_ = false;                        ///< as projectsCells(), if there are tetrahedra
   std::optional<CellPicture> cell_picture_;

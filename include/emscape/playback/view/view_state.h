@@ -145,8 +145,12 @@ struct ViewState : FieldChoice {
 void dropColors(ViewState& view);
 /// Changes the quantity or channel of a view, with dropColors() if it is another one.
 void changeQuantity(ViewState& view, const std::string& quantity);
-/// Changes between the field and a difference (FieldChoice::compare), with dropColors() if this is a change.
+/// Changes the reference of a comparison (FieldChoice::compare), with dropColors() if a difference is shown
+/// instead of fields or the other way round.
 void changeComparison(ViewState& view, const std::string& compare);
+/// The same for the part of the picture with the reference (FieldChoice::split), which is the original if
+/// there is none.
+void changeSplit(ViewState& view, double split);
 /// Fits the colours to a range; this replaces a transfer function.
 void changeRange(ViewState& view, const ValueRange& range);
 /// Sets what view files do not contain to that of another view: its input and how that is drawn.

@@ -29,6 +29,7 @@ struct Category {
 struct FieldScale {
   std::string unit;           ///< "V/m"
   double offset_db = 0;       ///< added to stored values
+  double factor = 1;          ///< of lengths
   bool is_amplitude = false;  ///< then raised: 10^(x / 20)
 
   double shown(double stored) const;
@@ -45,10 +46,15 @@ struct Legend {
   TransferFunction function;
   std::optional<double> iso_value;   ///< marked on the colour bar
   bool whole_numbers = false;        ///< counts: no ticks between
-  std::string note;                  ///< a line below the colour bar or the categories; may be empty
+  std::string hatched;               ///< what is hatched; empty: nothing is
+  std::string map_note;              ///< a line below the colour bar or the categories: where the map layer is
+  std::string note;                  ///< a line below that; both may be empty
   std::vector<Category> categories;  ///< categorical volumes: the listed categories
 };
 
+/// Sets scale and unit of a legend, and the quantity's name if the unit is of another quantity.
+/// @param stored_unit  of the values
+void setFieldUnit(Legend& legend, const std::string& stored_unit, FieldUnit unit);
 /// A legend for a volume: the quantity's name in words, its unit set with superscripts.
 /// @param unit  in which fields are shown
 Legend legendOf(const volume::VolumeInfo& info, const TransferFunction& function,

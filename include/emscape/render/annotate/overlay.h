@@ -87,7 +87,8 @@ struct Annotations {
   std::vector<GroundLine> ground_lines;
   std::vector<GroundPoint> ground_points;
   std::optional<Legend> legend;
-  bool georeferenced = true;  ///< compass, axes in km and altitude; otherwise axes in the grid's unit
+  bool reserves_legend = false;  ///< without a legend its room stays free, so that the scene does not move
+  bool georeferenced = true;     ///< compass, axes in km and altitude; otherwise axes in the grid's unit
   bool axes = true;
   /// Position of the frame's origin, from which the axes count: "84.15000°W" and "36.30000°N"; may be empty.
   std::string origin_longitude, origin_latitude;
@@ -126,5 +127,10 @@ Image8 compose(const Image& cast, const Camera& camera, const SceneBox& box, con
 /// The same for a quantised picture; differs from the above by at most one level.
 Image8 compose(const Image8& cast, const Camera& camera, const SceneBox& box, const Annotations& annotations,
                const HiddenTest& hidden = {});
+
+/// Replaces the columns of a finished picture before `column` by those of another one of the same size, and
+/// draws a line between them, with captions of both parts above.
+void joinParts(const Image8& left, int column, const std::array<std::string, 2>& captions,
+               const Annotations& annotations, Image8& picture);
 
 }  // namespace emscape::render

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,8 @@ inline constexpr SettingLimits kStepLimits{"step_voxels", 0.05, 10};
 inline constexpr SettingLimits kMidaGammaLimits{"mida_gamma", -1, 1};
 inline constexpr SettingLimits kIsoOpacityLimits{"iso_opacity", 0, 1};
 inline constexpr SettingLimits kExaggerationLimits{"vertical_exaggeration", 0, 100};
+inline constexpr SettingLimits kMapHeightLimits{"map_layer", 0, 100000};
+inline constexpr SettingLimits kMapOpacityLimits{"map_opacity", 0, 1};
 
 /// Settings of volume rendering; each number must be within its SettingLimits.
 struct RenderSettings {
@@ -48,6 +51,9 @@ struct RenderSettings {
   bool plain = false;                ///< scalar reference form of the ray caster; slow, for comparison
   double vertical_exaggeration = 0;  ///< 0: niceVerticalExaggeration()
   std::vector<CutPlane> planes;      ///< cut planes, at most kMaxCutPlanes
+  /// The map layer: the values at this height above the ground (m), painted on the ground; none: no layer
+  std::optional<double> map_height_agl_m;
+  double map_opacity = 0.8;
 };
 
 }  // namespace emscape::render

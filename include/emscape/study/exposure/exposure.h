@@ -31,8 +31,8 @@ struct ExposureRequest {
   std::optional<int> target;
 };
 
-/// Whether the value of all emitters together is at or above the threshold; unknown if the path from any
-/// emitter to the platform crosses missing terrain.
+/// Whether the value of all emitters together is at or above the threshold; unknown if the path from some
+/// emitters to the platform crosses missing terrain and the others do not reach it.
 enum class ExposureState { reached, below, unknown };
 constexpr auto namesOf(ExposureState) {
   return std::array{"reached", "below", "unknown"};
@@ -42,7 +42,8 @@ struct ExposureRow {
   double time_s = 0, latitude_deg = 0, longitude_deg = 0;
   double height_msl_m = 0;
   double height_agl_m = 0;   ///< NaN: over missing terrain
-  double value = 0;          ///< of all emitters together; NaN: unknown
+  double value = 0;          ///< of all emitters together, or of those with a known path if they reach the
+                             ///< threshold; NaN: unknown
   std::vector<double> each;  ///< one per Exposure::emitters; -infinity: off; NaN: unknown
   ExposureState state = ExposureState::unknown;
   int best = -1;  ///< index into `each` of the largest value; -1: none

@@ -1,6 +1,7 @@
 /// A map: values of the pixels of a grid, and their description.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -29,6 +30,14 @@ constexpr bool isFraction(MapKind kind) {
   return kind == MapKind::probability || kind == MapKind::fraction;
 }
 
+/// What a pixel's value says.
+enum class PixelAnswer : std::uint8_t {
+  exact,    ///< the value
+  bound,    ///< the value, of the emitters with a known path and the known times; the others may add to it
+  unknown,  ///< no value: elevation data are missing there, or on paths that decide
+  none      ///< no value: left out, below the ground, or at no height or time
+};
+
 struct Map {
   std::string name;  ///< of the product, for file names: "covered"; letters, digits, '_'
   MapKind kind = MapKind::level;
@@ -41,6 +50,8 @@ struct Map {
   std::vector<int> colors;    ///< of classes: indices of render::categoryColor(); empty: the class itself
   int area_class = -1;        ///< the class whose area is reported; -1: none
   std::vector<float> values;  ///< pixels in the grid's order; NaN: no value
+  /// One per pixel; empty: those with a value are exact, why others have none is not known.
+  std::vector<PixelAnswer> answers;
   /// Of the pixels without a value whose answer is known: no height reaches the threshold. None: all pixels
   /// with a known answer have a value.
   std::optional<double> unreached_area_m2;
@@ -58,6 +69,7 @@ std::string figureText(double value, const std::string& unit);
 struct MapSummary {
   double min = 0, max = 0;       ///< of the values; NaN if there are none
   double known_area_m2 = 0;      ///< of the pixels with a known answer, on the ellipsoid
+  double unknown_area_m2 = 0;    ///< of the pixels with an unknown answer
   double class_area_m2 = 0;      ///< of the pixels in Map::area_class, or that a height reaches
   long long largest_pixel = -1;  ///< with the largest value; -1: there is none
   /// Of categories and classes: of the pixels of each of Map::labels; else empty.

@@ -1,0 +1,27 @@
+/// Items that have another name in an edited scenario.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/model/scenario.h"
+
+namespace emscape::view {
+
+struct RenamedItem {
+  std::string list;                   ///< emitters, platforms, receivers or targets
+  std::string before, now;            ///< names
+  std::string path_before, path_now;  ///< "emitters.jammer"
+};
+
+/// The items that have another name at the same place of their list. None of lists with more or fewer items.
+std::vector<RenamedItem> renamedItems(const scenario::Scenario& before, const scenario::Scenario& now);
+
+/// A path with the new name in place of the old one, if it leads to one of the items or into it.
+std::string renamedPath(const std::vector<RenamedItem>& items, const std::string& path);
+
+/// The paths that edits change, with the names that the items have after all of them.
+std::set<std::string> editedPaths(const std::vector<scenario::Edit>& edits);
+
+}  // namespace emscape::view
