@@ -95,7 +95,7 @@ TEST_F(StreamTest, ThePictureFollowsEntitiesAndRestsExact) {
   fresh.update(scenario::snapshotAt(picture.scenario, picture.terrain.get(), picture.info().time_s));
   EXPECT_EQ(picture.volume.host()->values, fresh.volumes().front().host()->values);
   EXPECT_THAT(session->programState().stream, HasSubstr("DIS: "));
-  EXPECT_EQ(session->report()["stream_entities"], 1);
+  EXPECT_TRUE(session.waitUntil([&] { return session->report()["stream_entities"] == 1; }));
 }
 
 TEST_F(StreamTest, EditsStayWhenObjectsCome) {
