@@ -73,5 +73,5 @@ def render(
         iso_value,
         exaggeration,
         note,
-        settings,
+        {**settings},
     )
