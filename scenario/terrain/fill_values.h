@@ -24,8 +24,7 @@ class FillValues {
     float height_m = 0;
     long long posts = 0;
   };
-  /// The values found in the rows added so far, the lowest first. At most one more row can be added to no
-  /// avail afterwards.
+  /// The values found, the lowest first. To be called once, after the last row.
   std::vector<Found> found();
 
  private:
