@@ -49,13 +49,6 @@ bool textAndButton(PanelContext& context, const char* id, const char* hint, Type
   return entered || pressed;
 }
 
-/// Runs a command. @return true if it did not fail
-bool performed(Session& session, const Command& command) {
-  const double told_s = session.notice().since_s;
-  session.perform(command);
-  return !session.notice().is_error || session.notice().since_s == told_s;
-}
-
 /// Texts, each with a button. @return the index of the one to be removed; its size: none
 std::size_t listToRemove(const std::vector<std::string>& texts) {
   std::size_t removed = texts.size();
@@ -74,9 +67,9 @@ void drawDrape(PanelContext& context) {
   Session& session = context.session;
   ImGui::TextDisabled("Picture on the ground (GeoTIFF, MBTiles)");
   if (!session.view().drape.empty() && listToRemove({session.view().drape}) == 0)
-    performed(session, {"drape", {{"file", ""}}});
+    session.perform({"drape", {{"file", ""}}});
   if (textAndButton(context, "drape", "file", typed, "Show", FileBrowser::Purpose::drape) && typed[0] != '\0')
-    performed(session, {"drape", {{"file", typed.data()}}});
+    session.perform({"drape", {{"file", typed.data()}}});
 }
 
 void drawPlaces(PanelContext& context) {
@@ -87,12 +80,12 @@ void drawPlaces(PanelContext& context) {
   const std::size_t removed = listToRemove(files);
   if (removed < files.size()) {
     files.erase(files.begin() + static_cast<std::ptrdiff_t>(removed));
-    performed(session, {"places", {{"files", files}}});
+    session.perform({"places", {{"files", files}}});
   }
   if (textAndButton(context, "places", "file", typed, "Add", FileBrowser::Purpose::places) &&
       typed[0] != '\0') {
     files.emplace_back(typed.data());
-    performed(session, {"places", {{"files", files}}});
+    session.perform({"places", {{"files", files}}});
   }
 }
 
@@ -108,7 +101,7 @@ void drawRings(PanelContext& context) {
   const std::size_t removed = listToRemove(texts);
   if (removed < texts.size()) {
     texts.erase(texts.begin() + static_cast<std::ptrdiff_t>(removed));
-    performed(session, {"range_rings", {{"rings", texts}}});
+    session.perform({"range_rings", {{"rings", texts}}});
   }
   const DisplayUnit unit = distanceUnit(session.view().units);
   if (emitter.empty()) emitter = scenario->emitters.front().name;
@@ -127,7 +120,7 @@ void drawRings(PanelContext& context) {
   ImGui::SameLine();
   if (ImGui::Button("Add") && spacing > 0) {
     texts.push_back(toString(playback::RangeRings{emitter, spacing * unit.factor, 0}));
-    performed(session, {"range_rings", {{"rings", texts}}});
+    session.perform({"range_rings", {{"rings", texts}}});
   }
 }
 
@@ -140,7 +133,7 @@ void drawGoToPosition(PanelContext& context) {
   beginMapDialog(context, "Go to position", session.panels.position);
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   if (textAndButton(context, "position", "36.3N 84.2W, 36°30'12\"N 84°12'W, 16S GF 12345 67890", typed, "Go"))
-    session.panels.position = !performed(session, {"goto_position", {{"position", typed.data()}}});
+    session.panels.position = !session.perform({"goto_position", {{"position", typed.data()}}});
   endMapDialog();
 }
 
