@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/files/json_reading.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
@@ -208,18 +209,15 @@ class CzmlReader {
 
 Recording readCzml(ByteSource& source, const std::string& name, const ReadOptions& options) {
   const std::string text = readAll(source, name, kMaxCzmlBytes);
-  Json packets;
-  try {
-    packets = Json::parse(text);
-  } catch (const Json::parse_error& error) {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text.size()));
-    throw Error(ErrorCode::bad_input, {name, static_cast<int>(1 + std::count(text.begin(), end, '\n')), 0},
-                "no JSON: it is not valid here, or the file is cut");
-  }
-  if (!packets.is_array())
-    throw Error(ErrorCode::bad_input, {name, 1, 1},
-                "CZML is a list of packets: [{\"id\": \"document\", ...}, ...]");
-  return CzmlReader(options).read(packets);
+  return readJson<Json>(
+      text, name,
+      [&](const Json& packets) {
+        if (!packets.is_array())
+          throw Error(ErrorCode::bad_input, {name, 1, 1},
+                      "CZML is a list of packets: [{\"id\": \"document\", ...}, ...]");
+        return CzmlReader(options).read(packets);
+      },
+      "; is the file cut?");
 }
 
 }  // namespace emscape::interop

@@ -171,7 +171,9 @@ TEST(Czml, PositionsAreSampledConstantOrLeftOutWithTheReason) {
 
 TEST(Czml, FaultyJsonNamesTheLine) {
   EXPECT_THAT(test::errorOf([] { readAs("a.czml", "[{\"id\": 1},\n  oops]"); }, ErrorCode::bad_input),
-              HasSubstr("a.czml:2: no JSON"));
+              HasSubstr("a.czml:2:3: not valid JSON; is the file cut?"));
+  EXPECT_THAT(test::errorOf([] { readAs("a.czml", "[{\"id\": 1e3001}]"); }, ErrorCode::bad_input),
+              HasSubstr("a.czml: number overflow"));
 }
 
 TEST(TrackTable, CommonNamesUnitsAndSeparatorsAreKnown) {
