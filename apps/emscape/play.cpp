@@ -14,6 +14,8 @@
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "interop/acmi/acmi_lines.h"
+#include "interop/acmi/acmi_text.h"
 #include "interop/dis/datagrams.h"
 #include "interop/exporting/writers.h"
 #include "interop/recording/byte_source.h"
@@ -74,7 +76,9 @@ struct Played {
 
   explicit Played(const PlayArguments& arguments)
       : scenario(scenario::loadScenario(arguments.input, arguments.edits, scenario::ReadFor::chosen_times)),
-        terrain(scenario::loadTerrain(*scenario)) {}
+        terrain(scenario::loadTerrain(*scenario)) {
+    interop::requireFewRecords(*scenario, arguments.step_s);
+  }
 };
 
 int playDis(const PlayArguments& arguments, const GlobalOptions& global) {
@@ -133,22 +137,20 @@ int playAcmi(const PlayArguments& arguments, const GlobalOptions& global) {
   }
   Pace pace(arguments.rate, serve);
   long long lines = 0;
-  const auto send = [&](std::string_view line) {
-    if (!line.empty() && line.front() == '#') {
-      // Frames out of order are sent at once.
-      try {
-        pace.waitFor(std::stod(std::string(line.substr(1))));
-      } catch (const std::logic_error&) {  // no time: the reader decides
-      }
-    }
-    server.send(line);
+  interop::AcmiLines logical_lines;
+  const auto send = [&](std::string_view physical, bool is_cut) {
+    const auto line = logical_lines.take(physical, is_cut);
+    if (!line) return;
+    // Frames out of order are sent at once.
+    if (const auto time_s = interop::acmiFrame_s(*line)) pace.waitFor(*time_s);
+    server.send(*line);
     if (++lines % 256 == 0) serve(0);
   };
   if (endsWith(arguments.input, ".acmi")) {
     const bool is_zip = endsWith(arguments.input, ".zip.acmi");
     const auto source = is_zip ? interop::openZip(arguments.input) : interop::openFile(arguments.input);
     interop::LineReader reader(*source);
-    for (std::string_view line; reader.next(line);) send(line);
+    for (std::string_view line; reader.next(line);) send(line, reader.isCut());
   } else {
     const Played played(arguments);
     std::vector<interop::ExportedRow> rows;
@@ -158,13 +160,16 @@ int playAcmi(const PlayArguments& arguments, const GlobalOptions& global) {
           std::string_view rest = piece;
           while (!rest.empty()) {
             const std::size_t end = rest.find('\n');
-            send(rest.substr(0, end));
+            send(rest.substr(0, end), false);
             rest.remove_prefix(std::min(end == std::string_view::npos ? rest.size() : end + 1, rest.size()));
           }
         },
         rows);
   }
   serve(0.5);
+  if (logical_lines.tooLong() > 0)
+    printMessage("emscape: {}: {} not sent: longer than 1 MiB\n", arguments.input,
+                 countText(logical_lines.tooLong(), "line was", "lines were"));
   if (global.json) {
     printJson({{"at", address.text()}, {"lines", lines}, {"clients", server.clientCount()}});
   } else if (!global.quiet) {
