@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interop/acmi/acmi_text.h"
+#include "recording/acmi/acmi_text.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
 

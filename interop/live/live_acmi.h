@@ -4,7 +4,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "interop/acmi/acmi_reader.h"
+#include "recording/acmi/acmi_reader.h"
 #include "interop/live/live_state.h"
 
 namespace emscape::interop {

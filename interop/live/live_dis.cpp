@@ -9,8 +9,8 @@
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "interop/dis/dead_reckoning.h"
-#include "interop/dis/dis_recorder.h"
+#include "recording/dis/dead_reckoning.h"
+#include "recording/dis/dis_recorder.h"
 
 namespace emscape::interop {
 namespace {

@@ -7,8 +7,8 @@
 #include <chrono>
 #include <utility>
 
-#include "interop/acmi/acmi_handshake.h"
-#include "interop/acmi/acmi_text.h"
+#include "recording/acmi/acmi_handshake.h"
+#include "recording/acmi/acmi_text.h"
 #include "playback/stream/steady_time.h"
 
 namespace emscape::playback {

@@ -15,7 +15,7 @@
 #include "base/text/count_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
-#include "interop/acmi/acmi_handshake.h"
+#include "recording/acmi/acmi_handshake.h"
 #include "interop/live/live_acmi.h"
 #include "interop/live/live_dis.h"
 #include "playback/live/first_line.h"

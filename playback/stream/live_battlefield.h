@@ -9,7 +9,7 @@
 #include "emscape/base/progress.h"
 #include "emscape/playback/frames/frame_source.h"
 #include "interop/import_scenario.h"
-#include "interop/recording/read_recording.h"
+#include "recording/read_recording.h"
 #include "playback/sockets/address.h"
 
 namespace emscape::playback {

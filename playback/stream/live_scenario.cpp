@@ -13,7 +13,7 @@
 #include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "interop/dis/pdu.h"
+#include "recording/dis/pdu.h"
 #include "interop/emitters/emitter_database.h"
 
 namespace emscape::playback {

@@ -8,7 +8,7 @@
 #include "base/files/folder.h"
 #include "base/text/count_text.h"
 #include "interop/import_scenario.h"
-#include "interop/recording/read_recording.h"
+#include "recording/read_recording.h"
 #include "playback/editing/autosave.h"
 
 namespace emscape::view {
