@@ -14,13 +14,14 @@
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "interop/acmi/acmi_lines.h"
-#include "interop/acmi/acmi_text.h"
-#include "interop/dis/datagrams.h"
 #include "interop/exporting/writers.h"
-#include "interop/recording/byte_source.h"
 #include "playback/sockets/socket.h"
 #include "playback/stream/acmi_server.h"
+#include "recording/acmi/acmi_lines.h"
+#include "recording/acmi/acmi_text.h"
+#include "recording/common/byte_source.h"
+#include "recording/dis/datagrams.h"
+#include "recording/read_recording.h"
 
 namespace emscape::app {
 namespace {
@@ -147,8 +148,7 @@ int playAcmi(const PlayArguments& arguments, const GlobalOptions& global) {
     if (++lines % 256 == 0) serve(0);
   };
   if (endsWith(arguments.input, ".acmi")) {
-    const bool is_zip = endsWith(arguments.input, ".zip.acmi");
-    const auto source = is_zip ? interop::openZip(arguments.input) : interop::openFile(arguments.input);
+    const auto source = interop::openRecording(arguments.input);
     interop::LineReader reader(*source);
     for (std::string_view line; reader.next(line);) send(line, reader.isCut());
   } else {

@@ -7,10 +7,10 @@
 #include "base/text/xml_text.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "interop/beams/directions.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
-#include "interop/recording/text.h"
+#include "recording/beams/directions.h"
+#include "recording/common/text.h"
 
 namespace emscape::interop {
 namespace {

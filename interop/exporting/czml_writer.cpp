@@ -7,9 +7,9 @@
 #include "base/files/json_writing.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "interop/beams/directions.h"
 #include "interop/exporting/writers.h"
-#include "interop/recording/text.h"
+#include "recording/beams/directions.h"
+#include "recording/common/text.h"
 
 namespace emscape::interop {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "emscape/base/vec.h"
 #include "emscape/scenario/model/scenario.h"
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "emscape/base/error.h"
-#include "interop/acmi/acmi_text.h"
+#include "recording/acmi/acmi_text.h"
 
 namespace emscape::interop {
 namespace {

@@ -4,9 +4,9 @@
 #include <string>
 #include <unordered_map>
 
-#include "interop/acmi/acmi_lines.h"
-#include "interop/acmi/acmi_reader.h"
 #include "interop/live/live_state.h"
+#include "recording/acmi/acmi_lines.h"
+#include "recording/acmi/acmi_reader.h"
 
 namespace emscape::interop {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
-#include "interop/dis/dead_reckoning.h"
-#include "interop/dis/dis_recorder.h"
+#include "recording/dis/dead_reckoning.h"
+#include "recording/dis/dis_recorder.h"
 
 namespace emscape::interop {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
 

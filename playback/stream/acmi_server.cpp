@@ -7,10 +7,10 @@
 #include <chrono>
 #include <utility>
 
-#include "interop/acmi/acmi_handshake.h"
-#include "interop/acmi/acmi_lines.h"
-#include "interop/acmi/acmi_text.h"
 #include "playback/stream/steady_time.h"
+#include "recording/acmi/acmi_handshake.h"
+#include "recording/acmi/acmi_lines.h"
+#include "recording/acmi/acmi_text.h"
 
 namespace emscape::playback {
 namespace {

@@ -16,7 +16,6 @@
 #include "base/text/count_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
-#include "interop/acmi/acmi_handshake.h"
 #include "interop/live/live_acmi.h"
 #include "interop/live/live_dis.h"
 #include "playback/live/first_line.h"
@@ -24,6 +23,7 @@
 #include "playback/stream/live_scenario.h"
 #include "playback/stream/steady_time.h"
 #include "playback/stream/stream_recorder.h"
+#include "recording/acmi/acmi_handshake.h"
 
 namespace emscape::playback {
 namespace {

@@ -8,9 +8,9 @@
 
 #include "emscape/base/progress.h"
 #include "interop/import_scenario.h"
-#include "interop/recording/read_recording.h"
 #include "playback/sockets/address.h"
 #include "playback/stream/named_poses.h"
+#include "recording/read_recording.h"
 
 namespace emscape::playback {
 

@@ -14,8 +14,8 @@
 #include "base/geodesy/position_limits.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "interop/dis/pdu.h"
 #include "interop/emitters/emitter_database.h"
+#include "recording/dis/pdu.h"
 
 namespace emscape::playback {
 namespace {

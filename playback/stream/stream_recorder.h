@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/files/unfinished_file.h"
-#include "interop/dis/datagrams.h"
+#include "recording/dis/datagrams.h"
 
 namespace emscape::playback {
 

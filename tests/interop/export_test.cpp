@@ -8,7 +8,7 @@
 #include "emscape/scenario/model/snapshot.h"
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
-#include "interop/recording/read_recording.h"
+#include "recording/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

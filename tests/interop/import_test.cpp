@@ -9,7 +9,7 @@
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
 #include "interop/importing/beam_pieces.h"
-#include "interop/recording/read_recording.h"
+#include "recording/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"
@@ -360,8 +360,8 @@ TEST(ShippedRecordings, BecomeTheScenarioThatTheyWereMadeOf) {
 
 TEST(PublicRecordings, BecomeScenarios) {
   const test::TemporaryFolder folder;
-  const auto file = test::referenceFile("interop/acmi/kavinsky_simple.zip.acmi");
-  if (!file) GTEST_SKIP() << test::notInRepository("interop/acmi/kavinsky_simple.zip.acmi");
+  const auto file = test::referenceFile("recording/acmi/kavinsky_simple.zip.acmi");
+  if (!file) GTEST_SKIP() << test::notInRepository("recording/acmi/kavinsky_simple.zip.acmi");
   ImportOptions options;
   options.scenario = folder / "flight.yaml";
   const ImportResult result = importRecording(readRecording(*file), options);

@@ -7,10 +7,10 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
-#include "interop/acmi/acmi_handshake.h"
-#include "interop/dis/dead_reckoning.h"
 #include "interop/live/live_acmi.h"
 #include "interop/live/live_dis.h"
+#include "recording/acmi/acmi_handshake.h"
+#include "recording/dis/dead_reckoning.h"
 
 namespace emscape::interop {
 namespace {

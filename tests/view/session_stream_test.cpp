@@ -5,10 +5,10 @@
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/model/poses.h"
 #include "emscape/scenario/terrain/terrain.h"
-#include "interop/dis/orientation.h"
-#include "interop/dis/pdu.h"
 #include "playback/sockets/socket.h"
 #include "playback/stream/acmi_server.h"
+#include "recording/dis/orientation.h"
+#include "recording/dis/pdu.h"
 #include "tests/support/ports.h"
 #include "tests/view/session_sample.h"
 
