@@ -264,7 +264,7 @@ TEST(LiveAcmi, AnglesBeyondATurnAreDirectionsWithinIt) {
 
 TEST(LiveAcmi, APositionBeyondThePoleIsCountedOnce) {
   LiveAcmi live;
-  feed(live, std::string(kAcmiHeader) + "0,ReferenceLatitude=50\na,T=5|2|0,Name=Boat\na,T=5|60|0\n");
+  feed(live, std::string(kAcmiHeader) + "0,ReferenceLatitude=50\n#1\na,T=5|2|0,Name=Boat\n#2\na,T=5|60|0\n");
   feed(live, "b,T=5|1|0,Name=Second\n");
   EXPECT_EQ(live.counts().bad, 1);
   EXPECT_THAT(live.counts().first_bad, HasSubstr("ReferenceLatitude"));
