@@ -7,11 +7,11 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
+#include "interop/exporting/writers.h"
 #include "recording/dis/datagrams.h"
 #include "recording/dis/force.h"
 #include "recording/dis/orientation.h"
 #include "recording/dis/pdu.h"
-#include "interop/exporting/writers.h"
 
 namespace emscape::interop {
 namespace {

@@ -9,8 +9,8 @@
 #include "base/files/whole_file.h"
 #include "base/geodesy/gdal.h"
 #include "emscape/base/error.h"
-#include "recording/dis/pdu.h"
 #include "interop/exporting/writers.h"
+#include "recording/dis/pdu.h"
 #include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::interop {

@@ -4,8 +4,8 @@
 #include <string>
 #include <unordered_map>
 
-#include "recording/acmi/acmi_reader.h"
 #include "interop/live/live_state.h"
+#include "recording/acmi/acmi_reader.h"
 
 namespace emscape::interop {
 

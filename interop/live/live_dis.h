@@ -5,9 +5,9 @@
 #include <map>
 #include <unordered_map>
 
+#include "interop/live/live_state.h"
 #include "recording/dis/pdu.h"
 #include "recording/dis/sender_clock.h"
-#include "interop/live/live_state.h"
 #include "recording/read_recording.h"
 
 namespace emscape::interop {

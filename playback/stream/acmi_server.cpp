@@ -7,9 +7,9 @@
 #include <chrono>
 #include <utility>
 
+#include "playback/stream/steady_time.h"
 #include "recording/acmi/acmi_handshake.h"
 #include "recording/acmi/acmi_text.h"
-#include "playback/stream/steady_time.h"
 
 namespace emscape::playback {
 namespace {

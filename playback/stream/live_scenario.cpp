@@ -13,8 +13,8 @@
 #include "base/files/whole_file.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "recording/dis/pdu.h"
 #include "interop/emitters/emitter_database.h"
+#include "recording/dis/pdu.h"
 
 namespace emscape::playback {
 namespace {

@@ -1,8 +1,8 @@
 /// Directions between objects and in their axes.
 #pragma once
 
-#include "recording/dis/orientation.h"
 #include "recording/common/recording.h"
+#include "recording/dis/orientation.h"
 
 namespace emscape::interop {
 

@@ -5,8 +5,8 @@
 #include <ostream>
 
 #include "emscape/base/error.h"
-#include "recording/dis/datagrams.h"
 #include "recording/common/tally.h"
+#include "recording/dis/datagrams.h"
 
 namespace emscape::interop::dis {
 namespace {

@@ -11,10 +11,10 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "recording/dis/dead_reckoning.h"
-#include "recording/dis/force.h"
 #include "recording/common/samples.h"
 #include "recording/common/tally.h"
+#include "recording/dis/dead_reckoning.h"
+#include "recording/dis/force.h"
 
 namespace emscape::interop::dis {
 namespace {

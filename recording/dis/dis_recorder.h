@@ -6,11 +6,11 @@
 #include <unordered_map>
 #include <utility>
 
+#include "recording/common/read_options.h"
+#include "recording/common/recording.h"
 #include "recording/dis/datagrams.h"
 #include "recording/dis/pdu.h"
 #include "recording/dis/sender_clock.h"
-#include "recording/common/read_options.h"
-#include "recording/common/recording.h"
 
 namespace emscape::interop::dis {
 

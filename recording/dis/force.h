@@ -9,8 +9,7 @@
 namespace emscape::interop::dis {
 
 /// Sides of the forces from 0 (other) on.
-constexpr std::array kSideOfForce{Side::unknown, Side::friendly, Side::hostile,
-                                  Side::neutral};
+constexpr std::array kSideOfForce{Side::unknown, Side::friendly, Side::hostile, Side::neutral};
 
 constexpr Side sideOf(std::uint8_t force) {
   return force < kSideOfForce.size() ? kSideOfForce[force] : Side::unknown;

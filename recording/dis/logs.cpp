@@ -3,10 +3,10 @@
 #include <charconv>
 #include <cmath>
 
+#include "recording/common/tally.h"
 #include "recording/dis/big_endian.h"
 #include "recording/dis/datagrams.h"
 #include "recording/dis/pdu.h"
-#include "recording/common/tally.h"
 
 namespace emscape::interop::dis {
 namespace {

@@ -269,8 +269,8 @@ std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
   const auto nameOf = [&](const std::string& extra) {
     return fmt::format("{}\n{}\n{}\n{}", file, choice.columns, choice.object, extra);
   };
-  const std::string name = nameOf(fmt::format("{} {} {}", choice.gap_s,
-                                              choice.height_agl_m.value_or(std::nan("")), context.epoch_utc));
+  const std::string name = nameOf(
+      fmt::format("{} {} {}", choice.gap_s, choice.height_agl_m.value_or(std::nan("")), context.epoch_utc));
   for (const NamedFiles* read : {context.before, static_cast<const NamedFiles*>(&context.files)}) {
     const auto known = read != nullptr ? read->tracks.find(name) : context.files.tracks.end();
     if (read == nullptr || known == read->tracks.end()) continue;
@@ -290,7 +290,8 @@ std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
     read = recording ? recordedTrack(*recording, choice, parseUtc_ms(context.epoch_utc))
                      : TrackFile{parseTrack(file, bytes, track.locationOf("file"), context.problems), {}};
   } catch (const Error& error) {
-    const SourceLocation location = error.location().file.empty() ? SourceLocation{file, 0, 0} : error.location();
+    const SourceLocation location =
+        error.location().file.empty() ? SourceLocation{file, 0, 0} : error.location();
     context.problems.addErrorElsewhere(track.locationOf("file"), location, error.message());
     return {};
   }

@@ -53,9 +53,10 @@ const RecordedObject& chosenObject(const Recording& recording, const std::string
     if (moving.size() == 1) return *moving.front();
     if (moving.empty()) {
       const interop::PoseSample& first = recording.objects.front().poses.front();
-      fail(fmt::format("no object in it has two positions, which a track needs; for one that stands write "
-                       "'position: {{latitude_deg: {:.7f}, longitude_deg: {:.7f}, height_msl_m: {:.1f}}}'",
-                       first.latitude_deg, first.longitude_deg, first.height_msl_m));
+      fail(
+          fmt::format("no object in it has two positions, which a track needs; for one that stands write "
+                      "'position: {{latitude_deg: {:.7f}, longitude_deg: {:.7f}, height_msl_m: {:.1f}}}'",
+                      first.latitude_deg, first.longitude_deg, first.height_msl_m));
     }
     fail(fmt::format("{} objects in it move; choose one by its name: 'object: NAME', of {}", moving.size(),
                      namesOf(moving, false)));
@@ -113,16 +114,18 @@ TrackFile recordedTrack(const Recording& recording, const TrackChoice& choice,
   const RecordedObject& object = chosenObject(recording, choice.object);
   if (!isMoving(object)) {
     const interop::PoseSample& only = object.poses.front();
-    fail(fmt::format("'{}' has one position, a track needs two; write 'position: {{latitude_deg: {:.7f}, "
-                     "longitude_deg: {:.7f}, height_msl_m: {:.1f}}}'",
-                     object.name, only.latitude_deg, only.longitude_deg, only.height_msl_m));
+    fail(
+        fmt::format("'{}' has one position, a track needs two; write 'position: {{latitude_deg: {:.7f}, "
+                    "longitude_deg: {:.7f}, height_msl_m: {:.1f}}}'",
+                    object.name, only.latitude_deg, only.longitude_deg, only.height_msl_m));
   }
   const double shift_s = shiftOf(recording, epoch_ms, track.warnings);
   const document::ValueSpec& time = trackRowSpec().find("t_s", nullptr)->value;
   for (const interop::PoseSample& pose : object.poses) {
     TrackPoint point;
     point.t_s = pose.t_s + shift_s;
-    if (!track.points.empty() && point.t_s <= track.points.back().t_s) continue;  // closer than a double tells
+    if (!track.points.empty() && point.t_s <= track.points.back().t_s)
+      continue;  // closer than a double tells
     point.position.latitude_deg = pose.latitude_deg;
     point.position.longitude_deg = pose.longitude_deg;
     point.position.height_msl_m = pose.height_msl_m;
@@ -135,9 +138,10 @@ TrackFile recordedTrack(const Recording& recording, const TrackChoice& choice,
   }
   const double first_s = track.points.front().t_s, last_s = track.points.back().t_s;
   if (first_s < time.minimum || last_s > time.maximum) {
-    fail(fmt::format("its times are {:.6g} to {:.6g} s from the scenario's epoch, outside the allowed range {} "
-                     "to {} s; correct 'epoch'",
-                     first_s, last_s, time.minimum, time.maximum));
+    fail(fmt::format(
+        "its times are {:.6g} to {:.6g} s from the scenario's epoch, outside the allowed range {} "
+        "to {} s; correct 'epoch'",
+        first_s, last_s, time.minimum, time.maximum));
   }
   tellLosses(recording.tally, track.warnings);
   return track;

@@ -7,10 +7,12 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
-#include "recording/acmi/acmi_handshake.h"
-#include "recording/dis/dead_reckoning.h"
 #include "interop/live/live_acmi.h"
+#include "interop/live/live_cot.h"
 #include "interop/live/live_dis.h"
+#include "recording/acmi/acmi_handshake.h"
+#include "recording/common/dates.h"
+#include "recording/dis/dead_reckoning.h"
 
 namespace emscape::interop {
 namespace {
@@ -172,7 +174,7 @@ TEST(LiveDis, AHostileStreamIsCountedAndItsMemoryIsBounded) {
 }
 
 /// Feeds a text in pieces.
-void feed(LiveAcmi& live, const std::string& text, std::size_t piece = 7) {
+void feed(LiveState& live, const std::string& text, std::size_t piece = 7) {
   for (std::size_t at = 0; at < text.size(); at += piece) {
     const std::string part = text.substr(at, piece);
     live.take(reinterpret_cast<const std::uint8_t*>(part.data()), part.size(), 0);
@@ -211,6 +213,63 @@ TEST(LiveAcmi, AStreamThatLiesIsCountedAndItsMemoryIsBounded) {
   EXPECT_EQ(live.objectCount(), LiveLimits::kObjects);
   feed(live, std::string(3 << 20, 'x') + "\n1,T=nonsense\nno id\n", 1 << 16);
   EXPECT_GE(live.counts().bad, 2);
+}
+
+std::string cotOf(const std::string& uid, const std::string& type, int time_s, int life_s,
+                  const std::string& detail, double longitude_deg = 5) {
+  return "<event version='2.0' uid='" + uid + "' type='" + type + "' time='" + utcTextOf(time_s) +
+         "' start='" + utcTextOf(time_s) + "' stale='" + utcTextOf(time_s + life_s) +
+         "'><point lat='52' lon='" + std::to_string(longitude_deg) + "' hae='50'/><detail>" + detail +
+         "</detail></event>";
+}
+
+TEST(LiveCot, ObjectsAreWhereTheyWereToldLastUntilTheyAreStaleByTheirOwnClock) {
+  LiveCot live(true);
+  const std::string carrier = "<contact callsign='Viper'/><track course='90' speed='0'/>";
+  const std::string text = cotOf("a", "a-h-A-M-F", 1000, 20, carrier) +
+                           cotOf("s", "b-m-p-s-p-loc", 1000, 20,
+                                 "<link uid='a' relation='p-p'/><sensor azimuth='100' fov='30'/>") +
+                           cotOf("b", "a-f-G", 1000, 300, "");
+  feed(live, text, 7);
+  EXPECT_EQ(live.objectCount(), 2u);
+  const LiveRecording now = live.recording(0);
+  ASSERT_THAT(now.recording.objects, SizeIs(2));
+  EXPECT_EQ(now.recording.objects[0].name, "Viper");
+  EXPECT_EQ(now.recording.objects[0].side, Side::hostile);
+  ASSERT_THAT(now.recording.beams, SizeIs(1));
+  EXPECT_NEAR(now.recording.beams[0].states.at(0).azimuth_deg, 10, 1e-9) << "from the carrier's heading";
+  const long long revision = live.revision();
+  feed(live, cotOf("b", "a-f-G", 1010, 300, "", 5.1));
+  EXPECT_EQ(live.revision(), revision) << "a movement";
+  EXPECT_NEAR(live.poses(0).at(1).pose.longitude_deg, 5.1, 1e-6);
+  EXPECT_EQ(live.poses(0).at(1).key, now.keys.at(1));
+  feed(live, cotOf("b", "a-f-G", 1005, 300, "", 5.2) + cotOf("b", "a-f-G", 1010, 300, "", 5.1));
+  EXPECT_EQ(live.counts().late, 1);
+  EXPECT_EQ(live.counts().duplicates, 1);
+  live.expire(19);
+  EXPECT_EQ(live.objectCount(), 2u);
+  live.expire(21);
+  EXPECT_EQ(live.objectCount(), 1u) << "whatever the clock of this computer tells";
+  EXPECT_THAT(live.recording(0).recording.beams, IsEmpty());
+  feed(live, cotOf("x", "t-x-d-d", 1020, 20, "<link uid='b' relation='none'/>"));
+  EXPECT_EQ(live.objectCount(), 0u);
+}
+
+TEST(LiveCot, AHostileStreamIsCountedAndItsMemoryIsBounded) {
+  LiveCot live(false);
+  const auto send = [&](const std::string& bytes) {
+    live.take(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), 0);
+  };
+  for (int i = 0; i < 20000; ++i) send(cotOf("o" + std::to_string(i), "a-f-G", 1000, 1000000, ""));
+  EXPECT_EQ(live.objectCount(), LiveLimits::kObjects);
+  EXPECT_EQ(live.counts().forgotten, 20000 - static_cast<long long>(LiveLimits::kObjects));
+  send("<event uid='cut'");
+  send("/></event>");
+  send("\xBF\x01\xBF\x12");
+  send(cotOf("o1", "a-f-G", 2000, 10, "", 1e9));
+  EXPECT_EQ(live.counts().bad, 4);
+  EXPECT_THAT(live.counts().first_bad, HasSubstr("without an <event>"));
+  EXPECT_THAT(live.recording(0).recording.objects, SizeIs(LiveLimits::kObjects));
 }
 
 TEST(AcmiHandshake, HashesOfPasswordsAreThePublishedOnes) {
