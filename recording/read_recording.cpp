@@ -11,6 +11,7 @@
 #include "emscape/base/error.h"
 #include "recording/acmi/acmi_reader.h"
 #include "recording/common/samples.h"
+#include "recording/common/text.h"
 #include "recording/cot/cot_reader.h"
 #include "recording/dis/dis_recorder.h"
 #include "recording/simdis/asi_reader.h"
@@ -33,7 +34,8 @@ enum class Format {
   stk,
   nmea,
   czml,
-  table
+  table,
+  utf16
 };
 
 constexpr std::string_view kZipBegin = "PK\x03\x04";
@@ -63,8 +65,13 @@ bool isSession(std::string_view head) {
   return bytes[0] == 0 && bytes[1] == 0 && size == length && bytes[10] >= 1 && bytes[10] <= 7;
 }
 
-/// A sentence of NMEA 0183: $GPRMC,...
+/// The first line has a sentence of NMEA 0183, $GPRMC,..., perhaps after the time of its arrival.
 bool isNmea(std::string_view head) {
+  head = head.substr(0, head.find('\n'));
+  constexpr std::size_t kLongestStamp = 40;
+  const std::size_t at = head.find_first_of("$!");
+  if (at > kLongestStamp) return false;
+  head.remove_prefix(at);
   return head.size() > 7 && (head[0] == '$' || head[0] == '!') &&
          head.substr(1, 5).find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ") == std::string_view::npos &&
          head[6] == ',';
@@ -83,11 +90,10 @@ Format markupOf(std::string_view head) {
 }
 
 Format formatOf(std::string_view head, const ReadOptions& options) {
-  if (beginsWith(head,
-                 "\xEF\xBB\xBF"
-                 "FileType=") ||
-      beginsWith(head, "FileType="))
-    return Format::acmi;
+  constexpr std::string_view kMark = "\xEF\xBB\xBF", kAcmi = "filetype=", kStk = "stk.v.";
+  const std::string begin =
+      lowerCase(std::string(head.substr(beginsWith(head, kMark) ? kMark.size() : 0, 16)));
+  if (beginsWith(begin, kAcmi)) return Format::acmi;
   if (beginsWith(head, "7z\xBC\xAF\x27\x1C")) return Format::seven_zip;
   for (const std::string_view magic :
        {"\xA1\xB2\xC3\xD4", "\xD4\xC3\xB2\xA1", "\xA1\xB2\x3C\x4D", "\x4D\x3C\xB2\xA1", "\x0A\x0D\x0D\x0A"}) {
@@ -95,7 +101,8 @@ Format formatOf(std::string_view head, const ReadOptions& options) {
   }
   if (isHexLog(head)) return Format::hex_log;
   if (isSession(head)) return Format::session;
-  if (beginsWith(head, "stk.v.")) return Format::stk;
+  if (beginsWith(begin, kStk)) return Format::stk;
+  if (beginsWith(head, "\xFF\xFE") || beginsWith(head, "\xFE\xFF")) return Format::utf16;
   if (isNmea(head)) return Format::nmea;
   const Format markup = markupOf(head);
   if (markup != Format::unknown) return markup;
@@ -177,6 +184,10 @@ Recording readFormat(Format format, const std::unique_ptr<ByteSource>& source, c
       return readCzml(*source, file, options);
     case Format::table:
       return readTrackTable(*source, file, options);
+    case Format::utf16:
+      throw Error(
+          ErrorCode::bad_input,
+          "a text in UTF-16; save it in UTF-8 (Excel: CSV UTF-8) or convert it: iconv -f UTF-16 -t UTF-8");
     case Format::seven_zip:
       throw Error(ErrorCode::bad_input, "a 7z archive; unpack it with 7z x and give the recording in it");
     case Format::unknown:
@@ -184,9 +195,9 @@ Recording readFormat(Format format, const std::unique_ptr<ByteSource>& source, c
           ErrorCode::bad_input,
           "no recording of a known format: ACMI 2.0 to 2.2 (.acmi, .zip.acmi), DIS as .pcap, .pcapng, "
           "hexadecimal log or .session, SIMDIS .asi, Cursor on Target, or tracks as GPX, KML, CZML, STK .e, "
-          "NMEA "
-          "or CSV. From other programs export one of these, or record the network with tcpdump -w FILE.pcap "
-          "udp");
+          "NMEA or CSV. Name the columns of a table whose names are not known (--columns, or 'columns' of a "
+          "track: time=NAME,latitude=NAME,longitude=NAME,height=NAME:ft). From other programs export one of "
+          "these, or record the network with tcpdump -w FILE.pcap udp");
     default:
       return readDis(*source, format, file, options, progress);
   }
@@ -220,12 +231,25 @@ Recording readFrom(const Opener& open, const std::string& file, const ReadOption
     if (recording.tally.bad > 0)
       reason = fmt::format("; {} cannot be read, the first: {}",
                            countText(recording.tally.bad, "record", "records"), recording.tally.first_bad);
+    for (const auto& [kind, count] : recording.tally.ignored) {
+      if (reason.size() < 300) reason += fmt::format("; {}: not used", kind);
+    }
     throw Error(ErrorCode::bad_input, {file, 0, 0}, "the recording has no object with a position" + reason);
   }
   return recording;
 }
 
 }  // namespace
+
+const std::vector<std::string>& recordingEndings() {
+  static const std::vector<std::string> endings{".acmi", ".pcap", ".pcapng", ".session", ".asi", ".cot",
+                                                ".gpx",  ".kml",  ".kmz",    ".czml",    ".e",   ".nmea"};
+  return endings;
+}
+
+std::string recordingEndingsText() {
+  return fmt::format("{}", fmt::join(recordingEndings(), " "));
+}
 
 std::unique_ptr<ByteSource> openRecording(const std::string& file) {
   return unzipped([&file] { return openFile(file); }, file);

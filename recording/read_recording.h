@@ -27,6 +27,12 @@ Recording readRecordingIn(std::string_view bytes, const std::string& file, const
 /// True if bytes begin as a recording of a known format does.
 bool isRecording(std::string_view bytes, const ReadOptions& options = {});
 
+/// Endings of files of recordings, for choosing files: ".acmi", ...; CSV and text logs have no ending of
+/// theirs.
+const std::vector<std::string>& recordingEndings();
+/// The same in a line, ".acmi .pcap ...".
+std::string recordingEndingsText();
+
 /// What a file holds, or the recording in it if it is a zip file. @throws Error (bad_input)
 std::unique_ptr<ByteSource> openRecording(const std::string& file);
 

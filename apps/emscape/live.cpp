@@ -105,7 +105,8 @@ class LiveField {
 Json jsonOf(const playback::StreamStatus& status, const LiveField& field, double t_s) {
   const auto rounded = [](double value) { return std::round(value * 1000) / 1000; };
   Json line{{"t_s", rounded(t_s)},
-            {status.kind == playback::StreamKind::dis ? "pdus" : "lines", status.records},
+            {status.kind == playback::StreamKind::dis ? "pdus" : playback::formatOf(status.kind).plural,
+             status.records},
             {"per_s", rounded(status.records_per_s)},
             {"bytes", status.bytes},
             {"lost", status.lost},
@@ -175,7 +176,7 @@ void addLive(CLI::App& app, const GlobalOptions& global, Action& action) {
       app.add_subcommand("live", "Compute the field of a battlefield that another program streams");
   command->fallthrough();
   command->footer(R"(
-Receives DIS by UDP or Tacview's real-time telemetry by TCP, adds the objects to the base scenario as `import` does, moves them by
+Receives DIS by UDP, Tacview's real-time telemetry by TCP or Cursor on Target (TAK) by either, adds the objects to the base scenario as `import` does, moves them by
 dead reckoning, and computes the field whenever something has changed. Prints a line each second; with --json an object. Listens
 on this computer alone unless an address is given. An object with the name of a platform of the base moves that platform.
 `emscape view --dis` shows the same in the window.
@@ -183,6 +184,8 @@ on this computer alone unless an address is given. An object with the name of a 
 Examples:
   emscape live --dis 3000 --base scenarios/jamming.yaml
   emscape live --dis 239.1.2.3:3000 --interface 10.0.0.5 --base region.yaml --emitters mine.yaml --record exercise.pcap
+  emscape live --cot 239.2.3.1:6969 --interface 10.0.0.5 --base region.yaml --record team.cot
+  emscape live --cot tcp:10.0.0.9:8087 --base region.yaml
   emscape live --acmi 10.0.0.7:42674 --base region.yaml -o now --duration 3600 --json
 
 Exit status: 0, also when Ctrl-C ends it; 2 for wrong options; 3 for a faulty base or database; 1 if the address cannot be used.)");

@@ -12,7 +12,7 @@
 #include "emscape/base/units.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
-#include "recording/common/text.h"
+#include "recording/common/dates.h"
 #include "scenario/file/source.h"
 #include "scenario/scan/scan_sweep.h"
 

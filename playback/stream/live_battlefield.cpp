@@ -17,6 +17,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/work.h"
 #include "interop/live/live_acmi.h"
+#include "interop/live/live_cot.h"
 #include "interop/live/live_dis.h"
 #include "playback/live/first_line.h"
 #include "playback/sockets/socket.h"
@@ -37,7 +38,6 @@ constexpr double kRebuildPart = 0.1;    ///< of the time that making scenarios m
 constexpr double kPoll_s = 0.1;         ///< longest wait for data, and for the end
 constexpr double kReckon_s = 1.0 / 30;  ///< between two poses of platforms that move without data
 constexpr double kReconnect_s = 2;
-constexpr double kSilence_s = 6;   ///< of a stream that has stopped: DIS has heartbeats of 5 s
 constexpr double kGreeting_s = 4;  ///< in which a host must greet
 /// Smallest movements that are shown.
 constexpr double kMoved_deg = 1e-8, kMoved_m = 1e-3, kTurned_deg = 1e-3;
@@ -78,22 +78,28 @@ class Rate {
 
 }  // namespace
 
+const StreamFormat& formatOf(StreamKind kind) {
+  // Heartbeats of DIS are 5 s apart; devices of TAK tell their place once a minute where they stand.
+  static const StreamFormat formats[] = {{"DIS", ".pcap", "PDU", "PDU", "entity", "entities", 6},
+                                         {"ACMI", ".acmi", "line", "lines", "object", "objects", 6},
+                                         {"CoT", ".cot", "event", "events", "object", "objects", 90}};
+  return formats[static_cast<std::size_t>(kind)];
+}
+
 std::string StreamStatus::text() const {
-  const bool is_dis = kind == StreamKind::dis;
-  std::string text = is_dis ? "DIS: " : "ACMI: ";
+  const StreamFormat& format = formatOf(kind);
+  std::string text = std::string(format.name) + ": ";
   if (!age_s) {
-    text += is_dis ? "no PDU yet" : "no line yet";
+    text += fmt::format("no {} yet", format.record);
   } else {
-    text += fmt::format("{:.0f} {}/s, {}, last {:.{}f} s ago", records_per_s, is_dis ? "PDU" : "lines",
-                        countText(entities, is_dis ? "entity" : "object", is_dis ? "entities" : "objects"),
-                        *age_s, *age_s < 10 ? 1 : 0);
+    text += fmt::format("{:.0f} {}/s, {}, last {:.{}f} s ago", records_per_s, format.plural,
+                        countText(entities, format.object, format.objects), *age_s, *age_s < 10 ? 1 : 0);
   }
   return trouble.empty() ? text : text + "; " + trouble;
 }
 
 struct LiveBattlefield::Impl {
   const StreamRequest request;
-  const bool is_dis;
   std::mutex wake_mutex;
   std::function<void()> wake;  ///< with the mutex
   long long wake_number = 0;   ///< of the function, with the mutex
@@ -133,20 +139,17 @@ struct LiveBattlefield::Impl {
   std::thread receiver, builder;
 
   Impl(const StreamRequest& asked, std::function<void()> wake_in)
-      : request(asked),
-        is_dis(asked.kind == StreamKind::dis),
-        wake(std::move(wake_in)),
-        maker(asked),
-        scenario(maker.base()) {
+      : request(asked), wake(std::move(wake_in)), maker(asked), scenario(maker.base()) {
     if (!request.record.empty())
-      recorder = std::make_unique<StreamRecorder>(request.record, !is_dis, request.replaces);
-    if (is_dis) {
-      datagrams.emplace(request.address, request.interface);
-    } else {
+      recorder =
+          std::make_unique<StreamRecorder>(request.record, formatOf(request.kind).ending, request.replaces);
+    if (request.connects) {
       connect(request.stop);
+    } else {
+      datagrams.emplace(request.address, request.interface);
     }
     restart();
-    receiver = std::thread([this] { is_dis ? receiveDatagrams() : receiveText(); });
+    receiver = std::thread([this] { request.connects ? receiveText() : receiveDatagrams(); });
     builder = std::thread([this] { build(); });
   }
 
@@ -163,10 +166,12 @@ struct LiveBattlefield::Impl {
       received.records += state->counts().records;
       told_revision = -1;  // the scenario is of the state before
     }
-    if (is_dis) {
+    if (request.kind == StreamKind::dis) {
       state = std::make_unique<interop::LiveDis>(request.read);
-    } else {
+    } else if (request.kind == StreamKind::acmi) {
       state = std::make_unique<interop::LiveAcmi>();
+    } else {
+      state = std::make_unique<interop::LiveCot>(request.connects);
     }
     ++generation;
   }
@@ -203,7 +208,7 @@ struct LiveBattlefield::Impl {
     lock.unlock();
     std::vector<interop::LivePose> live;
     std::unique_lock<std::mutex> state_lock(state_mutex);
-    if (!is_dis || time_s - expired_s > kExpire_s) {
+    if (request.kind == StreamKind::acmi || time_s - expired_s > kExpire_s) {
       state->expire(time_s);
       expired_s = time_s;
     }
@@ -250,8 +255,13 @@ struct LiveBattlefield::Impl {
   void connect(const StopFlag* stop) {
     connection.emplace(Connection::to(request.address, stop));
     connected_s = steadyTime_s();
-    connection->write(interop::acmiClientHello("Emscape", request.password), 1);
+    connection->write(request.kind == StreamKind::acmi ? interop::acmiClientHello("Emscape", request.password)
+                                                       : interop::cotPing("emscape", unixTime_s()),
+                      1);
   }
+
+  /// Servers of TAK begin with events.
+  bool hasNoGreeting() const { return request.kind != StreamKind::acmi; }
 
   void fail(const std::string& text) {
     connection.reset();
@@ -279,11 +289,11 @@ struct LiveBattlefield::Impl {
   void receiveText() {
     std::vector<char> buffer(std::size_t{1} << 16);
     std::string hello;
-    bool is_greeted = false;
+    bool is_greeted = hasNoGreeting();
     while (!stops) {
       if (!connection) {
         hello.clear();
-        is_greeted = false;
+        is_greeted = hasNoGreeting();
         publish();
         reconnect();
         continue;
@@ -385,7 +395,7 @@ struct LiveBattlefield::Impl {
       result.trouble += (result.trouble.empty() ? "" : "; ") + text;
     };
     add(connection_trouble);
-    if (connection_trouble.empty() && result.age_s && *result.age_s > kSilence_s)
+    if (connection_trouble.empty() && result.age_s && *result.age_s > formatOf(request.kind).silence_s)
       add("the stream has stopped");
     if (time_s - lost_at_s < 5)
       add(fmt::format("it comes faster than it can be read, {} lost",

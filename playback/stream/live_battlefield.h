@@ -14,18 +14,29 @@
 
 namespace emscape::playback {
 
-enum class StreamKind { dis, acmi };
+enum class StreamKind { dis, acmi, cot };
+
+/// The words of a kind of stream, and the rules of its transport.
+struct StreamFormat {
+  const char* name;
+  const char* ending;           ///< of its recordings
+  const char *record, *plural;  ///< what it consists of
+  const char *object, *objects;
+  double silence_s;  ///< after which it has stopped
+};
+const StreamFormat& formatOf(StreamKind kind);
 
 struct StreamRequest {
   StreamKind kind = StreamKind::dis;
-  Address address;              ///< to listen to (DIS), or to connect to (ACMI)
+  bool connects = false;        ///< by TCP; else it listens for datagrams
+  Address address;              ///< to listen to, or to connect to
   std::uint32_t interface = 0;  ///< on which a multicast group is joined
   std::string password;         ///< of an ACMI host; empty: none
   interop::ReadOptions read;
   interop::BeamwidthMeaning beamwidth = interop::BeamwidthMeaning::by_size;
   std::string base;                ///< scenario with region, terrain and further platforms
   std::string emitters;            ///< emitter database; empty: the starter set
-  std::string record;              ///< file for what arrives, .pcap or .acmi; empty: none
+  std::string record;              ///< file for what arrives, .pcap, .acmi or .cot; empty: none
   bool replaces = false;           ///< files that exist; else they are an error
   std::string folder;              ///< of the scenario file; empty: a temporary one
   const StopFlag* stop = nullptr;  ///< ends the waiting for a host; may be null
@@ -33,7 +44,7 @@ struct StreamRequest {
 
 /// What has arrived so far.
 struct StreamStatus {
-  long long records = 0;  ///< PDUs or lines
+  long long records = 0;  ///< PDUs, lines or events
   long long bytes = 0, bad = 0, late = 0, duplicates = 0;
   long long outside = 0;    ///< positions that are too high or too low, which are not used
   long long lost = 0;       ///< datagrams that the system dropped

@@ -52,11 +52,13 @@ void AcmiReader::takeHeader(std::string_view line, long long line_number) {
   if (line.empty()) return;
   ++header_lines_;
   if (header_lines_ == 1) {
-    if (line.substr(0, 9) == "FileType=" && line.find("text/acmi/tacview") != std::string_view::npos) return;
+    if (isSameName(line.substr(0, 9), "FileType=") &&
+        line.find("text/acmi/tacview") != std::string_view::npos)
+      return;
     throw Error(ErrorCode::bad_input, {"", static_cast<int>(line_number), 1},
                 "an ACMI recording begins with FileType=text/acmi/tacview");
   }
-  if (line.substr(0, 12) != "FileVersion=" || line.substr(12, 2) != "2.") {
+  if (!isSameName(line.substr(0, 12), "FileVersion=") || line.substr(12, 2) != "2.") {
     throw Error(ErrorCode::bad_input, {"", static_cast<int>(line_number), 1},
                 fmt::format("'{}' must be FileVersion=2.0 to FileVersion=2.2; open an older recording in "
                             "Tacview and save it again",
@@ -114,17 +116,17 @@ void AcmiReader::takeGlobal(std::string_view properties) {
     const std::size_t at = part.find('=');
     if (at == std::string_view::npos) continue;
     const std::string_view name = part.substr(0, at), value = part.substr(at + 1);
-    if (name == "ReferenceLongitude" || name == "ReferenceLatitude") {
-      const bool is_longitude = name == "ReferenceLongitude";
+    if (isSameName(name, "ReferenceLongitude") || isSameName(name, "ReferenceLatitude")) {
+      const bool is_longitude = isSameName(name, "ReferenceLongitude");
       const auto number = numberIn(value);
       if (number && std::abs(*number) <= (is_longitude ? 360 : 90))
         (is_longitude ? reference_longitude_deg_ : reference_latitude_deg_) = *number;
-    } else if (name == "ReferenceTime") {
+    } else if (isSameName(name, "ReferenceTime")) {
       recording_.epoch_ms = parseUtc_ms(std::string(value));
       if (!recording_.epoch_ms && !value.empty()) {  // some programs omit the Z
         recording_.epoch_ms = parseUtc_ms(std::string(value) + "Z");
       }
-    } else if (name == "Event") {
+    } else if (isSameName(name, "Event")) {
       takeEvent(std::string(value));
     }
   }
@@ -189,32 +191,37 @@ void AcmiReader::takeObject(std::uint64_t id, std::string_view properties, const
 void AcmiReader::takeProperty(State& state, std::string_view name, std::string_view value,
                               const std::string& location) {
   RecordedObject& object = objectOf(state);
-  if (name == "T") {
+  if (isSameName(name, "T")) {
     place(state, value, location);
-  } else if (name == "Type") {
+  } else if (isSameName(name, "Type")) {
     object.type = printable(value);
+    for (std::size_t at = 0; (at = object.type.find('+', at)) != std::string::npos;
+         ++at) {  // "Air + FixedWing"
+      while (at > 0 && object.type[at - 1] == ' ') object.type.erase(--at, 1);
+      while (at + 1 < object.type.size() && object.type[at + 1] == ' ') object.type.erase(at + 1, 1);
+    }
     object.keys.acmi_type = object.type;
     object.domain = domainOf(object.type);
     if (isAcmiBeam(object.type)) takeRadarProperty(state, "RadarMode", "1");
-  } else if (name == "Name") {
+  } else if (isSameName(name, "Name")) {
     if (!object.keys.acmi_name.empty()) return;
     object.keys.acmi_name = printable(value);
     object.name = object.keys.acmi_name + object.name;  // a pilot told before
-  } else if (name == "Pilot" || name == "CallSign") {
+  } else if (isSameName(name, "Pilot") || isSameName(name, "CallSign")) {
     const std::string told = printable(value);
     if (!told.empty() && object.name == object.keys.acmi_name && told != object.name)
       object.name += " " + told;
-  } else if (name == "Color" || name == "Coalition") {
-    (name == "Color" ? state.color : state.coalition) = printable(value);
+  } else if (isSameName(name, "Color") || isSameName(name, "Coalition")) {
+    (isSameName(name, "Color") ? state.color : state.coalition) = printable(value);
     object.side = acmiSide(state.color, state.coalition);
-  } else if (name == "Parent") {
+  } else if (isSameName(name, "Parent")) {
     if (const auto parent = acmiId(value)) parents_[state.object] = fmt::format("{:x}", *parent);
-  } else if (name == "Visible" || name == "Disabled") {
+  } else if (isSameName(name, "Visible") || isSameName(name, "Disabled")) {
     const auto number = numberIn(value);
-    if (number) addPresence(object.presence, time_s_, (*number != 0) == (name == "Visible"));
-  } else if (name == "LockedTarget") {
+    if (number) addPresence(object.presence, time_s_, (*number != 0) == (isSameName(name, "Visible")));
+  } else if (isSameName(name, "LockedTarget")) {
     state.locked = acmiId(value);
-  } else if (name == "LockedTargetMode") {
+  } else if (isSameName(name, "LockedTargetMode")) {
     state.is_locked = numberIn(value).value_or(0) != 0;
   } else if (!takeRadarProperty(state, name, value)) {
     countIgnored(recording_.tally, "property " + printable(name.substr(0, 40)));
@@ -222,13 +229,14 @@ void AcmiReader::takeProperty(State& state, std::string_view name, std::string_v
 }
 
 bool AcmiReader::takeRadarProperty(State& state, std::string_view name, std::string_view value) {
-  if (name.substr(0, 5) != "Radar") return false;
+  if (!isSameName(name.substr(0, 5), "Radar")) return false;
   double* angle = nullptr;
-  if (name == "RadarAzimuth") angle = &state.radar.azimuth_deg;
-  if (name == "RadarElevation") angle = &state.radar.elevation_deg;
-  if (name == "RadarHorizontalBeamwidth") angle = &state.radar.beamwidth_az_deg;
-  if (name == "RadarVerticalBeamwidth") angle = &state.radar.beamwidth_el_deg;
-  if (angle == nullptr && name != "RadarMode") return name == "RadarRange" || name == "RadarRoll";
+  if (isSameName(name, "RadarAzimuth")) angle = &state.radar.azimuth_deg;
+  if (isSameName(name, "RadarElevation")) angle = &state.radar.elevation_deg;
+  if (isSameName(name, "RadarHorizontalBeamwidth")) angle = &state.radar.beamwidth_az_deg;
+  if (isSameName(name, "RadarVerticalBeamwidth")) angle = &state.radar.beamwidth_el_deg;
+  if (angle == nullptr && !isSameName(name, "RadarMode"))
+    return isSameName(name, "RadarRange") || isSameName(name, "RadarRoll");
   const auto number = numberIn(value);
   if (!number || std::abs(*number) > 360) return true;
   if (angle != nullptr) {

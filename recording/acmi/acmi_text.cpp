@@ -1,6 +1,7 @@
 #include "recording/acmi/acmi_text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 
@@ -47,18 +48,25 @@ std::string escapedAcmi(const std::string& text) {
   return escaped;
 }
 
+bool isSameName(std::string_view a, std::string_view b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
+    return x == y ||
+           std::tolower(static_cast<unsigned char>(x)) == std::tolower(static_cast<unsigned char>(y));
+  });
+}
+
 bool hasAcmiTag(std::string_view type, std::string_view tag) {
   for (;;) {
     const std::size_t at = type.find('+');
-    if (type.substr(0, at) == tag) return true;
+    if (isSameName(trimmed(type.substr(0, at)), tag)) return true;
     if (at == std::string_view::npos) return false;
     type.remove_prefix(at + 1);
   }
 }
 
 Side acmiSide(const std::string& color, const std::string& coalition) {
-  if (color == "Blue") return Side::friendly;
-  if (color == "Red") return Side::hostile;
+  if (isSameName(color, "Blue")) return Side::friendly;
+  if (isSameName(color, "Red")) return Side::hostile;
   if (!color.empty()) return Side::neutral;
   const std::string name = lowerCase(coalition);
   const auto isOneOf = [&name](std::initializer_list<const char*> names) {

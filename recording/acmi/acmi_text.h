@@ -29,6 +29,9 @@ std::string acmiValue(std::string_view text);
 /// A text as a value: commas and line ends escaped.
 std::string escapedAcmi(const std::string& text);
 
+/// True for names that differ at most in upper and lower case, as some programs write them.
+bool isSameName(std::string_view a, std::string_view b);
+
 /// True if a Type has a tag.
 bool hasAcmiTag(std::string_view type, std::string_view tag);
 /// True for the Type of an object that stands for the beam of another.

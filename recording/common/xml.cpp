@@ -3,30 +3,52 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "emscape/base/error.h"
 #include "recording/common/byte_source.h"
 
 namespace emscape::interop {
 
-std::string parseXml(std::string_view text, pugi::xml_document& document) {
+namespace {
+
+struct XmlFault {
+  std::size_t at = 0;  ///< byte
+  std::string message;
+};
+
+std::optional<XmlFault> faultOf(std::string_view text, pugi::xml_document& document) {
   const pugi::xml_parse_result result =
       document.load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_auto);
-  if (result) return "";
+  if (result) return std::nullopt;
   const auto at = std::min<std::size_t>(static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)),
                                         text.size());
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n');
-  return fmt::format("line {}: no XML: {}", line, result.description());
+  return XmlFault{at, fmt::format("line {}: no XML: {}", line, result.description())};
 }
 
-void loadXml(ByteSource& source, const std::string& name, pugi::xml_document& document) {
+}  // namespace
+
+std::string parseXml(std::string_view text, pugi::xml_document& document) {
+  const auto fault = faultOf(text, document);
+  return fault ? fault->message : "";
+}
+
+std::string loadXml(ByteSource& source, const std::string& name, pugi::xml_document& document) {
   const std::string text = readAll(source, name, kMaxXmlBytes);
-  const std::string fault = parseXml(text, document);
-  if (!fault.empty()) throw Error(ErrorCode::bad_input, {name, 0, 0}, fault);
+  const auto fault = faultOf(text, document);
+  if (!fault) return source.failure();
+  // Of a file that was cut, the fault is in its last element.
+  constexpr std::size_t kLastElement = 400;
+  const bool is_cut = document.document_element() && fault->at + kLastElement >= text.size() &&
+                      text.find('>', fault->at) == std::string::npos;
+  if (!is_cut) throw Error(ErrorCode::bad_input, {name, 0, 0}, fault->message);
+  return fault->message + ": the file was cut there";
 }
 
 void loadXmlFile(const std::string& file, pugi::xml_document& document) {
-  loadXml(*openFile(file), file, document);
+  const std::string torn = loadXml(*openFile(file), file, document);
+  if (!torn.empty()) throw Error(ErrorCode::bad_input, {file, 0, 0}, torn);
 }
 
 std::string_view nameOf(const pugi::xml_node& node) {

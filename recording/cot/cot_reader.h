@@ -1,7 +1,6 @@
 /// Reading of Cursor on Target (TAK): events of version 2 of the schema as XML.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -10,29 +9,9 @@
 #include "recording/common/read_options.h"
 #include "recording/common/recording.h"
 #include "recording/common/track_recorder.h"
+#include "recording/cot/cot_event.h"
 
 namespace emscape::interop {
-
-/// True if the begin of a file is that of events.
-bool isCot(std::string_view head);
-
-/// Splits a stream of events, each with or without its own XML declaration.
-class CotSplitter {
- public:
-  /// Largest event (bytes); longer ones are dropped.
-  static constexpr std::size_t kLongest = std::size_t{1} << 20;
-
-  /// @param sink  receives each event, from its <event on
-  void take(std::string_view bytes, const std::function<void(std::string_view event)>& sink);
-  /// True if an event has begun and not ended.
-  bool isWithin() const;
-  long long dropped() const { return dropped_; }
-
- private:
-  std::string text_;
-  std::size_t searched_ = 0;
-  long long dropped_ = 0;
-};
 
 /// Takes events in the order in which they came. Types a-... are objects, from `time` to `stale`; a <sensor>
 /// is a beam of its event's object, or of the one that its <link> with the relation p-p names; t-x-d-d
@@ -42,6 +21,8 @@ class CotReader {
   explicit CotReader(const ReadOptions& options);
 
   void takeEvent(std::string_view xml);
+  /// @param location  of the event, for messages
+  void take(const CotEvent& event, const std::string& location);
   /// Call once.
   Recording finish();
   ReadingTally& tally() { return recorder_.tally(); }
@@ -57,10 +38,9 @@ class CotReader {
     double stale_s = 0;
   };
 
-  struct Event;
   Object& objectOf(const std::string& uid);
-  void takeObject(Event& event);
-  void takeSensor(const Event& event, const std::string& carrier);
+  void takeObject(const CotEvent& event, const std::string& location);
+  void takeSensor(const CotEvent& event);
   void remove(const std::string& uid, double time_s);
   void switchOff(const Sensor& sensor, double time_s);
 

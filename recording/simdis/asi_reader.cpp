@@ -13,6 +13,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "recording/beams/directions.h"
+#include "recording/common/dates.h"
 #include "recording/common/samples.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
@@ -241,14 +242,12 @@ class AsiReader {
     if (const auto number = numberIn(text)) return *number < 0 ? kStatic : *number;
     std::optional<double> utc_s = utcSeconds(text);
     const Words words = wordsOf(text);
-    const bool has_month = words.size() == 4;
-    if (!utc_s && (words.size() == 3 || has_month)) {
-      const auto day = numberIn(words[has_month ? 1 : 0]), year = numberIn(words[has_month ? 2 : 1]);
-      const int month = has_month ? monthOf(words[0]) : 1;
-      const auto clock_s = utcSeconds("1970-01-01T" + words.back());
+    if (!utc_s && words.size() == 3) {
+      const auto day = numberIn(words[0]), year = numberIn(words[1]);
+      const auto clock_s = utcSeconds("1970-01-01T" + words[2]);
       const bool is_sound =
-          day && year && clock_s && month > 0 && *day >= 1 && *day <= 366 && *year >= 1900 && *year <= 9999;
-      if (is_sound) utc_s = secondsOfDate(static_cast<int>(*year), month, 1) + (*day - 1) * 86400 + *clock_s;
+          day && year && clock_s && *day >= 1 && *day <= 366 && *year >= 1900 && *year <= 9999;
+      if (is_sound) utc_s = secondsOfDate(static_cast<int>(*year), 1, 1) + (*day - 1) * 86400 + *clock_s;
     }
     if (!utc_s) return std::nullopt;
     if (!year_) {  // that of the first date

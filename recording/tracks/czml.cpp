@@ -7,6 +7,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
+#include "recording/common/dates.h"
 #include "recording/common/samples.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
@@ -25,17 +26,29 @@ std::string textIn(const Json& json, const char* key) {
   return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
+constexpr double kEver_s = 1e15;
+
+/// The begin or end of an interval; the first and the last year stand for no limit.
+std::optional<double> limitOf(std::string_view text) {
+  if (text.substr(0, 5) == "0000-") return -kEver_s;
+  if (text.substr(0, 5) == "9999-") return kEver_s;
+  return utcSeconds(text);
+}
+
 /// Time intervals "BEGIN/END" of a text or of a list of them.
-std::vector<std::pair<double, double>> intervalsOf(const Json& json) {
+/// @param faults  number of those that cannot be read
+std::vector<std::pair<double, double>> intervalsOf(const Json& json, int& faults) {
   std::vector<std::pair<double, double>> intervals;
   const auto add = [&](const Json& item) {
-    if (!item.is_string()) return;
-    const std::string text = item.get<std::string>();
-    const std::size_t at = text.find('/');
-    if (at == std::string::npos) return;
-    const auto begin_s = utcSeconds(std::string_view(text).substr(0, at)),
-               end_s = utcSeconds(std::string_view(text).substr(at + 1));
-    if (begin_s && end_s && *begin_s < *end_s) intervals.emplace_back(*begin_s, *end_s);
+    const std::string text = item.is_string() ? item.get<std::string>() : std::string();
+    const std::size_t at = std::min(text.find('/'), text.size());
+    const auto begin_s = limitOf(std::string_view(text).substr(0, at)),
+               end_s = limitOf(std::string_view(text).substr(std::min(at + 1, text.size())));
+    if (begin_s && end_s && *begin_s < *end_s) {
+      intervals.emplace_back(*begin_s, *end_s);
+    } else {
+      ++faults;
+    }
   };
   if (json.is_array()) {
     for (const Json& item : json) add(item);
@@ -84,8 +97,11 @@ class CzmlReader {
     if (clock == packet.end() || !clock->is_object()) return;
     const auto interval = clock->find("interval");
     if (interval == clock->end()) return;
-    const auto intervals = intervalsOf(*interval);
-    if (!intervals.empty()) begin_s_ = intervals.front().first;
+    int faults = 0;
+    const auto intervals = intervalsOf(*interval, faults);
+    if (faults > 0)
+      countBad(recorder_.tally(), location_, "its clock's interval is not BEGIN/END in ISO 8601");
+    if (!intervals.empty() && intervals.front().first > -kEver_s) begin_s_ = intervals.front().first;
   }
 
   void takePosition(const Json& packet, const std::string& id, const Json& position) {
@@ -171,11 +187,17 @@ class CzmlReader {
     if (!name.empty()) object.name = name;
     const auto availability = packet.find("availability");
     if (availability == packet.end() || !object.presence.empty()) return;
-    // Before the first interval the object is absent.
-    addPresence(object.presence, object.poses.empty() ? begin_s_ : object.poses.front().t_s, false);
-    for (const auto& [begin_s, end_s] : intervalsOf(*availability)) {
-      addPresence(object.presence, begin_s, true);
-      addPresence(object.presence, end_s, false);
+    int faults = 0;
+    const auto intervals = intervalsOf(*availability, faults);
+    if (faults > 0) countBad(recorder_.tally(), location_, "its availability is not BEGIN/END in ISO 8601");
+    if (intervals.empty()) return;
+    // Outside of the intervals the object is absent; they may begin before its positions.
+    const double first_s = object.poses.empty() ? begin_s_ : object.poses.front().t_s;
+    addPresence(object.presence, first_s, false);
+    for (const auto& [begin_s, end_s] : intervals) {
+      if (end_s <= first_s) continue;
+      addPresence(object.presence, std::max(begin_s, first_s), true);
+      if (end_s < kEver_s) addPresence(object.presence, end_s, false);
     }
   }
 
@@ -209,15 +231,12 @@ class CzmlReader {
 
 Recording readCzml(ByteSource& source, const std::string& name, const ReadOptions& options) {
   const std::string text = readAll(source, name, kMaxCzmlBytes);
-  return readJson<Json>(
-      text, name,
-      [&](const Json& packets) {
-        if (!packets.is_array())
-          throw Error(ErrorCode::bad_input, {name, 1, 1},
-                      "CZML is a list of packets: [{\"id\": \"document\", ...}, ...]");
-        return CzmlReader(options).read(packets);
-      },
-      "; is the file cut?");
+  const auto packets = readJson<Json>(
+      text, name, [](Json& json) { return std::move(json); }, "; is the file cut?");
+  if (!packets.is_array())
+    throw Error(ErrorCode::bad_input, {name, 1, 1},
+                "CZML is a list of packets: [{\"id\": \"document\", ...}, ...]");
+  return CzmlReader(options).read(packets);
 }
 
 }  // namespace emscape::interop

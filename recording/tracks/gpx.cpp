@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "recording/common/dates.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
 #include "recording/common/track_recorder.h"
@@ -76,8 +77,10 @@ class GpxReader {
 
 Recording readGpx(ByteSource& source, const std::string& name, const ReadOptions& options) {
   pugi::xml_document document;
-  loadXml(source, name, document);
-  return GpxReader(name, options).read(childOf(document, "gpx"));
+  const std::string torn = loadXml(source, name, document);
+  Recording recording = GpxReader(name, options).read(childOf(document, "gpx"));
+  recording.tally.torn = torn;
+  return recording;
 }
 
 }  // namespace emscape::interop

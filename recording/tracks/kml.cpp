@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "recording/common/dates.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
 #include "recording/common/track_recorder.h"
@@ -13,18 +14,20 @@ namespace {
 
 constexpr int kMaxDepth = 64;  ///< of folders
 
-/// Numbers that a character separates.
-std::vector<double> numbersOf(std::string_view text, char separator) {
+/// Numbers that blanks or commas separate: programs mix up the two forms of the standard.
+std::vector<double> numbersOf(std::string_view text) {
+  constexpr std::string_view kSeparators = ", \t\r\n";
   std::vector<double> numbers;
-  text = trimmed(text);
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find(separator), text.size());
+  for (;;) {
+    const std::size_t begin = text.find_first_not_of(kSeparators);
+    if (begin == std::string_view::npos) return numbers;
+    text.remove_prefix(begin);
+    const std::size_t end = std::min(text.find_first_of(kSeparators), text.size());
     const auto number = numberIn(text.substr(0, end));
     if (!number) return {};
     numbers.push_back(*number);
-    text.remove_prefix(std::min(end + 1, text.size()));
+    text.remove_prefix(end);
   }
-  return numbers;
 }
 
 class KmlReader {
@@ -43,6 +46,7 @@ class KmlReader {
   void takeFolder(const pugi::xml_node& folder, int depth) {
     for (const pugi::xml_node& node : folder.children()) {
       if (nameOf(node) == "Placemark") takePlacemark(node);
+      if (nameOf(node) == "Tour") countIgnored(recorder_.tally(), "tour of the camera");
       const bool is_folder = nameOf(node) == "Document" || nameOf(node) == "Folder";
       if (is_folder && depth < kMaxDepth) takeFolder(node, depth + 1);
     }
@@ -56,8 +60,14 @@ class KmlReader {
 
   void takePlacemark(const pugi::xml_node& placemark) {
     const std::string told = printableText(textOf(placemark, "name"));
-    const std::string name = told.empty() ? stem_ : told;
-    for (const pugi::xml_node& node : placemark.children()) {
+    takeGeometries(placemark, placemark, told.empty() ? stem_ : told, 0);
+  }
+
+  void takeGeometries(const pugi::xml_node& placemark, const pugi::xml_node& parent, const std::string& name,
+                      int depth) {
+    for (const pugi::xml_node& node : parent.children()) {
+      if (nameOf(node) == "MultiGeometry" && depth < kMaxDepth)
+        takeGeometries(placemark, node, name, depth + 1);
       if (nameOf(node) == "Track") takeTrack(node, objectOf(fmt::format("track {}", ++tracks_), name));
       if (nameOf(node) == "MultiTrack") {
         const std::size_t object = objectOf(fmt::format("track {}", ++tracks_), name);
@@ -85,7 +95,7 @@ class KmlReader {
 
   void takePoint(const pugi::xml_node& placemark, const pugi::xml_node& point, const std::string& name) {
     const std::string location = fmt::format("position {}", ++recorder_.tally().records);
-    const std::vector<double> at = numbersOf(textOf(point, "coordinates"), ',');
+    const std::vector<double> at = numbersOf(textOf(point, "coordinates"));
     if (at.size() < 2) {
       return countBad(recorder_.tally(), location,
                       "its coordinates are not LONGITUDE,LATITUDE or LONGITUDE,LATITUDE,HEIGHT");
@@ -94,7 +104,8 @@ class KmlReader {
     pose.longitude_deg = at[0];
     pose.latitude_deg = at[1];
     pose.height_msl_m = heightOf(point, at.size() > 2 ? at[2] : 0);
-    const std::string when = textOf(childOf(placemark, "TimeStamp"), "when");
+    std::string when = textOf(childOf(placemark, "TimeStamp"), "when");
+    if (when.empty()) when = textOf(childOf(placemark, "TimeSpan"), "begin");
     if (when.empty())
       return recorder_.addFixed(objectOf(fmt::format("point {}", ++points_), name), pose, location);
     const auto time_s = utcSeconds(when);
@@ -118,7 +129,7 @@ class KmlReader {
       const std::string location = fmt::format("position {}", ++recorder_.tally().records);
       if (trimmed(places[i]).empty()) continue;  // the standard's way to leave a time out
       const auto time_s = utcSeconds(times[i]);
-      const std::vector<double> at = numbersOf(places[i], ' ');
+      const std::vector<double> at = numbersOf(places[i]);
       if (!time_s || at.size() < 2) {
         countBad(recorder_.tally(), location, "no ISO 8601 time, or no position LONGITUDE LATITUDE HEIGHT");
         continue;
@@ -128,8 +139,7 @@ class KmlReader {
       pose.longitude_deg = at[0];
       pose.latitude_deg = at[1];
       pose.height_msl_m = heightOf(track, at.size() > 2 ? at[2] : 0);
-      const std::vector<double> turned =
-          i < angles.size() ? numbersOf(angles[i], ' ') : std::vector<double>();
+      const std::vector<double> turned = i < angles.size() ? numbersOf(angles[i]) : std::vector<double>();
       if (turned.size() == 3) {  // heading, tilt (nose up), roll
         pose.heading_deg = turned[0];
         pose.pitch_deg = turned[1];
@@ -148,8 +158,10 @@ class KmlReader {
 
 Recording readKml(ByteSource& source, const std::string& name, const ReadOptions& options) {
   pugi::xml_document document;
-  loadXml(source, name, document);
-  return KmlReader(name, options).read(childOf(document, "kml"));
+  const std::string torn = loadXml(source, name, document);
+  Recording recording = KmlReader(name, options).read(childOf(document, "kml"));
+  recording.tally.torn = torn;
+  return recording;
 }
 
 }  // namespace emscape::interop

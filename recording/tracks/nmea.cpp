@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "recording/common/dates.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
 #include "recording/common/track_recorder.h"
@@ -62,6 +63,8 @@ class NmeaReader {
     for (std::string_view line; lines.next(line);) {
       line = trimmed(line);
       if (line.empty() || line.front() == '#') continue;
+      // Loggers write the time of arrival before it.
+      if (const std::size_t begin = line.find_first_of("$!"); begin != line.npos) line.remove_prefix(begin);
       location_ = fmt::format("line {}", lines.line());
       ++recorder_.tally().records;
       if (line.front() == '!') {
@@ -162,8 +165,9 @@ class NmeaReader {
     pose.latitude_deg = *fix->latitude_deg;
     pose.longitude_deg = *fix->longitude_deg;
     // A fix without a height has that of the one before.
-    if (fix->height_msl_m) height_msl_m_ = *fix->height_msl_m;
-    pose.height_msl_m = height_msl_m_;
+    if (fix->height_msl_m) height_msl_m_ = fix->height_msl_m;
+    if (!height_msl_m_) recorder_.assume("height of a fix before the first one with a height: 0 m is taken");
+    pose.height_msl_m = height_msl_m_.value_or(0);
     recorder_.add(object_, pose, fix->location);
   }
 
@@ -172,7 +176,8 @@ class NmeaReader {
   std::string location_;
   std::optional<Fix> fix_;
   std::optional<double> last_s_;
-  double day_s_ = 0, first_date_s_ = 0, height_msl_m_ = 0;
+  double day_s_ = 0, first_date_s_ = 0;
+  std::optional<double> height_msl_m_;
   bool has_date_ = false;
 };
 

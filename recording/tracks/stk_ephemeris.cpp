@@ -8,6 +8,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "recording/common/dates.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
 #include "recording/tracks/interpolated_track.h"
@@ -15,20 +16,6 @@
 
 namespace emscape::interop {
 namespace {
-
-/// "1 Jun 2003 12:00:00.000" or ISO 8601.
-std::optional<double> epochOf(const std::string& text) {
-  if (const auto time_s = utcSeconds(text)) return time_s;
-  const std::vector<std::string> words = wordsOf(text);
-  if (words.size() != 4) return std::nullopt;
-  const auto day = numberIn(words[0]), year = numberIn(words[2]);
-  const int month = monthOf(words[1]);
-  if (!day || !year || month == 0 || *day < 1 || *day > 31 || *year < 1900 || *year > 9999)
-    return std::nullopt;
-  const auto clock = utcSeconds("1970-01-01T" + words[3]);
-  if (!clock) return std::nullopt;
-  return secondsOfDate(static_cast<int>(*year), month, static_cast<int>(*day)) + *clock;
-}
 
 /// How the lines of a section state positions.
 enum class Positions { cartesian, geodetic };
@@ -57,7 +44,7 @@ class StkReader {
     }
     if (!has_ended) recorder_.tally().torn = fmt::format("line {}: END Ephemeris is missing", lines.line());
     if (has_epoch_) recorder_.hasUtc();
-    addInterpolated(recorder_, object_, samples_, degree_, stem_);
+    addInterpolated(recorder_, object_, samples_, is_linear_ ? 1 : degree_, stem_);
     return recorder_.finish();
   }
 
@@ -70,7 +57,7 @@ class StkReader {
     const std::string value = words.size() > 1 ? words[1] : "";
     if (key == "scenarioepoch") {
       const std::string text(trimmed(trimmed(line).substr(key.size())));
-      const auto epoch_s = epochOf(text);
+      const auto epoch_s = utcSeconds(text);
       if (!epoch_s)
         refuse("ScenarioEpoch '" + printableText(text) + "' is no time such as 1 Jun 2003 12:00:00.000");
       epoch_s_ = *epoch_s;
@@ -91,7 +78,7 @@ class StkReader {
     } else if (key == "timeformat" && lowerCase(value) != "epsec") {
       refuse("TimeFormat " + printableText(value) + ": only EpSec is read");
     } else if (key == "interpolationmethod") {
-      if (lowerCase(value) == "linear") degree_ = 1;
+      is_linear_ = lowerCase(value) == "linear";
     } else if (key == "interpolationsamplesm1" || key == "interpolationorder") {
       degree_ = static_cast<int>(std::clamp(numberIn(value).value_or(1), 1.0, 12.0));
     } else if (key.rfind("ephemeris", 0) == 0) {
@@ -137,7 +124,7 @@ class StkReader {
   std::optional<Positions> section_;
   std::vector<EcefSample> samples_;
   double epoch_s_ = 0, unit_m_ = 1;
-  bool has_epoch_ = false;
+  bool has_epoch_ = false, is_linear_ = false;
   int degree_ = 5;
 };
 

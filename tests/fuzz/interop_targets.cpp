@@ -10,6 +10,7 @@
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
 #include "interop/live/live_acmi.h"
+#include "interop/live/live_cot.h"
 #include "interop/live/live_dis.h"
 #include "recording/acmi/acmi_reader.h"
 #include "recording/cot/cot_reader.h"
@@ -244,6 +245,22 @@ const FuzzTargetsAdded added({
        for (const std::string& part : {bytes.substr(0, bytes.size() / 2), bytes.substr(bytes.size() / 2)})
          splitter.take(part, [&](std::string_view event) { reader.takeEvent(event); });
        checkFuzzMessage(reader.finish().tally.first_bad);
+     },
+     [] { return std::vector<std::string>{recordingOf(".cot")}; }},
+    {"cot_live", "",
+     [](const fs::path&, const std::string& bytes) {
+       for (const bool is_text : {true, false}) {
+         interop::LiveCot live(is_text);
+         for (const std::string& part :
+              {bytes.substr(0, bytes.size() / 2), bytes.substr(bytes.size() / 2), bytes})
+           live.take(reinterpret_cast<const std::uint8_t*>(part.data()), part.size(), 0);
+         const interop::LiveRecording now = live.recording(1);
+         if (now.keys.size() != now.recording.objects.size() || live.poses(1).size() < now.keys.size())
+           std::abort();
+         checkFuzzMessage(live.counts().first_bad);
+         live.expire(1e9);
+         if (live.objectCount() != 0) std::abort();
+       }
      },
      [] { return std::vector<std::string>{recordingOf(".cot")}; }},
     {"emitter_names", "input.xml",

@@ -3,6 +3,7 @@
 
 #include <sys/resource.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <mutex>
@@ -45,6 +46,7 @@ constexpr std::uint32_t kLocal = 0x7F000001;
 StreamRequest requestAt(std::uint16_t port, StreamKind kind = StreamKind::dis) {
   StreamRequest request;
   request.kind = kind;
+  request.connects = kind == StreamKind::acmi;
   request.address = {kLocal, port};
   request.interface = kLocal;
   request.base = shippedScenario("quick.yaml");
@@ -175,6 +177,57 @@ TEST(LiveBattlefield, AnAcmiHostIsReadAndItsEndIsTold) {
   ends = true;
   host.join();
   EXPECT_TRUE(waitFor([&] { return battlefield.status().trouble.find("the host has ended") == 0; }));
+}
+
+std::string cotOf(const std::string& uid, double latitude_deg) {
+  return "<event version='2.0' uid='" + uid +
+         "' type='a-h-S' time='2026-06-01T06:00:00Z' start='2026-06-01T06:00:00Z' "
+         "stale='2026-06-01T07:00:00Z'>"
+         "<point lat='" +
+         std::to_string(latitude_deg) + "' lon='5' hae='100'/><detail><contact callsign='" + uid +
+         "'/></detail></event>";
+}
+
+TEST(LiveBattlefield, EventsOfTakComeAsDatagramsAndAreRecorded) {
+  const emscape::test::TemporaryFolder folder;
+  StreamRequest request = requestAt(freePort(), StreamKind::cot);
+  request.record = folder / "team.cot";
+  {
+    LiveBattlefield battlefield(request, {});
+    DatagramSender sender(request.address, kLocal, 0);
+    const std::string event = cotOf("boat", 52.02);
+    ASSERT_TRUE(sender.send(reinterpret_cast<const std::uint8_t*>(event.data()), event.size()));
+    ASSERT_TRUE(waitFor([&] { return battlefield.now().poses->size() == 1; }));
+    EXPECT_NEAR(battlefield.now().poses->front().position.latitude_deg, 52.02, 1e-9);
+    EXPECT_THAT(battlefield.status().text(), HasSubstr("CoT: 1 event"));
+    battlefield.finishRecording();
+  }
+  EXPECT_EQ(interop::readRecording(request.record).objects.at(0).name, "boat");
+}
+
+TEST(LiveBattlefield, AServerOfTakIsAskedAndItsEventsMayComeInPieces) {
+  StreamRequest request = requestAt(freePort(), StreamKind::cot);
+  request.connects = true;
+  std::atomic<bool> ends{false};
+  Listener listener(request.address);
+  std::string asked;
+  std::thread server([&] {
+    auto client = listener.accept(10);
+    if (!client) return;
+    std::array<char, 4096> bytes{};
+    asked.assign(bytes.data(), client->read(10, bytes.data(), bytes.size()).value_or(0));
+    const std::string text = "<?xml version='1.0'?>" + cotOf("boat", 52.02) + cotOf("tug", 52.03);
+    client->write(text.substr(0, 100), 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    client->write(text.substr(100), 1);
+    while (!ends) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  });
+  LiveBattlefield battlefield(request, {});
+  EXPECT_TRUE(waitFor([&] { return battlefield.now().poses->size() == 2; }));
+  EXPECT_EQ(battlefield.status().trouble, "");
+  ends = true;
+  server.join();
+  EXPECT_THAT(asked, HasSubstr("t-x-c-t"));
 }
 
 TEST(LiveBattlefield, AWrongPasswordIsTold) {

@@ -197,7 +197,7 @@ class AcmiSample : public testing::Test {
  protected:
   void SetUp() override {
     for (const char* name : {"kavinsky_simple.txt.acmi", "kavinsky_simple.zip.acmi"}) {
-      const std::string path = std::string("recording/acmi/") + name;
+      const std::string path = std::string("interop/acmi/") + name;
       const auto file = test::referenceFile(path);
       if (!file) GTEST_SKIP() << test::notInRepository(path);
       files_.push_back(*file);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "recording/simdis/asi_reader.h"

@@ -113,7 +113,7 @@ TEST(Orientation, LevelBodyOnTheEquatorHasTheEulerAnglesOfItsAxes) {
 
 /// Median of the distance (m) between the position reckoned from a state and the next state.
 double medianError_m(const std::string& name) {
-  const auto file = test::referenceFile("recording/dis/" + name);
+  const auto file = test::referenceFile("interop/dis/" + name);
   if (!file) return -1;
   std::unordered_map<std::uint64_t, std::pair<double, EntityState>> last;
   std::vector<double> errors;
@@ -145,7 +145,7 @@ double medianError_m(const std::string& name) {
 }
 
 TEST(DeadReckoning, PredictsTheNextStateOfRecordings) {
-  if (!test::referenceFile("recording/dis/kdis_log1.log"))
+  if (!test::referenceFile("interop/dis/kdis_log1.log"))
     GTEST_SKIP() << test::notInRepository("interop/dis");
   EXPECT_LE(medianError_m("kdis_log1.log"), 0.245);
   EXPECT_LE(medianError_m("kdis_log2.log"), 0.365);

@@ -270,10 +270,10 @@ TEST(DisRecorder, SeveralPdusOfADatagramAreTakenAndBadOnesCounted) {
 }
 
 TEST(DisRecordings, PublicLogsHaveTheirEntities) {
-  if (!test::referenceFile("recording/dis/kdis_log1.log"))
+  if (!test::referenceFile("interop/dis/kdis_log1.log"))
     GTEST_SKIP() << test::notInRepository("interop/dis");
   const auto read = [](const std::string& name) {
-    return readRecording(*test::referenceFile("recording/dis/" + name));
+    return readRecording(*test::referenceFile("interop/dis/" + name));
   };
   const Recording log = read("kdis_log2.log"), capture = read("kdis_log2.pcap");
   EXPECT_EQ(log.objects.size(), 22u);

@@ -188,7 +188,7 @@ TEST(Pdu, RandomBytesAreDecodedOrRefused) {
 
 /// A PDU of the sample data of open-dis-python; the expected values are those of that project's tests.
 Bytes sample(const std::string& name) {
-  const auto file = test::referenceFile("recording/dis/" + name);
+  const auto file = test::referenceFile("interop/dis/" + name);
   if (!file) return {};
   const std::string text = test::readFile(*file);
   return {text.begin(), text.end()};

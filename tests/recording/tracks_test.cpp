@@ -6,6 +6,7 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
+#include "recording/read_recording.h"
 #include "recording/tracks/interpolated_track.h"
 #include "recording/tracks/track_formats.h"
 #include "tests/support/errors.h"

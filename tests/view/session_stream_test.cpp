@@ -192,6 +192,7 @@ TEST(AcmiStream, TheCameraFollowsAnObjectByItsNameWhenOthersComeAndGo) {
   const StateFolder folder;
   playback::StreamRequest request;
   request.kind = playback::StreamKind::acmi;
+  request.connects = true;
   request.address = {kLocal, emscape::test::freePort()};
   request.base = shippedScenario("quick.yaml");
   playback::AcmiServer host(request.address, "");

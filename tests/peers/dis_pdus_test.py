@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Random PDUs of DIS versions 5 to 7, packed here by the standard, decoded by our reader, by opendis and by tshark: all fields that
-the reader uses are equal.
+"""PDUs of DIS decoded by our reader, by opendis and by tshark: all fields that the reader uses are equal.
 
-    dis_random_test.py DIS_VALUES opendis|tshark FOLDER
+    dis_pdus_test.py DIS_VALUES opendis|tshark FOLDER random|recorded
+
+random: PDUs of versions 5 to 7, packed here by the standard. recorded: those of public recordings in $EMSCAPE_REFERENCE_DIR/interop/dis
+(by default `shared` beside the checkout): single PDUs (.raw), text logs of KDIS (.log), sessions of Disco (.session), captures (.pcap).
 """
 import json
 import math
@@ -100,6 +102,31 @@ class Maker:
         family = {1: 1, 23: 6, 25: 4}[kind]
         head = struct.pack(">BBBBIHH", self.random.choice([5, 6, 7]), 1, kind, family, self.bits(32), 12 + len(body), 0)
         return values, head + body
+
+
+def recorded_pdus(folder):
+    """The PDUs of all files of a folder of a kind that our reader uses; a session may end in a torn record."""
+    for path in sorted(folder.iterdir()):
+        if path.suffix == ".raw":
+            pdus = [path.read_bytes()]
+        elif path.suffix == ".log":
+            pdus = [bytes.fromhex(line) for line in path.read_text().splitlines()[1::2]]
+        elif path.suffix == ".session":
+            pdus, data, at = [], path.read_bytes(), 0
+            while at + 10 <= len(data):
+                size = struct.unpack_from(">H", data, at + 8)[0]
+                pdus.append(data[at + 10:at + 10 + size])
+                at += 10 + size
+        elif path.suffix == ".pcap":
+            pdus, data, at = [], path.read_bytes(), 24
+            while at + 16 <= len(data):
+                size = struct.unpack_from("<I", data, at + 8)[0]
+                pdus.append(data[at + 16 + 28:at + 16 + size])
+                at += 16 + size
+        else:
+            continue
+        # Only whole PDUs: of a torn one the decoders tell different parts.
+        yield from (pdu for pdu in pdus if len(pdu) >= 12 and pdu[2] in TSHARK and len(pdu) >= struct.unpack_from(">H", pdu, 8)[0])
 
 
 def write_capture(path, pdus):
@@ -224,28 +251,36 @@ def compare_opendis(path):
 def main():
     if sys.argv[1] == "--opendis":
         return compare_opendis(sys.argv[2])
-    dis_values, peer, folder = sys.argv[1:]
+    dis_values, peer, folder, kind = sys.argv[1:]
     has_opendis = PYTHON.exists() and not subprocess.run([PYTHON, "-c", "import opendis"], capture_output=True, check=False).returncode
     if not (has_opendis if peer == "opendis" else shutil.which("tshark")):
         print(f"skipped: {peer} is not installed (scripts/setup --peers)")
         return 1 if os.environ.get("EMSCAPE_REQUIRE_PEERS") else SKIPPED
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
-    maker = Maker(7)
-    made = [maker.pdu() for _ in range(COUNT)]
-    capture = folder / "random.pcap"
+    if kind == "random":
+        maker = Maker(7)
+        made = [maker.pdu() for _ in range(COUNT)]
+    else:
+        recordings = pathlib.Path(os.environ.get("EMSCAPE_REFERENCE_DIR", ROOT.parent / "shared")) / "interop" / "dis"
+        if not recordings.is_dir():
+            print(f"skipped: {recordings} is not there")
+            return SKIPPED
+        made = [(None, pdu) for pdu in recorded_pdus(recordings)]
+    capture = folder / f"{kind}.pcap"
     write_capture(capture, [pdu for _, pdu in made])
     lines = subprocess.run([dis_values, capture], capture_output=True, text=True, check=True).stdout.splitlines()
     ours = [json.loads(line) for line in lines]
-    if len(ours) != COUNT:
-        sys.exit(f"our reader decodes {len(ours)} PDUs of {COUNT}")
+    if len(ours) != len(made) or not made:
+        sys.exit(f"our reader decodes {len(ours)} PDUs of {len(made)}")
     for number, (values, _) in enumerate(made):
-        compare("the PDU", number, ours[number], values)
+        if values is not None:
+            compare("the PDU", number, ours[number], values)
     if peer == "tshark":
         compare_tshark(capture, ours)
-        print(f"{COUNT} PDUs are equal to tshark's")
+        print(f"{len(made)} PDUs are equal to tshark's")
         return 0
-    pairs = folder / "pairs.jsonl"
+    pairs = folder / f"{kind}.jsonl"
     pairs.write_text("".join(json.dumps([values, pdu.hex()]) + "\n" for values, (_, pdu) in zip(ours, made)))
     return subprocess.run([PYTHON, __file__, "--opendis", pairs], check=False).returncode
 
