@@ -430,7 +430,7 @@ std::shared_ptr<void> LiveBattlefield::setWake(std::function<void()> wake) {
   impl_->wake = std::move(wake);
   const long long number = ++impl_->wake_number;
   return {nullptr, [impl = impl_.get(), number](void*) {
-            const std::lock_guard<std::mutex> lock(impl->wake_mutex);
+            const std::lock_guard<std::mutex> ending(impl->wake_mutex);
             if (impl->wake_number == number) impl->wake = {};
           }};
 }
