@@ -40,6 +40,7 @@ class LiveField {
   bool update() {
     const playback::BattlefieldNow now = battlefield_.now();
     if (now.scenario == scenario_ && now.poses == poses_) return false;
+    if (now.scenario != scenario_) indices_ = playback::platformIndices(*now.scenario);
     const double begin_s = playback::steadyTime_s();
     Work work(&stopFlag());
     const WorkScope scope(&work);
@@ -47,7 +48,8 @@ class LiveField {
       loaded_ = loaded_.scenario
                     ? playback::withScenario(loaded_, now.scenario)
                     : playback::LoadedScenario{now.scenario, scenario::loadTerrain(*now.scenario)};
-      const auto snapshot = scenario::snapshotAt(loaded_.scenario, loaded_.terrain.get(), 0, *now.poses);
+      const auto snapshot = scenario::snapshotAt(loaded_.scenario, loaded_.terrain.get(), 0,
+                                                 *playback::posesOf(indices_, *now.poses));
       if (!solver_) {
         emfield::FieldOptions options;
         options.allow_missing_terrain = true;
@@ -70,7 +72,7 @@ class LiveField {
     return true;
   }
 
-  /// Writes the battlefield as a scenario, and its field if it has changed.
+  /// Writes the field if it has changed.
   void write(const std::filesystem::path& folder) {
     if (!solver_ || !std::exchange(is_new_, false)) return;
     std::vector<const volume::DenseVolume*> volumes;
@@ -92,7 +94,8 @@ class LiveField {
   playback::LoadedScenario loaded_;
   std::unique_ptr<emfield::FieldSolver> solver_;
   std::shared_ptr<const scenario::Scenario> scenario_;
-  playback::PosesPtr poses_;
+  playback::PlatformIndices indices_;
+  playback::NamedPosesPtr poses_;
   bool is_new_ = false;
   long long fields_ = 0;
   double field_ms_ = 0, latency_ms_ = 0, arrival_s_ = 0;
@@ -110,6 +113,7 @@ Json jsonOf(const playback::StreamStatus& status, const LiveField& field, double
             {"bad", status.bad},
             {"late", status.late},
             {"duplicates", status.duplicates},
+            {"outside", status.outside},
             {"forgotten", status.forgotten},
             {"entities", status.entities},
             {"emitters", status.emitters},
@@ -186,7 +190,7 @@ Examples:
 
 Exit status: 0, also when Ctrl-C ends it; 2 for wrong options; 3 for a faulty base or database; 1 if the address cannot be used.)");
   auto arguments = std::make_shared<LiveArguments>();
-  arguments->stream.addTo(*command, "--base", "--emitters");
+  arguments->stream.addTo(*command, "--base", "--emitters,--emitter-database");
   command->add_option("-o,--output", arguments->folder,
                       "Folder for live.yaml, the scenario, and live.vdb, its field, written each second that "
                       "changed it");

@@ -17,6 +17,8 @@
 #include "interop/exporting/writers.h"
 #include "playback/sockets/socket.h"
 #include "playback/stream/acmi_server.h"
+#include "recording/acmi/acmi_lines.h"
+#include "recording/acmi/acmi_text.h"
 #include "recording/common/byte_source.h"
 #include "recording/cot/cot_event.h"
 #include "recording/dis/datagrams.h"
@@ -76,7 +78,9 @@ struct Played {
 
   explicit Played(const PlayArguments& arguments)
       : scenario(scenario::loadScenario(arguments.input, arguments.edits, scenario::ReadFor::chosen_times)),
-        terrain(scenario::loadTerrain(*scenario)) {}
+        terrain(scenario::loadTerrain(*scenario)) {
+    interop::requireFewRecords(*scenario, arguments.step_s);
+  }
 };
 
 /// Sends datagrams at their times.
@@ -192,21 +196,19 @@ int playAcmi(const PlayArguments& arguments, const GlobalOptions& global) {
   }
   Pace pace(arguments.rate, serve);
   long long lines = 0;
-  const auto send = [&](std::string_view line) {
-    if (!line.empty() && line.front() == '#') {
-      // Frames out of order are sent at once.
-      try {
-        pace.waitFor(std::stod(std::string(line.substr(1))));
-      } catch (const std::logic_error&) {  // no time: the reader decides
-      }
-    }
-    server.send(line);
+  interop::AcmiLines logical_lines;
+  const auto send = [&](std::string_view physical, bool is_cut) {
+    const auto line = logical_lines.take(physical, is_cut);
+    if (!line) return;
+    // Frames out of order are sent at once.
+    if (const auto time_s = interop::acmiFrame_s(*line)) pace.waitFor(*time_s);
+    server.send(*line);
     if (++lines % 256 == 0) serve(0);
   };
   if (endsWith(arguments.input, ".acmi")) {
     const auto source = interop::openRecording(arguments.input);
     interop::LineReader reader(*source);
-    for (std::string_view line; reader.next(line);) send(line);
+    for (std::string_view line; reader.next(line);) send(line, reader.isCut());
   } else {
     const Played played(arguments);
     std::vector<interop::ExportedRow> rows;
@@ -216,13 +218,16 @@ int playAcmi(const PlayArguments& arguments, const GlobalOptions& global) {
           std::string_view rest = piece;
           while (!rest.empty()) {
             const std::size_t end = rest.find('\n');
-            send(rest.substr(0, end));
+            send(rest.substr(0, end), false);
             rest.remove_prefix(std::min(end == std::string_view::npos ? rest.size() : end + 1, rest.size()));
           }
         },
         rows);
   }
   serve(0.5);
+  if (logical_lines.tooLong() > 0)
+    printMessage("emscape: {}: {} not sent: longer than 1 MiB\n", arguments.input,
+                 countText(logical_lines.tooLong(), "line was", "lines were"));
   if (global.json) {
     printJson({{"at", address.text()}, {"lines", lines}, {"clients", server.clientCount()}});
   } else if (!global.quiet) {

@@ -11,6 +11,7 @@
 #include "interop/importing/nodes.h"
 #include "recording/beams/directions.h"
 #include "recording/common/dates.h"
+#include "recording/common/text.h"
 
 namespace emscape::interop {
 namespace {

@@ -10,6 +10,7 @@
 #include "interop/exporting/writers.h"
 #include "recording/beams/directions.h"
 #include "recording/common/dates.h"
+#include "recording/common/text.h"
 
 namespace emscape::interop {
 namespace {

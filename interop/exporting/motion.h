@@ -10,6 +10,9 @@
 
 namespace emscape::interop {
 
+/// Refuses what would need too much memory or disk. @throws Error (usage)
+void requireFewRecords(const scenario::Scenario& scenario, double step_s);
+
 /// Times (s) at which a platform's position is written: of its track, 0, the scenario's end, and others so
 /// that none is more than step_s after the one before. A fixed platform: 0 and the end.
 std::vector<double> timesOfPositions(const scenario::Scenario& scenario, const scenario::Platform& platform,

@@ -13,7 +13,7 @@ namespace emscape::interop {
 /// Largest numbers of a live battlefield: what a hostile stream can make the program keep.
 struct LiveLimits {
   static constexpr std::size_t kObjects = 4096;  ///< of more the ones heard of longest ago are forgotten
-  static constexpr std::size_t kBeams = 8192;    ///< further ones are not taken
+  static constexpr std::size_t kBeams = 8192;    ///< further ones of DIS are not taken
 };
 
 struct LiveCounts {
@@ -21,6 +21,7 @@ struct LiveCounts {
   long long bad = 0;         ///< could not be read
   long long late = 0;        ///< came after a later state of their entity
   long long duplicates = 0;  ///< came twice
+  long long outside = 0;     ///< positions that are too high or too low, which are not used
   long long forgotten = 0;   ///< objects and beams beyond LiveLimits
   std::string first_bad;     ///< reason of the first that could not be read
 };
@@ -52,9 +53,10 @@ class LiveState {
 
   /// Changes when recording() would have other objects or beams, or other settings of them; poses apart.
   long long revision() const { return revision_; }
-  /// The present battlefield: objects in the order of their keys.
+  /// The present battlefield.
   virtual LiveRecording recording(double now_s) = 0;
-  /// Poses of the objects now, by dead reckoning where the stream states how.
+  /// Poses of the objects now, by dead reckoning where the stream states how. All values are finite and
+  /// within the limits of a scenario.
   virtual std::vector<LivePose> poses(double now_s) const = 0;
   virtual std::size_t objectCount() const = 0;
 

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "emscape/base/progress.h"
-#include "emscape/playback/frames/frame_source.h"
 #include "interop/import_scenario.h"
 #include "playback/sockets/address.h"
+#include "playback/stream/named_poses.h"
 #include "recording/read_recording.h"
 
 namespace emscape::playback {
@@ -46,6 +46,7 @@ struct StreamRequest {
 struct StreamStatus {
   long long records = 0;  ///< PDUs, lines or events
   long long bytes = 0, bad = 0, late = 0, duplicates = 0;
+  long long outside = 0;    ///< positions that are too high or too low, which are not used
   long long lost = 0;       ///< datagrams that the system dropped
   long long forgotten = 0;  ///< objects and beams beyond the limits
   std::size_t entities = 0, emitters = 0;
@@ -62,7 +63,7 @@ struct StreamStatus {
 /// The battlefield at one instant.
 struct BattlefieldNow {
   std::shared_ptr<const scenario::Scenario> scenario;  ///< without the poses; another object: other platforms
-  PosesPtr poses;                                      ///< the same object as before if nothing has moved
+  NamedPosesPtr poses;                                 ///< the same object as before if nothing has moved
   double arrival_s = 0;                                ///< of the last record in it (steady clock)
 };
 
@@ -83,10 +84,12 @@ class LiveBattlefield {
   LiveBattlefield(const LiveBattlefield&) = delete;
   LiveBattlefield& operator=(const LiveBattlefield&) = delete;
 
-  /// Another function to call; empty: none. Returns when the last call has ended.
-  void setWake(std::function<void()> wake);
+  /// Another function to call, until another one is set or the result is destroyed, which waits until its
+  /// last call has ended. The result must not outlive this object.
+  std::shared_ptr<void> setWake(std::function<void()> wake);
 
-  BattlefieldNow now();
+  /// As of the last sixtieth of a second; where platforms move by dead reckoning, of the last thirtieth.
+  BattlefieldNow now() const;
   StreamStatus status() const;
   /// File of the scenario, without the poses: the base at first.
   std::string file() const;

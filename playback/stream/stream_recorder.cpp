@@ -47,6 +47,7 @@ void StreamRecorder::finish() {
   if (!stream_ && failure_.empty())
     failure_ = file_.file().string() + ": cannot be written; the end of the recording is missing";
   file_.publish();
+  if (!failure_.empty()) throw Error(ErrorCode::other, failure_);
 }
 
 }  // namespace emscape::playback

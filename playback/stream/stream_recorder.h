@@ -17,7 +17,7 @@ class StreamRecorder {
   /// @throws Error (usage) for another ending or a file that exists, (other)
   StreamRecorder(const std::string& file, const std::string& ending, bool replaces);
   void write(const std::uint8_t* bytes, std::size_t size, double time_s);
-  /// Publishes the file. @throws Error (other)
+  /// Publishes the file. @throws Error (other), also if the recording ended early
   void finish();
   /// Why the recording ended early; empty: it did not.
   const std::string& failure() const { return failure_; }

@@ -9,6 +9,7 @@
 #include "base/text/utc.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "recording/acmi/acmi_lines.h"
 #include "recording/acmi/acmi_text.h"
 #include "recording/acmi/carried_beams.h"
 #include "recording/common/samples.h"
@@ -17,8 +18,6 @@
 
 namespace emscape::interop {
 namespace {
-
-constexpr double kMaxFrame_s = 1e8;  ///< of a time after ReferenceTime: what a scenario's track can hold
 
 /// Frames of several threads are written out of order by some seconds.
 constexpr double kMaxStepBack_s = 100;
@@ -76,16 +75,16 @@ void AcmiReader::take(std::string_view line, long long line_number) {
   const std::string location = fmt::format("line {}", line_number);
   bool removes = line.front() == '-';
   if (line.front() == '#') {
+    const auto time_s = acmiFrame_s(line);
     line.remove_prefix(1);
-    const auto time_s = numberIn(line);
     const auto id = line.size() > 1 && line.front() == '-' ? acmiId(line.substr(1)) : std::nullopt;
     // Some programs write #-1001 for -1001; a frame is not so long before the last one.
     removes = id && states_.count(*id) != 0 && (!time_s || *time_s < time_s_ - kMaxStepBack_s);
     if (!removes) {
-      if (!time_s || std::abs(*time_s) > kMaxFrame_s) {
+      if (!time_s) {
         return countBad(
             recording_.tally, location,
-            fmt::format("'#{}' is no time within {} s", printable(line.substr(0, 40)), kMaxFrame_s));
+            fmt::format("'#{}' is no time within {} s", printable(line.substr(0, 40)), kMaxAcmiFrame_s));
       }
       time_s_ = *time_s;
       return;
@@ -302,6 +301,33 @@ void AcmiReader::place(State& state, std::string_view value, const std::string& 
   }
 }
 
+std::optional<PoseSample> AcmiReader::placed(PoseSample pose) const {
+  pose.latitude_deg += reference_latitude_deg_;
+  pose.longitude_deg = wrapLongitude_deg(pose.longitude_deg + reference_longitude_deg_);
+  if (std::abs(pose.latitude_deg) > PositionLimits::kLatitude_deg) return std::nullopt;
+  return pose;
+}
+
+void AcmiReader::dropPosesOutside(RecordedObject& object) {
+  auto& poses = object.poses;
+  const auto sound =
+      std::remove_if(poses.begin(), poses.end(), [this](const PoseSample& pose) { return !placed(pose); });
+  for (auto pose = sound; pose != poses.end(); ++pose)
+    countBad(recording_.tally, "object " + object.id,
+             "a latitude with ReferenceLatitude is outside -90 to 90 deg");
+  poses.erase(sound, poses.end());
+}
+
+std::vector<std::pair<std::uint64_t, PoseSample>> AcmiReader::latestPoses() const {
+  std::vector<std::pair<std::uint64_t, PoseSample>> latest;
+  for (const auto& [id, state] : states_) {
+    const auto& poses = recording_.objects[state.object].poses;
+    if (poses.empty()) continue;
+    if (const auto pose = placed(poses.back())) latest.emplace_back(id, *pose);
+  }
+  return latest;
+}
+
 std::size_t AcmiReader::keepLatest(std::size_t max_objects) {
   std::vector<std::pair<double, std::uint64_t>> by_time;
   for (const auto& [id, state] : states_) {
@@ -320,6 +346,7 @@ std::size_t AcmiReader::keepLatest(std::size_t max_objects) {
   for (State* const state : kept) {
     kept_as[state->object] = objects.size();
     RecordedObject& object = objects.emplace_back(std::move(objectOf(*state)));
+    dropPosesOutside(object);
     if (object.poses.size() > 1) object.poses = {object.poses.back()};
     if (object.presence.size() > 1) object.presence = {object.presence.back()};
     if (!state->beam) continue;
@@ -350,20 +377,9 @@ std::size_t AcmiReader::keepLatest(std::size_t max_objects) {
 }
 
 Recording AcmiReader::finish() {
-  long long outside = 0;
   for (RecordedObject& object : recording_.objects) {
-    std::vector<PoseSample> sound;
-    sound.reserve(object.poses.size());
-    for (PoseSample& pose : object.poses) {
-      pose.latitude_deg += reference_latitude_deg_;
-      pose.longitude_deg = wrapLongitude_deg(pose.longitude_deg + reference_longitude_deg_);
-      if (std::abs(pose.latitude_deg) <= PositionLimits::kLatitude_deg) {
-        sound.push_back(pose);
-      } else {
-        ++outside;
-      }
-    }
-    object.poses = std::move(sound);
+    dropPosesOutside(object);
+    for (PoseSample& pose : object.poses) pose = *placed(pose);
     sortByTime(object);
   }
   for (RecordedBeam& beam : recording_.beams) sortByTime(beam);
@@ -371,19 +387,13 @@ Recording AcmiReader::finish() {
   for (RecordedObject& object : recording_.objects) {
     if (object.name.empty()) object.name = object.type.empty() ? "object " + object.id : object.type;
   }
-  if (outside > 0) {
-    recording_.tally.bad += outside;
-    if (recording_.tally.first_bad.empty())
-      recording_.tally.first_bad = "a latitude with ReferenceLatitude is outside -90 to 90 deg";
-  }
   return std::move(recording_);
 }
 
 Recording readAcmi(ByteSource& source, const std::string& name, const ProgressSink& progress) {
   AcmiReader reader;
   LineReader lines(source);
-  std::string joined;
-  long long begin = 0, last_bad_length = 0;
+  AcmiLines logical_lines;
   double reported = 0;
   try {
     for (std::string_view line; lines.next(line);) {
@@ -391,29 +401,16 @@ Recording readAcmi(ByteSource& source, const std::string& name, const ProgressSi
         progress("reading " + name, source.fraction());
         reported = source.fraction() + 0.01;
       }
-      if (lines.isCut() || joined.size() + line.size() > LineReader::kLongest) {
-        if (last_bad_length++ == 0)
-          countBad(reader.tally(), fmt::format("line {}", lines.line()), "longer than 1 MiB");
-        joined.clear();
-        continue;
-      }
-      const bool continues = !line.empty() && line.back() == '\\';
       if (!lines.isTerminated()) {  // an object's line may lack digits that were to follow
         reader.tally().torn = fmt::format(
             "line {} has no end: the recording was cut there, and the line is not used", lines.line());
         break;
       }
-      if (continues || !joined.empty()) {
-        if (joined.empty()) begin = lines.line();
-        joined += continues ? line.substr(0, line.size() - 1) : line;
-        if (continues) {
-          joined += '\n';
-          continue;
-        }
-        reader.take(joined, begin);
-        joined.clear();
-      } else {
-        reader.take(line, lines.line());
+      const long long too_long = logical_lines.tooLong();
+      if (const auto logical = logical_lines.take(line, lines.isCut())) {
+        reader.take(*logical, logical_lines.line());
+      } else if (logical_lines.tooLong() != too_long) {
+        countBad(reader.tally(), fmt::format("line {}", logical_lines.line()), kTooLongAcmiLine);
       }
     }
   } catch (const Error& error) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 #include "emscape/base/progress.h"
 #include "recording/common/byte_source.h"
@@ -28,6 +30,8 @@ class AcmiReader {
   /// For streams: drops all but the last pose and state of each object, the objects that were removed, and of
   /// the others all but the last ones that were told of. @return how many of the others
   std::size_t keepLatest(std::size_t max_objects);
+  /// For streams: ids of the objects that have a position, and the last one of each.
+  std::vector<std::pair<std::uint64_t, PoseSample>> latestPoses() const;
 
   ReadingTally& tally() { return recording_.tally; }
 
@@ -53,6 +57,9 @@ class AcmiReader {
   bool takeRadarProperty(State& state, std::string_view name, std::string_view value);
   void place(State& state, std::string_view value, const std::string& location);
   void remove(std::uint64_t id);
+  /// A pose with the reference position; none beyond a pole.
+  std::optional<PoseSample> placed(PoseSample pose) const;
+  void dropPosesOutside(RecordedObject& object);
   State& stateOf(std::uint64_t id);
   RecordedObject& objectOf(const State& state) { return recording_.objects[state.object]; }
 

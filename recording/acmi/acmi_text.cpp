@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 
 #include "recording/common/text.h"
 
 namespace emscape::interop {
+
+std::optional<double> acmiFrame_s(std::string_view line) {
+  const auto time_s = line.substr(0, 1) == "#" ? numberIn(line.substr(1)) : std::nullopt;
+  return time_s && std::abs(*time_s) <= kMaxAcmiFrame_s ? time_s : std::nullopt;
+}
 
 std::optional<std::uint64_t> acmiId(std::string_view text) {
   text = trimmed(text);

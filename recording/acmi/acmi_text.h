@@ -11,6 +11,11 @@
 
 namespace emscape::interop {
 
+/// Largest time (s) of a frame after ReferenceTime: what a scenario's track can hold.
+constexpr double kMaxAcmiFrame_s = 1e8;
+/// The time (s) of a line that begins with #; none for another text, and beyond kMaxAcmiFrame_s.
+std::optional<double> acmiFrame_s(std::string_view line);
+
 /// The 64-bit hexadecimal id of an object; none for another text.
 std::optional<std::uint64_t> acmiId(std::string_view text);
 

@@ -12,7 +12,8 @@ namespace emscape::interop {
 namespace {
 
 constexpr double kNear_m = 50;
-constexpr int kMaxSearched = 2000;  ///< beams without a parent, each compared with all objects
+constexpr double kNear_deg = kNear_m / 110000;  ///< a degree of latitude is longer than that
+constexpr int kMaxSearched = 2000;              ///< beams without a parent, each compared with all objects
 /// Directions that differ less (deg) are those of the carrier.
 constexpr double kAligned_deg = 0.1;
 
@@ -23,14 +24,6 @@ bool isPresentAt(const RecordedObject& object, double t_s) {
     is_present = sample.is_present;
   }
   return is_present;
-}
-
-double distanceAt_m(const RecordedObject& a, const RecordedObject& b, double t_s) {
-  const PoseSample pa = poseAt(a, t_s), pb = poseAt(b, t_s);
-  const auto spot = [](const PoseSample& pose) {
-    return toEcef({pose.latitude_deg, pose.longitude_deg, pose.height_msl_m});
-  };
-  return length(spot(pa) - spot(pb));
 }
 
 using IndicesById = std::unordered_multimap<std::string, std::size_t>;
@@ -60,13 +53,17 @@ std::size_t parentOf(const Recording& recording, const IndicesById& indices, std
 std::size_t nearestTo(const Recording& recording, std::size_t beam) {
   const double begin_s = recording.objects[beam].poses.front().t_s;
   std::size_t found = kNoTarget;
+  const PoseSample at = poseAt(recording.objects[beam], begin_s);
+  const Vec3d spot_m = spotOf(at);
   double nearest_m = kNear_m;
   for (std::size_t i = 0; i < recording.objects.size(); ++i) {
     const RecordedObject& object = recording.objects[i];
     const bool can_carry = !isAcmiBeam(object.type) && !object.poses.empty() &&
                            object.domain != Domain::scenery && object.domain != Domain::weapon;
     if (!can_carry || !isPresentAt(object, begin_s)) continue;
-    const double distance_m = distanceAt_m(recording.objects[beam], object, begin_s);
+    const PoseSample there = poseAt(object, begin_s);
+    if (std::abs(there.latitude_deg - at.latitude_deg) > kNear_deg) continue;  // the most, and quickly
+    const double distance_m = length(spotOf(there) - spot_m);
     if (distance_m >= nearest_m) continue;
     nearest_m = distance_m;
     found = i;

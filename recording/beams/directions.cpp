@@ -12,12 +12,6 @@
 namespace emscape::interop {
 namespace {
 
-/// Heights above the sea stand for those above the ellipsoid: the geoid below both objects is nearly the
-/// same.
-Vec3d spotOf(const PoseSample& pose) {
-  return toEcef({pose.latitude_deg, pose.longitude_deg, pose.height_msl_m});
-}
-
 /// The heading of an object that tells none is along its track.
 double courseAt_deg(const RecordedObject& object, double t_s) {
   const PoseSample a = poseAt(object, t_s - 0.5), b = poseAt(object, t_s + 0.5);
@@ -76,6 +70,10 @@ std::vector<BeamState> inAxesOf(const RecordedObject& carrier, const std::vector
 }
 
 }  // namespace
+
+Vec3d spotOf(const PoseSample& pose) {
+  return toEcef({pose.latitude_deg, pose.longitude_deg, pose.height_msl_m});
+}
 
 dis::BodyAxes axesAt(const RecordedObject& object, double t_s) {
   const PoseSample pose = poseAt(object, t_s);

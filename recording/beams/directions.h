@@ -14,6 +14,10 @@ struct RelativeDirection {
 /// Axes of an object; one that tells no heading points along its track.
 dis::BodyAxes axesAt(const RecordedObject& object, double t_s);
 
+/// Position (m) on the earth, to compare near objects: heights above the sea stand for those above the
+/// ellipsoid, since the geoid below them is nearly the same.
+Vec3d spotOf(const PoseSample& pose);
+
 /// Direction of an object from another, in the axes of the latter.
 RelativeDirection directionAt(const RecordedObject& from, const RecordedObject& to, double t_s);
 

@@ -177,22 +177,28 @@ DisRecorder::Entity& DisRecorder::entityOf(const EntityId& id) {
   return found->second;
 }
 
-void DisRecorder::addPose(Entity& entity, const Vec3d& position_m, const BodyAxes& axes, double time_s) {
+std::optional<PoseSample> poseSampleOf(const Vec3d& position_m, const BodyAxes& axes) {
   const GeodeticPosition position = fromEcef(position_m);
   PoseSample pose;
-  pose.t_s = time_s;
   pose.latitude_deg = position.latitude_deg;
   pose.longitude_deg = position.longitude_deg;
   pose.height_msl_m = position.height_ellipsoid_m - geoidUndulation_m(pose.latitude_deg, pose.longitude_deg);
-  if (pose.height_msl_m < PositionLimits::kLowest_m || pose.height_msl_m > PositionLimits::kHighest_m)
-    return countIgnored(recording_.tally, "positions higher than 100 km or lower than -12 km");
+  if (!(pose.height_msl_m >= PositionLimits::kLowest_m && pose.height_msl_m <= PositionLimits::kHighest_m))
+    return std::nullopt;
   const LocalAttitude attitude = attitudeOf(axes, pose.latitude_deg, pose.longitude_deg);
   pose.heading_deg = attitude.heading_deg;
   pose.pitch_deg = attitude.pitch_deg;
   pose.roll_deg = attitude.roll_deg;
+  return pose;
+}
+
+void DisRecorder::addPose(Entity& entity, const Vec3d& position_m, const BodyAxes& axes, double time_s) {
+  auto pose = poseSampleOf(position_m, axes);
+  if (!pose) return countIgnored(recording_.tally, "positions higher than 100 km or lower than -12 km");
+  pose->t_s = time_s;
   auto& poses = recording_.objects[entity.object].poses;
   const std::size_t before = poses.size();
-  interop::addPose(poses, pose);
+  interop::addPose(poses, *pose);
   if (poses.size() > before) countSample();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <utility>
@@ -9,10 +10,14 @@
 #include "recording/common/read_options.h"
 #include "recording/common/recording.h"
 #include "recording/dis/datagrams.h"
+#include "recording/dis/orientation.h"
 #include "recording/dis/pdu.h"
 #include "recording/dis/sender_clock.h"
 
 namespace emscape::interop::dis {
+
+/// Position and attitude as recordings have them; none if the height is outside of PositionLimits.
+std::optional<PoseSample> poseSampleOf(const Vec3d& position_m, const BodyAxes& axes);
 
 /// Takes datagrams in the order of their arrival and keeps what a recording needs of their PDUs.
 class DisRecorder {
@@ -44,7 +49,7 @@ class DisRecorder {
 
   void takePdu(const Header& header, const std::uint8_t* bytes, double arrival_s);
   void fillGap(const Entity& before, const EntityState& state, double time_s);
-  void addPose(Entity& entity, const Vec3d& position_m, const struct BodyAxes& axes, double time_s);
+  void addPose(Entity& entity, const Vec3d& position_m, const BodyAxes& axes, double time_s);
   void setState(Beam& beam, const BeamState& state);
   void switchOff(Beam& beam, double time_s);
   Entity& entityOf(const EntityId& id);

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "emscape/scenario/file/scenario_file.h"
+#include "emscape/scenario/model/poses.h"
 #include "interop/emitters/emitter_database.h"
 #include "interop/emitters/emitter_names.h"
 #include "interop/export_scenario.h"
@@ -97,14 +98,16 @@ void takeStream(interop::LiveState& live, const std::string& bytes) {
   live.expire(time_s);
   const interop::LiveRecording now = live.recording(time_s);
   if (now.keys.size() != now.recording.objects.size() || now.keys.size() > interop::LiveLimits::kObjects ||
-      now.keys.size() != live.objectCount() || now.keys.size() != live.poses(time_s).size())
+      now.keys.size() != live.objectCount() || now.keys.size() > live.poses(time_s).size())
     throw std::logic_error("the live state has other objects than its recording");
   for (const interop::RecordedBeam& beam : now.recording.beams) {
     if (beam.object >= now.keys.size()) throw std::logic_error("a beam of no object");
   }
   for (const interop::LivePose& at : live.poses(time_s + 5)) {
-    if (!(std::abs(at.pose.latitude_deg) <= 90) || !std::isfinite(at.pose.height_msl_m))
-      throw std::logic_error("a pose that is nowhere");
+    const std::string fault = scenario::poseFault(
+        scenario::positionMsl(at.pose.latitude_deg, at.pose.longitude_deg, at.pose.height_msl_m),
+        {at.pose.heading_deg, at.pose.pitch_deg, at.pose.roll_deg});
+    if (!fault.empty()) throw std::logic_error("a pose that cannot be shown: " + fault);
   }
   checkFuzzMessage(live.counts().first_bad);
   live.expire(time_s + 20);

@@ -107,6 +107,26 @@ TEST(LiveDis, MovementsDoNotChangeTheRevisionAndOtherChangesDo) {
   EXPECT_TRUE(changes([&] { stream.send(9, destroyed); }));
 }
 
+TEST(LiveDis, PositionsOutsideOfTheLimitsAreCountedAndNotUsed) {
+  Stream stream;
+  const auto stateAt = [](int entity, double height_m) {
+    dis::EntityState state = stateOf(entity);
+    state.position_m = toEcef({0, 5, height_m});
+    return state;
+  };
+  stream.send(1, stateAt(1, 35786000));
+  stream.send(1, stateAt(2, 500));
+  EXPECT_EQ(stream.live.counts().outside, 1);
+  EXPECT_EQ(stream.live.objectCount(), 1u);
+  EXPECT_THAT(stream.live.recording(1).recording.objects, SizeIs(1));
+  stream.send(2, stateAt(1, 90000));
+  EXPECT_EQ(stream.live.objectCount(), 2u) << "it has come down";
+  dis::EntityState climbs = stateAt(2, 99000);
+  climbs.velocity_mps = {5000, 0, 0};
+  stream.send(3, climbs);
+  for (const LivePose& at : stream.live.poses(5)) EXPECT_LE(at.pose.height_msl_m, 100000);
+}
+
 TEST(LiveDis, WhatIsNotUpdatedIsForgotten) {
   Stream stream;
   stream.send(0, stateOf(1));
@@ -179,7 +199,8 @@ void feed(LiveState& live, const std::string& text, std::size_t piece = 7) {
     const std::string part = text.substr(at, piece);
     live.take(reinterpret_cast<const std::uint8_t*>(part.data()), part.size(), 0);
   }
-  live.expire(0);
+  static double time_s = 0;
+  live.expire(time_s += 1);
 }
 
 const char* const kAcmiHeader =
@@ -212,7 +233,52 @@ TEST(LiveAcmi, AStreamThatLiesIsCountedAndItsMemoryIsBounded) {
   feed(live, many, 1000);
   EXPECT_EQ(live.objectCount(), LiveLimits::kObjects);
   feed(live, std::string(3 << 20, 'x') + "\n1,T=nonsense\nno id\n", 1 << 16);
-  EXPECT_GE(live.counts().bad, 2);
+  EXPECT_EQ(live.counts().bad, 3) << "a line that is too long, a place, an id";
+}
+
+TEST(LiveAcmi, WhatIsTakenIsThereAtOnceAndMeasuredAgainAFifthOfASecondLater) {
+  LiveAcmi live;
+  feed(live, std::string(kAcmiHeader) + "a,T=5|52|0,Type=Sea,Name=Boat\n");
+  const auto takeAt = [&live](double time_s, const std::string& text) {
+    live.take(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), time_s);
+    live.expire(time_s);
+  };
+  takeAt(1000, "b,T=5.1|52|0,Type=Sea,Name=Second\n");
+  EXPECT_EQ(live.objectCount(), 2u);
+  takeAt(1000.05, "a,T=6||\nc,T=5.2|52|0,Type=Sea,Name=Third\n");
+  EXPECT_EQ(live.objectCount(), 2u);
+  EXPECT_THAT(live.poses(0), testing::Contains(testing::Truly([](const LivePose& at) {
+                return at.key == 0xa && at.pose.longitude_deg == 6;
+              })));
+  live.expire(1000.3);
+  EXPECT_EQ(live.objectCount(), 3u);
+}
+
+TEST(LiveAcmi, AnglesBeyondATurnAreDirectionsWithinIt) {
+  LiveAcmi live;
+  feed(live, std::string(kAcmiHeader) + "a,T=5|52|3000|-725|3|400,Type=Air,Name=F-14B\n");
+  for (const PoseSample& pose :
+       {live.poses(0).at(0).pose, live.recording(0).recording.objects.at(0).poses.at(0)}) {
+    EXPECT_NEAR(pose.heading_deg, 40, 1e-9);
+    EXPECT_NEAR(pose.roll_deg, -5, 1e-9);
+  }
+}
+
+TEST(LiveAcmi, APositionBeyondThePoleIsCountedOnce) {
+  LiveAcmi live;
+  feed(live, std::string(kAcmiHeader) + "0,ReferenceLatitude=50\na,T=5|2|0,Name=Boat\na,T=5|60|0\n");
+  feed(live, "b,T=5|1|0,Name=Second\n");
+  EXPECT_EQ(live.counts().bad, 1);
+  EXPECT_THAT(live.counts().first_bad, HasSubstr("ReferenceLatitude"));
+  for (const LivePose& at : live.poses(0)) EXPECT_LE(at.pose.latitude_deg, 52);
+  EXPECT_EQ(live.objectCount(), 2u) << "the position before it stays";
+}
+
+TEST(LiveAcmi, JoinedLinesAreOneRecord) {
+  LiveAcmi live;
+  feed(live, std::string(kAcmiHeader) + "a,T=5|52|0,Label=two\\\nlines,Name=Boat\r\n");
+  EXPECT_EQ(live.counts().bad, 0);
+  EXPECT_EQ(live.recording(0).recording.objects.at(0).name, "Boat");
 }
 
 std::string cotOf(const std::string& uid, const std::string& type, int time_s, int life_s,

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "recording/dis/datagrams.h"
-#include "recording/dis/pdu.h"
 #include "recording/common/byte_source.h"
 #include "recording/common/recording.h"
+#include "recording/dis/datagrams.h"
+#include "recording/dis/pdu.h"
 
 namespace {
 

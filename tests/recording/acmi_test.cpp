@@ -4,7 +4,9 @@
 
 #include <cmath>
 
+#include "recording/acmi/acmi_lines.h"
 #include "recording/acmi/acmi_reader.h"
+#include "recording/acmi/acmi_text.h"
 #include "recording/read_recording.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
@@ -250,6 +252,38 @@ TEST_F(AcmiSample, CutAnywhereItIsReadToTheCut) {
     EXPECT_EQ(r.tally.bad, 0) << r.tally.first_bad;
     EXPECT_EQ(r.objects.size(), 14u);
   }
+}
+
+/// The logical lines of physical ones.
+std::vector<std::string> joinedLines(AcmiLines& lines, const std::vector<std::string>& physical) {
+  std::vector<std::string> joined;
+  for (const std::string& line : physical) {
+    if (const auto logical = lines.take(line)) joined.emplace_back(*logical);
+  }
+  return joined;
+}
+
+TEST(AcmiLines, GoOnAfterABackslash) {
+  AcmiLines lines;
+  EXPECT_THAT(joinedLines(lines, {"#1", "a,Label=one\\", "two\\", "three,Name=F-16C", "", "#2"}),
+              testing::ElementsAre("#1", "a,Label=one\ntwo\nthree,Name=F-16C", "", "#2"));
+  EXPECT_EQ(lines.line(), 6);
+  EXPECT_EQ(physicalAcmi("a,Label=one\ntwo"), "a,Label=one\\\ntwo");
+}
+
+TEST(AcmiLines, TooLongOnesAreLeftOutWholeAndCounted) {
+  AcmiLines lines;
+  const std::string half(600000, 'x');
+  EXPECT_THAT(joinedLines(lines, {half + "\\", half + "\\", "the end of it", "#1"}),
+              testing::ElementsAre("#1"));
+  EXPECT_EQ(lines.tooLong(), 1);
+  EXPECT_FALSE(lines.take("cut", true));
+  EXPECT_EQ(lines.tooLong(), 2);
+}
+
+TEST(AcmiText, TimesOfFramesAreFiniteNumbersWithinATrack) {
+  EXPECT_EQ(acmiFrame_s("#12.5"), 12.5);
+  for (const char* text : {"#nan", "#inf", "#9e9", "#", "12", "#1x"}) EXPECT_FALSE(acmiFrame_s(text)) << text;
 }
 
 }  // namespace

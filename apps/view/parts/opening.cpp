@@ -65,7 +65,6 @@ Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
     request.file = importRecordingFile(request.file, opening.note);
   opening.options = present;
   ViewOptions& options = opening.options;
-  if (request.file != present.view.input) options.stream.reset();
   using playback::JsonContent;
   switch (playback::jsonContentOf(request.file)) {
     case JsonContent::transfer:
@@ -100,6 +99,7 @@ Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
       options.offers_kept_view = !request.view;
       break;
   }
+  if (options.view.input != present.view.input) options.stream.reset();
   options.view.transfer_file.clear();
   options.unsaved_edits = request.unsaved_edits;
   playback::addOwnScenario(options.view);

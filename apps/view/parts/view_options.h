@@ -26,6 +26,10 @@ struct ViewOptions {
   /// A battlefield that another program streams, of which `view` shows the scenario; null: none.
   std::shared_ptr<playback::LiveBattlefield> stream;
   std::optional<playback::StreamRequest> stream_request;  ///< of the command line
+  /// The user's file of which a stream's scenario was made, in whose folder outputs are written; else empty.
+  std::string stream_base;
+  /// The file whose name and folder those of outputs follow.
+  const std::string& namesake() const { return stream ? stream_base : view.input; }
   std::string script, log;
   bool share_gpu =
       true;  ///< busy pictures are passed from CUDA to OpenGL on the GPU if both use the same one

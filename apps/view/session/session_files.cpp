@@ -25,7 +25,7 @@ void Session::requireInput() const {
 }
 
 void Session::browse(FileBrowser::Purpose purpose, const std::string& proposed) {
-  files_->browser.open(purpose, std::filesystem::path(options_.view.input).parent_path(), proposed);
+  files_->browser.open(purpose, std::filesystem::path(options_.namesake()).parent_path(), proposed);
   panels.open = true;
 }
 
@@ -89,7 +89,7 @@ bool Session::working() const {
 }
 
 std::string Session::usualScenarioFile() const {
-  const std::filesystem::path input(scenario()->file);
+  const std::filesystem::path input(options_.stream ? options_.namesake() : scenario()->file);
   return (input.parent_path() / (input.stem().string() + ".edited" + input.extension().string())).string();
 }
 
@@ -135,6 +135,7 @@ void Session::keepEdits(double now_s) {
 }
 
 void Session::keepView() {
+  if (options_.stream) return;  // no other run has its scenario
   has_kept_ = true;
   kept_view_.reset();  // replaced
   jobs_.run([this, autosaves = files_->autosaves, input = options_.view.input,
