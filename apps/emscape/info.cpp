@@ -260,7 +260,8 @@ double twelveDigits(double value) {
 }
 
 Json describeElevation(const std::string& file) {
-  const scenario::TerrainFileInfo info = scenario::Terrain::describe(file);
+  scenario::TerrainFileInfo info = scenario::Terrain::describe(file);
+  info.notes.insert(info.notes.end(), info.warnings.begin(), info.warnings.end());
   return {{"kind", "elevation"},
           {"file", file},
           {"format", info.format},
@@ -268,6 +269,8 @@ Json describeElevation(const std::string& file) {
           {"columns", info.columns},
           {"rows", info.rows},
           {"box", toJson(info.box)},
+          {"vertical_datum", info.vertical_datum},
+          {"height_unit", info.height_unit},
           {"post_spacing_lat_deg", twelveDigits(info.post_spacing_lat_deg)},
           {"post_spacing_lon_deg", twelveDigits(info.post_spacing_lon_deg)},
           {"lowest_m", info.lowest_m},
@@ -405,7 +408,8 @@ void addInfo(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->footer(R"(
 Scenarios: .yaml .yml .json. Volumes: .vdb .nvdb .vti .raw .dat; fields on tetrahedra: .vtu; series:
 .pvd or a folder (its first step is described).
-Elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt. Antennas: .msi .pln .csv.
+Elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip and .gz; `terrain` describes several
+files and folders. Antennas: .msi .pln .csv.
 Refractivity: .csv with a column height_msl_m; soundings of IGRA 2 and the University of Wyoming (any ending; the last is described). Each duct is given with
 its heights, its strength, the largest trapped angle, the number of modes at 1, 3 and 10 GHz (of a scenario, at the frequencies of
 its emitters), and the frequency from which it traps.

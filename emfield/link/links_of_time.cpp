@@ -73,11 +73,14 @@ double dbm(double power_w) {
 }
 
 /// Fills the columns of a row that describe its path.
-void fillPath(PathRow& row, const Emitter& emitter, const PathBudget* budget) {
+/// @param unknown  the path crosses missing terrain
+void fillPath(PathRow& row, const Emitter& emitter, const PathBudget* budget, bool unknown) {
   row.has_path = budget != nullptr;
   if (budget == nullptr) {
-    row.power_density_dbwm2 = -HUGE_VAL;
-    row.verdict = row.path = fmt::format("No path: '{}' is straight above or below.", emitter.name);
+    row.power_density_dbwm2 = unknown ? std::nan("") : -HUGE_VAL;
+    row.verdict = row.path =
+        unknown ? std::string("Unknown: terrain is missing on the path.")
+                : fmt::format("No path: '{}' is straight above or below.", emitter.name);
     return;
   }
   row.active = budget->active;
@@ -96,6 +99,11 @@ void keepWarnings(std::vector<std::string>& all, const std::string& from, const 
     const std::string line = fmt::format("'{}' to '{}': {}", from, to, warning);
     if (std::find(all.begin(), all.end(), line) == all.end() && all.size() < 50) all.push_back(line);
   }
+}
+
+/// True for an error of missing terrain that the scenario allows.
+bool isUnknown(const Scenario& scenario, const Error& error) {
+  return error.hint() == Hint::allow_missing_terrain && scenario::mayLackTerrain(scenario, false);
 }
 
 /// Adds the ends and the time to an error of a path.
@@ -141,7 +149,7 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
   const scenario::ReceiverState& state = snapshot.receivers[receiver_];
   const EmitterState& from = snapshot.emitters[emitter];
   Wave& wave = waves_[emitter];
-  wave.is_present = false;
+  wave.is_present = wave.is_unknown = false;
   if (isAbove(from.position, state.position)) {
     wave.budget.reset();
     return;
@@ -150,6 +158,9 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
     wave.budget = std::make_unique<PathBudget>(powerBudget(
         snapshot, emitter, {state.position, state.height_msl_m}, wave.model, terrain, wave.budget.get()));
   } catch (const Error& error) {
+    wave.budget.reset();
+    wave.is_unknown = isUnknown(scenario, error);
+    if (wave.is_unknown) return;
     refuse(scenario.emitters[emitter].name, own.name, snapshot.time_s, error);
   }
   keepWarnings(warnings, scenario.emitters[emitter].name, own.name, *wave.budget);
@@ -212,7 +223,7 @@ void ReceiverListener::add(const scenario::Snapshot& snapshot, const scenario::T
     const double signal_w = powers_w[static_cast<std::size_t>(link.emitter)];
     LinkRow row;
     row.time_s = snapshot.time_s;
-    fillPath(row, wanted, wave.budget.get());
+    fillPath(row, wanted, wave.budget.get(), wave.is_unknown);
     row.active = snapshot.emitters[link.emitter].active;
     row.received_power_dbm = dbm(signal_w);
     row.interference_dbm = dbm(interference_w);
@@ -281,6 +292,7 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
   if (radar.clutter)
     row.radial_speed_mps = radialSpeed_mps(snapshot, detection.radar, target.platform, terrain);
 
+  bool is_unknown = false;
   std::optional<PathBudget> budget;
   if (!isAbove(radar_state.position, carrier.position)) {
     std::unique_ptr<TargetScene> scene = scenes.take(snapshot);
@@ -292,13 +304,14 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
       budget = pathBudget(scene->snapshot, detection.radar, {carrier.position, carrier.height_msl_m}, model_,
                           terrain);
     } catch (const Error& error) {
-      refuse(radar.name, target.name, snapshot.time_s, error);
+      is_unknown = isUnknown(*snapshot.scenario, error);
+      if (!is_unknown) refuse(radar.name, target.name, snapshot.time_s, error);
     }
     with_target = radar;
     scenes.giveBack(std::move(scene));
-    keepWarnings(warnings, radar.name, target.name, *budget);
+    if (budget) keepWarnings(warnings, radar.name, target.name, *budget);
   }
-  fillPath(row, radar, budget ? &*budget : nullptr);
+  fillPath(row, radar, budget ? &*budget : nullptr, is_unknown);
   row.look_pattern_db = budget ? budget->look_pattern_db.value_or(row.pattern_db) : 0;
   const auto valueOr = [&](const char* key, double otherwise) {
     const BudgetTerm* const term = budget ? budget->find(key) : nullptr;

@@ -32,6 +32,7 @@ struct NamedFiles {
       refractivity;                        ///< by name and sounding's time
   document::DocumentNodePtr terrain_node;  ///< null without terrain
   std::string terrain_digest;              ///< names and sizes of the elevation files
+  std::vector<std::vector<std::string>> terrain_files;  ///< that each item of terrain.files stands for
 };
 
 /// An applied edit.

@@ -30,6 +30,7 @@ struct Patch {
 struct LatticeGroup {
   PostLattice lattice;
   std::string plane;
+  VerticalDatum datum;
   std::vector<PlacedTile> tiles;
 };
 
@@ -44,7 +45,7 @@ bool coincide(double first, double last, int count) {
 bool fits(const RasterTile& tile, const LatticeGroup& group) {
   const int columns = tile.file->columns(), rows = tile.file->rows();
   const PostLattice& own = tile.lattice;
-  return tile.file->planeName() == group.plane &&
+  return tile.file->planeName() == group.plane && tile.file->meaning().datum == group.datum &&
          coincide(group.lattice.column(own.x(0)), group.lattice.column(own.x(columns - 1)), columns) &&
          coincide(group.lattice.row(own.y(0)), group.lattice.row(own.y(rows - 1)), rows);
 }
@@ -55,7 +56,7 @@ std::vector<LatticeGroup> groupByLattice(const std::vector<RasterTile>& tiles) {
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const LatticeGroup& candidate) { return fits(tile, candidate); });
     if (group == groups.end()) {
-      groups.push_back({tile.lattice, tile.file->planeName(), {}});
+      groups.push_back({tile.lattice, tile.file->planeName(), tile.file->meaning().datum, {}});
       group = groups.end() - 1;
     }
     const PostWindow& window = tile.window;
@@ -138,6 +139,7 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
         sheet.heights_m[post] = heights_m[column];
       }
     });
+    file.release();
     for (const FillValues::Found& fill : fills.found()) {
       sheet.fills.push_back({placed.tile->file, fill});
       for (long long row = 0; row < placed.tile->window.rows; ++row) {
