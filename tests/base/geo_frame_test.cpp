@@ -6,7 +6,6 @@
 #include <cmath>
 #include <random>
 
-#include "base/geodesy/gdal.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "tests/support/errors.h"
@@ -114,26 +113,6 @@ TEST(Geodesy, GeodesicsOfKnownLength) {
   const GeodeticPosition end = geodesicDirect(0, 179.5, kPi / 2, kSemiMajor_m * kPi / 180);
   EXPECT_NEAR(end.longitude_deg, -179.5, 1e-9);
   EXPECT_EQ(end.height_ellipsoid_m, 0);
-}
-
-TEST(FrameWkt, ProjectsAsTheFrame) {
-  for (const FrameKind kind : {FrameKind::altitude, FrameKind::enu}) {
-    SCOPED_TRACE(toString(kind));
-    const FrameOrigin origin{kind, -33.25, 179.9, 750};
-    const gdal::SpatialReference local(OSRNewSpatialReference(wktOf(origin).c_str())),
-        earth(OSRNewSpatialReference(nullptr));
-    ASSERT_NE(local, nullptr);
-    ASSERT_EQ(OSRImportFromEPSG(earth.get(), 4979), OGRERR_NONE);
-    OSRSetAxisMappingStrategy(earth.get(), OAMS_TRADITIONAL_GIS_ORDER);
-    const gdal::Transformation transformation(OCTNewCoordinateTransformation(earth.get(), local.get()));
-    ASSERT_NE(transformation, nullptr);
-    double x = -179.8, y = -33.1, z = 4000;
-    ASSERT_TRUE(OCTTransform(transformation.get(), 1, &x, &y, &z));
-    const Vec3d expected = GeoFrame(origin).toLocal({-33.1, -179.8, 4000});
-    EXPECT_NEAR(x, expected.x, 1e-3);
-    EXPECT_NEAR(y, expected.y, 1e-3);
-    if (kind == FrameKind::enu) EXPECT_NEAR(z, expected.z, 1e-3);  // heights above EGM96 need PROJ's grid
-  }
 }
 
 TEST(FrameWkt, RefusesAnOriginThatIsNotOnTheEarth) {
