@@ -184,6 +184,12 @@ void addValues(Json& json, const volume::VolumeInfo& info, const volume::Statist
   json["mean"] = statistics.mean;
 }
 
+/// What places the values on the earth, as in the files.
+void addPlace(Json& json, bool georeferenced, const FrameOrigin& frame) {
+  if (!georeferenced) return;
+  for (const auto& [key, text] : volume::standardWords(georeferenced, frame)) json[key] = text;
+}
+
 Json extraOf(const volume::VolumeInfo& info) {
   Json extra = Json::object();
   for (const auto& [key, value] : info.extra) extra[key] = value;
@@ -198,6 +204,7 @@ Json describeVolume(const volume::DenseVolume& volume) {
             {"spacing_m", toJson(volume.grid.spacing_m)},
             {"first_center_m", toJson(volume.grid.first_center_m)},
             {"frame", volume.grid.georeferenced ? toJson(volume.grid.frame) : Json(nullptr)}};
+  addPlace(json, volume.grid.georeferenced, volume.grid.frame);
   addValues(json, volume.info, statistics);
   json["voxels"] = statistics.voxels;
   json["masked_voxels"] = statistics.masked;
@@ -241,6 +248,7 @@ Json describeMeshFiles(const std::string& path) {
             {"lower_m", toJson(bounds.lower_m)},
             {"upper_m", toJson(bounds.upper_m)},
             {"frame", file.mesh->georeferenced ? toJson(file.mesh->frame) : Json(nullptr)}};
+  addPlace(json, file.mesh->georeferenced, file.mesh->frame);
   for (const playback::VolumeFile& step : files) json["times_s"].push_back(step.time_s);
   for (volume::MeshField& field : file.fields) {
     if (!field.info.has_time) field.info.time_s = files.front().time_s;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "emfield/channels/categories.h"
 #include "emfield/excess/emitter_excess.h"
@@ -285,6 +286,10 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   }
   out.extra["scenario"] = setup.scenario->name;
   out.extra["scenario_hash"] = setup.scenario->hash;
+  out.extra["program"] = "emscape " EMSCAPE_VERSION;
+  std::set<std::string> models;
+  for (int e : channel.emitters) models.insert(toString(setup.scenario->emitters[e].propagation.model));
+  out.extra["models"] = fmt::format("{}", fmt::join(models, ", "));
   std::string near_field;
   for (int e : channel.emitters) {
     if (!emitters[e].state.active) continue;
