@@ -108,7 +108,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     drawCompass(canvas, style, projector.camera, center, kCompassRadius * style.unit);
     taken.push_back({center.x - reach / 2, center.y - reach / 2, reach, reach});
   }
-  drawPlanes(canvas, style, projector, annotations.planes, taken);
+  drawPlanes(canvas, style, projector, annotations, taken);
   if (annotations.legend) {
     const double width = legendWidth(style, *annotations.legend);
     taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
