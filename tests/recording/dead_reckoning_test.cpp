@@ -145,8 +145,7 @@ double medianError_m(const std::string& name) {
 }
 
 TEST(DeadReckoning, PredictsTheNextStateOfRecordings) {
-  if (!test::referenceFile("interop/dis/kdis_log1.log"))
-    GTEST_SKIP() << test::notInRepository("interop/dis");
+  if (!test::referenceFile("interop/dis/kdis_log1.log")) GTEST_SKIP() << test::notInRepository("interop/dis");
   EXPECT_LE(medianError_m("kdis_log1.log"), 0.245);
   EXPECT_LE(medianError_m("kdis_log2.log"), 0.365);
   EXPECT_LE(medianError_m("disco_dislocator-test.session"), 0.295);

@@ -270,8 +270,7 @@ TEST(DisRecorder, SeveralPdusOfADatagramAreTakenAndBadOnesCounted) {
 }
 
 TEST(DisRecordings, PublicLogsHaveTheirEntities) {
-  if (!test::referenceFile("interop/dis/kdis_log1.log"))
-    GTEST_SKIP() << test::notInRepository("interop/dis");
+  if (!test::referenceFile("interop/dis/kdis_log1.log")) GTEST_SKIP() << test::notInRepository("interop/dis");
   const auto read = [](const std::string& name) {
     return readRecording(*test::referenceFile("interop/dis/" + name));
   };

@@ -152,7 +152,7 @@ TEST_F(RecordedTrack, AnEditReadsAnotherObjectOfTheSameFile) {
   const ParseResult result = read("file: two.csv, object: a");
   ASSERT_TRUE(result.scenario);
   Scenario edited = *result.scenario;
-  edited.set("platforms.0.track.object", "b");
+  edited.set("platforms.a.track.object", "b");
   EXPECT_EQ(edited.platforms[0].track.at(0).position.height_msl_m, 20);
   edited.set("duration_s", "30");
   EXPECT_EQ(edited.platforms[0].track.at(0).position.height_msl_m, 20);
