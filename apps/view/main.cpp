@@ -40,13 +40,14 @@ void show(ViewOptions options) {
     if (playback::inputKindOf(options.view.input) != playback::InputKind::scenario)
       throw Error(ErrorCode::usage, options.view.input + ": the objects of a stream are added to a scenario");
     options.stream = std::make_shared<playback::LiveBattlefield>(*options.stream_request, nullptr);
-    options.stream_base = options.view.input;
+    options.made_of = options.view.input;
     options.view.input = options.stream->file();
     options.offers_kept_view = false;
   }
   std::string note;
   if (!options.view.input.empty() &&
       playback::inputKindOf(options.view.input) == playback::InputKind::recording) {
+    options.made_of = options.view.input;
     options.view.input = importRecordingFile(options.view.input, note);
     logInfo(note);
   }

@@ -47,13 +47,6 @@ std::size_t structureOf(const Recording& recording) {
   return hash;
 }
 
-/// With angles within a turn: streams count on.
-PoseSample wrapped(PoseSample pose) {
-  pose.heading_deg = std::remainder(pose.heading_deg, 360);
-  pose.roll_deg = std::remainder(pose.roll_deg, 360);
-  return pose;
-}
-
 }  // namespace
 
 void LiveAcmi::take(const std::uint8_t* bytes, std::size_t size, double) {
@@ -109,7 +102,7 @@ void LiveAcmi::note() {
     if (latest_.objects[i].poses.empty()) continue;
     kept_as[i] = objects.size();
     objects.push_back(std::move(latest_.objects[i]));
-    objects.back().poses = {wrapped(objects.back().poses.back())};
+    objects.back().poses = {withAnglesInRange(objects.back().poses.back())};
     objects.back().poses.front().t_s = 0;
     const auto& presence = objects.back().presence;
     const bool is_present = presence.empty() || presence.back().is_present;
@@ -143,7 +136,7 @@ LiveRecording LiveAcmi::recording(double) {
 std::vector<LivePose> LiveAcmi::poses(double) const {
   std::vector<LivePose> poses;
   for (const auto& [id, latest] : reader_.latestPoses()) {
-    PoseSample pose = wrapped(latest);
+    PoseSample pose = withAnglesInRange(latest);
     if (std::isnan(pose.heading_deg)) pose.heading_deg = pose.pitch_deg = pose.roll_deg = 0;
     poses.push_back({id, pose});
   }

@@ -149,7 +149,7 @@ std::vector<LivePose> LiveCot::poses(double) const {
   std::vector<LivePose> poses;
   for (const auto& [key, kept] : by_key_) {
     if (!kept->event.hasPlace()) continue;
-    poses.push_back({key, kept->event.pose});
+    poses.push_back({key, withAnglesInRange(kept->event.pose)});
     PoseSample& pose = poses.back().pose;
     pose.t_s = 0;
     pose.longitude_deg = std::remainder(pose.longitude_deg, 360);

@@ -1,6 +1,8 @@
 /// What a stream of another program tells of a battlefield now.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -30,6 +32,14 @@ struct LivePose {
   std::uint64_t key = 0;  ///< of the object
   PoseSample pose;
 };
+
+/// With angles in the range of a scenario's: streams may count on. Unknown angles stay unknown.
+inline PoseSample withAnglesInRange(PoseSample pose) {
+  pose.heading_deg = std::remainder(pose.heading_deg, 360);
+  pose.pitch_deg = std::clamp(pose.pitch_deg, -90.0, 90.0);
+  pose.roll_deg = std::remainder(pose.roll_deg, 360);
+  return pose;
+}
 
 /// The objects now, each with one pose, and their beams, each with one state, at t = 0.
 struct LiveRecording {

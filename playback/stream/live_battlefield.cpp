@@ -203,7 +203,7 @@ struct LiveBattlefield::Impl {
     const double time_s = told_s = steadyTime_s();
     std::unique_lock<std::mutex> lock(mutex);
     const std::shared_ptr<const LiveScenario> of = scenario;
-    std::vector<NamedPose> moved = *poses;
+    const NamedPosesPtr before = poses;
     const bool is_of_state = scenario_generation == generation;
     lock.unlock();
     std::vector<interop::LivePose> live;
@@ -229,7 +229,9 @@ struct LiveBattlefield::Impl {
     now.outside = counts.outside;
     now.forgotten = counts.forgotten;
     if (datagrams) now.lost = static_cast<long long>(datagrams->lost());
+    std::vector<NamedPose> moved = *before;
     movePoses(*of, live, moved);
+    const bool has_moved = hasMoved(*before, moved);
     lock.lock();
     if (now.lost != told.lost) lost_at_s = time_s;
     told = now;
@@ -238,7 +240,7 @@ struct LiveBattlefield::Impl {
     first_bad = counts.first_bad;
     recording_trouble = failure;
     if (datagrams) connection_trouble = datagrams->failure();
-    is_moving = of == scenario && hasMoved(*poses, moved);
+    is_moving = has_moved && poses == before;  // else another scenario has come
     if (is_moving) poses = std::make_shared<const std::vector<NamedPose>>(std::move(moved));
     lock.unlock();
     if (std::exchange(is_due, false)) tell();
@@ -430,7 +432,7 @@ std::shared_ptr<void> LiveBattlefield::setWake(std::function<void()> wake) {
   impl_->wake = std::move(wake);
   const long long number = ++impl_->wake_number;
   return {nullptr, [impl = impl_.get(), number](void*) {
-            const std::lock_guard<std::mutex> lock(impl->wake_mutex);
+            const std::lock_guard<std::mutex> ending(impl->wake_mutex);
             if (impl->wake_number == number) impl->wake = {};
           }};
 }

@@ -16,6 +16,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "interop/emitters/emitter_database.h"
 #include "recording/dis/pdu.h"
+#include "scenario/model/posed_platform.h"
 
 namespace emscape::playback {
 namespace {

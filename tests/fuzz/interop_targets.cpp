@@ -17,6 +17,7 @@
 #include "recording/dis/datagrams.h"
 #include "recording/dis/dis_recorder.h"
 #include "recording/read_recording.h"
+#include "scenario/model/posed_platform.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"

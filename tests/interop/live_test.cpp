@@ -194,13 +194,12 @@ TEST(LiveDis, AHostileStreamIsCountedAndItsMemoryIsBounded) {
 }
 
 /// Feeds a text in pieces.
-void feed(LiveState& live, const std::string& text, std::size_t piece = 7) {
+void feed(LiveState& live, const std::string& text, std::size_t piece = 7, double time_s = 0) {
   for (std::size_t at = 0; at < text.size(); at += piece) {
     const std::string part = text.substr(at, piece);
     live.take(reinterpret_cast<const std::uint8_t*>(part.data()), part.size(), 0);
   }
-  static double time_s = 0;
-  live.expire(time_s += 1);
+  live.expire(time_s);
 }
 
 const char* const kAcmiHeader =
@@ -215,11 +214,11 @@ TEST(LiveAcmi, ObjectsAreWhereTheyWereToldLastUntilTheyAreRemoved) {
            "RadarHorizontalBeamwidth=3\nb,T=0.2|52|0,Type=Sea+Watercraft,Name=Boat\n");
   EXPECT_EQ(live.objectCount(), 2u);
   const long long revision = live.revision();
-  feed(live, "#2\na,T=0.15|\n");
+  feed(live, "#2\na,T=0.15|\n", 7, 1);
   EXPECT_EQ(live.revision(), revision);
   EXPECT_NEAR(live.poses(0).at(0).pose.longitude_deg, 5.15, 1e-9);
   EXPECT_THAT(live.recording(0).recording.beams, SizeIs(1));
-  feed(live, "-b\n");
+  feed(live, "-b\n", 7, 2);
   EXPECT_NE(live.revision(), revision);
   EXPECT_EQ(live.objectCount(), 1u);
 }
@@ -230,9 +229,9 @@ TEST(LiveAcmi, AStreamThatLiesIsCountedAndItsMemoryIsBounded) {
   std::string many;
   for (int id = 1; id <= 20000; ++id)
     many += "#" + std::to_string(id) + "\n" + std::to_string(id) + ",T=5|52|0\n";
-  feed(live, many, 1000);
+  feed(live, many, 1000, 1);
   EXPECT_EQ(live.objectCount(), LiveLimits::kObjects);
-  feed(live, std::string(3 << 20, 'x') + "\n1,T=nonsense\nno id\n", 1 << 16);
+  feed(live, std::string(3 << 20, 'x') + "\n1,T=nonsense\nno id\n", 1 << 16, 2);
   EXPECT_EQ(live.counts().bad, 3) << "a line that is too long, a place, an id";
 }
 
@@ -266,8 +265,8 @@ TEST(LiveAcmi, AnglesBeyondATurnAreDirectionsWithinIt) {
 
 TEST(LiveAcmi, APositionBeyondThePoleIsCountedOnce) {
   LiveAcmi live;
-  feed(live, std::string(kAcmiHeader) + "0,ReferenceLatitude=50\na,T=5|2|0,Name=Boat\na,T=5|60|0\n");
-  feed(live, "b,T=5|1|0,Name=Second\n");
+  feed(live, std::string(kAcmiHeader) + "0,ReferenceLatitude=50\n#1\na,T=5|2|0,Name=Boat\n#2\na,T=5|60|0\n");
+  feed(live, "b,T=5|1|0,Name=Second\n", 7, 1);
   EXPECT_EQ(live.counts().bad, 1);
   EXPECT_THAT(live.counts().first_bad, HasSubstr("ReferenceLatitude"));
   for (const LivePose& at : live.poses(0)) EXPECT_LE(at.pose.latitude_deg, 52);

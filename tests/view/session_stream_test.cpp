@@ -33,7 +33,7 @@ class StreamTest : public testing::Test {
   ViewOptions options() {
     ViewOptions options = optionsFor(stream_->file(), {160, 120});
     options.stream = stream_;
-    options.stream_base = base_;
+    options.made_of = base_;
     return options;
   }
   void send(double latitude_deg, double longitude_deg) {
@@ -139,26 +139,28 @@ TEST_F(StreamTest, ThePlatformsMoveWhateverTheUserEdits) {
 }
 
 TEST_F(StreamTest, OutputsWithoutANameAreBesideTheBaseAndStay) {
+  const std::string home = std::getenv("HOME") == nullptr ? "" : std::getenv("HOME");
+  setenv("HOME", folder_.path().c_str(), 1);  // without Pictures
   {
     SessionSample session(options());
     session.settle();
     EXPECT_EQ(session->usualScenarioFile(), folder_ / "base.edited.yaml");
     EXPECT_EQ(session->usualColorsFile(), folder_ / "base.transfer.json");
     EXPECT_EQ(session.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"3"})"), "");
-    setenv("HOME", folder_.path().c_str(), 1);  // without Pictures
     for (const char* verb : {"save", "save_state", "save_transfer", "picture"}) {
       session.settle();
       EXPECT_EQ(session.perform(std::string(R"({"do":")") + verb + R"("})"), "") << verb;
       session.waitUntil([&] { return !session->working(); });
     }
   }
+  setenv("HOME", home.c_str(), 1);
   stream_.reset();
   for (const char* file : {"base.edited.yaml", "base.view.json", "base.transfer.json", "emscape-0001.png"})
     EXPECT_TRUE(std::filesystem::exists(folder_ / file)) << file;
 }
 
 TEST_F(StreamTest, AViewFileKeepsTheStreamAndAnotherInputEndsItWithItsRecording) {
-  const std::string view = folder_.write("a.view.json", "{}");
+  const std::string view = folder_ / "a.view.json";
   playback::StreamRequest recorded = request();
   recorded.record = folder_ / "seen.pcap";
   stream_ = std::make_shared<playback::LiveBattlefield>(recorded, nullptr);
@@ -175,6 +177,8 @@ TEST_F(StreamTest, AViewFileKeepsTheStreamAndAnotherInputEndsItWithItsRecording)
     EXPECT_EQ(session.error(), "");
   };
   session.settle();
+  session.perform(R"({"do":"save_state","file":")" + view + R"("})");
+  session.waitUntil([&] { return !session->working(); });
   open(view);
   EXPECT_NE(session->options().stream, nullptr);
   EXPECT_FALSE(std::filesystem::exists(recorded.record));
@@ -188,6 +192,7 @@ TEST(AcmiStream, TheCameraFollowsAnObjectByItsNameWhenOthersComeAndGo) {
   const StateFolder folder;
   playback::StreamRequest request;
   request.kind = playback::StreamKind::acmi;
+  request.connects = true;
   request.address = {kLocal, emscape::test::freePort()};
   request.base = shippedScenario("quick.yaml");
   playback::AcmiServer host(request.address, "");
@@ -197,7 +202,7 @@ TEST(AcmiStream, TheCameraFollowsAnObjectByItsNameWhenOthersComeAndGo) {
   const auto stream = std::make_shared<playback::LiveBattlefield>(request, nullptr);
   ViewOptions options = optionsFor(stream->file(), {160, 120});
   options.stream = stream;
-  options.stream_base = request.base;
+  options.made_of = request.base;
   SessionSample session(options);
   const auto waitFor = [&](const char* name) {
     return session.waitUntil([&] {
@@ -225,6 +230,7 @@ TEST(Recordings, AreOpenedAsScenariosInTheFolderOfTheState) {
   EXPECT_EQ(std::filesystem::path(opening.options.view.input).filename(), "flight.yaml");
   EXPECT_THAT(opening.note, HasSubstr("flight.acmi: 1 platform, emitters of the starter set"));
   EXPECT_EQ(opening.options.view.input.find(folder.path().string()), 0u);
+  EXPECT_EQ(opening.options.namesake(), recording) << "outputs are beside it";
   folder.write("torn.acmi", "nothing of the kind\n");
   EXPECT_THAT(errorOf([&] {
                 prepareOpening({folder / "torn.acmi", "", std::nullopt, false}, {});

@@ -60,9 +60,12 @@ void checkInput(const ViewOptions& options, Opening& opening) {
 Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
   OpenRequest request = asked;
   Opening opening;
+  std::string made_of;
   if (playback::inputKindOf(request.file) ==
-      playback::InputKind::recording)  // throws if there is no such file
+      playback::InputKind::recording) {  // throws if there is no such file
+    made_of = request.file;
     request.file = importRecordingFile(request.file, opening.note);
+  }
   opening.options = present;
   ViewOptions& options = opening.options;
   using playback::JsonContent;
@@ -99,7 +102,10 @@ Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
       options.offers_kept_view = !request.view;
       break;
   }
-  if (options.view.input != present.view.input) options.stream.reset();
+  if (options.view.input != present.view.input) {
+    options.stream.reset();
+    options.made_of = made_of;
+  }
   options.view.transfer_file.clear();
   options.unsaved_edits = request.unsaved_edits;
   playback::addOwnScenario(options.view);

@@ -90,8 +90,9 @@ bool Session::working() const {
 }
 
 std::string Session::usualScenarioFile() const {
-  const std::filesystem::path input(options_.stream ? options_.namesake() : scenario()->file);
-  return (input.parent_path() / (input.stem().string() + ".edited" + input.extension().string())).string();
+  const std::filesystem::path scenario_file(scenario()->file);
+  return besideInput(options_.made_of.empty() ? scenario_file.string() : options_.made_of,
+                     ".edited" + scenario_file.extension().string());
 }
 
 void Session::saveScenario(const std::string& file) {

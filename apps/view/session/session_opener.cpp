@@ -108,6 +108,7 @@ bool SessionOpener::close(std::unique_ptr<Session>& session) {
   nothing.view.theme = session->theme();
   nothing.state.clear();
   nothing.stream.reset();
+  nothing.made_of.clear();
   session->leave(true);
   const std::string fault = endStream(*session, nothing);
   endBeside(std::move(session));

@@ -21,9 +21,6 @@ struct PlatformPose {
 SitePosition positionMsl(double latitude_deg, double longitude_deg, double height_msl_m);
 SitePosition positionAgl(double latitude_deg, double longitude_deg, double height_agl_m);
 
-/// What is out of its range in a pose, such as "heading 400; allowed: -360..360 deg"; empty: nothing.
-std::string poseFault(const SitePosition& position, const Attitude& attitude);
-
 /// Index of the platform with a name. @throws Error (bad_input) if there is none
 int platformNamed(const Scenario& scenario, const std::string& name);
 
