@@ -11,6 +11,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "report/maps/output_files.h"
 #include "report/maps/terrain_report.h"
+#include "study/picture/terrain_picture.h"
 
 namespace emscape::app {
 namespace {
@@ -51,7 +52,7 @@ int terrain(const TerrainCommand& command, const GlobalOptions& global) {
                                      : fmt::format("{} elevation files", result.files.size());
   }
   if (!command.picture.empty()) {
-    render::writePng(command.picture, report::drawTerrain(result, title, command.width));
+    render::writePng(command.picture, study::drawTerrain(result.files, *result.terrain, result.needed, title, command.width));
     logInfo("wrote " + command.picture);
   }
   if (global.json) {

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "emscape/render/picture/image.h"
 #include "emscape/scenario/model/scenario.h"
 #include "emscape/scenario/terrain/terrain.h"
+#include "report/json.h"
 
 namespace emscape::report {
 
@@ -23,9 +23,5 @@ TerrainReport terrainReport(const scenario::Scenario& scenario);
 
 Json toJson(const TerrainReport& report);
 std::string terrainText(const TerrainReport& report);
-
-/// The shaded ground, coloured by file, with voids and ground without a file.
-/// @param width  pixels
-render::Image8 drawTerrain(const TerrainReport& report, const std::string& title, int width);
 
 }  // namespace emscape::report

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "emscape/base/units.h"
 #include "emscape/scenario/terrain/terrain.h"
@@ -28,19 +27,17 @@ void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
   const long long rows = file.rows(), columns = file.columns();
   const bool is_partial = rows * columns > kMaxPosts;
   const int strips = is_partial ? kStrips : 1;
+  bool is_noted = false;
   const long long rows_of_strip = is_partial ? std::max(1LL, kMaxPosts / columns / kStrips) : rows;
   for (int strip = 0; strip < strips; ++strip) {
     const long long first_row = strip == 0 ? 0 : (rows - rows_of_strip) * strip / (strips - 1);
-    FillValues fills(columns);
-    // Heights that may be fill values count once they are known not to be.
-    std::map<float, long long> low_m;
+    FillValues fills(columns, file.meaning().unit_m);
     file.read({0, first_row, columns, rows_of_strip}, [&](long long, const float* heights_m) {
       fills.add(heights_m);
       int voids = 0;
       float lowest_m = HUGE_VALF, highest_m = -HUGE_VALF;
       for (long long column = 0; column < columns; ++column) {
         const float height_m = heights_m[column];  // NaN is neither smaller nor larger
-        if (height_m < FillValues::kBelow_m) ++low_m[height_m];
         lowest_m = height_m < lowest_m && height_m >= FillValues::kBelow_m ? height_m : lowest_m;
         highest_m = height_m > highest_m && height_m >= FillValues::kBelow_m ? height_m : highest_m;
         voids += std::isnan(height_m) ? 1 : 0;
@@ -50,14 +47,17 @@ void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
       info.lowest_m = std::fmin(info.lowest_m, lowest_m);
       info.highest_m = std::fmax(info.highest_m, highest_m);
     });
-    for (const FillValues::Found& fill : fills.found()) {
+    // Heights that may be fill values count once they are known not to be.
+    const FillValues::Result found = fills.result();
+    if (found.is_partial && !is_noted) info.warnings.emplace_back(kPartlySearched);
+    is_noted = is_noted || found.is_partial;
+    for (const FillValues::Found& fill : found.fills) {
       info.warnings.push_back(fillText(fill));
       info.void_posts += fill.posts;
-      low_m.erase(fill.height_m);
     }
-    if (!low_m.empty()) {
-      info.lowest_m = std::fmin(info.lowest_m, low_m.begin()->first);
-      info.highest_m = std::fmax(info.highest_m, low_m.rbegin()->first);
+    if (found.lowest_m <= found.highest_m) {
+      info.lowest_m = std::fmin(info.lowest_m, found.lowest_m);
+      info.highest_m = std::fmax(info.highest_m, found.highest_m);
     }
   }
   if (is_partial) {

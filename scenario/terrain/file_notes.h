@@ -27,6 +27,11 @@ class FileNotes {
 /// A fill value that a file does not declare.
 std::string fillText(const FillValues::Found& fill);
 
+/// FillValues::Result::is_partial.
+inline constexpr const char* kPartlySearched =
+    "has so many different heights below -500 m that only usual fill values (-9999, -10000, ...) were searched for; "
+    "others would be ground. gdal_translate -a_nodata VALUE makes a copy that declares them";
+
 /// True if nothing says what the heights of a file are above: the warning, and what follows if the assumed
 /// datum is wrong, in the middle of the file.
 bool isDatumAssumed(const TerrainFile& file);

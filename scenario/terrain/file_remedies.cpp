@@ -73,7 +73,7 @@ std::string remedyForPicture(int band, const std::string& colour, int bands) {
 std::string remedyForNoGeoreference(const ElevationSource& source) {
   return fmt::format("has no georeference: where its posts are on the earth is not known. gdal_translate -a_srs EPSG:4326 "
                      "-a_ullr WEST NORTH EAST SOUTH {} HEIGHTS.tif makes a copy that states it",
-                     shellWord(source.ownName()));
+                     shellWord(source.member.empty() ? source.file : source.member));
 }
 
 std::string remedyForNoSystem(const ElevationSource&) {

@@ -115,17 +115,22 @@ void Georeference::placeOnEarth(gdal::SpatialReference system, const std::string
   const gdal::SpatialReference wgs84(OSRNewSpatialReference(nullptr));
   OSRSetWellKnownGeogCS(wgs84.get(), "WGS84");
   OSRSetAxisMappingStrategy(wgs84.get(), OAMS_TRADITIONAL_GIS_ORDER);
-  to_wgs84_ = newTransformation(system_.get(), wgs84.get());
-  from_wgs84_ = newTransformation(wgs84.get(), system_.get());
-  if (!to_wgs84_ || !from_wgs84_) {
+  // Most files are of WGS84 itself; transformations take milliseconds to make.
+  const bool is_wgs84 = OSRIsSame(system_.get(), wgs84.get()) != 0;
+  if (!is_wgs84) {
+    to_wgs84_ = newTransformation(system_.get(), wgs84.get());
+    from_wgs84_ = newTransformation(wgs84.get(), system_.get());
+  }
+  if (!is_wgs84 && (!to_wgs84_ || !from_wgs84_)) {
     fail(messages.explain(std::string("its coordinate reference system '") + OSRGetName(system_.get()) +
                           "' cannot be brought to latitude and longitude"));
   }
   const double* g = pixel_to_system_;
   const double post = turned ? std::min(std::hypot(g[1], g[4]), std::hypot(g[2], g[5]))
                              : std::min(lattice.step_x, lattice.step_y);
-  line_transformer_.reset(
-      GDALCreateApproxTransformer(transformPoints, from_wgs84_.get(), kLineTolerance_posts * post));
+  if (from_wgs84_)
+    line_transformer_.reset(
+        GDALCreateApproxTransformer(transformPoints, from_wgs84_.get(), kLineTolerance_posts * post));
 
   is_geographic = OSRIsGeographic(system_.get()) && !turned && liesOnWgs84();
   if (is_geographic) {
@@ -156,7 +161,7 @@ bool Georeference::liesOnWgs84() const {
     }
   }
   std::vector<double> longitude = x, latitude = y;
-  transform(to_wgs84_, longitude, latitude);
+  if (to_wgs84_) transform(to_wgs84_, longitude, latitude);
   for (std::size_t k = 0; k < x.size(); ++k) {
     if (!(std::abs(wrapLongitude_deg(longitude[k] - x[k])) <= kSameDatum_posts * lattice.step_x &&
           std::abs(latitude[k] - y[k]) <= kSameDatum_posts * lattice.step_y)) {
@@ -195,15 +200,16 @@ void Georeference::planeOfSystem(std::vector<double>& x, std::vector<double>& y)
 
 void Georeference::toGeographic(std::vector<double>& x, std::vector<double>& y) const {
   systemOfPlane(x, y);
-  transform(to_wgs84_, x, y);
+  if (to_wgs84_) transform(to_wgs84_, x, y);
 }
 
 void Georeference::toPlane(std::vector<double>& x, std::vector<double>& y) const {
-  transform(from_wgs84_, x, y);
+  if (from_wgs84_) transform(from_wgs84_, x, y);
   planeOfSystem(x, y);
 }
 
 void Georeference::lineToPlane(std::vector<double>& x, std::vector<double>& y) const {
+  if (!line_transformer_) return toPlane(x, y);
   const GdalMessages quiet;
   std::vector<double> z(x.size(), 0.0);
   std::vector<int> done(x.size());

@@ -43,7 +43,7 @@ class Georeference {
   int columns_, rows_;
   double pixel_to_system_[6];
   gdal::SpatialReference system_;
-  gdal::Transformation to_wgs84_, from_wgs84_;
+  gdal::Transformation to_wgs84_, from_wgs84_;  ///< null: the system is WGS84
   gdal::Owned<GDALDestroyApproxTransformer> line_transformer_;
 };
 

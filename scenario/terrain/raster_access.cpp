@@ -138,7 +138,26 @@ std::string Sidecars::faultOf(const fs::path& raster) {
   return "";
 }
 
+namespace {
+
+/// An Erdas Imagine file may name others that hold its values.
+std::string faultOfNamedFiles(GDALDatasetH dataset) {
+  if (!EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(dataset)), "HFA")) return "";
+  const gdal::Owned<CSLDestroy> files(GDALGetFileList(dataset));
+  char** at = files.get();
+  if (at == nullptr || *at == nullptr) return "";
+  const fs::path folder = fs::path(*at).parent_path().lexically_normal();
+  for (; *at != nullptr; ++at) {
+    if (fs::path(*at).lexically_normal().parent_path() != folder)
+      return fmt::format("it names {}, which is not in its own folder", *at);
+  }
+  return "";
+}
+
+}  // namespace
+
 std::string faultOfDataset(GDALDatasetH dataset) {
+  if (std::string fault = faultOfNamedFiles(dataset); !fault.empty()) return fault;
   const char* const other_files[][2] = {{"OVERVIEW_FILE", "OVERVIEWS"}, {"FILENAME", "ProxyOverviewRequest"}};
   for (const auto& [key, domain] : other_files) {
     const char* const file = GDALGetMetadataItem(dataset, key, domain);

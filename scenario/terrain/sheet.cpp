@@ -129,7 +129,7 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
     sheet.is_area = sheet.is_area || file.isArea();
     const int first_column = static_cast<int>(placed.column_begin - patch.column_begin) + 1;
     const int first_row = static_cast<int>(placed.row_begin - patch.row_begin) + 1;
-    FillValues fills(placed.tile->window.columns);
+    FillValues fills(placed.tile->window.columns, file.meaning().unit_m);
     file.read(placed.tile->window, [&](long long row, const float* heights_m) {
       fills.add(heights_m);
       std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));
@@ -140,7 +140,9 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
       }
     });
     file.release();
-    for (const FillValues::Found& fill : fills.found()) {
+    const FillValues::Result found = fills.result();
+    if (found.is_partial) sheet.partly_searched.push_back(placed.tile->file);
+    for (const FillValues::Found& fill : found.fills) {
       sheet.fills.push_back({placed.tile->file, fill});
       for (long long row = 0; row < placed.tile->window.rows; ++row) {
         std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));

@@ -45,6 +45,7 @@ struct TerrainSheet {
     FillValues::Found value;
   };
   std::vector<Fill> fills;
+  std::vector<TerrainFilePtr> partly_searched;  ///< for fill values; see FillValues::Result
   double first_column, last_column, first_row, last_row;  ///< limits of lookups
 
   /// All posts absent.

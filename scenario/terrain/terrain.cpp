@@ -172,6 +172,7 @@ std::vector<TerrainSheet> sheetsWithin(FilesWithin& files, const GeoBox& box) {
   for (TerrainSheet& sheet : readSheets(files.tiles)) {
     for (const TerrainSheet::Fill& fill : sheet.fills)
       files.warnings.add(fill.file->name(), fillText(fill.value));
+    for (const TerrainFilePtr& file : sheet.partly_searched) files.warnings.add(file->name(), kPartlySearched);
     if (sheet.file->isGeographic()) {
       sheets.push_back(std::move(sheet));
     } else {

@@ -358,6 +358,20 @@ TEST_F(TerrainFileTest, DepthsOfTheSeaAreNoFillValues) {
   EXPECT_EQ(load({sea}, {49, 50, 10, 11})->heightMsl_m(49.55, 10.45), -2200);
 }
 
+TEST_F(TerrainFileTest, FillValuesAreFoundAmongManyDifferentDepths) {
+  constexpr int kPosts = 400;
+  DemFile file = geographicDem(10, 50, 1.0 / kPosts, kPosts, kPosts, flat);
+  // More than 65536 different depths, and a block of a fill value on land beside them.
+  file.value = [](int column, int row) {
+    if (column < 20) return row >= 100 && row < 110 && column >= 5 && column < 10 ? -9999.0 : 50.0;
+    return column < 40 ? -30.0 * (column - 19) : -600.0 - 0.002 * (column * kPosts + row);
+  };
+  const TerrainFileInfo info = Terrain::describe(write("a.tif", file));
+  EXPECT_EQ(info.void_posts, 50);
+  EXPECT_NEAR(info.lowest_m, -600 - 0.002 * kPosts * kPosts, 1);
+  EXPECT_THAT(info.warnings, Contains(HasSubstr("50 posts of -9999 m")));
+}
+
 TEST_F(TerrainFileTest, APictureIsNoTerrain) {
   const std::string file = write("rgb.tif", geographicDem(10, 50, 0.1, 10, 10, flat));
   GDALDatasetH dataset = GDALOpen(file.c_str(), GA_Update);

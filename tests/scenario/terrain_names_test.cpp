@@ -177,6 +177,62 @@ TEST_F(TerrainNames, OtherFormatsNameThemselvesAndTheCommandThatWorks) {
   EXPECT_NEAR(load({folder_ / "HEIGHTS.tif"})->heightMsl_m(49.5, 10.5), 1050, 1e-3);
 }
 
+TEST_F(TerrainNames, CommandsOfMessagesMakeFilesThatAreRead) {
+  if (!run("true")) GTEST_SKIP() << "gdal_translate is not installed";
+  test::DemFile file = test::geographicDem(10, 50, 0.1, 10, 10, [](double, double) { return 100; });
+  const auto write = [&](const std::string& name) {
+    file.write(folder_ / name);
+    return folder_ / name;
+  };
+  const auto heightOf = [](const std::string& name, const TerrainFileKeys& keys = {}) {
+    return load({name}, keys)->heightMsl_m(49.5, 10.5);
+  };
+  TerrainFileKeys egm96;
+  egm96.vertical_datum = VerticalDatum::egm96;
+
+  file.crs = "EPSG:4979";
+  EXPECT_THAT(problemOf(write("datum.tif"), egm96), AllOf(HasSubstr("gdal_translate -a_srs"), HasSubstr("EPSG:4326+5773")));
+  run("gdal_translate -a_srs EPSG:4326+5773 datum.tif datum2.tif");
+  EXPECT_EQ(heightOf(folder_ / "datum2.tif", egm96), 100);
+
+  file.crs = "EPSG:4326+5715";
+  EXPECT_THAT(problemOf(write("depth.tif")), HasSubstr("gdal_translate -a_scale -1 -a_srs EPSG:4326+5714"));
+  run("gdal_translate -a_scale -1 -a_srs EPSG:4326+5714 depth.tif height.tif");
+  EXPECT_EQ(heightOf(folder_ / "height.tif"), -100);
+
+  file.crs = "EPSG:4326";
+  file.unit = "fathom";
+  TerrainFileKeys metres;
+  metres.height_unit = HeightUnit::m;
+  EXPECT_THAT(problemOf(write("unit.tif")), HasSubstr("`height_unit: m`"));
+  EXPECT_EQ(heightOf(folder_ / "unit.tif", metres), 100);
+  file.unit = "ft";
+  EXPECT_THAT(problemOf(write("feet.tif"), metres), HasSubstr("gdal_translate -of VRT"));
+  run("gdal_translate -of VRT feet.tif feet.vrt && sed -i s/ft/m/ feet.vrt");
+  EXPECT_EQ(heightOf(folder_ / "feet.vrt", metres), 100);
+
+  file.unit = "";
+  file.crs = "";
+  file.transform = {};
+  EXPECT_THAT(problemOf(write("bare.tif")),
+              HasSubstr("gdal_translate -a_srs EPSG:4326 -a_ullr WEST NORTH EAST SOUTH " + folder_ / "bare.tif"));
+  run("gdal_translate -a_srs EPSG:4326 -a_ullr 10 50 11 49 bare.tif placed.tif");
+  EXPECT_EQ(heightOf(folder_ / "placed.tif"), 100);
+}
+
+TEST_F(TerrainNames, FileOfSeveralRastersNamesThemAndTheCommand) {
+  if (!run("true")) GTEST_SKIP() << "gdal_translate is not installed";
+  test::geographicDem(10, 50, 0.1, 10, 10, [](double, double) { return 100; }).write(folder_ / "a.tif");
+  if (!run("gdal_translate -of GPKG -co RASTER_TABLE=one a.tif two.gpkg && gdal_translate -of GPKG -co "
+           "APPEND_SUBDATASET=YES -co RASTER_TABLE=two a.tif two.gpkg"))
+    return;
+  const std::string message = problemOf(folder_ / "two.gpkg");
+  EXPECT_THAT(message, AllOf(HasSubstr("has no raster itself, but 2 in it: one, two."), HasSubstr("gdal_translate ")));
+  const std::size_t begin = message.find("gdal_translate "), end = message.find(" makes a file");
+  run(message.substr(begin, end - begin));
+  EXPECT_EQ(load({folder_ / "HEIGHTS.tif"})->heightMsl_m(49.5, 10.5), 100);
+}
+
 TEST_F(TerrainNames, BandIsChosen) {
   test::DemFile file = test::geographicDem(10, 50, 0.1, 10, 10, [](double, double) { return 100; });
   file.bands = 2;
