@@ -69,7 +69,10 @@ const ObjectSpec& trackSpec() {
                 "CSV with a header line: t_s, latitude_deg, longitude_deg, height_msl_m or height_agl_m and, "
                 "if wanted, heading_deg, pitch_deg, roll_deg; relative to the scenario's folder"),
        optional("points", listOf(object(trackPointSpec()), 2, kMaxItems),
-                "the rows of such a file, in place of it")},
+                "the rows of such a file, in place of it"),
+       byDefault("outside", choiceOf<OutsideTrack>(), "absent",
+                 "before and after the track's time: the platform is not there, with all that it carries, or "
+                 "it stands still at the track's end")},
       {{"file", "points"}}};
   return spec;
 }

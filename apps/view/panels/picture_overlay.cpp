@@ -221,7 +221,8 @@ void drawPictureOverlay(const PanelContext& context, const Area& picture) {
     if (const auto pixel = planeHandle(*session.picture(), plane)) overlay.handle(overlay.at(*pixel));
   }
   if (const SceneObject* object = session.objectOf(session.selected())) {
-    if (const auto at = overlay.at(object->position_m)) overlay.selection(*at);
+    const auto at = object->present ? overlay.at(object->position_m) : std::nullopt;
+    if (at) overlay.selection(*at);
   }
   drawTool(overlay, session);
 }

@@ -22,7 +22,8 @@ class Collector {
     const scenario::Scenario& scenario = *snapshot_.scenario;
     for (const scenario::Emitter& emitter : scenario.emitters) {
       SceneObject& object = add("emitters.", emitter.name, toString(emitter.kind), emitter.platform);
-      object.details = quantityText(emitter.frequency_hz, "Hz") + ", " + quantityText(emitter.power_w, "W");
+      object.details = quantityText(emitter.frequency_hz, "Hz") + ", " + quantityText(emitter.power_w, "W") +
+                       (object.details.empty() ? "" : ", " + object.details);
     }
     for (const scenario::PlacedReceiver& receiver : scenario.placed_receivers)
       add("receivers.", receiver.name, "receiver", receiver.platform);
@@ -41,6 +42,8 @@ class Collector {
     object.name = name;
     object.kind = kind;
     object.platform = platform;
+    object.present = state.present;
+    if (!state.present) object.details = "absent at this time";
     object.position = state.position;
     object.position_m = frame_.toLocal(state.position);
     object.height_msl_m = state.height_msl_m;
@@ -85,7 +88,8 @@ const SceneObject* objectAt(const std::vector<SceneObject>& objects, const playb
     const render::Projected at =
         render::project(picture.camera, picture.size, picture.box.toDrawn(object.position_m));
     const double away_px = std::hypot(at.x - x, at.y - y);
-    if (!at.in_front || away_px > nearest_px - (nearest != nullptr ? kCloser_px : 0)) continue;
+    if (!object.present || !at.in_front || away_px > nearest_px - (nearest != nullptr ? kCloser_px : 0))
+      continue;
     nearest = &object;
     nearest_px = away_px;
   }
