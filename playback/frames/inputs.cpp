@@ -40,7 +40,8 @@ InputKind inputKindOf(const std::string& file) {
   const std::string ending = lowerCase(fs::path(file).extension().string());
   static const std::set<std::string> kElevations{".tif", ".tiff", ".hgt", ".dt0", ".dt1",
                                                  ".dt2", ".vrt",  ".asc", ".dem", ".bil"};
-  static const std::set<std::string> kAntennas{".msi", ".pln", ".csv"};
+  static const std::set<std::string> kAntennas{".msi",     ".pln", ".adf", ".ant",
+                                               ".pattern", ".az",  ".el",  ".csv"};
   static const std::set<std::string> kRecordings{".acmi", ".pcap", ".pcapng", ".session", ".asi", ".cot",
                                                  ".kml",  ".kmz",  ".gpx",    ".czml",    ".e",   ".nmea"};
   if (ending == ".yaml" || ending == ".yml" || ending == ".json") return InputKind::scenario;
@@ -52,7 +53,8 @@ InputKind inputKindOf(const std::string& file) {
       ErrorCode::bad_input, {file, 0, 0},
       "ending '" + ending +
           "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .vtu .pvd .raw .dat; "
-          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv; recordings: .acmi .pcap "
+          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .adf .ant .pattern .az .el .csv; "
+          "recordings: .acmi .pcap "
           ".pcapng "
           ".session");
 }
