@@ -179,7 +179,7 @@ Examples:
       *command, "--quantity", options->quantities,
       "Quantities, with commas between them (" + scenario::quantityNames() + "); default: the scenario's");
   command->add_option("--times", options->times,
-                      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
+                      "BEGIN:END:STEP, BEGIN:END or T, in seconds or UTC; default: the scenario's clock");
   command->add_option("--range", options->range,
                       "MIN:MAX of the series if it is known: files state it from the beginning");
   command

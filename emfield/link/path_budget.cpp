@@ -303,6 +303,10 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   const scenario::Scenario& scenario = *snapshot.scenario;
   const Emitter& emitter = scenario.emitters[emitter_index];
   const EmitterState& state = snapshot.emitters[emitter_index];
+  if (!snapshot.platforms[emitter.platform].present) {
+    throw Error(ErrorCode::usage,
+                scenario::absenceText(scenario.platforms[emitter.platform], snapshot.time_s));
+  }
   Emitter by_model = emitter;
   by_model.propagation.model = model;
   PathBudget budget;

@@ -40,7 +40,8 @@ InputKind inputKindOf(const std::string& file) {
   if (holdsMeshes(file)) return InputKind::mesh;
   if (fs::is_directory(file)) return InputKind::volume;
   const std::string ending = lowerCase(fs::path(file).extension().string());
-  static const std::set<std::string> kAntennas{".msi", ".pln", ".csv"};
+  static const std::set<std::string> kAntennas{".msi",     ".pln", ".adf", ".ant",
+                                               ".pattern", ".az",  ".el",  ".csv"};
   const std::vector<std::string>& recordings = interop::recordingEndings();
   if (ending == ".yaml" || ending == ".yml" || ending == ".json") return InputKind::scenario;
   if (ending == ".pvd" || volume::isVolumeFile(file)) return InputKind::volume;
@@ -53,8 +54,7 @@ InputKind inputKindOf(const std::string& file) {
       "ending '" + ending +
           "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .vtu .pvd .raw .dat; "
           "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip "
-          "and .gz; antennas: .msi "
-          ".pln .csv; recordings: " +
+          "and .gz; antennas: .msi .pln .adf .ant .pattern .az .el .csv; recordings: " +
           interop::recordingEndingsText());
 }
 

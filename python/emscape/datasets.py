@@ -23,7 +23,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import tempfile
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -33,7 +32,7 @@ import numpy.typing as npt
 from ._arguments import PathName, path_text
 from ._field import Field, Solver
 from ._native import native
-from ._scenario import Scenario, load
+from ._scenario import Scenario, parse
 
 KINDS = ("radar", "jammer", "transmitter")
 """Kinds of emitters; the index is the number in labels."""
@@ -122,11 +121,7 @@ class VolumeDataset:
     def scenario(self, index: int) -> Scenario:
         """The scenario of a sample."""
         document, _ = self.describe(index)
-        with tempfile.TemporaryDirectory() as folder:
-            file = os.path.join(folder, document["name"] + ".json")
-            with open(file, "x", encoding="utf-8") as stream:
-                json.dump(document, stream)
-            return load(file)
+        return parse(document, name=document["name"] + ".json")
 
     def field(self, index: int) -> Field:
         """The field of a sample."""
@@ -137,6 +132,8 @@ class VolumeDataset:
 
     def describe(self, index: int) -> tuple[dict[str, Any], npt.NDArray[np.float32]]:
         """The scenario and label of a sample, without its field. Raises IndexError."""
+        if not hasattr(index, "__index__"):
+            raise TypeError(f"sample {index!r}: an index is a whole number; slices are not supported")
         if not 0 <= index < self.count:
             raise IndexError(f"sample {index}: there are {self.count}")
         rng = np.random.default_rng([self.seed, index])

@@ -59,12 +59,12 @@ Json toJson(const LinkRow& row) {
 
 Json toJson(const DetectionRow& row) {
   Json json = pathJson(row);
-  json["rcs_dbsm"] = ratioToDb(row.rcs_m2);
+  json["rcs_dbsm"] = number(ratioToDb(row.rcs_m2));
   json["look_pattern_db"] = number(row.look_pattern_db);
   json["snr_db"] = number(row.snr_db);
   if (row.radial_speed_mps) {
     json["sclnr_db"] = number(row.sclnr_db);
-    json["radial_speed_mps"] = *row.radial_speed_mps;
+    json["radial_speed_mps"] = number(*row.radial_speed_mps);
   }
   json["jammer_to_signal_db"] = number(row.jammer_to_signal_db);
   json["detection_probability"] = row.detection_probability;

@@ -396,6 +396,7 @@ Platform parsePlatform(const Section& section, ParseContext& context) {
   if (section.has("track")) {
     const Section track = section.section("track");
     platform.track = trackOf(track, context);
+    platform.outside_track = track.choice<OutsideTrack>("outside");
     if (!platform.track.empty() && track.has("file"))
       platform.track_file = context.resolve(track.text("file"));
     return platform;

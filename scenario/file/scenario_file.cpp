@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "base/files/file_reading.h"
 #include "base/text/utc.h"
@@ -356,19 +357,40 @@ void requireScenario(const ParseResult& result) {
 
 }  // namespace
 
-ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits, ReadFor read_for) {
+namespace {
+
+/// @param readBytes  returns the text; its errors are problems of the result
+ParseResult parsed(const std::string& file, const std::function<std::string()>& readBytes,
+                   const std::vector<Edit>& edits, ReadFor read_for) {
   ParseContext context;
   context.file = file;
   context.read_for = read_for;
   ScenarioSource source;
   try {
-    source.text = {file, document::checkedUtf8(file, readWholeText(file, kMaxScenarioBytes), "a scenario")};
+    source.text = {file, document::checkedUtf8(file, readBytes(), "a scenario")};
     source.root = document::readDocument(file, source.text.text(), context.problems);
   } catch (const Error& error) {
     context.problems.addError(error.location(), error.message());
   }
   if (source.root) applyEdits(source, edits, context);
   return readSource(std::move(source), nullptr, context);
+}
+
+}  // namespace
+
+ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits, ReadFor read_for) {
+  return parsed(
+      file, [&] { return readWholeText(file, kMaxScenarioBytes); }, edits, read_for);
+}
+
+ParseResult parseScenarioText(const std::string& file, const std::string& text,
+                              const std::vector<Edit>& edits, ReadFor read_for) {
+  return parsed(
+      file, [&] { return text; }, edits, read_for);
+}
+
+std::string originalText(const Scenario& scenario) {
+  return scenario.source ? scenario.source->text.original() : "";
 }
 
 ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits) {

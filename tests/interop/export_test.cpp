@@ -178,6 +178,29 @@ TEST(Export, CzmlOfATurnHasFewDigitsAndIsWithinAMetre) {
   }
 }
 
+TEST(Export, PlatformIsInTheRecordingOnlyDuringItsTrack) {
+  scenario::Scenario late = *scenario::loadScenario(test::shippedScenario("jamming.yaml"));
+  const std::string platform = "helicopter";
+  late.set("platforms." + platform + ".track",
+           "{points: [{t_s: 20, latitude_deg: 36.3, longitude_deg: -84.2, height_msl_m: 2000}, {t_s: 40, "
+           "latitude_deg: 36.31, longitude_deg: -84.2, height_msl_m: 2000}]}");
+  const auto before = std::make_shared<const scenario::Scenario>(late);
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
+  for (const char* ending : {".acmi", ".pcap", ".asi", ".cot", ".kml", ".czml"}) {
+    const emscape::test::TemporaryFolder folder;
+    const ExportResult exported = exportScenario(before, terrain.get(), folder / (std::string("a") + ending));
+    const Recording recording = readRecording(exported.file);
+    bool is_found = false;
+    for (const RecordedObject& object : recording.objects) {
+      if (object.name != platform || object.poses.empty()) continue;
+      is_found = true;
+      double begin_s = object.poses.front().t_s, end_s = object.poses.back().t_s;
+      EXPECT_NEAR(end_s - begin_s, 20, 0.1) << ending;
+    }
+    EXPECT_TRUE(is_found) << ending;
+  }
+}
+
 TEST(Export, OfAnEmitterThatIsSwitchedOffIsSilent) {
   const emscape::test::TemporaryFolder folder;
   scenario::Scenario off = *scenario::loadScenario(emscape::test::shippedScenario("quick.yaml"));
