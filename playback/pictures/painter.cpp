@@ -277,14 +277,14 @@ render::FrameReport Painter::draw(const render::FramePlan& plan, const StopFlag*
   return fetched_ ? renderer_.draw(plan, view_.size, image_, stop) : renderer_.draw(plan, view_.size, stop);
 }
 
-render::FrameReport Painter::restore(const StopFlag* stop) {
+render::FrameReport Painter::restore(const StopFlag* stop, render::Edges edges) {
   if (cells_) return drawCells(true, stop);
   if (split_) {
     fetched_ = true;
-    return split_->restore(renderer_, image_, stop);
+    return split_->restore(renderer_, image_, stop, edges);
   }
   fetched_ = renderer_.backend() == Backend::cpu;
-  return fetched_ ? renderer_.restore(image_, stop) : renderer_.restore(stop);
+  return fetched_ ? renderer_.restore(image_, stop, edges) : renderer_.restore(stop, edges);
 }
 
 const render::Image& Painter::image() {
