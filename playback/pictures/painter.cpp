@@ -326,10 +326,12 @@ render::Image8 Painter::composed(const AnyImage& cast) {
     return render::compose(cast, camera_, sceneBox(), annotations,
                            [this](const Vec3d& position_m) { return isHidden(position_m); });
   };
-  render::Image8 picture = compose(annotations_);
-  if (!split_) return picture;
+  if (!split_) return compose(annotations_);
   const FieldBeside& beside = *frame_->beside;
-  render::Annotations of_left = annotations_;
+  render::Annotations of_left = annotations_, of_right = annotations_;
+  of_left.end_column = of_right.first_column = split_->column();
+  of_right.end_column = view_.size.width;
+  render::Image8 picture = compose(of_right);
   mark(of_left, *beside.frame);
   scenery_->annotate(of_left, view_, beside.frame->markers);
   render::joinParts(compose(of_left), split_->column(), {beside.caption, beside.own_caption}, annotations_,
