@@ -97,9 +97,30 @@ void drawBehind(Canvas& canvas, const Style& style, const Projector& projector,
   if (annotations.axes) drawFarEdges(canvas, style, projector);
 }
 
+/// The markers in the columns that are seen.
+std::vector<Marker> seenMarkers(const Annotations& annotations, const Projector& projector) {
+  std::vector<Marker> seen;
+  for (const Marker& marker : annotations.markers) {
+    Point2 at;
+    const bool is_seen = !projector.project(marker.position_m, at) ||
+                         (at.x >= annotations.first_column && at.x < *annotations.end_column);
+    if (is_seen) seen.push_back(marker);
+  }
+  return seen;
+}
+
 void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
                  const Annotations& annotations, const HiddenTest& hidden) {
   std::vector<Rect> taken;
+  std::vector<Marker> seen;
+  if (annotations.end_column) {
+    const double first = annotations.first_column, end = *annotations.end_column;
+    const double height = canvas.size().height;
+    taken.push_back({0, 0, first, height});
+    taken.push_back({end, 0, canvas.size().width - end, height});
+    seen = seenMarkers(annotations, projector);
+  }
+  const std::vector<Marker>& markers = annotations.end_column ? seen : annotations.markers;
   drawFooter(canvas, style, projector.box, annotations, taken);
   if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
   if (annotations.georeferenced && annotations.compass) {
@@ -125,14 +146,14 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     return projector.project(at_m, at) ? std::optional(at) : std::nullopt;
   };
   std::vector<Point2> symbols;
-  for (const Marker& marker : annotations.markers) {
+  for (const Marker& marker : markers) {
     if (const std::optional<Point2> at = project(marker.position_m)) symbols.push_back(*at);
   }
   drawGroundMarks(canvas, style, project, annotations.ground_lines, annotations.ground_points, symbols,
                   hidden, taken);
   if (annotations.legend) drawLegend(canvas, style, *annotations.legend);
   drawTracks(canvas, style, projector, annotations.tracks, hidden);
-  drawMarkers(canvas, style, projector, annotations.markers, annotations.units, hidden, taken);
+  drawMarkers(canvas, style, projector, markers, annotations.units, hidden, taken);
   drawTexts(canvas, style, annotations);
 }
 

@@ -101,11 +101,11 @@ CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& 
     const Quantity named = product == Product::best ? Quantity::dominant_emitter : request.quantity;
     map.labels = emfield::categoryNames(scenario, named);
   }
-  map.description = product == Product::value
+  map.subject = product == Product::value
                         ? map.title
                         : fmt::format("{} ({} >= {})", map.title, titleOf(request.quantity),
                                       quantityText(request.threshold, quantity.unit));
-  if (height) map.description += " at " + describe(*height);
+  map.description = map.subject + (height ? " at " + describe(*height) : "");
   return map;
 }
 
