@@ -212,6 +212,8 @@ void CudaFrameCaster::findBehind(const Scene& scene, bool has_ground, const bool
                                  CastLaunch& launch, cuda::Layers& layers) {
   const std::size_t pixels = static_cast<std::size_t>(launch.task.camera.size.count());
   launch.limits = launch.begins = nullptr;
+  layers.ground_distances = nullptr;
+  layers.ground_colors = nullptr;
   if (scene.ground()) {
     if (!has_ground) {
       behind.ground_distances.resize(pixels);
