@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "emfield/excess/emitter_excess.h"
+#include "emfield/excess/model_check.h"
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
@@ -302,6 +303,11 @@ std::vector<std::string> FieldSolver::warnings() const {
   for (const std::string& warning : impl_->setup.warnings) ++all[warning];
   if (impl_->setup.terrain) {
     for (const std::string& warning : impl_->setup.terrain->warnings()) ++all[warning];
+    for (const scenario::Emitter& emitter : impl_->setup.scenario->emitters) {
+      for (const std::string& warning :
+           seaWarnings(*impl_->setup.scenario, emitter, impl_->setup.terrain->lowest_m()))
+        ++all[warning];
+    }
   }
   for (const EmitterCache& cache : impl_->emitters) {
     for (const WarningCounts* counts : {&cache.warnings, &cache.jamming_warnings}) {

@@ -59,7 +59,6 @@ void addFile(Text& out, const TerrainFileInfo& file) {
     out.add("  not used: outside the needed area\n");
   }
   for (const std::string& note : file.notes) out.add("  note     {}\n", note);
-  for (const std::string& warning : file.warnings) out.add("  assumed  {}\n", warning);
 }
 
 }  // namespace

@@ -278,7 +278,9 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
   } else if (has_system) {
     system.reset(OSRClone(given));
   } else {
-    fail(remedyForNoSystem(source));
+    constexpr double kTurn_deg = 360;
+    const double east = transform[0] + columns * transform[1] + rows * transform[2];
+    fail(remedyForNoSystem(std::max(std::abs(transform[0]), std::abs(east)) > kTurn_deg));
   }
   HeightFacts facts{name, source.ownName(), GDALGetDriverShortName(GDALGetDatasetDriver(dataset)),
                     GDALGetRasterUnitType(GDALGetRasterBand(dataset, band)), scale,

@@ -76,9 +76,12 @@ std::string remedyForNoGeoreference(const ElevationSource& source) {
                      shellWord(source.member.empty() ? source.file : source.member));
 }
 
-std::string remedyForNoSystem(const ElevationSource&) {
-  return "has no coordinate reference system. `crs: EPSG:4326` of the file in the scenario states latitudes and "
-         "longitudes: files: [{file: NAME, crs: \"EPSG:4326\"}]; EPSG:32633 and so on UTM zone 33 north";
+std::string remedyForNoSystem(bool is_plane) {
+  return is_plane ? "has no coordinate reference system, and its coordinates are no degrees. `crs` of the file in the "
+                    "scenario states it, such as EPSG:32633 for UTM zone 33 north: files: [{file: NAME, crs: "
+                    "\"EPSG:32633\"}]"
+                  : "has no coordinate reference system. `crs: EPSG:4326` of the file in the scenario states latitudes "
+                    "and longitudes: files: [{file: NAME, crs: \"EPSG:4326\"}]";
 }
 
 std::string remedyForTileWithoutPosition() {

@@ -34,13 +34,13 @@ std::string labelOf(const TerrainFileInfo& file, bool is_named) {
   return (is_named ? std::filesystem::path(file.file).filename().string() : file.format) + ": " + kind;
 }
 
-/// Categories: "no file", "void", then the files or their kinds.
+/// Categories: voids, then the files or their kinds; no value: ground without a file.
 Map sourcesMap(const std::vector<TerrainFileInfo>& files, const scenario::Terrain& terrain, const MapGrid& grid) {
   Map map;
   map.name = "terrain";
   map.kind = MapKind::category;
   map.title = "source of the ground";
-  map.labels = {"void in the files", "no file"};
+  map.labels = {"void in the files"};
   std::vector<const TerrainFileInfo*> finest_first;
   for (const TerrainFileInfo& file : files) {
     if (file.is_needed) finest_first.push_back(&file);
@@ -56,13 +56,13 @@ Map sourcesMap(const std::vector<TerrainFileInfo>& files, const scenario::Terrai
     categories.push_back(known->second);
   }
   for (const emfield::Surface::Position& at : grid.positions) {
-    int category = 1;
-    for (std::size_t k = 0; k < finest_first.size() && category == 1; ++k) {
+    int category = -1;
+    for (std::size_t k = 0; k < finest_first.size() && category < 0; ++k) {
       if (contains(finest_first[k]->box, at.latitude_deg, at.longitude_deg)) category = categories[k];
     }
     const bool is_known =
         !std::isnan(at.latitude_deg) && !std::isnan(terrain.heightMsl_m(at.latitude_deg, at.longitude_deg));
-    map.values.push_back(static_cast<float>(is_known || category == 1 ? category : 0));
+    map.values.push_back(category < 0 ? NAN : static_cast<float>(is_known ? category : 0));
   }
   return map;
 }
@@ -91,7 +91,7 @@ render::Image8 drawTerrain(const std::vector<TerrainFileInfo>& files, const scen
   const double extent_m =
       kMetresPerDegree * std::max(box.north_deg - box.south_deg,
                                   (box.east_deg - box.west_deg) * std::cos(degToRad(nearest_deg)));
-  const MapGrid grid = makeMapGrid(area, extent_m / kPixels, "local");
+  const MapGrid grid = makeMapGrid(area, std::max(std::ceil(extent_m / kPixels), 1.0), "local");
   MapPictureOptions options;
   options.width = width;
   options.title = title;
