@@ -78,9 +78,8 @@ void fillPath(PathRow& row, const Emitter& emitter, const PathBudget* budget, bo
   row.has_path = budget != nullptr;
   if (budget == nullptr) {
     row.power_density_dbwm2 = unknown ? std::nan("") : -HUGE_VAL;
-    row.verdict = row.path =
-        unknown ? std::string("Unknown: terrain is missing on the path.")
-                : fmt::format("No path: '{}' is straight above or below.", emitter.name);
+    row.verdict = row.path = unknown ? std::string("Unknown: terrain is missing on the path.")
+                                     : fmt::format("No path: '{}' is straight above or below.", emitter.name);
     return;
   }
   row.active = budget->active;

@@ -178,7 +178,9 @@ void FieldSolver::Impl::checkHoles() const {
                           "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts{}; {}",
                           columns.hole_columns, columns.count(), placeOf(columns.first_hole), box.south_deg,
                           box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts(),
-                          static_cast<std::size_t>(columns.hole_columns) == columns.count() ? "; " + setup.terrain->placeText() : "",
+                          static_cast<std::size_t>(columns.hole_columns) == columns.count()
+                              ? "; " + setup.terrain->placeText()
+                              : "",
                           scenario::kMissingTerrainRemedy),
               Hint::allow_missing_terrain);
 }

@@ -51,7 +51,8 @@ InputKind inputKindOf(const std::string& file) {
       ErrorCode::bad_input, {file, 0, 0},
       "ending '" + ending +
           "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .vtu .pvd .raw .dat; "
-          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip and .gz; antennas: .msi .pln .csv; recordings: .acmi .pcap "
+          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip "
+          "and .gz; antennas: .msi .pln .csv; recordings: .acmi .pcap "
           ".pcapng "
           ".session");
 }
