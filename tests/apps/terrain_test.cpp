@@ -78,7 +78,7 @@ receivers:
       EXPECT_TRUE(file.contains(key)) << key;
     EXPECT_EQ(file.at("vertical_datum"), "EGM96 (assumed)");
     EXPECT_EQ(file.at("void_posts"), 0);
-    EXPECT_THAT(file.at("warnings").at(0), HasSubstr("if they are above the ellipsoid, the ground is 31"));
+    EXPECT_THAT(file.at("warnings").at(0), HasSubstr("if they are above the ellipsoid, the ground is 30.9 m too low"));
     EXPECT_EQ(report.at("uncovered_percent"), 0);
     EXPECT_EQ(report.at("warnings").size(), 1);
 
