@@ -70,7 +70,7 @@ class PolarDiagram {
     for (std::size_t i = 0; i < 12; ++i) {
       const double angle_rad = zero_rad + degToRad(30.0 * static_cast<double>(i));
       canvas_.line(center_, at(radius_, angle_rad), render::kPlotGrid, unit_);
-      canvas_.text(names[i], at(radius_ + 22 * unit_, angle_rad), 13 * unit_, render::kPlotText,
+      canvas_.text(names[i], at(radius_ + 30 * unit_, angle_rad), 13 * unit_, render::kPlotText,
                    render::Align::center);
     }
     std::vector<Point2> line;
