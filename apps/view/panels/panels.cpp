@@ -214,7 +214,7 @@ void drawGoToTime(PanelContext& context) {
   }
   ImGui::SetNextItemWidth(160 * context.scale);
   const bool entered =
-      ImGui::InputText("seconds, or UTC", typed, sizeof typed,
+      ImGui::InputText("seconds, M:SS or UTC", typed, sizeof typed,
                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   ImGui::SameLine();
   if (ImGui::Button("Go") || entered) {
