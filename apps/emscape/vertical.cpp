@@ -38,7 +38,7 @@ struct VerticalCommand {
   double range_m = NAN, max_height_m = NAN;
   std::string quantity;
   double threshold = NAN;
-  double time_s = 0;
+  std::string time = "0";
   std::vector<int> grid{600, 300};
   bool has_grid = false;  ///< the grid was given
   std::string size;
@@ -68,7 +68,7 @@ study::VerticalRequest requestOf(const VerticalCommand& command, const scenario:
   if (!command.quantity.empty()) request.quantity = scenario::quantityFromName(command.quantity);
   request.threshold = command.threshold;
   request.azimuths_deg = command.azimuths_deg;
-  request.time_s = command.time_s;
+  request.time_s = scenario::parseTime(command.time, scenario.clock);
   request.smooth_earth = command.blake;
   request.ranges = command.grid.front();
   request.heights = command.grid.back();
@@ -202,7 +202,8 @@ not have by itself.)");
       "--compare", options->compare,
       "Text file of AREPS: the differences of its losses to ours are printed; by default at its "
       "points");
-  command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
+  command->add_option("--time", options->time,
+                      "Seconds since the scenario's epoch, or UTC: 2026-06-01T06:00:00Z");
   CLI::Option* const grid =
       command->add_option("--grid", options->grid, "Number of points of the grid: RANGES,HEIGHTS")
           ->delimiter(',')

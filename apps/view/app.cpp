@@ -73,7 +73,8 @@ Area fittedInto(const Area& area, render::ImageSize size) {
 App::App(ViewOptions options, std::shared_ptr<MessageLog> messages)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
-      window_(titleOf(options, false), options.window_size.value_or(kUsualSize), options.scale),
+      window_(titleOf(options, false), options.window_size.value_or(kUsualSize), options.scales_window,
+              options.scale),
       shares_gpu_(options.share_gpu && render::openGlSharesGpu()),
       files_(std::make_shared<Files>()),
       session_((files_->messages = std::move(messages), makeFirstSession(options))),

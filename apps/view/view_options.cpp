@@ -53,7 +53,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   typed.given.addTo(app, "--size");
   typed.stream.addTo(app, "", "--emitter-database");
   app.add_option("--size", typed.size,
-                 "Window size in pixels, WxH; default: 1200x900, with --state as large as its picture needs");
+                 "Window size in pixels, WxH; default: 1200x900 times the scale, with --state as large as its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
       ->check(CLI::Range(0.5, 4.0))
       ->default_str("");
@@ -113,9 +113,12 @@ void readView(const Typed& typed, ViewOptions& options) {
     view = playback::readViewState(typed.state);
     options.state = typed.state;
     options.window_size.reset();
-    options.fits_labels = false;
+    options.scales_window = options.fits_labels = false;
   }
-  if (!typed.size.empty()) options.window_size = render::parseImageSize(typed.size);
+  if (!typed.size.empty()) {
+    options.window_size = render::parseImageSize(typed.size);
+    options.scales_window = false;
+  }
   const std::string of_file = playback::viewStateText(view);
   playback::setInput(view, options.view);
   typed.given.apply(view);

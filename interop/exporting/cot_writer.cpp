@@ -137,7 +137,7 @@ class CotWriter {
   /// A beam that is off is not written: it was seen until its last event's stale time.
   void writeBeam(const WrittenEvent& event) {
     const scenario::Emitter& emitter = scenario_.emitters[event.index];
-    const BeamState state = beamStateAt(emitter, event.t_s);
+    const BeamState state = beamStateAt(scenario_, emitter, event.t_s);
     if (!state.is_on) return;
     const auto platform = static_cast<std::size_t>(emitter.platform);
     const std::vector<double>& times = beam_times_[event.index];

@@ -174,6 +174,7 @@ class CzmlWriter {
     } else {
       places.push_back(timedPlace(poseOf(platform, job_.terrain, 0)));
     }
+    if (places.empty()) return;  // never present
     OrderedJson samples = OrderedJson::array();
     const std::vector<TimedPlace> kept = PlaceReducer(places).run();
     for (const TimedPlace& place : kept) {
@@ -182,15 +183,18 @@ class CzmlWriter {
       ++records_;
     }
     OrderedJson position{{"cartographicDegrees", samples}};
+    const bool holds = platform.outside_track == scenario::OutsideTrack::hold;
     if (platform.moves()) {
+      const char* const outside = holds ? "HOLD" : "NONE";
       position = {{"epoch", time(0)},
                   {"cartographicDegrees", samples},
                   {"interpolationAlgorithm", "LINEAR"},
-                  {"forwardExtrapolationType", "HOLD"},
-                  {"backwardExtrapolationType", "HOLD"}};
+                  {"forwardExtrapolationType", outside},
+                  {"backwardExtrapolationType", outside}};
     }
-    OrderedJson json{
-        {"id", fmt::format("platform/{}", index + 1)}, {"name", platform.name}, {"position", position}};
+    OrderedJson json{{"id", fmt::format("platform/{}", index + 1)}, {"name", platform.name}};
+    if (platform.moves() && !holds) json["availability"] = interval(kept.front().t_s, kept.back().t_s);
+    json["position"] = position;
     json["point"] = {{"pixelSize", 8}, {"color", {{"rgba", sideColor(platform)}}}};
     json["label"] = {{"text", platform.name},
                      {"font", "12pt sans-serif"},
@@ -234,7 +238,7 @@ class CzmlWriter {
     for (std::size_t i = 0; i < times.size(); ++i) {
       const double until_s = i + 1 < times.size() ? times[i + 1] : end_s;
       if (until_s <= times[i]) continue;
-      const BeamState state = beamStateAt(emitter, times[i]);
+      const BeamState state = beamStateAt(scenario_, emitter, times[i]);
       shown.push_back({{"interval", interval(times[i], until_s)}, {"boolean", state.is_on}});
       if (!state.is_on) continue;
       OrderedJson corners = OrderedJson::array();

@@ -257,6 +257,7 @@ void Importer::loadTerrain() {
   box.west_deg = west - kMargin_deg - turn_deg;
   box.east_deg = std::min(east + kMargin_deg - turn_deg, box.west_deg + 360);
   terrain_ = scenario::Terrain::load(spec, box);
+  for (const std::string& warning : terrain_->warnings()) result_.notes.push_back(warning);
 }
 
 void Importer::makeTracks() {

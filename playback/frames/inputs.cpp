@@ -14,6 +14,7 @@
 #include "emscape/volume/format/file.h"
 #include "playback/frames/volume_input.h"
 #include "recording/read_recording.h"
+#include "scenario/terrain/file_names.h"
 
 namespace emscape::playback {
 namespace {
@@ -39,13 +40,12 @@ InputKind inputKindOf(const std::string& file) {
   if (holdsMeshes(file)) return InputKind::mesh;
   if (fs::is_directory(file)) return InputKind::volume;
   const std::string ending = lowerCase(fs::path(file).extension().string());
-  static const std::set<std::string> kElevations{".tif", ".tiff", ".hgt", ".dt0", ".dt1",
-                                                 ".dt2", ".vrt",  ".asc", ".dem", ".bil"};
-  static const std::set<std::string> kAntennas{".msi", ".pln", ".csv"};
+  static const std::set<std::string> kAntennas{".msi",     ".pln", ".adf", ".ant",
+                                               ".pattern", ".az",  ".el",  ".csv"};
   const std::vector<std::string>& recordings = interop::recordingEndings();
   if (ending == ".yaml" || ending == ".yml" || ending == ".json") return InputKind::scenario;
   if (ending == ".pvd" || volume::isVolumeFile(file)) return InputKind::volume;
-  if (kElevations.count(ending) != 0) return InputKind::elevation;
+  if (scenario::isElevationName(file)) return InputKind::elevation;
   if (kAntennas.count(ending) != 0) return InputKind::antenna;
   if (std::find(recordings.begin(), recordings.end(), ending) != recordings.end())
     return InputKind::recording;
@@ -53,7 +53,8 @@ InputKind inputKindOf(const std::string& file) {
       ErrorCode::bad_input, {file, 0, 0},
       "ending '" + ending +
           "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .vtu .pvd .raw .dat; "
-          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv; recordings: " +
+          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip "
+          "and .gz; antennas: .msi .pln .adf .ant .pattern .az .el .csv; recordings: " +
           interop::recordingEndingsText());
 }
 

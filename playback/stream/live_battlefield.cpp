@@ -38,7 +38,7 @@ constexpr double kRebuildPart = 0.1;    ///< of the time that making scenarios m
 constexpr double kPoll_s = 0.1;         ///< longest wait for data, and for the end
 constexpr double kReckon_s = 1.0 / 30;  ///< between two poses of platforms that move without data
 constexpr double kReconnect_s = 2;
-constexpr double kGreeting_s = 4;  ///< in which a host must greet
+constexpr double kHostGreets_s = 4;  ///< in which a host must greet
 /// Smallest movements that are shown.
 constexpr double kMoved_deg = 1e-8, kMoved_m = 1e-3, kTurned_deg = 1e-3;
 
@@ -322,9 +322,9 @@ struct LiveBattlefield::Impl {
         begin = *count;
         break;
       }
-      if (connection && !is_greeted && steadyTime_s() - connected_s > kGreeting_s)
+      if (connection && !is_greeted && steadyTime_s() - connected_s > kHostGreets_s)
         fail(fmt::format("no greeting in {:.0f} s: is {} a host of Tacview's real-time telemetry?",
-                         kGreeting_s, request.address.text()));
+                         kHostGreets_s, request.address.text()));
       if (!connection) continue;
       if (begin < *count) take(reinterpret_cast<const std::uint8_t*>(buffer.data()) + begin, *count - begin);
       publish();

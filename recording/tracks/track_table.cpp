@@ -30,10 +30,38 @@ bool hasPosition(const Columns& columns) {
          (columns.count(Column::latitude) != 0 && columns.count(Column::longitude) != 0);
 }
 
-/// True for a comment; the names of the columns may stand in one.
+/// The columns of a header line. @throws Error (usage)
+Columns columnsOf(const std::vector<std::string>& header, const ReadOptions& options) {
+  return options.columns.empty() ? columnsByName(header) : columnsByMap(header, options.columns);
+}
+
+/// Names of columns; they may stand in a comment.
+std::vector<std::string> headerOf(std::string_view line) {
+  if (!line.empty() && line.front() == '#') line.remove_prefix(1);
+  return cellsOf(line, separatorOf(line));
+}
+
+/// True for an empty line, and for a comment that does not name the columns.
 bool isComment(std::string_view line, const ReadOptions& options) {
   if (line.empty() || line.front() != '#') return line.empty();
-  return !options.columns.empty() || !hasPosition(columnsByName(cellsOf(line, separatorOf(line))));
+  try {
+    return !hasPosition(columnsOf(headerOf(line), options));
+  } catch (const Error&) {  // it does not have the columns that were named
+    return true;
+  }
+}
+
+/// An angle whose parts are apart, "52 06.1 N", as one word, "52:06.1N".
+std::string joinedAngle(const std::string& text) {
+  std::string joined;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool is_blank = text[i] == ' ';
+    const bool is_before_digit = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    const bool is_after_digit = !joined.empty() && joined.back() >= '0' && joined.back() <= '9';
+    if (!is_blank) joined += text[i];
+    if (is_blank && is_before_digit && is_after_digit) joined += ':';
+  }
+  return joined;
 }
 
 class TableReader {
@@ -66,8 +94,8 @@ class TableReader {
  private:
   void takeHeader(std::string_view line, long long number) {
     separator_ = separatorOf(line);
-    const std::vector<std::string> header = cellsOf(line, separator_);
-    columns_ = options_.columns.empty() ? columnsByName(header) : columnsByMap(header, options_.columns);
+    const std::vector<std::string> header = headerOf(line);
+    columns_ = columnsOf(header, options_);
     for (const Column needed : {Column::time, Column::latitude, Column::longitude}) {
       const bool is_in_position = needed != Column::time && columns_.count(Column::position) != 0;
       if (is_in_position || columns_.count(needed) != 0) continue;
@@ -150,7 +178,7 @@ class TableReader {
       countIgnored(recorder_.tally(), "message without a position");
       return std::nullopt;
     }
-    const std::string text = both != nullptr ? *both : *north + ", " + *east;
+    const std::string text = both != nullptr ? *both : joinedAngle(*north) + ", " + joinedAngle(*east);
     // A decimal comma would be taken for one between numbers.
     const bool is_clear = std::count(text.begin(), text.end(), ',') <= 1;
     try {
@@ -234,8 +262,7 @@ bool isTrackTable(std::string_view head, const ReadOptions& options) {
     const std::string_view line = lineOf(rest.substr(0, end));
     rest.remove_prefix(end + 1);
     if (isComment(line, options)) continue;
-    return !options.columns.empty() || isBaseStation(line) ||
-           hasPosition(columnsByName(cellsOf(line, separatorOf(line))));
+    return !options.columns.empty() || isBaseStation(line) || hasPosition(columnsByName(headerOf(line)));
   }
 }
 

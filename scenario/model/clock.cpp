@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
+#include <optional>
 
 #include "base/text/quantity_text.h"
 #include "base/text/utc.h"
@@ -18,16 +18,24 @@ namespace {
 
 constexpr double kMaxTimes = 1e7;
 
-double secondsOf(const std::string& text, const std::string& whole) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("times '{}': '{}' is not a number of seconds; write BEGIN:END:STEP, BEGIN:END or T",
-                    whole, text));
-  }
-  return value;
+double secondsOf(const std::string& text, const std::string& whole, const Clock& clock) {
+  if (const std::optional<double> seconds = parseQuantity(text, "s")) return *seconds;
+  const auto time_ms = parseUtc_ms(text), epoch_ms = parseUtc_ms(clock.epoch_utc);
+  if (time_ms && epoch_ms) return static_cast<double>(*time_ms - *epoch_ms) / 1000;
+  const std::string fault = time_ms ? "the scenario has no epoch" : utcFault(text);
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("times '{}': '{}' is not a time in seconds or UTC{}; write BEGIN:END:STEP, BEGIN:END "
+                  "or T, such as 0:90:0.5, '1 min' or 2026-06-01T06:01:10Z",
+                  whole, text, fault.empty() ? "" : ": " + fault));
+}
+
+/// The end of a part of "BEGIN:END:STEP". The colons of a UTC time, which begins with its date, belong to it.
+std::size_t partEnd(const std::string& text, std::size_t begin) {
+  const std::size_t end = text.find(':', begin), date_end = text.find('T', begin);
+  const bool is_utc = date_end < end;
+  return std::min(text.size(),
+                  is_utc ? text.find(':', std::min(text.size(), text.find('Z', date_end))) : end);
 }
 
 /// The double that is nearest to a decimal number of 12 digits, so that a third step of 0.1 is 0.3 and not
@@ -103,8 +111,8 @@ std::vector<double> timesOf(const Clock& clock) {
 std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s) {
   std::vector<double> values;
   for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(':', begin), text.size());
-    values.push_back(secondsOf(text.substr(begin, end - begin), text));
+    const std::size_t end = partEnd(text, begin);
+    values.push_back(secondsOf(text.substr(begin, end - begin), text, clock));
     begin = end + 1;
   }
   if (values.size() > 3) {
@@ -116,6 +124,12 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
   }
   if (values.size() == 1) return {values[0]};
   return timesOf(values[0], values[1], values.size() == 3 ? values[2] : clock.step_s, limit_s);
+}
+
+double parseTime(const std::string& text, const Clock& clock) {
+  const std::vector<double> times_s = parseTimes(text, clock);
+  if (times_s.size() == 1) return times_s.front();
+  throw Error(ErrorCode::usage, fmt::format("time '{}': a single time is expected", text));
 }
 
 std::string outsideClockText(const std::vector<double>& times_s, const Clock& clock) {

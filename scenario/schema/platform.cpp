@@ -81,7 +81,10 @@ const ObjectSpec& trackSpec() {
                 "bridged"),
        optional("height_agl_m", kHeightAboveGround, "of all positions, in place of the heights in the file"),
        optional("points", listOf(object(trackPointSpec()), 2, kMaxItems),
-                "the rows of such a file, in place of it")},
+                "the rows of such a file, in place of it"),
+       byDefault("outside", choiceOf<OutsideTrack>(), "absent",
+                 "before and after the track's time: the platform is not there, with all that it carries, or "
+                 "it stands still at the track's end")},
       {{"file", "points"}},
       {{"object", "file"}, {"columns", "file"}, {"gap_s", "file"}, {"height_agl_m", "file"}}};
   return spec;

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "emscape/scenario/file/scenario_file.h"
@@ -146,6 +147,59 @@ TEST_P(TracksThereAndBack, PositionsStayAndTheRestIsTold) {
 
 INSTANTIATE_TEST_SUITE_P(Formats, TracksThereAndBack, testing::Values(".kml", ".czml"),
                          [](const auto& format) { return std::string(format.param).substr(1); });
+
+/// 20 aircraft over a day are to have less than 5 MB.
+TEST(Export, CzmlOfATurnHasFewDigitsAndIsWithinAMetre) {
+  const emscape::test::TemporaryFolder folder;
+  std::string track = "t_s,latitude_deg,longitude_deg,height_msl_m\n";
+  for (int t_s = 0; t_s <= 1000; t_s += 10) {
+    track += std::to_string(t_s) + "," + std::to_string(52 + 0.2 * std::cos(0.01 * t_s)) + "," +
+             std::to_string(5 + 0.3 * std::sin(0.01 * t_s)) + "," + std::to_string(6000 + 0.3 * t_s) + "\n";
+  }
+  folder.write("turn.csv", track);
+  std::string text = kFixedSites;
+  text.replace(text.find("duration_s: 30"), 14, "duration_s: 1000");
+  const std::string site = "position: {latitude_deg: 52.03, longitude_deg: 5, height_agl_m: 40}";
+  text.replace(text.find(site), site.size(), "track: {file: turn.csv}");
+  const ScenarioPtr before = scenario::loadScenario(folder.write("turn.yaml", text));
+  const test::ThereAndBack way(before, nullptr, ".czml");
+  const std::string czml = emscape::test::readFile(way.exported.file);
+  const std::size_t packet = czml.find("\"platform/4\""), begin = czml.find('[', packet),
+                    end = czml.find(']', begin);
+  const auto numbers = std::count(czml.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  czml.begin() + static_cast<std::ptrdiff_t>(end), ',') +
+                       1;
+  EXPECT_EQ(numbers, 4 * 101) << "each point of the track is a corner";
+  EXPECT_LT(static_cast<double>(end - begin) / 101, 5e6 / (20 * 8641));
+  for (double t_s = 0; t_s <= 1000; t_s += 3.7) {
+    const scenario::Snapshot a = scenario::instantAt(before, nullptr, t_s),
+                             b = scenario::instantAt(way.back.scenario, nullptr, t_s);
+    EXPECT_LT(length(toEcef(a.platforms[3].position) - toEcef(b.platforms[3].position)), 1) << t_s;
+  }
+}
+
+TEST(Export, PlatformIsInTheRecordingOnlyDuringItsTrack) {
+  scenario::Scenario late = *scenario::loadScenario(test::shippedScenario("jamming.yaml"));
+  const std::string platform = "helicopter";
+  late.set("platforms." + platform + ".track",
+           "{points: [{t_s: 20, latitude_deg: 36.3, longitude_deg: -84.2, height_msl_m: 2000}, {t_s: 40, "
+           "latitude_deg: 36.31, longitude_deg: -84.2, height_msl_m: 2000}]}");
+  const auto before = std::make_shared<const scenario::Scenario>(late);
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
+  for (const char* ending : {".acmi", ".pcap", ".asi", ".cot", ".kml", ".czml"}) {
+    const emscape::test::TemporaryFolder folder;
+    const ExportResult exported = exportScenario(before, terrain.get(), folder / (std::string("a") + ending));
+    const Recording recording = readRecording(exported.file);
+    bool is_found = false;
+    for (const RecordedObject& object : recording.objects) {
+      if (object.name != platform || object.poses.empty()) continue;
+      is_found = true;
+      double begin_s = object.poses.front().t_s, end_s = object.poses.back().t_s;
+      EXPECT_NEAR(end_s - begin_s, 20, 0.1) << ending;
+    }
+    EXPECT_TRUE(is_found) << ending;
+  }
+}
 
 TEST(Export, OfAnEmitterThatIsSwitchedOffIsSilent) {
   const emscape::test::TemporaryFolder folder;

@@ -301,7 +301,7 @@ TEST_F(Import, WithoutAnyEmitterTheErrorNamesTheRemedy) {
   recording.objects[0].keys = {};
   EXPECT_THAT(
       emscape::test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
-      HasSubstr("no emitter is left of 1 object. Give a database that matches them (--emitters FILE"));
+      HasSubstr("no emitter is left of 1 object. Add the objects to a scenario with emitters (--base FILE), give "));
 }
 
 TEST(ImportRegion, TextIsALatitudeALongitudeAndASize) {

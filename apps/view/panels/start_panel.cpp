@@ -20,7 +20,13 @@ void drawRecentFiles(PanelContext& context, std::size_t max_count) {
       session.perform({"open_recent", {{"number", i + 1}}});
     }
     ImGui::SameLine(0, 12 * context.scale);
-    ImGui::TextDisabled("%s", drawable(file.parent_path()).c_str());
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float room = std::max(1.0F, ImGui::GetContentRegionAvail().x);
+    ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(session.theme()));
+    const bool is_long = drawName(*ImGui::GetWindowDrawList(), file.parent_path().string(), at, at.x + room);
+    ImGui::PopStyleColor();
+    ImGui::Dummy({room, ImGui::GetTextLineHeight()});
+    tooltipOfLongName(file.parent_path().string(), is_long);
     ImGui::PopID();
   }
 }

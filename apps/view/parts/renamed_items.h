@@ -28,4 +28,11 @@ std::string nameAfter(const std::vector<scenario::Edit>& edits, const std::strin
 /// The paths that edits change, with the names that the items have after all of them.
 std::set<std::string> editedPaths(const std::vector<scenario::Edit>& edits);
 
+/// The edits with the renames of an item in a row as one, and without those that lead back to its first name;
+/// the result has the same effect.
+std::vector<scenario::Edit> foldedEdits(const std::vector<scenario::Edit>& edits);
+
+/// The edits without those of a value or an item, where the others have the names that their items have then.
+std::vector<scenario::Edit> editsWithout(const std::vector<scenario::Edit>& edits, const std::string& path);
+
 }  // namespace emscape::view

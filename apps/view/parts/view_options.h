@@ -21,6 +21,8 @@ struct ViewOptions {
   bool offers_kept_view = true;  ///< asks whether the autosave of the input is to be restored
   /// Empty: as large as the view's picture requires.
   std::optional<render::ImageSize> window_size = render::ImageSize{1200, 900};
+  /// The size is that at scale 1: a larger scale has a larger window, as large as the screen at most.
+  bool scales_window = true;
   double scale = 0;  ///< of text and controls; 0: the screen's scale
   render::ControllerOptions controller;
   /// A battlefield that another program streams, of which `view` shows the scenario; null: none.

@@ -138,6 +138,7 @@ void Session::takeScenario() {
     }
   }
   if (edits_) timeline_.setScenario(*edits_->scenario());
+  if (is_first) opened_emitters_ = timeline_.bars().size();
 }
 
 void Session::takePicture() {

@@ -81,7 +81,8 @@ void Session::takeChangedFiles() {
 // --- edits ---
 
 bool Session::hasUnsavedEdits() const {
-  return edits_ && (edits_->isModified() || opened_unsaved_);
+  const bool is_other = edits_ && (edits_->isModified() || opened_unsaved_);
+  return is_other && !foldedEdits(edits_->edits()).empty();  // without edits it is as in its file
 }
 
 bool Session::working() const {

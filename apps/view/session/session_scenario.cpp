@@ -63,10 +63,14 @@ void Session::endDrag() {
 
 void Session::cancelDrag() {
   edit_queue_.cancelDrag();
+  if (!isDraggingPlane()) return;
+  planes_.cancelDrag();
+  showPlanes();
 }
 
 void Session::takeEdits() {
   if (!edits_) return;
+  const playback::ScenarioPtr before = edits_->scenario();
   for (const playback::EditQueue::Outcome& outcome : edit_queue_.update(*edits_)) {
     touched_ = true;
     if (!outcome.error.empty()) {
@@ -77,6 +81,7 @@ void Session::takeEdits() {
     rejection_.reset();
     for (const scenario::Edit& edit : outcome.edits) {
       log_.write("edit", {{"path", edit.path}, {"value", edit.value}});
+      if (!hasItem(*before, edit.path) && hasItem(*edits_->scenario(), edit.path)) selected_ = edit.path;
     }
   }
   noteSteps();
@@ -153,13 +158,13 @@ void Session::showScenario(const std::vector<RenamedItem>& renamed) {
   timeline_.setScenario(*shown_scenario_);
   if (computedScenario()) {
     // Without a choice by the user the scenario's first quantity is shown, as in `render`.
-    const std::string quantity = quantityOf(view_, *before);
+    const std::string quantity = quantityOf(view_, *before), field = fieldName(quantity);
     const std::string missing = missingQuantity(*shown_scenario_, view_.quantity);
     if (!missing.empty()) view_.quantity.clear();
     const std::string now = quantityOf(view_, *shown_scenario_);
     if (!missing.empty()) tell(fmt::format("{}; {} is shown instead", missing, now), true);
     if (now != quantity) {
-      takes_colors_ = true;
+      leaveField(field);
       playback::dropColors(view_);
     }
   }

@@ -95,7 +95,7 @@ std::vector<Verb> Session::windowVerbs() {
        [](Session& session, const Command&) {
          bool was_open = !session.notice_.text.empty();
          session.notice_ = {};
-         if (session.isDragging()) return session.cancelDrag();
+         if (session.isDragging() || session.isDraggingPlane()) return session.cancelDrag();
          if (session.tool_.isOn()) {
            session.tool_ = {};
            return;

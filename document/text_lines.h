@@ -1,4 +1,4 @@
-/// Lines, fields and numbers of antenna files.
+/// Lines, words and numbers of text in any encoding, as instruments and vendors write it.
 #pragma once
 
 #include <optional>
@@ -8,7 +8,7 @@
 
 #include "emscape/base/error.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 
 /// Part of a line. line and column (bytes) count from 1.
 struct TextField {
@@ -17,15 +17,14 @@ struct TextField {
   int column = 0;
 };
 
-/// The text of an antenna file, read whole, up to 64 MiB. Antenna files may have any encoding, and only their
-/// ASCII characters are used: other bytes and control characters are read as '?', so that messages can quote
-/// the text.
-class AntennaText {
+/// The text of a file, read whole, up to 64 MiB. It may have any encoding, and only its ASCII characters are
+/// used: other bytes and control characters are read as '?', so that messages can quote the text.
+class TextLines {
  public:
   /// @throws Error (bad_input) if the file cannot be read or is not text (holds a zero byte)
-  explicit AntennaText(const std::string& file);
-  AntennaText(const AntennaText&) = delete;
-  AntennaText& operator=(const AntennaText&) = delete;
+  explicit TextLines(const std::string& file);
+  TextLines(const TextLines&) = delete;
+  TextLines& operator=(const TextLines&) = delete;
 
   const std::string& file() const { return file_; }
   /// The whole text, for CsvReader.
@@ -47,9 +46,14 @@ std::vector<TextField> wordsOf(const TextField& line);
 /// The part of a field from byte `offset` on, without blanks at its ends.
 TextField restOf(const TextField& field, std::size_t offset);
 
+/// A text without blanks and tabs at its ends.
+std::string_view withoutBlanks(std::string_view text);
+
 /// A finite decimal number that fills the whole text.
 std::optional<double> numberIn(std::string_view text);
+/// The same, also with a decimal comma: "17,5".
+std::optional<double> numberOrCommaIn(std::string_view text);
 /// Case of ASCII letters only.
 std::string upperCase(std::string_view text);
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document

@@ -1,4 +1,4 @@
-#include "scenario/antenna/text.h"
+#include "document/text_lines.h"
 
 #include <algorithm>
 #include <charconv>
@@ -7,11 +7,11 @@
 #include "base/files/file_reading.h"
 #include "document/text_file.h"
 
-namespace emscape::scenario {
+namespace emscape::document {
 namespace {
 
-constexpr std::size_t kMaxFileBytes = std::size_t{64} << 20;
-constexpr std::string_view kBlanks = " \t";
+constexpr std::size_t kMaxLinesBytes = std::size_t{64} << 20;
+constexpr std::string_view kLineBlanks = " \t";
 
 /// True for bytes outside ASCII and control characters, except line ends, tabs, and zeros, which mark binary
 /// files.
@@ -22,14 +22,18 @@ bool isForeign(char c) {
 
 }  // namespace
 
-TextField restOf(const TextField& field, std::size_t offset) {
-  const std::size_t first = std::min(field.text.find_first_not_of(kBlanks, offset), field.text.size());
-  const std::size_t end = field.text.find_last_not_of(kBlanks) + 1;  // npos + 1 is 0
-  return {field.text.substr(first, end > first ? end - first : 0), field.line,
-          field.column + static_cast<int>(first)};
+std::string_view withoutBlanks(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(kLineBlanks), text.size());
+  const std::size_t end = text.find_last_not_of(kLineBlanks) + 1;  // npos + 1 is 0
+  return text.substr(begin, end > begin ? end - begin : 0);
 }
 
-AntennaText::AntennaText(const std::string& file) : file_(file), text_(readWholeText(file, kMaxFileBytes)) {
+TextField restOf(const TextField& field, std::size_t offset) {
+  const std::size_t first = std::min(field.text.find_first_not_of(kLineBlanks, offset), field.text.size());
+  return {withoutBlanks(field.text.substr(first)), field.line, field.column + static_cast<int>(first)};
+}
+
+TextLines::TextLines(const std::string& file) : file_(file), text_(readWholeText(file, kMaxLinesBytes)) {
   if (text_.compare(0, 3, "\xEF\xBB\xBF") == 0) text_.erase(0, 3);
   std::replace_if(text_.begin(), text_.end(), isForeign, '?');
   const std::string_view text = text_;
@@ -48,10 +52,10 @@ AntennaText::AntennaText(const std::string& file) : file_(file), text_(readWhole
 
 std::vector<TextField> wordsOf(const TextField& line) {
   std::vector<TextField> words;
-  for (std::size_t begin = line.text.find_first_not_of(kBlanks); begin < line.text.size();) {
-    const std::size_t end = std::min(line.text.find_first_of(kBlanks, begin), line.text.size());
+  for (std::size_t begin = line.text.find_first_not_of(kLineBlanks); begin < line.text.size();) {
+    const std::size_t end = std::min(line.text.find_first_of(kLineBlanks, begin), line.text.size());
     words.push_back({line.text.substr(begin, end - begin), line.line, line.column + static_cast<int>(begin)});
-    begin = line.text.find_first_not_of(kBlanks, end);
+    begin = line.text.find_first_not_of(kLineBlanks, end);
   }
   return words;
 }
@@ -65,6 +69,13 @@ std::optional<double> numberIn(std::string_view text) {
   return value;
 }
 
+std::optional<double> numberOrCommaIn(std::string_view text) {
+  std::string with_point(text);
+  if (std::count(text.begin(), text.end(), ',') == 1 && text.find('.') == std::string_view::npos)
+    std::replace(with_point.begin(), with_point.end(), ',', '.');
+  return numberIn(with_point);
+}
+
 std::string upperCase(std::string_view text) {
   std::string upper(text);
   for (char& c : upper) {
@@ -73,4 +84,4 @@ std::string upperCase(std::string_view text) {
   return upper;
 }
 
-}  // namespace emscape::scenario
+}  // namespace emscape::document
