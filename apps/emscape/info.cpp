@@ -68,15 +68,19 @@ Json choicesOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
       emfield::modelChoices(scenario::snapshotAt(scenario, terrain.get(), time_s), terrain.get()));
 }
 
-/// Memory, time and disk space of the field; null if it cannot be computed (`validate` reports the reason).
-Json workOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
+/// Adds the warnings, and memory, time and disk space of the field; null if it cannot be computed (`validate`
+/// reports the reason).
+void addWork(const std::shared_ptr<const scenario::Scenario>& scenario, Json& json) {
   emfield::FieldOptions options;
   options.allow_missing_terrain = true;
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-    return report::workJson(report::workEstimateOf({scenario, terrain, options}, *scenario, terrain.get()));
+    const emfield::FieldSolver solver(scenario, terrain, options);
+    json["work"] = report::workJson(report::workEstimateOf(solver, *scenario, terrain.get()));
+    json["warnings"] = solver.warnings();
   } catch (const Error&) {
-    return nullptr;
+    json["work"] = nullptr;
+    json["warnings"] = Json::array();
   }
 }
 
@@ -149,8 +153,8 @@ Description describeScenario(const std::string& file) {
             {"receivers", receivers},
             {"targets", targets},
             {"channels", channels},
-            {"choices", choicesOf(scenario)},
-            {"work", workOf(scenario)}};
+            {"choices", choicesOf(scenario)}};
+  addWork(scenario, json);
   const auto& refractivity = scenario->atmosphere.refractivity;
   if (refractivity) json["refractivity"] = report::refractivityJson(*refractivity, frequenciesOf(*scenario));
   return {json, refractivity, nullptr};
@@ -184,6 +188,12 @@ void addValues(Json& json, const volume::VolumeInfo& info, const volume::Statist
   json["mean"] = statistics.mean;
 }
 
+/// What places the values on the earth, as in the files.
+void addPlace(Json& json, bool georeferenced, const FrameOrigin& frame) {
+  if (!georeferenced) return;
+  for (const auto& [key, text] : volume::standardWords(georeferenced, frame)) json[key] = text;
+}
+
 Json extraOf(const volume::VolumeInfo& info) {
   Json extra = Json::object();
   for (const auto& [key, value] : info.extra) extra[key] = value;
@@ -198,6 +208,7 @@ Json describeVolume(const volume::DenseVolume& volume) {
             {"spacing_m", toJson(volume.grid.spacing_m)},
             {"first_center_m", toJson(volume.grid.first_center_m)},
             {"frame", volume.grid.georeferenced ? toJson(volume.grid.frame) : Json(nullptr)}};
+  addPlace(json, volume.grid.georeferenced, volume.grid.frame);
   addValues(json, volume.info, statistics);
   json["voxels"] = statistics.voxels;
   json["masked_voxels"] = statistics.masked;
@@ -241,6 +252,7 @@ Json describeMeshFiles(const std::string& path) {
             {"lower_m", toJson(bounds.lower_m)},
             {"upper_m", toJson(bounds.upper_m)},
             {"frame", file.mesh->georeferenced ? toJson(file.mesh->frame) : Json(nullptr)}};
+  addPlace(json, file.mesh->georeferenced, file.mesh->frame);
   for (const playback::VolumeFile& step : files) json["times_s"].push_back(step.time_s);
   for (volume::MeshField& field : file.fields) {
     if (!field.info.has_time) field.info.time_s = files.front().time_s;
@@ -260,7 +272,8 @@ double twelveDigits(double value) {
 }
 
 Json describeElevation(const std::string& file) {
-  const scenario::TerrainFileInfo info = scenario::Terrain::describe(file);
+  scenario::TerrainFileInfo info = scenario::Terrain::describe(file);
+  info.notes.insert(info.notes.end(), info.warnings.begin(), info.warnings.end());
   return {{"kind", "elevation"},
           {"file", file},
           {"format", info.format},
@@ -268,6 +281,8 @@ Json describeElevation(const std::string& file) {
           {"columns", info.columns},
           {"rows", info.rows},
           {"box", toJson(info.box)},
+          {"vertical_datum", info.vertical_datum},
+          {"height_unit", info.height_unit},
           {"post_spacing_lat_deg", twelveDigits(info.post_spacing_lat_deg)},
           {"post_spacing_lon_deg", twelveDigits(info.post_spacing_lon_deg)},
           {"lowest_m", info.lowest_m},
@@ -382,7 +397,8 @@ void addInfo(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->footer(R"(
 Scenarios: .yaml .yml .json. Volumes: .vdb .nvdb .vti .raw .dat; fields on tetrahedra: .vtu; series:
 .pvd or a folder (its first step is described).
-Elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt. Antennas: .msi .pln .adf .ant .pattern .az .el .csv.
+Elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip and .gz; `terrain` describes several
+files and folders. Antennas: .msi .pln .adf .ant .pattern .az .el .csv.
 Refractivity: .csv with a column height_msl_m; soundings of IGRA 2 and the University of Wyoming (any ending; the last is described). Each duct is given with
 its heights, its strength, the largest trapped angle, the number of modes at 1, 3 and 10 GHz (of a scenario, at the frequencies of
 its emitters), and the frequency from which it traps.

@@ -270,8 +270,9 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   checkOutputFiles(options, view);
   const std::string mode = render::toString(view.settings.mode);
   // `auto` casts every pixel for files.
-  const render::FramePlan plan{view.pattern.value_or(render::Pattern::full),
-                               render::parseInterpolation(options.interpolate)};
+  render::FramePlan plan = render::FramePlan::exact();
+  plan.pattern = view.pattern.value_or(render::Pattern::full);
+  plan.interpolation = render::parseInterpolation(options.interpolate);
   const Stage stage = openStage(view, options, global);
   saveState(options, view, stage);
   if (options.outputs.empty()) return 0;

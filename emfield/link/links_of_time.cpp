@@ -77,15 +77,17 @@ bool isPresent(const scenario::Snapshot& snapshot, int platform) {
 }
 
 /// Fills the columns of a row that describe its path.
-/// @param budget  null: one end is straight above the other, or absent
-/// @param to      platform of the other end
+/// @param budget   null: one end is straight above the other, or absent
+/// @param to       platform of the other end
+/// @param unknown  the path crosses missing terrain
 void fillPath(PathRow& row, const scenario::Snapshot& snapshot, int emitter_index, int to,
-              const PathBudget* budget) {
+              const PathBudget* budget, bool unknown) {
   row.has_path = budget != nullptr;
   if (budget == nullptr) {
     const Emitter& emitter = snapshot.scenario->emitters[static_cast<std::size_t>(emitter_index)];
-    row.power_density_dbwm2 = -HUGE_VAL;
-    row.path = fmt::format("No path: '{}' is straight above or below.", emitter.name);
+    row.power_density_dbwm2 = unknown ? std::nan("") : -HUGE_VAL;
+    row.path = unknown ? std::string("Unknown: terrain is missing on the path.")
+                       : fmt::format("No path: '{}' is straight above or below.", emitter.name);
     for (const int end : {to, emitter.platform}) {
       if (isPresent(snapshot, end)) continue;
       row.path = fmt::format(
@@ -111,6 +113,11 @@ void keepWarnings(std::vector<std::string>& all, const std::string& from, const 
     const std::string line = fmt::format("'{}' to '{}': {}", from, to, warning);
     if (std::find(all.begin(), all.end(), line) == all.end() && all.size() < 50) all.push_back(line);
   }
+}
+
+/// True for an error of missing terrain that the scenario allows.
+bool isUnknown(const Scenario& scenario, const Error& error) {
+  return error.hint() == Hint::allow_missing_terrain && scenario::mayLackTerrain(scenario, false);
 }
 
 /// Adds the ends and the time to an error of a path.
@@ -156,7 +163,7 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
   const scenario::ReceiverState& state = snapshot.receivers[receiver_];
   const EmitterState& from = snapshot.emitters[emitter];
   Wave& wave = waves_[emitter];
-  wave.is_present = false;
+  wave.is_present = wave.is_unknown = false;
   const bool is_absent = !isPresent(snapshot, own.platform) ||
                          !isPresent(snapshot, scenario.emitters[static_cast<std::size_t>(emitter)].platform);
   if (is_absent || isAbove(from.position, state.position)) {
@@ -167,6 +174,9 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
     wave.budget = std::make_unique<PathBudget>(powerBudget(
         snapshot, emitter, {state.position, state.height_msl_m}, wave.model, terrain, wave.budget.get()));
   } catch (const Error& error) {
+    wave.budget.reset();
+    wave.is_unknown = isUnknown(scenario, error);
+    if (wave.is_unknown) return;
     refuse(scenario.emitters[emitter].name, own.name, snapshot.time_s, error);
   }
   keepWarnings(warnings, scenario.emitters[emitter].name, own.name, *wave.budget);
@@ -229,7 +239,7 @@ void ReceiverListener::add(const scenario::Snapshot& snapshot, const scenario::T
     const double signal_w = powers_w[static_cast<std::size_t>(link.emitter)];
     LinkRow row;
     row.time_s = snapshot.time_s;
-    fillPath(row, snapshot, link.emitter, own.platform, wave.budget.get());
+    fillPath(row, snapshot, link.emitter, own.platform, wave.budget.get(), wave.is_unknown);
     row.active = snapshot.emitters[link.emitter].active;
     row.received_power_dbm = dbm(signal_w);
     row.interference_dbm = dbm(interference_w);
@@ -301,6 +311,7 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
         is_present ? radialSpeed_mps(snapshot, detection.radar, target.platform, terrain) : NAN;
   }
 
+  bool is_unknown = false;
   std::optional<PathBudget> budget;
   if (is_present && !isAbove(radar_state.position, carrier.position)) {
     std::unique_ptr<TargetScene> scene = scenes.take(snapshot);
@@ -312,13 +323,14 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
       budget = pathBudget(scene->snapshot, detection.radar, {carrier.position, carrier.height_msl_m}, model_,
                           terrain);
     } catch (const Error& error) {
-      refuse(radar.name, target.name, snapshot.time_s, error);
+      is_unknown = isUnknown(*snapshot.scenario, error);
+      if (!is_unknown) refuse(radar.name, target.name, snapshot.time_s, error);
     }
     with_target = radar;
     scenes.giveBack(std::move(scene));
-    keepWarnings(warnings, radar.name, target.name, *budget);
+    if (budget) keepWarnings(warnings, radar.name, target.name, *budget);
   }
-  fillPath(row, snapshot, detection.radar, target.platform, budget ? &*budget : nullptr);
+  fillPath(row, snapshot, detection.radar, target.platform, budget ? &*budget : nullptr, is_unknown);
   row.look_pattern_db = budget ? budget->look_pattern_db.value_or(row.pattern_db) : 0;
   const auto valueOr = [&](const char* key, double otherwise) {
     const BudgetTerm* const term = budget ? budget->find(key) : nullptr;

@@ -11,6 +11,7 @@
 #include "emfield/columns/station.h"
 #include "emfield/columns/two_rays.h"
 #include "emfield/excess/elevation_cut.h"
+#include "emfield/excess/model_check.h"
 #include "emfield/link/path_radar.h"
 #include "emfield/link/path_verdict.h"
 #include "emfield/radar/detection_losses.h"
@@ -347,6 +348,11 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   budget.pointing = pointingOf(emitter, state.beam, ray, budget.excess.reflection);
   budget.boresight_dbwm2 = boresightDensity_dbwm2(emitter, budget);
   budget.warnings = budget.excess.warnings;
+  if (terrain != nullptr) {
+    const float lowest_m = *std::min_element(profile.ground_msl_m.begin(), profile.ground_msl_m.end());
+    for (std::string& warning : seaWarnings(scenario, by_model, static_cast<double>(lowest_m)))
+      budget.warnings.push_back(std::move(warning));
+  }
   if (geometry.slant_range_m < geometry.far_field_m) {
     budget.warnings.push_back(fmt::format(
         "the point is {:.0f} m from the antenna, closer than the far-field distance (2 D^2 / lambda = "

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interop/acmi/acmi_text.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
+#include "recording/acmi/acmi_text.h"
 
 namespace emscape::interop {
 namespace {

@@ -4,7 +4,7 @@
 #include "emscape/base/geodesy/geoid.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
-#include "interop/recording/text.h"
+#include "recording/common/dates.h"
 
 namespace emscape::interop {
 namespace {

@@ -7,11 +7,11 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "interop/dis/datagrams.h"
-#include "interop/dis/force.h"
-#include "interop/dis/orientation.h"
-#include "interop/dis/pdu.h"
 #include "interop/exporting/writers.h"
+#include "recording/dis/datagrams.h"
+#include "recording/dis/force.h"
+#include "recording/dis/orientation.h"
+#include "recording/dis/pdu.h"
 
 namespace emscape::interop {
 namespace {

@@ -3,7 +3,7 @@
 #include "base/text/xml_text.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
-#include "interop/recording/text.h"
+#include "recording/common/dates.h"
 
 namespace emscape::interop {
 namespace {

@@ -7,11 +7,12 @@
 #include <filesystem>
 
 #include "document/text_edit.h"
+#include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
-#include "interop/recording/text.h"
+#include "recording/common/dates.h"
 #include "scenario/file/source.h"
 #include "scenario/scan/scan_sweep.h"
 
@@ -43,6 +44,17 @@ double distance_m(const PoseSample& a, const PoseSample& b) {
 }
 
 }  // namespace
+
+void requireFewRecords(const scenario::Scenario& scenario, double step_s) {
+  constexpr double kMaxRecords = 2e7, kShortestHeartbeat_s = 2;
+  const double records = scenario.clock.duration_s / std::min(step_s, kShortestHeartbeat_s) *
+                         static_cast<double>(scenario.platforms.size() + scenario.emitters.size());
+  if (records <= kMaxRecords) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("about {:.2g} records, more than the allowed {:.2g}; give a larger --step, or a "
+                          "part of the scenario: --set duration_s=3600",
+                          records, kMaxRecords));
+}
 
 Presence presenceOf(const scenario::Scenario& scenario, const scenario::Platform& platform) {
   Presence presence{0, scenario.clock.duration_s};

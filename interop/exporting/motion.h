@@ -6,9 +6,12 @@
 
 #include "emscape/base/vec.h"
 #include "emscape/scenario/model/scenario.h"
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
+
+/// Refuses what would need too much memory or disk. @throws Error (usage)
+void requireFewRecords(const scenario::Scenario& scenario, double step_s);
 
 /// The part of the scenario's time in which a platform is present.
 struct Presence {

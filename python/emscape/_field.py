@@ -182,7 +182,8 @@ class Field:
         return dataset_of(self, listed(quantities))
 
     def to_pyvista(self, quantities: str | Sequence[str] = ()) -> pyvista.ImageData:
-        """The field as point data of an ImageData whose points are the voxels' centres (frame metres). Needs pyvista.
+        """The field as point data of an ImageData whose points are the voxels' centres (frame metres); NaN in masked voxels, as
+        in to_xarray(). Needs pyvista.
 
         :param quantities: empty: all
         """
@@ -193,7 +194,8 @@ class Field:
         grid = self.grid
         image = pyvista.ImageData(dimensions=grid["dims"], spacing=grid["spacing_m"], origin=grid["first_center_m"])
         for name in listed(quantities) or self.quantities:
-            image.point_data[name] = self.numpy(name).ravel()  # VTK has the same order of points: x fastest
+            values = np.where(self.mask(name), np.float32("nan"), self.numpy(name))
+            image.point_data[name] = values.ravel()  # VTK has the same order of points: x fastest
         return image
 
     def __repr__(self) -> str:

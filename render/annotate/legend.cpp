@@ -89,10 +89,11 @@ std::vector<BarTick> ticksOf(const Legend& legend, int count, double gap) {
 }
 
 /// Width of the longest text. Text is measured independently of the picture.
-double widestText(const std::vector<std::string>& texts, double size_px) {
+double widestText(const std::vector<std::string>& texts, double size_px, Weight weight = Weight::normal) {
   const Canvas measure({1, 1});
   double widest = 0;
-  for (const std::string& text : texts) widest = std::max(widest, measure.textBox(text, size_px).width);
+  for (const std::string& text : texts)
+    widest = std::max(widest, measure.textBox(text, size_px, weight).width);
   return widest;
 }
 
@@ -267,10 +268,21 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
   drawNotes(canvas, style, legend, left, below);
 }
 
+/// Number of the categories that have room, with a line for the others and the notes below them.
+std::size_t shownCategories(ImageSize size, const Style& style, const Legend& legend) {
+  const double room = size.height - topOf(size, style, legend) - 0.5 * kRowHeight * style.unit;
+  const std::size_t below = notesOf(legend).size() + (legend.hatched.empty() ? 0 : 1);
+  const auto rows = static_cast<std::size_t>(std::max(room / (kRowHeight * style.unit), 0.0));
+  if (legend.categories.size() + below <= rows) return legend.categories.size();
+  return rows > below + 1 ? rows - below - 1 : 0;
+}
+
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
   double y = topOf(canvas.size(), style, legend);
   drawHeading(canvas, style, legend, left, y);
-  for (const Category& category : legend.categories) {
+  const std::size_t shown = shownCategories(canvas.size(), style, legend);
+  for (std::size_t n = 0; n < shown; ++n) {
+    const Category& category = legend.categories[n];
     y += kRowHeight * style.unit;
     const double swatch = kSwatch * style.unit;
     canvas.rectangle({left, y - swatch / 2, swatch, swatch},
@@ -280,6 +292,11 @@ void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, do
                        style.rimInk());
   }
   y += kRowHeight * style.unit;
+  if (shown < legend.categories.size()) {
+    canvas.textWithRim(fmt::format("and {} more", legend.categories.size() - shown), {left, y},
+                       style.small_px, style.mutedInk(), style.rimInk());
+    y += kRowHeight * style.unit;
+  }
   if (drawHatched(canvas, style, legend, left, y)) y += kRowHeight * style.unit;
   drawNotes(canvas, style, legend, left, y);
 }
@@ -421,7 +438,8 @@ PixelArea legendHeading(ImageSize size, const Annotations& annotations) {
   const double gap = legend.function.categorical ? 0 : 10 * style.unit;
   const double bottom = topOf(size, style, legend) - gap;
   const double height = kLine * style.text_px * static_cast<double>(headingOf(legend).size());
-  return {size.width - kEdge * style.unit - content, bottom - height, content, height};
+  const double heading = std::min(widestText(headingOf(legend), style.text_px, Weight::bold), style.name_px);
+  return {size.width - kEdge * style.unit - content, bottom - height, std::max(content, heading), height};
 }
 
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend) {

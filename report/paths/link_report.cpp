@@ -246,6 +246,9 @@ emfield::LinkReport computeLinks(const std::shared_ptr<const scenario::Scenario>
                                  const emfield::LinkOptions& options, const ProgressSink& progress) {
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   emfield::LinkReport report = emfield::computeLinks(scenario, terrain.get(), options, progress);
+  if (terrain) {
+    for (std::string& warning : terrain->warnings()) report.warnings.push_back(std::move(warning));
+  }
   if (report.links.empty() && report.detections.empty()) {
     throw Error(ErrorCode::bad_input, {scenario->file},
                 "there is no link: it takes a receiver with a platform that is tuned to an emitter, or a "

@@ -64,7 +64,8 @@ class Track {
     scenario_ = own;
     options_.quantities.clear();
     options_.also_per_emitter = true;
-    options_.allow_missing_terrain = options_.keep_partly_unknown = true;
+    options_.allow_missing_terrain = scenario::mayLackTerrain(*own, true);
+    options_.keep_partly_unknown = true;
     const std::vector<emfield::Channel> channels =
         emfield::channelsOf(*own, own->output.quantities, scenario::CombineMode::per_emitter);
     for (std::size_t c = 0; c < channels.size(); ++c) {

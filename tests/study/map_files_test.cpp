@@ -63,6 +63,7 @@ struct Fixture {
     map.kind = kind;
     map.title = map.name;
     map.unit = kind == MapKind::level ? "dB" : "";
+    map.subject = map.name;
     map.description = map.name + " at 1500 m above mean sea level";
     map.height = height;
     map.time_s = time_s;

@@ -12,6 +12,7 @@
 #include "apps/view/panels/picture_overlay.h"
 #include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
 #include "base/text/time_text.h"
 #include "emscape/render/annotate/legend.h"
@@ -78,7 +79,8 @@ void drawSideButton(PanelContext& context) {
   if (!layout.side_is_over) return;
   const char* const text = context.session.panels.side ? "Picture##side" : "Side##side";
   const float width = ImGui::CalcTextSize(text, nullptr, /*hide_text_after_double_hash=*/true).x;
-  ImGui::SameLine(ImGui::GetIO().DisplaySize.x - width - 24 * context.scale);
+  const float padding = 2 * ImGui::GetStyle().FramePadding.x + 8 * context.scale;
+  ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetIO().DisplaySize.x - width - padding));
   if (ImGui::SmallButton(text)) perform(context, R"({"do":"panel","name":"side"})");
 }
 
@@ -146,10 +148,15 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   const std::string under = session.picture() ? cursorText(session) : "";
   const float under_x = right_x - (under.empty() ? 0 : ImGui::CalcTextSize(under.c_str()).x + 24 * s);
   drawStateBadge(context, under_x - 12 * s);
-  if (!under.empty() && under_x >= ImGui::GetCursorPosX()) {
-    ImGui::SameLine();
-    ImGui::SetCursorPosX(under_x);
-    ImGui::TextUnformatted(drawable(under).c_str());
+  if (!under.empty()) {
+    ImGui::SameLine(0, 12 * s);
+    const float from_x = std::max(under_x, ImGui::GetCursorPosX());
+    ImGui::SetCursorPosX(from_x);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float room = std::max(0.0F, right_x - from_x);
+    const bool is_long = drawName(*ImGui::GetWindowDrawList(), under, at, at.x + room);
+    ImGui::Dummy({room, ImGui::GetTextLineHeight()});
+    tooltipOfLongName(under, is_long);
   }
   if (!right.empty()) {
     ImGui::SameLine();
@@ -207,7 +214,7 @@ void drawGoToTime(PanelContext& context) {
   }
   ImGui::SetNextItemWidth(160 * context.scale);
   const bool entered =
-      ImGui::InputText("seconds, or UTC", typed, sizeof typed,
+      ImGui::InputText("seconds, M:SS or UTC", typed, sizeof typed,
                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
   ImGui::SameLine();
   if (ImGui::Button("Go") || entered) {

@@ -13,6 +13,7 @@
 #include "apps/view/widgets/theme.h"
 #include "base/text/shell_word.h"
 #include "base/text/time_text.h"
+#include "emscape/base/error.h"
 
 namespace emscape::view {
 namespace {
@@ -63,7 +64,9 @@ struct Typed {
   void setFile(const std::string& name) { std::snprintf(file, sizeof file, "%s", name.c_str()); }
   bool isVideo() const { return std::filesystem::path(file).extension() == ".mp4"; }
   render::ImageSize size(const Session& session) const {
-    return preset == 0 ? session.pictureSize() : kSizes[preset].size;
+    const render::ImageSize size = preset == 0 ? session.pictureSize() : kSizes[preset].size;
+    if (!isVideo()) return size;
+    return {size.width + size.width % 2, size.height + size.height % 2};  // as the encoder needs them
   }
   Command command() const {
     Command record{"record",
@@ -87,7 +90,7 @@ void fillIn(Typed& typed, const Session& session) {
   typed.end_s = times_s.back();
   typed.step_s = times_s.size() > 1 ? times_s[1] - times_s[0] : 1;
   if (std::exchange(typed.input, session.view().input) != session.view().input || typed.file[0] == '\0') {
-    typed.setFile(besideInput(session.view().input, ".mp4"));
+    typed.setFile(besideInput(session.options().namesake(), ".mp4"));
   }
 }
 
@@ -135,6 +138,28 @@ void drawCameraPath(PanelContext& context) {
   }
   if (flies && count < 2)
     ImGui::TextColored(errorColor(session.theme()), "two bookmarks are needed: Ctrl+1, Ctrl+2, ...");
+}
+
+/// Begin, end and step, typed as all times; pictures per second.
+void drawTimes(const PanelContext& context, Typed& typed) {
+  const auto number = [&](const char* name, double& value, const NumberForm& form) {
+    ImGui::SetNextItemWidth(120 * context.scale);
+    numberField(context, name, value, form);
+  };
+  NumberForm instant{"", "s"}, step{"", "s"}, rate;
+  instant.read = [&](const std::string& text) { return context.session.timeline().parseTime_s(text); };
+  step.read = [](const std::string& text) {
+    const std::optional<double> step_s = parseTime_s(text);
+    if (step_s && *step_s > 0) return *step_s;
+    throw Error(ErrorCode::bad_input,
+                fmt::format("step '{}': expected seconds (0.5, 1.5 min) or M:SS, above 0", text));
+  };
+  rate.min = kMinFramesPerSecond;
+  rate.max = kMaxFramesPerSecond;
+  number("begin", typed.begin_s, instant);
+  number("end", typed.end_s, instant);
+  number("step", typed.step_s, step);
+  number("pictures per second of a film", typed.frames_per_s, rate);
 }
 
 std::string bytesText(double bytes) {
@@ -190,14 +215,7 @@ void drawRecording(PanelContext& context, const Area& picture) {
   drawOutput(context, typed);
   drawSize(context, typed);
   drawCameraPath(context);
-  const auto number = [&](const char* name, double& value) {
-    ImGui::SetNextItemWidth(120 * context.scale);
-    ImGui::InputDouble(name, &value, 0, 0, "%.6g");
-  };
-  number("begin (s)", typed.begin_s);
-  number("end (s)", typed.end_s);
-  number("step (s)", typed.step_s);
-  number("pictures a second of a film", typed.frames_per_s);
+  drawTimes(context, typed);
   drawEstimate(context, typed);
   ImGui::TextDisabled("%s", "the same on the command line, with the view saved as VIEW.json (Ctrl+Shift+V):");
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 520 * context.scale);

@@ -1,7 +1,6 @@
 /// Platforms: a fixed site or a track.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -9,8 +8,11 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/side.h"
 
 namespace emscape::scenario {
+
+using emscape::Side;
 
 /// A position as given in a file: exactly one of the heights is set.
 struct SitePosition {
@@ -35,13 +37,8 @@ struct TrackPoint {
   std::optional<double> heading_deg;
   std::optional<double> pitch_deg;
   std::optional<double> roll_deg;
+  bool gap_after = false;  ///< the platform is absent from here to the next point
 };
-
-/// Side of a platform, as the standard identities of MIL-STD-2525 and APP-6.
-enum class Side { friendly, hostile, neutral, unknown };
-constexpr auto namesOf(Side) {
-  return std::array{"friend", "hostile", "neutral", "unknown"};
-}
 
 /// What a moving platform does before and after its track.
 enum class OutsideTrack {
@@ -63,7 +60,7 @@ struct Platform {
   SourceLocation location;   ///< in the scenario
 
   bool moves() const { return track.size() > 1; }
-  /// False before and after the track of a moving platform, unless it holds its ends.
+  /// False before and after the track of a moving platform, unless it holds its ends, and within gaps of it.
   bool isPresentAt(double t_s) const;
 };
 
