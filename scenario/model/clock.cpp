@@ -127,7 +127,7 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
 }
 
 double parseTime(const std::string& text, const Clock& clock) {
-  if (utcLength(text) != text.size() && text.find(':') != std::string::npos)
+  if (partEnd(text, 0) < text.size())
     throw Error(ErrorCode::usage, fmt::format("time '{}': a single time is expected", text));
   return parseTimes(text, clock).front();
 }
