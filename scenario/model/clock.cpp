@@ -127,9 +127,9 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
 }
 
 double parseTime(const std::string& text, const Clock& clock) {
-  const std::vector<double> times_s = parseTimes(text, clock);
-  if (times_s.size() == 1) return times_s.front();
-  throw Error(ErrorCode::usage, fmt::format("time '{}': a single time is expected", text));
+  if (partEnd(text, 0) < text.size())
+    throw Error(ErrorCode::usage, fmt::format("time '{}': a single time is expected", text));
+  return parseTimes(text, clock).front();
 }
 
 std::string outsideClockText(const std::vector<double>& times_s, const Clock& clock) {
