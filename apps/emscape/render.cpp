@@ -442,9 +442,10 @@ Examples:
   options->given.addTo(*command, "--time");
   command->add_option("--interpolate", options->interpolate, "Precision of interpolated pixels")
       ->check(CLI::IsMember({"float", "8bit"}));
-  command->add_option("--times", options->times,
-                      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: all steps, or the first if the "
-                      "only output is a .png");
+  command->add_option(
+      "--times", options->times,
+      "BEGIN:END:STEP, BEGIN:END or T, in seconds or UTC; default: all steps, or the first if the "
+      "only output is a .png");
   command
       ->add_option("--fps", options->frames_per_s,
                    "Frames per second of a video (default 10); with --realtime: the maximum")

@@ -34,7 +34,7 @@ bool isOnSplit(const Session& session, double x) {
 /// The object under a pixel of the picture; null if there is none, or if emitters are not drawn.
 const SceneObject* objectUnder(const Session& session, double x, double y) {
   if (!session.picture() || !session.view().show_emitters) return nullptr;
-  return objectAt(session.objects(), *session.picture(), x, y);
+  return objectAt(session.objects(), x, y);
 }
 
 }  // namespace
@@ -74,10 +74,11 @@ void MouseControl::move(const Area& picture, const Viewport& viewport, double ri
                         Session& session) {
   if (!is_moved_ && std::hypot(x_ - pressed_x_, y_ - pressed_y_) < kClick_px) return;
   if (drag_ == Drag::platform) return movePlatform(picture, session);
-  is_moved_ = true;
+  const bool is_first = !std::exchange(is_moved_, true);
   if (drag_ == Drag::split) return session.moveSplit(x_ - picture.x);
   if (drag_ == Drag::plane) {
-    plane_->moveTo(x_ - picture.x, y_ - picture.y, session);
+    plane_->moveTo(x_ - picture.x, y_ - picture.y, session, is_first);
+    if (!session.isDraggingPlane()) drag_ = Drag::none;  // it was cancelled or undone
     return;
   }
   if (drag_ == Drag::pan || drag_ == Drag::look) session.stopFollowing();

@@ -11,6 +11,7 @@
 #include "apps/view/view_parser.h"
 #include "emscape/base/error.h"
 #include "playback/view/view_file.h"
+#include "recording/read_recording.h"
 
 namespace emscape::view {
 namespace {
@@ -39,11 +40,11 @@ struct Typed {
 };
 
 void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
-  app.add_option(
-      "INPUT", options.view.input,
-      "Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd or folder of them, "
-      "recording (.acmi .pcap .pcapng .session); "
-      "without it the window asks for one");
+  app.add_option("INPUT", options.view.input,
+                 std::string("Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd "
+                             "or folder of them, ") +
+                     "recording (" + interop::recordingEndingsText() +
+                     "); without it the window asks for one");
   app::addMeshOptions(app, options.view.mesh, options.view.cells);
   app.add_option(
       "--state", typed.state,
@@ -52,7 +53,7 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   typed.given.addTo(app, "--size");
   typed.stream.addTo(app, "", "--emitter-database");
   app.add_option("--size", typed.size,
-                 "Window size in pixels, WxH; default: 1200x900, with --state as large as its picture needs");
+                 "Window size in pixels, WxH; default: 1200x900 times the scale, with --state as large as its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
       ->check(CLI::Range(0.5, 4.0))
       ->default_str("");
@@ -91,17 +92,17 @@ void takeStream(const app::StreamOptions& stream, const CLI::App& app, ViewOptio
          {"--interface", "--password", "--emitter-database", "--record", "--force", "--timeout"}) {
       if (app.count(name) > 0)
         throw Error(ErrorCode::usage,
-                    std::string(name) + " needs --dis or --acmi\nTry 'emscape view --help'.");
+                    std::string(name) + " needs --dis, --acmi or --cot\nTry 'emscape view --help'.");
     }
     return;
   }
   options.stream_request = stream.parse();
   options.stream_request->base = options.view.input;
   if (options.view.input.empty()) {
-    throw Error(
-        ErrorCode::usage,
-        "--dis and --acmi need INPUT: a scenario with the region and the terrain, to which the objects "
-        "of the stream are added; any of scenarios/ will do to begin with");
+    throw Error(ErrorCode::usage,
+                "--dis, --acmi and --cot need INPUT: a scenario with the region and the terrain, to which "
+                "the objects "
+                "of the stream are added; any of scenarios/ will do to begin with");
   }
 }
 
@@ -112,9 +113,12 @@ void readView(const Typed& typed, ViewOptions& options) {
     view = playback::readViewState(typed.state);
     options.state = typed.state;
     options.window_size.reset();
-    options.fits_labels = false;
+    options.scales_window = options.fits_labels = false;
   }
-  if (!typed.size.empty()) options.window_size = render::parseImageSize(typed.size);
+  if (!typed.size.empty()) {
+    options.window_size = render::parseImageSize(typed.size);
+    options.scales_window = false;
+  }
   const std::string of_file = playback::viewStateText(view);
   playback::setInput(view, options.view);
   typed.given.apply(view);

@@ -161,9 +161,19 @@ void installCallbacks(GLFWwindow* window) {
   });
 }
 
+/// Gives the window the size at a scale, as large as the screen at most.
+void enlarge(GLFWwindow* window, render::ImageSize size, double scale) {
+  GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+  if (monitor == nullptr) return;
+  int x = 0, y = 0, width = 0, height = 0;
+  glfwGetMonitorWorkarea(monitor, &x, &y, &width, &height);
+  glfwSetWindowSize(window, std::clamp(static_cast<int>(scale * size.width), 1, std::max(1, width)),
+                    std::clamp(static_cast<int>(scale * size.height), 1, std::max(1, height)));
+}
+
 }  // namespace
 
-Window::Window(const std::string& title, render::ImageSize size, double scale) {
+Window::Window(const std::string& title, render::ImageSize size, bool scales, double scale) {
   last_error.clear();
   glfwSetErrorCallback(keepError);
   if (glfwInit() == GLFW_FALSE) refuse("no window can be opened");
@@ -184,6 +194,7 @@ Window::Window(const std::string& title, render::ImageSize size, double scale) {
   float content_x = 1, content_y = 1;
   glfwGetWindowContentScale(window_, &content_x, &content_y);
   setScale(scale > 0 ? scale : content_x);
+  if (scales && scale_ > 1) enlarge(window_, size, scale_);
   setIcon(window_);
   glfwSetWindowUserPointer(window_, this);
   glfwMakeContextCurrent(window_);

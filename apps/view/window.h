@@ -17,7 +17,8 @@ class Window {
  public:
   /// @param scale  of text and controls; 0: the screen's scale
   /// @throws Error (device) with the reason
-  Window(const std::string& title, render::ImageSize size, double scale);
+  /// @param scales  true: the size is that at scale 1
+  Window(const std::string& title, render::ImageSize size, bool scales, double scale);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;

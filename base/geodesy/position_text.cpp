@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <GeographicLib/DMS.hpp>
 #include <GeographicLib/GeoCoords.hpp>
 #include <algorithm>
 #include <cctype>
@@ -93,12 +94,16 @@ bool isHemisphere(char c) {
          std::string::npos;
 }
 
-/// Latitude and longitude as GeographicLib reads them: spaces only between the two.
-std::string joinedCoordinates(std::string text) {
+void replaceSigns(std::string& text) {
   for (const char* const sign : {"′", "’", "´"}) replaceAll(text, sign, "'");
   for (const char* const sign : {"″", "”", "''"}) replaceAll(text, sign, "\"");
   for (const char* const sign : {"°", "º", "˚"}) replaceAll(text, sign, "d");
   replaceAll(text, "−", "-");
+}
+
+/// Latitude and longitude as GeographicLib reads them: spaces only between the two.
+std::string joinedCoordinates(std::string text) {
+  replaceSigns(text);
   std::string joined;
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (!isSpace(text[i])) {
@@ -196,6 +201,33 @@ ParsedPosition parsePosition(const std::string& text) {
   throw Error(ErrorCode::usage, "'" + whole.substr(0, kMaxText) +
                                     "' is not a position such as 36.5,-84.2 or 36.5N 84.2W or "
                                     "36°30'12\"N 84°12'W or 16S GF 12345 67890");
+}
+
+std::optional<double> parseCoordinate(const std::string& text, bool is_latitude) {
+  using GeographicLib::DMS;
+  std::string coordinate = trimmed(text);
+  if (coordinate.empty() || coordinate.size() > kMaxText) return std::nullopt;
+  replaceSigns(coordinate);
+  std::string joined;  // with colons between degrees, minutes and seconds
+  int colons = 0;
+  for (std::size_t i = 0; i < coordinate.size(); ++i) {
+    if (!isSpace(coordinate[i])) {
+      joined += coordinate[i];
+    } else if (!joined.empty() && isDigit(joined.back()) && isDigit(coordinate[i + 1])) {
+      joined += ':';
+      ++colons;
+    }
+  }
+  // Two numbers are a position, and GeographicLib would add signed ones.
+  if (colons == 1 || joined.find_first_of("+-", 1) != std::string::npos) return std::nullopt;
+  try {
+    DMS::flag kind = DMS::NONE;
+    const double degrees = DMS::Decode(joined, kind);
+    const bool is_other = kind == (is_latitude ? DMS::LONGITUDE : DMS::LATITUDE);
+    return is_other || !std::isfinite(degrees) ? std::nullopt : std::optional(static_cast<double>(degrees));
+  } catch (const GeographicLib::GeographicErr&) {
+    return std::nullopt;
+  }
 }
 
 }  // namespace emscape

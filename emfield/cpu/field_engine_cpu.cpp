@@ -47,11 +47,17 @@ class CpuEngine : public FieldEngine {
   void combine(const CombinePass& pass) override;
   std::vector<volume::Volume> makeVolumes(const std::vector<VolumeRequest>& requests) override;
   void planChanged(bool channels_changed) final;
+  void exchangeGeometry(int slot, FieldEngine& other, int other_slot) override;
   void resetTimes() override { times_ = {}; }
   StageTimes times() override { return times_; }
   void addMemory(MemoryUse& use) const override;
 
  private:
+  /// The geometry of a slot is another one: what was computed from it is invalid.
+  void forget(int slot) {
+    kept_power_.forget(static_cast<std::size_t>(slot));
+    kept_looks_.forget(static_cast<std::size_t>(slot));
+  }
   bool hasSecond(std::size_t channel) const {
     return emfield::hasSecond(setup_.channel_plans[channel].reduction);
   }
@@ -72,8 +78,7 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
   std::vector<GeometryResult> all;
   for (const GeometryRequest& request : requests) {
     EmitterGeometry& geometry = slots_[request.slot];
-    kept_power_.forget(static_cast<std::size_t>(request.slot));
-    kept_looks_.forget(static_cast<std::size_t>(request.slot));
+    forget(request.slot);
     EmitterGeometry::Times spent;
     geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
                      setup_.columns, setup_.terrain.get(), spent, bounds_ ? &*bounds_ : nullptr,
@@ -115,6 +120,13 @@ void CpuEngine::planChanged(bool channels_changed) {
     buffers_[c].value.resize(voxels_);
     if (hasSecond(c)) buffers_[c].second.resize(voxels_);
   }
+}
+
+void CpuEngine::exchangeGeometry(int slot, FieldEngine& other, int other_slot) {
+  auto& engine = static_cast<CpuEngine&>(other);
+  std::swap(slots_[slot], engine.slots_[other_slot]);
+  forget(slot);
+  engine.forget(other_slot);
 }
 
 void CpuEngine::setStaticSums(const std::vector<bool>& channels) {
@@ -173,10 +185,8 @@ void CpuEngine::combine(const CombinePass& pass) {
       }
     }
   } catch (const Stopped&) {
-    for (const CombinePass::Member& member : pass.members) {  // what is kept of them may be unfinished
-      kept_power_.forget(static_cast<std::size_t>(member.slot));
-      kept_looks_.forget(static_cast<std::size_t>(member.slot));
-    }
+    // What is kept of them may be unfinished.
+    for (const CombinePass::Member& member : pass.members) forget(member.slot);
     throw;
   }
   times_.combine_ms += watch.lap_ms();

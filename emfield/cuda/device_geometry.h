@@ -29,6 +29,11 @@ class DeviceGeometry {
   ColumnGeometryView view(int slot) const;
   /// Surface clutter of the last computation of a slot; without cells: none.
   ClutterMapView clutterMap(int slot) const;
+  /// Exchanges the results of a slot with those of another object of the same grid and terrain; both are
+  /// complete.
+  void exchange(int slot, DeviceGeometry& other, int other_slot) {
+    std::swap(slots_[slot], other.slots_[other_slot]);
+  }
   const DeviceColumns& columns() const { return columns_; }
   /// Null without terrain.
   const std::uint16_t* firstValidK() const { return excess_grid_.first_valid_k; }

@@ -78,6 +78,12 @@ class CudaEngine : public FieldEngine {
   void combine(const CombinePass& pass) override;
   std::vector<volume::Volume> makeVolumes(const std::vector<VolumeRequest>& requests) override;
   void planChanged(bool channels_changed) final;
+  void exchangeGeometry(int slot, FieldEngine& other, int other_slot) override {
+    auto& engine = static_cast<CudaEngine&>(other);
+    geometry_.exchange(slot, engine.geometry_, other_slot);
+    kept_power_.forget(static_cast<std::size_t>(slot));
+    engine.kept_power_.forget(static_cast<std::size_t>(other_slot));
+  }
   void resetTimes() override { clock_.reset(); }
   StageTimes times() override { return clock_.times(); }
   void addMemory(MemoryUse& use) const override;

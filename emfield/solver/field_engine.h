@@ -84,6 +84,8 @@ class FieldEngine {
   /// The FieldPlan of the setup has changed. Slots stay valid.
   /// @param channels_changed  the sums of all channels are lost
   virtual void planChanged(bool channels_changed) = 0;
+  /// Exchanges the geometry of a slot with that of another engine of the same backend, grid and terrain.
+  virtual void exchangeGeometry(int slot, FieldEngine& other, int other_slot) = 0;
 
   /// Sets the stages' times to 0.
   virtual void resetTimes() = 0;

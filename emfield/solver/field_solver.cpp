@@ -28,7 +28,7 @@ bool sameRegion(const scenario::Region& a, const scenario::Region& b) {
 
 bool sameTerrainFiles(const scenario::Scenario& a, const scenario::Scenario& b) {
   if (!a.terrain || !b.terrain) return !a.terrain && !b.terrain;
-  return a.terrain->files == b.terrain->files && a.terrain->vertical_datum == b.terrain->vertical_datum;
+  return *a.terrain == *b.terrain;
 }
 
 /// Its layers are the heights.
@@ -58,8 +58,9 @@ volume::Grid gridOf(const scenario::Region& region) {
 }
 
 FieldSolver::Impl::Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
-                        FieldOptions options_in)
+                        FieldOptions options_in, GridColumns columns_in)
     : options(std::move(options_in)) {
+  setup.columns = std::move(columns_in);
   static_cast<FieldPlan&>(setup) = makePlan(std::move(scenario), options);
   setup.terrain = std::move(terrain);
   setup.grid = options.surface == nullptr ? gridOf(setup.scenario->region) : gridOf(*options.surface);
@@ -163,24 +164,34 @@ std::string FieldSolver::Impl::placeOf(std::size_t column) const {
   return fmt::format("latitude {:.5f}, longitude {:.5f} deg", position.latitude_deg, position.longitude_deg);
 }
 
+bool FieldSolver::Impl::mayLackTerrain() const {
+  return options.allow_missing_terrain || scenario::mayLackTerrain(*setup.scenario, false);
+}
+
 void FieldSolver::Impl::checkHoles() const {
   const GridColumns& columns = setup.columns;
-  if (columns.hole_columns == 0 || options.allow_missing_terrain) return;
+  if (columns.hole_columns == 0 || mayLackTerrain()) return;
   const scenario::GeoBox box = setup.terrain->coverage();
   throw Error(ErrorCode::bad_input, {setup.scenario->file},
               fmt::format("terrain is missing below {} of {} columns of the region, first at {}; the "
                           "elevation data that is loaded covers latitude "
-                          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts",
+                          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts{}; {}",
                           columns.hole_columns, columns.count(), placeOf(columns.first_hole), box.south_deg,
-                          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts()),
+                          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts(),
+                          static_cast<std::size_t>(columns.hole_columns) == columns.count() ? "; " + setup.terrain->placeText() : "",
+                          scenario::kMissingTerrainRemedy),
               Hint::allow_missing_terrain);
+}
+
+/// True if an edited scenario has the present grid over the present terrain.
+bool FieldSolver::Impl::hasSameGrid(const FieldPlan& plan, const scenario::TerrainPtr& terrain) const {
+  return terrain == setup.terrain &&
+         (options.surface != nullptr || sameRegion(setup.scenario->region, plan.scenario->region));
 }
 
 /// True if an edited scenario can be computed with the present grid, slots and choice of cached emitters.
 bool FieldSolver::Impl::canKeep(const FieldPlan& plan, const scenario::TerrainPtr& terrain) const {
-  const bool same_positions =
-      options.surface != nullptr || sameRegion(setup.scenario->region, plan.scenario->region);
-  if (terrain != setup.terrain || !same_positions ||
+  if (!hasSameGrid(plan, terrain) ||
       (setup.columns.on_device != nullptr && needsHostColumns(*plan.scenario)) ||
       setup.scenario->emitters.size() != plan.scenario->emitters.size()) {
     return false;
@@ -190,6 +201,41 @@ bool FieldSolver::Impl::canKeep(const FieldPlan& plan, const scenario::TerrainPt
     if (cached[e] != emitters[e].is_cached) return false;
   }
   return true;
+}
+
+void FieldSolver::Impl::exchangeGeometry(int e, Impl& other, int other_e) {
+  EmitterCache &cache = emitters[e], &others = other.emitters[other_e];
+  std::swap(cache.geometry, others.geometry);
+  std::swap(cache.geometry_result, others.geometry_result);
+  std::swap(cache.warnings, others.warnings);
+  engine->exchangeGeometry(e, *other.engine, other_e);
+}
+
+/// The first update of a solver whose former one had the same grid over the same terrain, but other emitters:
+/// takes the geometry of emitters that are unchanged. If it fails, the former solver has it again.
+FieldChanged FieldSolver::Impl::updateFrom(Impl& former, const scenario::Snapshot& snapshot) {
+  std::map<std::string, int> by_name;
+  for (std::size_t f = 0; f < former.emitters.size(); ++f)
+    by_name[former.setup.scenario->emitters[f].name] = static_cast<int>(f);
+  std::vector<std::pair<int, int>> taken;
+  if (backend == former.backend) {
+    for (int e = 0; e < static_cast<int>(emitters.size()); ++e) {
+      const auto found = by_name.find(setup.scenario->emitters[e].name);
+      if (found == by_name.end() || !emitters[e].is_cached) continue;
+      const EmitterCache& known = former.emitters[found->second];
+      if (!known.is_cached || !known.geometry ||
+          !areSame(*known.geometry, geometryInputs(setup, e, snapshot.emitters[e])))
+        continue;
+      exchangeGeometry(e, former, found->second);
+      taken.emplace_back(e, found->second);
+    }
+  }
+  try {
+    return update(snapshot, std::nullopt);
+  } catch (...) {
+    for (const auto& [e, former_e] : taken) exchangeGeometry(e, former, former_e);
+    throw;
+  }
 }
 
 FieldSolver::FieldSolver(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
@@ -240,8 +286,12 @@ FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot, scenario::T
   }
   FieldPlan plan = makePlan(snapshot.scenario, impl_->options);
   if (impl_->canKeep(plan, terrain)) return impl_->update(snapshot, std::move(plan));
-  auto fresh = std::make_unique<Impl>(snapshot.scenario, std::move(terrain), impl_->options);
-  const FieldChanged changed = fresh->update(snapshot, std::nullopt);
+  const bool has_same_grid = impl_->hasSameGrid(plan, terrain);
+  const bool knows_columns = has_same_grid && impl_->options.surface == nullptr;
+  auto fresh = std::make_unique<Impl>(snapshot.scenario, std::move(terrain), impl_->options,
+                                      knows_columns ? impl_->setup.columns : GridColumns());
+  const FieldChanged changed =
+      has_same_grid ? fresh->updateFrom(*impl_, snapshot) : fresh->update(snapshot, std::nullopt);
   impl_ = std::move(fresh);
   return changed;
 }
@@ -294,6 +344,9 @@ MemoryEstimate FieldSolver::memoryEstimate() const {
 std::vector<std::string> FieldSolver::warnings() const {
   WarningCounts all;
   for (const std::string& warning : impl_->setup.warnings) ++all[warning];
+  if (impl_->setup.terrain) {
+    for (const std::string& warning : impl_->setup.terrain->warnings()) ++all[warning];
+  }
   for (const EmitterCache& cache : impl_->emitters) {
     for (const WarningCounts* counts : {&cache.warnings, &cache.jamming_warnings}) {
       for (const auto& [warning, count] : *counts) all[warning] += count;

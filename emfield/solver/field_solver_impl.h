@@ -58,14 +58,16 @@ struct FieldSolver::Impl {
   bool is_stale = false;              ///< an update failed: all results are invalid
   bool has_other_quantities = false;  ///< the options have, since the plan was made
 
+  /// @param columns_in  those of the scenario's region, if they are known; else empty
   Impl(std::shared_ptr<const scenario::Scenario> scenario, scenario::TerrainPtr terrain,
-       FieldOptions options_in);
+       FieldOptions options_in, GridColumns columns_in = {});
 
   std::vector<bool> chooseCached(const FieldPlan& plan, std::size_t* slot_bytes) const;
   /// True if the columns are only in the memory of the GPU.
   bool hasDeviceColumns() const;
   void requireFieldMemory();
   void makeColumns();
+  bool mayLackTerrain() const;  ///< of the options or the scenario
   void checkHoles() const;
   std::string placeOf(std::size_t column) const;
 
@@ -81,7 +83,10 @@ struct FieldSolver::Impl {
     std::vector<bool> products;         ///< channels whose product changes
   };
 
+  bool hasSameGrid(const FieldPlan& plan, const scenario::TerrainPtr& terrain) const;
   bool canKeep(const FieldPlan& plan, const scenario::TerrainPtr& terrain) const;
+  FieldChanged updateFrom(Impl& former, const scenario::Snapshot& snapshot);
+  void exchangeGeometry(int e, Impl& other, int other_e);
   FieldChanged update(const scenario::Snapshot& snapshot, std::optional<FieldPlan> edited);
   void compute(const scenario::Snapshot& snapshot, Changes& changes);
   void setEnginePlan(bool channels_changed);

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 #include <utility>
 
 #include "base/text/time_text.h"
+#include "base/text/utc.h"
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
 
@@ -173,9 +175,21 @@ std::vector<TimelineTick> Timeline::ticks(double from_s, double to_s, int count)
 }
 
 double Timeline::parseTime_s(const std::string& text) const {
+  const auto withinSeries = [&](double time_s) {
+    const double tolerance_s = 1e-6 * (end_s() - begin_s());
+    if (time_s >= begin_s() - tolerance_s && time_s <= end_s() + tolerance_s) return time_s;
+    std::string range = fmt::format("{:g} to {:g} s", begin_s(), end_s());
+    if (!epoch_utc_.empty())
+      range += fmt::format(", {} to {}", scenario::utcAt({epoch_utc_, 0, 1}, begin_s()),
+                           scenario::utcAt({epoch_utc_, 0, 1}, end_s()));
+    throw Error(ErrorCode::bad_input,
+                fmt::format("time '{}': expected a time of the series: {}", text, range));
+  };
   char* end = nullptr;
   const double seconds = std::strtod(text.c_str(), &end);
-  if (!text.empty() && *end == '\0' && std::isfinite(seconds)) return seconds;
+  if (!text.empty() && *end == '\0' && std::isfinite(seconds)) return withinSeries(seconds);
+  const std::optional<std::int64_t> epoch_ms = parseUtc_ms(epoch_utc_), utc_ms = parseUtc_ms(text);
+  if (epoch_ms && utc_ms) return withinSeries(static_cast<double>(*utc_ms - *epoch_ms) / 1000);
   const std::optional<double> wanted_s = secondsOfDay(text);
   if (epoch_utc_.empty() || !wanted_s) {
     throw Error(ErrorCode::bad_input, fmt::format("time '{}': expected seconds{}", text,
@@ -184,7 +198,7 @@ double Timeline::parseTime_s(const std::string& text) const {
   const std::string begin = scenario::utcAt({epoch_utc_, 0, 1}, begin_s());
   const double begin_of_day_s = secondsOfDay(timeOfDay(begin, 3)).value_or(0);
   const double after_begin_s = std::fmod(*wanted_s - begin_of_day_s + kDay_s, kDay_s);
-  return begin_s() + after_begin_s;
+  return withinSeries(begin_s() + after_begin_s);
 }
 
 std::vector<TimeInterval> Timeline::cachedSpans(const std::vector<int>& steps) const {

@@ -89,10 +89,11 @@ std::vector<BarTick> ticksOf(const Legend& legend, int count, double gap) {
 }
 
 /// Width of the longest text. Text is measured independently of the picture.
-double widestText(const std::vector<std::string>& texts, double size_px) {
+double widestText(const std::vector<std::string>& texts, double size_px, Weight weight = Weight::normal) {
   const Canvas measure({1, 1});
   double widest = 0;
-  for (const std::string& text : texts) widest = std::max(widest, measure.textBox(text, size_px).width);
+  for (const std::string& text : texts)
+    widest = std::max(widest, measure.textBox(text, size_px, weight).width);
   return widest;
 }
 
@@ -437,7 +438,8 @@ PixelArea legendHeading(ImageSize size, const Annotations& annotations) {
   const double gap = legend.function.categorical ? 0 : 10 * style.unit;
   const double bottom = topOf(size, style, legend) - gap;
   const double height = kLine * style.text_px * static_cast<double>(headingOf(legend).size());
-  return {size.width - kEdge * style.unit - content, bottom - height, content, height};
+  const double heading = std::min(widestText(headingOf(legend), style.text_px, Weight::bold), style.name_px);
+  return {size.width - kEdge * style.unit - content, bottom - height, std::max(content, heading), height};
 }
 
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend) {

@@ -5,6 +5,7 @@
 
 #include "emscape/render/annotate/overlay.h"
 #include "render/annotate/canvas.h"
+#include "render/annotate/side_color.h"
 
 namespace emscape::render {
 
@@ -17,8 +18,5 @@ namespace emscape::render {
 /// @param is_active  false: paler
 void drawMilitarySymbol(Canvas& canvas, Affiliation side, const std::string& sidc, bool is_active,
                         const Point2& at, double radius, double alpha = 1);
-
-/// Light colour of a side, as of its frame.
-Rgb colorOf(Affiliation side);
 
 }  // namespace emscape::render

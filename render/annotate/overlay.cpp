@@ -134,7 +134,7 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
   }
   const std::vector<Marker>& markers = annotations.end_column ? seen : annotations.markers;
   if (has_compass) drawCompass(canvas, style, projector.camera, compass, kCompassRadius * style.unit);
-  drawPlanes(canvas, style, projector, annotations.planes, taken);
+  drawPlanes(canvas, style, projector, annotations, taken);
   if (annotations.georeferenced && annotations.scale_bar) {
     const double left = (annotations.compass ? 2 * (kMargin + kCompassRadius) + 20 : kMargin) * style.unit;
     const Point2 at{left, canvas.size().height - (kMargin + 30) * style.unit};

@@ -3,9 +3,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/text/display_units.h"
 #include "render/annotate/label_placement.h"
+#include "render/annotate/marker_places.h"
 #include "render/annotate/overlay_parts.h"
 
 namespace emscape::render {
@@ -21,9 +23,10 @@ constexpr double kHiddenAlpha = 0.5;
 
 struct PlacedMarker {
   const Marker* marker;
-  Point2 at;
-  double radius;  ///< of the symbol
-  double depth;   ///< of the camera
+  Point2 projected;  ///< its position
+  Point2 at;         ///< of the symbol: beside others of the same position
+  double radius;     ///< of the symbol
+  double depth;      ///< of the camera
   double alpha;
 };
 
@@ -48,7 +51,8 @@ void drawBeam(Canvas& canvas, const Style& style, const Projector& p, const Plac
   const auto pixelsAlong = [&](const Vec3d& drawn) {
     const Vec3d frame{drawn.x, drawn.y, drawn.z / p.box.vertical_exaggeration};
     Point2 tip;
-    return p.project(marker.position_m + frame * (step_m / length(drawn)), tip) ? tip - placed.at : Point2{};
+    return p.project(marker.position_m + frame * (step_m / length(drawn)), tip) ? tip - placed.projected
+                                                                                : Point2{};
   };
   const Point2 along =
       pixelsAlong({marker.beam->x, marker.beam->y, marker.beam->z * p.box.vertical_exaggeration});
@@ -174,22 +178,41 @@ double radiusOf(const std::vector<PlacedMarker>& placed, const Style& style, Ima
   return std::clamp(kSymbolPart * spacing, std::min(kMinRadius_px, full), full);
 }
 
-}  // namespace
-
-void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
-                 const std::vector<Marker>& markers, Units units, const HiddenTest& hidden,
-                 const std::vector<Rect>& taken) {
+/// The shown markers in front of the camera. @param radius  receives that of a symbol without a side
+std::vector<PlacedMarker> placeMarkers(const std::vector<Marker>& markers, const Style& style,
+                                       const Projector& projector, const HiddenTest& hidden, double& radius) {
   std::vector<PlacedMarker> placed;
   for (const Marker& marker : markers) {
     Point2 at;
     if (!marker.is_shown || !projector.project(marker.position_m, at)) continue;
     const double depth =
         dot(projector.box.toDrawn(marker.position_m) - projector.camera.eye_m, projector.camera.forward);
-    placed.push_back({&marker, at, 0, depth, hidden && hidden(marker.position_m) ? kHiddenAlpha : 1.0});
+    placed.push_back({&marker, at, at, 0, depth, hidden && hidden(marker.position_m) ? kHiddenAlpha : 1.0});
   }
-  const double radius = radiusOf(placed, style, canvas.size());
+  radius = radiusOf(placed, style, projector.size);
   for (PlacedMarker& p : placed) p.radius = symbolSize(*p.marker) * radius;
   standSideBySide(placed, style);
+  return placed;
+}
+
+}  // namespace
+
+std::vector<std::optional<MarkerPlace>> markerPlaces(ImageSize size, const Camera& camera,
+                                                     const SceneBox& box, const Annotations& annotations) {
+  const Style style(size, annotations.theme, annotations.scale);
+  std::vector<std::optional<MarkerPlace>> places(annotations.markers.size());
+  double radius = 0;
+  for (const PlacedMarker& p :
+       placeMarkers(annotations.markers, style, Projector{camera, box, size}, HiddenTest(), radius))
+    places[static_cast<std::size_t>(p.marker - annotations.markers.data())] = {p.at.x, p.at.y, p.radius};
+  return places;
+}
+
+void drawMarkers(Canvas& canvas, const Style& style, const Projector& projector,
+                 const std::vector<Marker>& markers, Units units, const HiddenTest& hidden,
+                 const std::vector<Rect>& taken) {
+  double radius = 0;
+  const std::vector<PlacedMarker> placed = placeMarkers(markers, style, projector, hidden, radius);
   for (const PlacedMarker& p : placed) drawStem(canvas, style, projector, p);
   for (const PlacedMarker& p : placed) drawBeam(canvas, style, projector, p);
   drawLabels(canvas, style, placed, units, taken);

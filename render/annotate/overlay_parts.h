@@ -51,7 +51,7 @@ double legendHeight(const Style& style, const Legend& legend);
 void drawLegend(Canvas& canvas, const Style& style, const Legend& legend);
 /// Frames of the planes that are on, and their captions. Adds the boxes of the captions to `taken`.
 void drawPlanes(Canvas& canvas, const Style& style, const Projector& projector,
-                const std::vector<CutPlane>& planes, std::vector<Rect>& taken);
+                const Annotations& annotations, std::vector<Rect>& taken);
 /// Tracks, within the sides of the box and above its bottom face.
 void drawTracks(Canvas& canvas, const Style& style, const Projector& projector,
                 const std::vector<Track>& tracks, const HiddenTest& hidden);

@@ -13,8 +13,8 @@ constexpr double kCaptionAbove = 11;
 }  // namespace
 
 void drawPlanes(Canvas& canvas, const Style& style, const Projector& projector,
-                const std::vector<CutPlane>& planes, std::vector<Rect>& taken) {
-  for (const CutPlane& plane : planes) {
+                const Annotations& annotations, std::vector<Rect>& taken) {
+  for (const CutPlane& plane : annotations.planes) {
     const std::optional<PlaneFrame> frame = plane.on ? frameOf(plane, projector.box) : std::nullopt;
     if (!frame) continue;
     std::vector<Point2> corners(frame->corners_m.size());
@@ -29,7 +29,7 @@ void drawPlanes(Canvas& canvas, const Style& style, const Projector& projector,
     const auto higher = [](const Point2& a, const Point2& b) { return a.y < b.y; };
     std::sort(corners.begin(), corners.end(), higher);
     const Point2& corner = corners[0].x < corners[1].x ? corners[0] : corners[1];
-    const std::string caption = captionOf(plane);
+    const std::string caption = captionOf(plane, annotations.units, annotations.georeferenced);
     const Rect extent = canvas.textBox(caption, style.small_px);
     const Point2 at{corner.x, corner.y - kCaptionAbove * style.unit};
     canvas.textWithRim(caption, at, style.small_px, style.textInk(), style.rimInk());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/text/display_units.h"
 #include "emscape/base/units.h"
 
 namespace emscape::render {
@@ -45,10 +46,14 @@ std::optional<PlaneFrame> frameOf(const CutPlane& plane, const SceneBox& box) {
   return PlaneFrame{{{at(begin, low.z), at(end, low.z), at(end, high.z), at(begin, high.z)}}, right};
 }
 
-std::string captionOf(const CutPlane& plane) {
-  if (plane.kind == CutPlane::Kind::horizontal) return fmt::format("altitude {:.0f} m", plane.altitude_m);
+std::string captionOf(const CutPlane& plane, Units units, bool is_on_earth) {
+  const auto lengthOf = [&](double length_m) {
+    return is_on_earth ? heightText(length_m, units) : fmt::format("{:.4g}", length_m);
+  };
+  if (plane.kind == CutPlane::Kind::horizontal)
+    return (is_on_earth ? "altitude " : "z = ") + lengthOf(plane.altitude_m);
   std::string text = fmt::format("bearing {:.0f}°", plane.bearing_deg);
-  if (plane.offset_m != 0) text += fmt::format(", offset {:.0f} m", plane.offset_m);
+  if (plane.offset_m != 0) text += ", offset " + lengthOf(plane.offset_m);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "emscape/base/units.h"
 #include "emscape/base/vec.h"
 #include "emscape/render/scene/camera.h"
 #include "emscape/render/scene/cut_plane.h"
@@ -22,7 +23,7 @@ struct PlaneFrame {
 /// @return none if the plane does not meet the box
 std::optional<PlaneFrame> frameOf(const CutPlane& plane, const SceneBox& box);
 
-/// "altitude 1500 m"; "bearing 90°, offset 200 m".
-std::string captionOf(const CutPlane& plane);
+/// "altitude 1500 m"; "bearing 90°, offset 200 m"; "z = 0.5" of a volume without a position on the earth.
+std::string captionOf(const CutPlane& plane, Units units = Units::metric, bool is_on_earth = true);
 
 }  // namespace emscape::render

@@ -59,12 +59,12 @@ Json toJson(const LinkRow& row) {
 
 Json toJson(const DetectionRow& row) {
   Json json = pathJson(row);
-  json["rcs_dbsm"] = ratioToDb(row.rcs_m2);
+  json["rcs_dbsm"] = number(ratioToDb(row.rcs_m2));
   json["look_pattern_db"] = number(row.look_pattern_db);
   json["snr_db"] = number(row.snr_db);
   if (row.radial_speed_mps) {
     json["sclnr_db"] = number(row.sclnr_db);
-    json["radial_speed_mps"] = *row.radial_speed_mps;
+    json["radial_speed_mps"] = number(*row.radial_speed_mps);
   }
   json["jammer_to_signal_db"] = number(row.jammer_to_signal_db);
   json["detection_probability"] = row.detection_probability;
@@ -241,6 +241,9 @@ emfield::LinkReport computeLinks(const std::shared_ptr<const scenario::Scenario>
                                  const emfield::LinkOptions& options, const ProgressSink& progress) {
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   emfield::LinkReport report = emfield::computeLinks(scenario, terrain.get(), options, progress);
+  if (terrain) {
+    for (std::string& warning : terrain->warnings()) report.warnings.push_back(std::move(warning));
+  }
   if (report.links.empty() && report.detections.empty()) {
     throw Error(ErrorCode::bad_input, {scenario->file},
                 "there is no link: it takes a receiver with a platform that is tuned to an emitter, or a "

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
+#include <string_view>
 
 #include "base/text/quantity_text.h"
 #include "base/text/utc.h"
@@ -18,13 +19,42 @@ namespace {
 
 constexpr double kMaxTimes = 1e7;
 
+/// Length of a UTC time at the beginning of a text, "2026-06-01T06:00:00Z"; 0: there is none.
+std::size_t utcLength(std::string_view text) {
+  constexpr std::string_view kForm = "dddd-dd-ddT";
+  if (text.size() < kForm.size()) return 0;
+  for (std::size_t i = 0; i < kForm.size(); ++i) {
+    const bool is_digit = text[i] >= '0' && text[i] <= '9';
+    if (kForm[i] == 'd' ? !is_digit : text[i] != kForm[i]) return 0;
+  }
+  const std::size_t end = text.find('Z');
+  return end == std::string_view::npos ? text.size() : end + 1;
+}
+
+/// Seconds since the clock's epoch.
+double secondsOfUtc(const std::string& text, const std::string& whole, const Clock& clock) {
+  const auto epoch_ms = parseUtc_ms(clock.epoch_utc), time_ms = parseUtc_ms(text);
+  if (!time_ms) {
+    throw Error(ErrorCode::usage,
+                fmt::format("times '{}': '{}' is not a UTC time such as 2026-06-01T06:00:00Z", whole, text));
+  }
+  if (!epoch_ms) {
+    throw Error(ErrorCode::usage,
+                fmt::format("times '{}': the scenario has no epoch, so that UTC times have no meaning; write "
+                            "seconds",
+                            whole));
+  }
+  return static_cast<double>(*time_ms - *epoch_ms) / 1000;
+}
+
 double secondsOf(const std::string& text, const std::string& whole) {
   char* end = nullptr;
   const double value = std::strtod(text.c_str(), &end);
   if (text.empty() || *end != '\0' || !std::isfinite(value)) {
     throw Error(
         ErrorCode::usage,
-        fmt::format("times '{}': '{}' is not a number of seconds; write BEGIN:END:STEP, BEGIN:END or T",
+        fmt::format("times '{}': '{}' is not a number of seconds; write BEGIN:END:STEP, BEGIN:END or T, or "
+                    "UTC times with Z",
                     whole, text));
   }
   return value;
@@ -103,6 +133,15 @@ std::vector<double> timesOf(const Clock& clock) {
 std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s) {
   std::vector<double> values;
   for (std::size_t begin = 0; begin <= text.size();) {
+    if (const std::size_t length = utcLength(std::string_view(text).substr(begin)); length > 0) {
+      values.push_back(secondsOfUtc(text.substr(begin, length), text, clock));
+      begin += length;
+      if (begin < text.size() && text[begin] != ':') {
+        throw Error(ErrorCode::usage, fmt::format("times '{}': '{}' follows a UTC time", text, text[begin]));
+      }
+      ++begin;
+      continue;
+    }
     const std::size_t end = std::min(text.find(':', begin), text.size());
     values.push_back(secondsOf(text.substr(begin, end - begin), text));
     begin = end + 1;
@@ -116,6 +155,12 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
   }
   if (values.size() == 1) return {values[0]};
   return timesOf(values[0], values[1], values.size() == 3 ? values[2] : clock.step_s, limit_s);
+}
+
+double parseTime(const std::string& text, const Clock& clock) {
+  const std::vector<double> times_s = parseTimes(text, clock);
+  if (times_s.size() == 1) return times_s.front();
+  throw Error(ErrorCode::usage, fmt::format("time '{}': a single time is expected", text));
 }
 
 std::string outsideClockText(const std::vector<double>& times_s, const Clock& clock) {

@@ -135,7 +135,7 @@ SurfaceField::SurfaceField(const MapGrid& grid, const std::vector<CoverageReques
   surface->heights_m.erase(std::unique(surface->heights_m.begin(), surface->heights_m.end()),
                            surface->heights_m.end());
   options_.surface = surface;
-  options_.allow_missing_terrain = true;  // masked, and reported as the maps' known area
+  options_.allow_missing_terrain = true;  // masked, and reported as the maps' known area; see requireGround()
   options_.keep_partly_unknown = true;
 }
 

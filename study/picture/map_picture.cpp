@@ -300,6 +300,7 @@ std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot) {
   std::vector<MapMarker> markers;
   std::vector<bool> has_emitter(platforms.size());
   const auto add = [&](std::size_t p, const std::string& label, render::MarkerKind kind) {
+    if (!snapshot.platforms[p].present) return;
     const GeodeticPosition& position = snapshot.platforms[p].position;
     markers.push_back({position.latitude_deg, position.longitude_deg, label, kind,
                        playback::affiliationOf(platforms[p].side), platforms[p].sidc});

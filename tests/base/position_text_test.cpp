@@ -21,6 +21,15 @@ TEST(PositionText, WritesEachFormat) {
   EXPECT_EQ(positionText(NAN, 0), "invalid position");
 }
 
+TEST(PositionText, OneCoordinateIsReadInEachForm) {
+  for (const char* text :
+       {"-84.2", "84.2W", "84.2°W", "W84.2", "84°12'W", "84°12'00.0\"W", "84d12'W", "-84 12 0"})
+    EXPECT_NEAR(parseCoordinate(text, false).value_or(NAN), -84.2, 1e-9) << text;
+  EXPECT_NEAR(parseCoordinate("44 24 30", true).value_or(NAN), 44 + 24.5 / 60, 1e-9);
+  for (const char* text : {"", "west", "84.2N", "44.4 -71.2", "44 71", "44.4, -71.2", "84 kW"})
+    EXPECT_FALSE(parseCoordinate(text, false)) << text;
+}
+
 TEST(PositionText, AnyWrittenPositionIsReadAgain) {
   for (double latitude_deg = -90; latitude_deg <= 90; latitude_deg += 11.25) {
     for (double longitude_deg = -179.7; longitude_deg < 180; longitude_deg += 23.1) {

@@ -603,6 +603,37 @@ TEST_F(EditedOnce, RegionRepeatsEverything) {
   EXPECT_EQ(solver_->volumes().front().grid().dims.z, 4);
 }
 
+TEST_F(EditedOnce, AddedAndRemovedEmittersKeepTheGeometryOfTheOthers) {
+  const FieldChanged added = after([](Scenario& s) {
+    Random random(9);
+    addEmitter(s, somewhere(random), plainEmitter("new", 0));
+    std::swap(s.emitters[1], s.emitters.back());
+  });
+  EXPECT_THAT(added.moved, ElementsAre(1));
+  const FieldChanged removed = after([](Scenario& s) { s.emitters.erase(s.emitters.begin()); });
+  EXPECT_THAT(removed.moved, IsEmpty());
+  const FieldChanged changed = after([](Scenario& s) {
+    s.emitters.pop_back();
+    s.emitters[2].frequency_hz *= 2;
+  });
+  EXPECT_THAT(changed.moved, ElementsAre(2));
+  FieldSolver fresh(scenario_, nullptr, {});
+  fresh.update(scenario::snapshotAt(scenario_, nullptr, 0));
+  expectEqualSolvers(*solver_, fresh);
+}
+
+TEST_F(EditedOnce, ARefusedEmitterLeavesTheGeometryOfTheOthers) {
+  auto refused = std::make_shared<Scenario>(*scenario_);
+  refused->emitters.pop_back();
+  refused->emitters[3].propagation.model = PropagationModel::p528;
+  refused->emitters[3].propagation.p528.time_percent = 200;
+  EXPECT_THROW(solver_->update(scenario::snapshotAt(refused, nullptr, 0)), Error);
+  EXPECT_THAT(after([](Scenario& s) { s.emitters[3].power_w *= 2; }).moved, IsEmpty());
+  FieldSolver fresh(scenario_, nullptr, {});
+  fresh.update(scenario::snapshotAt(scenario_, nullptr, 0));
+  expectEqualSolvers(*solver_, fresh);
+}
+
 TEST_F(EditedOnce, ValueWithoutEffectComputesNoVolume) {
   const auto before = solver_->volumes().front().dense();
   const FieldChanged changed = after([](Scenario& s) {

@@ -98,6 +98,13 @@ TEST(Timeline, TimesAreReadInSecondsAndInUtc) {
                 testing::HasSubstr("expected seconds or hh:mm[:ss] in UTC"))
         << wrong;
   }
+  EXPECT_EQ(timeline.parseTime_s("2026-06-02T00:00:01.500Z"), 61.5) << "as the picture writes it";
+  for (const char* outside : {"500", "-1", "01:15", "2026-06-03T00:00:00Z"}) {
+    EXPECT_THAT(errorOf([&] { timeline.parseTime_s(outside); }),
+                testing::HasSubstr("expected a time of the series: 0 to 120 s, 2026-06-01T23:59:00.000Z to "
+                                   "2026-06-02T00:01:00.000Z"))
+        << outside;
+  }
   EXPECT_THAT(errorOf([&] { Timeline(halfSeconds(3)).parseTime_s("12:00"); }),
               testing::HasSubstr("time '12:00': expected seconds"));
 }

@@ -111,7 +111,10 @@ TEST(CutPlane, FrameIsTheSectionOfTheBox) {
   EXPECT_NEAR(length(vertical->corners_m[1] - vertical->corners_m[0]), 4000, 1e-6);
   EXPECT_FALSE(frameOf(parseCutPlane("vertical:bearing_deg=0,offset_m=1001"), box));
   EXPECT_EQ(captionOf(to_north), "bearing 0°, offset 300 m");
-  EXPECT_EQ(captionOf(parseCutPlane("horizontal:altitude_m=200")), "altitude 200 m");
+  const CutPlane level = parseCutPlane("horizontal:altitude_m=200");
+  EXPECT_EQ(captionOf(level), "altitude 200 m");
+  EXPECT_EQ(captionOf(level, Units::nautical), "altitude 656 ft");
+  EXPECT_EQ(captionOf(level, Units::metric, /*is_on_earth=*/false), "z = 200");
 }
 
 TEST(CutPlane, MoreThanThreeAreRefused) {

@@ -129,6 +129,42 @@ TEST(RenamedItems, HaveTheirEditsUnderTheNewName) {
                                    "emitters.\"a.b\".power_w", "name"));
 }
 
+using Edits = std::vector<scenario::Edit>;
+
+TEST(RenamedItems, RenamesInARowAreOneEdit) {
+  EXPECT_EQ(foldedEdits({{"emitters.a.name", "b"}, {"emitters.b.power_w", "5"}, {"emitters.b.name", "c"}}),
+            (Edits{{"emitters.a.name", "c"}, {"emitters.c.power_w", "5"}}));
+  EXPECT_EQ(foldedEdits({{"platforms.p.name", "q"},
+                         {"emitters.a.platform", "q"},
+                         {"platforms.q.name", "r"},
+                         {"emitters.a.platform", "r"}}),
+            (Edits{{"platforms.p.name", "r"}, {"emitters.a.platform", "r"}}));
+  EXPECT_EQ(foldedEdits({{"emitters.a.name", "b"}, {"emitters.b.power_w", "5"}, {"emitters.b.name", "a"}}),
+            (Edits{{"emitters.a.power_w", "5"}}));
+  const Edits of_another{{"emitters.a.name", "b"}, {"emitters.b", "null"}, {"emitters.c.name", "b"}};
+  EXPECT_EQ(foldedEdits(of_another), of_another);
+}
+
+TEST(RenamedItems, OtherEditsStayWithoutARename) {
+  const Edits edits{{"emitters.a.name", "b"}, {"emitters.b.power_w", "5"}, {"emitters.b.name", "c"}};
+  EXPECT_EQ(editsWithout(edits, "emitters.a.name"), (Edits{{"emitters.a.power_w", "5"}}));
+  EXPECT_EQ(editsWithout(edits, "emitters.c.power_w"), (Edits{{"emitters.a.name", "c"}}));
+  EXPECT_EQ(editsWithout(edits, "emitters.c"), Edits{});
+  EXPECT_EQ(editsWithout({{"platforms.p.name", "q"}, {"emitters.a.platform", "q"}}, "platforms.p.name"),
+            Edits{});
+}
+
+TEST(SessionEdits, RevertOfARenameKeepsTheOtherEdits) {
+  SessionSample sample("quick.yaml");
+  sample.perform(R"({"do":"set","path":"emitters.radar.name","value":"alpha"})");
+  sample.perform(R"({"do":"set","path":"emitters.alpha.power_w","value":"5"})");
+  sample.perform(R"({"do":"set","path":"emitters.alpha.name","value":"beta"})");
+  EXPECT_EQ(sample->report()["edits"], 2);
+  EXPECT_EQ(sample.perform(R"({"do":"revert","path":"emitters.radar.name"})"), "");
+  EXPECT_EQ(sample->scenario()->emitters[0].name, "radar");
+  EXPECT_EQ(sample->scenario()->emitters[0].power_w, 5);
+}
+
 TEST(SessionEdits, RevertTakesBackOneOrAllInOneStep) {
   SessionSample sample("quick.yaml");
   sample.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"5"})");
@@ -231,7 +267,7 @@ TEST(PlatformDrag, SLOW_FollowsTheCursorOverTheGround) {
   for (int i = 0; i < 3; ++i) {
     const render::Projected from = pixelOf(*sample, mast);
     const playback::LivePicture picture = *sample->picture();
-    const SceneObject* object = objectAt(sample->objects(), picture, from.x + 2, from.y - 2);
+    const SceneObject* object = objectAt(sample->objects(), from.x + 2, from.y - 2);
     ASSERT_NE(object, nullptr);
     EXPECT_EQ(object->path, "emitters.communications mast");
     const PlatformDrag drag(picture, *object, from.x + 2, from.y - 2);

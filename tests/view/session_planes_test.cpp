@@ -1,4 +1,6 @@
 /// Cutting planes and comparison, as requested by keys, panels and scripts.
+#include <set>
+
 #include "apps/view/session/plane_drag.h"
 #include "tests/view/session_sample.h"
 
@@ -73,11 +75,11 @@ TEST_F(Planes, HandleMovesAPlaneAlongItsNormalWithTheCursor) {
   ASSERT_EQ(planeHandleAt(*session, before->x + 3, before->y - 2), 0U);
   EXPECT_FALSE(planeHandleAt(*session, before->x + 30, before->y));
   const PlaneDrag drag(*session, 0, before->x + 3, before->y - 2);
-  drag.moveTo(before->x + 3, before->y - 12, *session);
+  drag.moveTo(before->x + 3, before->y - 12, *session, true);
   EXPECT_GT(session->settings().planes[0].altitude_m, 2500);
   settle();
   EXPECT_NEAR(handleOf()->y, before->y - 10, 0.5);
-  drag.moveTo(before->x, -10000, *session);
+  drag.moveTo(before->x, -10000, *session, false);
   EXPECT_EQ(session->settings().planes[0].altitude_m, 5000) << "the top of the box";
   drag.finish(*session);
   EXPECT_EQ(session->settings().planes[0].altitude_m, 5000);
@@ -98,7 +100,7 @@ TEST_F(Planes, ADragOfOneIsOneUndoStep) {
   const auto handle = planeHandle(*session->picture(), session->settings().planes[0]);
   ASSERT_TRUE(handle);
   const PlaneDrag drag(*session, 0, handle->x, handle->y);
-  for (const int up_px : {4, 8, 12}) drag.moveTo(handle->x, handle->y - up_px, *session);
+  for (const int up_px : {4, 8, 12}) drag.moveTo(handle->x, handle->y - up_px, *session, up_px == 4);
   drag.finish(*session);
   const double dragged_m = session->settings().planes[0].altitude_m;
   ASSERT_GT(dragged_m, 2500);
@@ -110,6 +112,24 @@ TEST_F(Planes, ADragOfOneIsOneUndoStep) {
   perform(R"({"do":"redo"})");
   EXPECT_EQ(session->settings().planes[0].altitude_m, dragged_m);
   EXPECT_FALSE(session->canRedo());
+}
+
+TEST_F(Planes, ADragThatIsCancelledLeavesThePlaneWhereItWas) {
+  session->setPictureSize({480, 360});
+  perform(R"({"do":"plane","kind":"horizontal"})");
+  settle();
+  const auto handle = planeHandle(*session->picture(), session->settings().planes[0]);
+  ASSERT_TRUE(handle);
+  const PlaneDrag drag(*session, 0, handle->x, handle->y);
+  drag.moveTo(handle->x, handle->y - 8, *session, true);
+  ASSERT_GT(session->settings().planes[0].altitude_m, 2500);
+  perform(R"({"do":"back"})");
+  EXPECT_EQ(session->settings().planes[0].altitude_m, 2500);
+  EXPECT_TRUE(session->panels.planes) << "back cancels the drag alone";
+  drag.moveTo(handle->x, handle->y - 12, *session, false);
+  EXPECT_EQ(session->settings().planes[0].altitude_m, 2500) << "the button is still held";
+  perform(R"({"do":"undo"})");
+  EXPECT_TRUE(session->settings().planes.empty()) << "the drag made no step";
 }
 
 using Map = SessionTest;
@@ -204,6 +224,33 @@ TEST_F(Comparison, ShowsTheDifferenceWithColoursOfItsOwnAndTheFieldAgain) {
   EXPECT_LE(session->picture()->transfer.lowest(), before + 20);
   EXPECT_EQ(session->viewState().compare, "");
   EXPECT_EQ(error(), "");
+}
+
+TEST_F(Comparison, TheFieldHasItsColoursAgainAfterwards) {
+  perform(R"({"do":"range","min":-77,"max":-33})");
+  perform(R"({"do":"transfer","colors":"cividis"})");
+  perform(R"({"do":"set","path":"emitters.radar.power_w","value":"100000"})");
+  settle();
+  const render::TransferFunction made = session->transfer()->function();
+  perform(R"({"do":"compare"})");
+  settle();
+  perform(R"({"do":"range","min":-9,"max":9})");
+  settle();
+  perform(R"({"do":"compare"})");
+  settle();
+  EXPECT_EQ(session->transfer()->function(), made);
+  EXPECT_EQ(session->picture()->transfer, made);
+  EXPECT_TRUE(session->hasUnsavedColors());
+  perform(R"({"do":"compare"})");
+  settle();
+  EXPECT_EQ(session->picture()->transfer.lowest(), -9);
+}
+
+TEST_F(Comparison, WarningsOfTheReferenceAreListedOnce) {
+  perform(R"({"do":"compare"})");
+  settle();
+  const std::vector<std::string>& warnings = session->warnings();
+  EXPECT_EQ(std::set<std::string>(warnings.begin(), warnings.end()).size(), warnings.size());
 }
 
 TEST_F(Comparison, UndefinedDifferenceIsReported) {

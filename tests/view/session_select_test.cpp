@@ -58,12 +58,12 @@ TEST_F(Selection, EndsWithTheObjectAndReturnsWithIt) {
 
 TEST_F(Selection, AnObjectIsFoundAtItsPixelAndNotBesideIt) {
   const render::Projected at = pixelOf(*session, "emitters.radar");
-  const SceneObject* found = objectAt(session->objects(), *session->picture(), at.x + 4, at.y - 3);
+  const SceneObject* found = objectAt(session->objects(), at.x + 4, at.y - 3);
   ASSERT_NE(found, nullptr);
   EXPECT_EQ(found->path, "emitters.radar") << "before its platform";
   EXPECT_EQ(found->kind, "radar");
   EXPECT_THAT(found->details, HasSubstr("GHz"));
-  EXPECT_EQ(objectAt(session->objects(), *session->picture(), at.x + 40, at.y - 40), nullptr);
+  EXPECT_EQ(objectAt(session->objects(), at.x + 40, at.y - 40), nullptr);
 }
 
 TEST_F(Selection, ItsPositionIsCopiedAndLookedAt) {
@@ -93,7 +93,8 @@ TEST_F(Measuring, TwoPositionsGiveDistanceBearingAndSight) {
   perform(
       R"({"do":"measure","from_latitude_deg":52,"from_longitude_deg":5,"to_latitude_deg":53,"to_longitude_deg":5})");
   EXPECT_FALSE(session->report()["measured_in_sight"].get<bool>()) << "the earth's bulge";
-  EXPECT_THAT(session->tool().measurement->verdict, StartsWith("Not in sight: the earth's bulge"));
+  EXPECT_THAT(verdictOf(*session->tool().measurement, Units::metric),
+              StartsWith("Not in sight: the earth's bulge"));
 }
 
 TEST_F(Measuring, PixelsAddPointsAndAThirdBeginsAnew) {

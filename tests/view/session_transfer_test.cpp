@@ -162,6 +162,9 @@ TEST_F(SessionTransfer, AnotherQuantityHasColoursOfItsOwn) {
   EXPECT_EQ(session->transfer(), nullptr);
   perform(R"({"do":"opacity","factor":0.5})");
   EXPECT_THAT(error(), HasSubstr("categories have their own colours"));
+  perform(R"({"do":"quantity","name":"power_density_dbwm2"})");
+  settle();
+  EXPECT_EQ(session->transfer()->colorMap(), "cividis") << "as it was left";
 }
 
 }  // namespace

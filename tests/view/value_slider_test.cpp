@@ -116,7 +116,7 @@ TEST(RefusalText, SpeaksOfValuesNotOfPlacesInFiles) {
   EXPECT_EQ(refusalText("emitters.a.height_agl_m=-5: 'height_agl_m' is -5 m, outside of 0 to 1 m", edits),
             "height above ground is -5 m, outside of 0 to 1 m");
   EXPECT_EQ(refusalText("dir/a b.yaml:62:11: 'emitters' has 'jammer' twice; first at line 29", edits),
-            "emitters has 'jammer' twice");
+            "another emitter is named 'jammer'");
   EXPECT_EQ(refusalText("a.yaml:2: 'frequency_hz' must be a number (Hz)\na.yaml:3:1: there is no 'b'", edits),
             "frequency must be a number (Hz)\nthere is no 'b'");
 }

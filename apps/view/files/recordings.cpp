@@ -8,8 +8,8 @@
 #include "base/files/folder.h"
 #include "base/text/count_text.h"
 #include "interop/import_scenario.h"
-#include "interop/recording/read_recording.h"
 #include "playback/editing/autosave.h"
+#include "recording/read_recording.h"
 
 namespace emscape::view {
 

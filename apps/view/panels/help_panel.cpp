@@ -26,10 +26,10 @@ void drawFirstMinutes(PanelContext& context) {
   ImGui::Spacing();
 }
 
-/// A row of keys, effect and command, if the search finds it.
-void drawRow(PanelContext& context, const ImGuiTextFilter& filter, const std::string& keys,
+/// A row of keys, effect and command, if the search finds it. @return true if it does
+bool drawRow(PanelContext& context, const ImGuiTextFilter& filter, const std::string& keys,
              const std::string& does, const std::string& command_line) {
-  if (!filter.PassFilter((keys + " " + does + " " + command_line).c_str())) return;
+  if (!filter.PassFilter((keys + " " + does + " " + command_line).c_str())) return false;
   ImGui::TableNextRow();
   ImGui::TableNextColumn();
   ImGui::TextWrapped("%s", drawable(keys).c_str());
@@ -39,6 +39,7 @@ void drawRow(PanelContext& context, const ImGuiTextFilter& filter, const std::st
   ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
   ImGui::TextWrapped("%s", drawable(command_line).c_str());
   ImGui::PopStyleColor();
+  return true;
 }
 
 void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
@@ -46,7 +47,9 @@ void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
   ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.3F);
   ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch, 0.34F);
   ImGui::TableSetupColumn("command line", ImGuiTableColumnFlags_WidthStretch, 0.36F);
-  for (const Gesture& gesture : gestures()) drawRow(context, filter, gesture.gesture, gesture.does, "");
+  bool found = false;
+  for (const Gesture& gesture : gestures())
+    found |= drawRow(context, filter, gesture.gesture, gesture.does, "");
   for (const std::string& menu : menuNames()) {
     if (!filter.IsActive()) {
       ImGui::TableNextRow();
@@ -57,10 +60,11 @@ void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
       if (menu != action.menu) continue;
       std::string keys;
       for (const KeyChord& chord : chordsOf(action)) keys += (keys.empty() ? "" : ", ") + toString(chord);
-      drawRow(context, filter, keys, action.name, action.command_line);
+      found |= drawRow(context, filter, keys, action.name, action.command_line);
     }
   }
   ImGui::EndTable();
+  if (!found) ImGui::TextDisabled("no key, action or option has these words");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "apps/view/panels/panels.h"
+#include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
 #include "base/text/display_units.h"
@@ -17,20 +18,6 @@ constexpr float kFieldWidth = 360;
 /// Text of a field.
 using TypedMapText = std::array<char, 4096>;
 
-bool beginMapDialog(PanelContext& context, const char* title, bool& is_open) {
-  const ImVec2 screen = ImGui::GetIO().DisplaySize;
-  ImGui::SetNextWindowPos({screen.x / 2, screen.y / 2}, ImGuiCond_Appearing, {0.5F, 0.5F});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * context.scale);
-  return ImGui::Begin(
-      title, &is_open,
-      ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
-}
-
-void endMapDialog() {
-  ImGui::End();
-  ImGui::PopStyleVar();
-}
-
 /// A text field with a button. @return true if Enter or the button took the text
 /// @param browses  purpose of a button that opens the file browser; none: there is no such button
 bool textAndButton(PanelContext& context, const char* id, const char* hint, TypedMapText& typed,
@@ -40,7 +27,7 @@ bool textAndButton(PanelContext& context, const char* id, const char* hint, Type
   const bool entered = ImGui::InputTextWithHint("##text", hint, typed.data(), typed.size(),
                                                 ImGuiInputTextFlags_EnterReturnsTrue);
   ImGui::SameLine();
-  const bool pressed = ImGui::Button(button);
+  const bool pressed = ImGui::Button(button, {64 * context.scale, 0});
   if (browses) {
     ImGui::SameLine();
     if (ImGui::Button("Browse")) context.session.browse(*browses);
@@ -90,15 +77,19 @@ void drawPlaces(PanelContext& context) {
 }
 
 void drawRings(PanelContext& context) {
-  static double spacing = 10;
+  static double spacing_m = 10e3;
   static std::string emitter;
   Session& session = context.session;
   const playback::ScenarioPtr scenario = session.scenario();
   if (!scenario || scenario->emitters.empty()) return;
   ImGui::TextDisabled("Range rings");
-  std::vector<std::string> texts;
-  for (const playback::RangeRings& rings : session.view().range_rings) texts.push_back(toString(rings));
-  const std::size_t removed = listToRemove(texts);
+  std::vector<std::string> texts, words;
+  for (const playback::RangeRings& rings : session.view().range_rings) {
+    texts.push_back(toString(rings));
+    words.push_back(rings.emitter + ", every " + roundDistanceText(rings.spacing_m, session.view().units) +
+                    (rings.count > 0 ? fmt::format(", {} rings", rings.count) : ""));
+  }
+  const std::size_t removed = listToRemove(words);
   if (removed < texts.size()) {
     texts.erase(texts.begin() + static_cast<std::ptrdiff_t>(removed));
     session.perform({"range_rings", {{"rings", texts}}});
@@ -116,10 +107,11 @@ void drawRings(PanelContext& context) {
   }
   ImGui::SameLine();
   ImGui::SetNextItemWidth(0.3F * kFieldWidth * context.scale);
-  ImGui::InputDouble("##spacing", &spacing, 0, 0, fmt::format("every %g {}", unit.name).c_str());
+  const NumberForm form{"every ", "m", "", -1, unit.name, unit.factor, {}, 1, 1e7};
+  numberField(context, "##spacing", spacing_m, form);
   ImGui::SameLine();
-  if (ImGui::Button("Add") && spacing > 0) {
-    texts.push_back(toString(playback::RangeRings{emitter, spacing * unit.factor, 0}));
+  if (ImGui::Button("Add")) {
+    texts.push_back(toString(playback::RangeRings{emitter, spacing_m, 0}));
     session.perform({"range_rings", {{"rings", texts}}});
   }
 }
@@ -128,25 +120,23 @@ void drawRings(PanelContext& context) {
 
 void drawGoToPosition(PanelContext& context) {
   Session& session = context.session;
-  if (!session.panels.position) return;
+  if (!beginDialog(context, "Go to position", session.panels.position, {}, Waits::no)) return;
   static TypedMapText typed{};
-  beginMapDialog(context, "Go to position", session.panels.position);
   if (ImGui::IsWindowAppearing()) ImGui::SetKeyboardFocusHere();
   if (textAndButton(context, "position", "36.3N 84.2W, 36°30'12\"N 84°12'W, 16S GF 12345 67890", typed, "Go"))
     session.panels.position = !session.perform({"goto_position", {{"position", typed.data()}}});
-  endMapDialog();
+  endDialog();
 }
 
 void drawMapDialog(PanelContext& context) {
   Session& session = context.session;
-  if (!session.panels.map) return;
-  beginMapDialog(context, "Map", session.panels.map);
+  if (!beginDialog(context, "Map", session.panels.map, {}, Waits::no)) return;
   drawDrape(context);
   ImGui::Spacing();
   drawPlaces(context);
   ImGui::Spacing();
   drawRings(context);
-  endMapDialog();
+  endDialog();
 }
 
 }  // namespace emscape::view

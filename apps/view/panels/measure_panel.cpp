@@ -26,9 +26,9 @@ void drawMeasurePanel(PanelContext& context) {
     ImGui::TextWrapped("%s, %s above sea level", positionText(end->position, view).c_str(),
                        heightText(end->height_msl_m, view).c_str());
   }
-  ImGui::TextWrapped("%s", drawable(measured.verdict).c_str());
+  ImGui::TextWrapped("%s", drawable(verdictOf(measured, view.units)).c_str());
   drawPathPlot(measured.path, {ImGui::GetContentRegionAvail().x, 150 * context.scale}, session.theme(),
-               context.scale);
+               view.units, context.scale);
 }
 
 }  // namespace emscape::view

@@ -185,6 +185,7 @@ void drawQuantityList(PanelContext& context, const std::vector<ShownQuantity>& q
     if (selectableName(quantity.title, quantity.name == shown)) {
       session.perform({"quantity", {{"name", quantity.name}}});
     }
+    if (quantity.name == shown && ImGui::IsWindowAppearing()) ImGui::SetItemDefaultFocus();
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("--quantity %s", quantity.name.c_str());
     ImGui::PopID();
   }

@@ -12,6 +12,7 @@
 #include "apps/view/panels/picture_overlay.h"
 #include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
 #include "base/text/time_text.h"
 #include "emscape/render/annotate/legend.h"
@@ -146,10 +147,15 @@ void drawStatusBar(PanelContext& context, const Area& area) {
   const std::string under = session.picture() ? cursorText(session) : "";
   const float under_x = right_x - (under.empty() ? 0 : ImGui::CalcTextSize(under.c_str()).x + 24 * s);
   drawStateBadge(context, under_x - 12 * s);
-  if (!under.empty() && under_x >= ImGui::GetCursorPosX()) {
-    ImGui::SameLine();
-    ImGui::SetCursorPosX(under_x);
-    ImGui::TextUnformatted(drawable(under).c_str());
+  if (!under.empty()) {
+    ImGui::SameLine(0, 12 * s);
+    const float from_x = std::max(under_x, ImGui::GetCursorPosX());
+    ImGui::SetCursorPosX(from_x);
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float room = std::max(0.0F, right_x - from_x);
+    const bool is_long = drawName(*ImGui::GetWindowDrawList(), under, at, at.x + room);
+    ImGui::Dummy({room, ImGui::GetTextLineHeight()});
+    tooltipOfLongName(under, is_long);
   }
   if (!right.empty()) {
     ImGui::SameLine();

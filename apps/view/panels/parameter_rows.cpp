@@ -11,8 +11,10 @@
 #include "apps/view/widgets/slider_field.h"
 #include "apps/view/widgets/theme.h"
 #include "base/files/json_writing.h"
+#include "base/geodesy/position_text.h"
 #include "base/text/quantity_text.h"
 #include "base/text/shell_word.h"
+#include "emscape/base/error.h"
 
 namespace emscape::view {
 namespace {
@@ -166,7 +168,15 @@ bool ParameterRows::drawSubheading(const std::string& id, const std::string& nam
       ("##" + id).c_str(), ImGuiTreeNodeFlags_SpanFullWidth | ImGuiTreeNodeFlags_NoTreePushOnOpen);
   ImGui::PopStyleColor();
   ImGui::SameLine();
-  ImGui::TextColored(accentColor(context_.session.theme()), "%s", drawable(name).c_str());
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+  list.PushClipRect({at.x, at.y}, {right, at.y + ImGui::GetTextLineHeight()});  // over both columns
+  ImGui::PushStyleColor(ImGuiCol_Text, accentColor(context_.session.theme()));
+  drawName(list, name, at, right);
+  ImGui::PopStyleColor();
+  list.PopClipRect();
+  ImGui::Dummy({1, ImGui::GetTextLineHeight()});
   storage.SetBool(key, is_open);
   showFocus(id);
   return is_open;
@@ -299,6 +309,26 @@ void ParameterRows::drag(const Parameter& parameter, const std::string& value) {
   context_.session.dragValue(parameter.path, value);
 }
 
+/// A whole position that is typed as latitude or longitude sets both. @return false if the text is none
+bool ParameterRows::enterPosition(const Parameter& parameter, const std::string& text) {
+  const bool is_latitude = parameter.key == "latitude_deg";
+  if ((!is_latitude && parameter.key != "longitude_deg") || parseCoordinate(text, is_latitude)) return false;
+  try {
+    const ParsedPosition position = parsePosition(text);
+    const std::string section = parameter.path.substr(0, parameter.path.size() - parameter.key.size());
+    const auto edit = [&](const char* key, double degrees) {
+      return toString(scenario::Edit{section + key, fmt::format("{:.7f}", degrees)});
+    };
+    context_.session.perform(
+        {"set_together",
+         {{"edits",
+           {edit("latitude_deg", position.latitude_deg), edit("longitude_deg", position.longitude_deg)}}}});
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 /// A number without a unit is in the unit that was shown.
 void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
   const std::string& path = parameter.path;
@@ -313,9 +343,13 @@ void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
     state_.sent_text = text;
     return set(path, parameter.type == Type::text ? dumpJson(Json(text)) : text);
   }
+  if (enterPosition(parameter, text)) return;
   const double value = std::strtod(parameter.value.c_str(), nullptr);
   const double factor = prefixedUnit(value, parameter.unit, kTypedDigits).factor;
-  const std::optional<double> number = parseQuantity(text, parameter.unit, factor);
+  const bool is_latitude = parameter.key == "latitude_deg", is_longitude = parameter.key == "longitude_deg";
+  const std::optional<double> number = is_latitude || is_longitude
+                                           ? parseCoordinate(text, is_latitude)
+                                           : parseQuantity(text, parameter.unit, factor);
   const auto refuse = [&](const std::string& why) {
     state_.refused = {path, text, why, context_.session.scenario()};
   };

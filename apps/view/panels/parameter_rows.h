@@ -57,6 +57,7 @@ class ParameterRows {
   void drawValue(const scenario::Parameter& parameter);
   void handleSlider(const scenario::Parameter& parameter, const ValueSlider& slider, double value);
   void drag(const scenario::Parameter& parameter, const std::string& value);
+  bool enterPosition(const scenario::Parameter& parameter, const std::string& text);
   void enter(const scenario::Parameter& parameter, const std::string& text);
   void drawBoolean(const scenario::Parameter& parameter);
   void drawChoice(const scenario::Parameter& parameter);

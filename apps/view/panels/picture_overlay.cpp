@@ -221,7 +221,8 @@ void drawPictureOverlay(const PanelContext& context, const Area& picture) {
     if (const auto pixel = planeHandle(*session.picture(), plane)) overlay.handle(overlay.at(*pixel));
   }
   if (const SceneObject* object = session.objectOf(session.selected())) {
-    if (const auto at = overlay.at(object->position_m)) overlay.selection(*at);
+    if (object->pixel && object->present)
+      overlay.selection(overlay.at(render::Projected{object->pixel->x, object->pixel->y}));
   }
   drawTool(overlay, session);
 }
@@ -264,12 +265,7 @@ void drawContextMenu(PanelContext& context, const Area& picture, ContextMenu& me
   if (std::exchange(session.panels.menu, false)) {  // by its key: at the selection
     const SceneObject* const object = session.objectOf(session.selected());
     menu = {true, 0.5 * session.picture()->size.width, 0.5 * session.picture()->size.height, ""};
-    if (object != nullptr) {
-      const playback::LivePicture& shown = *session.picture();
-      const render::Projected at =
-          render::project(shown.camera, shown.size, shown.box.toDrawn(object->position_m));
-      menu = {true, at.x, at.y, object->path};
-    }
+    if (object != nullptr && object->pixel) menu = {true, object->pixel->x, object->pixel->y, object->path};
   }
   if (std::exchange(menu.opens, false)) {
     ImGui::SetNextWindowPos({picture.x + static_cast<float>(menu.x), picture.y + static_cast<float>(menu.y)});

@@ -6,6 +6,7 @@
 
 #include "apps/view/widgets/slider_field.h"
 #include "apps/view/widgets/theme.h"
+#include "base/text/display_units.h"
 
 namespace emscape::view {
 namespace {
@@ -13,21 +14,34 @@ namespace {
 using render::CutPlane;
 
 bool slide(const PanelContext& context, const char* id, double& value, double min, double max,
-           const char* format) {
+           NumberForm form) {
+  form.min = std::min(min, value);
+  form.max = std::max(max, value);
   ImGui::SetNextItemWidth(-1);
-  return sliderField(context, id, value, std::min(min, value), std::max(max, value), format);
+  return sliderField(context, id, value, form);
+}
+
+/// Lengths of volumes without a position on the earth have no unit.
+NumberForm lengthForm(const Session& session, const char* on_earth, const char* elsewhere, double extent_m) {
+  if (session.picture()->annotations.georeferenced) {
+    const DisplayUnit unit = heightUnit(session.view().units);
+    return {on_earth, "m", "", 0, unit.name, unit.factor};
+  }
+  return {elsewhere, "", "", extent_m > 100 ? 0 : -1};
 }
 
 /// @return true if the plane was changed
 bool drawHorizontal(const PanelContext& context, CutPlane& plane, const render::SceneBox& box) {
-  return slide(context, "##altitude", plane.altitude_m, box.lower_m.z, box.upper_m.z, "altitude %.0f m");
+  return slide(context, "##altitude", plane.altitude_m, box.lower_m.z, box.upper_m.z,
+               lengthForm(context.session, "altitude ", "z ", box.upper_m.z - box.lower_m.z));
 }
 
 bool drawVertical(const PanelContext& context, CutPlane& plane, const render::SceneBox& box) {
   const Vec3d size_m = box.upper_m - box.lower_m;
   const double reach_m = 0.5 * std::hypot(size_m.x, size_m.y);
-  const bool turned = slide(context, "##bearing", plane.bearing_deg, 0, 360, "bearing %.0f°");
-  const bool moved = slide(context, "##offset", plane.offset_m, -reach_m, reach_m, "offset %.0f m");
+  const bool turned = slide(context, "##bearing", plane.bearing_deg, 0, 360, {"bearing ", "deg", "", 0});
+  const bool moved = slide(context, "##offset", plane.offset_m, -reach_m, reach_m,
+                           lengthForm(context.session, "offset ", "offset ", 2 * reach_m));
   const bool cut = ImGui::Checkbox("cuts the ground", &plane.cuts_ground);
   return turned || moved || cut;
 }
@@ -79,11 +93,13 @@ void drawMapLayer(PanelContext& context, const render::SceneBox& box) {
   if (ImGui::Checkbox("values painted on the ground", &on)) session.perform({"map_layer", {{"on", on}}});
   if (!settings.map_height_agl_m) return;
   double height_m = *settings.map_height_agl_m, opacity = settings.map_opacity;
-  if (slide(context, "##map height", height_m, 0, box.upper_m.z - box.lower_m.z, "%.0f m above ground"))
-    session.perform(
-        {"map_layer", {{"height_agl_m", std::clamp(height_m, 0.0, render::kMapHeightLimits.max)}}});
-  if (slide(context, "##map opacity", opacity, 0, 1, "opacity %.2f"))
-    session.perform({"map_layer", {{"opacity", std::clamp(opacity, 0.0, 1.0)}}});
+  const DisplayUnit height = heightUnit(session.view().units);
+  const double reach_m = std::min(render::kMapHeightLimits.max, std::floor(box.upper_m.z - box.lower_m.z));
+  if (slide(context, "##map height", height_m, 0, reach_m,
+            {"", "m", " above ground", 0, height.name, height.factor}))
+    session.perform({"map_layer", {{"height_agl_m", height_m}}});
+  if (slide(context, "##map opacity", opacity, 0, 1, {"opacity ", "", "", 2}))
+    session.perform({"map_layer", {{"opacity", opacity}}});
 }
 
 }  // namespace

@@ -100,7 +100,7 @@ void drawPath(PanelContext& context, const emfield::PathBudget& budget) {
   const render::Theme theme = context.session.theme();
   const float s = context.scale;
   ImGui::TextWrapped("%s", drawable(budget.verdict).c_str());
-  drawPathPlot(budget, {ImGui::GetContentRegionAvail().x, 150 * s}, theme, s);
+  drawPathPlot(budget, {ImGui::GetContentRegionAvail().x, 150 * s}, theme, context.session.view().units, s);
   drawTerms(budget, theme, s);
   ImGui::TextDisabled("%s:", toString(budget.model));
   ImGui::SameLine();

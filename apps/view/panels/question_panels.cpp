@@ -23,6 +23,11 @@ void drawEdits(const std::vector<scenario::Edit>& edits, const Session& session)
   ImGui::PopStyleColor();
 }
 
+/// "2026-11-28 13:56 UTC" of "2026-11-28T13:56:30.328Z".
+std::string minuteText(const std::string& utc) {
+  return utc.size() < 16 ? utc : utc.substr(0, 10) + " " + utc.substr(11, 5) + " UTC";
+}
+
 }  // namespace
 
 void drawRestoreQuestion(PanelContext& context) {
@@ -32,7 +37,8 @@ void drawRestoreQuestion(PanelContext& context) {
   if (!beginDialog(context, "Edits that were not saved", session.panels.restore)) return;
   ImGui::TextUnformatted(
       fmt::format("Edits of this input were not saved. A view with {} edit{} was kept at {}.",
-                  kept.state.edits.size(), kept.state.edits.size() == 1 ? "" : "s", kept.written_utc)
+                  kept.state.edits.size(), kept.state.edits.size() == 1 ? "" : "s",
+                  minuteText(kept.written_utc))
           .c_str());
   drawEdits(kept.state.edits, session);
   if (kept.input_changed) {

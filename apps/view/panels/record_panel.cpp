@@ -63,7 +63,9 @@ struct Typed {
   void setFile(const std::string& name) { std::snprintf(file, sizeof file, "%s", name.c_str()); }
   bool isVideo() const { return std::filesystem::path(file).extension() == ".mp4"; }
   render::ImageSize size(const Session& session) const {
-    return preset == 0 ? session.pictureSize() : kSizes[preset].size;
+    const render::ImageSize size = preset == 0 ? session.pictureSize() : kSizes[preset].size;
+    if (!isVideo()) return size;
+    return {size.width + size.width % 2, size.height + size.height % 2};  // as the encoder needs them
   }
   Command command() const {
     Command record{"record",
@@ -87,7 +89,7 @@ void fillIn(Typed& typed, const Session& session) {
   typed.end_s = times_s.back();
   typed.step_s = times_s.size() > 1 ? times_s[1] - times_s[0] : 1;
   if (std::exchange(typed.input, session.view().input) != session.view().input || typed.file[0] == '\0') {
-    typed.setFile(besideInput(session.view().input, ".mp4"));
+    typed.setFile(besideInput(session.options().namesake(), ".mp4"));
   }
 }
 
@@ -190,14 +192,18 @@ void drawRecording(PanelContext& context, const Area& picture) {
   drawOutput(context, typed);
   drawSize(context, typed);
   drawCameraPath(context);
-  const auto number = [&](const char* name, double& value) {
+  const auto number = [&](const char* name, double& value, const char* unit, double min, double max) {
     ImGui::SetNextItemWidth(120 * context.scale);
-    ImGui::InputDouble(name, &value, 0, 0, "%.6g");
+    NumberForm form{"", unit};
+    form.min = min;
+    form.max = max;
+    numberField(context, name, value, form);
   };
-  number("begin (s)", typed.begin_s);
-  number("end (s)", typed.end_s);
-  number("step (s)", typed.step_s);
-  number("pictures a second of a film", typed.frames_per_s);
+  const double first_s = session.timeline().begin_s(), last_s = session.timeline().end_s();
+  number("begin", typed.begin_s, "s", first_s, last_s);
+  number("end", typed.end_s, "s", first_s, last_s);
+  number("step", typed.step_s, "s", 1e-6, std::max(1.0, last_s - first_s));
+  number("pictures per second of a film", typed.frames_per_s, "", 0.01, 1000);
   drawEstimate(context, typed);
   ImGui::TextDisabled("%s", "the same on the command line, with the view saved as VIEW.json (Ctrl+Shift+V):");
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 520 * context.scale);

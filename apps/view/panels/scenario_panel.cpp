@@ -26,6 +26,7 @@ struct Section {
   std::string path;
   std::optional<scenario::EmitterKind> kind = {};  ///< of an emitter
   bool is_enabled = true;
+  std::optional<scenario::Side> side = {};  ///< of the emitter's platform
 };
 
 /// Sections below a heading.
@@ -66,8 +67,9 @@ struct PanelState {
     SectionGroup emitters{"Emitters", {"radar", "transmitter", "jammer"}};
     disabled_count = 0;
     for (const scenario::Emitter& emitter : next->emitters) {
-      emitters.sections.push_back(
-          {emitter.name, "emitters." + scenario::pathStep(emitter.name), emitter.kind, emitter.enabled});
+      emitters.sections.push_back({emitter.name, "emitters." + scenario::pathStep(emitter.name), emitter.kind,
+                                   emitter.enabled,
+                                   next->platforms[static_cast<std::size_t>(emitter.platform)].side});
       disabled_count += emitter.enabled ? 0 : 1;
     }
     const auto groupOf = [](const char* name, const char* kind, const std::string& list,
@@ -244,7 +246,7 @@ void drawHeading(PanelContext& context, PanelState& state, const Section& sectio
     drawSwitch(context, section, {right - 26 * s, middle - 7 * s});
     right -= 32 * s;
     list.AddCircleFilled({right - 4 * s, middle}, 4.5F * s,
-                         ImGui::ColorConvertFloat4ToU32(emitterColor(*section.kind, theme)));
+                         ImGui::ColorConvertFloat4ToU32(emitterColor(*section.kind, section.side, theme)));
     right -= 14 * s;
   }
   if (state.isEdited(section.path)) {
@@ -323,7 +325,7 @@ void drawEdits(PanelContext& context, const PanelState& state) {
   if (!ImGui::BeginPopup("edits")) return;
   constexpr std::size_t kMaxCharacters = 60;
   std::string reverted;
-  for (const scenario::Edit& edit : state.scenario->edits()) {
+  for (const scenario::Edit& edit : foldedEdits(state.scenario->edits())) {
     pushNameId(edit.path);
     if (ImGui::SmallButton("undo this")) reverted = edit.path;
     ImGui::SameLine();
@@ -362,7 +364,7 @@ void drawHead(PanelContext& context, const PanelState& state) {
     ImGui::SameLine(0, 2 * spacing);
     ImGui::TextDisabled("%zu emitter%s off", state.disabled_count, state.disabled_count == 1 ? "" : "s");
   }
-  const std::size_t count = state.scenario->edits().size();
+  const std::size_t count = foldedEdits(state.scenario->edits()).size();
   const std::string changes =
       count == 0 ? "nothing changed" : fmt::format("{} value{} changed …", count, count == 1 ? "" : "s");
   ImGui::BeginDisabled(count == 0);

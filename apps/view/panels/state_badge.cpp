@@ -7,6 +7,7 @@
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/widgets/glyphs.h"
+#include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
 #include "volume/difference.h"
 
@@ -77,7 +78,13 @@ void drawStateBadge(PanelContext& context, float right_x) {
     if (fits) text = longer;
   }
   ImGui::SameLine(0, 12 * s);
-  ImGui::TextUnformatted(drawable(text).c_str());
+  if (text.empty() && !parts.empty() && room > 0) {  // the first part is shortened, not left out
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    drawName(*ImGui::GetWindowDrawList(), parts.front(), at, at.x + room);
+    ImGui::Dummy({room, ImGui::GetTextLineHeight()});
+  } else {
+    ImGui::TextUnformatted(drawable(text).c_str());
+  }
   ImGui::EndGroup();
   if (is_on_button || !ImGui::IsItemHovered() || !session.picture()) return;
   // Above the line: Cancel stays free.

@@ -98,11 +98,13 @@ void drawRows(ImDrawList& list, const TimeAxis& axis, const Session& session, fl
     ImGui::PopStyleColor();
     list.AddRectFilled({axis.left, y + scale}, {axis.right(), y + row - scale},
                        ImGui::GetColorU32(ImGuiCol_FrameBg), 2 * scale);
-    const bool is_known = scenario && i < scenario->emitters.size();
-    const ImU32 ink =
-        inkOf(emitterColor(is_known ? scenario->emitters[i].kind : scenario::EmitterKind::transmitter,
-                           session.theme()),
-              0.8F);
+    scenario::EmitterKind kind = scenario::EmitterKind::transmitter;
+    std::optional<scenario::Side> side;
+    if (scenario && i < scenario->emitters.size()) {
+      kind = scenario->emitters[i].kind;
+      side = scenario->platforms[static_cast<std::size_t>(scenario->emitters[i].platform)].side;
+    }
+    const ImU32 ink = inkOf(emitterColor(kind, side, session.theme()), 0.8F);
     for (const scenario::TimeInterval& interval : bars[i].intervals) {
       const float from = axis.clampedX(interval.begin_s), to = axis.clampedX(interval.end_s);
       if (to > axis.left && from < axis.right()) {

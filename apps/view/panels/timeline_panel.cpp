@@ -27,7 +27,8 @@ float axisHeight(float scale, int rows) {
 
 /// Rows of emitters that fit; -1: not even the axis does.
 int rowsOf(const Session& session, float scale, float room) {
-  int rows = std::min(kMaxTimelineRows, static_cast<int>(session.timeline().bars().size()));
+  const std::size_t emitters = session.timeline().bars().empty() ? 0 : 1;
+  int rows = std::min(kMaxTimelineRows, static_cast<int>(std::max(session.openedEmitters(), emitters)));
   while (rows >= 0 && transportHeight(scale) + axisHeight(scale, rows) > room) --rows;
   return rows;
 }

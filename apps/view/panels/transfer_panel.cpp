@@ -18,16 +18,16 @@ float half(float scale) {
   return 0.5F * (ImGui::GetContentRegionAvail().x - 8 * scale);
 }
 
-bool typed(const char* id, double& value, const char* format, float width) {
+bool typed(const PanelContext& context, const char* id, double& value, const NumberForm& form, float width) {
   ImGui::SetNextItemWidth(width);
-  return numberField(id, value, format);
+  return numberField(context, id, value, form);
 }
 
-/// printf format of a value with its unit.
-std::string formatOf(const char* before, const std::string& unit) {
-  std::string text = render::unitText(unit);
-  for (std::size_t at = 0; (at = text.find('%', at)) != std::string::npos; at += 2) text.insert(at, "%");
-  return fmt::format("{}%.5g {}", before, text);
+/// Of a value of the field.
+NumberForm formOf(const PanelContext& context, const char* before, const std::string& unit) {
+  NumberForm form{before, unit};
+  form.field_unit = context.session.view().field_unit;
+  return form;
 }
 
 /// Value and opacity of the selected point.
@@ -44,12 +44,12 @@ void drawPoint(PanelContext& context) {
   const auto& point = points[static_cast<std::size_t>(index)];
   double value = point.at, opacity = point.opacity;
   const float width = ImGui::GetContentRegionAvail().x - 86 * context.scale;
-  if (typed("##value", value, formatOf("", editor.function().unit).c_str(), 0.54F * width)) {
+  if (typed(context, "##value", value, formOf(context, "", editor.function().unit), 0.54F * width)) {
     session.perform({"opacity_point", {{"index", index}, {"value", value}}});
   }
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("value of point %d of %zu", index + 1, points.size());
   ImGui::SameLine();
-  if (typed("##opacity", opacity, "opacity %.3g", 0.46F * width)) {
+  if (typed(context, "##opacity", opacity, {"opacity ", "", "", 3}, 0.46F * width)) {
     session.perform({"opacity_point", {{"index", index}, {"opacity", opacity}}});
   }
   if (ImGui::IsItemHovered()) ImGui::SetTooltip("opacity of one voxel's length, 0..1");
@@ -64,11 +64,11 @@ void drawRange(PanelContext& context) {
   const render::TransferFunction& function = session.transfer()->function();
   double lowest = function.lowest(), highest = function.highest();
   const float width = half(context.scale);
-  if (typed("##lowest", lowest, formatOf("from ", function.unit).c_str(), width)) {
+  if (typed(context, "##lowest", lowest, formOf(context, "from ", function.unit), width)) {
     session.perform({"range", {{"min", lowest}}});
   }
   ImGui::SameLine();
-  if (typed("##highest", highest, formatOf("to ", function.unit).c_str(), width)) {
+  if (typed(context, "##highest", highest, formOf(context, "to ", function.unit), width)) {
     session.perform({"range", {{"max", highest}}});
   }
   if (ImGui::Button("Fit this step", {width, 0})) perform(context, R"({"do":"fit_step"})");
@@ -146,11 +146,14 @@ void drawIso(PanelContext& context) {
   double value = std::isnan(set) ? (lowest + highest) / 2 : set;
   const float width = 0.38F * ImGui::GetContentRegionAvail().x;
   ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - width - 8 * context.scale);
-  if (sliderField(context, "##iso", value, lowest, highest, "surface at %.4g")) {
+  NumberForm form = formOf(context, "surface at ", function.unit);
+  form.min = std::min(lowest, value);
+  form.max = std::max(highest, value);
+  if (sliderField(context, "##iso", value, form)) {
     session.change([&](playback::ViewState& view) { view.settings.iso_value = value; });
   }
   ImGui::SameLine();
-  if (typed("##iso value", value, formatOf("", function.unit).c_str(), width)) {
+  if (typed(context, "##iso value", value, formOf(context, "", function.unit), width)) {
     session.perform({"iso", {{"value", value}}});
   }
 }

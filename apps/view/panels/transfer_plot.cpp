@@ -145,16 +145,21 @@ void drawColorBar(ImDrawList& list, const Plot& plot, const render::TransferFunc
   }
 }
 
-void drawTicks(ImDrawList& list, const Plot& plot, const std::string& unit, render::Theme theme,
+void drawTicks(ImDrawList& list, const Plot& plot, const render::FieldScale& of, render::Theme theme,
                float scale) {
+  const std::string unit = render::unitText(of.unit);
   const ImU32 ink = inkOf(mutedColor(theme));
   const float top = plot.bottom() + kBar * scale;
-  const std::vector<double> values = render::roundTicks(plot.lowest, plot.highest, 6);
+  // Amplitudes have no even steps on an axis of decibels.
+  const auto shown = [&](double value) { return of.is_amplitude ? value : of.shown(value); };
+  const std::vector<double> values = render::roundTicks(shown(plot.lowest), shown(plot.highest), 6);
   const double step = values.size() > 1 ? values[1] - values[0] : 1;
   float free_from = plot.left - 1;
   const float unit_width = ImGui::CalcTextSize(unit.c_str()).x;
-  for (const double value : values) {
-    const std::string text = render::tickText(value, step);
+  for (const double shown_value : values) {
+    const double value = of.is_amplitude ? shown_value : of.stored(shown_value);
+    const std::string text =
+        of.is_amplitude ? fmt::format("{:.2g}", of.shown(value)) : render::tickText(shown_value, step);
     const float width = ImGui::CalcTextSize(text.c_str()).x;
     const float at = std::max(plot.left, plot.x(value) - width / 2);
     if (at < free_from || at + width > plot.right() - unit_width - 6 * scale) continue;
@@ -235,9 +240,11 @@ void handleMouse(PanelContext& context, const Plot& plot) {
     session.perform({"remove_point", {{"index", *under}}});
   }
   if (!ImGui::IsItemActive() && io.MousePos.y < plot.bottom()) {
+    const render::FieldScale of =
+        render::fieldScale(session.transfer()->function().unit, session.view().field_unit);
     const std::string hint = under ? "drag moves, right click removes" : "click adds a point";
-    ImGui::SetTooltip("%s", fmt::format("{:.4g} {}\n{}", plot.value(io.MousePos.x),
-                                        render::unitText(session.transfer()->function().unit), hint)
+    ImGui::SetTooltip("%s", fmt::format("{:.4g} {}\n{}", of.shown(plot.value(io.MousePos.x)),
+                                        render::unitText(of.unit), hint)
                                 .c_str());
   }
 }
@@ -270,7 +277,7 @@ void drawTransferPlot(PanelContext& context) {
   drawColorBar(list, plot, function, s);
   drawEnds(list, plot, function, theme, s);
   drawPoints(list, plot, editor, theme, s);
-  drawTicks(list, plot, render::unitText(function.unit), theme, s);
+  drawTicks(list, plot, render::fieldScale(function.unit, session.view().field_unit), theme, s);
   list.PopClipRect();
   ImGui::Dummy({width, ImGui::GetTextLineHeight() - 2 * s});
 }

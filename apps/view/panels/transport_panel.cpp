@@ -81,7 +81,7 @@ void drawRate(PanelContext& context) {
   const double rate = session.timeline().rate();
   double typed = rate;
   ImGui::SetNextItemWidth(64 * s);
-  if (numberField("##rate", typed, "× %.4g")) session.perform({"rate", {{"value", typed}}});
+  if (numberField(context, "##rate", typed, {"× "})) session.perform({"rate", {{"value", typed}}});
   if (ImGui::IsItemHovered()) {
     ImGui::SetTooltip(
         "%s", fmt::format("Scenario seconds per second, negative: backwards (J lower, L higher)\n{:.3g} "

@@ -21,11 +21,17 @@ struct ViewOptions {
   bool offers_kept_view = true;  ///< asks whether the autosave of the input is to be restored
   /// Empty: as large as the view's picture requires.
   std::optional<render::ImageSize> window_size = render::ImageSize{1200, 900};
+  /// The size is that at scale 1: a larger scale has a larger window, as large as the screen at most.
+  bool scales_window = true;
   double scale = 0;  ///< of text and controls; 0: the screen's scale
   render::ControllerOptions controller;
   /// A battlefield that another program streams, of which `view` shows the scenario; null: none.
   std::shared_ptr<playback::LiveBattlefield> stream;
   std::optional<playback::StreamRequest> stream_request;  ///< of the command line
+  /// The user's file of which the program has made the input: the base of a stream, a recording; else empty.
+  std::string made_of;
+  /// The file whose name and folder those of outputs follow.
+  const std::string& namesake() const { return made_of.empty() ? view.input : made_of; }
   std::string script, log;
   bool share_gpu =
       true;  ///< busy pictures are passed from CUDA to OpenGL on the GPU if both use the same one

@@ -36,6 +36,11 @@ std::optional<render::Projected> planeHandle(const playback::LivePicture& pictur
   return at.in_front && is_movable ? std::optional(at) : std::nullopt;
 }
 
+double roundedPosition(double position_m, double extent_m) {
+  const double step_m = std::min(1.0, std::pow(10, std::floor(std::log10(std::max(extent_m, 1e-300)) - 1.5)));
+  return std::round(position_m / step_m) * step_m;
+}
+
 std::optional<std::size_t> planeHandleAt(const Session& session, double x, double y) {
   constexpr double kReach_px = 12;
   if (session.picture() == nullptr) return std::nullopt;
@@ -59,9 +64,10 @@ PlaneDrag::PlaneDrag(const Session& session, std::size_t index, double x, double
   offset_y_ = at.y - y;
 }
 
-void PlaneDrag::moveTo(double x, double y, Session& session) const {
+void PlaneDrag::moveTo(double x, double y, Session& session, bool begins) const {
   std::vector<render::CutPlane> planes = session.settings().planes;
-  if (index_ >= planes.size()) return;
+  if (index_ >= planes.size() || (!begins && !session.isDraggingPlane())) return;
+  if (begins) session.dragPlanes(planes);
   const playback::LivePicture& picture = *session.picture();
   // Newton's method for the point of the normal that is nearest to the cursor in the picture.
   double moved_m = 0;
@@ -77,10 +83,10 @@ void PlaneDrag::moveTo(double x, double y, Session& session) const {
   }
   render::CutPlane moved = begin_;
   if (begin_.kind == render::CutPlane::Kind::horizontal) {
-    moved.altitude_m = std::clamp(std::round(begin_.altitude_m + moved_m), std::ceil(picture.box.lower_m.z),
-                                  std::floor(picture.box.upper_m.z));
+    moved.altitude_m = std::clamp(roundedPosition(begin_.altitude_m + moved_m, reach_m_),
+                                  picture.box.lower_m.z, picture.box.upper_m.z);
   } else {
-    moved.offset_m = std::round(begin_.offset_m + moved_m);
+    moved.offset_m = roundedPosition(begin_.offset_m + moved_m, reach_m_);
   }
   if (!render::frameOf(moved, picture.box) || moved == planes[index_]) return;
   planes[index_] = moved;

@@ -13,6 +13,9 @@ namespace emscape::view {
 std::optional<render::Projected> planeHandle(const playback::LivePicture& picture,
                                              const render::CutPlane& plane);
 
+/// A position along a box of that extent: of whole metres, or of a hundredth of a small box.
+double roundedPosition(double position_m, double extent_m);
+
 /// Index of the plane whose handle is under a pixel; empty if there is none.
 std::optional<std::size_t> planeHandleAt(const Session& session, double x, double y);
 
@@ -22,7 +25,8 @@ class PlaneDrag {
   /// @param index  of a plane with a handle
   PlaneDrag(const Session& session, std::size_t index, double x, double y);
 
-  void moveTo(double x, double y, Session& session) const;
+  /// @param begins  true for the first movement; without it, a drag that was cancelled stays so
+  void moveTo(double x, double y, Session& session, bool begins) const;
   /// Ends the drag with the command of its result.
   void finish(Session& session) const;
 

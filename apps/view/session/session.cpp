@@ -65,14 +65,12 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       has_kept_(options.unsaved_edits),
       file_watch_(wake_),
       jobs_(wake_) {
-  if (options_.stream) options_.stream->setWake(wake_);
+  if (options_.stream) stream_.wake = options_.stream->setWake(wake_);
   watchFiles();
   showView(options.view);
 }
 
-Session::~Session() {
-  if (options_.stream) options_.stream->setWake({});
-}
+Session::~Session() = default;
 
 std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;
@@ -140,6 +138,7 @@ void Session::takeScenario() {
     }
   }
   if (edits_) timeline_.setScenario(*edits_->scenario());
+  if (is_first) opened_emitters_ = timeline_.bars().size();
 }
 
 void Session::takePicture() {

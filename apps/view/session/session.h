@@ -82,7 +82,7 @@ class Session {
   void changeTransfer(const std::function<void(playback::TransferEditor&)>& change);
   /// Ends a drag of either kind.
   void endDrag();
-  /// Restores the values before the drag.
+  /// Restores the values, or the planes, before the drag.
   void cancelDrag();
   bool isDragging() const { return edit_queue_.isDragging(); }
 
@@ -178,6 +178,8 @@ class Session {
   /// The camera stays where it is, to be moved freely.
   void stopFollowing();
   const playback::Timeline& timeline() const { return timeline_; }
+  /// Number of emitters when the input was opened; the time line keeps the height of their rows.
+  std::size_t openedEmitters() const { return opened_emitters_; }
   const render::RenderSettings& settings() const { return view_.settings; }
   /// A plane through the middle of the box; a vertical one faces the viewer.
   render::CutPlane newPlane(render::CutPlane::Kind kind) const;
@@ -186,6 +188,7 @@ class Session {
   /// The same while one is dragged: all changes until endPlaneDrag() are one undo step.
   void dragPlanes(const std::vector<render::CutPlane>& planes);
   void endPlaneDrag();
+  bool isDraggingPlane() const { return planes_.dragged() != nullptr; }
   /// True if the difference to the reference is requested instead of the field.
   bool compares() const { return view_.comparison() == playback::Comparison::difference; }
   /// True if the reference is requested beside the field.
@@ -254,6 +257,8 @@ class Session {
   void switchPlanes(const Command& command);
   void changePlane(const Command& command);
   void changeMapLayer(const Command& command);
+  /// @throws Error (bad_input) for volumes without others to compare with
+  void requireReference(const char* verb) const;
   void changeComparison(bool compares);
   void changeSplit(double split);
   void showPlanes();
@@ -297,11 +302,13 @@ class Session {
   void finishJobs();
   void askTime();
   void takeStream();
-  void adoptStreamed(const playback::BattlefieldNow& now);
+  void adoptStreamed();
+  void indexStreamed();
   double untilStream_s() const;
   void takeScenario();
   void takePicture();
-  void showScenario();
+  void showEdits();
+  void showScenario(const std::vector<RenamedItem>& renamed);
   void followNames(const std::vector<RenamedItem>& renamed);
   /// Takes effect with one of the next updates.
   void changeScenario(const std::vector<scenario::Edit>& edits);
@@ -340,6 +347,11 @@ class Session {
   // Colours: session_transfer.cpp
   enum class Fit { step, series, anew };
   void takeColors();
+  /// The colours of the next pictures are those that their field had last, or fitted.
+  void leaveField() { leaveField(fieldName(chosenQuantity())); }
+  /// @param field  that is left: fieldName()
+  void leaveField(const std::string& field);
+  std::string fieldName(const std::string& quantity) const;
   void countValues();
   void fitColors();
   /// @throws Error (bad_input) if there are no editable colours
@@ -368,12 +380,19 @@ class Session {
   std::optional<double> computing_from_s_;  // when the pending field was requested
   CameraControl camera_;
   playback::Timeline timeline_;
+  std::size_t opened_emitters_ = 0;
   double advanced_at_s_ = 0;
   render::CompositingMode fog_mode_ = render::CompositingMode::dvr;  // mode to which the key I returns
   double last_map_height_agl_m_ = 100;  // to which the key of the map layer returns
   double last_split_ = 0.5;             // to which the key of the split view returns
   std::optional<playback::TransferEditor> transfer_;
   bool takes_colors_ = true;  // true: takes the colours of the next pictures, which are fitted again
+  struct FieldColors {
+    render::TransferFunction function;
+    std::optional<render::TransferFunction> saved;
+    double iso_value = 0;
+  };
+  std::map<std::string, FieldColors> field_colors_;  // of quantities and differences that were shown
   std::shared_ptr<const ValueSummary> values_;
   bool counting_ = false;
   std::optional<Fit> fit_;  // requested, but its data are not yet available
@@ -389,7 +408,9 @@ class Session {
   } last_shown_;  // of the view of the last computed field
   struct {
     playback::ScenarioPtr scenario;  // as the stream has it
-    playback::PosesPtr poses;
+    playback::NamedPosesPtr poses;
+    playback::PlatformIndices indices;  // in the shown scenario
+    std::shared_ptr<void> wake;
     std::string text;  // of its status
     double told_s = -1e9;
     long long records = 0;

@@ -25,7 +25,7 @@ void Session::requireInput() const {
 }
 
 void Session::browse(FileBrowser::Purpose purpose, const std::string& proposed) {
-  files_->browser.open(purpose, std::filesystem::path(options_.view.input).parent_path(), proposed);
+  files_->browser.open(purpose, std::filesystem::path(options_.namesake()).parent_path(), proposed);
   panels.open = true;
 }
 
@@ -81,7 +81,8 @@ void Session::takeChangedFiles() {
 // --- edits ---
 
 bool Session::hasUnsavedEdits() const {
-  return edits_ && (edits_->isModified() || opened_unsaved_);
+  const bool is_other = edits_ && (edits_->isModified() || opened_unsaved_);
+  return is_other && !foldedEdits(edits_->edits()).empty();  // without edits it is as in its file
 }
 
 bool Session::working() const {
@@ -89,8 +90,9 @@ bool Session::working() const {
 }
 
 std::string Session::usualScenarioFile() const {
-  const std::filesystem::path input(scenario()->file);
-  return (input.parent_path() / (input.stem().string() + ".edited" + input.extension().string())).string();
+  const std::filesystem::path scenario_file(scenario()->file);
+  return besideInput(options_.made_of.empty() ? scenario_file.string() : options_.made_of,
+                     ".edited" + scenario_file.extension().string());
 }
 
 void Session::saveScenario(const std::string& file) {
@@ -135,6 +137,7 @@ void Session::keepEdits(double now_s) {
 }
 
 void Session::keepView() {
+  if (options_.stream) return;  // no other run has its scenario
   has_kept_ = true;
   kept_view_.reset();  // replaced
   jobs_.run([this, autosaves = files_->autosaves, input = options_.view.input,

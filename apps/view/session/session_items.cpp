@@ -43,12 +43,6 @@ scenario::NewItem newItemOf(const Command& command) {
   return item;
 }
 
-/// True if an edit changes the value at a path, or a part of it.
-bool isWithin(const std::string& path, const scenario::Edit& edit) {
-  return edit.path.compare(0, path.size(), path) == 0 &&
-         (edit.path.size() == path.size() || edit.path[path.size()] == '.');
-}
-
 }  // namespace
 
 const scenario::Scenario& Session::requireScenario() const {
@@ -65,11 +59,7 @@ void Session::enableEmitter(const std::string& name, std::optional<bool> on) {
 
 void Session::revertEdits(const std::string& path) {
   requireScenario();
-  std::vector<scenario::Edit> kept;
-  for (const scenario::Edit& edit : edits_->edits()) {
-    if (!path.empty() && !isWithin(path, edit)) kept.push_back(edit);
-  }
-  edit_queue_.replace(kept);
+  edit_queue_.replace(path.empty() ? std::vector<scenario::Edit>() : editsWithout(edits_->edits(), path));
 }
 
 std::vector<Verb> Session::itemVerbs() {

@@ -57,7 +57,7 @@ void Session::showQuantity(const std::string& name) {
     if (!missing.empty()) throw Error(ErrorCode::bad_input, missing);
   }
   if (name == view_.quantity) return;
-  takes_colors_ = true;
+  leaveField();
   change([&](playback::ViewState& view) { playback::changeQuantity(view, name); });
 }
 
@@ -96,7 +96,7 @@ void Session::showLastQuantity() {
   if (last_shown_.quantity == view_.quantity && last_shown_.compare == view_.compare &&
       last_shown_.split == view_.split)
     return;
-  takes_colors_ = true;
+  leaveField();
   change([this](playback::ViewState& view) {
     view.quantity = last_shown_.quantity;
     view.compare = last_shown_.compare;
@@ -144,7 +144,7 @@ std::vector<Verb> Session::pictureVerbs() {
          });
          session.setPlanes(first.settings.planes);
          if (session.view_.comparison() != first.comparison()) {
-           session.takes_colors_ = true;
+           session.leaveField();
            session.change([&](playback::ViewState& view) {
              playback::changeComparison(view, first.compare);
              playback::changeSplit(view, first.split);

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/view/session/plane_drag.h"
 #include "apps/view/session/session.h"
+#include "base/text/shell_word.h"
 #include "emscape/base/error.h"
 
 namespace emscape::view {
@@ -63,7 +65,10 @@ CutPlane Session::newPlane(CutPlane::Kind kind) const {
     plane.keep = CutPlane::Side::left;
     return plane;
   }
-  if (picture_) plane.altitude_m = std::round(0.5 * (picture_->box.lower_m.z + picture_->box.upper_m.z));
+  if (picture_) {
+    const double low = picture_->box.lower_m.z, high = picture_->box.upper_m.z;
+    plane.altitude_m = roundedPosition(0.5 * (low + high), high - low);
+  }
   return plane;
 }
 
@@ -144,9 +149,18 @@ void Session::changeMapLayer(const Command& command) {
   if (turns_on && picture_ && !picture_->ground) tell("no ground is drawn: nothing is painted on it");
 }
 
+void Session::requireReference(const char* verb) const {
+  if (!showsFiles() || !options_.view.compare.empty()) return;
+  throw Error(
+      ErrorCode::bad_input,
+      fmt::format("{}: volumes have no original; `emscape view {} --compare FILE` compares them with others",
+                  verb, shellWord(view_.input)));
+}
+
 void Session::changeComparison(bool compares) {
   if (compares == this->compares()) return;
-  takes_colors_ = true;
+  if (compares) requireReference("compare");
+  leaveField();
   const std::string& first = options_.view.compare;
   const std::string reference = first.empty() ? playback::kOriginal : first;
   change([&](playback::ViewState& view) {
@@ -161,14 +175,16 @@ void Session::changeSplit(double split) {
   if (picture_ && picture_->cells)
     throw Error(ErrorCode::bad_input, "split: fields on tetrahedra are not drawn side by side");
   const std::string& first = options_.view.compare;
+  if (split > 0) requireReference("split");
   const bool was_difference = compares();
+  const std::string field = fieldName(chosenQuantity());
   if (split > 0) last_split_ = split;
   change([&](playback::ViewState& view) {
     if (split > 0 && view.compare.empty() && !first.empty()) playback::changeComparison(view, first);
     playback::changeSplit(view, split);
     if (split <= 0) playback::changeComparison(view, "");
   });
-  if (was_difference != compares()) takes_colors_ = true;
+  if (was_difference != compares()) leaveField(field);
 }
 
 void Session::moveSplit(double x) {

@@ -63,10 +63,14 @@ void Session::endDrag() {
 
 void Session::cancelDrag() {
   edit_queue_.cancelDrag();
+  if (!isDraggingPlane()) return;
+  planes_.cancelDrag();
+  showPlanes();
 }
 
 void Session::takeEdits() {
   if (!edits_) return;
+  const playback::ScenarioPtr before = edits_->scenario();
   for (const playback::EditQueue::Outcome& outcome : edit_queue_.update(*edits_)) {
     touched_ = true;
     if (!outcome.error.empty()) {
@@ -77,10 +81,11 @@ void Session::takeEdits() {
     rejection_.reset();
     for (const scenario::Edit& edit : outcome.edits) {
       log_.write("edit", {{"path", edit.path}, {"value", edit.value}});
+      if (!hasItem(*before, edit.path) && hasItem(*edits_->scenario(), edit.path)) selected_ = edit.path;
     }
   }
   noteSteps();
-  if (edits_->scenario() != shown_scenario_) showScenario();
+  if (edits_->scenario() != shown_scenario_) showEdits();
 }
 
 void Session::noteSteps() {
@@ -104,7 +109,7 @@ void Session::undoOrRedo(bool undo) {
   const std::optional<History> history = undo ? undo_order_.undo() : undo_order_.redo();
   if (history == History::scenario) {
     undo ? edits_->undo() : edits_->redo();
-    showScenario();
+    showEdits();
   } else if (history == History::transfer) {
     changeTransfer([undo](playback::TransferEditor& editor) { undo ? editor.undo() : editor.redo(); });
   } else if (history == History::planes) {
@@ -138,22 +143,28 @@ void Session::followNames(const std::vector<RenamedItem>& renamed) {
               rings.end());
 }
 
-void Session::showScenario() {
+void Session::showEdits() {
+  showScenario(renamedItems(*shown_scenario_, *edits_->scenario()));
+}
+
+/// @param renamed  items that the user's edits have given another name
+void Session::showScenario(const std::vector<RenamedItem>& renamed) {
   touched_ = true;
   const playback::ScenarioPtr before = std::exchange(shown_scenario_, edits_->scenario());
   view_.edits = edits_->edits();
-  followNames(renamedItems(*before, *shown_scenario_));
+  followNames(renamed);
+  indexStreamed();
   watchFiles();
   timeline_.setScenario(*shown_scenario_);
   if (computedScenario()) {
     // Without a choice by the user the scenario's first quantity is shown, as in `render`.
-    const std::string quantity = quantityOf(view_, *before);
+    const std::string quantity = quantityOf(view_, *before), field = fieldName(quantity);
     const std::string missing = missingQuantity(*shown_scenario_, view_.quantity);
     if (!missing.empty()) view_.quantity.clear();
     const std::string now = quantityOf(view_, *shown_scenario_);
     if (!missing.empty()) tell(fmt::format("{}; {} is shown instead", missing, now), true);
     if (now != quantity) {
-      takes_colors_ = true;
+      leaveField(field);
       playback::dropColors(view_);
     }
   }

@@ -19,6 +19,7 @@ const std::vector<SceneObject>& Session::objects() const {
                          objects_of_->info().time_s == picture_->info().time_s &&
                          objects_of_->grid() == picture_->grid();
     if (!is_same) objects_ = sceneObjectsOf(*picture_);
+    findPixels(objects_, *picture_);
     objects_of_ = picture_;
   }
   return objects_;

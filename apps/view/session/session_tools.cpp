@@ -43,7 +43,7 @@ ToolPoint pointAt(double latitude_deg, double longitude_deg, double height_agl_m
 ToolPoint Session::pointOf(const Command& command) const {
   const playback::LivePicture& picture = requirePlace(picture_.get(), command.verb);
   const double x = command.number("x"), y = command.number("y");
-  if (const SceneObject* object = objectAt(objects(), picture, x, y))
+  if (const SceneObject* object = objectAt(objects(), x, y))
     return {object->position_m, {object->position, object->height_msl_m}};
   const std::optional<Vec3d> ground_m = groundAt(x, y);
   if (!ground_m) throw Error(ErrorCode::bad_input, command.verb + ": there is no ground");
@@ -76,7 +76,7 @@ void Session::addMeasured(const ToolPoint& point) {
                           {"slant_m", result.slant_m},
                           {"bearing_deg", result.bearing_deg},
                           {"in_sight", !result.is_blocked},
-                          {"verdict", result.verdict}});
+                          {"verdict", verdictOf(result, view_.units)}});
 }
 
 void Session::measure(const Command& command) {

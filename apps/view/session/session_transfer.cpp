@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
@@ -59,6 +60,27 @@ void Session::takeColors() {
   saved_colors_ = picture_->transfer;
   view_.transfer_file.clear();
   view_.transfer = picture_->transfer;
+  const auto known = field_colors_.find(fieldName(chosenQuantity()));
+  if (known == field_colors_.end() || known->second.function.unit != picture_->transfer.unit) return;
+  const auto& [function, saved, iso_value] = known->second;
+  if (function == *view_.transfer && std::isnan(iso_value)) return;
+  transfer_.emplace(function);
+  transfer_->axis = axis;
+  saved_colors_ = saved;
+  view_.range.reset();
+  view_.transfer = function;
+  view_.settings.iso_value = iso_value;
+  live_.show(view_);
+}
+
+std::string Session::fieldName(const std::string& quantity) const {
+  return compares() ? quantity + " - " + view_.compare : quantity;
+}
+
+void Session::leaveField(const std::string& field) {
+  const bool has_colors = transfer_ && !takes_colors_;
+  if (has_colors) field_colors_[field] = {transfer_->function(), saved_colors_, view_.settings.iso_value};
+  takes_colors_ = true;
 }
 
 playback::TransferEditor& Session::requireTransfer() {
@@ -148,7 +170,7 @@ void Session::readTransfer(const std::string& file) {
 }
 
 std::string Session::usualColorsFile() const {
-  return besideInput(view_.input, ".transfer.json");
+  return besideInput(options_.namesake(), ".transfer.json");
 }
 
 void Session::saveTransfer(const std::string& file) {

@@ -1,4 +1,5 @@
 /// The warnings about files, the scenario and the models of the field on screen.
+#include <algorithm>
 #include <utility>
 
 #include "apps/view/session/session.h"
@@ -41,9 +42,13 @@ void Session::joinModelWarnings(double now_s) {
 bool Session::takeWarnings(double now_s) {
   checkScenario();
   joinModelWarnings(now_s);
-  std::vector<std::string> warnings = files_->messages->lines();
-  warnings.insert(warnings.end(), scenario_warnings_.begin(), scenario_warnings_.end());
-  warnings.insert(warnings.end(), model_warnings_.begin(), model_warnings_.end());
+  std::vector<std::string> warnings;
+  // A scenario that is read again, as the reference of a comparison, logs its warnings again.
+  for (const auto& lines : {files_->messages->lines(), scenario_warnings_, model_warnings_}) {
+    for (const std::string& line : lines) {
+      if (std::find(warnings.begin(), warnings.end(), line) == warnings.end()) warnings.push_back(line);
+    }
+  }
   return std::exchange(warnings_, warnings) != warnings;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/text/display_units.h"
 #include "emfield/link/path_report.h"
 #include "emscape/base/units.h"
 
@@ -16,22 +17,20 @@ GeodesicInverse geodesic(const emfield::PathEnd& from, const emfield::PathEnd& t
                          to.position.longitude_deg);
 }
 
-std::string verdictOf(const Measurement& measurement) {
+}  // namespace
+
+std::string verdictOf(const Measurement& measurement, Units units) {
   const std::vector<emfield::PathObstacle>& obstacles = measurement.path.obstacles;
   // The one that the profile's plot marks.
   const auto decisive =
       std::find_if(obstacles.begin(), obstacles.end(), [](const auto& obstacle) { return obstacle.decides; });
   if (decisive == obstacles.end()) return "In sight.";
   const char* const thing = decisive->is_earth_bulge ? "the earth's bulge" : "the terrain";
-  if (decisive->clearance_m < 0) {
-    return fmt::format("Not in sight: {} at {:.2f} km is {:.0f} m above the line.", thing,
-                       decisive->range_m / 1000, -decisive->clearance_m);
-  }
-  return fmt::format("In sight: {} at {:.2f} km is {:.0f} m below the line.", thing, decisive->range_m / 1000,
-                     decisive->clearance_m);
+  const bool is_above = decisive->clearance_m < 0;
+  return fmt::format("{}: {} at {} is {} {} the line.", is_above ? "Not in sight" : "In sight", thing,
+                     distanceText(decisive->range_m, units),
+                     heightText(std::abs(decisive->clearance_m), units), is_above ? "above" : "below");
 }
-
-}  // namespace
 
 Measurement measure(const emfield::PathEnd& from, const emfield::PathEnd& to,
                     const propagation::Atmosphere& atmosphere, double frequency_hz,
@@ -52,7 +51,6 @@ Measurement measure(const emfield::PathEnd& from, const emfield::PathEnd& to,
     result.path.obstacles = emfield::pathObstacles(result.path.profile, wavelength_m(frequency_hz));
     result.is_blocked = emfield::isBlocked(result.path);
   }
-  result.verdict = verdictOf(result);
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "emscape/base/units.h"
 #include "emscape/emfield/link/path_budget.h"
 #include "emscape/scenario/terrain/terrain.h"
 
@@ -17,8 +18,10 @@ struct Measurement {
   /// are less than 1 m apart.
   emfield::PathBudget path;
   bool is_blocked = false;
-  std::string verdict;  ///< one sentence about the line of sight
 };
+
+/// One sentence about the line of sight.
+std::string verdictOf(const Measurement& measurement, Units units);
 
 /// @param atmosphere    refraction of the ray
 /// @param frequency_hz  of the Fresnel zone

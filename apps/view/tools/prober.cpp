@@ -18,7 +18,8 @@
 namespace emscape::view {
 namespace {
 
-constexpr double kAboveGround_m = 10;  // where the cursor is on the ground
+/// Height above the ground at which the cursor reads there; a map layer has its own.
+constexpr double kAboveGround_m = 10;
 
 /// True if a locked point must be read again.
 bool isOtherField(const playback::LivePicture& a, const playback::LivePicture& b) {
@@ -57,10 +58,11 @@ class Prober::Reader {
                            volume, picture.ground.get(), picture.settings.planes, isoValueOf(picture));
         position_m.reset();
         if (picked) {
-          position_m =
-              picked->on == playback::PickedPoint::On::ground
-                  ? playback::aboveGround(picked->position_m, kAboveGround_m, volume, picture.terrain.get())
-                  : picked->position_m;
+          position_m = picked->on == playback::PickedPoint::On::ground
+                           ? playback::aboveGround(picked->position_m,
+                                                   picture.settings.map_height_agl_m.value_or(kAboveGround_m),
+                                                   volume, picture.terrain.get())
+                           : picked->position_m;
         }
       }
       if (position_m) {

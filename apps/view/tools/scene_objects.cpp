@@ -22,7 +22,8 @@ class Collector {
     const scenario::Scenario& scenario = *snapshot_.scenario;
     for (const scenario::Emitter& emitter : scenario.emitters) {
       SceneObject& object = add("emitters.", emitter.name, toString(emitter.kind), emitter.platform);
-      object.details = quantityText(emitter.frequency_hz, "Hz") + ", " + quantityText(emitter.power_w, "W");
+      object.details = quantityText(emitter.frequency_hz, "Hz") + ", " + quantityText(emitter.power_w, "W") +
+                       (object.details.empty() ? "" : ", " + object.details);
     }
     for (const scenario::PlacedReceiver& receiver : scenario.placed_receivers)
       add("receivers.", receiver.name, "receiver", receiver.platform);
@@ -41,6 +42,8 @@ class Collector {
     object.name = name;
     object.kind = kind;
     object.platform = platform;
+    object.present = state.present;
+    if (!state.present) object.details = "absent at this time";
     object.position = state.position;
     object.position_m = frame_.toLocal(state.position);
     object.height_msl_m = state.height_msl_m;
@@ -75,21 +78,40 @@ std::vector<SceneObject> sceneObjectsOf(const playback::LivePicture& picture) {
   }
 }
 
-const SceneObject* objectAt(const std::vector<SceneObject>& objects, const playback::LivePicture& picture,
-                            double x, double y) {
-  constexpr double kReach_px = 14;
-  constexpr double kCloser_px = 0.5;  // positions of one platform differ by rounding
-  const SceneObject* nearest = nullptr;
-  double nearest_px = kReach_px;
-  for (const SceneObject& object : objects) {
+void findPixels(std::vector<SceneObject>& objects, const playback::LivePicture& picture) {
+  const std::vector<std::optional<render::MarkerPlace>> places =
+      render::markerPlaces(picture.size, picture.camera, picture.box, picture.annotations);
+  // The first markers are those of the emitters, in their order.
+  const std::size_t emitters = picture.scenario->emitters.size();
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    SceneObject& object = objects[i];
+    object.has_symbol = i < emitters && i < places.size() && places[i];
+    if (object.has_symbol) {
+      object.pixel = places[i];
+      continue;
+    }
     const render::Projected at =
         render::project(picture.camera, picture.size, picture.box.toDrawn(object.position_m));
-    const double away_px = std::hypot(at.x - x, at.y - y);
-    if (!at.in_front || away_px > nearest_px - (nearest != nullptr ? kCloser_px : 0)) continue;
-    nearest = &object;
-    nearest_px = away_px;
+    if (at.in_front) object.pixel = render::MarkerPlace{at.x, at.y, 0};
   }
-  return nearest;
+}
+
+const SceneObject* objectAt(const std::vector<SceneObject>& objects, double x, double y) {
+  constexpr double kReach_px = 14;
+  constexpr double kCloser_px = 0.5;  // positions of one platform differ by rounding
+  for (const bool has_symbol : {true, false}) {
+    const SceneObject* nearest = nullptr;
+    double nearest_px = kReach_px;
+    for (const SceneObject& object : objects) {
+      if (!object.pixel || object.has_symbol != has_symbol) continue;
+      const double away_px = std::hypot(object.pixel->x - x, object.pixel->y - y);
+      if (away_px > nearest_px - (nearest != nullptr ? kCloser_px : 0)) continue;
+      nearest = &object;
+      nearest_px = away_px;
+    }
+    if (nearest != nullptr) return nearest;
+  }
+  return nullptr;
 }
 
 bool hasItem(const scenario::Scenario& scenario, const std::string& path) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "playback/live/live_view.h"
+#include "render/annotate/marker_places.h"
 
 namespace emscape::view {
 
@@ -15,22 +16,27 @@ struct SceneObject {
   std::string path;  ///< "emitters.search radar", of edits
   std::string name;
   std::string kind;     ///< "radar", "receiver", ...
-  std::string details;  ///< frequency and power of an emitter; may be empty
+  std::string details;  ///< frequency and power of an emitter, "absent at this time"; may be empty
   int platform = -1;    ///< index into Scenario::platforms
+  bool present = true;  ///< false: before or after its track, at whose nearer end the position is
   Vec3d position_m;     ///< frame metres
   GeodeticPosition position;
   double height_msl_m = 0;
   std::optional<double> height_agl_m;  ///< none if the ground is not known
+  /// By findPixels(): its symbol in the picture, or its position there; none behind the camera.
+  std::optional<render::MarkerPlace> pixel;
+  bool has_symbol = false;
 };
 
 /// All of them: emitters in the scenario's order, then receivers, targets and platforms. Empty without a
 /// scenario, and for a picture that has no position on the earth.
 std::vector<SceneObject> sceneObjectsOf(const playback::LivePicture& picture);
+/// Sets where they are in a picture of their time.
+void findPixels(std::vector<SceneObject>& objects, const playback::LivePicture& picture);
 
-/// The object under a pixel of the picture: the nearest within some pixels; of those on one platform the
-/// first. @return null if there is none
-const SceneObject* objectAt(const std::vector<SceneObject>& objects, const playback::LivePicture& picture,
-                            double x, double y);
+/// The object under a pixel of the picture: that of the nearest symbol within some pixels, else the nearest
+/// without a symbol; of those at one place the first. Absent ones are not there. @return null if there is none
+const SceneObject* objectAt(const std::vector<SceneObject>& objects, double x, double y);
 
 /// True if a scenario has an item with a path: "emitters.NAME", "platforms.NAME", "receivers.NAME" or
 /// "targets.NAME".

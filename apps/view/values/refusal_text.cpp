@@ -8,7 +8,8 @@
 namespace emscape::view {
 
 std::string refusalText(const std::string& error, const std::vector<scenario::Edit>& edits) {
-  static const std::regex place(R"(^[^\n]*?:\d+(:\d+)?: )"), other_line(R"(; first at line \d+)");
+  static const std::regex place(R"(^[^\n]*?:\d+(:\d+)?: )"), other_line(R"(; first at line \d+)"),
+      twice(R"('(emitter|platform|receiver|target)s' has '(.*)' twice)");
   std::string text;
   std::istringstream lines(error);
   for (std::string line; std::getline(lines, line);) {
@@ -17,6 +18,7 @@ std::string refusalText(const std::string& error, const std::vector<scenario::Ed
       if (line.compare(0, prefix.size(), prefix) == 0) line.erase(0, prefix.size());
     }
     line = std::regex_replace(line, place, "");
+    line = std::regex_replace(line, twice, "another $1 is named '$2'");
     text += (text.empty() ? "" : "\n") + std::regex_replace(line, other_line, "");
   }
   return scenario::inWords(text);

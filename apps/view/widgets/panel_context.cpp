@@ -2,7 +2,11 @@
 
 #include <imgui_internal.h>
 
+#include <array>
+#include <cstring>
+
 #include "apps/view/commands/command.h"
+#include "emscape/base/error.h"
 
 namespace emscape::view {
 
@@ -31,14 +35,22 @@ bool isEnterPressed() {
   return isKeyPressed(ImGuiKey_Enter) || isKeyPressed(ImGuiKey_KeyPadEnter);
 }
 
-bool numberField(const char* id, double& value, const char* format) {
-  static double typed = 0;  // a field without the focus no longer returns it
-  ImGui::InputDouble(id, &value, 0, 0, format, ImGuiInputTextFlags_AutoSelectAll);
-  // In the frame of its activation another field may still return its number.
-  if (ImGui::IsItemActive() && !ImGui::IsItemActivated()) typed = value;
-  if (!ImGui::IsItemDeactivatedAfterEdit() || isKeyPressed(ImGuiKey_Escape)) return false;
-  value = typed;
-  return true;
+bool numberField(const PanelContext& context, const char* id, double& value, const NumberForm& form) {
+  static std::string typed;  // a field without the focus no longer returns it
+  std::array<char, 96> text{};
+  std::strncpy(text.data(), form.textOf(value).c_str(), text.size() - 1);
+  const std::string before = text.data();
+  ImGui::InputText(id, text.data(), text.size(), ImGuiInputTextFlags_AutoSelectAll);
+  // In the frame of its activation another field may still return its text.
+  if (ImGui::IsItemActive() && !ImGui::IsItemActivated()) typed = text.data();
+  if (!ImGui::IsItemDeactivatedAfterEdit() || isKeyPressed(ImGuiKey_Escape) || typed == before) return false;
+  try {
+    value = form.valueOf(typed);
+    return true;
+  } catch (const Error& error) {
+    context.session.tell(error.message(), true);
+    return false;
+  }
 }
 
 }  // namespace emscape::view

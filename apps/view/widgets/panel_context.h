@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "apps/view/session/session.h"
+#include "apps/view/values/number_form.h"
 
 namespace emscape::view {
 
@@ -28,8 +29,8 @@ bool isPopupOpen();
 bool isKeyPressed(ImGuiKey key, bool repeats = false);
 /// The same for Enter of the main block or the keypad.
 bool isEnterPressed();
-/// A number field as wide as the next item. @return true if a number was entered: with Enter, or because the
-/// focus is lost
-bool numberField(const char* id, double& value, const char* format);
+/// A number field as wide as the next item. A text that cannot be read is refused with a notice.
+/// @return true if a number was entered: with Enter, or because the focus is lost
+bool numberField(const PanelContext& context, const char* id, double& value, const NumberForm& form);
 
 }  // namespace emscape::view

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/view/widgets/theme.h"
+#include "base/text/display_units.h"
 #include "emfield/link/path_report.h"
 #include "emscape/base/units.h"
 #include "emscape/render/annotate/legend.h"
@@ -23,9 +24,11 @@ ImU32 color(unsigned hex, float alpha = 1) {
 class PathPlot {
  public:
   PathPlot(const emfield::PathBudget& budget, const ImVec2& corner, const ImVec2& size, render::Theme theme,
-           float scale)
+           Units units, float scale)
       : budget_(budget),
         profile_(budget.profile),
+        height_unit_(heightUnit(units)),
+        distance_unit_(distanceUnit(units)),
         is_dark_(theme == render::Theme::dark),
         text_(ImGui::ColorConvertFloat4ToU32(mutedColor(theme))),
         scale_(scale),
@@ -115,26 +118,29 @@ class PathPlot {
 
   void drawAxes(ImDrawList& list) const {
     const float line = ImGui::GetTextLineHeight();
-    const std::vector<double> heights = render::roundTicks(low_m_, high_m_, 4);
+    const std::vector<double> heights =
+        render::roundTicks(low_m_ / height_unit_.factor, high_m_ / height_unit_.factor, 4);
     const double height_step = heights.size() > 1 ? heights[1] - heights[0] : 1;
-    for (const double height_m : heights) {
-      const std::string text = render::tickText(height_m, height_step);
-      const float at_y = std::clamp(y(height_m) - line / 2, top_ - 4 * scale_, bottom_ - line);
+    for (const double height : heights) {
+      const std::string text = render::tickText(height, height_step);
+      const float at_y =
+          std::clamp(y(height * height_unit_.factor) - line / 2, top_ - 4 * scale_, bottom_ - line);
       list.AddText({left_ - 4 * scale_ - ImGui::CalcTextSize(text.c_str()).x, at_y}, text_, text.c_str());
     }
-    const std::vector<double> ranges = render::roundTicks(0, profile_.range_m / 1000, 5);
+    const std::vector<double> ranges = render::roundTicks(0, profile_.range_m / distance_unit_.factor, 5);
     const double range_step = ranges.size() > 1 ? ranges[1] - ranges[0] : 1;
-    for (const double range_km : ranges) {
-      std::string text = render::tickText(range_km, range_step);
-      if (range_km == ranges.back()) text += " km";
+    for (const double range : ranges) {
+      std::string text = render::tickText(range, range_step);
+      if (range == ranges.back()) text += std::string(" ") + distance_unit_.name;
       const float width = ImGui::CalcTextSize(text.c_str()).x;
-      const float at_x = std::clamp(x(range_km * 1000) - width / 2, left_, right_ - width);
+      const float at_x = std::clamp(x(range * distance_unit_.factor) - width / 2, left_, right_ - width);
       list.AddText({at_x, bottom_ + 2 * scale_}, text_, text.c_str());
     }
   }
 
   const emfield::PathBudget& budget_;
   const emfield::PathProfile& profile_;
+  DisplayUnit height_unit_, distance_unit_;
   bool is_dark_;
   ImU32 text_;
   float scale_;
@@ -144,11 +150,12 @@ class PathPlot {
 
 }  // namespace
 
-void drawPathPlot(const emfield::PathBudget& budget, const ImVec2& size, render::Theme theme, float scale) {
+void drawPathPlot(const emfield::PathBudget& budget, const ImVec2& size, render::Theme theme, Units units,
+                  float scale) {
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   ImGui::Dummy(size);
   if (budget.profile.count() < 2 || !ImGui::IsItemVisible()) return;
-  PathPlot(budget, corner, size, theme, scale).draw();
+  PathPlot(budget, corner, size, theme, units, scale).draw();
 }
 
 }  // namespace emscape::view

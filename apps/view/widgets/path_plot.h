@@ -3,6 +3,7 @@
 
 #include <imgui.h>
 
+#include "emscape/base/units.h"
 #include "emscape/emfield/link/path_budget.h"
 #include "emscape/render/annotate/overlay.h"
 
@@ -10,6 +11,7 @@ namespace emscape::view {
 
 /// Draws the ground on the effective earth, the ray above it, its first Fresnel zone, and obstacles. Occupies
 /// `size` at the cursor.
-void drawPathPlot(const emfield::PathBudget& budget, const ImVec2& size, render::Theme theme, float scale);
+void drawPathPlot(const emfield::PathBudget& budget, const ImVec2& size, render::Theme theme, Units units,
+                  float scale);
 
 }  // namespace emscape::view

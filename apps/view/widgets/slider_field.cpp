@@ -3,7 +3,6 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "apps/view/widgets/names.h"
@@ -66,8 +65,7 @@ bool wantsTyping() {
   return is_double || (ImGui::IsItemClicked() && ImGui::GetIO().KeyCtrl);
 }
 
-bool sliderField(const PanelContext& context, const char* id, double& value, double low, double high,
-                 const char* format) {
+bool sliderField(const PanelContext& context, const char* id, double& value, const NumberForm& form) {
   static struct {
     ImGuiID typing = 0;
     bool is_open = false, is_moved = false;
@@ -78,17 +76,14 @@ bool sliderField(const PanelContext& context, const char* id, double& value, dou
   if (state.typing == item) {
     if (!state.is_open) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(width);
-    const bool is_entered = numberField(id, value, "%.10g");
+    const bool is_entered = numberField(context, id, value, form);
     if (state.is_open && !ImGui::IsItemActive()) state.typing = 0;
     state.is_open = state.is_open || ImGui::IsItemActive();
-    if (is_entered) value = std::clamp(value, low, high);
     return is_entered;
   }
-  char text[96] = "";
-  std::snprintf(text, sizeof text, format, value);
-  const double span = high > low ? high - low : 1;
-  drawValueFrame(id, {text, ImGui::GetStyleColorVec4(ImGuiCol_Text), (value - low) / span}, width,
-                 context.scale);
+  const double low = form.min, span = form.max > low ? form.max - low : 1;
+  drawValueFrame(id, {form.textOf(value), ImGui::GetStyleColorVec4(ImGuiCol_Text), (value - low) / span},
+                 width, context.scale);
   if (wantsTyping()) {
     state.typing = item;
     state.is_open = false;

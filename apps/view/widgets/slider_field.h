@@ -32,8 +32,9 @@ bool dragPosition(double& position, bool& is_moved, float scale, double rate = 1
 bool wantsTyping();
 
 /// A number between limits that is dragged, or typed after a double click or Ctrl + click. As wide as the
-/// next item. @return true if it was changed
-bool sliderField(const PanelContext& context, const char* id, double& value, double low, double high,
-                 const char* format);
+/// next item.
+/// @param form  with the limits of the number; they are the ends of the scale
+/// @return true if it was changed
+bool sliderField(const PanelContext& context, const char* id, double& value, const NumberForm& form);
 
 }  // namespace emscape::view

@@ -1,11 +1,22 @@
 #include "apps/view/widgets/theme.h"
 
+#include "render/annotate/side_color.h"
+
 namespace emscape::view {
 namespace {
 
 ImVec4 rgb(unsigned hex, float alpha = 1) {
   return {static_cast<float>(hex >> 16 & 0xFF) / 255, static_cast<float>(hex >> 8 & 0xFF) / 255,
           static_cast<float>(hex & 0xFF) / 255, alpha};
+}
+
+ImVec4 sideColor(scenario::Side side, bool is_dark) {
+  using render::Affiliation;
+  constexpr Affiliation kAffiliations[]{Affiliation::friendly, Affiliation::hostile, Affiliation::neutral,
+                                        Affiliation::unknown};
+  const render::Rgb color = render::colorOf(kAffiliations[static_cast<std::size_t>(side)]);
+  const float part = is_dark ? 1 : 0.6F;  // on a light background
+  return {part * color.r, part * color.g, part * color.b, 1};
 }
 
 }  // namespace
@@ -57,8 +68,10 @@ ImVec4 activityColor(Activity activity, render::Theme theme) {
   return stateColor(render::ControllerState::idle);
 }
 
-ImVec4 emitterColor(scenario::EmitterKind kind, render::Theme theme) {
+ImVec4 emitterColor(scenario::EmitterKind kind, const std::optional<scenario::Side>& side,
+                    render::Theme theme) {
   const bool dark = theme == render::Theme::dark;
+  if (side) return sideColor(*side, dark);
   switch (kind) {
     case scenario::EmitterKind::radar:
       return dark ? rgb(0xE6EBF1) : rgb(0x4A5563);

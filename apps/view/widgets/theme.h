@@ -3,10 +3,13 @@
 
 #include <imgui.h>
 
+#include <optional>
+
 #include "apps/view/parts/program_state.h"
 #include "emscape/render/annotate/overlay.h"
 #include "emscape/render/scene/camera.h"
 #include "emscape/scenario/model/emitter.h"
+#include "emscape/scenario/model/platform.h"
 #include "render/patterns/frame_controller.h"
 
 namespace emscape::view {
@@ -18,8 +21,10 @@ ImGuiStyle styleOf(render::Theme theme, float scale);
 ImVec4 stateColor(render::ControllerState state);
 /// The same, and for what else the program does.
 ImVec4 activityColor(Activity activity, render::Theme theme);
-/// The colours of the picture's overlay; darker on a light background.
-ImVec4 emitterColor(scenario::EmitterKind kind, render::Theme theme);
+/// The colour of an emitter's marker in the picture, that of its platform's side, else of its kind; darker on
+/// a light background.
+ImVec4 emitterColor(scenario::EmitterKind kind, const std::optional<scenario::Side>& side,
+                    render::Theme theme);
 ImVec4 accentColor(render::Theme theme);
 ImVec4 mutedColor(render::Theme theme);
 ImVec4 errorColor(render::Theme theme);

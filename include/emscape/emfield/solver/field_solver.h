@@ -68,7 +68,7 @@ struct FieldOptions {
 /// Result of an update. `any` is one event for a frame controller.
 struct FieldChanged {
   bool any = false;
-  bool grid = false;      ///< everything is new: the first update, or another region, terrain or emitter list
+  bool grid = false;      ///< all volumes are new: the first update, or another region, terrain, emitter list
   bool channels = false;  ///< channels() may have changed
   std::vector<int> moved;    ///< emitters whose geometry (columns and excess losses) was recomputed
   std::vector<int> turned;   ///< emitters of which only inputs of the combine stage changed: beam, power,
@@ -123,9 +123,9 @@ class FieldSolver {
 
   /// Computes the field of a snapshot. If the snapshot's scenario is not the object of the last update, it is
   /// treated as an edited scenario: for each emitter the geometry is recomputed if its inputs have changed,
-  /// else the combine stage, else only the products. After a change of the region, the terrain or the list of
-  /// emitters everything is recomputed, and memory for both fields is needed for a moment. A scenario must
-  /// not be changed in place while a solver holds it.
+  /// else the combine stage, else only the products. If emitters are added or removed, the others, known by
+  /// their names, keep their geometry; after a change of region or terrain everything is recomputed. Both
+  /// need memory for two fields for a moment. A scenario must not be changed while a solver holds it.
   /// @param terrain  of the snapshot's scenario, loaded by the caller. A different object is treated as a
   /// different terrain
   /// @throws Error (bad_input) if terrain is missing, unless allowed, and as the constructor. The solver

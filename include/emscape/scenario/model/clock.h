@@ -26,9 +26,12 @@ void requireTime(const Clock& clock, double t_s);
 std::vector<double> timesOf(double begin_s, double end_s, double step_s, double limit_s = kMaxTime_s);
 /// All times of the clock: 0, step, ... duration.
 std::vector<double> timesOf(const Clock& clock);
-/// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T". @param limit_s  as for timesOf()
+/// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T"; times are seconds or UTC,
+/// "2026-06-01T06:00:00Z". @param limit_s  as for timesOf()
 /// @throws Error (usage), as timesOf() and requireTime() too
 std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s = kMaxTime_s);
+/// A single time as parseTimes(). @throws Error (usage)
+double parseTime(const std::string& text, const Clock& clock);
 /// A warning about times before or after those of the clock; empty: there are none.
 /// @param times_s  ascending
 std::string outsideClockText(const std::vector<double>& times_s, const Clock& clock);
