@@ -41,7 +41,7 @@ class Section {
   Section section(const std::string& key) const;
   /// List of objects; of a list of files with keys instead, also the files: their node() is a scalar.
   std::vector<Section> sections(const std::string& key) const;
-  std::vector<double> numbers(const std::string& key) const;    ///< list of numbers; shorter if faulty
+  std::vector<double> numbers(const std::string& key) const;  ///< list of numbers; shorter if faulty
   std::vector<std::string> texts(const std::string& key) const;
   std::vector<std::vector<double>> numberLists(const std::string& key) const;
 

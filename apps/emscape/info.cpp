@@ -68,15 +68,19 @@ Json choicesOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
       emfield::modelChoices(scenario::snapshotAt(scenario, terrain.get(), time_s), terrain.get()));
 }
 
-/// Memory, time and disk space of the field; null if it cannot be computed (`validate` reports the reason).
-Json workOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
+/// Adds the warnings, and memory, time and disk space of the field; null if it cannot be computed (`validate`
+/// reports the reason).
+void addWork(const std::shared_ptr<const scenario::Scenario>& scenario, Json& json) {
   emfield::FieldOptions options;
   options.allow_missing_terrain = true;
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-    return report::workJson(report::workEstimateOf({scenario, terrain, options}, *scenario, terrain.get()));
+    const emfield::FieldSolver solver(scenario, terrain, options);
+    json["work"] = report::workJson(report::workEstimateOf(solver, *scenario, terrain.get()));
+    json["warnings"] = solver.warnings();
   } catch (const Error&) {
-    return nullptr;
+    json["work"] = nullptr;
+    json["warnings"] = Json::array();
   }
 }
 
@@ -149,8 +153,8 @@ Description describeScenario(const std::string& file) {
             {"receivers", receivers},
             {"targets", targets},
             {"channels", channels},
-            {"choices", choicesOf(scenario)},
-            {"work", workOf(scenario)}};
+            {"choices", choicesOf(scenario)}};
+  addWork(scenario, json);
   const auto& refractivity = scenario->atmosphere.refractivity;
   if (refractivity) json["refractivity"] = report::refractivityJson(*refractivity, frequenciesOf(*scenario));
   return {json, refractivity, nullptr};

@@ -52,7 +52,8 @@ int terrain(const TerrainCommand& command, const GlobalOptions& global) {
                                      : fmt::format("{} elevation files", result.files.size());
   }
   if (!command.picture.empty()) {
-    render::writePng(command.picture, study::drawTerrain(result.files, *result.terrain, result.needed, title, command.width));
+    render::writePng(command.picture,
+                     study::drawTerrain(result.files, *result.terrain, result.needed, title, command.width));
     logInfo("wrote " + command.picture);
   }
   if (global.json) {
@@ -66,7 +67,8 @@ int terrain(const TerrainCommand& command, const GlobalOptions& global) {
 }  // namespace
 
 void addTerrain(CLI::App& app, const GlobalOptions& global, Action& action) {
-  CLI::App* command = app.add_subcommand("terrain", "Describe and draw elevation files, or those of a scenario");
+  CLI::App* command =
+      app.add_subcommand("terrain", "Describe and draw elevation files, or those of a scenario");
   command->fallthrough();
   command->footer(R"(
 Of each file: format, posts, coordinate system, vertical datum and its origin, unit, range, voids, and what was assumed, with its
@@ -87,7 +89,9 @@ Exit status: 0; 2 for a usage error; 3 for a file that cannot be read, with the 
   addSetOption(*command, options->edits);
   command->add_option("-o,--output", options->picture, "Picture to write (PNG)")
       ->check([](const std::string& file) {
-        return std::filesystem::path(file).extension() == ".png" ? "" : "'" + file + "': pictures are written as .png";
+        return std::filesystem::path(file).extension() == ".png"
+                   ? ""
+                   : "'" + file + "': pictures are written as .png";
       });
   command->add_option("--width", options->width, "Width of the picture in pixels")
       ->check(CLI::Range(kMinWidth, kMaxWidth));

@@ -105,6 +105,27 @@ std::string unitSigns(const std::string& unit) {
   return text;
 }
 
+std::string readUnits(const std::string& unit) {
+  if (unit.empty()) return "";
+  std::string text = unitSigns(unit);
+  const auto add = [&](const std::string& other) { text += ", " + unitSigns(other); };
+  if (takesPrefix(unit)) {
+    for (auto prefix = kPrefixes.rbegin(); prefix != kPrefixes.rend(); ++prefix) {
+      if (prefix->second != 1) add(prefix->first + unit);
+    }
+  }
+  for (const OtherUnit& other : kOtherUnits) {
+    const auto first = std::find_if(kOtherUnits.begin(), kOtherUnits.end(), [&](const OtherUnit& each) {
+      return std::string(each.of) == other.of && each.factor == other.factor && each.offset == other.offset;
+    });
+    if (unit == other.of && first->unit == other.unit) add(other.unit);
+  }
+  for (const DecibelUnit& other : kDecibelUnits) {
+    if (unit == other.of && std::string(other.unit) != "dBm2") add(other.unit);
+  }
+  return text;
+}
+
 std::string quantityText(double value, const std::string& unit, int digits) {
   const PrefixedUnit prefixed = prefixedUnit(value, unit, digits);
   return withUnit(numberText(value / prefixed.factor, digits), prefixed.unit);

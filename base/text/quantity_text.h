@@ -20,6 +20,10 @@ PrefixedUnit prefixedUnit(double value, const std::string& unit, int digits = 6)
 /// The unit with its signs: "°" for deg, "m²" for m2. parseQuantity() reads both.
 std::string unitSigns(const std::string& unit);
 
+/// The units that parseQuantity() reads for a unit, with their signs: "s, ms, µs, ns, min, h"; empty for
+/// none.
+std::string readUnits(const std::string& unit);
+
 /// "10 MW". @param unit    may be empty  @param digits  significant digits, 1..17
 std::string quantityText(double value, const std::string& unit, int digits = 6);
 /// "1 MHz to 1 THz", "0 to 100 dB".

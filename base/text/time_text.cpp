@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
+
+#include "base/text/quantity_text.h"
 
 namespace emscape {
 
@@ -21,6 +24,21 @@ std::string timeText(double time_s, double span_s) {
   text += fmt::format(has_days ? "{:02}:{:02}:{:02}" : "{}:{:02}:{:02}", seconds / 3600 % 24,
                       seconds / 60 % 60, seconds % 60);
   return tenths % 10 == 0 ? text : fmt::format("{}.{}", text, tenths % 10);
+}
+
+std::optional<double> parseTime_s(const std::string& text) {
+  if (const std::optional<double> seconds = parseQuantity(text, "s")) return seconds;
+  static const std::regex form(
+      R"( *(-|−|\+)?(?:(\d{1,6}) d )?(?:(\d{1,7}):)?(\d{1,9}):(\d\d(?:\.\d{1,9})?) *)");
+  std::smatch parts;
+  if (text.size() > 64 || !std::regex_match(text, parts, form)) return std::nullopt;
+  const auto number = [&](int part) { return parts[part].matched ? std::stod(parts[part].str()) : 0.0; };
+  const double days = number(2), hours = number(3), minutes = number(4), seconds = number(5);
+  const bool has_hours = parts[3].matched, has_days = parts[2].matched;
+  if (seconds >= 60 || (has_hours && minutes >= 60) || (has_days && (!has_hours || hours >= 24)))
+    return std::nullopt;
+  const double time_s = ((days * 24 + hours) * 60 + minutes) * 60 + seconds;
+  return parts[1].matched && parts[1] != "+" ? -time_s : time_s;
 }
 
 }  // namespace emscape

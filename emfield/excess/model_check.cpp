@@ -70,10 +70,11 @@ std::vector<std::string> seaWarnings(const Scenario& scenario, const Emitter& em
   std::vector<std::string> warnings;
   if (!(lowest_m < kNoise_m)) return warnings;
   const auto warn = [&](const std::string& who, const std::string& remedy) {
-    warnings.push_back(fmt::format(
-        "emitter '{}': ground lies down to {:.0f} m, and {} takes ground at or below mean sea level for sea; where "
-        "it is land, {}",
-        emitter.name, lowest_m, who, remedy));
+    warnings.push_back(
+        fmt::format("emitter '{}': ground lies down to {:.0f} m, and {} takes ground at or below mean sea "
+                    "level for sea; where "
+                    "it is land, {}",
+                    emitter.name, lowest_m, who, remedy));
   };
   using propagation::ClearAirZone;
   using propagation::PropagationModel;

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "emfield/excess/emitter_excess.h"
+#include "emfield/excess/model_check.h"
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
@@ -178,7 +179,9 @@ void FieldSolver::Impl::checkHoles() const {
                           "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts{}; {}",
                           columns.hole_columns, columns.count(), placeOf(columns.first_hole), box.south_deg,
                           box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts(),
-                          static_cast<std::size_t>(columns.hole_columns) == columns.count() ? "; " + setup.terrain->placeText() : "",
+                          static_cast<std::size_t>(columns.hole_columns) == columns.count()
+                              ? "; " + setup.terrain->placeText()
+                              : "",
                           scenario::kMissingTerrainRemedy),
               Hint::allow_missing_terrain);
 }
@@ -346,6 +349,11 @@ std::vector<std::string> FieldSolver::warnings() const {
   for (const std::string& warning : impl_->setup.warnings) ++all[warning];
   if (impl_->setup.terrain) {
     for (const std::string& warning : impl_->setup.terrain->warnings()) ++all[warning];
+    for (const scenario::Emitter& emitter : impl_->setup.scenario->emitters) {
+      for (const std::string& warning :
+           seaWarnings(*impl_->setup.scenario, emitter, impl_->setup.terrain->lowest_m()))
+        ++all[warning];
+    }
   }
   for (const EmitterCache& cache : impl_->emitters) {
     for (const WarningCounts* counts : {&cache.warnings, &cache.jamming_warnings}) {

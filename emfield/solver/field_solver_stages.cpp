@@ -86,10 +86,6 @@ void FieldSolver::Impl::noteWarnings(int e) {
   for (const std::string& warning : pathWarnings(emitter, inputs, geometry_result.warnings)) {
     ++cache.warnings[warning];
   }
-  if (setup.terrain) {
-    for (const std::string& warning : seaWarnings(*setup.scenario, emitter, setup.terrain->lowest_m()))
-      ++cache.warnings[warning];
-  }
   if (geometry_result.near_voxels > 0) {
     ++cache.warnings[fmt::format(
         "emitter '{}': voxels closer than the far-field distance (2 D^2 / lambda = {:.0f} m) have the value "

@@ -4,15 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <optional>
+#include <limits>
 #include <utility>
 
 #include "base/text/time_text.h"
-#include "base/text/utc.h"
-#include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
+#include "scenario/model/typed_time.h"
 
 namespace emscape::playback {
 namespace {
@@ -66,23 +63,6 @@ std::string timeOfDay(const std::string& utc, std::size_t decimals) {
   if (utc.empty()) return "";
   const std::size_t begin = utc.find('T') + 1, point = utc.find('.', begin);
   return utc.substr(begin, point - begin) + (decimals == 0 ? "" : utc.substr(point, 1 + decimals));
-}
-
-/// "hh:mm" or "hh:mm:ss.s" as seconds after midnight; none for another text.
-std::optional<double> secondsOfDay(const std::string& text) {
-  int hours = -1, minutes = -1, read = 0;
-  double seconds = 0;
-  const char* rest = text.c_str();
-  if (std::sscanf(rest, "%2d:%2d%n", &hours, &minutes, &read) != 2) return std::nullopt;
-  rest += read;
-  read = 0;
-  if (*rest != '\0' && (std::sscanf(rest, ":%lf%n", &seconds, &read) != 1 || rest[read] != '\0')) {
-    return std::nullopt;
-  }
-  if (hours < 0 || hours > 23 || minutes < 0 || minutes > 59 || !(seconds >= 0 && seconds < 60)) {
-    return std::nullopt;
-  }
-  return 3600.0 * hours + 60.0 * minutes + seconds;
 }
 
 /// Of the steps' span.
@@ -175,30 +155,13 @@ std::vector<TimelineTick> Timeline::ticks(double from_s, double to_s, int count)
 }
 
 double Timeline::parseTime_s(const std::string& text) const {
-  const auto withinSeries = [&](double time_s) {
-    const double tolerance_s = 1e-6 * (end_s() - begin_s());
-    if (time_s >= begin_s() - tolerance_s && time_s <= end_s() + tolerance_s) return time_s;
-    std::string range = fmt::format("{:g} to {:g} s", begin_s(), end_s());
-    if (!epoch_utc_.empty())
-      range += fmt::format(", {} to {}", scenario::utcAt({epoch_utc_, 0, 1}, begin_s()),
-                           scenario::utcAt({epoch_utc_, 0, 1}, end_s()));
-    throw Error(ErrorCode::bad_input,
-                fmt::format("time '{}': expected a time of the series: {}", text, range));
-  };
-  char* end = nullptr;
-  const double seconds = std::strtod(text.c_str(), &end);
-  if (!text.empty() && *end == '\0' && std::isfinite(seconds)) return withinSeries(seconds);
-  const std::optional<std::int64_t> epoch_ms = parseUtc_ms(epoch_utc_), utc_ms = parseUtc_ms(text);
-  if (epoch_ms && utc_ms) return withinSeries(static_cast<double>(*utc_ms - *epoch_ms) / 1000);
-  const std::optional<double> wanted_s = secondsOfDay(text);
-  if (epoch_utc_.empty() || !wanted_s) {
-    throw Error(ErrorCode::bad_input, fmt::format("time '{}': expected seconds{}", text,
-                                                  epoch_utc_.empty() ? "" : " or hh:mm[:ss] in UTC"));
-  }
-  const std::string begin = scenario::utcAt({epoch_utc_, 0, 1}, begin_s());
-  const double begin_of_day_s = secondsOfDay(timeOfDay(begin, 3)).value_or(0);
-  const double after_begin_s = std::fmod(*wanted_s - begin_of_day_s + kDay_s, kDay_s);
-  return withinSeries(begin_s() + after_begin_s);
+  constexpr double kAny_s = std::numeric_limits<double>::infinity();
+  return scenario::parseTime_s(text, {epoch_utc_, 0, 1},
+                               times_s_.empty() ? TimeInterval{-kAny_s, kAny_s} : span());
+}
+
+void Timeline::requireTime(double time_s) const {
+  static_cast<void>(parseTime_s(fmt::format("{}", time_s)));
 }
 
 std::vector<TimeInterval> Timeline::cachedSpans(const std::vector<int>& steps) const {

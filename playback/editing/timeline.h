@@ -60,10 +60,10 @@ class Timeline {
   /// @param from_s, to_s  from_s < to_s
   std::vector<TimelineTick> ticks(double from_s, double to_s, int count) const;
 
-  /// Reads "49.5" (s) or, with an epoch, a time of day (UTC): "06:00:49.5", "06:00"; the first such time
-  /// after begin_s().
-  /// @throws Error (bad_input) that names the expected form
+  /// As scenario::parseTime_s(), within the span of the steps if there are any.
   double parseTime_s(const std::string& text) const;
+  /// @throws Error (bad_input) that names the span of the steps if a time is outside of it
+  void requireTime(double time_s) const;
 
   /// Cached steps, as intervals that reach halfway to the neighbouring steps.
   /// @param steps  indices, ascending

@@ -187,6 +187,7 @@ class StoredFrames : public FrameSource {
     }
     namespace fs = std::filesystem;
     const fs::path input = selection.input;
+    if (const std::string others = otherFormatsText(input); !others.empty()) warnings_.push_back(others);
     name_ = scene_ ? scene_->scenario->name
                    : (input.has_filename() ? input : input.parent_path()).stem().string();
   }
@@ -195,7 +196,7 @@ class StoredFrames : public FrameSource {
   double time_s(int index) const override { return files_[static_cast<std::size_t>(index)].time_s; }
   std::string name() const override { return name_; }
   const LoadedScenario* scene() const override { return scene_ ? &*scene_ : nullptr; }
-  std::vector<std::string> warnings() const override { return {}; }
+  std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<std::string> quantities() const override { return quantities_; }
 
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
@@ -260,6 +261,7 @@ class StoredFrames : public FrameSource {
   std::vector<VolumeFile> files_;
   std::optional<LoadedScenario> scene_;
   std::string name_;
+  std::vector<std::string> warnings_;
   PlatformTracks tracks_;
   std::shared_ptr<const volume::TetrahedralMesh> mesh_;  ///< of the last file
   std::shared_ptr<const volume::MeshFaces> faces_;

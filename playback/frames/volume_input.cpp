@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/clock.h"
@@ -118,6 +119,26 @@ std::vector<fs::path> stepFilesOf(const fs::path& path) {
   for (const volume::SeriesStep& step : holdsMeshes(path) ? meshesOf(path) : volumesOf(path))
     files.push_back(step.file);
   return files;
+}
+
+std::string otherFormatsText(const fs::path& path) {
+  constexpr std::size_t kMaxNames = 3;
+  if (!fs::is_directory(path) || holdsMeshes(path)) return "";
+  const std::vector<fs::path> shown = stepFilesOf(path);
+  std::set<std::string> stems, others;
+  for (const fs::path& file : shown) stems.insert(file.stem().string());
+  for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
+    const fs::path file = entry.path();
+    const bool is_other = volume::isVolumeFile(file) && file.extension() != shown.front().extension() &&
+                          stems.count(file.stem().string()) == 0;
+    if (is_other) others.insert(file.filename().string());
+  }
+  if (others.empty()) return "";
+  std::string names;
+  for (const std::string& name : others) names += (names.empty() ? "" : ", ") + name;
+  if (others.size() > kMaxNames) names = fmt::format("{} and {} more", *others.begin(), others.size() - 1);
+  return fmt::format("{}: the {} files are shown; not shown: {}. Open such a file to see it", path.string(),
+                     shown.front().extension().string(), names);
 }
 
 std::vector<VolumeFile> meshFilesOf(const fs::path& path, std::string& quantity,

@@ -31,6 +31,9 @@ std::vector<VolumeFile> meshFilesOf(const std::filesystem::path& path, std::stri
 /// @throws Error (bad_input)
 std::vector<std::filesystem::path> stepFilesOf(const std::filesystem::path& path);
 
+/// A warning if a folder has volumes of other names in other formats than the one that is shown; else empty.
+std::string otherFormatsText(const std::filesystem::path& path);
+
 /// The files nearest to the times of a selection. @param files  ascending, at least one
 /// @param times  "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all @param first_only  only the first
 /// @throws Error (usage)

@@ -14,7 +14,9 @@
 #include "playback/frames/platform_tracks.h"
 #include "playback/pictures/followed_camera.h"
 #include "playback/pictures/scenery.h"
+#include "playback/pictures/silence.h"
 #include "playback/pictures/split_picture.h"
+#include "volume/difference.h"
 
 namespace emscape::playback {
 namespace {
@@ -451,6 +453,11 @@ void Painter::setLegend() {
     annotations_.legend->map_note = fmt::format("map: at {:.4g} {} above ground",
                                                 *view_.settings.map_height_agl_m / unit.factor, unit.name);
   }
+  // Of volumes the scenario is another file, whose emitters may be others.
+  const bool is_of_scenario = scene_ && view_.scenario.empty() && !volume::isDifference(frame_->info());
+  const std::string silence =
+      is_of_scenario ? silenceText(*scene_->scenario, frame_->info().quantity, frame_->info().time_s) : "";
+  if (!silence.empty()) annotations_.legend->note = silence;
   if (frame_->info().categorical) {
     annotations_.legend->categories =
         categoriesOf(frame_->info(), render::colorRangeOf(frame_->info(), frame_->color_range),

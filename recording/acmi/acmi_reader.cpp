@@ -325,6 +325,7 @@ std::vector<std::pair<std::uint64_t, PoseSample>> AcmiReader::latestPoses() cons
     if (poses.empty()) continue;
     if (const auto pose = placed(poses.back())) latest.emplace_back(id, *pose);
   }
+  std::sort(latest.begin(), latest.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   return latest;
 }
 

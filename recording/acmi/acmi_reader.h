@@ -30,7 +30,7 @@ class AcmiReader {
   /// For streams: drops all but the last pose and state of each object, the objects that were removed, and of
   /// the others all but the last ones that were told of. @return how many of the others
   std::size_t keepLatest(std::size_t max_objects);
-  /// For streams: ids of the objects that have a position, and the last one of each.
+  /// For streams: ids of the objects that have a position, ascending, and the last one of each.
   std::vector<std::pair<std::uint64_t, PoseSample>> latestPoses() const;
 
   ReadingTally& tally() { return recording_.tally; }

@@ -24,8 +24,8 @@ Json boxJson(const GeoBox& box) {
 }
 
 std::string boxText(const GeoBox& box) {
-  return fmt::format("latitudes {:.5f} to {:.5f}, longitudes {:.5f} to {:.5f} deg", box.south_deg, box.north_deg,
-                     box.west_deg, box.east_deg);
+  return fmt::format("latitudes {:.5f} to {:.5f}, longitudes {:.5f} to {:.5f} deg", box.south_deg,
+                     box.north_deg, box.west_deg, box.east_deg);
 }
 
 GeoBox around(const std::vector<TerrainFileInfo>& files) {
@@ -42,7 +42,8 @@ GeoBox around(const std::vector<TerrainFileInfo>& files) {
 
 std::string postsText(const TerrainFileInfo& file) {
   return fmt::format("{} x {} posts, {:.6g} x {:.6g} arc seconds ({:.4g} m)", file.columns, file.rows,
-                     3600 * file.post_spacing_lat_deg, 3600 * file.post_spacing_lon_deg, study::postSpacing_m(file));
+                     3600 * file.post_spacing_lat_deg, 3600 * file.post_spacing_lon_deg,
+                     study::postSpacing_m(file));
 }
 
 void addFile(Text& out, const TerrainFileInfo& file) {
@@ -59,7 +60,6 @@ void addFile(Text& out, const TerrainFileInfo& file) {
     out.add("  not used: outside the needed area\n");
   }
   for (const std::string& note : file.notes) out.add("  note     {}\n", note);
-  for (const std::string& warning : file.warnings) out.add("  assumed  {}\n", warning);
 }
 
 }  // namespace
@@ -74,7 +74,8 @@ TerrainReport terrainReport(const scenario::TerrainSpec& spec) {
 
 TerrainReport terrainReport(const scenario::Scenario& scenario) {
   if (!scenario.terrain)
-    throw Error(ErrorCode::bad_input, {scenario.file, 0, 0}, "the scenario names no elevation files (terrain.files)");
+    throw Error(ErrorCode::bad_input, {scenario.file, 0, 0},
+                "the scenario names no elevation files (terrain.files)");
   TerrainReport report;
   report.needed = scenario::terrainBox(scenario);
   report.files = scenario::Terrain::describeAll(*scenario.terrain, &report.needed);

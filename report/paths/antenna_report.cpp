@@ -16,7 +16,7 @@ namespace {
 using render::Canvas;
 using render::Point2;
 
-constexpr double kLowest_db = -40;  ///< at the middle of a diagram
+constexpr double kCenter_db = -40;  ///< at the middle of a diagram
 
 /// Level (dB) below the maximum in a direction.
 double levelTowards_db(const scenario::Antenna& antenna, double azimuth_deg, double elevation_deg) {
@@ -61,7 +61,7 @@ class PolarDiagram {
             const std::function<double(double)>& levelAt) const {
     canvas_.text(title, {center_.x, center_.y - radius_ - 56 * unit_}, 17 * unit_, render::kPlotText,
                  render::Align::center, render::Weight::bold);
-    for (double level_db = 0; level_db > kLowest_db; level_db -= 10) {
+    for (double level_db = 0; level_db > kCenter_db; level_db -= 10) {
       const double radius = radiusOf(level_db);
       canvas_.circle(center_, radius, render::kPlotGrid, unit_);
       canvas_.text(fmt::format("{:g}", level_db), at(radius, degToRad(20.0)) + Point2{4 * unit_, 0},
@@ -70,7 +70,7 @@ class PolarDiagram {
     for (std::size_t i = 0; i < 12; ++i) {
       const double angle_rad = zero_rad + degToRad(30.0 * static_cast<double>(i));
       canvas_.line(center_, at(radius_, angle_rad), render::kPlotGrid, unit_);
-      canvas_.text(names[i], at(radius_ + 22 * unit_, angle_rad), 13 * unit_, render::kPlotText,
+      canvas_.text(names[i], at(radius_ + 30 * unit_, angle_rad), 13 * unit_, render::kPlotText,
                    render::Align::center);
     }
     std::vector<Point2> line;
@@ -83,7 +83,7 @@ class PolarDiagram {
   }
 
  private:
-  double radiusOf(double level_db) const { return radius_ * std::clamp(1 - level_db / kLowest_db, 0.0, 1.0); }
+  double radiusOf(double level_db) const { return radius_ * std::clamp(1 - level_db / kCenter_db, 0.0, 1.0); }
   Point2 at(double radius, double clockwise_rad) const {
     return {center_.x + radius * std::sin(clockwise_rad), center_.y - radius * std::cos(clockwise_rad)};
   }

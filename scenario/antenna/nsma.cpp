@@ -261,7 +261,7 @@ class NsmaPattern {
     const double tilt_deg = content_.tilt_deg.value_or(0);
     pattern_.warnings.push_back(fmt::format(
         "{}: no elevation cut; a Gaussian beam of ELWIDT, {:g} deg, at ELTILT, {:g} deg downwards, "
-        "is used, at least 30 dB below the maximum",
+        "is used, with a floor 30 dB below the maximum",
         file_, width_deg, tilt_deg));
     return beamCut(width_deg, tilt_deg);
   }

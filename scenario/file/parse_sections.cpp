@@ -256,8 +256,11 @@ std::vector<TrackPoint> listedTrack(const Section& track, ParseContext& context)
 std::vector<TrackPoint> useTrack(const Section& track, const std::string& name,
                                  const std::shared_ptr<const TrackFile>& read, ParseContext& context) {
   context.files.tracks[name] = read;
-  for (const std::string& warning : read->warnings)
-    context.problems.addWarning(track.locationOf("file"), track.text("file") + ": " + warning);
+  for (const std::string& warning : read->warnings) {
+    const std::string text = track.text("file") + ": " + warning;
+    if (context.told_of_tracks.insert(text).second)
+      context.problems.addWarning(track.locationOf("file"), text);
+  }
   return read->points;
 }
 

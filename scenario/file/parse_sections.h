@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct ParseContext {
   FrameOrigin origin;                  ///< of its region
   /// Recordings of other programs that were read, by resolved name and columns.
   std::map<std::string, std::shared_ptr<const interop::Recording>> recordings;
+  std::set<std::string> told_of_tracks;  ///< warnings: a file may have the tracks of many platforms
 
   /// Path of a file named in the scenario; relative names are relative to the scenario's folder.
   std::string resolve(const std::string& name) const;

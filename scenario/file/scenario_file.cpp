@@ -95,9 +95,8 @@ std::optional<std::uintmax_t> openedSize(const std::string& file, const SourceLo
   errno = 0;
   if (!failure && !is_other && std::ifstream(file)) return size;
   if (!failure) failure = std::error_code(errno, std::generic_category());
-  context.problems.addError(
-      location,
-      fmt::format("elevation file {}: {}", file, is_other ? "is not a regular file" : failure.message()));
+  context.problems.addError(location, fmt::format("elevation file {}: {}", file,
+                                                  is_other ? "is not a regular file" : failure.message()));
   return std::nullopt;
 }
 
@@ -132,7 +131,8 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
       const std::optional<std::uintmax_t> size = openedSize(file, location, context);
       const bool is_named = files.size() == 1 && file == context.resolve(name);
       if (size)
-        digest += fmt::format("{}:{}", is_named ? name : std::filesystem::path(file).filename().string(), *size);
+        digest +=
+            fmt::format("{}:{}", is_named ? name : std::filesystem::path(file).filename().string(), *size);
     }
   }
   context.files.terrain_node = std::make_shared<const document::DocumentNode>(*section.node());

@@ -29,9 +29,9 @@ struct NamedFiles {
   std::map<std::string, AntennaPtr> antennas;     ///< by the antenna's keys and values, written on one line
   std::map<std::string, RcsTablePtr> rcs_tables;  ///< valid ones, by resolved name
   std::map<std::string, std::shared_ptr<const RefractivityFile>>
-      refractivity;                        ///< by name and sounding's time
-  document::DocumentNodePtr terrain_node;  ///< null without terrain
-  std::string terrain_digest;              ///< names and sizes of the elevation files
+      refractivity;                                     ///< by name and sounding's time
+  document::DocumentNodePtr terrain_node;               ///< null without terrain
+  std::string terrain_digest;                           ///< names and sizes of the elevation files
   std::vector<std::vector<std::string>> terrain_files;  ///< that each item of terrain.files stands for
 };
 

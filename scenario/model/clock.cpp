@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <limits>
-#include <string_view>
+#include <optional>
 
 #include "base/text/quantity_text.h"
 #include "base/text/utc.h"
@@ -19,45 +18,24 @@ namespace {
 
 constexpr double kMaxTimes = 1e7;
 
-/// Length of a UTC time at the beginning of a text, "2026-06-01T06:00:00Z"; 0: there is none.
-std::size_t utcLength(std::string_view text) {
-  constexpr std::string_view kForm = "dddd-dd-ddT";
-  if (text.size() < kForm.size()) return 0;
-  for (std::size_t i = 0; i < kForm.size(); ++i) {
-    const bool is_digit = text[i] >= '0' && text[i] <= '9';
-    if (kForm[i] == 'd' ? !is_digit : text[i] != kForm[i]) return 0;
-  }
-  const std::size_t end = text.find('Z');
-  return end == std::string_view::npos ? text.size() : end + 1;
+double secondsOf(const std::string& text, const std::string& whole, const Clock& clock) {
+  if (const std::optional<double> seconds = parseQuantity(text, "s")) return *seconds;
+  const auto time_ms = parseUtc_ms(text), epoch_ms = parseUtc_ms(clock.epoch_utc);
+  if (time_ms && epoch_ms) return static_cast<double>(*time_ms - *epoch_ms) / 1000;
+  const std::string fault = time_ms ? "the scenario has no epoch" : utcFault(text);
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("times '{}': '{}' is not a time in seconds or UTC{}; write BEGIN:END:STEP, BEGIN:END "
+                  "or T, such as 0:90:0.5, '1 min' or 2026-06-01T06:01:10Z",
+                  whole, text, fault.empty() ? "" : ": " + fault));
 }
 
-/// Seconds since the clock's epoch.
-double secondsOfUtc(const std::string& text, const std::string& whole, const Clock& clock) {
-  const auto epoch_ms = parseUtc_ms(clock.epoch_utc), time_ms = parseUtc_ms(text);
-  if (!time_ms) {
-    throw Error(ErrorCode::usage,
-                fmt::format("times '{}': '{}' is not a UTC time such as 2026-06-01T06:00:00Z", whole, text));
-  }
-  if (!epoch_ms) {
-    throw Error(ErrorCode::usage,
-                fmt::format("times '{}': the scenario has no epoch, so that UTC times have no meaning; write "
-                            "seconds",
-                            whole));
-  }
-  return static_cast<double>(*time_ms - *epoch_ms) / 1000;
-}
-
-double secondsOf(const std::string& text, const std::string& whole) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("times '{}': '{}' is not a number of seconds; write BEGIN:END:STEP, BEGIN:END or T, or "
-                    "UTC times with Z",
-                    whole, text));
-  }
-  return value;
+/// The end of a part of "BEGIN:END:STEP". The colons of a UTC time, which begins with its date, belong to it.
+std::size_t partEnd(const std::string& text, std::size_t begin) {
+  const std::size_t end = text.find(':', begin), date_end = text.find('T', begin);
+  const bool is_utc = date_end < end;
+  return std::min(text.size(),
+                  is_utc ? text.find(':', std::min(text.size(), text.find('Z', date_end))) : end);
 }
 
 /// The double that is nearest to a decimal number of 12 digits, so that a third step of 0.1 is 0.3 and not
@@ -133,17 +111,8 @@ std::vector<double> timesOf(const Clock& clock) {
 std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s) {
   std::vector<double> values;
   for (std::size_t begin = 0; begin <= text.size();) {
-    if (const std::size_t length = utcLength(std::string_view(text).substr(begin)); length > 0) {
-      values.push_back(secondsOfUtc(text.substr(begin, length), text, clock));
-      begin += length;
-      if (begin < text.size() && text[begin] != ':') {
-        throw Error(ErrorCode::usage, fmt::format("times '{}': '{}' follows a UTC time", text, text[begin]));
-      }
-      ++begin;
-      continue;
-    }
-    const std::size_t end = std::min(text.find(':', begin), text.size());
-    values.push_back(secondsOf(text.substr(begin, end - begin), text));
+    const std::size_t end = partEnd(text, begin);
+    values.push_back(secondsOf(text.substr(begin, end - begin), text, clock));
     begin = end + 1;
   }
   if (values.size() > 3) {

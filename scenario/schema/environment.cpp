@@ -66,8 +66,9 @@ const ObjectSpec& elevationFileSpec() {
           required("file", kFile, "a name as in `files`; the keys hold for all files that it stands for"),
           optional("vertical_datum", choiceOf<VerticalDatum>(),
                    "datum of its heights; by default what the file states"),
-          optional("height_unit", choiceOf<HeightUnit>(),
-                   "unit of its heights, us_ft: US survey feet; by default what the file states, else metres"),
+          optional(
+              "height_unit", choiceOf<HeightUnit>(),
+              "unit of its heights, us_ft: US survey feet; by default what the file states, else metres"),
           byDefault("band", kInteger.from(1).to(65536), 1.0, "that holds the heights"),
           optional("encoding", choiceOf<HeightEncoding>(), "of heights in the colours of a picture"),
           optional("crs", textOf(ValueType::text, 4096).printable(),

@@ -67,8 +67,8 @@ void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
   }
 }
 
-TerrainFileInfo infoOf(const ElevationSource& source, const SourceLocation& location, const TerrainFileKeys& keys,
-                       const GeoBox* needed) {
+TerrainFileInfo infoOf(const ElevationSource& source, const SourceLocation& location,
+                       const TerrainFileKeys& keys, const GeoBox* needed) {
   const TerrainFile file(source, location, keys);
   TerrainFileInfo info;
   info.file = source.name();
@@ -107,7 +107,8 @@ TerrainFileInfo Terrain::describe(const std::string& name, bool read_heights, co
   TerrainFileInfo info = infoOf(sources.front(), {}, keys, read_heights ? nullptr : &nowhere);
   info.file = name;
   if (sources.size() > 1)
-    info.notes.push_back(fmt::format("has {} elevation files: this is {}", sources.size(), sources.front().member));
+    info.notes.push_back(
+        fmt::format("has {} elevation files: this is {}", sources.size(), sources.front().member));
   return info;
 }
 
@@ -115,10 +116,10 @@ std::vector<TerrainFileInfo> Terrain::describeAll(const TerrainSpec& spec, const
   std::vector<TerrainFileInfo> all;
   for (std::size_t k = 0; k < spec.files.size(); ++k) {
     const SourceLocation location = k < spec.locations.size() ? spec.locations[k] : SourceLocation{};
-    for (const ElevationSource& source : sourcesOf(spec, k)) all.push_back(infoOf(source, location, keysOf(spec, k), needed));
+    for (const ElevationSource& source : sourcesOf(spec, k))
+      all.push_back(infoOf(source, location, keysOf(spec, k), needed));
   }
   return all;
 }
-
 
 }  // namespace emscape::scenario

@@ -33,7 +33,7 @@ constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
 /// Largest height or depth on earth (m), with a margin; values beyond are undeclared voids.
 constexpr float kMaxHeightOnEarth_m = 20000.0f;
 constexpr long long kStripPosts = 1 << 21;
-constexpr int kMaxPostsPerAxis = 1 << 22;  ///< the whole earth in a third of an arc second
+constexpr int kMaxPostsPerAxis = 1 << 22;                ///< the whole earth in a third of an arc second
 constexpr int kMinTilePosts = 2, kMaxTilePosts = 21601;  ///< of an HGT, per axis
 
 /// Reports vertical systems of GeoTIFF 1.0, which GDAL otherwise leaves out.
@@ -49,7 +49,8 @@ class VerticalSystems {
 /// Posts per axis of an HGT of a number of bytes; 0 if it is not square.
 int tilePosts(std::uintmax_t bytes) {
   const auto posts = static_cast<int>(std::lround(std::sqrt(static_cast<double>(bytes / 2))));
-  const bool is_square = bytes == std::uintmax_t{2} * static_cast<unsigned>(posts) * static_cast<unsigned>(posts);
+  const bool is_square =
+      bytes == std::uintmax_t{2} * static_cast<unsigned>(posts) * static_cast<unsigned>(posts);
   return is_square && posts >= kMinTilePosts && posts <= kMaxTilePosts ? posts : 0;
 }
 
@@ -128,15 +129,17 @@ std::string TerrainFile::Impl::tileInMemory(MemoryFiles& files, std::string byte
   const std::optional<TileCorner> corner = cornerInName(source.ownName());
   const int posts = tilePosts(bytes.size());
   if (posts == 0) {
-    fail(fmt::format("has {} bytes, which is no square of posts of 2 bytes as an HGT tile has (1201, 3601, 7201 or "
-                     "10801 posts a side); it may be cut off or of another format",
-                     bytes.size()));
+    fail(fmt::format(
+        "has {} bytes, which is no square of posts of 2 bytes as an HGT tile has (1201, 3601, 7201 or "
+        "10801 posts a side); it may be cut off or of another format",
+        bytes.size()));
   }
   if (!corner) fail(remedyForTileWithoutPosition());
   const double step_deg = 1.0 / (posts - 1);
-  files.add("tile.hdr", fmt::format("NROWS {0}\nNCOLS {0}\nNBANDS 1\nNBITS 16\nPIXELTYPE SIGNEDINT\nBYTEORDER M\n"
-                                    "LAYOUT BIL\nULXMAP {1}\nULYMAP {2}\nXDIM {3:.17g}\nYDIM {3:.17g}\nNODATA -32768\n",
-                                    posts, corner->longitude_deg, corner->latitude_deg + 1, step_deg));
+  files.add("tile.hdr",
+            fmt::format("NROWS {0}\nNCOLS {0}\nNBANDS 1\nNBITS 16\nPIXELTYPE SIGNEDINT\nBYTEORDER M\n"
+                        "LAYOUT BIL\nULXMAP {1}\nULYMAP {2}\nXDIM {3:.17g}\nYDIM {3:.17g}\nNODATA -32768\n",
+                        posts, corner->longitude_deg, corner->latitude_deg + 1, step_deg));
   files.add("tile.prj",
             "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],"
             "PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]");
@@ -148,8 +151,8 @@ void TerrainFile::Impl::unpack() const {
   found([&] {
     auto files = std::make_unique<MemoryFiles>();
     if (is_tile) {
-      unpacked_name = tileInMemory(*files, source.member.empty() ? readWholeText(source.file)
-                                                                 : unpackedContent(source));
+      unpacked_name =
+          tileInMemory(*files, source.member.empty() ? readWholeText(source.file) : unpackedContent(source));
     } else {
       unpacked_name = files->unpack(source);
     }
@@ -192,7 +195,8 @@ void TerrainFile::Impl::readHead() {
   gdal::prepare();
   if (lowerEnding(source.ownName()) == ".hgt" && gdal::faultOfName(source.file).empty()) {
     std::error_code ignored;
-    // The size of a packed tile is not known; by the name alone, GDAL's driver is tried where it may be right.
+    // The size of a packed tile is not known; by the name alone, GDAL's driver is tried where it may be
+    // right.
     const int posts = source.member.empty() ? tilePosts(fs::file_size(source.file, ignored)) : 0;
     is_tile = !isStandardTile(fs::path(source.ownName()).filename().string(), posts);
   }
@@ -210,8 +214,8 @@ void TerrainFile::Impl::readHead() {
          std::to_string(kMaxPostsPerAxis) + " in a row or column");
   }
   if (keys.band > bands)
-    fail(fmt::format("'band: {}' of the scenario is outside the allowed range 1 to {}, the file's bands", keys.band,
-                     bands));
+    fail(fmt::format("'band: {}' of the scenario is outside the allowed range 1 to {}, the file's bands",
+                     keys.band, bands));
   band = std::max(keys.band, 1);
   if (bands > 1 && keys.band == 0 && !keys.encoding) {
     notes.push_back("has " + std::to_string(bands) + " bands: heights are taken from the first");
@@ -227,11 +231,11 @@ void TerrainFile::Impl::readBand(GDALDatasetH dataset) {
   const GDALColorInterp colour = GDALGetRasterColorInterpretation(of_heights);
   if (keys.encoding) {
     if (GDALGetRasterCount(dataset) < band + 2 || GDALGetRasterDataType(of_heights) != GDT_Byte)
-      fail(fmt::format("'encoding: {}' of the scenario needs red, green and blue as bands of bytes; the file has {} "
-                       "band{} of {}",
-                       toString(*keys.encoding), GDALGetRasterCount(dataset),
-                       GDALGetRasterCount(dataset) == 1 ? "" : "s",
-                       GDALGetDataTypeName(GDALGetRasterDataType(of_heights))));
+      fail(fmt::format(
+          "'encoding: {}' of the scenario needs red, green and blue as bands of bytes; the file has {} "
+          "band{} of {}",
+          toString(*keys.encoding), GDALGetRasterCount(dataset), GDALGetRasterCount(dataset) == 1 ? "" : "s",
+          GDALGetDataTypeName(GDALGetRasterDataType(of_heights))));
     notes.push_back(fmt::format("heights are decoded from colours ({})", toString(*keys.encoding)));
   } else if (colour != GCI_Undefined && colour != GCI_GrayIndex) {
     fail(remedyForPicture(band, GDALGetColorInterpretationName(colour), GDALGetRasterCount(dataset)));
@@ -254,7 +258,8 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
     if (!is_tile_of_web) fail(remedyForNoGeoreference(source));
   }
   const char* meaning_of_pixels = GDALGetMetadataItem(dataset, GDALMD_AREA_OR_POINT, nullptr);
-  const bool is_area = !is_tile && (meaning_of_pixels == nullptr || !EQUAL(meaning_of_pixels, GDALMD_AOP_POINT));
+  const bool is_area =
+      !is_tile && (meaning_of_pixels == nullptr || !EQUAL(meaning_of_pixels, GDALMD_AOP_POINT));
   found([&] { georeference.emplace(transform, columns, rows, is_area); });
   gdal::SpatialReference system;
   const bool has_system = given != nullptr && OSRGetName(given) != nullptr;
@@ -262,15 +267,17 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
     system.reset(OSRNewSpatialReference(nullptr));
     const std::optional<int> code = epsgCodeIn(keys.crs);
     if (!code || OSRImportFromEPSG(system.get(), *code) != OGRERR_NONE)
-      fail("'crs: " + keys.crs + "' of the scenario is not EPSG: and the number of a coordinate reference system, such "
+      fail("'crs: " + keys.crs +
+           "' of the scenario is not EPSG: and the number of a coordinate reference system, such "
            "as EPSG:4326 for latitudes and longitudes");
     if (has_system && !OSRIsSame(system.get(), given)) {
       gdal::SpatialReference flat(OSRClone(given));
       OSRStripVertical(flat.get());
       if (!OSRIsSame(system.get(), flat.get()))
-        fail(fmt::format("'crs: {}' of the scenario contradicts the file, which states '{}'. Leave out the key to use "
-                         "what the file states; if the file is wrong, gdal_translate -a_srs {} makes a copy",
-                         keys.crs, OSRGetName(given), keys.crs));
+        fail(fmt::format(
+            "'crs: {}' of the scenario contradicts the file, which states '{}'. Leave out the key to use "
+            "what the file states; if the file is wrong, gdal_translate -a_srs {} makes a copy",
+            keys.crs, OSRGetName(given), keys.crs));
     }
   } else if (is_tile_of_web) {
     system.reset(OSRNewSpatialReference(nullptr));
@@ -278,11 +285,17 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
   } else if (has_system) {
     system.reset(OSRClone(given));
   } else {
-    fail(remedyForNoSystem(source));
+    constexpr double kTurn_deg = 360;
+    const double east = transform[0] + columns * transform[1] + rows * transform[2];
+    fail(remedyForNoSystem(std::max(std::abs(transform[0]), std::abs(east)) > kTurn_deg));
   }
-  HeightFacts facts{name, source.ownName(), GDALGetDriverShortName(GDALGetDatasetDriver(dataset)),
-                    GDALGetRasterUnitType(GDALGetRasterBand(dataset, band)), scale,
-                    has_system ? given : system.get(), keys};
+  HeightFacts facts{name,
+                    source.ownName(),
+                    GDALGetDriverShortName(GDALGetDatasetDriver(dataset)),
+                    GDALGetRasterUnitType(GDALGetRasterBand(dataset, band)),
+                    scale,
+                    has_system ? given : system.get(),
+                    keys};
   if (is_tile) facts.driver = "SRTMHGT";
   if (facts.driver == "SRTMHGT" || keys.encoding) facts.band_unit = "m";
   meaning = found([&] { return heightMeaningOf(facts); });
@@ -383,8 +396,8 @@ void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
     if (impl_->keys.encoding) {
       std::vector<float> green(strip.size()), blue(strip.size());
       for (auto [next, values] : {std::pair{1, &green}, std::pair{2, &blue}}) {
-        if (GDALRasterIO(GDALGetRasterBand(dataset.get(), impl_->band + next), GF_Read, left, top, columns, rows,
-                         values->data(), columns, rows, GDT_Float32, 0, 0) != CE_None)
+        if (GDALRasterIO(GDALGetRasterBand(dataset.get(), impl_->band + next), GF_Read, left, top, columns,
+                         rows, values->data(), columns, rows, GDT_Float32, 0, 0) != CE_None)
           impl_->fail(messages.explain("rows " + std::to_string(top) + " cannot be read"));
       }
       for (std::size_t k = 0; k < strip.size(); ++k)

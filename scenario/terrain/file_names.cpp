@@ -34,9 +34,8 @@ bool isPacked(const std::string& name) {
 }
 
 bool isRasterName(const std::string& name) {
-  static const std::set<std::string> kEndings{".tif", ".tiff", ".hgt", ".dt0", ".dt1", ".dt2",
-                                              ".vrt", ".asc",  ".dem", ".bil", ".flt", ".img",
-                                              ".nc",  ".xyz",  ".gpkg"};
+  static const std::set<std::string> kEndings{".tif", ".tiff", ".hgt", ".dt0", ".dt1", ".dt2", ".vrt", ".asc",
+                                              ".dem", ".bil",  ".flt", ".img", ".nc",  ".xyz", ".gpkg"};
   return kEndings.count(lowerEnding(name)) != 0;
 }
 
@@ -64,17 +63,19 @@ std::vector<std::string> filesOfFolder(const std::string& folder) {
     std::error_code ignored;
     if (isElevationName(name) && !isMaskName(name) && at->is_regular_file(ignored)) files.push_back(name);
     if (files.size() > kMaxFiles)
-      throw Error(ErrorCode::bad_input, fmt::format("elevation files: folder {} has more than {} of them; name a "
-                                                    "pattern, such as {}/N4*.hgt",
-                                                    folder, kMaxFiles, folder));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("elevation files: folder {} has more than {} of them; name a "
+                              "pattern, such as {}/N4*.hgt",
+                              folder, kMaxFiles, folder));
   }
   if (failed)
     throw Error(ErrorCode::bad_input,
                 fmt::format("elevation files: folder {}: {}", folder, failed.message()));
   if (files.empty())
-    throw Error(ErrorCode::bad_input, "elevation files: folder " + folder +
-                                          " has none (by their endings: .tif .hgt .dt0 .dt1 .dt2 .asc .bil .dem "
-                                          ".flt .img .nc .xyz .gpkg .vrt .zip .gz)");
+    throw Error(ErrorCode::bad_input,
+                "elevation files: folder " + folder +
+                    " has none (by their endings: .tif .hgt .dt0 .dt1 .dt2 .asc .bil .dem "
+                    ".flt .img .nc .xyz .gpkg .vrt .zip .gz)");
   std::sort(files.begin(), files.end());
   dropMosaics(files);
   return files;
@@ -117,7 +118,8 @@ std::vector<std::string> membersOfZip(const std::string& file) {
   for (char** at = list.get(); at != nullptr && *at != nullptr; ++at) {
     members.emplace_back(*at);
     if (members.size() > kMaxMembers)
-      throw Error(ErrorCode::bad_input, fmt::format("archive {} has more than {} members", file, kMaxMembers));
+      throw Error(ErrorCode::bad_input,
+                  fmt::format("archive {} has more than {} members", file, kMaxMembers));
   }
   std::sort(members.begin(), members.end());
   return members;
@@ -161,17 +163,20 @@ bool isElevationName(const std::string& name) {
 std::vector<std::string> elevationFilesOf(const std::string& name) {
   std::error_code ignored;
   if (fs::is_directory(name, ignored)) return filesOfFolder(name);
-  if (name.find_first_of("*?") != std::string::npos && !fs::exists(name, ignored)) return filesOfPattern(name);
+  if (name.find_first_of("*?") != std::string::npos && !fs::exists(name, ignored))
+    return filesOfPattern(name);
   return {name};
 }
 
 std::vector<ElevationSource> sourcesIn(const std::string& file) {
   if (!isPacked(file)) return {{file}};
-  if (const std::string fault = gdal::faultOfName(file); !fault.empty()) return {{file}};  // TerrainFile says it
+  if (const std::string fault = gdal::faultOfName(file); !fault.empty())
+    return {{file}};  // TerrainFile says it
   const std::string stem = fs::path(file).stem().string();
   if (lowerEnding(file) == ".gz") {
     if (lowerEnding(stem) == ".tar")
-      throw Error(ErrorCode::bad_input, file + ": a tar archive is not read; unpack it (tar xf) and name the folder");
+      throw Error(ErrorCode::bad_input,
+                  file + ": a tar archive is not read; unpack it (tar xf) and name the folder");
     return {{file, stem}};
   }
   gdal::prepare();
@@ -183,10 +188,11 @@ std::vector<ElevationSource> sourcesIn(const std::string& file) {
   }
   if (sources.empty())
     throw Error(ErrorCode::bad_input,
-                members.empty() ? messages.explain(file + ": cannot be read as a ZIP archive")
-                                : fmt::format("{}: none of its {} members is an elevation file by its ending, "
-                                              "such as {}",
-                                              file, members.size(), members.front()));
+                members.empty()
+                    ? messages.explain(file + ": cannot be read as a ZIP archive")
+                    : fmt::format("{}: none of its {} members is an elevation file by its ending, "
+                                  "such as {}",
+                                  file, members.size(), members.front()));
   return sources;
 }
 
@@ -222,7 +228,8 @@ std::optional<TileCorner> cornerInName(const std::string& name) {
     std::size_t east = k + 3;
     if (east < text.size() && (text[east] == '_' || text[east] == '-' || text[east] == ' ')) ++east;
     if (east >= text.size() || (text[east] != 'e' && text[east] != 'w') || !isDigits(east + 1, 3)) continue;
-    const int latitude_deg = std::stoi(text.substr(k + 1, 2)), longitude_deg = std::stoi(text.substr(east + 1, 3));
+    const int latitude_deg = std::stoi(text.substr(k + 1, 2)),
+              longitude_deg = std::stoi(text.substr(east + 1, 3));
     if (latitude_deg > 90 || longitude_deg > 180) continue;
     return TileCorner{text[k] == 's' ? -latitude_deg : latitude_deg,
                       text[east] == 'w' ? -longitude_deg : longitude_deg};
@@ -243,8 +250,8 @@ std::string MemoryFiles::add(const std::string& name, std::string content) {
   contents_.push_back(std::make_unique<std::string>(std::move(content)));
   std::string& bytes = *contents_.back();
   const std::string path = folder_ + name;
-  const gdal::Owned<VSIFCloseL> file(VSIFileFromMemBuffer(
-      path.c_str(), reinterpret_cast<GByte*>(bytes.data()), bytes.size(), FALSE));
+  const gdal::Owned<VSIFCloseL> file(
+      VSIFileFromMemBuffer(path.c_str(), reinterpret_cast<GByte*>(bytes.data()), bytes.size(), FALSE));
   names_.push_back(name);
   return path;
 }

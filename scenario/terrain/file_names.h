@@ -35,7 +35,8 @@ struct ElevationSource {
 /// @throws Error (bad_input), without a location: an archive that cannot be read, or that has none
 std::vector<ElevationSource> sourcesIn(const std::string& file);
 
-/// The elevation files that an item of TerrainSpec::files stands for. @throws Error (bad_input) with its location
+/// The elevation files that an item of TerrainSpec::files stands for. @throws Error (bad_input) with its
+/// location
 std::vector<ElevationSource> sourcesOf(const TerrainSpec& spec, std::size_t item);
 /// The keys of an item, with those of all files.
 TerrainFileKeys keysOf(const TerrainSpec& spec, std::size_t item);

@@ -47,9 +47,10 @@ std::string effectOfAssumedDatum(const TerrainFile& file) {
   const GeoBox box = geographicBoxOf(file);
   const double latitude_deg = std::clamp(0.5 * (box.south_deg + box.north_deg), -90.0, 90.0);
   const double undulation_m = geoidUndulation_m(latitude_deg, 0.5 * (box.west_deg + box.east_deg));
-  return fmt::format("; if they are above the ellipsoid, the ground is {:.1f} m too {} there. `vertical_datum: egm96` "
-                     "(or ellipsoid, egm2008, navd88) states it",
-                     std::abs(undulation_m), undulation_m > 0 ? "high" : "low");
+  return fmt::format(
+      "; if they are above the ellipsoid, the ground is {:.1f} m too {} there. `vertical_datum: egm96` "
+      "(or ellipsoid, egm2008, navd88) states it",
+      std::abs(undulation_m), undulation_m > 0 ? "high" : "low");
 }
 
 }  // namespace emscape::scenario

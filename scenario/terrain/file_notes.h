@@ -29,14 +29,14 @@ std::string fillText(const FillValues::Found& fill);
 
 /// FillValues::Result::is_partial.
 inline constexpr const char* kPartlySearched =
-    "has so many different heights below -500 m that only usual fill values (-9999, -10000, ...) were searched for; "
+    "has so many different heights below -500 m that only usual fill values (-9999, -10000, ...) were "
+    "searched for; "
     "others would be ground. gdal_translate -a_nodata VALUE makes a copy that declares them";
 
 /// True if nothing says what the heights of a file are above: the warning, and what follows if the assumed
 /// datum is wrong, in the middle of the file.
 bool isDatumAssumed(const TerrainFile& file);
-inline constexpr const char* kAssumedDatum =
-    "states no vertical datum: its heights are taken as above EGM96";
+inline constexpr const char* kAssumedDatum = "states no vertical datum: its heights are taken as above EGM96";
 std::string effectOfAssumedDatum(const TerrainFile& file);
 
 }  // namespace emscape::scenario

@@ -32,12 +32,14 @@ std::string faultOfUnreadable(const ElevationSource& source, bool is_picture) {
   const std::string ending = lowerEnding(source.ownName());
   if (source.member.empty()) {
     if (!is_picture && ending == ".png")
-      return "is a PNG picture, not heights; `encoding: terrain-rgb` (or terrarium) of the file in the scenario decodes "
+      return "is a PNG picture, not heights; `encoding: terrain-rgb` (or terrarium) of the file in the "
+             "scenario decodes "
              "tiles whose colours encode heights";
     const GdalMessages quiet;
     if (const std::string other = otherFormatOf(source.file); !other.empty())
-      return fmt::format("its format, {}, is not read; read are {}. gdal_translate {} HEIGHTS.tif makes a GeoTIFF of it",
-                         other, elevationFormats(), shellWord(source.file));
+      return fmt::format(
+          "its format, {}, is not read; read are {}. gdal_translate {} HEIGHTS.tif makes a GeoTIFF of it",
+          other, elevationFormats(), shellWord(source.file));
   }
   return "not a raster in one of the formats that are read: " + elevationFormats();
 }
@@ -57,32 +59,43 @@ std::string remedyForContainer(GDALDatasetH dataset, const ElevationSource& sour
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : ", ") + name;
   std::string remedy = first;
-  if (!source.member.empty()) remedy = first.substr(0, first.find(':')) + ":" + source.member + ":" + names.front();
-  return fmt::format("has no raster itself, but {} in it: {}. gdal_translate {} HEIGHTS.tif makes a file of {}",
-                     names.size(), all, shellWord(remedy), names.front());
+  if (!source.member.empty())
+    remedy = first.substr(0, first.find(':')) + ":" + source.member + ":" + names.front();
+  return fmt::format(
+      "has no raster itself, but {} in it: {}. gdal_translate {} HEIGHTS.tif makes a file of {}",
+      names.size(), all, shellWord(remedy), names.front());
 }
 
 std::string remedyForPicture(int band, const std::string& colour, int bands) {
   const std::string decode =
-      bands >= 3 ? "`encoding: terrain-rgb` (or terrarium) of the file in the scenario decodes tiles whose colours "
-                   "encode heights; `band:` chooses another band"
-                 : "a palette or a single colour has no heights; get the elevation model itself, not a picture of it";
+      bands >= 3
+          ? "`encoding: terrain-rgb` (or terrarium) of the file in the scenario decodes tiles whose colours "
+            "encode heights; `band:` chooses another band"
+          : "a palette or a single colour has no heights; get the elevation model itself, not a picture of "
+            "it";
   return fmt::format("is a picture, not heights: its band {} is '{}'. {}", band, colour, decode);
 }
 
 std::string remedyForNoGeoreference(const ElevationSource& source) {
-  return fmt::format("has no georeference: where its posts are on the earth is not known. gdal_translate -a_srs EPSG:4326 "
-                     "-a_ullr WEST NORTH EAST SOUTH {} HEIGHTS.tif makes a copy that states it",
-                     shellWord(source.member.empty() ? source.file : source.member));
+  return fmt::format(
+      "has no georeference: where its posts are on the earth is not known. gdal_translate -a_srs EPSG:4326 "
+      "-a_ullr WEST NORTH EAST SOUTH {} HEIGHTS.tif makes a copy that states it",
+      shellWord(source.member.empty() ? source.file : source.member));
 }
 
-std::string remedyForNoSystem(const ElevationSource&) {
-  return "has no coordinate reference system. `crs: EPSG:4326` of the file in the scenario states latitudes and "
-         "longitudes: files: [{file: NAME, crs: \"EPSG:4326\"}]; EPSG:32633 and so on UTM zone 33 north";
+std::string remedyForNoSystem(bool is_plane) {
+  return is_plane ? "has no coordinate reference system, and its coordinates are no degrees. `crs` of the "
+                    "file in the "
+                    "scenario states it, such as EPSG:32633 for UTM zone 33 north: files: [{file: NAME, crs: "
+                    "\"EPSG:32633\"}]"
+                  : "has no coordinate reference system. `crs: EPSG:4326` of the file in the scenario states "
+                    "latitudes "
+                    "and longitudes: files: [{file: NAME, crs: \"EPSG:4326\"}]";
 }
 
 std::string remedyForTileWithoutPosition() {
-  return "has no position: an HGT tile is placed by its name. Rename it to that of its south-western corner, such as "
+  return "has no position: an HGT tile is placed by its name. Rename it to that of its south-western corner, "
+         "such as "
          "N38E052.hgt";
 }
 
@@ -91,7 +104,8 @@ bool webTileTransform(const std::string& file, int columns, int rows, double (&t
   const long long zoom = wholeNumber(path.parent_path().parent_path().filename().string());
   const long long column = wholeNumber(path.parent_path().filename().string());
   const long long row = wholeNumber(path.stem().string());
-  if (zoom < 0 || zoom > 24 || column < 0 || row < 0 || column >= 1LL << zoom || row >= 1LL << zoom) return false;
+  if (zoom < 0 || zoom > 24 || column < 0 || row < 0 || column >= 1LL << zoom || row >= 1LL << zoom)
+    return false;
   constexpr double kHalf_m = kPi * 6378137.0;  // of the equator
   const double tile_m = 2 * kHalf_m / static_cast<double>(1LL << zoom);
   transform[0] = -kHalf_m + static_cast<double>(column) * tile_m;

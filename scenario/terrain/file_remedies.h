@@ -15,7 +15,8 @@ std::string faultOfUnreadable(const ElevationSource& source, bool is_picture);
 std::string remedyForContainer(GDALDatasetH dataset, const ElevationSource& source);
 std::string remedyForPicture(int band, const std::string& colour, int bands);
 std::string remedyForNoGeoreference(const ElevationSource& source);
-std::string remedyForNoSystem(const ElevationSource& source);
+/// @param is_plane  the coordinates are too large for degrees
+std::string remedyForNoSystem(bool is_plane);
 std::string remedyForTileWithoutPosition();
 
 /// The transform of a tile of a web map, by its path ZOOM/COLUMN/ROW.png, in EPSG:3857; false: it has none.

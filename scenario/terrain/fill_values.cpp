@@ -9,7 +9,8 @@ namespace {
 constexpr std::uint32_t kBits = 1U << 24;
 constexpr std::size_t kMaxIsolated = 4096;  ///< heights of which a post is isolated
 /// Values that programs write for no data, in the file's unit.
-constexpr double kUsual[] = {-999, -999.9, -1000, -3000, -9998, -9999, -9999.9, -9999.99, -10000, -12000, -32766, -99999};
+constexpr double kUsual[] = {-999,    -999.9,   -1000,  -3000,  -9998,  -9999,
+                             -9999.9, -9999.99, -10000, -12000, -32766, -99999};
 
 }  // namespace
 

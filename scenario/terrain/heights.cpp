@@ -84,8 +84,8 @@ std::optional<VerticalDatum> datumNamed(const std::string& name) {
   if (has(text, "EGM96") || has(text, "EGM1996")) return VerticalDatum::egm96;
   if (has(text, "NAVD88") || has(text, "NAVD1988") || has(text, "NORTHAMERICANVERTICALDATUM1988"))
     return VerticalDatum::navd88;
-  if (has(text, "ELLIPSOID") || text == "WGS84" || text == "WGS1984" || text == "DWGS1984" || text == "NAD83" ||
-      text == "GRS80")
+  if (has(text, "ELLIPSOID") || text == "WGS84" || text == "WGS1984" || text == "DWGS1984" ||
+      text == "NAD83" || text == "GRS80")
     return VerticalDatum::ellipsoid;
   return std::nullopt;
 }
@@ -121,7 +121,8 @@ Stated statedIn(OGRSpatialReferenceH system) {
   OGRAxisOrientation direction = OAO_Other;
   if (OSRGetAxis(system, "VERT_CS", 0, &direction) != nullptr && direction == OAO_Down)
     refuse("states depths, downwards ('" + stated.name +
-           "'); gdal_translate -a_scale -1 -a_srs EPSG:4326+5714 makes a copy of heights, for latitudes and longitudes");
+           "'); gdal_translate -a_scale -1 -a_srs EPSG:4326+5714 makes a copy of heights, for latitudes and "
+           "longitudes");
   return stated;
 }
 
@@ -163,11 +164,13 @@ void setDatum(const HeightFacts& facts, const Stated& stated, HeightMeaning& mea
     meaning.origin = DatumOrigin::file;
     meaning.datum_text = fmt::format("{} (stated by the file: {})", textOf(meaning.datum), stated.name);
     if (key && *key != meaning.datum)
-      refuse(fmt::format("'vertical_datum: {}' of the scenario contradicts the file, which states {} ('{}'). Leave out the key "
-                         "to use what the file states; if the file is wrong, gdal_translate -a_srs makes a copy that "
-                         "states another system (EPSG:4326+5773: latitudes, longitudes and EGM96; EPSG:4979: "
-                         "heights above the ellipsoid)",
-                         toString(*key), textOf(meaning.datum), stated.name));
+      refuse(fmt::format(
+          "'vertical_datum: {}' of the scenario contradicts the file, which states {} ('{}'). Leave out the "
+          "key "
+          "to use what the file states; if the file is wrong, gdal_translate -a_srs makes a copy that "
+          "states another system (EPSG:4326+5773: latitudes, longitudes and EGM96; EPSG:4979: "
+          "heights above the ellipsoid)",
+          toString(*key), textOf(meaning.datum), stated.name));
     meaning.notes.push_back("states that its heights are of '" + stated.name + "'");
   } else if (key) {
     meaning.datum = *key;
@@ -177,16 +180,18 @@ void setDatum(const HeightFacts& facts, const Stated& stated, HeightMeaning& mea
       meaning.notes.push_back("states that its heights are of '" + stated.name + "'; the scenario says " +
                               toString(*key));
     if (is_tile && *key != VerticalDatum::egm96)
-      meaning.warnings.push_back(fmt::format("its format is defined with heights above EGM96, the scenario says "
-                                             "'vertical_datum: {}', which is used",
-                                             toString(*key)));
+      meaning.warnings.push_back(
+          fmt::format("its format is defined with heights above EGM96, the scenario says "
+                      "'vertical_datum: {}', which is used",
+                      toString(*key)));
   } else if (is_tile) {
     meaning.origin = DatumOrigin::format;
     meaning.datum_text = textOf(meaning.datum) + " (of its format)";
   } else if (stated.any) {
     meaning.datum_text = fmt::format("EGM96 (assumed: the file states {})", stated.name);
     meaning.warnings.push_back(fmt::format(
-        "states heights of '{}', which are taken as above EGM96; datums of mean sea level differ by up to 2 m. "
+        "states heights of '{}', which are taken as above EGM96; datums of mean sea level differ by up to 2 "
+        "m. "
         "gdalwarp -t_srs EPSG:4979 brings them to the ellipsoid where PROJ has the grid of that datum",
         stated.name));
   } else if (product != nullptr) {
@@ -200,35 +205,40 @@ void setDatum(const HeightFacts& facts, const Stated& stated, HeightMeaning& mea
   }
   if (meaning.datum == VerticalDatum::navd88)
     meaning.warnings.push_back(
-        "its heights above NAVD88 are taken as above EGM96, from which they differ by less than 2 m. gdalwarp "
+        "its heights above NAVD88 are taken as above EGM96, from which they differ by less than 2 m. "
+        "gdalwarp "
         "-t_srs EPSG:4979 brings them to the ellipsoid where PROJ has the grid of NAVD88");
 }
 
 void setUnit(const HeightFacts& facts, const Stated& stated, HeightMeaning& meaning) {
   const std::optional<HeightUnit>& key = facts.keys.height_unit;
   // Some formats write so instead of leaving it out.
-  const bool is_nothing = EQUAL(facts.band_unit.c_str(), "unspecified") || EQUAL(facts.band_unit.c_str(), "unknown");
+  const bool is_nothing =
+      EQUAL(facts.band_unit.c_str(), "unspecified") || EQUAL(facts.band_unit.c_str(), "unknown");
   const bool of_band = !facts.band_unit.empty() && !is_nothing;
   if (of_band || stated.unit_m > 0) {
     meaning.unit = of_band ? facts.band_unit : stated.unit;
     meaning.unit_m = of_band ? metresOf(facts.band_unit) : stated.unit_m;
     if (meaning.unit_m == 0.0 && !key)
-      refuse("heights are in '" + meaning.unit +
-             "', a unit that is not known; known are m, ft and US survey ft. `height_unit: m` (or ft, us_ft) of "
-             "the file in the scenario states it");
+      refuse(
+          "heights are in '" + meaning.unit +
+          "', a unit that is not known; known are m, ft and US survey ft. `height_unit: m` (or ft, us_ft) of "
+          "the file in the scenario states it");
     const bool differs = key && meaning.unit_m != 0.0 && std::abs(meaning.unit_m / metresOf(*key) - 1) > 1e-7;
     if (differs)
-      refuse(fmt::format("'height_unit: {}' of the scenario contradicts the file, which states '{}'. Leave out the "
-                         "key to use what the file states; if the file is wrong, gdal_translate -of VRT makes a "
-                         "text file whose UnitType can be corrected",
-                         toString(*key), meaning.unit));
+      refuse(fmt::format(
+          "'height_unit: {}' of the scenario contradicts the file, which states '{}'. Leave out the "
+          "key to use what the file states; if the file is wrong, gdal_translate -of VRT makes a "
+          "text file whose UnitType can be corrected",
+          toString(*key), meaning.unit));
     if (of_band && stated.unit_m > 0 && metresOf(facts.band_unit) > 0 && !key &&
         std::abs(stated.unit_m / metresOf(facts.band_unit) - 1) > 1e-7)
-      meaning.warnings.push_back(
-          fmt::format("states '{}' as the unit of its heights, and '{}' as that of its vertical system '{}': the "
-                      "first is used. If it is wrong, `height_unit` cannot change it: gdal_translate -of VRT makes a text file "
-                      "whose UnitType can be corrected",
-                      facts.band_unit, stated.unit, stated.name));
+      meaning.warnings.push_back(fmt::format(
+          "states '{}' as the unit of its heights, and '{}' as that of its vertical system '{}': the "
+          "first is used. If it is wrong, `height_unit` cannot change it: gdal_translate -of VRT makes a "
+          "text file "
+          "whose UnitType can be corrected",
+          facts.band_unit, stated.unit, stated.name));
   }
   if (key) {
     meaning.unit_m = metresOf(*key);
@@ -241,10 +251,12 @@ void setUnit(const HeightFacts& facts, const Stated& stated, HeightMeaning& mean
     if (facts.scale == 1 && std::abs(of_plane_m - kFoot_m) < 1e-5)
       meaning.warnings.push_back(fmt::format(
           "its coordinates are in '{}', and it has no unit of heights: they are taken as metres. If they are "
-          "feet, ground is 3.3 times too high: `height_unit: {}` of the file in the scenario states it, as m does",
+          "feet, ground is 3.3 times too high: `height_unit: {}` of the file in the scenario states it, as m "
+          "does",
           unit, of_plane_m == kFoot_m ? "ft" : "us_ft"));
   }
-  if (meaning.unit_m != 1.0) meaning.notes.push_back("heights in '" + meaning.unit + "' are converted to metres");
+  if (meaning.unit_m != 1.0)
+    meaning.notes.push_back("heights in '" + meaning.unit + "' are converted to metres");
 }
 
 }  // namespace

@@ -14,9 +14,8 @@ constexpr double kMaxBlockBytes = 256 * kMebibyte;
 constexpr int kMaxListedFiles = 1000;  ///< GDAL looks for sidecars in any case of letters up to this number
 
 /// The first one is for pictures whose colours encode heights.
-constexpr const char* kElevationDrivers[] = {"PNG",     "GTiff", "SRTMHGT", "DTED",   "VRT", "AAIGrid",
-                                             "USGSDEM", "EHdr",  "HFA",     "netCDF", "XYZ", "GPKG",
-                                             nullptr};
+constexpr const char* kElevationDrivers[] = {"PNG",  "GTiff", "SRTMHGT", "DTED", "VRT",  "AAIGrid", "USGSDEM",
+                                             "EHdr", "HFA",   "netCDF",  "XYZ",  "GPKG", nullptr};
 constexpr const char* const* kWithoutPictures = kElevationDrivers + 1;
 constexpr const char* kNoSiblings[] = {nullptr};
 

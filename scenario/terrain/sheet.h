@@ -45,7 +45,7 @@ struct TerrainSheet {
     FillValues::Found value;
   };
   std::vector<Fill> fills;
-  std::vector<TerrainFilePtr> partly_searched;  ///< for fill values; see FillValues::Result
+  std::vector<TerrainFilePtr> partly_searched;            ///< for fill values; see FillValues::Result
   double first_column, last_column, first_row, last_row;  ///< limits of lookups
 
   /// All posts absent.
@@ -69,7 +69,8 @@ struct TerrainSheet {
 constexpr long long kMaxSheetPosts = 1LL << 31;
 
 /// Reads tiles into sheets. Tiles whose posts coincide (to a hundredth of a post) and whose windows touch
-/// become one sheet, if their heights have the same datum. Where several files have the same post, the one listed first takes precedence.
+/// become one sheet, if their heights have the same datum. Where several files have the same post, the one
+/// listed first takes precedence.
 /// @throws Error (bad_input) if reading fails
 std::vector<TerrainSheet> readSheets(const std::vector<RasterTile>& tiles);
 

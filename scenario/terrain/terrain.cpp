@@ -51,9 +51,11 @@ void toMeanSeaLevel(TerrainSheet& sheet, FileNotes& warnings) {
     } catch (const Error& error) {
       if (meaning.origin == DatumOrigin::key)
         throw Error(error.code(), sheet.file->location(), error.message());
-      warnings.add(sheet.file->name(),
-                   "its heights are above EGM2008 and are taken as above EGM96, since the grid that converts them is "
-                   "missing: " + error.message());
+      warnings.add(
+          sheet.file->name(),
+          "its heights are above EGM2008 and are taken as above EGM96, since the grid that converts them is "
+          "missing: " +
+              error.message());
       return;
     }
   }
@@ -73,7 +75,8 @@ void toMeanSeaLevel(TerrainSheet& sheet, FileNotes& warnings) {
 /// True if a tile of one degree reaches a box.
 bool touches(const TileCorner& corner, const GeoBox& box) {
   constexpr double kReach_deg = 0.01;  // of a post outside, and of half a post
-  if (corner.latitude_deg > box.north_deg + kReach_deg || corner.latitude_deg + 1 < box.south_deg - kReach_deg)
+  if (corner.latitude_deg > box.north_deg + kReach_deg ||
+      corner.latitude_deg + 1 < box.south_deg - kReach_deg)
     return false;
   for (const double turn_deg : {-360.0, 0.0, 360.0, 720.0}) {
     if (corner.longitude_deg + turn_deg <= box.east_deg + kReach_deg &&
@@ -98,8 +101,8 @@ void addFile(const ElevationSource& source, const SourceLocation& location, cons
   if (corner && !touches(*corner, box)) {
     std::error_code failed;
     if (std::filesystem::is_regular_file(source.file, failed)) {
-      all.boxes.push_back({1.0 * corner->latitude_deg, corner->latitude_deg + 1.0, 1.0 * corner->longitude_deg,
-                           corner->longitude_deg + 1.0});
+      all.boxes.push_back({1.0 * corner->latitude_deg, corner->latitude_deg + 1.0,
+                           1.0 * corner->longitude_deg, corner->longitude_deg + 1.0});
       return;
     }
   }
@@ -117,14 +120,15 @@ FilesWithin filesWithin(const TerrainSpec& spec, const GeoBox& box) {
   FilesWithin all;
   for (std::size_t k = 0; k < spec.files.size(); ++k) {
     const SourceLocation location = k < spec.locations.size() ? spec.locations[k] : SourceLocation{};
-    for (const ElevationSource& source : sourcesOf(spec, k)) addFile(source, location, keysOf(spec, k), box, all);
+    for (const ElevationSource& source : sourcesOf(spec, k))
+      addFile(source, location, keysOf(spec, k), box, all);
   }
   return all;
 }
 
 std::string textOf(const GeoBox& box) {
-  return fmt::format("latitudes {:.5g} to {:.5g}, longitudes {:.5g} to {:.5g} deg", box.south_deg, box.north_deg,
-                     box.west_deg, box.east_deg);
+  return fmt::format("latitudes {:.5g} to {:.5g}, longitudes {:.5g} to {:.5g} deg", box.south_deg,
+                     box.north_deg, box.west_deg, box.east_deg);
 }
 
 bool contains(const GeoBox& box, double latitude_deg, double longitude_deg) {
@@ -141,7 +145,8 @@ std::string placeTextOf(const std::vector<GeoBox>& boxes, const GeoBox& needed) 
     all = {std::min(all.south_deg, box.south_deg), std::max(all.north_deg, box.north_deg),
            std::min(all.west_deg, box.west_deg), std::max(all.east_deg, box.east_deg)};
   }
-  std::string text = fmt::format("the elevation files cover {}; ground is needed at {}", textOf(all), textOf(needed));
+  std::string text =
+      fmt::format("the elevation files cover {}; ground is needed at {}", textOf(all), textOf(needed));
   const double latitude_deg = 0.5 * (needed.south_deg + needed.north_deg);
   const double longitude_deg = wrapLongitude_deg(0.5 * (needed.west_deg + needed.east_deg));
   struct Other {
@@ -172,7 +177,8 @@ std::vector<TerrainSheet> sheetsWithin(FilesWithin& files, const GeoBox& box) {
   for (TerrainSheet& sheet : readSheets(files.tiles)) {
     for (const TerrainSheet::Fill& fill : sheet.fills)
       files.warnings.add(fill.file->name(), fillText(fill.value));
-    for (const TerrainFilePtr& file : sheet.partly_searched) files.warnings.add(file->name(), kPartlySearched);
+    for (const TerrainFilePtr& file : sheet.partly_searched)
+      files.warnings.add(file->name(), kPartlySearched);
     if (sheet.file->isGeographic()) {
       sheets.push_back(std::move(sheet));
     } else {
@@ -252,7 +258,8 @@ void TerrainMosaic::addSea() {
   lowest_m_ = std::fmin(lowest_m_, 0.0);
   highest_m_ = std::fmax(highest_m_, 0.0);
   warnings_.push_back(fmt::format(
-      "terrain: {} void posts and {:.3g} % of the area, which no elevation file covers, are taken as sea (0 m), as "
+      "terrain: {} void posts and {:.3g} % of the area, which no elevation file covers, are taken as sea (0 "
+      "m), as "
       "'missing: sea' says{}",
       void_posts_, 100 * uncovered_fraction_, uncovered_fraction_ == 1 ? "; " + place_text_ : ""));
 }

@@ -251,7 +251,7 @@ ExposureSummary summaryOf(const std::string& name, const Exposure& exposure, con
     gap_s = state == ExposureState::below && !is_alone ? gap_s + length_s : 0;
     summary.longest_gap_s = std::max(summary.longest_gap_s, gap_s);
   }
-  summary.unknown_fraction = unknown_s / all_s;
+  summary.unknown_fraction = all_s > 0 ? unknown_s / all_s : 0;
   summary.fraction = unknown_s < all_s ? reached_s / (all_s - unknown_s) : NAN;
   return summary;
 }

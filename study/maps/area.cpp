@@ -98,7 +98,8 @@ scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapAr
   return scenario::Terrain::load(*scenario.terrain, terrainBoxOf(scenario, area));
 }
 
-void requireGround(const scenario::Scenario& scenario, const scenario::Terrain& terrain, const MapGrid& grid) {
+void requireGround(const scenario::Scenario& scenario, const scenario::Terrain& terrain,
+                   const MapGrid& grid) {
   std::size_t missing = 0, pixels = 0;
   emfield::Surface::Position first{};
   for (const emfield::Surface::Position& at : grid.positions) {
@@ -111,12 +112,13 @@ void requireGround(const scenario::Scenario& scenario, const scenario::Terrain& 
   const bool is_all = missing == pixels;
   const SourceLocation location = scenario.terrain->locations.empty() ? SourceLocation{scenario.file, 0, 0}
                                                                       : scenario.terrain->locations.front();
-  throw Error(ErrorCode::bad_input, location,
-              fmt::format("terrain is missing below {} of the map's {} pixels, first at latitude {:.5f}, longitude {:.5f} "
-                          "deg{}; {}",
-                          missing, pixels, first.latitude_deg, first.longitude_deg,
-                          is_all ? "; " + terrain.placeText() : "",
-                          is_all ? "'terrain: {missing: sea}' takes it as sea" : scenario::kMissingTerrainRemedy));
+  throw Error(
+      ErrorCode::bad_input, location,
+      fmt::format(
+          "terrain is missing below {} of the map's {} pixels, first at latitude {:.5f}, longitude {:.5f} "
+          "deg{}; {}",
+          missing, pixels, first.latitude_deg, first.longitude_deg, is_all ? "; " + terrain.placeText() : "",
+          is_all ? "'terrain: {missing: sea}' takes it as sea" : scenario::kMissingTerrainRemedy));
 }
 
 MapArea parseArea(const std::string& text) {

@@ -29,18 +29,20 @@ bool contains(const GeoBox& box, double latitude_deg, double longitude_deg) {
 /// Name, spacing and datum; of many files the kind only.
 std::string labelOf(const TerrainFileInfo& file, bool is_named) {
   const std::string datum = file.vertical_datum.substr(0, file.vertical_datum.find(':'));
-  const std::string kind = fmt::format("{:.0f} m, {}{}", postSpacing_m(file), datum,
-                                       datum.find('(') != std::string::npos && datum.back() != ')' ? ")" : "");
+  const std::string kind =
+      fmt::format("{:.0f} m, {}{}", postSpacing_m(file), datum,
+                  datum.find('(') != std::string::npos && datum.back() != ')' ? ")" : "");
   return (is_named ? std::filesystem::path(file.file).filename().string() : file.format) + ": " + kind;
 }
 
-/// Categories: "no file", "void", then the files or their kinds.
-Map sourcesMap(const std::vector<TerrainFileInfo>& files, const scenario::Terrain& terrain, const MapGrid& grid) {
+/// Categories: voids, then the files or their kinds; no value: ground without a file.
+Map sourcesMap(const std::vector<TerrainFileInfo>& files, const scenario::Terrain& terrain,
+               const MapGrid& grid) {
   Map map;
   map.name = "terrain";
   map.kind = MapKind::category;
   map.title = "source of the ground";
-  map.labels = {"void in the files", "no file"};
+  map.labels = {"void in the files"};
   std::vector<const TerrainFileInfo*> finest_first;
   for (const TerrainFileInfo& file : files) {
     if (file.is_needed) finest_first.push_back(&file);
@@ -56,13 +58,13 @@ Map sourcesMap(const std::vector<TerrainFileInfo>& files, const scenario::Terrai
     categories.push_back(known->second);
   }
   for (const emfield::Surface::Position& at : grid.positions) {
-    int category = 1;
-    for (std::size_t k = 0; k < finest_first.size() && category == 1; ++k) {
+    int category = -1;
+    for (std::size_t k = 0; k < finest_first.size() && category < 0; ++k) {
       if (contains(finest_first[k]->box, at.latitude_deg, at.longitude_deg)) category = categories[k];
     }
     const bool is_known =
         !std::isnan(at.latitude_deg) && !std::isnan(terrain.heightMsl_m(at.latitude_deg, at.longitude_deg));
-    map.values.push_back(static_cast<float>(is_known || category == 1 ? category : 0));
+    map.values.push_back(category < 0 ? NAN : static_cast<float>(is_known ? category : 0));
   }
   return map;
 }
@@ -75,23 +77,25 @@ double postSpacing_m(const TerrainFileInfo& file) {
          std::max(file.post_spacing_lat_deg, file.post_spacing_lon_deg * std::cos(degToRad(middle_deg)));
 }
 
-render::Image8 drawTerrain(const std::vector<TerrainFileInfo>& files, const scenario::Terrain& terrain, const GeoBox& box,
-                           const std::string& title, int width) {
+render::Image8 drawTerrain(const std::vector<TerrainFileInfo>& files, const scenario::Terrain& terrain,
+                           const GeoBox& box, const std::string& title, int width) {
   constexpr double kPixels = 600;  // of the longer side of the area
   constexpr double kMaxExtent_deg = 60;
   if (box.north_deg - box.south_deg > kMaxExtent_deg || box.east_deg - box.west_deg > 3 * kMaxExtent_deg)
-    throw Error(ErrorCode::usage, fmt::format("a picture shows at most {} degrees of latitude and {} of longitude; the "
-                                              "files cover {:.4g} and {:.4g}: name fewer",
-                                              kMaxExtent_deg, 3 * kMaxExtent_deg, box.north_deg - box.south_deg,
-                                              box.east_deg - box.west_deg));
+    throw Error(ErrorCode::usage,
+                fmt::format("a picture shows at most {} degrees of latitude and {} of longitude; the "
+                            "files cover {:.4g} and {:.4g}: name fewer",
+                            kMaxExtent_deg, 3 * kMaxExtent_deg, box.north_deg - box.south_deg,
+                            box.east_deg - box.west_deg));
   MapArea area;
   area.box = box;
-  const double nearest_deg =
-      box.south_deg > 0 ? box.south_deg : box.north_deg < 0 ? box.north_deg : 0;  // to the equator
+  const double nearest_deg = box.south_deg > 0   ? box.south_deg
+                             : box.north_deg < 0 ? box.north_deg
+                                                 : 0;  // to the equator
   const double extent_m =
       kMetresPerDegree * std::max(box.north_deg - box.south_deg,
                                   (box.east_deg - box.west_deg) * std::cos(degToRad(nearest_deg)));
-  const MapGrid grid = makeMapGrid(area, extent_m / kPixels, "local");
+  const MapGrid grid = makeMapGrid(area, std::max(std::ceil(extent_m / kPixels), 1.0), "local");
   MapPictureOptions options;
   options.width = width;
   options.title = title;

@@ -16,7 +16,8 @@ double postSpacing_m(const scenario::TerrainFileInfo& file);
 /// @param box    the area
 /// @param width  pixels
 /// @throws Error (usage) if the area is too large
-render::Image8 drawTerrain(const std::vector<scenario::TerrainFileInfo>& files, const scenario::Terrain& terrain,
-                           const scenario::GeoBox& box, const std::string& title, int width);
+render::Image8 drawTerrain(const std::vector<scenario::TerrainFileInfo>& files,
+                           const scenario::Terrain& terrain, const scenario::GeoBox& box,
+                           const std::string& title, int width);
 
 }  // namespace emscape::study

@@ -64,6 +64,14 @@ TEST(ParseQuantity, TakesANumberWithOrWithoutItsUnit) {
   EXPECT_EQ(parseQuantity("inf", "m"), std::nullopt);
 }
 
+TEST(ReadUnits, NamesEachUnitThatIsReadOnce) {
+  EXPECT_EQ(readUnits("m"), "m, km, cm, mm, ft, NM, mi");
+  EXPECT_EQ(readUnits("W"), "W, nW, uW, mW, kW, MW, GW, TW, dBW, dBm");
+  EXPECT_EQ(readUnits("deg"), "°");
+  EXPECT_EQ(readUnits("s"), "s, ms, us, ns, min, h");
+  EXPECT_EQ(readUnits(""), "");
+}
+
 TEST(ParseQuantity, TakesOtherUnitsOfTheDimension) {
   const auto expectNear = [](const char* text, const char* unit, double expected) {
     const auto value = parseQuantity(text, unit);

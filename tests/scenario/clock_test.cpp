@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/text/utc.h"
+#include "scenario/model/typed_time.h"
 #include "tests/support/errors.h"
 
 namespace emscape::scenario {
@@ -58,9 +59,9 @@ TEST(Clock, TimesInUtcAreSecondsSinceTheEpoch) {
   const auto faultOf = [](const std::string& text, const Clock& of) {
     return test::errorOf([&] { parseTimes(text, of); }, ErrorCode::usage);
   };
-  EXPECT_THAT(faultOf("2026-11-28T06:05:00", clock), HasSubstr("is not a UTC time such as"));
-  EXPECT_THAT(faultOf("2026-13-28T06:05:00Z", clock), HasSubstr("is not a UTC time such as"));
-  EXPECT_THAT(faultOf("2026-11-28T06:05:00Z5", clock), HasSubstr("'5' follows a UTC time"));
+  EXPECT_THAT(faultOf("2026-11-28T06:05:00", clock), HasSubstr("is not a time in seconds or UTC"));
+  EXPECT_THAT(faultOf("2026-13-28T06:05:00Z", clock), HasSubstr("is not a time in seconds or UTC"));
+  EXPECT_THAT(faultOf("2026-11-28T06:05:00Z5", clock), HasSubstr("is not a time in seconds or UTC"));
   EXPECT_THAT(faultOf("2026-11-28T06:05:00Z", Clock{"", 600, 10}), HasSubstr("the scenario has no epoch"));
   EXPECT_THAT(test::errorOf([&] { parseTime("0:1", clock); }, ErrorCode::usage),
               HasSubstr("a single time is expected"));
@@ -73,10 +74,58 @@ TEST(Clock, ParsesTimesInItsThreeForms) {
   EXPECT_EQ(parseTimes("1:2:0.5", clock), (std::vector<double>{1, 1.5, 2}));
 }
 
+TEST(Clock, TimesAreAlsoReadWithUnitsAndInUtc) {
+  const Clock clock{"2026-06-01T06:00:00Z", 120, 30};
+  EXPECT_EQ(parseTimes("1 min", clock), (std::vector<double>{60}));
+  EXPECT_EQ(parseTimes("2026-06-01T06:01:10.5Z", clock), (std::vector<double>{70.5}));
+  EXPECT_EQ(parseTimes("2026-06-01T06:01:00Z:2026-06-01T06:02:00Z", clock),
+            (std::vector<double>{60, 90, 120}));
+  EXPECT_EQ(parseTimes("0:2026-06-01T06:00:20Z:10 s", clock), (std::vector<double>{0, 10, 20}));
+  EXPECT_THAT(test::errorOf([&] { parseTimes("2026-13-01T06:01:10Z", clock); }, ErrorCode::usage),
+              testing::HasSubstr("month 13 is outside 1 to 12"));
+  EXPECT_THAT(test::errorOf(
+                  [&] {
+                    parseTimes("2026-06-01T06:01:10Z", {"", 10, 1});
+                  },
+                  ErrorCode::usage),
+              testing::HasSubstr("the scenario has no epoch"));
+}
+
+TEST(Clock, TypedTimesAreOfTheClockFirstAndThenInUtc) {
+  const Clock clock{"2026-06-01T23:59:00Z", 120, 1};
+  const auto read = [&](const char* text) { return parseTime_s(text, clock, {0, 120}); };
+  EXPECT_EQ(read("49.5"), 49.5);
+  EXPECT_EQ(read(" 1.5 min "), 90);
+  EXPECT_EQ(read("1:15"), 75);
+  EXPECT_EQ(read("0:00:30"), 30);
+  EXPECT_EQ(read("00:00:01"), 1) << "of the clock";
+  EXPECT_EQ(read("00:00:01 UTC"), 61) << "the next day";
+  EXPECT_EQ(read("00:00:01Z"), 61);
+  EXPECT_EQ(read("23:59"), 0) << "outside of the clock";
+  EXPECT_EQ(read("23:59:12.5"), 12.5);
+  EXPECT_EQ(read("2026-06-02T00:00:01.5Z"), 61.5);
+  const auto refusal = [&](const char* text) {
+    return test::errorOf([&] { read(text); }, ErrorCode::bad_input);
+  };
+  for (const char* wrong : {"", "now", "24:00:60", "12:", "12:00:01 s", "nan", "1:2:3:4", "1 d"}) {
+    EXPECT_THAT(refusal(wrong),
+                testing::HasSubstr("expected seconds (12.5, 1.5 min), M:SS or H:MM:SS, or UTC such "
+                                   "as 2026-06-01T23:59:00Z"))
+        << wrong;
+  }
+  for (const char* outside : {"500", "-1", "-0:05", "2:01", "12:00", "2026-06-01T23:58:00Z"}) {
+    EXPECT_THAT(refusal(outside),
+                testing::HasSubstr("allowed: 0 s to 120 s, 2026-06-01T23:59:00Z to 2026-06-02T00:01:00Z"))
+        << outside;
+  }
+  EXPECT_THAT(refusal("2026-06-31T00:00:00Z"), testing::HasSubstr("day of the month 31 is outside 1 to 30"));
+  EXPECT_EQ(parseTime_s("1 d 02:00:00", {"", 0, 1}, {0, 1e6}), 93600) << "as the window writes it";
+}
+
 TEST(Clock, RefusesTextThatIsNoTime) {
   const Clock clock{"", 10, 2};
-  for (const char* text :
-       {"", ":", "a", "1:", "1:2:3:4", "2:1", "0:1:0", "0:1:-1", "nan", "0:inf", "0:1e9:1e-3", "1 s"}) {
+  for (const char* text : {"", ":", "a", "1:", "1:2:3:4", "2:1", "0:1:0", "0:1:-1", "nan", "0:inf",
+                           "0:1e9:1e-3", "1 m", "2026-06-01T06:00:00Z"}) {
     EXPECT_THAT(test::errorOf([&] { parseTimes(text, clock); }, ErrorCode::usage),
                 testing::HasSubstr("times"))
         << text;

@@ -139,8 +139,8 @@ void writeColours(const std::string& file, const std::function<long(int, int)>& 
       const long bits = value(column, row);
       for (int band = 0; band < 3; ++band) {
         auto byte = static_cast<unsigned char>(bits >> (16 - 8 * band) & 255);
-        if (dataset->GetRasterBand(band + 1)->RasterIO(GF_Write, column, row, 1, 1, &byte, 1, 1, GDT_Byte, 0, 0,
-                                                       nullptr) != CE_None)
+        if (dataset->GetRasterBand(band + 1)->RasterIO(GF_Write, column, row, 1, 1, &byte, 1, 1, GDT_Byte, 0,
+                                                       0, nullptr) != CE_None)
           throw std::runtime_error("cannot write " + file);
       }
     }

@@ -45,7 +45,8 @@ void writeGzip(const std::string& from, const std::string& to);
 /// An HGT tile: big-endian posts, `height(column, row)` from the north-western corner.
 void writeHgt(const std::string& file, int posts, const std::function<int(int column, int row)>& height);
 
-/// A GeoTIFF of bytes in red, green and blue, 10 x 10 pixels of 0.1 degrees from 10 E, 50 N. @param value  24 bits
+/// A GeoTIFF of bytes in red, green and blue, 10 x 10 pixels of 0.1 degrees from 10 E, 50 N. @param value  24
+/// bits
 void writeColours(const std::string& file, const std::function<long(int column, int row)>& value);
 
 /// Writes a raster in another format. @param driver  GDAL's name of the format

@@ -1,6 +1,7 @@
 // Tracks of platforms in files of other programs.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -125,6 +126,16 @@ TEST_F(RecordedTrack, GapsAreAbsenceAndHeightsMayBeAboveTheGround) {
   EXPECT_FALSE(points[0].gap_after);
   EXPECT_TRUE(points[1].gap_after);
   EXPECT_FALSE(points[2].gap_after);
+  Platform platform;
+  platform.track = points;
+  for (const OutsideTrack outside : {OutsideTrack::absent, OutsideTrack::hold}) {
+    platform.outside_track = outside;
+    EXPECT_TRUE(platform.isPresentAt(3));
+    EXPECT_TRUE(platform.isPresentAt(5));
+    EXPECT_FALSE(platform.isPresentAt(20));
+    EXPECT_TRUE(platform.isPresentAt(40));
+    EXPECT_EQ(platform.isPresentAt(50), outside == OutsideTrack::hold);
+  }
   EXPECT_EQ(points[2].position.height_agl_m, 2);
   EXPECT_FALSE(points[2].position.height_msl_m);
   folder_.write("own.csv", "t_s,latitude_deg,longitude_deg,height_agl_m\n0,52,5,10\n40,52.002,5,10\n");
@@ -145,6 +156,17 @@ TEST_F(RecordedTrack, AFileOfTheFormatWithATypingErrorIsStillThatAndOtherFilesAr
       "points: [{t_s: 0, latitude_deg: 52, longitude_deg: 5, height_msl_m: 0}, {t_s: 1, latitude_deg: 52, "
       "longitude_deg: 5, height_msl_m: 0}], object: a");
   EXPECT_THAT(problems_, ElementsAre(HasSubstr("'object'")));
+}
+
+TEST_F(RecordedTrack, WhatIsTrueOfAFileIsToldOnceForAllItsPlatforms) {
+  folder_.write("two.csv", "time,id,lat,lon\n0,a,52,5\n0,b,52,5\n9,a,52.1,5\n9,b,52.1,5\nx,b,52,5\n");
+  pointsOf("file: two.csv, object: a}}\n  - {name: b, track: {file: two.csv, object: b");
+  EXPECT_THAT(problems_, testing::IsSupersetOf(
+                             {HasSubstr("1 record cannot be read"), HasSubstr("0 m is taken (4 times)")}));
+  EXPECT_EQ(
+      std::count_if(problems_.begin(), problems_.end(),
+                    [](const std::string& text) { return text.find("0 m is taken") != std::string::npos; }),
+      1);
 }
 
 TEST_F(RecordedTrack, AnEditReadsAnotherObjectOfTheSameFile) {

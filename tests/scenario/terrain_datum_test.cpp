@@ -27,8 +27,8 @@ const double kUndulation_m = geoidUndulation_m(49.5, 10.5);
 class TerrainDatum : public testing::Test {
  protected:
   /// A file of 100 everywhere.
-  std::string write(const std::string& name, const std::string& crs = "EPSG:4326", const std::string& unit = "",
-                    bool is_geotiff_1_0 = false) const {
+  std::string write(const std::string& name, const std::string& crs = "EPSG:4326",
+                    const std::string& unit = "", bool is_geotiff_1_0 = false) const {
     test::DemFile file = test::geographicDem(10, 50, 0.1, 10, 10, [](double, double) { return 100; });
     file.crs = crs;
     file.unit = unit;
@@ -64,7 +64,8 @@ TEST_F(TerrainDatum, IsThatWhichTheFileStates) {
     EXPECT_EQ(heightOf(write("a.tif", "EPSG:4326+5773", "", is_old)), 100) << "EGM96";
     EXPECT_THAT(load(folder_ / "a.tif")->warnings(), IsEmpty());
     EXPECT_EQ(heightOf(write("b.tif", "EPSG:4326+5703", "", is_old)), 100) << "NAVD88";
-    EXPECT_THAT(load(folder_ / "b.tif")->warnings(), ElementsAre(HasSubstr("above NAVD88 are taken as above EGM96")));
+    EXPECT_THAT(load(folder_ / "b.tif")->warnings(),
+                ElementsAre(HasSubstr("above NAVD88 are taken as above EGM96")));
     EXPECT_THAT(Terrain::describe(write("c.tif", "EPSG:4326+3855", "", is_old)).vertical_datum,
                 HasSubstr("EGM2008 (stated by the file: EGM2008 height)"));
   }
@@ -80,7 +81,8 @@ TEST_F(TerrainDatum, OfASystemOfACountryIsMeanSeaLevelWithAWarning) {
 
 TEST_F(TerrainDatum, NotStatedIsAssumedWithItsEffect) {
   const std::string expected = fmt::format(
-      "states no vertical datum: its heights are taken as above EGM96; if they are above the ellipsoid, the ground is "
+      "states no vertical datum: its heights are taken as above EGM96; if they are above the ellipsoid, the "
+      "ground is "
       "{:.1f} m too high there. `vertical_datum: egm96`",
       kUndulation_m);
   EXPECT_THAT(load(write("a.tif"))->warnings(), ElementsAre(HasSubstr(expected)));
@@ -93,7 +95,8 @@ TEST_F(TerrainDatum, IsKnownByTheNameOfAProduct) {
   EXPECT_NEAR(heightOf(write("32_11_arcticdem_mosaic.tif")), 100 - kUndulation_m, 0.01);
   EXPECT_THAT(Terrain::describe(write("Copernicus_DSM_COG_10_N49_00_E010_00_DEM.tif")).vertical_datum,
               "EGM2008 (by its name: Copernicus DEM)");
-  EXPECT_THAT(Terrain::describe(write("ASTGTMV003_N49E010_dem.tif")).vertical_datum, "EGM96 (by its name: ASTER GDEM)");
+  EXPECT_THAT(Terrain::describe(write("ASTGTMV003_N49E010_dem.tif")).vertical_datum,
+              "EGM96 (by its name: ASTER GDEM)");
 }
 
 TEST_F(TerrainDatum, Egm2008WithoutItsGridIsEgm96WithAWarningUnlessAKeyAsksForIt) {
@@ -121,9 +124,10 @@ TEST_F(TerrainDatum, AKeyThatContradictsTheFileIsAnErrorThatNamesBoth) {
 
 TEST_F(TerrainDatum, OfSeveralFilesMayDiffer) {
   test::DemFile west = test::geographicDem(10, 50, 0.1, 5, 10, [](double, double) { return 100; });
-  test::DemFile east = test::geographicDem(10.5, 50, 0.1, 5, 10, [](double latitude_deg, double longitude_deg) {
-    return 100 + geoidUndulation_m(latitude_deg, longitude_deg);
-  });
+  test::DemFile east =
+      test::geographicDem(10.5, 50, 0.1, 5, 10, [](double latitude_deg, double longitude_deg) {
+        return 100 + geoidUndulation_m(latitude_deg, longitude_deg);
+      });
   west.crs = "EPSG:4326+5773";
   east.crs = "EPSG:4979";
   west.write(folder_ / "west.tif");

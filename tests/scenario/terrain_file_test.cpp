@@ -342,7 +342,8 @@ TEST_F(TerrainFileTest, FillValuesFarBelowTheirNeighboursAreVoid) {
     EXPECT_EQ(info.lowest_m, 100);
     EXPECT_EQ(info.void_posts, 20);
     const TerrainPtr terrain = load({undeclared}, {49, 50, 10, 11});
-    EXPECT_THAT(terrain->warnings(), ElementsAre(HasSubstr("elevation file " + undeclared + ": 20 posts of")));
+    EXPECT_THAT(terrain->warnings(),
+                ElementsAre(HasSubstr("elevation file " + undeclared + ": 20 posts of")));
     EXPECT_TRUE(std::isnan(terrain->heightMsl_m(49.55, 10.35)));
     EXPECT_EQ(terrain->heightMsl_m(49.55, 10.75), 100);
   }

@@ -1,4 +1,5 @@
-/// Elevation files as they are downloaded: folders, patterns, archives, HGT of all sizes, other formats, pictures.
+/// Elevation files as they are downloaded: folders, patterns, archives, HGT of all sizes, other formats,
+/// pictures.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -54,13 +55,15 @@ class TerrainNames : public testing::Test {
   void expectTile(const std::string& name, int posts) const {
     const TerrainPtr terrain = load({name});
     EXPECT_NEAR(terrain->heightMsl_m(49.5, 10.25), 1000 + 0.25 * (posts - 1), 0.01) << name;
-    EXPECT_NEAR(terrain->postSpacing_m(), 111200.0 * std::cos(49.5 / 57.2958) / (posts - 1), 1500.0 / posts) << name;
+    EXPECT_NEAR(terrain->postSpacing_m(), 111200.0 * std::cos(49.5 / 57.2958) / (posts - 1), 1500.0 / posts)
+        << name;
     EXPECT_THAT(terrain->warnings(), IsEmpty()) << name;
   }
   /// Runs a command line of a message. False: the program is not installed.
   bool run(const std::string& command) const {
     if (std::system("command -v gdal_translate > /dev/null") != 0) return false;
-    EXPECT_EQ(std::system(("cd " + folder_.path().string() + " && " + command + " > log 2>&1").c_str()), 0) << command;
+    EXPECT_EQ(std::system(("cd " + folder_.path().string() + " && " + command + " > log 2>&1").c_str()), 0)
+        << command;
     return true;
   }
 
@@ -69,7 +72,8 @@ class TerrainNames : public testing::Test {
 
 TEST_F(TerrainNames, HgtOfAnySquareSizeIsPlacedByItsName) {
   for (const int posts : {121, 1201, 1801}) {
-    for (const char* name : {"N49E010.hgt", "n49_e010_1arc_v3.hgt", "copy of N49E010 (1).hgt", "N49E010.SRTMGL1.hgt"})
+    for (const char* name :
+         {"N49E010.hgt", "n49_e010_1arc_v3.hgt", "copy of N49E010 (1).hgt", "N49E010.SRTMGL1.hgt"})
       expectTile(tile(name, posts), posts);
   }
 }
@@ -113,7 +117,8 @@ TEST_F(TerrainNames, ArchivesAreReadWithoutUnpackingThemOnTheDisk) {
                                        {"a/N49E010.num", folder_ / "N49E010.hgt"},
                                        {"a/N49E011.hgt", folder_ / "N49E010.hgt"}});
   fs::remove(folder_ / "N49E010.hgt");
-  for (const char* name : {"N49E010.SRTMGL1.hgt.zip", "N49E010.hgt.gz", "two.zip"}) expectTile(folder_ / name, 121);
+  for (const char* name : {"N49E010.SRTMGL1.hgt.zip", "N49E010.hgt.gz", "two.zip"})
+    expectTile(folder_ / name, 121);
   EXPECT_EQ(load({folder_ / "two.zip"}, {}, {49.2, 49.8, 11.2, 11.8})->uncoveredFraction(), 0);
   int files = 0;
   for (const auto& entry : fs::directory_iterator(folder_.path())) files += entry.exists() ? 1 : 0;
@@ -122,9 +127,9 @@ TEST_F(TerrainNames, ArchivesAreReadWithoutUnpackingThemOnTheDisk) {
 
 TEST_F(TerrainNames, ArchiveOfABilHasItsHeader) {
   test::convertDem(raster("a.tif"), "EHdr", folder_ / "a.bil");
-  test::writeZip(folder_ / "a.zip", {{"x/a.bil", folder_ / "a.bil"},
-                                     {"x/a.hdr", folder_ / "a.hdr"},
-                                     {"x/a.prj", folder_ / "a.prj"}});
+  test::writeZip(
+      folder_ / "a.zip",
+      {{"x/a.bil", folder_ / "a.bil"}, {"x/a.hdr", folder_ / "a.hdr"}, {"x/a.prj", folder_ / "a.prj"}});
   EXPECT_NEAR(load({folder_ / "a.zip"})->heightMsl_m(49.5, 10.5), 1050, 1e-3);
 }
 
@@ -142,8 +147,8 @@ TEST_F(TerrainNames, BrokenArchivesAreNamed) {
 
 TEST_F(TerrainNames, OtherFormatsAreRead) {
   const std::string from = raster("a.tif");
-  for (const auto& [driver, ending] : {std::pair{"HFA", "img"}, {"netCDF", "nc"}, {"GPKG", "gpkg"}, {"EHdr", "bil"},
-                                       {"AAIGrid", "asc"}}) {
+  for (const auto& [driver, ending] :
+       {std::pair{"HFA", "img"}, {"netCDF", "nc"}, {"GPKG", "gpkg"}, {"EHdr", "bil"}, {"AAIGrid", "asc"}}) {
     const std::string file = folder_ / ("b." + std::string(ending));
     test::convertDem(from, driver, file);
     EXPECT_NEAR(load({file})->heightMsl_m(49.5, 10.5), 1050, 1e-3) << driver;
@@ -164,7 +169,8 @@ TEST_F(TerrainNames, KeyOfTheSystemIsTheRemedyForFilesWithoutOne) {
     EXPECT_NEAR(load({file}, keys)->heightMsl_m(49.5, 10.5), 1050, 1e-3) << driver;
   }
   keys.crs = "EPSG:32632";
-  EXPECT_THAT(problemOf(from, keys), HasSubstr("'crs: EPSG:32632' of the scenario contradicts the file, which states"));
+  EXPECT_THAT(problemOf(from, keys),
+              HasSubstr("'crs: EPSG:32632' of the scenario contradicts the file, which states"));
   keys.crs = "http://127.0.0.1:1/x.prj";
   EXPECT_THAT(problemOf(from, keys), HasSubstr("is not EPSG: and the number"));
 }
@@ -172,7 +178,8 @@ TEST_F(TerrainNames, KeyOfTheSystemIsTheRemedyForFilesWithoutOne) {
 TEST_F(TerrainNames, OtherFormatsNameThemselvesAndTheCommandThatWorks) {
   test::convertDem(raster("a.tif"), "RST", folder_ / "a.rst");
   EXPECT_THAT(problemOf(folder_ / "a.rst"),
-              AllOf(HasSubstr("RST (Idrisi Raster"), HasSubstr("gdal_translate " + folder_ / "a.rst" + " HEIGHTS.tif")));
+              AllOf(HasSubstr("RST (Idrisi Raster"),
+                    HasSubstr("gdal_translate " + folder_ / "a.rst" + " HEIGHTS.tif")));
   if (!run("gdal_translate a.rst HEIGHTS.tif")) GTEST_SKIP() << "gdal_translate is not installed";
   EXPECT_NEAR(load({folder_ / "HEIGHTS.tif"})->heightMsl_m(49.5, 10.5), 1050, 1e-3);
 }
@@ -191,7 +198,8 @@ TEST_F(TerrainNames, CommandsOfMessagesMakeFilesThatAreRead) {
   egm96.vertical_datum = VerticalDatum::egm96;
 
   file.crs = "EPSG:4979";
-  EXPECT_THAT(problemOf(write("datum.tif"), egm96), AllOf(HasSubstr("gdal_translate -a_srs"), HasSubstr("EPSG:4326+5773")));
+  EXPECT_THAT(problemOf(write("datum.tif"), egm96),
+              AllOf(HasSubstr("gdal_translate -a_srs"), HasSubstr("EPSG:4326+5773")));
   run("gdal_translate -a_srs EPSG:4326+5773 datum.tif datum2.tif");
   EXPECT_EQ(heightOf(folder_ / "datum2.tif", egm96), 100);
 
@@ -214,8 +222,9 @@ TEST_F(TerrainNames, CommandsOfMessagesMakeFilesThatAreRead) {
   file.unit = "";
   file.crs = "";
   file.transform = {};
-  EXPECT_THAT(problemOf(write("bare.tif")),
-              HasSubstr("gdal_translate -a_srs EPSG:4326 -a_ullr WEST NORTH EAST SOUTH " + folder_ / "bare.tif"));
+  EXPECT_THAT(
+      problemOf(write("bare.tif")),
+      HasSubstr("gdal_translate -a_srs EPSG:4326 -a_ullr WEST NORTH EAST SOUTH " + folder_ / "bare.tif"));
   run("gdal_translate -a_srs EPSG:4326 -a_ullr 10 50 11 49 bare.tif placed.tif");
   EXPECT_EQ(heightOf(folder_ / "placed.tif"), 100);
 }
@@ -227,7 +236,8 @@ TEST_F(TerrainNames, FileOfSeveralRastersNamesThemAndTheCommand) {
            "APPEND_SUBDATASET=YES -co RASTER_TABLE=two a.tif two.gpkg"))
     return;
   const std::string message = problemOf(folder_ / "two.gpkg");
-  EXPECT_THAT(message, AllOf(HasSubstr("has no raster itself, but 2 in it: one, two."), HasSubstr("gdal_translate ")));
+  EXPECT_THAT(message,
+              AllOf(HasSubstr("has no raster itself, but 2 in it: one, two."), HasSubstr("gdal_translate ")));
   const std::size_t begin = message.find("gdal_translate "), end = message.find(" makes a file");
   run(message.substr(begin, end - begin));
   EXPECT_EQ(load({folder_ / "HEIGHTS.tif"})->heightMsl_m(49.5, 10.5), 100);
@@ -253,7 +263,8 @@ TEST_F(TerrainNames, ColoursAreDecodedWhenAsked) {
       return encoding == HeightEncoding::terrarium ? std::lround((height_m + 32768) * 256)
                                                    : std::lround((height_m + 10000) * 10);
     });
-    EXPECT_THAT(problemOf(file), AllOf(HasSubstr("is a picture, not heights"), HasSubstr("`encoding: terrain-rgb`")));
+    EXPECT_THAT(problemOf(file),
+                AllOf(HasSubstr("is a picture, not heights"), HasSubstr("`encoding: terrain-rgb`")));
     TerrainFileKeys keys;
     keys.encoding = encoding;
     EXPECT_NEAR(load({file}, keys)->heightMsl_m(49.55, 10.45), 1504, 0.01);
@@ -303,7 +314,8 @@ TEST_F(TerrainNames, AnotherSignIsOfferedIfItFits) {
   tile("N49W010.hgt");
   const TerrainPtr terrain = load({folder_ / "N49W010.hgt"}, {}, {49.2, 49.8, 9.2, 9.8});
   EXPECT_THAT(terrain->placeText(),
-              AllOf(HasSubstr("cover latitudes 49 to 50, longitudes -10 to -9 deg"), HasSubstr("longitudes 9.2 to 9.8"),
+              AllOf(HasSubstr("cover latitudes 49 to 50, longitudes -10 to -9 deg"),
+                    HasSubstr("longitudes 9.2 to 9.8"),
                     HasSubstr("latitude 49.5, longitude -9.5 deg: perhaps longitude has the other sign")));
   EXPECT_THAT(load({folder_ / "N49W010.hgt"}, {}, {9.2, 9.8, 49.2, 49.8})->placeText(),
               testing::Not(HasSubstr("perhaps")));

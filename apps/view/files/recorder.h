@@ -15,11 +15,14 @@
 
 namespace emscape::view {
 
+/// Limits of the pictures per second of a video.
+inline constexpr double kMinFramesPerSecond = 0.1, kMaxFramesPerSecond = 240;
+
 /// Times to record; all fields empty: every step of the series.
 struct RecordRange {
   std::optional<double> begin_s, end_s;
   std::optional<double> step_s;           ///< empty: that of the series
-  double frames_per_s = 10;               ///< of a video, 0.1..240
+  double frames_per_s = 10;               ///< of a video
   std::optional<render::ImageSize> size;  ///< of the pictures; none: that of the view
 };
 

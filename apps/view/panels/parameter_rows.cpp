@@ -40,6 +40,14 @@ std::string rangeOf(const Parameter& parameter) {
   return rangeText(parameter.minimum, parameter.maximum, unitSigns(parameter.unit));
 }
 
+/// What was expected of a text: " in one of the units W, kW, dBm"; empty without a unit.
+std::string unitsText(const Parameter& parameter) {
+  if (parameter.key == "latitude_deg") return " such as 44.41, 44.41N or 44°24'30\"N, nor a position";
+  if (parameter.key == "longitude_deg") return " such as -71.4, 71.4W or 71°24'W, nor a position";
+  const std::string units = readUnits(parameter.unit);
+  return units.empty() ? "" : " in one of the units " + units;
+}
+
 std::string tooltipOf(const Parameter& parameter) {
   std::string text = parameter.name + (parameter.description.empty() ? "" : ": " + parameter.description);
   if (isNumber(parameter)) {
@@ -362,9 +370,8 @@ void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
         fmt::format("{}: a whole number is needed; allowed: {}", parameter.name, rangeOf(parameter)));
   }
   if (!number && !(is_word && !parameter.choices.empty())) {
-    const std::string unit = parameter.unit.empty() ? "" : fmt::format(" in {}", unitSigns(parameter.unit));
-    return refuse(fmt::format("{}: '{}' is not a number{}; allowed: {}", parameter.name, text, unit,
-                              rangeOf(parameter)));
+    return refuse(fmt::format("{}: '{}' is not a number{}; allowed: {}", parameter.name, text,
+                              unitsText(parameter), rangeOf(parameter)));
   }
   const std::string next = number ? numberText(*number) : text;
   if (next == numberText(value) && parameter.is_given) return;

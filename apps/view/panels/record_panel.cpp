@@ -13,6 +13,7 @@
 #include "apps/view/widgets/theme.h"
 #include "base/text/shell_word.h"
 #include "base/text/time_text.h"
+#include "emscape/base/error.h"
 
 namespace emscape::view {
 namespace {
@@ -139,6 +140,28 @@ void drawCameraPath(PanelContext& context) {
     ImGui::TextColored(errorColor(session.theme()), "two bookmarks are needed: Ctrl+1, Ctrl+2, ...");
 }
 
+/// Begin, end and step, typed as all times; pictures per second.
+void drawTimes(const PanelContext& context, Typed& typed) {
+  const auto number = [&](const char* name, double& value, const NumberForm& form) {
+    ImGui::SetNextItemWidth(120 * context.scale);
+    numberField(context, name, value, form);
+  };
+  NumberForm instant{"", "s"}, step{"", "s"}, rate;
+  instant.read = [&](const std::string& text) { return context.session.timeline().parseTime_s(text); };
+  step.read = [](const std::string& text) {
+    const std::optional<double> step_s = parseTime_s(text);
+    if (step_s && *step_s > 0) return *step_s;
+    throw Error(ErrorCode::bad_input,
+                fmt::format("step '{}': expected seconds (0.5, 1.5 min) or M:SS, above 0", text));
+  };
+  rate.min = kMinFramesPerSecond;
+  rate.max = kMaxFramesPerSecond;
+  number("begin", typed.begin_s, instant);
+  number("end", typed.end_s, instant);
+  number("step", typed.step_s, step);
+  number("pictures per second of a film", typed.frames_per_s, rate);
+}
+
 std::string bytesText(double bytes) {
   return bytes < 1e9 ? fmt::format("{:.2g} MB", std::max(0.1, bytes / 1e6))
                      : fmt::format("{:.2g} GB", bytes / 1e9);
@@ -192,18 +215,7 @@ void drawRecording(PanelContext& context, const Area& picture) {
   drawOutput(context, typed);
   drawSize(context, typed);
   drawCameraPath(context);
-  const auto number = [&](const char* name, double& value, const char* unit, double min, double max) {
-    ImGui::SetNextItemWidth(120 * context.scale);
-    NumberForm form{"", unit};
-    form.min = min;
-    form.max = max;
-    numberField(context, name, value, form);
-  };
-  const double first_s = session.timeline().begin_s(), last_s = session.timeline().end_s();
-  number("begin", typed.begin_s, "s", first_s, last_s);
-  number("end", typed.end_s, "s", first_s, last_s);
-  number("step", typed.step_s, "s", 1e-6, std::max(1.0, last_s - first_s));
-  number("pictures per second of a film", typed.frames_per_s, "", 0.01, 1000);
+  drawTimes(context, typed);
   drawEstimate(context, typed);
   ImGui::TextDisabled("%s", "the same on the command line, with the view saved as VIEW.json (Ctrl+Shift+V):");
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + 520 * context.scale);

@@ -48,6 +48,8 @@ std::string pictureText(const playback::LiveStatus& status, bool is_computing) {
   const char* const exactness = status.exact ? "exact" : "approximate";
   if (!status.cells.empty()) return fmt::format("{}, {}", exactness, status.cells);
   if (status.exact) return fmt::format("exact, {} rays", render::toString(render::Pattern::full));
+  // Complete, but a change of the view, or of what labels stand for, is not drawn yet.
+  if (status.pattern == render::Pattern::full) return "the picture shows the view before";
   return fmt::format("approximate, {} rays ({:.0f} %)", render::toString(status.pattern),
                      100 * status.rays_fraction);
 }

@@ -40,8 +40,8 @@ struct ProgramState {
   Activity activity = Activity::empty;
   std::string badge;  ///< "COMPUTING 42 %"
   std::string what;   ///< "power_density_dbwm2 at 49.5 s: 'search radar' by itm, 1 of 4"; may be empty
-  /// Of the picture, in the words of Painter::note(): "exact, full rays", "approximate, columns rays (12 %)";
-  /// may be empty.
+  /// Of the picture, in the words of Painter::note(): "exact, full rays", "approximate, columns rays (12 %)",
+  /// "the picture shows the view before"; may be empty.
   std::string picture;
   std::string stream;    ///< "DIS: 120 PDU/s, 14 entities, last 0.1 s ago"; empty without a stream
   double fraction = -1;  ///< completed; negative: unknown

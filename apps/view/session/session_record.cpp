@@ -29,8 +29,10 @@ void Session::record(const RecordRange& range, const std::string& output) {
 /// The times in the syntax of --times; empty: all steps.
 std::string Session::recordTimes(const RecordRange& range) const {
   if (!range.begin_s && !range.end_s && !range.step_s) return "";
-  const double begin_s = range.begin_s.value_or(timeline_.times_s().front());
-  const double end_s = range.end_s.value_or(timeline_.times_s().back());
+  const double begin_s = range.begin_s.value_or(timeline_.begin_s());
+  const double end_s = range.end_s.value_or(timeline_.end_s());
+  timeline_.requireTime(begin_s);
+  timeline_.requireTime(end_s);
   if (!(begin_s <= end_s) || (range.step_s && !(*range.step_s > 0))) {
     throw Error(ErrorCode::bad_input, "record: expected begin_s <= end_s and step_s > 0");
   }
@@ -45,12 +47,16 @@ std::vector<Verb> Session::recordVerbs() {
        {{"file", kText, false},
         {"begin_s", kNumber, false},
         {"end_s", kNumber, false},
+        {"begin", kText, false},
+        {"end", kText, false},
         {"step_s", kNumber, false},
-        {"frames_per_s", kNumber, false, {0.1, 240}},
+        {"frames_per_s", kNumber, false, {kMinFramesPerSecond, kMaxFramesPerSecond}},
         {"width", kNumber, false, kSide_px},
         {"height", kNumber, false, kSide_px},
         {"replace", kBoolean, false}},
-       "Records the view over the series, or from `begin_s` to `end_s`, into a folder of pictures or a .mp4, "
+       "Records the view over the series, or from `begin_s` to `end_s` (or from `begin` to `end`, texts as "
+       "for "
+       "`seek`), into a folder of pictures or a .mp4, "
        "of `width` x `height` pixels or as large as on screen; without a file: asks for it",
        [](Session& session, const Command& command) {
          if (!command.has("file")) {
@@ -60,7 +66,14 @@ std::vector<Verb> Session::recordVerbs() {
          const auto given = [&command](const char* name) {
            return command.has(name) ? std::optional<double>(command.number(name)) : std::nullopt;
          };
-         RecordRange range{given("begin_s"), given("end_s"), given("step_s"),
+         const auto time = [&](const char* name_s, const char* name) {
+           if (command.has(name_s) && command.has(name)) {
+             throw Error(ErrorCode::bad_input, fmt::format("record: expected either {} or {}", name_s, name));
+           }
+           return command.has(name) ? std::optional(session.timeline_.parseTime_s(command.text(name)))
+                                    : given(name_s);
+         };
+         RecordRange range{time("begin_s", "begin"), time("end_s", "end"), given("step_s"),
                            command.number("frames_per_s", 10), std::nullopt};
          if (command.has("width") != command.has("height")) {
            throw Error(ErrorCode::bad_input, "record: expected width and height together");

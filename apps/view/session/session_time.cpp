@@ -38,15 +38,16 @@ std::vector<Verb> Session::timeVerbs() {
        }},
       {"seek",
        {{"time_s", kNumber, false}, {"time", kText, false}},
-       "Shows a time, given in seconds or written as seconds or hh:mm:ss in UTC; of volumes the nearest "
-       "step. "
-       "Playing goes on from there",
+       "Shows a time of the series, given in seconds or as a text (90, 1.5 min, 1:30, 2026-06-01T06:01:30Z, "
+       "06:01:30 UTC); of volumes the nearest step. Playing goes on from there",
        [](Session& session, const Command& command) {
          if (command.has("time_s") == command.has("time")) {
            throw Error(ErrorCode::bad_input, "seek: expected either time_s or time");
          }
-         session.timeline_.seek(command.has("time") ? session.timeline_.parseTime_s(command.text("time"))
-                                                    : command.number("time_s"));
+         const double time_s = command.has("time") ? session.timeline_.parseTime_s(command.text("time"))
+                                                   : command.number("time_s");
+         session.timeline_.requireTime(time_s);
+         session.timeline_.seek(time_s);
          session.askTime();
        }},
       {"first",

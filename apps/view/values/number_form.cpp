@@ -43,6 +43,17 @@ std::optional<double> fieldValueOf(const std::string& text, const std::string& u
   return std::nullopt;
 }
 
+/// The units that are read for a unit; of values of a field those in which they can be shown.
+std::string unitsOf(const std::string& unit) {
+  std::string units;
+  for (const FieldUnit each : {FieldUnit::stored, FieldUnit::dbm, FieldUnit::v_per_m}) {
+    const std::string shown = render::fieldScale(unit, each).unit;
+    if (each == FieldUnit::stored || shown != unit)
+      units += (units.empty() ? "" : ", ") + render::unitText(shown);
+  }
+  return units == render::unitText(unit) ? readUnits(unit) : units;
+}
+
 }  // namespace
 
 std::string NumberForm::textOf(double value) const {
@@ -64,6 +75,7 @@ double NumberForm::valueOf(const std::string& text) const {
       number.compare(number.size() - suffix.size(), suffix.size(), suffix) == 0)
     number.resize(number.size() - suffix.size());
   number = withoutSpaces(number);
+  if (read) return read(number);
   std::optional<double> value = parseQuantity(number, unit, shown_factor);
   if (render::fieldScale(unit, field_unit).unit != unit || !value)
     value = fieldValueOf(number, unit, field_unit);
@@ -74,7 +86,9 @@ double NumberForm::valueOf(const std::string& text) const {
             ? ""
             : ", such as " +
                   NumberForm{"", unit, "", -1, shown_unit, shown_factor, field_unit}.textOf(shown_factor);
-    throw Error(ErrorCode::bad_input, fmt::format("{}'{}': expected a number{}", name, text, of));
+    const std::string units = unitsOf(unit);
+    throw Error(ErrorCode::bad_input, fmt::format("{}'{}': expected a number{}{}", name, text, of,
+                                                  units.empty() ? "" : "; units: " + units));
   }
   if (*value >= min && *value <= max) return *value;
   NumberForm plain = *this;

@@ -19,6 +19,8 @@ struct NumberForm {
   double shown_factor = 1;      ///< value of 1 `shown_unit`
   FieldUnit field_unit{};       ///< of values of a field, in which they are written
   double min = -std::numeric_limits<double>::infinity(), max = std::numeric_limits<double>::infinity();
+  /// Reads another grammar than that of numbers with a unit, such as that of times, and checks the range.
+  std::function<double(const std::string& text)> read = {};
 
   std::string textOf(double value) const;
   /// @throws Error (bad_input) for a text that is no such number, and for values out of the limits

@@ -26,8 +26,8 @@ void requireTime(const Clock& clock, double t_s);
 std::vector<double> timesOf(double begin_s, double end_s, double step_s, double limit_s = kMaxTime_s);
 /// All times of the clock: 0, step, ... duration.
 std::vector<double> timesOf(const Clock& clock);
-/// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T"; times are seconds or UTC,
-/// "2026-06-01T06:00:00Z". @param limit_s  as for timesOf()
+/// Parses "BEGIN:END:STEP", "BEGIN:END" (the clock's step) or "T": seconds ("90"), numbers with a unit ("1.5
+/// min") or, with an epoch, UTC ("2026-06-01T06:01:10Z"). @param limit_s  as for timesOf()
 /// @throws Error (usage), as timesOf() and requireTime() too
 std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s = kMaxTime_s);
 /// A single time as parseTimes(). @throws Error (usage)

@@ -103,7 +103,7 @@ struct TerrainFileInfo {
   /// the rows is read, as a note says.
   double lowest_m = 0, highest_m = 0;
   long long void_posts = 0;
-  std::string vertical_datum;         ///< and its origin: stated by the file, by its format, assumed, ...
+  std::string vertical_datum;  ///< and its origin: stated by the file, by its format, assumed, ...
   std::string height_unit;
   bool is_needed = true;              ///< reaches the needed box; the heights of others are not read
   std::vector<std::string> notes;     ///< conversions that were needed, such as of a unit
@@ -162,8 +162,8 @@ class Terrain {
   virtual double highest_m() const = 0;
   /// What was assumed of the files, its effect, and how to state it; each once for all files.
   virtual std::vector<std::string> warnings() const { return {}; }
-  /// For errors of missing terrain: where the files are, where ground is needed, and the other sign with which
-  /// both would meet.
+  /// For errors of missing terrain: where the files are, where ground is needed, and the other sign with
+  /// which both would meet.
   virtual std::string placeText() const { return ""; }
 };
 
