@@ -18,15 +18,15 @@ std::string_view trimmed(std::string_view text) {
 }
 
 /// The length of a quoted cell with its quotes. @param text  begins with a quote
-/// @return npos if it is not a quoted cell, which ends before a comma or at the end of the line
-std::size_t quotedLength(std::string_view text) {
+/// @return npos if it is not a quoted cell, which ends before a separator or at the end of the line
+std::size_t quotedLength(std::string_view text, char separator) {
   for (std::size_t end = text.find('"', 1); end != std::string_view::npos; end = text.find('"', end + 1)) {
     if (text.substr(end + 1, 1) == "\"") {
       ++end;
       continue;
     }
     const std::size_t next = text.find_first_not_of(kBlanks, end + 1);
-    return next == std::string_view::npos || text[next] == ',' ? end + 1 : std::string_view::npos;
+    return next == std::string_view::npos || text[next] == separator ? end + 1 : std::string_view::npos;
   }
   return std::string_view::npos;
 }
@@ -37,14 +37,14 @@ void CsvReader::split(std::string_view line, std::vector<CsvCell>& cells) {
   cells.clear();
   for (std::size_t begin = 0; begin <= line.size();) {
     const std::size_t first = std::min(line.find_first_not_of(kBlanks, begin), line.size());
-    std::size_t end = std::min(line.find(',', begin), line.size());
+    std::size_t end = std::min(line.find(separator_, begin), line.size());
     const bool is_empty = first >= end;
     const std::size_t at = is_empty ? begin : first;
     std::string_view text = trimmed(line.substr(begin, end - begin));
-    const std::size_t quoted =
-        !is_empty && line[first] == '"' ? quotedLength(line.substr(first)) : std::string_view::npos;
+    const std::size_t quoted = !is_empty && line[first] == '"' ? quotedLength(line.substr(first), separator_)
+                                                               : std::string_view::npos;
     if (quoted != std::string_view::npos) {
-      end = std::min(line.find(',', first + quoted), line.size());
+      end = std::min(line.find(separator_, first + quoted), line.size());
       text = line.substr(first + 1, quoted - 2);
       if (text.find('"') != std::string_view::npos) {
         std::string& single = unquoted_.emplace_back();
@@ -73,6 +73,19 @@ bool CsvReader::next(CsvRow& row) {
     if (!is_empty) return true;
   }
   return false;
+}
+
+char separatorOf(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
+    const std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    if (line.empty() || line.front() == '#') continue;
+    const auto count = [&](char separator) { return std::count(line.begin(), line.end(), separator); };
+    const char other = count(';') >= count('\t') ? ';' : '\t';
+    return count(other) > count(',') ? other : ',';
+  }
+  return ',';
 }
 
 std::optional<CsvFault> headerFault(const std::vector<CsvCell>& header) {

@@ -1,4 +1,4 @@
-/// Comma-separated text, one row after another.
+/// Rows of comma-separated text, or of text with another separator.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,7 @@ struct CsvRow {
 class CsvReader {
  public:
   /// @param text  must outlive the reader; both must outlive the cells
-  explicit CsvReader(std::string_view text) : text_(text) {}
+  explicit CsvReader(std::string_view text, char separator = ',') : text_(text), separator_(separator) {}
 
   /// Reads the next row into `row`, whose memory is reused. @return false at the end
   bool next(CsvRow& row);
@@ -39,10 +39,15 @@ class CsvReader {
   void split(std::string_view line, std::vector<CsvCell>& cells);
 
   std::string_view text_;
+  char separator_;
   std::deque<std::string> unquoted_;  ///< cells with doubled quotes
   std::size_t begin_ = 0;
   int line_ = 0;
 };
+
+/// The separator of tables of other programs: semicolon or tab, if the first line that is no comment has more
+/// of them than commas; else comma.
+char separatorOf(std::string_view text);
 
 struct CsvFault {
   int column = 1;  ///< counted in characters from 1

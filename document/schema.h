@@ -22,7 +22,7 @@ struct ValueSpec {
   double maximum = std::numeric_limits<double>::infinity();
   bool minimum_excluded = false;
   std::vector<std::string> choices;       ///< choice; number, integer: words that are allowed instead
-  const ObjectSpec* object = nullptr;     ///< object; number: keys that are allowed instead
+  const ObjectSpec* object = nullptr;     ///< object; number, file: keys that are allowed instead
   std::shared_ptr<const ValueSpec> item;  ///< list
   int min_items = 0;                      ///< list; text, file: characters
   int max_items = 0;
@@ -36,7 +36,7 @@ struct ValueSpec {
   ValueSpec printable() const;          ///< with is_printable
   /// A number, or this word instead.
   ValueSpec orWord(std::string word) const;
-  /// A number, or these keys instead. Keeps a pointer to `fields`, which must outlive the table.
+  /// A number or file, or these keys instead. Keeps a pointer to `fields`, which must outlive the table.
   ValueSpec orObject(const ObjectSpec& fields) const;
 };
 

@@ -73,7 +73,8 @@ std::string expectation(const ValueSpec& spec) {
     case ValueType::text:
       return "text";
     case ValueType::file:
-      return "the name of a file";
+      return "the name of a file" +
+             (spec.object != nullptr ? " or the keys of a " + spec.object->name : std::string());
     case ValueType::timestamp:
       return "a UTC time such as 2026-06-01T06:00:00Z";
     case ValueType::choice:
@@ -202,7 +203,7 @@ class Checker {
     const auto wrongType = [&] {
       fault(node.position, fmt::format("{} must be {}, not {}", name, expectation(spec), describe(node)));
     };
-    const bool is_in_place = spec.object != nullptr && node.kind == NodeKind::map;  // of a number
+    const bool is_in_place = spec.object != nullptr && node.kind == NodeKind::map;  // of a number or file
     if (spec.type == ValueType::object || is_in_place) {
       object(name, node, *spec.object);
     } else if (spec.type == ValueType::list) {

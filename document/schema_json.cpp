@@ -37,7 +37,8 @@ class SchemaWriter {
         return {{"type", "boolean"}};
       case ValueType::text:
       case ValueType::file:
-        return {{"type", "string"}, {"minLength", spec.min_items}, {"maxLength", spec.max_items}};
+        return orObject({{"type", "string"}, {"minLength", spec.min_items}, {"maxLength", spec.max_items}},
+                        spec);
       case ValueType::timestamp:
         return {{"type", "string"},
                 {"format", "date-time"},
@@ -63,6 +64,11 @@ class SchemaWriter {
       json[spec.minimum_excluded ? "exclusiveMinimum" : "minimum"] = number(spec.minimum);
     if (std::isfinite(spec.maximum)) json["maximum"] = number(spec.maximum);
     if (!spec.unit.empty()) json["x-unit"] = spec.unit;
+    return orObject(json, spec);
+  }
+
+  /// A value, or what is allowed instead.
+  Json orObject(const Json& json, const ValueSpec& spec) {
     Json others = Json::array();
     if (!spec.choices.empty()) others.push_back({{"enum", spec.choices}});
     if (spec.object != nullptr) others.push_back(reference(*spec.object));

@@ -39,8 +39,9 @@ class Section {
 
   /// The keys of an object, or those that replace a number; node() is null if a number is given.
   Section section(const std::string& key) const;
-  std::vector<Section> sections(const std::string& key) const;  ///< list of objects
-  std::vector<double> numbers(const std::string& key) const;    ///< list of numbers; shorter if faulty
+  /// List of objects; of a list of files with keys instead, also the files: their node() is a scalar.
+  std::vector<Section> sections(const std::string& key) const;
+  std::vector<double> numbers(const std::string& key) const;  ///< list of numbers; shorter if faulty
   std::vector<std::string> texts(const std::string& key) const;
   std::vector<std::vector<double>> numberLists(const std::string& key) const;
 

@@ -22,7 +22,7 @@ int main(int argc, char** argv) {
     view.camera = render::parseCamera("orbit:azimuth_deg=200,elevation_deg=35");
     playback::Painter painter(view, *source, target);
     painter.setFrame(source->frame(0));
-    painter.draw({});  // every pixel is cast; other plans interpolate some, and restore() makes them exact
+    painter.draw(render::FramePlan::exact());  // other plans interpolate some pixels, which restore() casts
     render::writePng(argv[3], painter.picture("drawn by an example"));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "picture: %s\n", error.what());

@@ -11,7 +11,7 @@
 #include "emscape/base/enum_names.h"
 #include "emscape/base/progress.h"
 #include "emscape/scenario/model/scenario.h"
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
 

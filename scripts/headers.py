@@ -9,7 +9,7 @@ import pathlib
 import subprocess
 import sys
 
-MODULES = "base document propagation scenario interop volume emfield render playback study report apps".split()
+MODULES = "base document propagation recording scenario interop volume emfield render playback study report apps".split()
 
 folder = pathlib.Path(sys.argv[1]).resolve()
 root = pathlib.Path(__file__).resolve().parent.parent

@@ -129,7 +129,9 @@ Json frameToJson(const FrameOrigin& frame) {
 }
 
 /// The members after those of the geometry.
-void addInfo(Json& json, const VolumeInfo& info) {
+void addInfo(Json& json, const VolumeInfo& info, bool georeferenced, const FrameOrigin& frame) {
+  if (georeferenced) json["frame"] = frameToJson(frame);
+  for (const auto& [key, text] : standardWords(georeferenced, frame)) json[key] = text;
   json["time_s"] = numberToJson(info.time_s);
   json["time_utc"] = info.time_utc;
   json["floor"] = numberToJson(info.floor);
@@ -157,8 +159,7 @@ Json toJson(const DenseVolume& volume, bool with_mask) {
   json["voxels"] = grid.dims.count();
   json["spacing_m"] = vectorToJson(grid.spacing_m);
   json["first_center_m"] = vectorToJson(grid.first_center_m);
-  if (grid.georeferenced) json["frame"] = frameToJson(grid.frame);
-  addInfo(json, info);
+  addInfo(json, info, grid.georeferenced, grid.frame);
   if (with_mask && !volume.first_valid_k.empty()) json["first_valid_k"] = volume.first_valid_k;
   return json;
 }
@@ -186,8 +187,7 @@ Json toJson(const MeshField& field) {
   Json json;
   json["quantity"] = field.info.quantity;
   json["unit"] = field.info.unit;
-  if (field.mesh->georeferenced) json["frame"] = frameToJson(field.mesh->frame);
-  addInfo(json, field.info);
+  addInfo(json, field.info, field.mesh->georeferenced, field.mesh->frame);
   return json;
 }
 

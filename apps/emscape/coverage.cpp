@@ -36,10 +36,12 @@ void printRow(const study::MapRecord& record) {
   const std::string time = map.time_s ? fmt::format("{} s", *map.time_s) : "all";
   std::string area;
   if (map.area_class >= 0) {
-    area = fmt::format("{:.1f} km2, {:.1f} % of known", summary.class_area_m2 / 1e6,
-                       100 * summary.class_area_m2 / std::max(summary.known_area_m2, 1.0));
+    const double known_m2 = summary.known_area_m2;
+    area = known_m2 > 0 ? fmt::format("{:.1f} of {:.1f} km2 known, {:.1f} %", summary.class_area_m2 / 1e6,
+                                      known_m2 / 1e6, 100 * summary.class_area_m2 / known_m2)
+                        : std::string("nothing known");
     if (summary.unknown_area_m2 > 0)
-      area += fmt::format(", {:.1f} km2 unknown", summary.unknown_area_m2 / 1e6);
+      area += fmt::format("; {:.1f} km2 unknown", summary.unknown_area_m2 / 1e6);
   }
   print("  {:<16} {:<26} {:>8}  {:<28} {}\n", map.name, map.height ? study::describe(*map.height) : "", time,
         area, record.files.empty() ? "" : record.files.front());
@@ -54,6 +56,7 @@ int coverage(const CoverageCommand& command, const GlobalOptions& global) {
   const study::MapArea area = report::areaOf(command.maps, *scenario);
   const auto grid = report::gridOf(command.maps, *scenario, area);
   const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
+  if (terrain) study::requireGround(*scenario, *terrain, *grid);
 
   study::MapFolder folder(command.folder,
                           {"coverage",

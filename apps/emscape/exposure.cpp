@@ -107,7 +107,7 @@ Exit status: 0, whether the threshold is reached or not; 2 for names that the sc
                       "A quantity of the field; see docs/scenario-format.md");
   addThresholdOption(*command, options->threshold);
   command->add_option("--times", options->times,
-                      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
+                      "BEGIN:END:STEP, BEGIN:END or T, in seconds or UTC; default: the scenario's clock");
   command
       ->add_option("--look", options->look,
                    "Where radars look: target (at the platform) or scan (where their scan points)")

@@ -13,7 +13,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "interop/emitters/emitter_names.h"
 #include "interop/import_scenario.h"
-#include "interop/recording/read_recording.h"
+#include "recording/read_recording.h"
 #include "report/runs/import_report.h"
 
 namespace emscape::app {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <set>
 
@@ -12,7 +11,6 @@
 #include "apps/common/interrupt.h"
 #include "apps/emscape/subcommands.h"
 #include "base/files/json_writing.h"
-#include "document/csv.h"
 #include "emfield/excess/model_choices.h"
 #include "emscape/base/log.h"
 #include "emscape/emfield/solver/field_solver.h"
@@ -25,12 +23,12 @@
 #include "propagation/registry/model_info.h"
 #include "render/annotate/plot.h"
 #include "report/maps/output_files.h"
+#include "report/paths/antenna_report.h"
 #include "report/paths/choices_report.h"
 #include "report/paths/refractivity_report.h"
 #include "report/paths/waveform_report.h"
 #include "report/runs/work_report.h"
 #include "scenario/air/refractivity_file.h"
-#include "scenario/antenna/shapes.h"
 #include "volume/mesh/mesh_file.h"
 
 namespace emscape::app {
@@ -70,15 +68,19 @@ Json choicesOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
       emfield::modelChoices(scenario::snapshotAt(scenario, terrain.get(), time_s), terrain.get()));
 }
 
-/// Memory, time and disk space of the field; null if it cannot be computed (`validate` reports the reason).
-Json workOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
+/// Adds the warnings, and memory, time and disk space of the field; null if it cannot be computed (`validate`
+/// reports the reason).
+void addWork(const std::shared_ptr<const scenario::Scenario>& scenario, Json& json) {
   emfield::FieldOptions options;
   options.allow_missing_terrain = true;
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-    return report::workJson(report::workEstimateOf({scenario, terrain, options}, *scenario, terrain.get()));
+    const emfield::FieldSolver solver(scenario, terrain, options);
+    json["work"] = report::workJson(report::workEstimateOf(solver, *scenario, terrain.get()));
+    json["warnings"] = solver.warnings();
   } catch (const Error&) {
-    return nullptr;
+    json["work"] = nullptr;
+    json["warnings"] = Json::array();
   }
 }
 
@@ -86,6 +88,7 @@ Json workOf(const std::shared_ptr<const scenario::Scenario>& scenario) {
 struct Description {
   Json json;
   std::shared_ptr<const propagation::Refractivity> refractivity;  ///< for the plot; null: there is none
+  std::shared_ptr<const report::AntennaReport> antenna;           ///< the same
 };
 
 /// Frequencies of a scenario's emitters, ascending, each once.
@@ -150,11 +153,11 @@ Description describeScenario(const std::string& file) {
             {"receivers", receivers},
             {"targets", targets},
             {"channels", channels},
-            {"choices", choicesOf(scenario)},
-            {"work", workOf(scenario)}};
+            {"choices", choicesOf(scenario)}};
+  addWork(scenario, json);
   const auto& refractivity = scenario->atmosphere.refractivity;
   if (refractivity) json["refractivity"] = report::refractivityJson(*refractivity, frequenciesOf(*scenario));
-  return {json, refractivity};
+  return {json, refractivity, nullptr};
 }
 
 /// @param file  a CSV file of profiles, or soundings
@@ -169,7 +172,8 @@ Description describeRefractivity(const std::string& file) {
            {"file", file},
            {"holds", read.description},
            {"profiles", report::profilesJson(read.field, {1 * kGHz, 3 * kGHz, 10 * kGHz})}},
-          refractivity};
+          refractivity,
+          nullptr};
 }
 
 /// Appends the entries that volumes and fields on meshes share.
@@ -182,6 +186,12 @@ void addValues(Json& json, const volume::VolumeInfo& info, const volume::Statist
   json["min"] = statistics.min;
   json["max"] = statistics.max;
   json["mean"] = statistics.mean;
+}
+
+/// What places the values on the earth, as in the files.
+void addPlace(Json& json, bool georeferenced, const FrameOrigin& frame) {
+  if (!georeferenced) return;
+  for (const auto& [key, text] : volume::standardWords(georeferenced, frame)) json[key] = text;
 }
 
 Json extraOf(const volume::VolumeInfo& info) {
@@ -198,6 +208,7 @@ Json describeVolume(const volume::DenseVolume& volume) {
             {"spacing_m", toJson(volume.grid.spacing_m)},
             {"first_center_m", toJson(volume.grid.first_center_m)},
             {"frame", volume.grid.georeferenced ? toJson(volume.grid.frame) : Json(nullptr)}};
+  addPlace(json, volume.grid.georeferenced, volume.grid.frame);
   addValues(json, volume.info, statistics);
   json["voxels"] = statistics.voxels;
   json["masked_voxels"] = statistics.masked;
@@ -241,6 +252,7 @@ Json describeMeshFiles(const std::string& path) {
             {"lower_m", toJson(bounds.lower_m)},
             {"upper_m", toJson(bounds.upper_m)},
             {"frame", file.mesh->georeferenced ? toJson(file.mesh->frame) : Json(nullptr)}};
+  addPlace(json, file.mesh->georeferenced, file.mesh->frame);
   for (const playback::VolumeFile& step : files) json["times_s"].push_back(step.time_s);
   for (volume::MeshField& field : file.fields) {
     if (!field.info.has_time) field.info.time_s = files.front().time_s;
@@ -260,7 +272,8 @@ double twelveDigits(double value) {
 }
 
 Json describeElevation(const std::string& file) {
-  const scenario::TerrainFileInfo info = scenario::Terrain::describe(file);
+  scenario::TerrainFileInfo info = scenario::Terrain::describe(file);
+  info.notes.insert(info.notes.end(), info.warnings.begin(), info.warnings.end());
   return {{"kind", "elevation"},
           {"file", file},
           {"format", info.format},
@@ -268,41 +281,14 @@ Json describeElevation(const std::string& file) {
           {"columns", info.columns},
           {"rows", info.rows},
           {"box", toJson(info.box)},
+          {"vertical_datum", info.vertical_datum},
+          {"height_unit", info.height_unit},
           {"post_spacing_lat_deg", twelveDigits(info.post_spacing_lat_deg)},
           {"post_spacing_lon_deg", twelveDigits(info.post_spacing_lon_deg)},
           {"lowest_m", info.lowest_m},
           {"highest_m", info.highest_m},
           {"void_posts", info.void_posts},
           {"notes", info.notes}};
-}
-
-/// @throws Error (bad_input) for other CSV files than an antenna's grid
-void requireAntennaColumns(const std::string& file) {
-  const std::vector<std::string> names = document::csvColumnsOf(file);
-  if (names.size() < 2) return;  // an empty file, or another separator, which the reader reports
-  for (const char* column : {"elevation_deg", "azimuth_deg", "attenuation_db"}) {
-    if (std::find(names.begin(), names.end(), column) != names.end()) continue;
-    throw Error(
-        ErrorCode::bad_input, {file, 0, 0},
-        fmt::format("no column '{}': info describes grids of antennas (columns elevation_deg, azimuth_deg, "
-                    "attenuation_db) and profiles of refractivity (height_msl_m and m_units, n_units or "
-                    "weather); tracks and other CSV files are checked with their scenario, by validate",
-                    column));
-  }
-}
-
-Json describeAntenna(const std::string& file) {
-  // A CSV grid contains only a shape: its gain is in the scenario.
-  const bool has_gain = file.size() < 4 || file.substr(file.size() - 4) != ".csv";
-  if (!has_gain) requireAntennaColumns(file);
-  const scenario::AntennaPtr antenna =
-      scenario::readAntenna(file, has_gain ? std::numeric_limits<double>::quiet_NaN() : 0.0);
-  return {{"kind", "antenna"},
-          {"file", file},
-          {"description", antenna->description},
-          {"gain_dbi", has_gain ? Json(antenna->gain_dbi) : Json(nullptr)},
-          {"beamwidth_az_deg", antenna->beamwidth_az_deg},
-          {"beamwidth_el_deg", antenna->beamwidth_el_deg}};
 }
 
 /// A text unchanged if it fits on a line, otherwise quoted.
@@ -354,11 +340,11 @@ Description describe(const std::string& name) {
     case playback::InputKind::scenario:
       return describeScenario(file);
     case playback::InputKind::volume:
-      return {describeVolumeFiles(file), nullptr};
+      return {describeVolumeFiles(file), nullptr, nullptr};
     case playback::InputKind::mesh:
-      return {describeMeshFiles(file), nullptr};
+      return {describeMeshFiles(file), nullptr, nullptr};
     case playback::InputKind::elevation:
-      return {describeElevation(file), nullptr};
+      return {describeElevation(file), nullptr, nullptr};
     case playback::InputKind::recording:
       throw Error(ErrorCode::usage, file +
                                         " is a recording: `emscape import` makes a scenario of it and tells "
@@ -366,7 +352,9 @@ Description describe(const std::string& name) {
     case playback::InputKind::antenna:
       break;
   }
-  return {describeAntenna(file), nullptr};
+  auto antenna = std::make_shared<report::AntennaReport>(report::readAntennaReport(file));
+  for (const std::string& warning : antenna->warnings) logWarning(warning);
+  return {report::antennaJson(*antenna), nullptr, antenna};
 }
 
 struct InfoOptions {
@@ -380,12 +368,16 @@ int info(const InfoOptions& options, const GlobalOptions& global) {
   report::checkOutputs({{"--plot", options.plot}}, {{"the input", options.file}}, {});
   const Description description = describe(options.file);
   if (!options.plot.empty()) {
-    if (!description.refractivity) {
-      throw Error(ErrorCode::usage, "--plot draws refractivity; " + options.file + " has none");
+    const render::ImageSize size = render::parseImageSize(options.size);
+    if (description.antenna) {
+      report::plotAntenna(*description.antenna, size, options.plot);
+    } else if (description.refractivity) {
+      report::plotRefractivity(*description.refractivity,
+                               std::filesystem::path(options.file).filename().string(), size, options.plot);
+    } else {
+      throw Error(ErrorCode::usage,
+                  "--plot draws refractivity and antennas; " + options.file + " has neither");
     }
-    report::plotRefractivity(*description.refractivity,
-                             std::filesystem::path(options.file).filename().string(),
-                             render::parseImageSize(options.size), options.plot);
     logInfo("wrote " + options.plot);
   }
   if (global.json) {
@@ -405,7 +397,8 @@ void addInfo(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->footer(R"(
 Scenarios: .yaml .yml .json. Volumes: .vdb .nvdb .vti .raw .dat; fields on tetrahedra: .vtu; series:
 .pvd or a folder (its first step is described).
-Elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt. Antennas: .msi .pln .csv.
+Elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip and .gz; `terrain` describes several
+files and folders. Antennas: .msi .pln .adf .ant .pattern .az .el .csv.
 Refractivity: .csv with a column height_msl_m; soundings of IGRA 2 and the University of Wyoming (any ending; the last is described). Each duct is given with
 its heights, its strength, the largest trapped angle, the number of modes at 1, 3 and 10 GHz (of a scenario, at the frequencies of
 its emitters), and the frequency from which it traps.
@@ -413,7 +406,8 @@ its emitters), and the frequency from which it traps.
 Examples:
   emscape info scenarios/jacksboro.yaml
   emscape info out/jacksboro_0001.vdb --json
-  emscape info air.csv --plot air.png)");
+  emscape info air.csv --plot air.png
+  emscape info sector.adf --plot sector.svg)");
   auto options = std::make_shared<InfoOptions>();
   command->add_option("FILE", options->file, "File, or folder of volumes")->required();
   command

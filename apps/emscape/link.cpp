@@ -77,7 +77,7 @@ terrain and a scenario without receivers and targets.)");
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
   command->add_option("--times", options->selection.times,
-                      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
+                      "BEGIN:END:STEP, BEGIN:END or T, in seconds or UTC; default: the scenario's clock");
   addNamesOption(*command, "--emitter", options->selection.emitters,
                  "Emitters, with commas between them, or the option again; default: all");
   addNamesOption(*command, "--receiver", options->selection.receivers,

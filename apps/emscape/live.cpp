@@ -40,6 +40,7 @@ class LiveField {
   bool update() {
     const playback::BattlefieldNow now = battlefield_.now();
     if (now.scenario == scenario_ && now.poses == poses_) return false;
+    if (now.scenario != scenario_) indices_ = playback::platformIndices(*now.scenario);
     const double begin_s = playback::steadyTime_s();
     Work work(&stopFlag());
     const WorkScope scope(&work);
@@ -47,7 +48,8 @@ class LiveField {
       loaded_ = loaded_.scenario
                     ? playback::withScenario(loaded_, now.scenario)
                     : playback::LoadedScenario{now.scenario, scenario::loadTerrain(*now.scenario)};
-      const auto snapshot = scenario::snapshotAt(loaded_.scenario, loaded_.terrain.get(), 0, *now.poses);
+      const auto snapshot = scenario::snapshotAt(loaded_.scenario, loaded_.terrain.get(), 0,
+                                                 *playback::posesOf(indices_, *now.poses));
       if (!solver_) {
         emfield::FieldOptions options;
         options.allow_missing_terrain = true;
@@ -70,7 +72,7 @@ class LiveField {
     return true;
   }
 
-  /// Writes the battlefield as a scenario, and its field if it has changed.
+  /// Writes the field if it has changed.
   void write(const std::filesystem::path& folder) {
     if (!solver_ || !std::exchange(is_new_, false)) return;
     std::vector<const volume::DenseVolume*> volumes;
@@ -92,7 +94,8 @@ class LiveField {
   playback::LoadedScenario loaded_;
   std::unique_ptr<emfield::FieldSolver> solver_;
   std::shared_ptr<const scenario::Scenario> scenario_;
-  playback::PosesPtr poses_;
+  playback::PlatformIndices indices_;
+  playback::NamedPosesPtr poses_;
   bool is_new_ = false;
   long long fields_ = 0;
   double field_ms_ = 0, latency_ms_ = 0, arrival_s_ = 0;
@@ -102,13 +105,15 @@ class LiveField {
 Json jsonOf(const playback::StreamStatus& status, const LiveField& field, double t_s) {
   const auto rounded = [](double value) { return std::round(value * 1000) / 1000; };
   Json line{{"t_s", rounded(t_s)},
-            {status.kind == playback::StreamKind::dis ? "pdus" : "lines", status.records},
+            {status.kind == playback::StreamKind::dis ? "pdus" : playback::formatOf(status.kind).plural,
+             status.records},
             {"per_s", rounded(status.records_per_s)},
             {"bytes", status.bytes},
             {"lost", status.lost},
             {"bad", status.bad},
             {"late", status.late},
             {"duplicates", status.duplicates},
+            {"outside", status.outside},
             {"forgotten", status.forgotten},
             {"entities", status.entities},
             {"emitters", status.emitters},
@@ -171,7 +176,7 @@ void addLive(CLI::App& app, const GlobalOptions& global, Action& action) {
       app.add_subcommand("live", "Compute the field of a battlefield that another program streams");
   command->fallthrough();
   command->footer(R"(
-Receives DIS by UDP or Tacview's real-time telemetry by TCP, adds the objects to the base scenario as `import` does, moves them by
+Receives DIS by UDP, Tacview's real-time telemetry by TCP or Cursor on Target (TAK) by either, adds the objects to the base scenario as `import` does, moves them by
 dead reckoning, and computes the field whenever something has changed. Prints a line each second; with --json an object. Listens
 on this computer alone unless an address is given. An object with the name of a platform of the base moves that platform.
 `emscape view --dis` shows the same in the window.
@@ -179,11 +184,13 @@ on this computer alone unless an address is given. An object with the name of a 
 Examples:
   emscape live --dis 3000 --base scenarios/jamming.yaml
   emscape live --dis 239.1.2.3:3000 --interface 10.0.0.5 --base region.yaml --emitters mine.yaml --record exercise.pcap
+  emscape live --cot 239.2.3.1:6969 --interface 10.0.0.5 --base region.yaml --record team.cot
+  emscape live --cot tcp:10.0.0.9:8087 --base region.yaml
   emscape live --acmi 10.0.0.7:42674 --base region.yaml -o now --duration 3600 --json
 
 Exit status: 0, also when Ctrl-C ends it; 2 for wrong options; 3 for a faulty base or database; 1 if the address cannot be used.)");
   auto arguments = std::make_shared<LiveArguments>();
-  arguments->stream.addTo(*command, "--base", "--emitters");
+  arguments->stream.addTo(*command, "--base", "--emitters,--emitter-database");
   command->add_option("-o,--output", arguments->folder,
                       "Folder for live.yaml, the scenario, and live.vdb, its field, written each second that "
                       "changed it");

@@ -27,7 +27,7 @@ struct ProfileOptions {
   std::vector<scenario::Edit> edits;
   std::string emitter;
   std::string to;
-  double time_s = 0;
+  std::string time = "0";
   bool above_ground = false;
   std::vector<std::string> models;
   std::string plot;
@@ -60,11 +60,11 @@ scenario::SitePosition parsePoint(const std::string& text, bool above_ground) {
 report::ProfileReport makeReport(const ProfileOptions& options) {
   report::ProfileRequest request;
   request.to = parsePoint(options.to, options.above_ground);
-  request.time_s = options.time_s;
   for (const std::string& name : options.models)
     request.models.push_back(propagation::modelNamed(name)->model);
   const auto scenario =
       scenario::loadScenario(options.scenario, options.edits, scenario::ReadFor::chosen_times);
+  request.time_s = scenario::parseTime(options.time, scenario->clock);
   request.emitter =
       scenario::namedIndex(scenario->emitters, options.emitter, "--emitter", "emitter", scenario->file);
   report::checkOutputs({{"--plot", options.plot}}, {}, {scenario});
@@ -113,7 +113,8 @@ or a path over missing terrain.)");
       ->add_option("--to", options->to,
                    "The point: LAT,LON,HEIGHT (deg, deg, m); also degrees with minutes and seconds, or MGRS")
       ->required();
-  command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
+  command->add_option("--time", options->time,
+                      "Seconds since the scenario's epoch, or UTC: 2026-06-01T06:00:00Z");
   command->add_flag("--agl", options->above_ground, "HEIGHT is above the ground");
   addListOption(*command, "--model", options->models, "Models to compare with the emitter's model")
       ->check(CLI::IsMember(names));

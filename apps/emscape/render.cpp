@@ -270,8 +270,9 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   checkOutputFiles(options, view);
   const std::string mode = render::toString(view.settings.mode);
   // `auto` casts every pixel for files.
-  const render::FramePlan plan{view.pattern.value_or(render::Pattern::full),
-                               render::parseInterpolation(options.interpolate)};
+  render::FramePlan plan = render::FramePlan::exact();
+  plan.pattern = view.pattern.value_or(render::Pattern::full);
+  plan.interpolation = render::parseInterpolation(options.interpolate);
   const Stage stage = openStage(view, options, global);
   saveState(options, view, stage);
   if (options.outputs.empty()) return 0;
@@ -441,9 +442,10 @@ Examples:
   options->given.addTo(*command, "--time");
   command->add_option("--interpolate", options->interpolate, "Precision of interpolated pixels")
       ->check(CLI::IsMember({"float", "8bit"}));
-  command->add_option("--times", options->times,
-                      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: all steps, or the first if the "
-                      "only output is a .png");
+  command->add_option(
+      "--times", options->times,
+      "BEGIN:END:STEP, BEGIN:END or T, in seconds or UTC; default: all steps, or the first if the "
+      "only output is a .png");
   command
       ->add_option("--fps", options->frames_per_s,
                    "Frames per second of a video (default 10); with --realtime: the maximum")

@@ -2,6 +2,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <set>
@@ -33,6 +34,7 @@ struct SimulateOptions {
   std::vector<std::string> quantities;
   std::string times;
   std::string range;
+  std::string look;
   bool resume = false;
   bool force = false;
   bool allow_missing_terrain = false;
@@ -59,6 +61,10 @@ playback::SeriesOptions seriesOptionsOf(const SimulateOptions& options) {
   series.folder = options.folder;
   series.formats = formatsOf(options);
   if (!options.range.empty()) series.range = playback::parseRange(options.range);
+  series.with_fog = !options.look.empty();
+  const auto holds_fog = [](const std::string& format) { return format == "vdb" || format == "nvdb"; };
+  if (series.with_fog && std::none_of(series.formats.begin(), series.formats.end(), holds_fog))
+    throw Error(ErrorCode::usage, "--look fog adds a grid to .vdb and .nvdb files: use --format vdb");
   series.existing = options.resume ? Existing::resume : options.force ? Existing::replace : Existing::refuse;
   return series;
 }
@@ -151,6 +157,7 @@ Examples:
   emscape simulate scenarios/jacksboro.yaml -o out --format vdb,vti --quantity power_density_dbwm2,snr_db --times 0:60:1
   emscape simulate scenarios/jacksboro.yaml -o out --mesh terrain:32,4 --times 60
   emscape simulate scenarios/jacksboro.yaml -o out --set emitters.jammer.power_w=500 --compare original
+  emscape simulate scenarios/jacksboro.yaml -o out --look fog --times 40       a grid 'density' for Blender
   emscape simulate scenarios/jacksboro.yaml -o out --resume        after an interruption)");
   auto options = std::make_shared<SimulateOptions>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
@@ -172,9 +179,16 @@ Examples:
       *command, "--quantity", options->quantities,
       "Quantities, with commas between them (" + scenario::quantityNames() + "); default: the scenario's");
   command->add_option("--times", options->times,
-                      "BEGIN:END:STEP, BEGIN:END or T, in seconds; default: the scenario's clock");
+                      "BEGIN:END:STEP, BEGIN:END or T, in seconds or UTC; default: the scenario's clock");
   command->add_option("--range", options->range,
                       "MIN:MAX of the series if it is known: files state it from the beginning");
+  command
+      ->add_option(
+          "--look", options->look,
+          "fog: files of the formats vdb and nvdb have a grid 'density' (0..1) too: the opacity of the "
+          "first quantity as pictures have it by default, over --range or the range of the first step; "
+          "programs such as Blender draw it without settings")
+      ->check(CLI::IsMember({"fog"}));
   command->add_flag("--resume", options->resume, "Continue the series of the folder");
   command->add_flag("--force", options->force, "Replace the series in the folder")->excludes("--resume");
   command->add_flag("--allow-missing-terrain", options->allow_missing_terrain,

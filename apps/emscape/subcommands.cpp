@@ -22,6 +22,7 @@ void addProgram(CLI::App& app, const char* name, const char* description, const 
 void addSubcommands(CLI::App& app, const GlobalOptions& global, Action& action) {
   addValidate(app, global, action);
   addInfo(app, global, action);
+  addTerrain(app, global, action);
   addSimulate(app, global, action);
   addRender(app, global, action);
   addProgram(app, "view", "Show a scenario or volumes in a window", kViewProgram, global, action);

@@ -7,6 +7,7 @@ namespace emscape::app {
 
 void addValidate(CLI::App& app, const GlobalOptions& global, Action& action);
 void addInfo(CLI::App& app, const GlobalOptions& global, Action& action);
+void addTerrain(CLI::App& app, const GlobalOptions& global, Action& action);
 void addSimulate(CLI::App& app, const GlobalOptions& global, Action& action);
 void addRender(CLI::App& app, const GlobalOptions& global, Action& action);
 void addProfile(CLI::App& app, const GlobalOptions& global, Action& action);

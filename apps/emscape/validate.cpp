@@ -47,6 +47,7 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
     }
   }
   if (missing == 0) return;
+  const bool is_all = missing == static_cast<long long>(grid.dims.x) * grid.dims.y;
   const SourceLocation location = scenario.terrain->locations.empty() ? SourceLocation{scenario.file, 0, 0}
                                                                       : scenario.terrain->locations.front();
   problems.push_back(
@@ -54,12 +55,13 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
        fmt::format(
            "the elevation files leave {} of the region's {} columns without a height, the first at "
            "latitude {:.5f}, longitude {:.5f} deg; maps have no value there; volumes and pictures have "
-           "holes there{}",
+           "holes there{}{}; {}",
            missing, static_cast<long long>(grid.dims.x) * grid.dims.y, first.latitude_deg,
            first.longitude_deg,
            is_allowed ? ""
                       : ", which validate, simulate, render, view and bench accept only with "
-                        "--allow-missing-terrain")});
+                        "--allow-missing-terrain",
+           is_all ? "; " + terrain.placeText() : "", scenario::kMissingTerrainRemedy)});
 }
 
 /// Checks at every step of the clock that no platform is below the ground or over missing terrain.
@@ -98,13 +100,20 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, boo
                   std::optional<report::WorkEstimate>& work) {
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
-    if (terrain) checkCoverage(*scenario, *terrain, allow_missing_terrain, problems);
+    if (terrain) {
+      const bool is_allowed = allow_missing_terrain || scenario::mayLackTerrain(*scenario, false);
+      checkCoverage(*scenario, *terrain, is_allowed, problems);
+      for (const std::string& warning : terrain->warnings())
+        problems.push_back({scenario->terrain->locations.front(), Severity::warning, warning});
+    }
     const bool starts = checkSteps(*scenario, terrain.get(), problems);
     emfield::FieldOptions options;
     options.allow_missing_terrain = true;  // reported above
     const emfield::FieldSolver solver(scenario, terrain, options);
     work = report::workEstimateOf(solver, *scenario, terrain.get());
+    const std::vector<std::string> reported = terrain ? terrain->warnings() : std::vector<std::string>{};
     for (const std::string& warning : solver.warnings()) {
+      if (std::find(reported.begin(), reported.end(), warning) != reported.end()) continue;
       Problem problem;
       problem.location.file = scenario->file;
       problem.severity = Severity::warning;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
@@ -17,6 +18,7 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "render/annotate/plot.h"
 #include "report/maps/areps_files.h"
+#include "report/maps/areps_table.h"
 #include "report/maps/output_files.h"
 #include "report/maps/vertical_report.h"
 #include "report/warnings.h"
@@ -36,34 +38,65 @@ struct VerticalCommand {
   double range_m = NAN, max_height_m = NAN;
   std::string quantity;
   double threshold = NAN;
-  double time_s = 0;
+  std::string time = "0";
   std::vector<int> grid{600, 300};
+  bool has_grid = false;  ///< the grid was given
   std::string size;
-  std::string areps;  ///< folder; empty: no such files
+  std::string areps;    ///< folder; empty: no such files
+  std::string compare;  ///< a file of AREPS; empty: none
 };
 
-study::VerticalRequest requestOf(const VerticalCommand& command, const scenario::Scenario& scenario) {
+/// A file of AREPS is one azimuth.
+void checkBearing(const report::ArepsTable& table, const VerticalCommand& command) {
+  constexpr double kSame_deg = 0.05;
+  if (command.azimuths_deg.size() != 1) {
+    throw Error(ErrorCode::usage,
+                fmt::format("--compare {}: the file has one azimuth; give one --azimuth", command.compare));
+  }
+  if (std::abs(std::remainder(table.bearing_deg - command.azimuths_deg.front(), 360)) > kSame_deg) {
+    logWarning(fmt::format("{}: its bearing angle is {:g} deg, --azimuth {:g}", command.compare,
+                           table.bearing_deg, command.azimuths_deg.front()));
+  }
+}
+
+/// @param other  whose points are taken unless the command says others
+study::VerticalRequest requestOf(const VerticalCommand& command, const scenario::Scenario& scenario,
+                                 const std::optional<report::ArepsTable>& other) {
   study::VerticalRequest request;
   request.emitter =
       scenario::namedIndex(scenario.emitters, command.emitter, "--emitter", "emitter", scenario.file);
   if (!command.quantity.empty()) request.quantity = scenario::quantityFromName(command.quantity);
   request.threshold = command.threshold;
   request.azimuths_deg = command.azimuths_deg;
-  request.time_s = command.time_s;
+  request.time_s = scenario::parseTime(command.time, scenario.clock);
   request.smooth_earth = command.blake;
   request.ranges = command.grid.front();
   request.heights = command.grid.back();
   if (command.axis == "agl") request.axis = emfield::HeightReference::ground;
   request.range_m = command.range_m;
   request.max_height_m = command.max_height_m;
+  if (other) {
+    if (std::isnan(request.range_m)) request.range_m = other->max_range_m;
+    if (std::isnan(request.max_height_m)) request.max_height_m = other->max_height_m;
+    if (!command.has_grid) {
+      request.ranges = std::max(other->ranges, 2);
+      request.heights = other->heights;
+    }
+  }
   return study::withDefaults(request, scenario, !command.quantity.empty(), "--threshold");
 }
 
 int vertical(const VerticalCommand& command, const GlobalOptions& global) {
-  if (command.outputs.empty() && command.areps.empty())
-    throw Error(ErrorCode::usage, "-o FILE or --areps FOLDER is required");
-  if (!command.areps.empty() && command.axis != "msl")
-    throw Error(ErrorCode::usage, "--areps writes heights above mean sea level; leave out --height-axis agl");
+  if (command.outputs.empty() && command.areps.empty() && command.compare.empty())
+    throw Error(ErrorCode::usage, "-o FILE, --areps FOLDER or --compare FILE is required");
+  const bool has_areps = !command.areps.empty() || !command.compare.empty();
+  if (has_areps && command.axis != "msl") {
+    throw Error(ErrorCode::usage,
+                "--areps and --compare have heights above mean sea level; leave out --height-axis agl");
+  }
+  const std::optional<report::ArepsTable> other =
+      command.compare.empty() ? std::nullopt : std::optional(report::readAreps(command.compare));
+  if (other) checkBearing(*other, command);
   const render::ImageSize size = command.size.empty() ? study::verticalPlotSize(command.azimuths_deg.size())
                                                       : render::parseImageSize(command.size);
   if (std::any_of(command.outputs.begin(), command.outputs.end(), render::isPlotFile))
@@ -71,7 +104,7 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
   const auto scenario =
       scenario::loadScenario(command.scenario, command.edits, scenario::ReadFor::chosen_times);
   report::checkOutputs(report::outputsOf("--output", command.outputs), {}, {scenario});
-  const study::VerticalRequest request = requestOf(command, *scenario);
+  const study::VerticalRequest request = requestOf(command, *scenario, other);
   const scenario::TerrainPtr terrain = study::loadVerticalTerrain(*scenario, request);
   stopIfInterrupted();
   const auto compute = [&](const study::VerticalRequest& wanted) {
@@ -86,18 +119,24 @@ int vertical(const VerticalCommand& command, const GlobalOptions& global) {
                     {[&](const std::string& file) { study::plotVertical(diagram, size, file); },
                      [&](const std::string& file) { report::writeVerticalCsv(diagram, file); },
                      [&] { return dumpJson(report::verticalJson(diagram, true)); }});
-  if (!command.areps.empty()) {
+  std::optional<report::ArepsComparison> comparison;
+  if (has_areps) {
     study::VerticalRequest strength = request;
-    const bool is_radar =
-        scenario->emitters[static_cast<std::size_t>(request.emitter)].kind == scenario::EmitterKind::radar;
-    strength.quantity = is_radar ? scenario::Quantity::snr_db : scenario::Quantity::power_density_dbwm2;
-    for (const std::string& file : report::writeAreps(compute(strength), *scenario, command.areps))
-      logInfo("wrote " + file);
+    strength.quantity = report::arepsQuantity(scenario->emitters[static_cast<std::size_t>(request.emitter)]);
+    const study::VerticalDiagram losses = compute(strength);
+    if (!command.areps.empty()) {
+      for (const std::string& file : report::writeAreps(losses, *scenario, command.areps))
+        logInfo("wrote " + file);
+    }
+    if (other) comparison = report::compareAreps(losses, *scenario, *other);
   }
   if (global.json) {
-    printJson(report::verticalJson(diagram, false));
+    report::Json json = report::verticalJson(diagram, false);
+    if (comparison) json["comparison"] = report::arepsComparisonJson(*comparison, command.compare);
+    printJson(json);
   } else {
-    printResult(report::verticalText(diagram));
+    printResult(report::verticalText(diagram) +
+                (comparison ? report::arepsComparisonText(*comparison, command.compare) : ""));
   }
   return 0;
 }
@@ -120,6 +159,7 @@ Examples:
   emscape vertical scenarios/jacksboro.yaml --emitter jammer --time 80 --azimuth 200 --threshold -50 -o jammer.png -o jammer.csv
   emscape vertical scenarios/jacksboro.yaml --emitter "search radar" --azimuth 0 --blake --range 100000 --max-height 10000 -o blake.png
   emscape vertical scenarios/jacksboro.yaml --emitter "search radar" --azimuth 0,10,20,30 --grid 200,100 --areps areps
+  emscape vertical scenarios/jacksboro.yaml --emitter "search radar" --azimuth 30 --compare areps/search_radar_APM_30.txt
 
 Exit status: 0, whether the threshold is reached or not; 2 for an unknown emitter, one that is off, or a quantity that it does
 not have by itself.)");
@@ -158,16 +198,24 @@ not have by itself.)");
       "--areps", options->areps,
       "Folder for a text file of AREPS for each azimuth, with loss, propagation factor and, of radars, "
       "the losses for probabilities of detection; SIMDIS draws them");
-  command->add_option("--time", options->time_s, "Seconds since the scenario's epoch");
-  command->add_option("--grid", options->grid, "Number of points of the grid: RANGES,HEIGHTS")
-      ->delimiter(',')
-      ->expected(2);
+  command->add_option(
+      "--compare", options->compare,
+      "Text file of AREPS: the differences of its losses to ours are printed; by default at its "
+      "points");
+  command->add_option("--time", options->time,
+                      "Seconds since the scenario's epoch, or UTC: 2026-06-01T06:00:00Z");
+  CLI::Option* const grid =
+      command->add_option("--grid", options->grid, "Number of points of the grid: RANGES,HEIGHTS")
+          ->delimiter(',')
+          ->expected(2);
   command
       ->add_option("--size", options->size,
                    "Size of pictures in pixels, WxH; default: 1400x800, higher for more than four azimuths")
       ->default_str("");
-  command->callback(
-      [options, &global, &action] { action = [options, &global] { return vertical(*options, global); }; });
+  command->callback([options, grid, &global, &action] {
+    options->has_grid = grid->count() > 0;
+    action = [options, &global] { return vertical(*options, global); };
+  });
 }
 
 }  // namespace emscape::app

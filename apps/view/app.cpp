@@ -70,7 +70,7 @@ Area fittedInto(const Area& area, render::ImageSize size) {
 
 }  // namespace
 
-App::App(const ViewOptions& options, std::shared_ptr<MessageLog> messages)
+App::App(ViewOptions options, std::shared_ptr<MessageLog> messages)
     : log_(options.log.empty() ? EventLog() : EventLog(options.log)),
       script_(options.script.empty() ? Script() : Script(options.script)),
       window_(titleOf(options, false), options.window_size.value_or(kUsualSize), options.scales_window,
@@ -162,7 +162,8 @@ double App::waitTime_s() const {
 
 void App::failIfNothingOpens() {
   has_opened_ = has_opened_ || session_->isOpened();
-  if (has_opened_ || session_->status().error.empty()) return;
+  const bool is_live = session_->options().stream != nullptr;  // nothing of a stream ends the program
+  if (has_opened_ || is_live || session_->status().error.empty()) return;
   throw Error(session_->status().error_code, session_->status().error);
 }
 
@@ -241,6 +242,7 @@ void App::run() {
   }
   session_->leave(!quits_);
   log_.write("end", session_->report());
+  if (session_->options().stream) session_->options().stream->finishRecording();
 }
 
 void App::frame() {

@@ -19,7 +19,7 @@ class App : private WindowControl {
   /// @throws Error (device) without a display or OpenGL, or without the GPU that the options ask for;
   /// (bad_input) for a faulty script; (other) if the log cannot be written
   /// @param messages  receives the warnings of the libraries
-  App(const ViewOptions& options, std::shared_ptr<MessageLog> messages);
+  App(ViewOptions options, std::shared_ptr<MessageLog> messages);
 
   /// Runs until the user, the script or a signal ends it.
   /// @throws Error if the input cannot be opened, (check_failed) by the script

@@ -3,6 +3,7 @@
 #include <exception>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "apps/common/interrupt.h"
 #include "apps/view/app.h"
@@ -39,12 +40,14 @@ void show(ViewOptions options) {
     if (playback::inputKindOf(options.view.input) != playback::InputKind::scenario)
       throw Error(ErrorCode::usage, options.view.input + ": the objects of a stream are added to a scenario");
     options.stream = std::make_shared<playback::LiveBattlefield>(*options.stream_request, nullptr);
+    options.made_of = options.view.input;
     options.view.input = options.stream->file();
     options.offers_kept_view = false;
   }
   std::string note;
   if (!options.view.input.empty() &&
       playback::inputKindOf(options.view.input) == playback::InputKind::recording) {
+    options.made_of = options.view.input;
     options.view.input = importRecordingFile(options.view.input, note);
     logInfo(note);
   }
@@ -63,8 +66,7 @@ void show(ViewOptions options) {
       !scenario::parseScenario(options.view.input, options.view.edits).scenario) {
     scenario::loadScenario(options.view.input, options.view.edits);
   }
-  App(options, messages).run();
-  if (options.stream) options.stream->finishRecording();
+  App(std::move(options), messages).run();
 }
 
 }  // namespace

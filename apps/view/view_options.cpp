@@ -11,6 +11,7 @@
 #include "apps/view/view_parser.h"
 #include "emscape/base/error.h"
 #include "playback/view/view_file.h"
+#include "recording/read_recording.h"
 
 namespace emscape::view {
 namespace {
@@ -39,11 +40,11 @@ struct Typed {
 };
 
 void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
-  app.add_option(
-      "INPUT", options.view.input,
-      "Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd or folder of them, "
-      "recording (.acmi .pcap .pcapng .session); "
-      "without it the window asks for one");
+  app.add_option("INPUT", options.view.input,
+                 std::string("Scenario, volume (.vdb .nvdb .vti .raw .dat), field on tetrahedra (.vtu), .pvd "
+                             "or folder of them, ") +
+                     "recording (" + interop::recordingEndingsText() +
+                     "); without it the window asks for one");
   app::addMeshOptions(app, options.view.mesh, options.view.cells);
   app.add_option(
       "--state", typed.state,
@@ -91,17 +92,17 @@ void takeStream(const app::StreamOptions& stream, const CLI::App& app, ViewOptio
          {"--interface", "--password", "--emitter-database", "--record", "--force", "--timeout"}) {
       if (app.count(name) > 0)
         throw Error(ErrorCode::usage,
-                    std::string(name) + " needs --dis or --acmi\nTry 'emscape view --help'.");
+                    std::string(name) + " needs --dis, --acmi or --cot\nTry 'emscape view --help'.");
     }
     return;
   }
   options.stream_request = stream.parse();
   options.stream_request->base = options.view.input;
   if (options.view.input.empty()) {
-    throw Error(
-        ErrorCode::usage,
-        "--dis and --acmi need INPUT: a scenario with the region and the terrain, to which the objects "
-        "of the stream are added; any of scenarios/ will do to begin with");
+    throw Error(ErrorCode::usage,
+                "--dis, --acmi and --cot need INPUT: a scenario with the region and the terrain, to which "
+                "the objects "
+                "of the stream are added; any of scenarios/ will do to begin with");
   }
 }
 

@@ -86,19 +86,28 @@ void setIcon(GLFWwindow* window) {
   glfwSetWindowIcon(window, 1, &icon);
 }
 
-/// A pixel of the window's background, so that parts that a resize uncovers do not flash.
+/// Keeps a resize from flashing: X leaves the last picture where it is until the next one is drawn, and fills
+/// what is uncovered with a pixel.
 void setBackground(GLFWwindow* window, unsigned long pixel) {
   using DisplayOf = void* (*)();
   using WindowOf = unsigned long (*)(GLFWwindow*);
-  using Set = int (*)(void* display, unsigned long window, unsigned long pixel);
+  struct Attributes {  // the begin of XSetWindowAttributes, whose rest is not read
+    unsigned long background_pixmap, background_pixel, border_pixmap, border_pixel;
+    int bit_gravity;
+  };
+  constexpr unsigned long kBackPixel = 1 << 1, kBitGravity = 1 << 4;  // of the X protocol
+  constexpr int kNorthWest = 1;
+  using Set = int (*)(void* display, unsigned long window, unsigned long mask, Attributes* attributes);
   void* const xlib = dlopen("libX11.so.6", RTLD_LAZY | RTLD_NOLOAD);
   if (!xlib) return;
-  void* const set = dlsym(xlib, "XSetWindowBackground");
+  void* const set = dlsym(xlib, "XChangeWindowAttributes");
   void* const display_of = dlsym(RTLD_DEFAULT, "glfwGetX11Display");
   void* const window_of = dlsym(RTLD_DEFAULT, "glfwGetX11Window");
   if (set && display_of && window_of) {
+    Attributes attributes{0, pixel, 0, 0, kNorthWest};
     reinterpret_cast<Set>(set)(reinterpret_cast<DisplayOf>(display_of)(),
-                               reinterpret_cast<WindowOf>(window_of)(window), pixel);
+                               reinterpret_cast<WindowOf>(window_of)(window), kBackPixel | kBitGravity,
+                               &attributes);
   }
   dlclose(xlib);
 }

@@ -53,4 +53,10 @@ Dataset openFile(const fs::path& file, unsigned flags, const char* const* driver
   return Dataset(GDALOpenEx(localName(file).c_str(), flags | GDAL_OF_READONLY, drivers, options, siblings));
 }
 
+Dataset openInMemory(const std::string& name, unsigned flags, const char* const* drivers,
+                     const char* const* siblings) {
+  silenceHdf5();
+  return Dataset(GDALOpenEx(name.c_str(), flags | GDAL_OF_READONLY, drivers, nullptr, siblings));
+}
+
 }  // namespace emscape::gdal

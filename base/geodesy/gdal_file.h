@@ -28,4 +28,9 @@ std::string localName(const std::filesystem::path& file);
 Dataset openFile(const std::filesystem::path& file, unsigned flags, const char* const* drivers,
                  const char* const* options = nullptr, const char* const* siblings = nullptr);
 
+/// Opens a file of GDAL's memory, which the caller has made there.
+/// @param name  /vsimem/...
+Dataset openInMemory(const std::string& name, unsigned flags, const char* const* drivers,
+                     const char* const* siblings);
+
 }  // namespace emscape::gdal

@@ -40,8 +40,8 @@ const LoadedLibrary& library();
   F(GDALDestroyColorTable) F(GDALDestroyRasterAttributeTable) F(GDALDimensionGetName) \
   F(GDALDimensionGetSize) F(GDALDimensionRelease) F(GDALExtendedDataTypeCreate) \
   F(GDALExtendedDataTypeCreateString) F(GDALExtendedDataTypeRelease) F(GDALGetBlockSize) F(GDALGetColorEntryAsRGB) F(GDALGetColorEntryCount) \
-  F(GDALGetDataTypeSizeBytes) F(GDALGetDatasetDriver) F(GDALGetDriverByName) F(GDALGetDriverShortName) \
-  F(GDALGetFileList) F(GDALGetGeoTransform) F(GDALGetMaskBand) F(GDALGetMaskFlags) F(GDALGetMetadataItem) \
+  F(GDALGetDataTypeName) F(GDALGetDataTypeSizeBytes) F(GDALGetDatasetDriver) F(GDALGetDriverByName) F(GDALGetDriverShortName) \
+  F(GDALGetFileList) F(GDALGetGeoTransform) F(GDALGetMaskBand) F(GDALGetMaskFlags) F(GDALGetMetadata) F(GDALGetMetadataItem) \
   F(GDALGetRasterBand) F(GDALGetRasterColorTable) F(GDALGetRasterCount) F(GDALGetRasterDataType) F(GDALGetRasterNoDataValue) \
   F(GDALGetColorInterpretationName) F(GDALGetRasterColorInterpretation) F(GDALGetRasterOffset) \
   F(GDALGetRasterScale) F(GDALGetRasterUnitType) F(GDALGetRasterXSize) \
@@ -60,17 +60,17 @@ const LoadedLibrary& library();
   F(OGR_F_GetFieldAsDouble) F(OGR_F_GetFieldAsInteger) F(OGR_F_GetFieldAsString) F(OGR_F_GetFieldIndex) \
   F(OGR_F_GetGeometryRef) F(OGR_F_SetFieldDouble) F(OGR_F_SetFieldInteger) F(OGR_F_SetFieldString) \
   F(OGR_F_SetGeometry) F(OGR_F_StealGeometry) F(OGR_Fld_Create) F(OGR_Fld_Destroy) F(OGR_Fld_GetNameRef) \
-  F(OGR_GFld_GetNameRef) F(OGR_G_AddGeometryDirectly) F(OGR_G_AddPointZM) F(OGR_G_CreateGeometry) \
+  F(OGR_GFld_GetNameRef) F(OGR_G_AddGeometry) F(OGR_G_AddGeometryDirectly) F(OGR_G_AddPointZM) F(OGR_G_CreateGeometry) \
   F(OGR_G_DestroyGeometry) F(OGR_G_GetGeometryCount) F(OGR_G_GetGeometryRef) F(OGR_G_GetGeometryType) \
   F(OGR_G_GetLinearGeometry) F(OGR_G_GetPointCount) F(OGR_G_GetPoints) F(OGR_G_GetX) F(OGR_G_GetY) \
-  F(OGR_G_IsEmpty) F(OGR_G_SetPoint_2D) F(OGR_GT_Flatten) F(OGR_L_CreateFeature) F(OGR_L_CreateField) F(OGR_L_GetLayerDefn) \
+  F(OGR_G_IsEmpty) F(OGR_G_IsValid) F(OGR_G_MakeValid) F(OGR_G_SetPoint_2D) F(OGR_GT_Flatten) F(OGR_L_CreateFeature) F(OGR_L_CreateField) F(OGR_L_GetLayerDefn) \
   F(OGR_L_GetNextFeature) F(OGR_L_GetSpatialRef) F(OGR_L_ResetReading) F(OSRClone) F(OSRCloneGeogCS) \
-  F(OSRDestroySpatialReference) F(OSRExportToWkt) F(OSRExportToWktEx) F(OSRGetAngularUnits) \
+  F(OSRDestroySpatialReference) F(OSRExportToWkt) F(OSRExportToWktEx) F(OSRGetAngularUnits) F(OSRGetAxis) \
   F(OSRGetAttrValue) F(OSRGetAuthorityCode) F(OSRGetAuthorityName) F(OSRGetAxesCount) \
-  F(OSRGetLinearUnits) F(OSRGetName) F(OSRGetPROJSearchPaths) F(OSRImportFromEPSG) F(OSRImportFromProj4) \
-  F(OSRIsGeocentric) F(OSRIsGeographic) F(OSRIsProjected) F(OSRNewSpatialReference) \
-  F(OSRSetAxisMappingStrategy) F(OSRSetPROJEnableNetwork) F(OSRSetWellKnownGeogCS) F(OSRStripVertical) F(VSIFree) F(VSIStatExL) \
-  F(VSIStatL)
+  F(OSRGetLinearUnits) F(OSRGetName) F(OSRGetPROJSearchPaths) F(OSRGetTargetLinearUnits) F(OSRImportFromEPSG) F(OSRImportFromProj4) \
+  F(OSRIsGeocentric) F(OSRIsGeographic) F(OSRIsSame) F(OSRIsProjected) F(OSRNewSpatialReference) \
+  F(OSRSetAxisMappingStrategy) F(OSRSetPROJEnableNetwork) F(OSRSetWellKnownGeogCS) F(OSRStripVertical) F(VSIFCloseL) F(VSIFOpenL) F(VSIFReadL) \
+  F(VSIFileFromMemBuffer) F(VSIFree) F(VSIReadDirRecursive) F(VSIStatExL) F(VSIStatL) F(VSIUnlink)
 // clang-format on
 
 #pragma GCC diagnostic push

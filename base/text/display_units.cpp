@@ -34,7 +34,11 @@ std::string distanceText(double distance_m, Units units) {
 std::string roundDistanceText(double distance_m, Units units) {
   if (units == Units::metric && std::abs(distance_m) < 1000) return fmt::format("{:g} m", distance_m);
   const DisplayUnit unit = distanceUnit(units);
-  return fmt::format("{:.4g} {}", distance_m / unit.factor, unit.name);
+  double distance = distance_m / unit.factor;
+  // Of a distance that is round in metres only what matters is shown.
+  const double part = std::abs(distance) < 1 ? 0.01 : 0.1;
+  if (units != Units::metric) distance = std::round(distance / part) * part;
+  return fmt::format("{:.4g} {}", distance, unit.name);
 }
 
 std::string heightText(double height_m, Units units) {

@@ -235,7 +235,8 @@ PositionColumn setMiddle(const std::vector<PositionsPart>& parts, bool has_terra
   for (const PositionsPart& part : parts) all.add(part);
   if (length(all.feet) == 0) {
     throw Error(ErrorCode::bad_input,
-                has_terrain ? "the terrain is missing below all places to compute the field over"
+                has_terrain ? "the terrain is missing below all places to compute the field over; 'terrain: "
+                              "{missing: sea}' takes it as sea"
                             : "no positions at which to compute the field");
   }
   columns.lowest_msl_m = all.lowest_msl_m;

@@ -65,4 +65,30 @@ std::vector<std::string> pathWarnings(const Emitter& emitter, const propagation:
   return messages;
 }
 
+std::vector<std::string> seaWarnings(const Scenario& scenario, const Emitter& emitter, double lowest_m) {
+  constexpr double kNoise_m = -2;  // heights of a calm sea in elevation files are this close to 0
+  std::vector<std::string> warnings;
+  if (!(lowest_m < kNoise_m)) return warnings;
+  const auto warn = [&](const std::string& who, const std::string& remedy) {
+    warnings.push_back(
+        fmt::format("emitter '{}': ground lies down to {:.0f} m, and {} takes ground at or below mean sea "
+                    "level for sea; where "
+                    "it is land, {}",
+                    emitter.name, lowest_m, who, remedy));
+  };
+  using propagation::ClearAirZone;
+  using propagation::PropagationModel;
+  const propagation::ModelSettings& settings = emitter.propagation;
+  const PropagationModel model = emitter.propagation.model;
+  if (model == PropagationModel::p1812 && settings.p1812.zone == ClearAirZone::by_height)
+    warn("'p1812'", "'p1812: {zone: inland}' (or coastal_land) says so");
+  if (model == PropagationModel::p452 && settings.p452.zone == ClearAirZone::by_height)
+    warn("'p452'", "'p452: {zone: inland}' (or coastal_land) says so");
+  if (model == PropagationModel::diffraction && scenario.ground.sea_by_height)
+    warn("'diffraction'", "leave out 'ground: {sea_by_height: true}'");
+  if (emitter.clutter && emitter.clutter->sea_state)
+    warn("its clutter", "leave out 'sea_state' of the clutter");
+  return warnings;
+}
+
 }  // namespace emscape::emfield

@@ -24,4 +24,10 @@ std::vector<std::string> checkModel(const scenario::Scenario& scenario, const sc
 std::vector<std::string> pathWarnings(const scenario::Emitter& emitter, const propagation::PathInputs& inputs,
                                       unsigned warnings);
 
+/// A warning if ground lies clearly below mean sea level and the emitter's model, its clutter or the ground's
+/// constants take it for sea.
+/// @param lowest_m  of the ground (above mean sea level); NaN: unknown
+std::vector<std::string> seaWarnings(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                                     double lowest_m);
+
 }  // namespace emscape::emfield

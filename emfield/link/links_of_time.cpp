@@ -72,12 +72,29 @@ double dbm(double power_w) {
   return ratioToDb(power_w) + 30;
 }
 
+bool isPresent(const scenario::Snapshot& snapshot, int platform) {
+  return snapshot.platforms[static_cast<std::size_t>(platform)].present;
+}
+
 /// Fills the columns of a row that describe its path.
-void fillPath(PathRow& row, const Emitter& emitter, const PathBudget* budget) {
+/// @param budget   null: one end is straight above the other, or absent
+/// @param to       platform of the other end
+/// @param unknown  the path crosses missing terrain
+void fillPath(PathRow& row, const scenario::Snapshot& snapshot, int emitter_index, int to,
+              const PathBudget* budget, bool unknown) {
   row.has_path = budget != nullptr;
   if (budget == nullptr) {
-    row.power_density_dbwm2 = -HUGE_VAL;
-    row.verdict = row.path = fmt::format("No path: '{}' is straight above or below.", emitter.name);
+    const Emitter& emitter = snapshot.scenario->emitters[static_cast<std::size_t>(emitter_index)];
+    row.power_density_dbwm2 = unknown ? std::nan("") : -HUGE_VAL;
+    row.path = unknown ? std::string("Unknown: terrain is missing on the path.")
+                       : fmt::format("No path: '{}' is straight above or below.", emitter.name);
+    for (const int end : {to, emitter.platform}) {
+      if (isPresent(snapshot, end)) continue;
+      row.path = fmt::format(
+          "No path: {}.",
+          scenario::absenceText(snapshot.scenario->platforms[static_cast<std::size_t>(end)], row.time_s));
+    }
+    row.verdict = row.path;
     return;
   }
   row.active = budget->active;
@@ -96,6 +113,11 @@ void keepWarnings(std::vector<std::string>& all, const std::string& from, const 
     const std::string line = fmt::format("'{}' to '{}': {}", from, to, warning);
     if (std::find(all.begin(), all.end(), line) == all.end() && all.size() < 50) all.push_back(line);
   }
+}
+
+/// True for an error of missing terrain that the scenario allows.
+bool isUnknown(const Scenario& scenario, const Error& error) {
+  return error.hint() == Hint::allow_missing_terrain && scenario::mayLackTerrain(scenario, false);
 }
 
 /// Adds the ends and the time to an error of a path.
@@ -141,8 +163,10 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
   const scenario::ReceiverState& state = snapshot.receivers[receiver_];
   const EmitterState& from = snapshot.emitters[emitter];
   Wave& wave = waves_[emitter];
-  wave.is_present = false;
-  if (isAbove(from.position, state.position)) {
+  wave.is_present = wave.is_unknown = false;
+  const bool is_absent = !isPresent(snapshot, own.platform) ||
+                         !isPresent(snapshot, scenario.emitters[static_cast<std::size_t>(emitter)].platform);
+  if (is_absent || isAbove(from.position, state.position)) {
     wave.budget.reset();
     return;
   }
@@ -150,6 +174,9 @@ void ReceiverListener::receive(int emitter, const scenario::Snapshot& snapshot,
     wave.budget = std::make_unique<PathBudget>(powerBudget(
         snapshot, emitter, {state.position, state.height_msl_m}, wave.model, terrain, wave.budget.get()));
   } catch (const Error& error) {
+    wave.budget.reset();
+    wave.is_unknown = isUnknown(scenario, error);
+    if (wave.is_unknown) return;
     refuse(scenario.emitters[emitter].name, own.name, snapshot.time_s, error);
   }
   keepWarnings(warnings, scenario.emitters[emitter].name, own.name, *wave.budget);
@@ -212,7 +239,7 @@ void ReceiverListener::add(const scenario::Snapshot& snapshot, const scenario::T
     const double signal_w = powers_w[static_cast<std::size_t>(link.emitter)];
     LinkRow row;
     row.time_s = snapshot.time_s;
-    fillPath(row, wanted, wave.budget.get());
+    fillPath(row, snapshot, link.emitter, own.platform, wave.budget.get(), wave.is_unknown);
     row.active = snapshot.emitters[link.emitter].active;
     row.received_power_dbm = dbm(signal_w);
     row.interference_dbm = dbm(interference_w);
@@ -274,15 +301,19 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
   const EmitterState& radar_state = snapshot.emitters[detection.radar];
   const scenario::Target& target = snapshot.scenario->targets[detection.target];
   const scenario::PlatformState& carrier = snapshot.platforms[target.platform];
+  const bool is_present = carrier.present && isPresent(snapshot, radar.platform);
   DetectionRow row;
   row.time_s = snapshot.time_s;
   row.active = radar_state.active;
-  row.rcs_m2 = rcsTowards_m2(snapshot, target, detection.radar);
-  if (radar.clutter)
-    row.radial_speed_mps = radialSpeed_mps(snapshot, detection.radar, target.platform, terrain);
+  row.rcs_m2 = is_present ? rcsTowards_m2(snapshot, target, detection.radar) : NAN;
+  if (radar.clutter) {
+    row.radial_speed_mps =
+        is_present ? radialSpeed_mps(snapshot, detection.radar, target.platform, terrain) : NAN;
+  }
 
+  bool is_unknown = false;
   std::optional<PathBudget> budget;
-  if (!isAbove(radar_state.position, carrier.position)) {
+  if (is_present && !isAbove(radar_state.position, carrier.position)) {
     std::unique_ptr<TargetScene> scene = scenes.take(snapshot);
     Emitter& with_target = scene->scenario->emitters[detection.radar];
     with_target.receiver.swerling = target.swerling;
@@ -292,13 +323,14 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
       budget = pathBudget(scene->snapshot, detection.radar, {carrier.position, carrier.height_msl_m}, model_,
                           terrain);
     } catch (const Error& error) {
-      refuse(radar.name, target.name, snapshot.time_s, error);
+      is_unknown = isUnknown(*snapshot.scenario, error);
+      if (!is_unknown) refuse(radar.name, target.name, snapshot.time_s, error);
     }
     with_target = radar;
     scenes.giveBack(std::move(scene));
-    keepWarnings(warnings, radar.name, target.name, *budget);
+    if (budget) keepWarnings(warnings, radar.name, target.name, *budget);
   }
-  fillPath(row, radar, budget ? &*budget : nullptr);
+  fillPath(row, snapshot, detection.radar, target.platform, budget ? &*budget : nullptr, is_unknown);
   row.look_pattern_db = budget ? budget->look_pattern_db.value_or(row.pattern_db) : 0;
   const auto valueOr = [&](const char* key, double otherwise) {
     const BudgetTerm* const term = budget ? budget->find(key) : nullptr;
@@ -310,7 +342,7 @@ void TargetWatcher::add(const scenario::Snapshot& snapshot, const scenario::Terr
   row.detection_probability = valueOr("detection_probability", 0);
   const long long before = detection.rows.empty() ? 0 : looksUntil(detection.rows.back().time_s);
   const long long looks = period_s_ ? looksUntil(row.time_s) - before : 1;
-  row.looks = row.active ? static_cast<int>(std::min<long long>(looks, 1000000)) : 0;
+  row.looks = row.active && is_present ? static_cast<int>(std::min<long long>(looks, 1000000)) : 0;
   missed_ *= std::pow(1 - row.detection_probability, row.looks);
   row.cumulative_probability = 1 - missed_;
   detection.rows.push_back(std::move(row));

@@ -33,6 +33,7 @@ class ReceiverListener {
     propagation::PropagationModel model{};
     std::unique_ptr<PathBudget> budget;  ///< of the last time with a path; may be null
     bool is_present = false;             ///< radiates, with a path
+    bool is_unknown = false;             ///< its path crosses missing terrain
     double power_density_wm2 = 0;        ///< if present
     double area_m2 = 0;                  ///< of the receiver for the wave, inBandArea_m2()
   };

@@ -11,6 +11,7 @@
 #include "emfield/columns/station.h"
 #include "emfield/columns/two_rays.h"
 #include "emfield/excess/elevation_cut.h"
+#include "emfield/excess/model_check.h"
 #include "emfield/link/path_radar.h"
 #include "emfield/link/path_verdict.h"
 #include "emfield/radar/detection_losses.h"
@@ -302,6 +303,10 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   const scenario::Scenario& scenario = *snapshot.scenario;
   const Emitter& emitter = scenario.emitters[emitter_index];
   const EmitterState& state = snapshot.emitters[emitter_index];
+  if (!snapshot.platforms[emitter.platform].present) {
+    throw Error(ErrorCode::usage,
+                scenario::absenceText(scenario.platforms[emitter.platform], snapshot.time_s));
+  }
   Emitter by_model = emitter;
   by_model.propagation.model = model;
   PathBudget budget;
@@ -343,6 +348,11 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   budget.pointing = pointingOf(emitter, state.beam, ray, budget.excess.reflection);
   budget.boresight_dbwm2 = boresightDensity_dbwm2(emitter, budget);
   budget.warnings = budget.excess.warnings;
+  if (terrain != nullptr) {
+    const float lowest_m = *std::min_element(profile.ground_msl_m.begin(), profile.ground_msl_m.end());
+    for (std::string& warning : seaWarnings(scenario, by_model, static_cast<double>(lowest_m)))
+      budget.warnings.push_back(std::move(warning));
+  }
   if (geometry.slant_range_m < geometry.far_field_m) {
     budget.warnings.push_back(fmt::format(
         "the point is {:.0f} m from the antenna, closer than the far-field distance (2 D^2 / lambda = "

@@ -32,12 +32,13 @@ void checkTerrain(const PathProfile& profile, const scenario::Terrain& terrain) 
                      profile.azimuth_rad, range_m);
   const scenario::GeoBox box = terrain.coverage();
   throw Error(
-      ErrorCode::bad_input,
+      ErrorCode::bad_input, {},
       fmt::format("terrain is missing on the path, {:.2f} km from the emitter at latitude {:.5f}, longitude "
                   "{:.5f} deg; the elevation data that is loaded covers latitude {:.5f}..{:.5f}, longitude "
-                  "{:.5f}..{:.5f} deg",
+                  "{:.5f}..{:.5f} deg; {}",
                   range_m / 1000, position.latitude_deg, position.longitude_deg, box.south_deg, box.north_deg,
-                  box.west_deg, box.east_deg));
+                  box.west_deg, box.east_deg, scenario::kMissingTerrainRemedy),
+      Hint::allow_missing_terrain);
 }
 
 PathObstacle obstacleAt(const PathProfile& profile, int post, double wavelength_m) {

@@ -7,6 +7,7 @@
 
 #include "base/memory.h"
 #include "emfield/excess/emitter_excess.h"
+#include "emfield/excess/model_check.h"
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/backend.h"
 #include "emscape/base/error.h"
@@ -28,7 +29,7 @@ bool sameRegion(const scenario::Region& a, const scenario::Region& b) {
 
 bool sameTerrainFiles(const scenario::Scenario& a, const scenario::Scenario& b) {
   if (!a.terrain || !b.terrain) return !a.terrain && !b.terrain;
-  return a.terrain->files == b.terrain->files && a.terrain->vertical_datum == b.terrain->vertical_datum;
+  return *a.terrain == *b.terrain;
 }
 
 /// Its layers are the heights.
@@ -164,16 +165,24 @@ std::string FieldSolver::Impl::placeOf(std::size_t column) const {
   return fmt::format("latitude {:.5f}, longitude {:.5f} deg", position.latitude_deg, position.longitude_deg);
 }
 
+bool FieldSolver::Impl::mayLackTerrain() const {
+  return options.allow_missing_terrain || scenario::mayLackTerrain(*setup.scenario, false);
+}
+
 void FieldSolver::Impl::checkHoles() const {
   const GridColumns& columns = setup.columns;
-  if (columns.hole_columns == 0 || options.allow_missing_terrain) return;
+  if (columns.hole_columns == 0 || mayLackTerrain()) return;
   const scenario::GeoBox box = setup.terrain->coverage();
   throw Error(ErrorCode::bad_input, {setup.scenario->file},
               fmt::format("terrain is missing below {} of {} columns of the region, first at {}; the "
                           "elevation data that is loaded covers latitude "
-                          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts",
+                          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts{}; {}",
                           columns.hole_columns, columns.count(), placeOf(columns.first_hole), box.south_deg,
-                          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts()),
+                          box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts(),
+                          static_cast<std::size_t>(columns.hole_columns) == columns.count()
+                              ? "; " + setup.terrain->placeText()
+                              : "",
+                          scenario::kMissingTerrainRemedy),
               Hint::allow_missing_terrain);
 }
 
@@ -338,6 +347,14 @@ MemoryEstimate FieldSolver::memoryEstimate() const {
 std::vector<std::string> FieldSolver::warnings() const {
   WarningCounts all;
   for (const std::string& warning : impl_->setup.warnings) ++all[warning];
+  if (impl_->setup.terrain) {
+    for (const std::string& warning : impl_->setup.terrain->warnings()) ++all[warning];
+    for (const scenario::Emitter& emitter : impl_->setup.scenario->emitters) {
+      for (const std::string& warning :
+           seaWarnings(*impl_->setup.scenario, emitter, impl_->setup.terrain->lowest_m()))
+        ++all[warning];
+    }
+  }
   for (const EmitterCache& cache : impl_->emitters) {
     for (const WarningCounts* counts : {&cache.warnings, &cache.jamming_warnings}) {
       for (const auto& [warning, count] : *counts) all[warning] += count;

@@ -67,6 +67,7 @@ struct FieldSolver::Impl {
   bool hasDeviceColumns() const;
   void requireFieldMemory();
   void makeColumns();
+  bool mayLackTerrain() const;  ///< of the options or the scenario
   void checkHoles() const;
   std::string placeOf(std::size_t column) const;
 

@@ -28,7 +28,7 @@ void FieldSolver::Impl::findJamming(const scenario::Snapshot& snapshot, const Ch
       if (!needs_rejamming && !cache.mount_changed) continue;
       std::string warning;
       cache.jammers = jammerPaths(snapshot, e, channel.jammers, setup.terrain.get(),
-                                  options.allow_missing_terrain ? &warning : nullptr);
+                                  mayLackTerrain() ? &warning : nullptr);
       if (!warning.empty()) ++cache.jamming_warnings[warning];
       done[e] = true;
     }

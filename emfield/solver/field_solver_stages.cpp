@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 
 #include "emfield/channels/categories.h"
 #include "emfield/excess/emitter_excess.h"
@@ -56,13 +57,13 @@ void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   cache.geometry = geometryInputs(setup, e, cache.state);
   cache.geometry_result = std::move(found);
   const GeometryResult& geometry_result = cache.geometry_result;
-  if (geometry_result.unknown_columns > 0 && !options.allow_missing_terrain) {
+  if (geometry_result.unknown_columns > 0 && !mayLackTerrain()) {
     const auto first = std::find(geometry_result.unknown.begin(), geometry_result.unknown.end(), 1);
     throw Error(
         ErrorCode::bad_input, {setup.scenario->file},
-        fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain",
+        fmt::format("emitter '{}': the path to {} and to {} more columns crosses missing terrain; {}",
                     emitter.name, placeOf(static_cast<std::size_t>(first - geometry_result.unknown.begin())),
-                    geometry_result.unknown_columns - 1),
+                    geometry_result.unknown_columns - 1, scenario::kMissingTerrainRemedy),
         Hint::allow_missing_terrain);
   }
   noteWarnings(e);
@@ -281,6 +282,10 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
   }
   out.extra["scenario"] = setup.scenario->name;
   out.extra["scenario_hash"] = setup.scenario->hash;
+  out.extra["program"] = "emscape " EMSCAPE_VERSION;
+  std::set<std::string> models;
+  for (int e : channel.emitters) models.insert(toString(setup.scenario->emitters[e].propagation.model));
+  out.extra["models"] = fmt::format("{}", fmt::join(models, ", "));
   std::string near_field;
   for (int e : channel.emitters) {
     if (!emitters[e].state.active) continue;

@@ -11,7 +11,7 @@
 #include "document/document.h"
 #include "document/schema.h"
 #include "emscape/base/enum_names.h"
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
 

@@ -4,7 +4,7 @@
 
 #include "base/text/utf8.h"
 #include "emscape/base/error.h"
-#include "interop/recording/xml.h"
+#include "recording/common/xml.h"
 
 namespace emscape::interop {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interop/acmi/acmi_text.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
+#include "recording/acmi/acmi_text.h"
 
 namespace emscape::interop {
 namespace {
@@ -47,8 +47,8 @@ std::string placeOf(const PoseSample& pose) {
 }
 
 /// The beam's properties; of one that sweeps the beamwidth of the sector, as other programs write it.
-std::string radarOf(const scenario::Emitter& emitter, double t_s) {
-  const BeamState state = beamStateAt(emitter, t_s);
+std::string radarOf(const scenario::Scenario& scenario, const scenario::Emitter& emitter, double t_s) {
+  const BeamState state = beamStateAt(scenario, emitter, t_s);
   const BeamWidths widths = widthsOf(state);
   return fmt::format(
       "RadarMode={},RadarAzimuth={},RadarElevation={},RadarHorizontalBeamwidth={},RadarVerticalBeamwidth={}",
@@ -101,8 +101,10 @@ long long writeAcmi(const ExportJob& job, const TextSink& sink, std::vector<Expo
     for (const double t_s : timesOfPositions(scenario, *objects[i].platform, job.step_s))
       events.emplace_back(t_s, i);
     if (objects[i].emitter == nullptr) continue;
-    for (const double t_s : timesOfChanges(scenario, *objects[i].emitter, job.step_s))
-      events.emplace_back(t_s, i);
+    const double end_s = presenceOf(scenario, *objects[i].platform).end_s;
+    for (const double t_s : timesOfChanges(scenario, *objects[i].emitter, job.step_s)) {
+      if (t_s <= end_s) events.emplace_back(t_s, i);
+    }
   }
   std::sort(events.begin(), events.end());
   events.erase(std::unique(events.begin(), events.end()), events.end());
@@ -120,7 +122,7 @@ long long writeAcmi(const ExportJob& job, const TextSink& sink, std::vector<Expo
     AcmiObject& object = objects[index];
     const bool is_new = object.place.empty();
     const std::string place = placeOf(poseOf(*object.platform, job.terrain, t_s));
-    const std::string radar = object.emitter == nullptr ? "" : radarOf(*object.emitter, t_s);
+    const std::string radar = object.emitter == nullptr ? "" : radarOf(scenario, *object.emitter, t_s);
     std::string line;
     // The end of a platform's stay is written, so that the recording is as long as the scenario.
     const bool is_last = t_s >= scenario.clock.duration_s;
@@ -129,10 +131,13 @@ long long writeAcmi(const ExportJob& job, const TextSink& sink, std::vector<Expo
     if (radar != object.radar) line += "," + radar;
     object.place = place;
     object.radar = radar;
-    if (line.empty()) continue;
+    const double end_s = presenceOf(scenario, *object.platform).end_s;
+    const bool leaves = t_s >= end_s && end_s < scenario.clock.duration_s;
+    if (line.empty() && !leaves) continue;
     if (t_s != frame_s) sink(fmt::format("#{}\n", decimalText(t_s, 3)));
     frame_s = t_s;
-    sink(fmt::format("{:x}{}\n", object.id, line));
+    if (!line.empty()) sink(fmt::format("{:x}{}\n", object.id, line));
+    if (leaves) sink(fmt::format("-{:x}\n", object.id));
     ++records;
   }
   return records;

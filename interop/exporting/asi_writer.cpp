@@ -4,7 +4,7 @@
 #include "emscape/base/geodesy/geoid.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
-#include "interop/recording/text.h"
+#include "recording/common/dates.h"
 
 namespace emscape::interop {
 namespace {
@@ -99,7 +99,7 @@ class AsiWriter {
     const scenario::Emitter& emitter = scenario_.emitters[index];
     const std::size_t id = kFirstBeam + index;
     const std::vector<double> times = timesOfChanges(scenario_, emitter, job_.step_s);
-    const BeamWidths widths = widthsOf(beamStateAt(emitter, 0));
+    const BeamWidths widths = widthsOf(beamStateAt(scenario_, emitter, 0));
     line(fmt::format("BeamID {} {}", emitter.platform + 1, id));
     line(fmt::format("BeamDesc {} {}", id, quotedWord(emitter.name)));
     line(fmt::format("BeamType {} \"BODY\"", id));
@@ -107,7 +107,7 @@ class AsiWriter {
     line(fmt::format("VertBW {} {}", id, decimalText(widths.elevation_deg, 3)));
     std::optional<bool> was_on;
     for (const double t_s : times) {
-      const BeamState state = beamStateAt(emitter, t_s);
+      const BeamState state = beamStateAt(scenario_, emitter, t_s);
       if (was_on != state.is_on)
         line(fmt::format("BeamOnOffCmd {} {} {}", id, timeText(t_s), state.is_on ? 1 : 0));
       was_on = state.is_on;

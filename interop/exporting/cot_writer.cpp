@@ -7,10 +7,11 @@
 #include "base/text/xml_text.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "interop/beams/directions.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
-#include "interop/recording/text.h"
+#include "recording/beams/directions.h"
+#include "recording/common/dates.h"
+#include "recording/common/text.h"
 
 namespace emscape::interop {
 namespace {
@@ -38,13 +39,13 @@ char dimensionOf(Domain domain) {
 }
 
 /// An event to write: of a platform, or of an emitter's beam.
-struct CotEvent {
+struct WrittenEvent {
   double t_s = 0;
   bool is_beam = false;
   std::size_t index = 0;   ///< of the platform or emitter
   std::size_t number = 0;  ///< of its times
 
-  bool operator<(const CotEvent& other) const {
+  bool operator<(const WrittenEvent& other) const {
     return std::tie(t_s, is_beam, index) < std::tie(other.t_s, other.is_beam, other.index);
   }
 };
@@ -55,7 +56,7 @@ class CotWriter {
       : job_(job), scenario_(job.scenario), sink_(sink), epoch_s_(epochOf_s(job.scenario)) {}
 
   long long run(std::vector<ExportedRow>& rows) {
-    std::vector<CotEvent> events;
+    std::vector<WrittenEvent> events;
     for (std::size_t i = 0; i < scenario_.platforms.size(); ++i) {
       const scenario::Platform& platform = scenario_.platforms[i];
       platform_times_.push_back(timesOfPositions(scenario_, platform, job_.step_s));
@@ -115,7 +116,7 @@ class CotWriter {
     return fmt::format("emscape.{}.{}", kind, index + 1);
   }
 
-  void writePlatform(const CotEvent& event) {
+  void writePlatform(const WrittenEvent& event) {
     const scenario::Platform& platform = scenario_.platforms[event.index];
     const std::vector<double>& times = platform_times_[event.index];
     const PoseSample pose = poseOf(platform, job_.terrain, event.t_s);
@@ -134,9 +135,9 @@ class CotWriter {
   }
 
   /// A beam that is off is not written: it was seen until its last event's stale time.
-  void writeBeam(const CotEvent& event) {
+  void writeBeam(const WrittenEvent& event) {
     const scenario::Emitter& emitter = scenario_.emitters[event.index];
-    const BeamState state = beamStateAt(emitter, event.t_s);
+    const BeamState state = beamStateAt(scenario_, emitter, event.t_s);
     if (!state.is_on) return;
     const auto platform = static_cast<std::size_t>(emitter.platform);
     const std::vector<double>& times = beam_times_[event.index];

@@ -7,25 +7,37 @@
 #include "base/files/json_writing.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "interop/beams/directions.h"
 #include "interop/exporting/writers.h"
-#include "interop/recording/text.h"
+#include "recording/beams/directions.h"
+#include "recording/common/dates.h"
+#include "recording/common/text.h"
 
 namespace emscape::interop {
 namespace {
 
 using OrderedJson = nlohmann::ordered_json;
 
-/// Positions that are nearer (m) to the straight line between those around them are left out.
-constexpr double kOnLine_m = 0.8;
+/// Largest distance (m) of the lines between written positions from the track.
+constexpr double kTolerance_m = 0.98;
+/// In turns, written positions are so far (m) outside of the track: lines between them are then as far inside
+/// as outside of it, and longer by the root of two.
+constexpr double kOutside_m = 0.8;
+constexpr double kStraight_m = 1e-3;  ///< off the line between the positions before and after
 constexpr std::size_t kMaxSkipped = 2000;
 constexpr int kMaxShapes = 200;  ///< of a beam over time
 constexpr int kArcParts = 12;
+
+/// Steps in which a position is written: of a degree, and of a metre.
+struct Steps {
+  double angle = 1e6, height = 10;
+};
+constexpr Steps kFine{}, kCoarse{1e5, 1};
 
 struct TimedPlace {
   double t_s = 0;
   GeodeticPosition position;
   Vec3d ecef;
+  Steps steps{};
 };
 
 TimedPlace timedPlace(const PoseSample& pose) {
@@ -37,24 +49,69 @@ TimedPlace timedPlace(const PoseSample& pose) {
   return place;
 }
 
-/// The places that straight lines in time and space need.
-std::vector<TimedPlace> reducedPlaces(const std::vector<TimedPlace>& places) {
-  std::vector<TimedPlace> kept{places.front()};
-  std::size_t begin = 0;
-  for (std::size_t end = 2; end < places.size(); ++end) {
-    bool is_straight = end - begin < kMaxSkipped;
-    for (std::size_t i = begin + 1; is_straight && i < end; ++i) {
-      const double part = (places[i].t_s - places[begin].t_s) / (places[end].t_s - places[begin].t_s);
-      const Vec3d on_line = places[begin].ecef + (places[end].ecef - places[begin].ecef) * part;
-      is_straight = length(on_line - places[i].ecef) <= kOnLine_m;
-    }
-    if (is_straight) continue;
-    begin = end - 1;
-    kept.push_back(places[begin]);
-  }
-  if (places.size() > 1) kept.push_back(places.back());
-  return kept;
+/// A place as it is written: outside of the turn that the track makes there.
+TimedPlace outsideOfTurn(const std::vector<TimedPlace>& places, std::size_t i) {
+  if (i == 0 || i + 1 == places.size()) return places[i];
+  const TimedPlace &before = places[i - 1], &here = places[i], &after = places[i + 1];
+  const double part = (here.t_s - before.t_s) / (after.t_s - before.t_s);
+  const Vec3d outwards = here.ecef - (before.ecef + (after.ecef - before.ecef) * part);
+  if (length(outwards) < kStraight_m) return here;
+  TimedPlace place = here;
+  place.ecef = here.ecef + outwards * (kOutside_m / length(outwards));
+  place.position = fromEcef(place.ecef);
+  return place;
 }
+
+/// A place as it is read again.
+TimedPlace roundedPlace(TimedPlace place, const Steps& steps) {
+  const auto near = [](double value, double per_unit) { return std::round(value * per_unit) / per_unit; };
+  place.position = {std::clamp(near(place.position.latitude_deg, steps.angle), -90.0, 90.0),
+                    near(place.position.longitude_deg, steps.angle),
+                    near(place.position.height_ellipsoid_m, steps.height)};
+  place.ecef = toEcef(place.position);
+  place.steps = steps;
+  return place;
+}
+
+/// The places that straight lines in time and space need to be within the tolerance, each with as few digits
+/// as that allows.
+class PlaceReducer {
+ public:
+  explicit PlaceReducer(const std::vector<TimedPlace>& places) : places_(places) {}
+
+  std::vector<TimedPlace> run() {
+    kept_ = {roundedPlace(places_.front(), kFine)};
+    TimedPlace last = kept_.front();
+    for (std::size_t end = 1; end < places_.size(); ++end) {
+      const TimedPlace to = roundedPlace(outsideOfTurn(places_, end), kFine);
+      if (end - begin_ > 1 && (end - begin_ > kMaxSkipped || !isWithin(to, end))) keep(last, end - 1);
+      last = to;
+    }
+    if (places_.size() > 1) keep(last, places_.size() - 1);
+    return std::move(kept_);
+  }
+
+ private:
+  /// True if the line from the last kept place is near all places up to `end`.
+  bool isWithin(const TimedPlace& to, std::size_t end) const {
+    const TimedPlace& from = kept_.back();
+    for (std::size_t i = begin_ + 1; i <= end; ++i) {
+      const double part = (places_[i].t_s - from.t_s) / (to.t_s - from.t_s);
+      if (length(from.ecef + (to.ecef - from.ecef) * part - places_[i].ecef) > kTolerance_m) return false;
+    }
+    return true;
+  }
+
+  void keep(const TimedPlace& place, std::size_t index) {
+    const TimedPlace coarse = roundedPlace(places_[index], kCoarse);
+    kept_.push_back(isWithin(coarse, index) ? coarse : place);
+    begin_ = index;
+  }
+
+  const std::vector<TimedPlace>& places_;
+  std::vector<TimedPlace> kept_;
+  std::size_t begin_ = 0;  ///< index of the last kept one
+};
 
 /// A number in short form: whole ones without a decimal.
 void addNumber(OrderedJson& list, double value, double steps) {
@@ -66,11 +123,11 @@ void addNumber(OrderedJson& list, double value, double steps) {
   }
 }
 
-/// Longitude, latitude (1e-6 degrees) and height above the ellipsoid (0.1 m).
-void addTo(OrderedJson& list, const GeodeticPosition& at) {
-  addNumber(list, at.longitude_deg, 1e6);
-  addNumber(list, at.latitude_deg, 1e6);
-  addNumber(list, at.height_ellipsoid_m, 10);
+/// Longitude, latitude and height above the ellipsoid.
+void addTo(OrderedJson& list, const GeodeticPosition& at, const Steps& steps = kFine) {
+  addNumber(list, at.longitude_deg, steps.angle);
+  addNumber(list, at.latitude_deg, steps.angle);
+  addNumber(list, at.height_ellipsoid_m, steps.height);
 }
 
 OrderedJson rgba(scenario::EmitterKind kind, int alpha) {
@@ -117,23 +174,27 @@ class CzmlWriter {
     } else {
       places.push_back(timedPlace(poseOf(platform, job_.terrain, 0)));
     }
+    if (places.empty()) return;  // never present
     OrderedJson samples = OrderedJson::array();
-    const std::vector<TimedPlace> kept = reducedPlaces(places);
+    const std::vector<TimedPlace> kept = PlaceReducer(places).run();
     for (const TimedPlace& place : kept) {
       if (platform.moves()) addNumber(samples, place.t_s, 1000);
-      addTo(samples, place.position);
+      addTo(samples, place.position, place.steps);
       ++records_;
     }
     OrderedJson position{{"cartographicDegrees", samples}};
+    const bool holds = platform.outside_track == scenario::OutsideTrack::hold;
     if (platform.moves()) {
+      const char* const outside = holds ? "HOLD" : "NONE";
       position = {{"epoch", time(0)},
                   {"cartographicDegrees", samples},
                   {"interpolationAlgorithm", "LINEAR"},
-                  {"forwardExtrapolationType", "HOLD"},
-                  {"backwardExtrapolationType", "HOLD"}};
+                  {"forwardExtrapolationType", outside},
+                  {"backwardExtrapolationType", outside}};
     }
-    OrderedJson json{
-        {"id", fmt::format("platform/{}", index + 1)}, {"name", platform.name}, {"position", position}};
+    OrderedJson json{{"id", fmt::format("platform/{}", index + 1)}, {"name", platform.name}};
+    if (platform.moves() && !holds) json["availability"] = interval(kept.front().t_s, kept.back().t_s);
+    json["position"] = position;
     json["point"] = {{"pixelSize", 8}, {"color", {{"rgba", sideColor(platform)}}}};
     json["label"] = {{"text", platform.name},
                      {"font", "12pt sans-serif"},
@@ -177,7 +238,7 @@ class CzmlWriter {
     for (std::size_t i = 0; i < times.size(); ++i) {
       const double until_s = i + 1 < times.size() ? times[i + 1] : end_s;
       if (until_s <= times[i]) continue;
-      const BeamState state = beamStateAt(emitter, times[i]);
+      const BeamState state = beamStateAt(scenario_, emitter, times[i]);
       shown.push_back({{"interval", interval(times[i], until_s)}, {"boolean", state.is_on}});
       if (!state.is_on) continue;
       OrderedJson corners = OrderedJson::array();

@@ -7,11 +7,11 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "interop/dis/datagrams.h"
-#include "interop/dis/force.h"
-#include "interop/dis/orientation.h"
-#include "interop/dis/pdu.h"
 #include "interop/exporting/writers.h"
+#include "recording/dis/datagrams.h"
+#include "recording/dis/force.h"
+#include "recording/dis/orientation.h"
+#include "recording/dis/pdu.h"
 
 namespace emscape::interop {
 namespace {
@@ -43,10 +43,11 @@ struct Due {
   }
 };
 
-/// Times with heartbeats between them and up to the end.
+/// Times with heartbeats between them and up to the end; none without times.
 std::vector<double> withHeartbeats(std::vector<double> times, double end_s, double heartbeat_s) {
   std::vector<double> result;
-  times.push_back(end_s);
+  if (times.empty()) return result;
+  if (times.back() < end_s) times.push_back(end_s);
   for (const double t_s : times) {
     while (!result.empty() && t_s - result.back() > heartbeat_s)
       result.push_back(result.back() + heartbeat_s);
@@ -98,12 +99,12 @@ class DisWriter {
 
  private:
   void makeSchedule(std::vector<ExportedRow>& rows) {
-    const double end_s = scenario_.clock.duration_s;
     const auto add = [this](const std::vector<double>& times, Event event, std::size_t index) {
       for (const double t_s : times) due_.push_back({t_s, event, index});
     };
     for (std::size_t i = 0; i < scenario_.platforms.size(); ++i) {
-      times_.push_back(withHeartbeats(timesOfPositions(scenario_, scenario_.platforms[i], job_.step_s), end_s,
+      times_.push_back(withHeartbeats(timesOfPositions(scenario_, scenario_.platforms[i], job_.step_s),
+                                      presenceOf(scenario_, scenario_.platforms[i]).end_s,
                                       kEntityHeartbeat_s));
       add(times_.back(), Event::state, i);
       domains_.push_back(domainOf(scenario_, scenario_.platforms[i], job_.terrain));
@@ -113,6 +114,7 @@ class DisWriter {
       const scenario::Emitter& emitter = scenario_.emitters[i];
       const bool is_radio = emitter.kind == scenario::EmitterKind::transmitter;
       const auto platform = static_cast<std::size_t>(emitter.platform);
+      const double end_s = presenceOf(scenario_, scenario_.platforms[platform]).end_s;
       add(withHeartbeats(timesOfChanges(scenario_, emitter, job_.step_s), end_s,
                          is_radio ? kTransmitterHeartbeat_s : kEmissionHeartbeat_s),
           is_radio ? Event::transmitter : Event::emission, is_radio ? i : platform);
@@ -157,7 +159,7 @@ class DisWriter {
 
   dis::EmissionSystem systemOf(std::size_t index, double t_s, std::size_t number) const {
     const scenario::Emitter& emitter = scenario_.emitters[index];
-    const BeamState state = beamStateAt(emitter, t_s);
+    const BeamState state = beamStateAt(scenario_, emitter, t_s);
     dis::EmissionSystem system;
     system.name = static_cast<std::uint16_t>(index + 1);
     system.number = static_cast<std::uint8_t>(number + 1);
@@ -197,7 +199,7 @@ class DisWriter {
 
   dis::Transmitter transmitterOf(std::size_t index, double t_s) const {
     const scenario::Emitter& emitter = scenario_.emitters[index];
-    const BeamState state = beamStateAt(emitter, t_s);
+    const BeamState state = beamStateAt(scenario_, emitter, t_s);
     dis::Transmitter transmitter;
     transmitter.entity = idOf(static_cast<std::size_t>(emitter.platform));
     transmitter.radio = static_cast<std::uint16_t>(index + 1);

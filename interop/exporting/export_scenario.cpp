@@ -9,17 +9,14 @@
 #include "base/files/whole_file.h"
 #include "base/geodesy/gdal.h"
 #include "emscape/base/error.h"
-#include "interop/dis/pdu.h"
 #include "interop/exporting/writers.h"
+#include "recording/dis/pdu.h"
 #include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::interop {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr double kMaxRecords = 2e7;
-constexpr double kShortestHeartbeat_s = 2;
 
 bool endsWith(const std::string& text, const std::string& end) {
   return text.size() > end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
@@ -122,16 +119,7 @@ ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& sce
   result.file = file;
   result.format = format.name;
   const ExportJob job{*scenario, terrain, options.step_s > 0 ? options.step_s : 1, progress};
-  const double records = scenario->clock.duration_s / std::min(job.step_s, kShortestHeartbeat_s) *
-                         static_cast<double>(scenario->platforms.size() + scenario->emitters.size());
-  if (records > kMaxRecords) {
-    throw Error(
-        ErrorCode::usage,
-        fmt::format(
-            "about {:.2g} records, more than the allowed {:.2g}; give a larger --step, or a part of the "
-            "scenario: --set duration_s=3600",
-            records, kMaxRecords));
-  }
+  requireFewRecords(*scenario, job.step_s);
   result.emitters = file + ".emitters.yaml";
   if (!options.replace) requireNew({file, result.emitters});
   std::vector<ExportedRow> rows;

@@ -3,7 +3,7 @@
 #include "base/text/xml_text.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
-#include "interop/recording/text.h"
+#include "recording/common/dates.h"
 
 namespace emscape::interop {
 namespace {
@@ -27,6 +27,8 @@ long long writeKml(const ExportJob& job, const TextSink& sink, std::vector<Expor
     const scenario::Platform& platform = scenario.platforms[i];
     if (job.progress)
       job.progress("writing KML", static_cast<double>(i) / static_cast<double>(scenario.platforms.size()));
+    const std::vector<double> times = timesOfPositions(scenario, platform, job.step_s);
+    if (times.empty()) continue;  // never present
     std::string description;
     for (const scenario::Emitter& emitter : scenario.emitters) {
       if (static_cast<std::size_t>(emitter.platform) == i)
@@ -41,7 +43,6 @@ long long writeKml(const ExportJob& job, const TextSink& sink, std::vector<Expor
       continue;
     }
     sink("\n<gx:Track><altitudeMode>absolute</altitudeMode>\n");
-    const std::vector<double> times = timesOfPositions(scenario, platform, job.step_s);
     for (const double t_s : times) sink("<when>" + utcTextOf(epoch_s + t_s) + "</when>\n");
     for (const double t_s : times)
       sink("<gx:coord>" + placeText(poseOf(platform, job.terrain, t_s), " ") + "</gx:coord>\n");

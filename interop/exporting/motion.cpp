@@ -7,11 +7,12 @@
 #include <filesystem>
 
 #include "document/text_edit.h"
+#include "emscape/base/error.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
 #include "interop/exporting/writers.h"
 #include "interop/importing/nodes.h"
-#include "interop/recording/text.h"
+#include "recording/common/dates.h"
 #include "scenario/file/source.h"
 #include "scenario/scan/scan_sweep.h"
 
@@ -44,13 +45,35 @@ double distance_m(const PoseSample& a, const PoseSample& b) {
 
 }  // namespace
 
+void requireFewRecords(const scenario::Scenario& scenario, double step_s) {
+  constexpr double kMaxRecords = 2e7, kShortestHeartbeat_s = 2;
+  const double records = scenario.clock.duration_s / std::min(step_s, kShortestHeartbeat_s) *
+                         static_cast<double>(scenario.platforms.size() + scenario.emitters.size());
+  if (records <= kMaxRecords) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("about {:.2g} records, more than the allowed {:.2g}; give a larger --step, or a "
+                          "part of the scenario: --set duration_s=3600",
+                          records, kMaxRecords));
+}
+
+Presence presenceOf(const scenario::Scenario& scenario, const scenario::Platform& platform) {
+  Presence presence{0, scenario.clock.duration_s};
+  if (platform.moves() && platform.outside_track == scenario::OutsideTrack::absent) {
+    presence.begin_s = std::max(presence.begin_s, platform.track.front().t_s);
+    presence.end_s = std::min(presence.end_s, platform.track.back().t_s);
+  }
+  return presence;
+}
+
 std::vector<double> timesOfPositions(const scenario::Scenario& scenario, const scenario::Platform& platform,
                                      double step_s) {
-  const double end_s = scenario.clock.duration_s;
-  if (platform.track.size() < 2) return end_s > 0 ? std::vector<double>{0, end_s} : std::vector<double>{0};
-  std::vector<double> times{0, end_s};
+  const auto [begin_s, end_s] = presenceOf(scenario, platform);
+  if (end_s < begin_s) return {};
+  std::vector<double> times{begin_s};
+  if (end_s > begin_s) times.push_back(end_s);
+  if (!platform.moves()) return times;
   for (const scenario::TrackPoint& point : platform.track) {
-    if (point.t_s > 0 && point.t_s < scenario.clock.duration_s) times.push_back(point.t_s);
+    if (point.t_s > begin_s && point.t_s < end_s) times.push_back(point.t_s);
   }
   return filled(std::move(times), step_s);
 }
@@ -78,25 +101,27 @@ PoseSample poseOf(const scenario::Platform& platform, const scenario::Terrain* t
 
 Domain domainOf(const scenario::Scenario& scenario, const scenario::Platform& platform,
                 const scenario::Terrain* terrain) {
-  const PoseSample begin = poseOf(platform, terrain, 0);
+  const Presence presence = presenceOf(scenario, platform);
+  const PoseSample begin = poseOf(platform, terrain, presence.begin_s);
   const double ground_m =
       terrain == nullptr ? std::nan("") : terrain->heightMsl_m(begin.latitude_deg, begin.longitude_deg);
-  const double duration_s = scenario.clock.duration_s;
-  if (platform.track.size() >= 2 && duration_s > 0) {
-    const PoseSample middle = poseOf(platform, terrain, duration_s / 2);
-    const double speed_mps = distance_m(begin, middle) / (duration_s / 2);
+  const double half_s = (presence.end_s - presence.begin_s) / 2;
+  if (platform.moves() && half_s > 0) {
+    const PoseSample middle = poseOf(platform, terrain, presence.begin_s + half_s);
+    const double speed_mps = distance_m(begin, middle) / half_s;
     const double above_m = middle.height_msl_m - (std::isnan(ground_m) ? 0 : ground_m);
     if (speed_mps > 35 || above_m > 300) return Domain::air;
   }
   return ground_m <= 0 ? Domain::sea : Domain::land;
 }
 
-BeamState beamStateAt(const scenario::Emitter& emitter, double t_s) {
+BeamState beamStateAt(const scenario::Scenario& scenario, const scenario::Emitter& emitter, double t_s) {
   using scenario::ScanKind;
   const scenario::ScanSpec& scan = emitter.scan;
   BeamState state;
   state.t_s = t_s;
-  state.is_on = scenario::isActiveAt(emitter, t_s);
+  const scenario::Platform& platform = scenario.platforms[static_cast<std::size_t>(emitter.platform)];
+  state.is_on = platform.isPresentAt(t_s) && scenario::isActiveAt(emitter, t_s);
   state.frequency_hz = emitter.frequency_hz;
   state.bandwidth_hz = emitter.bandwidth_hz;
   state.erp_dbm = ratioToDb(emitter.power_w) + 30 + emitter.antenna->gain_dbi - emitter.losses_db;
@@ -127,10 +152,16 @@ BeamState beamStateAt(const scenario::Emitter& emitter, double t_s) {
 
 std::vector<double> timesOfChanges(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                    double step_s) {
+  constexpr double kJustAfter_s = 0.001;
   const double duration_s = scenario.clock.duration_s;
-  std::vector<double> times{0};
+  const Presence presence =
+      presenceOf(scenario, scenario.platforms[static_cast<std::size_t>(emitter.platform)]);
+  if (presence.end_s < presence.begin_s) return {};
+  const double last_s = std::min(presence.end_s + kJustAfter_s, duration_s);
+  std::vector<double> times{presence.begin_s, last_s};
+  if (presence.end_s >= duration_s) times.pop_back();
   const auto add = [&](double t_s) {
-    if (t_s > 0 && t_s <= duration_s) times.push_back(t_s);
+    if (t_s > presence.begin_s && t_s <= last_s) times.push_back(t_s);
   };
   for (const scenario::TimeInterval& interval : emitter.active_s) {
     add(interval.begin_s);

@@ -6,12 +6,21 @@
 
 #include "emscape/base/vec.h"
 #include "emscape/scenario/model/scenario.h"
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
 
-/// Times (s) at which a platform's position is written: of its track, 0, the scenario's end, and others so
-/// that none is more than step_s after the one before. A fixed platform: 0 and the end.
+/// Refuses what would need too much memory or disk. @throws Error (usage)
+void requireFewRecords(const scenario::Scenario& scenario, double step_s);
+
+/// The part of the scenario's time in which a platform is present.
+struct Presence {
+  double begin_s = 0, end_s = 0;  ///< end before begin: never
+};
+Presence presenceOf(const scenario::Scenario& scenario, const scenario::Platform& platform);
+
+/// Times (s) at which a platform's position is written, while it is present: of its track, the begin, the
+/// end, and others so that none is more than step_s after the one before. A fixed platform: begin and end.
 std::vector<double> timesOfPositions(const scenario::Scenario& scenario, const scenario::Platform& platform,
                                      double step_s);
 
@@ -22,10 +31,12 @@ PoseSample poseOf(const scenario::Platform& platform, const scenario::Terrain* t
 Domain domainOf(const scenario::Scenario& scenario, const scenario::Platform& platform,
                 const scenario::Terrain* terrain);
 
-/// The state of an emitter's beam: direction, sweep, power. Angles are relative to the platform.
-BeamState beamStateAt(const scenario::Emitter& emitter, double t_s);
+/// The state of an emitter's beam: direction, sweep, power; off where its platform is absent. Angles are
+/// relative to the platform.
+BeamState beamStateAt(const scenario::Scenario& scenario, const scenario::Emitter& emitter, double t_s);
 
-/// Times (s) at which an emitter's state changes: switching, and dwells at most every step_s.
+/// Times (s) at which an emitter's state changes while its platform is present: switching, and dwells at most
+/// every step_s; and just after the platform's end before the scenario's.
 std::vector<double> timesOfChanges(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                    double step_s);
 

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
 
@@ -31,7 +31,7 @@ struct BeamPiece {
 };
 
 /// Settings are equal within 0.1 % of the frequency, 0.25 dB, 1 % of the pulses' figures and half a degree of
-/// the sweeps. Of more than kMaxPieces different settings the later ones are taken as the last piece.
+/// the sweeps. Of more than kMaxPieces different settings the later ones are left out.
 /// @param cut  set to true if that happened
 constexpr std::size_t kMaxPieces = 32;
 std::vector<BeamPiece> piecesOf(const RecordedBeam& beam, const std::vector<PieceSpan>& presence, bool& cut);

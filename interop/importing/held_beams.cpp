@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "interop/beams/directions.h"
+#include "recording/beams/directions.h"
 
 namespace emscape::interop {
 namespace {

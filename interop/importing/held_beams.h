@@ -1,7 +1,7 @@
 /// Beams that are held on a target.
 #pragma once
 
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
 

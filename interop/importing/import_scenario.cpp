@@ -13,6 +13,7 @@
 #include "base/text/count_text.h"
 #include "base/text/utc.h"
 #include "document/schema_check.h"
+#include "document/text_edit.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/terrain/terrain.h"
@@ -217,9 +218,14 @@ void Importer::makeEmitters() {
     unmatched += (unmatched.empty() ? ": " : "; ") + use.name + " (" + use.fault + ")";
   throw Error(
       ErrorCode::bad_input, {recording_.file, 0, 0},
-      fmt::format("no emitter is left of {}{}. Give a database that matches them (--emitters FILE; "
-                  "docs/battlefield.md), or add the objects to a scenario with emitters (--base FILE)",
-                  countText(shifted_.size(), "object", "objects"), unmatched.substr(0, 300)));
+      fmt::format(
+          "no emitter is left of {}{}. Add the objects to a scenario with emitters (--base FILE), give "
+          "a database that matches them (--emitters FILE; docs/battlefield.md), or name the file as the "
+          "track of a platform in a scenario: 'track: {{file: {}{}}}'",
+          countText(shifted_.size(), "object", "objects"), unmatched.substr(0, 300),
+          document::flowText(*textNode(fs::path(recording_.file).filename().string()), true),
+          shifted_.size() == 1 ? ""
+                               : ", object: " + document::flowText(*textNode(shifted_.front().name), true)));
 }
 
 void Importer::loadTerrain() {
@@ -251,6 +257,7 @@ void Importer::loadTerrain() {
   box.west_deg = west - kMargin_deg - turn_deg;
   box.east_deg = std::min(east + kMargin_deg - turn_deg, box.west_deg + 360);
   terrain_ = scenario::Terrain::load(spec, box);
+  for (const std::string& warning : terrain_->warnings()) result_.notes.push_back(warning);
 }
 
 void Importer::makeTracks() {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/geodesy/position_limits.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "scenario/schema/sections.h"
@@ -72,6 +73,7 @@ std::vector<PoseSample> trackOf(const RecordedObject& object, const TimeSpan& wi
       ++raised.without_ground;
       ground_m = 0;
     }
+    pose.height_msl_m = std::min(pose.height_msl_m, PositionLimits::kHighest_m);
     if (pose.height_msl_m >= ground_m) continue;
     ++raised.positions;
     raised.deepest_m = std::max(raised.deepest_m, ground_m - pose.height_msl_m);

@@ -6,7 +6,7 @@
 
 #include "emscape/scenario/terrain/terrain.h"
 #include "interop/importing/nodes.h"
-#include "interop/recording/recording.h"
+#include "recording/common/recording.h"
 
 namespace emscape::interop {
 

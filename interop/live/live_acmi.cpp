@@ -6,10 +6,14 @@
 #include <utility>
 
 #include "emscape/base/error.h"
-#include "interop/acmi/acmi_text.h"
+#include "recording/acmi/acmi_text.h"
 
 namespace emscape::interop {
 namespace {
+
+/// Time (s) between two looks at what has changed but poses: each costs as much as a recording of the
+/// objects.
+constexpr double kNote_s = 0.2;
 
 void mix(std::size_t& hash, std::size_t value) {
   hash ^= value + 0x9E3779B97F4A7C15ull + (hash << 6) + (hash >> 2);
@@ -46,44 +50,48 @@ std::size_t structureOf(const Recording& recording) {
 }  // namespace
 
 void LiveAcmi::take(const std::uint8_t* bytes, std::size_t size, double) {
-  const long long before = counts_.records;
   for (std::size_t i = 0; i < size; ++i) {
     const char c = static_cast<char>(bytes[i]);
     if (c == '\n') {
-      if (!line_.empty() && line_.back() == '\r') line_.pop_back();
-      if (!line_.empty() && line_.back() == '\\') {  // goes on in the next line
-        line_.back() = '\n';
-        continue;
-      }
       takeLine();
     } else if (line_.size() < LineReader::kLongest) {
       line_ += c;
     } else {
-      is_too_long_ = true;
+      is_cut_ = true;
     }
   }
-  is_noted_ = is_noted_ && counts_.records == before;
-}
-
-void LiveAcmi::expire(double) {
-  if (!std::exchange(is_noted_, true)) note();
 }
 
 void LiveAcmi::takeLine() {
-  ++counts_.records;
-  const std::string line = std::exchange(line_, {});
-  if (std::exchange(is_too_long_, false)) return countBad("a line longer than 1 MiB");
-  try {
-    reader_.take(line, counts_.records);
-  } catch (const Error& error) {
-    countBad(error.message());
+  if (!line_.empty() && line_.back() == '\r') line_.pop_back();
+  const long long too_long = lines_.tooLong();
+  const auto logical = lines_.take(line_, std::exchange(is_cut_, false));
+  if (lines_.tooLong() != too_long) {
+    ++counts_.records;
+    countBad(kTooLongAcmiLine);
+  } else if (logical) {
+    ++counts_.records;
+    is_noted_ = false;
+    try {
+      reader_.take(*logical, lines_.line());
+    } catch (const Error& error) {
+      countBad(error.message());
+    }
   }
+  line_.clear();
+}
+
+void LiveAcmi::expire(double now_s) {
+  if (is_noted_ || now_s - noted_s_ < kNote_s) return;
+  is_noted_ = true;
+  noted_s_ = now_s;
+  note();
 }
 
 void LiveAcmi::note() {
   counts_.forgotten += static_cast<long long>(reader_.keepLatest(LiveLimits::kObjects));
   const ReadingTally& tally = reader_.tally();
-  counts_.bad = std::max(counts_.bad, tally.bad);
+  counts_.bad += tally.bad - std::exchange(reader_bad_, tally.bad);
   if (counts_.first_bad.empty()) counts_.first_bad = tally.first_bad;
   latest_ = AcmiReader(reader_).finish();
   latest_.tally = {};
@@ -94,7 +102,7 @@ void LiveAcmi::note() {
     if (latest_.objects[i].poses.empty()) continue;
     kept_as[i] = objects.size();
     objects.push_back(std::move(latest_.objects[i]));
-    objects.back().poses = {objects.back().poses.back()};
+    objects.back().poses = {withAnglesInRange(objects.back().poses.back())};
     objects.back().poses.front().t_s = 0;
     const auto& presence = objects.back().presence;
     const bool is_present = presence.empty() || presence.back().is_present;
@@ -127,10 +135,10 @@ LiveRecording LiveAcmi::recording(double) {
 
 std::vector<LivePose> LiveAcmi::poses(double) const {
   std::vector<LivePose> poses;
-  for (const RecordedObject& object : latest_.objects) {
-    poses.push_back({acmiId(object.id).value_or(0), object.poses.front()});
-    PoseSample& pose = poses.back().pose;
+  for (const auto& [id, latest] : reader_.latestPoses()) {
+    PoseSample pose = withAnglesInRange(latest);
     if (std::isnan(pose.heading_deg)) pose.heading_deg = pose.pitch_deg = pose.roll_deg = 0;
+    poses.push_back({id, pose});
   }
   return poses;
 }

@@ -5,12 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/geodesy/position_limits.h"
-#include "emscape/base/geodesy/geo_frame.h"
-#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/units.h"
-#include "interop/dis/dead_reckoning.h"
-#include "interop/dis/dis_recorder.h"
+#include "recording/dis/dead_reckoning.h"
+#include "recording/dis/dis_recorder.h"
 
 namespace emscape::interop {
 namespace {
@@ -141,6 +138,10 @@ void LiveDis::takeState(EntityState state, double time_s, double arrival_s) {
     ++counts_.duplicates;
     return;
   }
+  if (!dis::poseSampleOf(state.position_m, dis::axesOf(state.orientation_rad))) {
+    ++counts_.outside;
+    return;
+  }
   if (!entity.is_known || !isSameEntity(entity.state, state)) ++revision_;
   if (!entity.is_known) ++known_;
   entity.is_known = true;
@@ -238,26 +239,13 @@ void LiveDis::expire(double now_s) {
 
 PoseSample LiveDis::poseOf(const Entity& entity, double now_s) const {
   const double past_s = std::clamp(now_s - entity.time_s, 0.0, options_.entity_timeout_s);
-  dis::ReckonedPose at = dis::reckonedPose(entity.state, past_s);
-  const auto sampleOf = [&at] {
-    const GeodeticPosition position = fromEcef(at.position_m);
-    PoseSample pose;
-    pose.latitude_deg = position.latitude_deg;
-    pose.longitude_deg = position.longitude_deg;
-    pose.height_msl_m =
-        position.height_ellipsoid_m - geoidUndulation_m(pose.latitude_deg, pose.longitude_deg);
-    return pose;
-  };
+  const dis::ReckonedPose at = dis::reckonedPose(entity.state, past_s);
   // A velocity that nothing has leads away from the earth.
   const double radius_m = length(at.position_m);
-  if (!(radius_m > 6.2e6 && radius_m < 7e6)) at = dis::reckonedPose(entity.state, 0);
-  PoseSample pose = sampleOf();
-  pose.height_msl_m = std::clamp(pose.height_msl_m, PositionLimits::kLowest_m, PositionLimits::kHighest_m);
-  const dis::LocalAttitude attitude = dis::attitudeOf(at.axes, pose.latitude_deg, pose.longitude_deg);
-  pose.heading_deg = attitude.heading_deg;
-  pose.pitch_deg = attitude.pitch_deg;
-  pose.roll_deg = attitude.roll_deg;
-  return pose;
+  std::optional<PoseSample> pose;
+  if (radius_m > 6.2e6 && radius_m < 7e6) pose = dis::poseSampleOf(at.position_m, at.axes);
+  if (!pose) pose = dis::poseSampleOf(entity.state.position_m, dis::axesOf(entity.state.orientation_rad));
+  return pose.value();  // takeState() has checked that
 }
 
 std::vector<LivePose> LiveDis::poses(double now_s) const {

@@ -5,10 +5,10 @@
 #include <map>
 #include <unordered_map>
 
-#include "interop/dis/pdu.h"
-#include "interop/dis/sender_clock.h"
 #include "interop/live/live_state.h"
-#include "interop/recording/read_recording.h"
+#include "recording/dis/pdu.h"
+#include "recording/dis/sender_clock.h"
+#include "recording/read_recording.h"
 
 namespace emscape::interop {
 

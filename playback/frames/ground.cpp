@@ -6,6 +6,7 @@
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/parallel.h"
 #include "scenario/map/map_image.h"
+#include "scenario/terrain/sea.h"
 
 namespace emscape::playback {
 namespace {
@@ -44,105 +45,36 @@ std::vector<float> fillHeights(HeightField& field, const LoadedScenario& scene, 
   return msl_m;
 }
 
-/// Water by the coasts, for each post. Along a row, water and land change where it crosses a shore.
-std::vector<GroundKind> kindsByCoast(const HeightField& field, const scenario::Coast& coast,
-                                     const GeoFrame& frame) {
-  std::vector<std::vector<double>> crossings(static_cast<std::size_t>(field.rows));
-  for (const scenario::CoastLine& line : coast.lines()) {
-    if (line.level != 1) continue;
-    Vec3d before{};
-    for (std::size_t n = 0; n < line.points.size(); ++n) {
-      const Vec3d at = frame.toLocal(line.points[n]);
-      if (n > 0) {
-        const double row0 = (before.y - field.first_y_m) / field.spacing_y_m;
-        const double row1 = (at.y - field.first_y_m) / field.spacing_y_m;
-        const int first = std::max(static_cast<int>(std::ceil(std::min(row0, row1))), 0);
-        for (int row = first; row < std::max(row0, row1) && row < field.rows; ++row)
-          crossings[static_cast<std::size_t>(row)].push_back(before.x + (at.x - before.x) * (row - row0) /
-                                                                            (row1 - row0));
-      }
-      before = at;
-    }
-  }
-  std::vector<GroundKind> kinds(static_cast<std::size_t>(field.columns) * field.rows, GroundKind::land);
-  parallelFor(field.rows, 8, [&](int begin, int end) {
-    for (int j = begin; j < end; ++j) {
-      std::vector<double>& row = crossings[static_cast<std::size_t>(j)];
-      std::sort(row.begin(), row.end());
-      const GeodeticPosition begin_of_row = frame.toGeodetic(postPosition(field, 0, j));
-      auto next = std::upper_bound(row.begin(), row.end(), field.first_x_m);
-      bool is_water = coast.isWater(begin_of_row.latitude_deg, begin_of_row.longitude_deg);
-      for (int i = 0; i < field.columns; ++i) {
-        for (; next != row.end() && *next <= postPosition(field, i, j).x; ++next) is_water = !is_water;
-        if (is_water) kinds[static_cast<std::size_t>(j) * field.columns + i] = GroundKind::water;
-      }
-    }
-  });
-  return kinds;
-}
-
-/// Sea in the terrain itself: components of flat posts at sea level.
-std::vector<GroundKind> kindsByHeights(const HeightField& field, const std::vector<float>& msl_m,
-                                       const std::vector<GroundKind>& by_coast) {
-  constexpr float kSeaLevel_m = 0.5F, kFlat_m = 0.02F;
-  constexpr std::size_t kMinPosts = 30;
-  const int columns = field.columns, rows = field.rows;
-  const auto postAt = [columns](int i, int j) { return static_cast<std::size_t>(j) * columns + i; };
-  const auto eachNeighbour = [&](int i, int j, const auto& visit) {
-    for (int y = std::max(j - 1, 0); y <= std::min(j + 1, rows - 1); ++y) {
-      for (int x = std::max(i - 1, 0); x <= std::min(i + 1, columns - 1); ++x) visit(x, y);
-    }
-  };
-  std::vector<std::uint8_t> flat(msl_m.size());
-  parallelFor(rows, 16, [&](int begin, int end) {
-    for (int j = begin; j < end; ++j) {
-      for (int i = 0; i < columns; ++i) {
-        const float own = msl_m[postAt(i, j)];
-        bool is_flat = std::abs(own) <= kSeaLevel_m;
-        if (is_flat) {
-          eachNeighbour(i, j, [&](int x, int y) {
-            if (!(std::abs(msl_m[postAt(x, y)] - own) <= kFlat_m)) is_flat = false;
-          });
+/// Water by the coasts, for each post.
+std::vector<std::uint8_t> waterByCoast(const HeightField& field, const scenario::Coast& coast,
+                                       const GeoFrame& frame) {
+  return scenario::waterOnGrid(
+      coast, field.columns, field.rows,
+      [&](const std::vector<GeodeticPosition>& shore) {
+        std::vector<scenario::GridPlace> places;
+        places.reserve(shore.size());
+        for (const GeodeticPosition& position : shore) {
+          const Vec3d at = frame.toLocal(position);
+          places.push_back(
+              {(at.x - field.first_x_m) / field.spacing_x_m, (at.y - field.first_y_m) / field.spacing_y_m});
         }
-        flat[postAt(i, j)] = is_flat ? 1 : 0;
-      }
-    }
-  });
-  std::vector<GroundKind> kinds(msl_m.size(), GroundKind::land);
-  std::vector<std::size_t> component;
-  for (std::size_t start = 0; start < flat.size(); ++start) {
-    if (flat[start] != 1) continue;
-    component = {start};
-    flat[start] = 2;
-    bool is_sea = by_coast.empty();
-    for (std::size_t n = 0; n < component.size(); ++n) {
-      const std::size_t post = component[n];
-      is_sea = is_sea || by_coast[post] == GroundKind::water;
-      eachNeighbour(static_cast<int>(post % columns), static_cast<int>(post / columns), [&](int x, int y) {
-        if (flat[postAt(x, y)] != 1) return;
-        flat[postAt(x, y)] = 2;
-        component.push_back(postAt(x, y));
-      });
-    }
-    if (!is_sea || component.size() < kMinPosts) continue;
-    for (const std::size_t post : component) {  // with the posts at its edge, which rise on one side only
-      eachNeighbour(static_cast<int>(post % columns), static_cast<int>(post / columns), [&](int x, int y) {
-        if (std::abs(msl_m[postAt(x, y)] - msl_m[post]) <= kFlat_m) kinds[postAt(x, y)] = GroundKind::water;
-      });
-    }
-  }
-  return kinds;
+        return places;
+      },
+      [&](int column, int row) { return frame.toGeodetic(postPosition(field, column, row)); });
 }
 
-bool hasWater(const std::vector<GroundKind>& kinds) {
-  return std::find(kinds.begin(), kinds.end(), GroundKind::water) != kinds.end();
+std::vector<GroundKind> kindsOf(const std::vector<std::uint8_t>& water) {
+  std::vector<GroundKind> kinds(water.size(), GroundKind::land);
+  for (std::size_t post = 0; post < water.size(); ++post)
+    if (water[post] != 0) kinds[post] = GroundKind::water;
+  return kinds;
 }
 
 /// Water by the coasts where the terrain is low.
-std::vector<GroundKind> lowWater(std::vector<GroundKind> by_coast, const std::vector<float>& msl_m) {
+std::vector<std::uint8_t> lowWater(std::vector<std::uint8_t> by_coast, const std::vector<float>& msl_m) {
   constexpr float kMaxShore_m = 2;
   for (std::size_t post = 0; post < by_coast.size(); ++post) {
-    if (!(msl_m[post] < kMaxShore_m)) by_coast[post] = GroundKind::land;
+    if (!(msl_m[post] < kMaxShore_m)) by_coast[post] = 0;
   }
   return by_coast;
 }
@@ -206,14 +138,15 @@ Ground groundOf(const LoadedScenario& scene, const volume::Grid& grid, const sce
   field->spacing_y_m = size_m.y / (field->rows - 1);
   const GeoFrame frame(grid.frame);
   const std::vector<float> msl_m = fillHeights(*field, scene, frame);
-  std::vector<GroundKind> by_coast;
-  if (coast != nullptr) by_coast = kindsByCoast(*field, *coast, frame);
+  std::vector<std::uint8_t> by_coast;
+  if (coast != nullptr) by_coast = waterByCoast(*field, *coast, frame);
   if (scene.terrain) {
-    field->kinds = kindsByHeights(*field, msl_m, by_coast);
-    ground.is_sea_by_heights = hasWater(field->kinds);
-    if (!ground.is_sea_by_heights && !by_coast.empty()) field->kinds = lowWater(std::move(by_coast), msl_m);
+    std::vector<std::uint8_t> sea = scenario::seaByHeights(field->columns, field->rows, msl_m, by_coast);
+    ground.is_sea_by_heights = std::find(sea.begin(), sea.end(), 1) != sea.end();
+    if (!ground.is_sea_by_heights && !by_coast.empty()) sea = lowWater(std::move(by_coast), msl_m);
+    field->kinds = kindsOf(sea);
   } else if (coast != nullptr) {
-    field->kinds = std::move(by_coast);
+    field->kinds = kindsOf(by_coast);
   } else {
     const propagation::GroundKind kind = scene.scenario->ground.kind;
     const bool is_water =

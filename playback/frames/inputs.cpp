@@ -13,6 +13,8 @@
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/volume/format/file.h"
 #include "playback/frames/volume_input.h"
+#include "recording/read_recording.h"
+#include "scenario/terrain/file_names.h"
 
 namespace emscape::playback {
 namespace {
@@ -38,23 +40,22 @@ InputKind inputKindOf(const std::string& file) {
   if (holdsMeshes(file)) return InputKind::mesh;
   if (fs::is_directory(file)) return InputKind::volume;
   const std::string ending = lowerCase(fs::path(file).extension().string());
-  static const std::set<std::string> kElevations{".tif", ".tiff", ".hgt", ".dt0", ".dt1",
-                                                 ".dt2", ".vrt",  ".asc", ".dem", ".bil"};
-  static const std::set<std::string> kAntennas{".msi", ".pln", ".csv"};
-  static const std::set<std::string> kRecordings{".acmi", ".pcap", ".pcapng", ".session", ".asi", ".cot",
-                                                 ".kml",  ".kmz",  ".gpx",    ".czml",    ".e",   ".nmea"};
+  static const std::set<std::string> kAntennas{".msi",     ".pln", ".adf", ".ant",
+                                               ".pattern", ".az",  ".el",  ".csv"};
+  const std::vector<std::string>& recordings = interop::recordingEndings();
   if (ending == ".yaml" || ending == ".yml" || ending == ".json") return InputKind::scenario;
   if (ending == ".pvd" || volume::isVolumeFile(file)) return InputKind::volume;
-  if (kElevations.count(ending) != 0) return InputKind::elevation;
+  if (scenario::isElevationName(file)) return InputKind::elevation;
   if (kAntennas.count(ending) != 0) return InputKind::antenna;
-  if (kRecordings.count(ending) != 0) return InputKind::recording;
+  if (std::find(recordings.begin(), recordings.end(), ending) != recordings.end())
+    return InputKind::recording;
   throw Error(
       ErrorCode::bad_input, {file, 0, 0},
       "ending '" + ending +
           "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .vtu .pvd .raw .dat; "
-          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt; antennas: .msi .pln .csv; recordings: .acmi .pcap "
-          ".pcapng "
-          ".session");
+          "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip "
+          "and .gz; antennas: .msi .pln .adf .ant .pattern .az .el .csv; recordings: " +
+          interop::recordingEndingsText());
 }
 
 JsonContent jsonContentOf(const std::string& file) {

@@ -79,6 +79,7 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
     const scenario::EmitterState& state = snapshot.emitters[e];
     const auto platform = static_cast<std::size_t>(emitter.platform);
     has_emitter[platform] = true;
+    if (!snapshot.platforms[platform].present) continue;
     render::Marker& marker = add(platform, state.position);
     marker.label = emitter.name;
     marker.kind = markerKindOf(emitter.kind);
@@ -90,6 +91,7 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
   for (std::size_t p = 0; p < platforms.size(); ++p) {
     if (has_emitter[p] || !platforms[p].side) continue;
     const scenario::PlatformState& state = snapshot.platforms[p];
+    if (!state.present) continue;
     setHeight(add(p, state.position), platforms[p], state.height_msl_m);
   }
   return markers;

@@ -45,8 +45,8 @@ LiveCaster::LiveCaster(const ViewRequest& first, const ComputeTarget& target,
       arena_(threads > 0 ? threads : threadCount(), niceness),
       painter_(drawable(first.view), target, /*must_show_isosurface=*/false),
       controller_options_(controller),
-      controller_(controller),
       request_(first) {
+  controller_ = render::FrameController(controllerOptions());
   worker_.push([this] { run(); });
 }
 
@@ -250,7 +250,9 @@ bool LiveCaster::canDraw() const {
 
 render::ControllerOptions LiveCaster::controllerOptions() const {
   render::ControllerOptions options = controller_options_;
-  if (field_ && field_->frame.cells && !options.pattern)
+  const bool has_cells = field_ && field_->frame.cells;
+  options.smooths_edges = !has_cells;
+  if (has_cells && !options.pattern)
     options.pattern = painter_.projectsCells() ? render::Pattern::columns : render::Pattern::full;
   return options;
 }
@@ -290,7 +292,7 @@ void LiveCaster::drawFrame(const render::FramePlan& plan) {
   arena_.run([&] { drawn_ = painter_.draw(plan, &closing_); });
   has_image_ = drawn_.complete;
   if (drawn_.complete) {
-    progress_.complete = drawn_.pattern == render::Pattern::full;
+    progress_.complete = drawn_.pattern == render::Pattern::full && !controllerOptions().smooths_edges;
     publish();
   }
   const double other_ms =
@@ -306,7 +308,7 @@ void LiveCaster::restore() {
   // Requests are stored before the flag is set: one that arrived before the line above is in its mailbox.
   if (hasMail() || closing_) stop_restoration_ = true;
   render::FrameReport restored;
-  arena_.run([&] { restored = painter_.restore(&stop_restoration_); });
+  arena_.run([&] { restored = painter_.restore(&stop_restoration_, render::Edges::smooth); });
   is_drawing_ = false;
   has_image_ = restored.complete;
   if (controller_.restoreDone(restored.complete)) {

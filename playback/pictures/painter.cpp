@@ -279,14 +279,14 @@ render::FrameReport Painter::draw(const render::FramePlan& plan, const StopFlag*
   return fetched_ ? renderer_.draw(plan, view_.size, image_, stop) : renderer_.draw(plan, view_.size, stop);
 }
 
-render::FrameReport Painter::restore(const StopFlag* stop) {
+render::FrameReport Painter::restore(const StopFlag* stop, render::Edges edges) {
   if (cells_) return drawCells(true, stop);
   if (split_) {
     fetched_ = true;
-    return split_->restore(renderer_, image_, stop);
+    return split_->restore(renderer_, image_, stop, edges);
   }
   fetched_ = renderer_.backend() == Backend::cpu;
-  return fetched_ ? renderer_.restore(image_, stop) : renderer_.restore(stop);
+  return fetched_ ? renderer_.restore(image_, stop, edges) : renderer_.restore(stop, edges);
 }
 
 const render::Image& Painter::image() {
@@ -328,10 +328,12 @@ render::Image8 Painter::composed(const AnyImage& cast) {
     return render::compose(cast, camera_, sceneBox(), annotations,
                            [this](const Vec3d& position_m) { return isHidden(position_m); });
   };
-  render::Image8 picture = compose(annotations_);
-  if (!split_) return picture;
+  if (!split_) return compose(annotations_);
   const FieldBeside& beside = *frame_->beside;
-  render::Annotations of_left = annotations_;
+  render::Annotations of_left = annotations_, of_right = annotations_;
+  of_left.end_column = of_right.first_column = split_->column();
+  of_right.end_column = view_.size.width;
+  render::Image8 picture = compose(of_right);
   mark(of_left, *beside.frame);
   scenery_->annotate(of_left, view_, beside.frame->markers);
   render::joinParts(compose(of_left), split_->column(), {beside.caption, beside.own_caption}, annotations_,

@@ -40,10 +40,10 @@ render::FrameReport SplitPicture::draw(const render::FramePlan& plan, render::Re
 }
 
 render::FrameReport SplitPicture::restore(render::Renderer& right, render::Image& picture,
-                                          const StopFlag* stop) {
-  const render::FrameReport of_left = left_.restore(images_[0], stop);
+                                          const StopFlag* stop, render::Edges edges) {
+  const render::FrameReport of_left = left_.restore(images_[0], stop, edges);
   if (!of_left.complete) return of_left;
-  return joined(of_left, right.restore(images_[1], stop), picture);
+  return joined(of_left, right.restore(images_[1], stop, edges), picture);
 }
 
 render::Image SplitPicture::fullCast(render::Renderer& right) {

@@ -21,7 +21,8 @@ class SplitPicture {
   /// As Renderer::draw() and restore(), of the size of the view. @param right  of setView()
   render::FrameReport draw(const render::FramePlan& plan, render::Renderer& right, render::Image& picture,
                            const StopFlag* stop);
-  render::FrameReport restore(render::Renderer& right, render::Image& picture, const StopFlag* stop);
+  render::FrameReport restore(render::Renderer& right, render::Image& picture, const StopFlag* stop,
+                              render::Edges edges);
   render::Image fullCast(render::Renderer& right);
 
  private:

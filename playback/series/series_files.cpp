@@ -1,11 +1,14 @@
 #include "playback/series/series_files.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <regex>
 
 #include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 #include "emscape/playback/series/series_writer.h"
+#include "emscape/render/transfer/transfer_function.h"
 #include "emscape/volume/format/file.h"
 #include "playback/series/file_names.h"
 #include "playback/series/series_journal.h"
@@ -27,6 +30,39 @@ bool hasSidecar(const fs::path& file) {
 
 std::string sidecarOf(const std::string& name) {
   return name + ".json";
+}
+
+bool holdsFog(const fs::path& file) {
+  return file.extension() == ".vdb" || file.extension() == ".nvdb";
+}
+
+/// The default transfer function's opacity, of which the greatest becomes 1: a grid that programs which
+/// expect a fog draw without settings. Voxels without a field are empty.
+volume::DenseVolume fogOf(const volume::DenseVolume& field, const ValueRange& range) {
+  volume::DenseVolume fog;
+  fog.grid = field.grid;
+  fog.first_valid_k = field.first_valid_k;
+  fog.info = field.info;
+  fog.info.quantity = "density";
+  fog.info.unit.clear();
+  fog.info.categorical = false;
+  fog.info.floor = fog.info.range_min = 0;
+  fog.info.range_max = 1;
+  fog.info.extra["density_of"] = field.info.quantity;
+  const render::TransferFunction look =
+      render::defaultTransferFunction(field.info, volume::ValueRange{range.min, range.max});
+  double greatest = 0;
+  for (const auto& point : look.opacities) greatest = std::max(greatest, point.opacity);
+  fog.values.resize(field.values.size());
+  parallelFor(field.grid.dims.z, 1, [&](int begin, int end) {
+    const auto layer = static_cast<std::size_t>(field.grid.dims.x) * field.grid.dims.y;
+    for (std::size_t n = begin * layer; n < end * layer; ++n) {
+      const float value = field.values[n];
+      const bool is_empty = std::isnan(value) || value <= field.info.floor || greatest == 0;
+      fog.values[n] = is_empty ? 0.0F : static_cast<float>(look.opacity(value) / greatest);
+    }
+  });
+  return fog;
 }
 
 /// The name in the files of a folder's series; none without a readable description.
@@ -90,8 +126,8 @@ std::vector<std::string> SeriesFiles::namesOf(int step) const {
   return names;
 }
 
-void SeriesFiles::write(int step, std::vector<volume::Volume> channels,
-                        const std::vector<ValueRange>& ranges) const {
+void SeriesFiles::write(int step, std::vector<volume::Volume> channels, const std::vector<ValueRange>& ranges,
+                        const ValueRange* fog_range) const {
   std::vector<std::shared_ptr<const volume::DenseVolume>> on_host;
   for (std::size_t c = 0; c < channels.size(); ++c) {
     volume::VolumeInfo info = channels[c].info();
@@ -100,6 +136,8 @@ void SeriesFiles::write(int step, std::vector<volume::Volume> channels,
     channels[c].setInfo(std::move(info));
     on_host.push_back(channels[c].host());
   }
+  std::optional<volume::DenseVolume> fog;
+  if (fog_range != nullptr) fog = fogOf(*on_host.front(), *fog_range);
   for (const VolumeFile& file : volumeFilesOf(step)) {
     if (volume::isMeshFile(file.name)) {
       writeOnMesh(file.name, on_host);
@@ -107,6 +145,7 @@ void SeriesFiles::write(int step, std::vector<volume::Volume> channels,
     }
     std::vector<const volume::DenseVolume*> volumes;
     for (const std::size_t c : file.channels) volumes.push_back(on_host[c].get());
+    if (fog && holdsFog(file.name)) volumes.push_back(&*fog);
     volume::writeVolumes(folder_ / file.name, volumes);
   }
 }

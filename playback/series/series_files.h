@@ -29,8 +29,10 @@ class SeriesFiles {
 
   /// Writes a step in every format.
   /// @param ranges  that the files state, one per channel; an empty one is stated as the floor
+  /// @param fog_range  of the first channel's colours, for a grid "density"; null: without one
   /// @throws Error (other, device); then there is no file of the failed format
-  void write(int step, std::vector<volume::Volume> channels, const std::vector<ValueRange>& ranges) const;
+  void write(int step, std::vector<volume::Volume> channels, const std::vector<ValueRange>& ranges,
+             const ValueRange* fog_range = nullptr) const;
 
   /// Changes the ranges in a step's files. @param ranges one per channel; empty ranges are not changed
   /// @return the names of the files that may have changed

@@ -69,6 +69,7 @@ Json recipeOf(const FieldSeries& series, const SeriesOptions& options) {
       {"compare", series.reference() != nullptr ? Json(series.reference()->scenario->hash) : Json(nullptr)},
       {"times", series.times_s()}};
   if (options.mesh) recipe["mesh"] = options.mesh_text;
+  if (options.with_fog) recipe["look"] = "fog";
   return recipe;
 }
 

@@ -204,7 +204,7 @@ class SeriesWriter {
 
   /// On the writer's thread.
   void write(const std::vector<volume::Volume>& volumes, StepRecord record) {
-    files_.write(record.step, volumes, record.stored);
+    files_.write(record.step, volumes, record.stored, fogRange(record));
     for (const std::string& name : files_.namesOf(record.step)) {
       record.files.push_back({name, digestOf(options_.folder / name)});
     }
@@ -214,6 +214,14 @@ class SeriesWriter {
       writeIndex();
       next_index_at_ = finished_count_ + (finished_count_ + 1) / 2;
     }
+  }
+
+  /// The range of the fog's look, the same in all steps: that of the options, else of the first step, which
+  /// is written first.
+  const ValueRange* fogRange(const StepRecord& record) const {
+    if (!options_.with_fog) return nullptr;
+    if (options_.range) return &*options_.range;
+    return &(steps_.front() ? steps_.front()->own : record.own).front();
   }
 
   /// Writes the range over the series into all files that have another one.

@@ -13,6 +13,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <thread>
 #include <utility>
 
 #include "emscape/base/error.h"
@@ -31,6 +32,8 @@ constexpr double kConnect_s = 5;
   std::string remedy;
   if (cause == EADDRINUSE) remedy = "; another program uses the port: end it, or choose another port";
   if (cause == EADDRNOTAVAIL) remedy = "; this computer has no such address (ip address lists them)";
+  if (cause == ENETUNREACH) remedy = "; this computer has no way there (ip route lists them)";
+  if (cause == EACCES) remedy = "; the system forbids it: ports below 1024 are the administrator's";
   if (cause == ECONNREFUSED) remedy = "; no program listens there";
   throw Error(ErrorCode::other,
               fmt::format("cannot {} {}: {}{}", what, address.text(), std::strerror(cause), remedy));
@@ -47,6 +50,17 @@ sockaddr_in systemAddress(const Address& address) {
 template <class Value>
 bool setOption(const Descriptor& socket, int level, int option, const Value& value) {
   return setsockopt(socket.number(), level, option, &value, sizeof value) == 0;
+}
+
+/// True for causes after which the next call may succeed at once.
+bool isTransient(int cause) {
+  return cause == EAGAIN || cause == EINTR || cause == ECONNABORTED || cause == ECONNREFUSED;
+}
+
+/// What cannot be taken stays ready: without a pause the callers would never wait.
+void pauseAfterFailure(double seconds) {
+  constexpr double kPause_s = 0.05;
+  std::this_thread::sleep_for(std::chrono::duration<double>(std::clamp(seconds, 0.0, kPause_s)));
 }
 
 bool isReady(int number, short events, double seconds) {
@@ -101,6 +115,11 @@ std::size_t DatagramReceiver::receive(double seconds, const Sink& sink) {
     messages[i].msg_hdr.msg_controllen = controls[i].size();
   }
   const int count = recvmmsg(socket_.number(), messages.data(), kDatagrams, MSG_DONTWAIT, nullptr);
+  failure_.clear();
+  if (count < 0 && !isTransient(errno)) {
+    failure_ = fmt::format("datagrams cannot be received: {}", std::strerror(errno));
+    pauseAfterFailure(seconds);
+  }
   for (int i = 0; i < count; ++i) {
     msghdr& header = messages[static_cast<std::size_t>(i)].msg_hdr;
     for (cmsghdr* part = CMSG_FIRSTHDR(&header); part != nullptr; part = CMSG_NXTHDR(&header, part)) {
@@ -118,7 +137,7 @@ std::size_t DatagramReceiver::receive(double seconds, const Sink& sink) {
 
 DatagramSender::DatagramSender(const Address& address, std::uint32_t interface, int ttl)
     : socket_(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)) {
-  if (!socket_.isOpen()) fail("send to", address);
+  if (!socket_.isOpen() || !setOption(socket_, SOL_SOCKET, SO_BROADCAST, 1)) fail("send to", address);
   if (address.isMulticast()) {
     in_addr from{};
     from.s_addr = htonl(interface);
@@ -201,7 +220,10 @@ Listener::Listener(const Address& address)
 std::optional<Connection> Listener::accept(double seconds) {
   if (!socket_.waitToRead(seconds)) return std::nullopt;
   Descriptor accepted(accept4(socket_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
-  if (!accepted.isOpen()) return std::nullopt;
+  if (!accepted.isOpen()) {
+    if (!isTransient(errno)) pauseAfterFailure(seconds);  // too many open files
+    return std::nullopt;
+  }
   return Connection(std::move(accepted));
 }
 

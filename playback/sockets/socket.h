@@ -43,15 +43,18 @@ class DatagramReceiver {
   std::size_t receive(double seconds, const Sink& sink);
   /// Datagrams that were dropped by the system since the begin because they came faster than they were read.
   std::uint64_t lost() const { return lost_; }
+  /// Why the system did not give the datagrams at the last call; empty: it did.
+  const std::string& failure() const { return failure_; }
 
  private:
   Descriptor socket_;
   std::vector<std::uint8_t> buffer_;
+  std::string failure_;
   std::uint64_t lost_ = 0;
   std::uint32_t lost_counter_ = 0;  ///< of the system
 };
 
-/// Sends UDP datagrams.
+/// Sends UDP datagrams, also to all computers of a network (broadcast).
 class DatagramSender {
  public:
   /// @param ttl  of multicast: 0 stays on this computer

@@ -7,9 +7,10 @@
 #include <chrono>
 #include <utility>
 
-#include "interop/acmi/acmi_handshake.h"
-#include "interop/acmi/acmi_text.h"
 #include "playback/stream/steady_time.h"
+#include "recording/acmi/acmi_handshake.h"
+#include "recording/acmi/acmi_lines.h"
+#include "recording/acmi/acmi_text.h"
 
 namespace emscape::playback {
 namespace {
@@ -91,10 +92,8 @@ void AcmiServer::flush() {
 
 void AcmiServer::send(std::string_view line) {
   keep(line);
-  for (Client& client : clients_) {
-    client.backlog += line;
-    client.backlog += '\n';
-  }
+  const std::string text = interop::physicalAcmi(line) + '\n';
+  for (Client& client : clients_) client.backlog += text;
 }
 
 void AcmiServer::keep(std::string_view line) {
@@ -112,7 +111,7 @@ void AcmiServer::keep(std::string_view line) {
     // Of the whole recording; events are not repeated.
     constexpr std::size_t kLongestHeader = std::size_t{1} << 20;
     if (line.find("Event=") == std::string_view::npos && header_.size() < kLongestHeader)
-      header_ += std::string(line) + "\n";
+      header_ += interop::physicalAcmi(line) + "\n";
   } else {
     auto& properties = objects_[*id];
     while (!rest.empty()) {
@@ -142,7 +141,7 @@ std::string AcmiServer::present() const {
   if (!frame_.empty()) text += frame_ + "\n";
   for (const auto& [id, properties] : objects_) {
     text += fmt::format("{:x}", id);
-    for (const auto& [name, value] : properties) text += "," + name + "=" + value;
+    for (const auto& [name, value] : properties) text += "," + name + "=" + interop::physicalAcmi(value);
     text += "\n";
   }
   return text;

@@ -5,6 +5,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "playback/sockets/socket.h"
@@ -21,7 +22,7 @@ class AcmiServer {
 
   /// Accepts and greets clients and sends what is due, for some time.
   void serve(double seconds);
-  /// Takes one line of the text, without its end.
+  /// Takes one logical line of the text (interop::AcmiLines), without its end.
   void send(std::string_view line);
 
   std::size_t clientCount() const { return clients_.size(); }

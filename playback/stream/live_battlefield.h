@@ -7,25 +7,36 @@
 #include <string>
 
 #include "emscape/base/progress.h"
-#include "emscape/playback/frames/frame_source.h"
 #include "interop/import_scenario.h"
-#include "interop/recording/read_recording.h"
 #include "playback/sockets/address.h"
+#include "playback/stream/named_poses.h"
+#include "recording/read_recording.h"
 
 namespace emscape::playback {
 
-enum class StreamKind { dis, acmi };
+enum class StreamKind { dis, acmi, cot };
+
+/// The words of a kind of stream, and the rules of its transport.
+struct StreamFormat {
+  const char* name;
+  const char* ending;           ///< of its recordings
+  const char *record, *plural;  ///< what it consists of
+  const char *object, *objects;
+  double silence_s;  ///< after which it has stopped
+};
+const StreamFormat& formatOf(StreamKind kind);
 
 struct StreamRequest {
   StreamKind kind = StreamKind::dis;
-  Address address;              ///< to listen to (DIS), or to connect to (ACMI)
+  bool connects = false;        ///< by TCP; else it listens for datagrams
+  Address address;              ///< to listen to, or to connect to
   std::uint32_t interface = 0;  ///< on which a multicast group is joined
   std::string password;         ///< of an ACMI host; empty: none
   interop::ReadOptions read;
   interop::BeamwidthMeaning beamwidth = interop::BeamwidthMeaning::by_size;
   std::string base;                ///< scenario with region, terrain and further platforms
   std::string emitters;            ///< emitter database; empty: the starter set
-  std::string record;              ///< file for what arrives, .pcap or .acmi; empty: none
+  std::string record;              ///< file for what arrives, .pcap, .acmi or .cot; empty: none
   bool replaces = false;           ///< files that exist; else they are an error
   std::string folder;              ///< of the scenario file; empty: a temporary one
   const StopFlag* stop = nullptr;  ///< ends the waiting for a host; may be null
@@ -33,8 +44,9 @@ struct StreamRequest {
 
 /// What has arrived so far.
 struct StreamStatus {
-  long long records = 0;  ///< PDUs or lines
+  long long records = 0;  ///< PDUs, lines or events
   long long bytes = 0, bad = 0, late = 0, duplicates = 0;
+  long long outside = 0;    ///< positions that are too high or too low, which are not used
   long long lost = 0;       ///< datagrams that the system dropped
   long long forgotten = 0;  ///< objects and beams beyond the limits
   std::size_t entities = 0, emitters = 0;
@@ -51,7 +63,7 @@ struct StreamStatus {
 /// The battlefield at one instant.
 struct BattlefieldNow {
   std::shared_ptr<const scenario::Scenario> scenario;  ///< without the poses; another object: other platforms
-  PosesPtr poses;                                      ///< the same object as before if nothing has moved
+  NamedPosesPtr poses;                                 ///< the same object as before if nothing has moved
   double arrival_s = 0;                                ///< of the last record in it (steady clock)
 };
 
@@ -72,10 +84,12 @@ class LiveBattlefield {
   LiveBattlefield(const LiveBattlefield&) = delete;
   LiveBattlefield& operator=(const LiveBattlefield&) = delete;
 
-  /// Another function to call; empty: none. Returns when the last call has ended.
-  void setWake(std::function<void()> wake);
+  /// Another function to call, until another one is set or the result is destroyed, which waits until its
+  /// last call has ended. The result must not outlive this object.
+  std::shared_ptr<void> setWake(std::function<void()> wake);
 
-  BattlefieldNow now();
+  /// As of the last sixtieth of a second; where platforms move by dead reckoning, of the last thirtieth.
+  BattlefieldNow now() const;
   StreamStatus status() const;
   /// File of the scenario, without the poses: the base at first.
   std::string file() const;

@@ -11,10 +11,12 @@
 
 #include "base/files/folder.h"
 #include "base/files/whole_file.h"
+#include "base/geodesy/position_limits.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
-#include "interop/dis/pdu.h"
 #include "interop/emitters/emitter_database.h"
+#include "recording/dis/pdu.h"
+#include "scenario/model/posed_platform.h"
 
 namespace emscape::playback {
 namespace {
@@ -45,6 +47,12 @@ std::string makeTemporaryFolder() {
 bool isNamed(const std::string& object, const std::string& platform) {
   return object == platform ||
          (object.size() == interop::dis::kMarkingBytes && platform.compare(0, object.size(), object) == 0);
+}
+
+/// Lets an object move a platform.
+void addObject(LiveScenario& scenario, std::uint64_t key, const std::string& platform, double raise_m) {
+  scenario.objects[key] = {scenario.poses.size(), raise_m};
+  scenario.poses.push_back({platform, {}, {}});
 }
 
 }  // namespace
@@ -78,6 +86,9 @@ std::shared_ptr<const LiveScenario> LiveScenarioMaker::base() const {
 std::shared_ptr<const LiveScenario> LiveScenarioMaker::make(interop::LiveRecording live) {
   auto made = std::make_shared<LiveScenario>();
   interop::Recording& recording = live.recording;
+  std::vector<interop::LivePose> poses;
+  for (std::size_t i = 0; i < recording.objects.size(); ++i)
+    poses.push_back({live.keys[i], recording.objects[i].poses.front()});
   // Platforms of the base that the stream moves.
   std::vector<bool> is_of_base(recording.objects.size());
   for (std::size_t i = 0; i < recording.objects.size(); ++i) {
@@ -85,7 +96,7 @@ std::shared_ptr<const LiveScenario> LiveScenarioMaker::make(interop::LiveRecordi
     for (std::size_t p = 0; p < platforms.size() && !is_of_base[i]; ++p) {
       if (!isNamed(recording.objects[i].name, platforms[p].name)) continue;
       is_of_base[i] = true;
-      made->platforms[live.keys[i]] = {static_cast<int>(p), 0};
+      addObject(*made, live.keys[i], platforms[p].name, 0);
     }
   }
   auto& beams = recording.beams;
@@ -102,6 +113,7 @@ std::shared_ptr<const LiveScenario> LiveScenarioMaker::make(interop::LiveRecordi
     scenario::saveScenario(*base_.scenario, file_);
     made->loaded = last_ = base_;
     made->emitters = static_cast<int>(base_.scenario->emitters.size());
+    movePoses(*made, poses, made->poses);
     return made;
   }
   std::unordered_map<std::string, std::uint64_t> key_of;
@@ -128,35 +140,37 @@ std::shared_ptr<const LiveScenario> LiveScenarioMaker::make(interop::LiveRecordi
   scenario::ParseResult parsed = scenario::parseScenario(file_);
   if (!parsed.scenario) scenario::loadScenario(file_);  // throws
   made->loaded = last_ = withScenario(last_, parsed.scenario);
-  for (const interop::ImportedPlatform& platform : result.platforms) {
-    made->platforms[key_of[platform.object]] = {scenario::platformNamed(*parsed.scenario, platform.name),
-                                                platform.raise_m};
-  }
+  for (const interop::ImportedPlatform& platform : result.platforms)
+    addObject(*made, key_of[platform.object], platform.name, platform.raise_m);
+  movePoses(*made, poses, made->poses);
   made->emitters = static_cast<int>(parsed.scenario->emitters.size());
   for (const interop::ImportedEmitters& use : result.emitters)
     made->unmatched += use.fault.empty() ? 0 : use.count;
   return made;
 }
 
-std::vector<scenario::PlatformPose> platformPoses(const LiveScenario& scenario,
-                                                  const std::vector<interop::LivePose>& poses) {
-  std::vector<scenario::PlatformPose> result;
+void movePoses(const LiveScenario& scenario, const std::vector<interop::LivePose>& live,
+               std::vector<NamedPose>& poses) {
   const scenario::Terrain* const terrain = scenario.loaded.terrain.get();
-  for (const interop::LivePose& live : poses) {
-    const auto found = scenario.platforms.find(live.key);
-    if (found == scenario.platforms.end()) continue;
-    const interop::PoseSample& at = live.pose;
+  for (const interop::LivePose& object : live) {
+    const auto found = scenario.objects.find(object.key);
+    if (found == scenario.objects.end()) continue;
+    const interop::PoseSample& at = object.pose;
     double ground_m = terrain == nullptr ? 0 : terrain->heightMsl_m(at.latitude_deg, at.longitude_deg);
     if (std::isnan(ground_m)) ground_m = 0;
-    double height_m = at.height_msl_m + found->second.raise_m;
+    double height_m = std::min(at.height_msl_m + found->second.raise_m, PositionLimits::kHighest_m);
     if (height_m < ground_m) height_m = ground_m + kAboveGround_m;
-    result.push_back({found->second.index,
-                      scenario::positionMsl(at.latitude_deg, at.longitude_deg, height_m),
-                      {at.heading_deg, at.pitch_deg, at.roll_deg}});
+    const scenario::SitePosition position =
+        scenario::positionMsl(at.latitude_deg, at.longitude_deg, height_m);
+    // Recordings may have no attitude.
+    const bool has_attitude = !std::isnan(at.heading_deg);
+    const scenario::Attitude attitude =
+        has_attitude ? scenario::Attitude{at.heading_deg, at.pitch_deg, at.roll_deg} : scenario::Attitude{};
+    if (!scenario::poseFault(position, attitude).empty()) continue;
+    NamedPose& pose = poses[found->second.pose];
+    pose.position = position;
+    pose.attitude = attitude;
   }
-  std::sort(result.begin(), result.end(),
-            [](const auto& a, const auto& b) { return a.platform < b.platform; });
-  return result;
 }
 
 }  // namespace emscape::playback

@@ -6,22 +6,23 @@
 #include <unordered_map>
 #include <vector>
 
-#include "emscape/playback/frames/frame_source.h"
 #include "emscape/playback/frames/inputs.h"
 #include "interop/live/live_state.h"
 #include "playback/stream/live_battlefield.h"
+#include "playback/stream/named_poses.h"
 
 namespace emscape::playback {
 
 /// A scenario that was made of the objects of a stream. Immutable.
 struct LiveScenario {
-  struct Platform {
-    int index = -1;      ///< in the scenario
-    double raise_m = 0;  ///< above the object
+  struct Object {
+    std::size_t pose = 0;  ///< index into `poses`
+    double raise_m = 0;    ///< of the platform above the object
   };
 
   LoadedScenario loaded;
-  std::unordered_map<std::uint64_t, Platform> platforms;  ///< by the key of their object
+  std::vector<NamedPose> poses;  ///< of the platforms that the stream moves, when the scenario was made
+  std::unordered_map<std::uint64_t, Object> objects;  ///< by their keys
   int emitters = 0, unmatched = 0;
 };
 
@@ -46,8 +47,10 @@ class LiveScenarioMaker {
   LoadedScenario base_, last_;
 };
 
-/// The poses of the platforms; positions below the ground are raised above it.
-std::vector<scenario::PlatformPose> platformPoses(const LiveScenario& scenario,
-                                                  const std::vector<interop::LivePose>& poses);
+/// Moves the poses of a scenario's platforms to where their objects are now. Positions below the ground are
+/// raised above it. A platform whose object is not there, or has a pose out of its range, stays.
+/// @param poses  in the order of LiveScenario::poses
+void movePoses(const LiveScenario& scenario, const std::vector<interop::LivePose>& live,
+               std::vector<NamedPose>& poses);
 
 }  // namespace emscape::playback

@@ -13,8 +13,7 @@ namespace emscape::playback {
 namespace {
 
 /// Checks the name before the file is begun.
-const std::string& checked(const std::string& file, bool is_text, bool replaces) {
-  const std::string ending = is_text ? ".acmi" : ".pcap";
+const std::string& checked(const std::string& file, const std::string& ending, bool replaces) {
   if (std::filesystem::path(file).extension() != ending) {
     throw Error(ErrorCode::usage,
                 fmt::format("--record '{}': the recording of this stream ends in {}", file, ending));
@@ -25,9 +24,9 @@ const std::string& checked(const std::string& file, bool is_text, bool replaces)
 
 }  // namespace
 
-StreamRecorder::StreamRecorder(const std::string& file, bool is_text, bool replaces)
-    : file_(checked(file, is_text, replaces)), stream_(file_.temporary(), std::ios::binary) {
-  if (!is_text) capture_ = std::make_unique<interop::dis::CaptureWriter>(stream_);
+StreamRecorder::StreamRecorder(const std::string& file, const std::string& ending, bool replaces)
+    : file_(checked(file, ending, replaces)), stream_(file_.temporary(), std::ios::binary) {
+  if (ending == ".pcap") capture_ = std::make_unique<interop::dis::CaptureWriter>(stream_);
 }
 
 void StreamRecorder::write(const std::uint8_t* bytes, std::size_t size, double time_s) {
@@ -48,6 +47,7 @@ void StreamRecorder::finish() {
   if (!stream_ && failure_.empty())
     failure_ = file_.file().string() + ": cannot be written; the end of the recording is missing";
   file_.publish();
+  if (!failure_.empty()) throw Error(ErrorCode::other, failure_);
 }
 
 }  // namespace emscape::playback

@@ -7,17 +7,17 @@
 #include <vector>
 
 #include "base/files/unfinished_file.h"
-#include "interop/dis/datagrams.h"
+#include "recording/dis/datagrams.h"
 
 namespace emscape::playback {
 
-/// Writes datagrams as .pcap, or text as .acmi. A disk that is full ends the recording, not the stream.
+/// Writes datagrams as .pcap, or text as it is. A disk that is full ends the recording, not the stream.
 class StreamRecorder {
  public:
   /// @throws Error (usage) for another ending or a file that exists, (other)
-  StreamRecorder(const std::string& file, bool is_text, bool replaces);
+  StreamRecorder(const std::string& file, const std::string& ending, bool replaces);
   void write(const std::uint8_t* bytes, std::size_t size, double time_s);
-  /// Publishes the file. @throws Error (other)
+  /// Publishes the file. @throws Error (other), also if the recording ended early
   void finish();
   /// Why the recording ended early; empty: it did not.
   const std::string& failure() const { return failure_; }

@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from ._program import command as command
     from ._scenario import Scenario as Scenario
     from ._scenario import load as load
+    from ._scenario import parse as parse
     from ._scenario import path_step as path_step
     from ._studies import check as check
     from ._studies import compare as compare
@@ -54,7 +55,7 @@ _NAMES = {
     "_maps": ("coverage", "products"),
     "_picture": ("render",),
     "_program": ("command",),
-    "_scenario": ("Scenario", "load", "path_step"),
+    "_scenario": ("Scenario", "load", "parse", "path_step"),
     "_studies": ("check", "compare", "exposure", "link", "profile", "simulate", "study", "vertical"),
 }
 _MODULES = ("datasets", "distributed")

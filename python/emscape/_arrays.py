@@ -54,20 +54,8 @@ def flags(labels: Sequence[str], none: bool) -> dict[str, Any]:
     return {"flag_values": np.arange(first, len(labels), dtype=np.float32), "flag_meanings": " ".join(words)}
 
 
-def _local_crs(latitude_deg: float, longitude_deg: float) -> xarray.Variable:
+def _local_crs(latitude_deg: float, longitude_deg: float, wkt: str) -> xarray.Variable:
     """The azimuthal equidistant projection of the frame "altitude", as a CF grid mapping."""
-    degree = 'ANGLEUNIT["degree",0.0174532925199433]'
-    metre = 'LENGTHUNIT["metre",1]'
-    wkt = (
-        'PROJCRS["Azimuthal equidistant about the origin of the region",BASEGEOGCRS["WGS 84",'
-        f'DATUM["World Geodetic System 1984",ELLIPSOID["WGS 84",6378137,298.257223563,{metre}]],'
-        f'PRIMEM["Greenwich",0,{degree}],ID["EPSG",4326]],'
-        'CONVERSION["Azimuthal equidistant",METHOD["Azimuthal Equidistant"],'
-        f'PARAMETER["Latitude of natural origin",{latitude_deg!r},{degree},ID["EPSG",8801]],'
-        f'PARAMETER["Longitude of natural origin",{longitude_deg!r},{degree},ID["EPSG",8802]],'
-        f'PARAMETER["False easting",0,{metre},ID["EPSG",8806]],PARAMETER["False northing",0,{metre},ID["EPSG",8807]]],'
-        f'CS[Cartesian,2],AXIS["(E)",east,ORDER[1],{metre}],AXIS["(N)",north,ORDER[2],{metre}]]'
-    )
     return xarray.Variable(
         (),
         np.int32(0),
@@ -129,7 +117,7 @@ def _space(grid: dict[str, Any]) -> dict[Hashable, Any]:
         attributes[0]["standard_name"] = "projection_x_coordinate"
         attributes[1]["standard_name"] = "projection_y_coordinate"
         attributes[2] = {"standard_name": "altitude", "long_name": "height above mean sea level (EGM96)", "units": "m"}
-        coordinates[_SPATIAL_REF] = _local_crs(grid["latitude_deg"], grid["longitude_deg"])
+        coordinates[_SPATIAL_REF] = _local_crs(grid["latitude_deg"], grid["longitude_deg"], grid["crs_wkt"])
     for axis, letter in enumerate("xyz"):
         first, step, count = grid["first_center_m"][axis], grid["spacing_m"][axis], grid["dims"][axis]
         attributes[axis]["axis"] = letter.upper()

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from ._arguments import PathName, distinct, listed, path_text
 from ._errors import UsageError
 from ._native import native
-from ._scenario import Scenario, utc_time
+from ._scenario import Scenario, Time, utc_time
 
 if TYPE_CHECKING:
     import pyvista
@@ -182,7 +182,8 @@ class Field:
         return dataset_of(self, listed(quantities))
 
     def to_pyvista(self, quantities: str | Sequence[str] = ()) -> pyvista.ImageData:
-        """The field as point data of an ImageData whose points are the voxels' centres (frame metres). Needs pyvista.
+        """The field as point data of an ImageData whose points are the voxels' centres (frame metres); NaN in masked voxels, as
+        in to_xarray(). Needs pyvista.
 
         :param quantities: empty: all
         """
@@ -193,7 +194,8 @@ class Field:
         grid = self.grid
         image = pyvista.ImageData(dimensions=grid["dims"], spacing=grid["spacing_m"], origin=grid["first_center_m"])
         for name in listed(quantities) or self.quantities:
-            image.point_data[name] = self.numpy(name).ravel()  # VTK has the same order of points: x fastest
+            values = np.where(self.mask(name), np.float32("nan"), self.numpy(name))
+            image.point_data[name] = values.ravel()  # VTK has the same order of points: x fastest
         return image
 
     def __repr__(self) -> str:
@@ -207,7 +209,7 @@ class Solver:
     Thread-safe: calls are serialised, and release Python's global interpreter lock.
     """
 
-    __slots__ = ("_handle",)
+    __slots__ = ("_handle", "_text")
 
     def __init__(
         self,
@@ -231,6 +233,7 @@ class Solver:
         Raises UsageError for an argument outside its range or a name that is given twice, InputError for missing terrain,
         DeviceError for a GPU that is missing or has too little memory.
         """
+        self._text = scenario._text
         self._handle = native.Solver(
             scenario._handle,
             backend,
@@ -244,7 +247,7 @@ class Solver:
     @property
     def scenario(self) -> Scenario:
         """The scenario of the last field."""
-        return Scenario(self._handle.scenario)
+        return Scenario(self._handle.scenario, self._text)
 
     @property
     def backend(self) -> str:
@@ -262,21 +265,24 @@ class Solver:
         return self._handle.warnings()
 
     def at(
-        self, time_s: float, scenario: Scenario | None = None, *, poses: Mapping[str, Sequence[float]] | None = None
+        self, time_s: Time, scenario: Scenario | None = None, *, poses: Mapping[str, Sequence[float]] | None = None
     ) -> Field:
         """The field at a time.
 
         Only what has changed since the last call is computed: an emitter that has moved, a beam that has turned, or what an edit
         affects.
 
-        :param time_s: seconds since the epoch
+        :param time_s: seconds since the epoch, a timedelta, or UTC
         :param scenario: an edited scenario (``Scenario.with_set``), from now on; None: the last one
         :param poses: platforms that are elsewhere in this call, by name: latitude, longitude (deg), height above mean sea level (m),
             and optionally heading, pitch and roll (deg; 0). The field is that of a scenario with fixed sites there
         Raises InputError for a platform below ground, missing terrain, or a value that a model rejects; DeviceError.
         """
         placed = {name: _pose(name, values) for name, values in (poses or {}).items()}
-        return Field(self._handle.at(time_s, scenario._handle if scenario is not None else None, placed))
+        seconds = (scenario or self.scenario)._seconds(time_s)
+        if scenario is not None:
+            self._text = scenario._text
+        return Field(self._handle.at(seconds, scenario._handle if scenario is not None else None, placed))
 
     def __repr__(self) -> str:
         return f"<emscape.Solver of {self.scenario.name!r} on {self.backend}>"

@@ -93,6 +93,8 @@ def coverage(
         ground and above sea level. The projection is in ``spatial_ref``; with rioxarray imported, ``.rio.crs``
     Raises UsageError, InputError and DeviceError, as on the command line.
     """
+    if not isinstance(heights, str):
+        raise UsageError(f'heights: {heights!r} is not a text such as "agl:150" or "agl:30,150;msl:1000:3000:500" (m)')
     names = [product] if isinstance(product, str) else distinct(product, "product")
     if not names:
         raise UsageError("product: the sequence is empty; give at least one name")
@@ -171,6 +173,7 @@ def _array_of(group: list[dict[str, Any]], coordinates: dict[Hashable, Any], sce
         own[dims[1]] = xarray.Variable(dims[1], heights, _HEIGHTS[reference], NO_FILL)
     array = xarray.DataArray(values, own, dims, attrs=attributes)
     squeezed: xarray.DataArray = array.squeeze([name for name in dims[:2] if array.sizes[name] == 1])
+    squeezed.encoding["_FillValue"] = np.float32("nan")  # the nodata of files that rioxarray writes
     return squeezed
 
 

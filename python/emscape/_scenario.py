@@ -10,13 +10,17 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Union
 
-from ._arguments import PathName, path_text
+from ._arguments import PathName, path_text, utf8
 from ._errors import InputError, Problem, ScenarioError, UsageError
 from ._native import native
 
-Times = Union[str, float, Sequence[float]]
-"""Times in seconds since the epoch: "BEGIN:END:STEP", "BEGIN:END" (the scenario's step), one number, or an ascending sequence of
-numbers. An empty string: all steps of the scenario's clock."""
+Time = Union[float, str, datetime.datetime, datetime.timedelta]
+"""A time: seconds since the epoch, a timedelta since it, or UTC as "2026-06-01T06:00:00Z" or a datetime with a time zone; numpy's
+datetime64 (UTC) and timedelta64, too."""
+
+Times = Union[Time, Sequence[Time]]
+"""Times: "BEGIN:END:STEP", "BEGIN:END" (the scenario's step), one time, or an ascending sequence of times. An empty string: all steps
+of the scenario's clock."""
 
 
 def _plain(value: Any) -> Any:
@@ -68,14 +72,15 @@ def utc_time(text: str) -> datetime.datetime | None:
 class Scenario:
     """A scenario: emitters, platforms, terrain and time. Immutable; ``with_set`` returns a changed copy.
 
-    Made by ``load``. It can be pickled: unpickling reads its file again and applies its edits; InputError if the file, or one
-    that it names, has changed. A copy is the object itself.
+    Made by ``load``, or by ``parse`` of a text or dict. It can be pickled: unpickling reads its file again and applies its edits;
+    InputError if the file, or one that it names, has changed. A copy is the object itself.
     """
 
-    __slots__ = ("_handle",)
+    __slots__ = ("_handle", "_text")
 
-    def __init__(self, handle: native.Scenario) -> None:
+    def __init__(self, handle: native.Scenario, text: str | None = None) -> None:
         self._handle = handle
+        self._text = text  # of a scenario that was not read from a file
 
     @property
     def name(self) -> str:
@@ -84,7 +89,7 @@ class Scenario:
 
     @property
     def file(self) -> str:
-        """File from which it was read, an absolute path."""
+        """File from which it was read, an absolute path; of a parsed text the name that was given to it."""
         return self._handle.file
 
     @property
@@ -156,7 +161,7 @@ class Scenario:
     def times(self, times: Times = "") -> list[float]:
         """Times as a list of seconds since the epoch.
 
-        Raises UsageError for invalid times, such as ones beyond 1e9 s.
+        Raises UsageError for invalid times, such as ones beyond 1e9 s, and UTC without an epoch.
         """
         if isinstance(times, str):
             return self._handle.times(times)
@@ -169,12 +174,7 @@ class Scenario:
             items = [items]
         values: list[float] = []
         for item in items:
-            try:
-                time_s = float(item)
-            except (TypeError, ValueError, OverflowError):
-                time_s = math.nan
-            if not math.isfinite(time_s):
-                raise UsageError(f"times: '{item}' is not a number of seconds")
+            time_s = self._seconds(item, "times")
             if values and time_s <= values[-1]:
                 raise UsageError(f"times: {time_s} s follows {values[-1]} s; times must be ascending")
             values.append(time_s)
@@ -184,9 +184,37 @@ class Scenario:
             self._handle.times(repr(extreme_s))  # checks the range
         return values
 
-    def positions(self, time_s: float = 0.0) -> dict[str, tuple[float, float, float]]:
-        """Positions of all platforms at a time (s): name to (latitude deg, longitude deg, height above mean sea level m)."""
-        return dict(self._handle.positions(time_s))
+    def _seconds(self, time: Any, argument: str = "time_s") -> float:
+        """A time as seconds since the epoch. Raises UsageError, which names the argument."""
+        if isinstance(time, str):
+            values = self._handle.times(time or "-")  # an empty text would be all times
+            if len(values) != 1:
+                raise UsageError(f"{argument}: '{time}' is not a single time")
+            return values[0]
+        kind = getattr(getattr(time, "dtype", None), "kind", "")
+        if isinstance(time, datetime.datetime) or kind == "M":
+            try:
+                return self._seconds(_plain(time) if kind != "M" else str(time.astype("datetime64[us]")) + "Z", argument)
+            except ValueError as fault:
+                if isinstance(fault, UsageError):
+                    raise
+                raise UsageError(f"{argument}: {fault}") from None
+        if isinstance(time, datetime.timedelta):
+            return time.total_seconds()
+        try:
+            seconds = float(time.astype("timedelta64[ns]").astype("int64")) / 1e9 if kind == "m" else float(time)
+        except (TypeError, ValueError, OverflowError):
+            seconds = math.nan
+        if not math.isfinite(seconds):
+            raise UsageError(f"{argument}: '{time}' is not a number of seconds")
+        return seconds
+
+    def positions(self, time_s: Time = 0.0) -> dict[str, tuple[float, float, float]]:
+        """Positions of the platforms at a time: name to (latitude deg, longitude deg, height above mean sea level m).
+
+        Platforms that are absent, before and after their tracks, are left out.
+        """
+        return dict(self._handle.positions(self._seconds(time_s)))
 
     def with_set(self, edits: Mapping[str, Any]) -> Scenario:
         """Returns a scenario with other values; this one is not changed.
@@ -197,7 +225,7 @@ class Scenario:
 
         Raises ScenarioError, whose location is the edit; UsageError for a value that no scenario can have, such as a range.
         """
-        return _checked(*self._handle.edit(edit_texts(edits)))
+        return _checked(*self._handle.edit(edit_texts(edits)), text=self._text)
 
     def save(self, file: PathName) -> None:
         """Writes the scenario's text with its edits; comments and order are kept.
@@ -217,28 +245,37 @@ class Scenario:
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _unpickled, (self.file, self._handle.edits, self.hash)
+        return _unpickled, (self.file, self._handle.edits, self.hash, self._text)
 
 
-def _checked(handle: native.Scenario | None, rows: Iterable[tuple[str, int, int, str, str]]) -> Scenario:
-    """A scenario that was read; logs its warnings. Raises ScenarioError for its errors."""
+_MAX_TOLD = 10000
+_told: set[tuple[str, str]] = set()
+"""Files and their warnings that were logged: each is logged once in a process."""
+
+
+def _checked(
+    handle: native.Scenario | None, rows: Iterable[tuple[str, int, int, str, str]], text: str | None = None
+) -> Scenario:
+    """A scenario that was read; logs its warnings that are new. Raises ScenarioError for its errors."""
     errors = []
     for file, line, column, severity, message in rows:
         if severity == "error":
             errors.append(Problem(file, line, column, message))
-        else:
+        elif (file, message) not in _told:
+            if len(_told) < _MAX_TOLD:
+                _told.add((file, message))
             logging.getLogger("emscape").warning("%s:%d:%d: %s", file, line, column, message)
     if handle is None:
         raise ScenarioError(errors)
-    return Scenario(handle)
+    return Scenario(handle, text)
 
 
 def _load_text(file: str, edits: list[tuple[str, str]]) -> Scenario:
     return _checked(*native.load(file, edits))
 
 
-def _unpickled(file: str, edits: list[tuple[str, str]], expected_hash: str) -> Scenario:
-    scenario = _load_text(file, edits)
+def _unpickled(file: str, edits: list[tuple[str, str]], expected_hash: str, text: str | None = None) -> Scenario:
+    scenario = _load_text(file, edits) if text is None else _checked(*native.load_text(file, text, edits), text=text)
     if scenario.hash != expected_hash:
         raise InputError("has changed since the pickled scenario was loaded from it", file)
     return scenario
@@ -261,3 +298,27 @@ def load(file: PathName, edits: Mapping[str, Any] | None = None) -> Scenario:
 def path_step(name: str) -> str:
     """A name as an element of an edit path, quoted if necessary, as in ``emitters."a=b".power_w``."""
     return native.path_step(name)
+
+
+def parse(
+    source: str | Mapping[str, Any], *, folder: PathName = ".", name: str = "", edits: Mapping[str, Any] | None = None
+) -> Scenario:
+    """Reads a scenario from a text (YAML or JSON) or a dict, without a file of its own.
+
+    :param source: the text, or a dict with the keys of the scenario format; times as for ``Scenario.with_set``
+    :param folder: where relative names of tracks, antennas and elevation files begin
+    :param name: of the text, in messages; empty: scenario.yaml, of a dict scenario.json
+    :param edits: as for ``Scenario.with_set``
+    Raises ScenarioError, whose ``problems`` lists all errors with line and column; UsageError for a value that no scenario can have.
+    """
+    if isinstance(source, str):
+        text, own_name = source, "scenario.yaml"
+    elif isinstance(source, Mapping):
+        try:
+            text, own_name = json.dumps(dict(source), ensure_ascii=False, indent=1, default=_plain), "scenario.json"
+        except (TypeError, ValueError, OverflowError) as fault:
+            raise UsageError(f"source: {fault}") from None
+    else:
+        raise UsageError(f"source: a {type(source).__name__} is no scenario; give a text or a dict, or a file's name to load()")
+    file = os.path.join(os.path.abspath(path_text(folder)), name or own_name)
+    return _checked(*native.load_text(file, utf8(text), edit_texts(edits)), text=text)

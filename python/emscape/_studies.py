@@ -12,7 +12,7 @@ from ._arguments import PathName, distinct, listed, path_text
 from ._errors import UsageError
 from ._native import native
 from ._progress import Progress, callback
-from ._scenario import Scenario, Times, edit_texts
+from ._scenario import Scenario, Time, Times, edit_texts
 from ._worker import worker_command
 
 if TYPE_CHECKING:
@@ -36,7 +36,7 @@ def profile(
     to: tuple[float, float, float],
     *,
     agl: bool = False,
-    time_s: float = 0.0,
+    time_s: Time = 0.0,
     models: str | Sequence[str] = (),
 ) -> Json:
     """Explains one path, term by term, from the transmitter's power to the power density at a point.
@@ -53,7 +53,7 @@ def profile(
     if len(numbers) != 3 or isinstance(to, (str, bytes)):
         raise UsageError(f"to: {to!r} is not (latitude, longitude, height), three numbers")
     latitude_deg, longitude_deg, height_m = numbers
-    return _read(native.profile(scenario._handle, emitter, (latitude_deg, longitude_deg, height_m), agl, time_s, listed(models)))
+    return _read(native.profile(scenario._handle, emitter, (latitude_deg, longitude_deg, height_m), agl, scenario._seconds(time_s), listed(models)))
 
 
 def link(
@@ -110,7 +110,7 @@ def vertical(
     *,
     quantity: str = "",
     threshold: float | None = None,
-    time_s: float = 0.0,
+    time_s: Time = 0.0,
     height_axis: str = "msl",
     blake: bool = False,
     range_m: float | None = None,
@@ -140,7 +140,7 @@ def vertical(
             [float(azimuth_deg) for azimuth_deg in listed(azimuths_deg)],
             quantity,
             threshold,
-            time_s,
+            scenario._seconds(time_s),
             height_axis,
             blake,
             range_m,

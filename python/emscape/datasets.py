@@ -23,7 +23,6 @@ from __future__ import annotations
 import json
 import math
 import os
-import tempfile
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -33,14 +32,15 @@ import numpy.typing as npt
 from ._arguments import PathName, path_text
 from ._field import Field, Solver
 from ._native import native
-from ._scenario import Scenario, load
+from ._scenario import Scenario, parse
 
 KINDS = ("radar", "jammer", "transmitter")
 """Kinds of emitters; the index is the number in labels."""
 
 FEATURES = ("kind", "x_m", "y_m", "height_agl_m", "log10_frequency_hz", "power_dbw", "beamwidth_deg", "azimuth_deg", "elevation_deg")
 """Columns of a label. Positions are metres from the region's centre; azimuth is clockwise from north;
-the beamwidth of isotropic antennas is 360."""
+isotropic antennas have the beamwidth 360, and NaN for the angles of a beam. The frequency enters a volume where
+paths are diffracted, or where the quantity depends on it."""
 
 
 class Sample(NamedTuple):
@@ -53,6 +53,10 @@ class Sample(NamedTuple):
     feature)."""
     document: dict[str, Any]
     """The scenario as the contents of a JSON file."""
+    mask: npt.NDArray[np.bool_]
+    """True in voxels below the ground or without a known field, which hold the floor: (z, y, x)."""
+    ground_msl_m: npt.NDArray[np.float32] | None
+    """Height of the ground above mean sea level (m): (y, x); None over a smooth earth."""
 
 
 class VolumeDataset:
@@ -72,7 +76,7 @@ class VolumeDataset:
         quantity: str = "power_density_dbwm2",
         terrain: PathName | None = None,
         origin_deg: tuple[float, float] = (52.0, 5.0),
-        propagation: str = "horizon",
+        propagation: str = "diffraction",
         backend: str = "auto",
     ) -> None:
         """
@@ -98,8 +102,8 @@ class VolumeDataset:
         return self.count
 
     def __getitem__(self, index: int) -> tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]:
-        volume, label, _ = self.sample(index)
-        return volume[np.newaxis], label
+        sample = self.sample(index)
+        return sample.volume[np.newaxis], sample.label
 
     def __iter__(self) -> Iterator[tuple[npt.NDArray[np.float32], npt.NDArray[np.float32]]]:
         return (self[index] for index in range(self.count))
@@ -110,17 +114,14 @@ class VolumeDataset:
     def sample(self, index: int) -> Sample:
         """A sample with its scenario. Raises IndexError."""
         document, label = self.describe(index)
-        values = self.field(index).numpy(self.quantity)
-        return Sample(values.copy(), label, document)  # a writable copy, as PyTorch expects
+        field = self.field(index)
+        values = field.numpy(self.quantity).copy()  # writable, as PyTorch expects
+        return Sample(values, label, document, field.mask(self.quantity), field.ground_msl_m())
 
     def scenario(self, index: int) -> Scenario:
         """The scenario of a sample."""
         document, _ = self.describe(index)
-        with tempfile.TemporaryDirectory() as folder:
-            file = os.path.join(folder, document["name"] + ".json")
-            with open(file, "x", encoding="utf-8") as stream:
-                json.dump(document, stream)
-            return load(file)
+        return parse(document, name=document["name"] + ".json")
 
     def field(self, index: int) -> Field:
         """The field of a sample."""
@@ -131,6 +132,8 @@ class VolumeDataset:
 
     def describe(self, index: int) -> tuple[dict[str, Any], npt.NDArray[np.float32]]:
         """The scenario and label of a sample, without its field. Raises IndexError."""
+        if not hasattr(index, "__index__"):
+            raise TypeError(f"sample {index!r}: an index is a whole number; slices are not supported")
         if not 0 <= index < self.count:
             raise IndexError(f"sample {index}: there are {self.count}")
         rng = np.random.default_rng([self.seed, index])
@@ -147,7 +150,7 @@ class VolumeDataset:
             azimuth_deg, elevation_deg = float(rng.uniform(0, 360)), float(rng.uniform(0, 15))
             antenna: dict[str, Any] = {"pattern": "isotropic"}
             if kind == 2:
-                width_deg = 360.0
+                width_deg, azimuth_deg, elevation_deg = 360.0, math.nan, math.nan
             else:
                 antenna = {"pattern": "gaussian", "beamwidth_az_deg": width_deg, "beamwidth_el_deg": width_deg}
             place = native.to_geodetic(latitude_deg, longitude_deg, x_m, y_m)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 from collections.abc import Mapping
 from typing import Any
@@ -57,6 +58,12 @@ def study(
 
 
 def _error_of(failure: str) -> Error:
-    status, _, message = failure.partition(" ")
-    message = message.removeprefix("emscape: error: ")
-    return make(int(status), message, "", 0, 0) if int(status) > 0 else OtherError(f"a part was ended by signal {-int(status)}")
+    status, _, output = failure.partition(" ")
+    if int(status) <= 0:
+        return OtherError(f"a part was ended by signal {-int(status)}")
+    # Warnings stand before the error, which is the last message.
+    message = output.rpartition("emscape: error: ")[2].strip()
+    place = re.match(r"(?P<file>[^\n]+?):(?P<line>\d+)(?::(?P<column>\d+))?: (?P<message>.+)", message, re.DOTALL)
+    if place is None:
+        return make(int(status), message, "", 0, 0)
+    return make(int(status), place["message"], place["file"], int(place["line"]), int(place["column"] or 0))

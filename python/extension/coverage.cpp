@@ -91,6 +91,7 @@ MapsAndGrid coverage(const ScenarioHandle& handle, const std::string& heights,
     const study::MapArea area = report::areaOf(options, *scenario);
     grid = *report::gridOf(options, *scenario, area);
     const scenario::TerrainPtr terrain = study::loadTerrain(*scenario, area);
+    if (terrain) study::requireGround(*scenario, *terrain, grid);
     warnings = playback::openOnTarget(backend, [&](const playback::ComputeTarget& target) {
       maps.clear();
       return study::computeCoverage(

@@ -105,7 +105,13 @@ void bindErrors(nb::module_& module) {
           try {
             (*function)(static_cast<int>(level), message);
           } catch (nb::python_error& failure) {
-            failure.discard_as_unraisable("emscape's log");
+            // A message may be logged where no exception can pass: Ctrl-C is raised again by the next check
+            // of signals, at the latest when the call is over.
+            if (failure.matches(PyExc_KeyboardInterrupt)) {
+              PyErr_SetInterrupt();
+            } else {
+              failure.discard_as_unraisable("emscape's log");
+            }
           }
         };
         const nb::gil_scoped_release unlocked;

@@ -51,6 +51,7 @@ Dict describeGrid(const volume::Grid& grid) {
   result["spacing_m"] = std::tuple(grid.spacing_m.x, grid.spacing_m.y, grid.spacing_m.z);
   result["first_center_m"] = std::tuple(grid.first_center_m.x, grid.first_center_m.y, grid.first_center_m.z);
   if (grid.georeferenced) {
+    for (const auto& [key, text] : volume::standardWords(true, grid.frame)) result[key.c_str()] = text;
     result["frame"] = toString(grid.frame.kind);
     result["latitude_deg"] = grid.frame.latitude_deg;
     result["longitude_deg"] = grid.frame.longitude_deg;

@@ -133,7 +133,7 @@ nb::object render(const Field& field, const std::string& quantity, std::pair<int
       painter.setScene(field.scene ? field.scene->scenario->name : std::string(),
                        field.scene ? &*field.scene : nullptr);
       painter.setFrame(frame);
-      painter.draw({});
+      painter.draw(render::FramePlan::exact());
       return painter.picture(note);
     };
     const Backend backend = field.volumes.front().isOnDevice() ? Backend::cuda : Backend::cpu;

@@ -124,6 +124,7 @@ void bindScenario(nb::module_& module) {
             std::vector<std::pair<std::string, Position>> rows;
             for (std::size_t p = 0; p < snapshot.platforms.size(); ++p) {
               const scenario::PlatformState& state = snapshot.platforms[p];
+              if (!state.present) continue;
               rows.emplace_back(
                   of.scenario->platforms[p].name,
                   Position{state.position.latitude_deg, state.position.longitude_deg, state.height_msl_m});
@@ -139,6 +140,14 @@ void bindScenario(nb::module_& module) {
         return parsedOf(scenario::parseScenario(file, editsOf(edits)));
       },
       nb::arg("file"), nb::arg("edits"), "The scenario, None if it has errors; and its problems.");
+  module.def(
+      "load_text",
+      [](const std::string& file, const std::string& text, const Edits& edits) {
+        const nb::gil_scoped_release unlocked;
+        return parsedOf(scenario::parseScenarioText(file, text, editsOf(edits)));
+      },
+      nb::arg("file"), nb::arg("text"), nb::arg("edits"),
+      "As load() for a text; file need not exist: its folder is that of relative names.");
   module.def(
       "to_geodetic",
       [](double origin_latitude_deg, double origin_longitude_deg, double x_m, double y_m) {

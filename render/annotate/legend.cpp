@@ -268,10 +268,21 @@ void drawBar(Canvas& canvas, const Style& style, const Legend& legend, double le
   drawNotes(canvas, style, legend, left, below);
 }
 
+/// Number of the categories that have room, with a line for the others and the notes below them.
+std::size_t shownCategories(ImageSize size, const Style& style, const Legend& legend) {
+  const double room = size.height - topOf(size, style, legend) - 0.5 * kRowHeight * style.unit;
+  const std::size_t below = notesOf(legend).size() + (legend.hatched.empty() ? 0 : 1);
+  const auto rows = static_cast<std::size_t>(std::max(room / (kRowHeight * style.unit), 0.0));
+  if (legend.categories.size() + below <= rows) return legend.categories.size();
+  return rows > below + 1 ? rows - below - 1 : 0;
+}
+
 void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, double left) {
   double y = topOf(canvas.size(), style, legend);
   drawHeading(canvas, style, legend, left, y);
-  for (const Category& category : legend.categories) {
+  const std::size_t shown = shownCategories(canvas.size(), style, legend);
+  for (std::size_t n = 0; n < shown; ++n) {
+    const Category& category = legend.categories[n];
     y += kRowHeight * style.unit;
     const double swatch = kSwatch * style.unit;
     canvas.rectangle({left, y - swatch / 2, swatch, swatch},
@@ -281,6 +292,11 @@ void drawCategories(Canvas& canvas, const Style& style, const Legend& legend, do
                        style.rimInk());
   }
   y += kRowHeight * style.unit;
+  if (shown < legend.categories.size()) {
+    canvas.textWithRim(fmt::format("and {} more", legend.categories.size() - shown), {left, y},
+                       style.small_px, style.mutedInk(), style.rimInk());
+    y += kRowHeight * style.unit;
+  }
   if (drawHatched(canvas, style, legend, left, y)) y += kRowHeight * style.unit;
   drawNotes(canvas, style, legend, left, y);
 }

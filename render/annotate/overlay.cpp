@@ -97,24 +97,44 @@ void drawBehind(Canvas& canvas, const Style& style, const Projector& projector,
   if (annotations.axes) drawFarEdges(canvas, style, projector);
 }
 
+/// The markers in the columns that are seen.
+std::vector<Marker> seenMarkers(const Annotations& annotations, const Projector& projector) {
+  std::vector<Marker> seen;
+  for (const Marker& marker : annotations.markers) {
+    Point2 at;
+    const bool is_seen = !projector.project(marker.position_m, at) ||
+                         (at.x >= annotations.first_column && at.x < *annotations.end_column);
+    if (is_seen) seen.push_back(marker);
+  }
+  return seen;
+}
+
 void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
                  const Annotations& annotations, const HiddenTest& hidden) {
   std::vector<Rect> taken;
   drawFooter(canvas, style, projector.box, annotations, taken);
-  if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
-  if (annotations.georeferenced && annotations.compass) {
-    const double reach = (kMargin + kCompassRadius + 10) * style.unit;
-    const Point2 center{reach, canvas.size().height - reach - 14 * style.unit};
-    drawCompass(canvas, style, projector.camera, center, kCompassRadius * style.unit);
-    taken.push_back({center.x - reach / 2, center.y - reach / 2, reach, reach});
-  }
-  drawPlanes(canvas, style, projector, annotations, taken);
   if (annotations.legend) {
     const double width = legendWidth(style, *annotations.legend);
     taken.push_back({canvas.size().width - width, 0, width, static_cast<double>(canvas.size().height)});
   }
   if (!annotations.title.empty() || !annotations.time.empty())
     taken.push_back({0, 0, static_cast<double>(canvas.size().width), headerHeight(style)});
+  const double reach = (kMargin + kCompassRadius + 10) * style.unit;
+  const Point2 compass{reach, canvas.size().height - reach - 14 * style.unit};
+  const bool has_compass = annotations.georeferenced && annotations.compass;
+  if (has_compass) taken.push_back({compass.x - reach / 2, compass.y - reach / 2, reach, reach});
+  if (annotations.axes) drawNearEdges(canvas, style, projector, annotations, taken);
+  std::vector<Marker> seen;
+  if (annotations.end_column) {  // axes are the same on both sides
+    const double first = annotations.first_column, end = *annotations.end_column;
+    const double height = canvas.size().height;
+    taken.push_back({0, 0, first, height});
+    taken.push_back({end, 0, canvas.size().width - end, height});
+    seen = seenMarkers(annotations, projector);
+  }
+  const std::vector<Marker>& markers = annotations.end_column ? seen : annotations.markers;
+  if (has_compass) drawCompass(canvas, style, projector.camera, compass, kCompassRadius * style.unit);
+  drawPlanes(canvas, style, projector, annotations, taken);
   if (annotations.georeferenced && annotations.scale_bar) {
     const double left = (annotations.compass ? 2 * (kMargin + kCompassRadius) + 20 : kMargin) * style.unit;
     const Point2 at{left, canvas.size().height - (kMargin + 30) * style.unit};
@@ -125,14 +145,14 @@ void drawInFront(Canvas& canvas, const Style& style, const Projector& projector,
     return projector.project(at_m, at) ? std::optional(at) : std::nullopt;
   };
   std::vector<Point2> symbols;
-  for (const Marker& marker : annotations.markers) {
+  for (const Marker& marker : markers) {
     if (const std::optional<Point2> at = project(marker.position_m)) symbols.push_back(*at);
   }
   drawGroundMarks(canvas, style, project, annotations.ground_lines, annotations.ground_points, symbols,
                   hidden, taken);
   if (annotations.legend) drawLegend(canvas, style, *annotations.legend);
   drawTracks(canvas, style, projector, annotations.tracks, hidden);
-  drawMarkers(canvas, style, projector, annotations.markers, annotations.units, hidden, taken);
+  drawMarkers(canvas, style, projector, markers, annotations.units, hidden, taken);
   drawTexts(canvas, style, annotations);
 }
 

@@ -5,6 +5,7 @@
 #include "emscape/base/error.h"
 #include "render/cpu/raycast_cpu.h"
 #include "render/patterns/adaptive.h"
+#include "render/patterns/edges.h"
 #include "render/scene/frame_caster.h"
 #include "render/scene/ground_layer.h"
 #include "render/scene/prepared_volume.h"
@@ -18,7 +19,7 @@ class CpuFrameCaster : public FrameCaster {
   void setVolume(std::shared_ptr<const volume::DeviceVolume> volume) override;
   std::size_t volumeBytes() const override { return 0; }
   FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size, const StopFlag* stop) override;
-  FrameReport restore(const Scene& scene, const StopFlag* stop) override;
+  FrameReport restore(const Scene& scene, const StopFlag* stop, Edges edges) override;
 
   void bindTarget(Image& image) override { std::swap(picture_, image); }
   void unbindTarget(Image& image, const FrameReport& /*report*/) override { std::swap(picture_, image); }
@@ -33,6 +34,7 @@ class CpuFrameCaster : public FrameCaster {
   bool drawAdaptive(const Scene& scene, const FramePlan& plan, bool shows_ground, Image& image,
                     FrameReport& report, const StopFlag* stop);
   bool castMissing(const Scene& scene, FrameReport& report, const StopFlag* stop);
+  void smoothEdges(const Scene& scene, FrameReport& report, const StopFlag* stop);
 
   PreparedVolume volume_;
   SkipLevels skip_;
@@ -152,14 +154,27 @@ FrameReport CpuFrameCaster::draw(const Scene& scene, const FramePlan& plan, Imag
     composeGround(castOf(scene, prepared, true), target, picture_);
   }
   report.interpolate_ms += watch.lap_ms();
+  if (plan.pattern == Pattern::full && plan.edges == Edges::smooth) smoothEdges(scene, report, stop);
   return report;
 }
 
-FrameReport CpuFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
+FrameReport CpuFrameCaster::restore(const Scene& scene, const StopFlag* stop, Edges edges) {
   FrameReport report;
   report.pattern = drawn_;
-  if (castMissing(scene, report, stop)) ground_layer_.complete = true;
+  if (!castMissing(scene, report, stop)) return report;
+  ground_layer_.complete = true;
+  if (edges == Edges::smooth) smoothEdges(scene, report, stop);
   return report;
+}
+
+/// Casts the pixels at edges of the exact picture again.
+void CpuFrameCaster::smoothEdges(const Scene& scene, FrameReport& report, const StopFlag* stop) {
+  Stopwatch watch;
+  const std::vector<Pixel> edges = edgePixels(picture_);
+  const RaycastTask prepared = prepare(scene, picture_.size);
+  report.complete = castEdges(castOf(scene, prepared, true), edges, picture_, stop, report.samples);
+  report.rays += kEdgeRays * static_cast<long long>(edges.size());
+  report.cast_ms += watch.lap_ms();
 }
 
 /// Casts the pixels that the last frame left out. @return false if it was stopped

@@ -7,6 +7,7 @@
 #include "base/math/simd.h"
 #include "emscape/base/parallel.h"
 #include "render/cpu/packets.h"
+#include "render/patterns/edges.h"
 
 namespace emscape::render {
 namespace {
@@ -88,31 +89,34 @@ class GroupCaster {
 
   /// @return number of samples, if counted
   long long operator()(const Pixel* pixels, int count, Image& image) const {
-    std::array<Rgba, kTilePixels> fronts;
-    std::array<CutRay, kTilePixels> cut;
-    std::array<RayBounds, kTilePixels> bounds;
-    const bool cuts = cast_.task.cut.count > 0;
-    const bool bounded = cuts || cast_.ground != nullptr;
-    for (int n = 0; bounded && n < count; ++n) {
-      const auto i = static_cast<std::size_t>(n);
-      bounds[i] = {};
-      if (cast_.ground != nullptr) bounds[i].end = groundLimit(pixels[n]);
-      if (!cuts) continue;
-      cut[i] = cut_(cast_.task, pixels[n], bounds[i].end);
-      bounds[i] = cut[i].bounds;
-    }
-    const RayBounds* bound = bounded ? bounds.data() : nullptr;
-    long long samples = 0;
-    if (in_packets_) {
-      samples = castPackets(cast_.task, cast_.mode, pixels, bound, count, fronts.data());
-    } else {
-      plain_(cast_.task, pixels, bound, count, fronts.data());
-    }
+    std::array<Rgba, kTilePixels> colors;
+    const auto limit = [&](int n) { return groundLimit(pixels[n]); };
+    const long long samples = castVolume(pixels, count, cast_.ground != nullptr, limit, colors.data());
     const bool shows_ground = cast_.ground != nullptr && cast_.shows_ground;
     for (int n = 0; n < count; ++n) {
-      const auto i = static_cast<std::size_t>(n);
-      const Rgba front = cuts ? over(fronts[i], cut[i].section) : fronts[i];
+      const Rgba& front = colors[static_cast<std::size_t>(n)];
       image.at(pixels[n].x, pixels[n].y) = shows_ground ? withGround(front, pixels[n]) : front;
+    }
+    return samples;
+  }
+
+  /// The same into an array, by rays of another camera than that of the layer of the ground.
+  long long castApart(const Pixel* pixels, int count, Rgba* colors) const {
+    const bool has_ground = cast_.task.ground.heights != nullptr;
+    std::array<GroundHit, kTilePixels> hits;
+    const auto limit = [&](int n) {
+      GroundHit& hit = hits[static_cast<std::size_t>(n)];
+      hit = cast_.task.groundAt(pixels[n].x, pixels[n].y);
+      return hit.found ? static_cast<float>(hit.distance) : GroundLayer::kNone;
+    };
+    const long long samples = castVolume(pixels, count, has_ground, limit, colors);
+    for (int n = 0; has_ground && n < count; ++n) {
+      const GroundHit& hit = hits[static_cast<std::size_t>(n)];
+      if (!hit.found) continue;
+      const bool is_mapped = cast_.task.map.on && hit.is_surface;
+      colors[n] =
+          over(colors[n], is_mapped ? map_(cast_.task, pixels[n], static_cast<float>(hit.distance), hit.color)
+                                    : hit.color);
     }
     return samples;
   }
@@ -131,6 +135,35 @@ class GroupCaster {
   }
 
  private:
+  /// The volume and the sections in front of the ground.
+  /// @param limit  limit(n): distance of the ground in pixel n
+  template <class Limit>
+  long long castVolume(const Pixel* pixels, int count, bool has_ground, const Limit& limit,
+                       Rgba* colors) const {
+    std::array<CutRay, kTilePixels> cut;
+    std::array<RayBounds, kTilePixels> bounds;
+    const bool cuts = cast_.task.cut.count > 0;
+    const bool bounded = cuts || has_ground;
+    for (int n = 0; bounded && n < count; ++n) {
+      const auto i = static_cast<std::size_t>(n);
+      bounds[i] = {};
+      if (has_ground) bounds[i].end = limit(n);
+      if (!cuts) continue;
+      cut[i] = cut_(cast_.task, pixels[n], bounds[i].end);
+      bounds[i] = cut[i].bounds;
+    }
+    const RayBounds* bound = bounded ? bounds.data() : nullptr;
+    long long samples = 0;
+    if (in_packets_) {
+      samples = castPackets(cast_.task, cast_.mode, pixels, bound, count, colors);
+    } else {
+      plain_(cast_.task, pixels, bound, count, colors);
+    }
+    for (int n = 0; cuts && n < count; ++n)
+      colors[n] = over(colors[n], cut[static_cast<std::size_t>(n)].section);
+    return samples;
+  }
+
   float groundLimit(Pixel pixel) const {
     const std::size_t index = cast_.ground->index(pixel.x, pixel.y);
     float& distance = cast_.ground->distances[index];
@@ -193,6 +226,38 @@ bool castCpu(const CpuCast& cast, const std::vector<Pixel>& pixels, Image& image
   });
   samples += taken;
   return !isSet(stop);
+}
+
+bool castEdges(const CpuCast& cast, const std::vector<Pixel>& pixels, Image& image, const StopFlag* stop,
+               long long& samples) {
+  std::vector<RaycastTask> tasks(kEdgeRays, cast.task);
+  std::vector<GroupCaster> casters;
+  std::vector<CpuCast> casts;
+  for (int ray = 0; ray < kEdgeRays; ++ray) {
+    RaycastTask& task = tasks[static_cast<std::size_t>(ray)];
+    task.camera = edgeCamera(task.camera, ray);
+    casts.push_back({task, cast.mode, cast.nearest, cast.plain});
+  }
+  for (const CpuCast& of_ray : casts) casters.emplace_back(of_ray);
+  const int count = static_cast<int>(pixels.size());
+  std::vector<Rgba> means(pixels.size());
+  std::atomic<long long> taken{0};
+  parallelFor((count + kTilePixels - 1) / kTilePixels, 1, [&](int begin, int end) {
+    std::array<Rgba, kTilePixels> colors;
+    for (int group = begin; group < end && !isSet(stop); ++group) {
+      const auto first = static_cast<std::size_t>(group) * kTilePixels;
+      const int in_group = std::min(kTilePixels, count - static_cast<int>(first));
+      for (const GroupCaster& caster : casters) {
+        taken += caster.castApart(&pixels[first], in_group, colors.data());
+        for (std::size_t n = 0; n < static_cast<std::size_t>(in_group); ++n)
+          means[first + n] = addScaled(colors[n], 1.0F / kEdgeRays, means[first + n]);
+      }
+    }
+  });
+  samples += taken;
+  if (isSet(stop)) return false;
+  for (std::size_t n = 0; n < pixels.size(); ++n) image.at(pixels[n].x, pixels[n].y) = means[n];
+  return true;
 }
 
 void composeGround(const CpuCast& cast, const Image& volume, Image& picture) {

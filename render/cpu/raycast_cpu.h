@@ -30,6 +30,10 @@ bool castCpu(const CpuCast& cast, const Lattice& lattice, Image& image, const St
 /// The same for a list of pixels; those at its front are cast first.
 bool castCpu(const CpuCast& cast, const std::vector<Pixel>& pixels, Image& image, const StopFlag* stop,
              long long& samples);
+/// Casts pixels of a picture again, each by kEdgeRays rays, and replaces them by the means. A stopped cast
+/// changes no pixel.
+bool castEdges(const CpuCast& cast, const std::vector<Pixel>& pixels, Image& image, const StopFlag* stop,
+               long long& samples);
 /// Puts the ground behind the pixels of an image that shows only the volume. All of the ground must be known.
 void composeGround(const CpuCast& cast, const Image& volume, Image& picture);
 

@@ -44,11 +44,13 @@ class SharedColors {
 };
 
 __global__ void __launch_bounds__(kTileThreads)
-    groundRays(const __grid_constant__ RaycastTask task, float* distances, float4* colors, bool* is_surface) {
+    groundRays(const __grid_constant__ RaycastTask task, const bool* only, float* distances, float4* colors,
+               bool* is_surface) {
   const ImageSize size = task.camera.size;
   int x = 0, y = 0;
   if (!pixelOfThread(size, x, y)) return;
   const long long index = pixelIndex(size, x, y);
+  if (only != nullptr && !only[index]) return;
   const GroundHit hit = task.groundAt(x, y);
   distances[index] = hit.found ? static_cast<float>(hit.distance) : INFINITY;
   if (hit.found) colors[index] = toFloat4(hit.color);
@@ -85,10 +87,10 @@ void castAdaptive(const AdaptiveLaunch& launch, CompositingMode mode, Sampling s
   startSampling(launch, mode, sampling, stream);
 }
 
-void castGround(const RaycastTask& task, float* distances, float4* colors, bool* is_surface,
+void castGround(const RaycastTask& task, const bool* only, float* distances, float4* colors, bool* is_surface,
                 cudaStream_t stream) {
   const ImageSize size = task.camera.size;
-  groundRays<<<tileCount(size), kTileThreads, 0, stream>>>(task, distances, colors, is_surface);
+  groundRays<<<tileCount(size), kTileThreads, 0, stream>>>(task, only, distances, colors, is_surface);
   emscape::cuda::checkLaunch("groundRays");
 }
 

@@ -1,5 +1,6 @@
 /// Frames cast by the GPU.
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include "base/cuda/cuda_memory.h"
@@ -9,6 +10,7 @@
 #include "render/cuda/kernels.h"
 #include "render/cuda/picture_memory.h"
 #include "render/patterns/adaptive_tolerance.h"
+#include "render/patterns/edges.h"
 #include "render/scene/frame_caster.h"
 #include "render/scene/silhouette.h"
 #include "volume/cuda/device_storage.h"
@@ -26,6 +28,16 @@ using emscape::cuda::check;
 constexpr double kFrameSamples = 1 << 30;
 constexpr double kRestorationSamples = 1 << 27;
 
+/// What is behind the volume in each pixel, and where the samples of its ray begin and end.
+struct Behind {
+  Buffer<float> ground_distances;
+  Buffer<float4> ground_colors;
+  Buffer<bool> ground_is_surface;
+  Buffer<float4> mapped_colors;  ///< of the ground, with the map layer
+  Buffer<float> cut_begins, cut_limits, cut_distances;
+  Buffer<float4> cut_colors;
+};
+
 class CudaFrameCaster : public FrameCaster {
  public:
   explicit CudaFrameCaster(volume::VoxelPrecision precision) : precision_(precision) {}
@@ -33,7 +45,7 @@ class CudaFrameCaster : public FrameCaster {
   void setVolume(std::shared_ptr<const volume::DenseVolume> volume) override;
   void setVolume(std::shared_ptr<const volume::DeviceVolume> volume) override;
   FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size, const StopFlag* stop) override;
-  FrameReport restore(const Scene& scene, const StopFlag* stop) override;
+  FrameReport restore(const Scene& scene, const StopFlag* stop, Edges edges) override;
 
   std::size_t volumeBytes() const override { return volume_ ? volume_->bytes() : 0; }
 
@@ -50,10 +62,10 @@ class CudaFrameCaster : public FrameCaster {
   bool isStopped(const StopFlag* stop);
   void beginTime();
   CastLaunch prepare(const Scene& scene, ImageSize size);
-  void findGround(const Scene& scene, const CastLaunch& launch);
-  void findMap(const CastLaunch& launch);
-  void findSections(CastLaunch& launch);
+  void findBehind(const Scene& scene, bool has_ground, const bool* only, Behind& behind, CastLaunch& launch,
+                  cuda::Layers& layers);
   void findInside(const Scene& scene, ImageSize size);
+  void smoothEdges(const Scene& scene, const CastLaunch& launch, const StopFlag* stop, FrameReport& report);
   void finish(FrameReport& report);
   bool castLattices(const CastLaunch& launch, const std::vector<Lattice>& lattices, const StopFlag* stop,
                     FrameReport& report);
@@ -92,14 +104,16 @@ class CudaFrameCaster : public FrameCaster {
     }
   };
   View ground_view_, inside_view_;
-  Buffer<float> ground_distances_;
-  Buffer<float4> ground_colors_;
-  Buffer<bool> ground_is_surface_;
-  Buffer<float4> mapped_colors_;  ///< of the ground, with the map layer
-  Buffer<float> cut_begins_, cut_limits_, cut_distances_;
-  Buffer<float4> cut_colors_;
+  Behind seen_;  ///< behind the volume
   Silhouette silhouette_;
   Buffer<Span> inside_;
+
+  bool is_smooth_ = false;  ///< the pixels at edges have their means
+  Buffer<std::uint8_t> contrasts_;
+  Buffer<unsigned> contrast_counts_;
+  Buffer<bool> is_edge_;
+  Buffer<float4> edge_layer_, edge_means_;
+  Behind seen_at_edges_;  ///< by one of their rays
 
   FramePlan drawn_;
   ToleranceController hold_;
@@ -155,7 +169,7 @@ CastLaunch CudaFrameCaster::begin(const Scene& scene, ImageSize size, const Stop
   volume_->storage().beginReading(stream_);
   const bool is_prepared = scene_.isCurrent(scene) && !scene.isCut() && !scene.isMapped() &&
                            (!scene.ground() || ground_view_.holds(scene.versions().view, size));
-  is_begun_ = is_cast_ = false;
+  is_begun_ = is_cast_ = is_smooth_ = false;
   if (!is_prepared) beginTime();
   const CastLaunch launch = prepare(scene, size);
   max_rays_ = stop != nullptr ? raysFor(launch, max_samples) : size.count();
@@ -186,58 +200,55 @@ CastLaunch CudaFrameCaster::prepare(const Scene& scene, ImageSize size) {
   layers_ = {};
   layers_.size = size;
   layers_.volume = layer;
-  if (scene.ground()) {
-    findGround(scene, launch);
-    launch.limits = ground_distances_.data();
-    layers_.ground_distances = ground_distances_.data();
-    layers_.ground_colors = ground_colors_.data();
-  }
-  if (scene.isMapped()) findMap(launch);
-  if (scene.isCut()) findSections(launch);
+  findBehind(scene, ground_view_.holds(scene.versions().view, size), nullptr, seen_, launch, layers_);
+  if (scene.ground()) ground_view_ = {scene.versions().view, size};
   return launch;
 }
 
-void CudaFrameCaster::findGround(const Scene& scene, const CastLaunch& launch) {
-  const ImageSize size = launch.task.camera.size;
-  const unsigned version = scene.versions().view;
-  if (ground_view_.holds(version, size)) return;
-  ground_distances_.resize(static_cast<std::size_t>(size.count()));
-  ground_colors_.resize(static_cast<std::size_t>(size.count()));
-  ground_is_surface_.resize(static_cast<std::size_t>(size.count()));
-  cuda::castGround(launch.task, ground_distances_.data(), ground_colors_.data(), ground_is_surface_.data(),
-                   stream_);
-  ground_view_ = {version, size};
-}
-
-/// Computed for every frame, because the map layer shows the volume's values.
-void CudaFrameCaster::findMap(const CastLaunch& launch) {
-  mapped_colors_.resize(picture8_.size());
+/// The map layer and the sections show the volume's values: they are computed for every frame.
+/// @param has_ground  the ground is known  @param only  see castGround()
+/// @param launch, layers  receive what is behind the volume
+void CudaFrameCaster::findBehind(const Scene& scene, bool has_ground, const bool* only, Behind& behind,
+                                 CastLaunch& launch, cuda::Layers& layers) {
+  const std::size_t pixels = static_cast<std::size_t>(launch.task.camera.size.count());
+  launch.limits = launch.begins = nullptr;
+  layers.ground_distances = nullptr;
+  layers.ground_colors = nullptr;
+  if (scene.ground()) {
+    if (!has_ground) {
+      behind.ground_distances.resize(pixels);
+      behind.ground_colors.resize(pixels);
+      behind.ground_is_surface.resize(pixels);
+      cuda::castGround(launch.task, only, behind.ground_distances.data(), behind.ground_colors.data(),
+                       behind.ground_is_surface.data(), stream_);
+    }
+    launch.limits = behind.ground_distances.data();
+    layers.ground_distances = behind.ground_distances.data();
+    layers.ground_colors = behind.ground_colors.data();
+  }
   RaycastTask task = launch.task;
   task.volume.texture = volume_->storage().pointTexture();
-  cuda::castMap(
-      task, sampling_,
-      {ground_distances_.data(), ground_colors_.data(), ground_is_surface_.data(), mapped_colors_.data()},
-      stream_);
-  layers_.ground_colors = mapped_colors_.data();
-}
-
-/// Computed for every frame, because sections show the volume's values.
-void CudaFrameCaster::findSections(CastLaunch& launch) {
-  const std::size_t pixels = picture8_.size();
-  cut_begins_.resize(pixels);
-  cut_limits_.resize(pixels);
-  cut_distances_.resize(pixels);
-  cut_colors_.resize(pixels);
-  RaycastTask task = launch.task;
-  task.volume.texture = volume_->storage().pointTexture();
-  cuda::castCut(task, sampling_,
-                {layers_.ground_distances, layers_.ground_colors, cut_begins_.data(), cut_limits_.data(),
-                 cut_distances_.data(), cut_colors_.data()},
+  if (scene.isMapped()) {
+    behind.mapped_colors.resize(pixels);
+    cuda::castMap(task, sampling_, only,
+                  {behind.ground_distances.data(), behind.ground_colors.data(),
+                   behind.ground_is_surface.data(), behind.mapped_colors.data()},
+                  stream_);
+    layers.ground_colors = behind.mapped_colors.data();
+  }
+  if (!scene.isCut()) return;
+  behind.cut_begins.resize(pixels);
+  behind.cut_limits.resize(pixels);
+  behind.cut_distances.resize(pixels);
+  behind.cut_colors.resize(pixels);
+  cuda::castCut(task, sampling_, only,
+                {layers.ground_distances, layers.ground_colors, behind.cut_begins.data(),
+                 behind.cut_limits.data(), behind.cut_distances.data(), behind.cut_colors.data()},
                 stream_);
-  launch.begins = cut_begins_.data();
-  launch.limits = cut_limits_.data();
-  layers_.ground_distances = cut_distances_.data();
-  layers_.ground_colors = cut_colors_.data();
+  launch.begins = behind.cut_begins.data();
+  launch.limits = behind.cut_limits.data();
+  layers.ground_distances = behind.cut_distances.data();
+  layers.ground_colors = behind.cut_colors.data();
 }
 
 /// Computed by the host before a frame's time begins, because the GPU would wait for it. Widened, because the
@@ -268,12 +279,13 @@ FrameReport CudaFrameCaster::draw(const Scene& scene, const FramePlan& plan, Ima
   } else {
     report.complete = castLattices(launch, sourceLattices(plan.pattern, size), stop, report);
   }
+  if (plan.pattern == Pattern::full && plan.edges == Edges::smooth) smoothEdges(scene, launch, stop, report);
   finish(report);
   if (plan.pattern == Pattern::adaptive && report.complete) countAdaptive(plan, report);
   return report;
 }
 
-FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
+FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop, Edges edges) {
   FrameReport report;
   report.pattern = drawn_.pattern;
   const ImageSize size = layers_.size;
@@ -286,14 +298,57 @@ FrameReport CudaFrameCaster::restore(const Scene& scene, const StopFlag* stop) {
   } else {
     report.complete = castLattices(launch, missingLattices(drawn_.pattern, size), stop, report);
   }
+  launch.predicted = nullptr;
+  if (edges == Edges::smooth) smoothEdges(scene, launch, stop, report);
   finish(report);
   return report;
+}
+
+/// Casts the pixels at edges of the exact picture again.
+void CudaFrameCaster::smoothEdges(const Scene& scene, const CastLaunch& launch, const StopFlag* stop,
+                                  FrameReport& report) {
+  if (!report.complete) return;
+  const ImageSize size = layers_.size;
+  const std::size_t pixels = picture8_.size();
+  beginTime();
+  showPicture8(layers_, picture8_.data(), stream_);
+  contrasts_.resize(pixels);
+  ContrastCounts counts{};
+  contrast_counts_.resize(counts.size());
+  check(cudaMemsetAsync(contrast_counts_.data(), 0, sizeof counts, stream_), "cudaMemset");
+  cuda::findContrasts(size, picture8_.data(), contrasts_.data(), contrast_counts_.data(), stream_);
+  contrast_counts_.download(counts.data(), stream_);
+  const int least = edgeContrast_levels(counts, size);
+  const long long edges = std::accumulate(counts.begin() + least, counts.end(), 0LL);
+  if (edges == 0) return;
+  is_edge_.resize(pixels);
+  edge_means_.resize(pixels);
+  edge_layer_.resize(layer_.size());
+  cuda::markEdges(size, contrasts_.data(), least, is_edge_.data(), stream_);
+  cuda::Layers layers;
+  layers.size = size;
+  layers.volume = layers_.volume;
+  layers.volume.pixels = edge_layer_.data();
+  for (int ray = 0; ray < kEdgeRays && report.complete; ++ray) {
+    CastLaunch of_ray = launch;
+    of_ray.task.camera = edgeCamera(launch.task.camera, ray);
+    of_ray.layer = layers.volume;
+    of_ray.predicted = is_edge_.data();
+    findBehind(scene, false, is_edge_.data(), seen_at_edges_, of_ray, layers);
+    FrameReport counted;
+    report.complete = castLattices(of_ray, sourceLattices(Pattern::full, size), stop, counted);
+    if (report.complete) cuda::addEdgeRay(layers, is_edge_.data(), ray == 0, edge_means_.data(), stream_);
+  }
+  is_smooth_ = report.complete;
+  report.rays += kEdgeRays * edges;
 }
 
 /// Called after the last launch: makes the picture and waits for it.
 void CudaFrameCaster::finish(FrameReport& report) {
   beginTime();
   if (report.complete) showPicture8(layers_, picture8_.data(), stream_);
+  if (report.complete && is_smooth_)
+    cuda::putEdges(layers_.size, is_edge_.data(), edge_means_.data(), nullptr, picture8_.data(), stream_);
   end_.record(stream_);
   volume_->storage().endReading(stream_);
   stream_.wait();
@@ -359,6 +414,8 @@ void CudaFrameCaster::fetch(Image& image) {
   if (image.pixels.empty()) return;
   picture_.resize(picture8_.size());
   showPicture(layers_, picture_.data(), stream_);
+  if (is_smooth_)
+    cuda::putEdges(layers_.size, is_edge_.data(), edge_means_.data(), picture_.data(), nullptr, stream_);
   static_assert(sizeof(Rgba) == sizeof(float4), "a pixel is four floats");
   picture_.download(reinterpret_cast<float4*>(image.pixels.data()), stream_);
 }

@@ -89,7 +89,8 @@ void castSparse(const CastLaunch& launch, CompositingMode mode, Sampling samplin
 
 /// Distance at which every pixel's ray meets the ground (infinity: none), the colour there, and whether it is
 /// the ground's surface.
-void castGround(const RaycastTask& task, float* distances, float4* colors, bool* is_surface,
+/// @param only  one per pixel: false if it is left out; null: none is. As in castMap() and castCut()
+void castGround(const RaycastTask& task, const bool* only, float* distances, float4* colors, bool* is_surface,
                 cudaStream_t stream);
 
 /// The ground with the map layer; arrays with one element per pixel.
@@ -100,7 +101,8 @@ struct MapLayer {
   float4* mapped = nullptr;  ///< receives the colours of hits
 };
 /// @param task  its texture does not filter
-void castMap(const RaycastTask& task, Sampling sampling, const MapLayer& layer, cudaStream_t stream);
+void castMap(const RaycastTask& task, Sampling sampling, const bool* only, const MapLayer& layer,
+             cudaStream_t stream);
 
 /// The part of every pixel's ray that planes keep; arrays with one element per pixel.
 struct CutLayer {
@@ -112,7 +114,8 @@ struct CutLayer {
   float4* colors = nullptr;    ///< of it
 };
 /// @param task  its texture does not filter
-void castCut(const RaycastTask& task, Sampling sampling, const CutLayer& layer, cudaStream_t stream);
+void castCut(const RaycastTask& task, Sampling sampling, const bool* only, const CutLayer& layer,
+             cudaStream_t stream);
 
 // --- The picture ---
 
@@ -127,6 +130,19 @@ struct Layers {
 };
 void showPicture(const Layers& layers, float4* picture, cudaStream_t stream);
 void showPicture8(const Layers& layers, uchar4* picture, cudaStream_t stream);
+
+// Edges of a picture; see render/patterns/edges.h. Arrays have one element per pixel.
+
+/// @param counts  is increased: 256 numbers of pixels
+void findContrasts(ImageSize size, const uchar4* picture, std::uint8_t* contrasts, unsigned* counts,
+                   cudaStream_t stream);
+/// The pixels of at least a contrast.
+void markEdges(ImageSize size, const std::uint8_t* contrasts, int least, bool* is_edge, cudaStream_t stream);
+/// Adds one of kEdgeRays pictures to the means of the pixels at edges; the first one begins them.
+void addEdgeRay(const Layers& layers, const bool* is_edge, bool is_first, float4* means, cudaStream_t stream);
+/// Puts the means into a picture; either may be null.
+void putEdges(ImageSize size, const bool* is_edge, const float4* means, float4* picture, uchar4* picture8,
+              cudaStream_t stream);
 
 /// A cast picture between the layers of its labels, pixel by pixel.
 /// @param count          pixels

@@ -55,7 +55,7 @@ ControllerAction FrameController::next(double now_ms) {
     action.kind = Kind::draw;
   } else if (now_ms < last_event_ms_ + epsilon_ms()) {
     action.until_ms = last_event_ms_ + epsilon_ms();
-  } else if (drawn_ == Pattern::full) {
+  } else if (drawn_ == Pattern::full && !options_.smooths_edges) {
     state_ = ControllerState::idle;
   } else {
     doing_ = Doing::restoration;

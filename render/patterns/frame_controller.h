@@ -32,6 +32,7 @@ struct ControllerOptions {
   double budget_ms = 40;  ///< time between two busy pictures, > 0
   double epsilon_floor_ms = 50;
   std::optional<double> epsilon_ms;  ///< none: measured, see FrameController::epsilon_ms()
+  bool smooths_edges = false;        ///< a restoration also smooths edges: full frames have one, too
 };
 
 /// The next task of the caller.
@@ -55,7 +56,8 @@ struct ControllerAction {
 ///     IDLE     any event -> BUSY
 ///
 /// It starts in IDLE with no picture. A frame that was cast in full needs no restoration: BUSY -> IDLE after
-/// epsilon. A picture may be shown after frameDone(), or if restoreDone() returns true. For one thread.
+/// epsilon, unless its edges are to be smoothed. A picture may be shown after frameDone(), or if
+/// restoreDone() returns true. For one thread.
 class FrameController {
  public:
   static constexpr int kWarmUpFrames =

@@ -28,7 +28,7 @@ class FrameCaster {
   /// See Renderer. @param scene  prepared, for the last volume that was set
   virtual FrameReport draw(const Scene& scene, const FramePlan& plan, ImageSize size,
                            const StopFlag* stop) = 0;
-  virtual FrameReport restore(const Scene& scene, const StopFlag* stop) = 0;
+  virtual FrameReport restore(const Scene& scene, const StopFlag* stop, Edges edges) = 0;
 
   /// Called before and after a frame whose picture the caller wants in its own image: the CPU casts into it.
   virtual void bindTarget(Image& image) = 0;

@@ -21,9 +21,9 @@ struct Renderer::Impl {
     scene.prepare();
     return caster->draw(scene, plan, size, stop);
   }
-  FrameReport restore(const StopFlag* stop) {
+  FrameReport restore(const StopFlag* stop, Edges edges) {
     scene.prepare();
-    return caster->restore(scene, stop);
+    return caster->restore(scene, stop, edges);
   }
 };
 
@@ -94,9 +94,9 @@ FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, const StopFlag
   return impl_->draw(plan, size, stop);
 }
 
-FrameReport Renderer::restore(const StopFlag* stop) {
+FrameReport Renderer::restore(const StopFlag* stop, Edges edges) {
   const std::lock_guard<std::mutex> lock(impl_->volume_mutex);
-  return impl_->restore(stop);
+  return impl_->restore(stop, edges);
 }
 
 void Renderer::fetch(Image& image) {
@@ -118,10 +118,10 @@ FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, Image& image, 
   return report;
 }
 
-FrameReport Renderer::restore(Image& image, const StopFlag* stop) {
+FrameReport Renderer::restore(Image& image, const StopFlag* stop, Edges edges) {
   const std::lock_guard<std::mutex> lock(impl_->volume_mutex);
   impl_->caster->bindTarget(image);
-  const FrameReport report = impl_->restore(stop);
+  const FrameReport report = impl_->restore(stop, edges);
   impl_->caster->unbindTarget(image, report);
   return report;
 }

@@ -81,6 +81,17 @@ std::string fileNameOf(const std::string& emitter, double azimuth_deg) {
 
 }  // namespace
 
+scenario::Quantity arepsQuantity(const scenario::Emitter& emitter) {
+  return emitter.kind == scenario::EmitterKind::radar ? scenario::Quantity::snr_db
+                                                      : scenario::Quantity::power_density_dbwm2;
+}
+
+double arepsLoss_db(const VerticalDiagram& diagram, const scenario::Scenario& scenario, double value) {
+  const scenario::Emitter& emitter = scenario.emitters[static_cast<std::size_t>(diagram.request.emitter)];
+  const bool is_radar = emitter.kind == scenario::EmitterKind::radar;
+  return lossOf_db(emitter, is_radar ? (value - echoRoot_db(emitter)) / 2 : value);
+}
+
 std::vector<std::string> writeAreps(const VerticalDiagram& diagram, const scenario::Scenario& scenario,
                                     const std::filesystem::path& folder) {
   const scenario::Emitter& emitter = scenario.emitters[static_cast<std::size_t>(diagram.request.emitter)];
@@ -92,8 +103,7 @@ std::vector<std::string> writeAreps(const VerticalDiagram& diagram, const scenar
     const std::filesystem::path file = folder / fileNameOf(emitter.name, azimuth_deg);
     const std::size_t width = diagram.ranges_m.size();
     const auto loss_db = [&](std::size_t i, std::size_t k) {
-      const double value = cut.values[k * width + i];
-      return lossOf_db(emitter, is_radar ? (value - echoRoot_db(emitter)) / 2 : value);
+      return arepsLoss_db(diagram, scenario, cut.values[k * width + i]);
     };
     writeWhole(file, [&](std::ostream& out) {
       out << fmt::format(

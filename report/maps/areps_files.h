@@ -20,4 +20,9 @@ namespace emscape::report {
 std::vector<std::string> writeAreps(const study::VerticalDiagram& diagram, const scenario::Scenario& scenario,
                                     const std::filesystem::path& folder);
 
+/// One-way loss (dB) of such a file at a value of the diagram's quantity.
+double arepsLoss_db(const study::VerticalDiagram& diagram, const scenario::Scenario& scenario, double value);
+/// The quantity of the diagram from which losses are known.
+scenario::Quantity arepsQuantity(const scenario::Emitter& emitter);
+
 }  // namespace emscape::report

@@ -52,9 +52,9 @@ Json exposureJson(const Exposure& exposure) {
     Json each = Json::array();
     for (const double value : row.each) each.push_back(number(value));
     json["rows"].push_back({{"time_s", row.time_s},
-                            {"latitude_deg", row.latitude_deg},
-                            {"longitude_deg", row.longitude_deg},
-                            {"height_msl_m", row.height_msl_m},
+                            {"latitude_deg", number(row.latitude_deg)},
+                            {"longitude_deg", number(row.longitude_deg)},
+                            {"height_msl_m", number(row.height_msl_m)},
                             {"height_agl_m", number(row.height_agl_m)},
                             {"value", number(row.value)},
                             {"state", study::toString(row.state)},
@@ -115,10 +115,12 @@ void writeExposureCsv(const Exposure& exposure, const std::string& file) {
     for (const std::string& name : exposure.names) out << "," << csvCell(name);
     out << ",best,cumulative_probability,state\n";
     for (const ExposureRow& row : exposure.rows) {
-      out << fmt::format("{:.10g},{:.7f},{:.7f},{:.2f},{},{}", row.time_s, row.latitude_deg,
-                         row.longitude_deg, row.height_msl_m,
-                         std::isfinite(row.height_agl_m) ? fmt::format("{:.2f}", row.height_agl_m) : "",
-                         text(row.value));
+      const auto decimals = [](double value, int count) {
+        return std::isfinite(value) ? fmt::format("{:.{}f}", value, count) : std::string();
+      };
+      out << fmt::format("{:.10g},{},{},{},{},{}", row.time_s, decimals(row.latitude_deg, 7),
+                         decimals(row.longitude_deg, 7), decimals(row.height_msl_m, 2),
+                         decimals(row.height_agl_m, 2), text(row.value));
       for (const double value : row.each) out << "," << text(value);
       const std::string best = row.best < 0 ? "" : exposure.names[static_cast<std::size_t>(row.best)];
       out << "," << csvCell(best) << "," << text(row.cumulative_probability) << ","

@@ -31,6 +31,11 @@ std::string cell(double value, int decimals = 1) {
   return std::isfinite(value) ? fmt::format("{:.{}f}", value, decimals) : "-";
 }
 
+/// Kilometres; a path that does not exist has none.
+std::string rangeCell(const PathRow& row) {
+  return row.has_path ? cell(row.range_m / 1000, 3) : "-";
+}
+
 std::string timeText(const std::optional<double>& time_s) {
   return time_s ? fmt::format("{:g}", *time_s) : "never";
 }
@@ -59,12 +64,12 @@ Json toJson(const LinkRow& row) {
 
 Json toJson(const DetectionRow& row) {
   Json json = pathJson(row);
-  json["rcs_dbsm"] = ratioToDb(row.rcs_m2);
+  json["rcs_dbsm"] = number(ratioToDb(row.rcs_m2));
   json["look_pattern_db"] = number(row.look_pattern_db);
   json["snr_db"] = number(row.snr_db);
   if (row.radial_speed_mps) {
     json["sclnr_db"] = number(row.sclnr_db);
-    json["radial_speed_mps"] = *row.radial_speed_mps;
+    json["radial_speed_mps"] = number(*row.radial_speed_mps);
   }
   json["jammer_to_signal_db"] = number(row.jammer_to_signal_db);
   json["detection_probability"] = row.detection_probability;
@@ -174,11 +179,11 @@ void addLink(Text& out, const NamedLinks& links, const Link& link) {
           "received", "path, where it changes");
   const auto pathOf = [](const LinkRow& row) { return pathText(row, row.pattern_db); };
   addThinned(out, link.rows, pathOf, [&](const LinkRow& row, const std::string& path) {
-    out.add("  {:>8g} {:>9.3f} {:>9} {:>10} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", row.time_s,
-            row.range_m / 1000, cell(row.pattern_db),
-            row.has_path ? cell(radToDeg(row.off_axis_rad), 0) : "-", cell(row.received_power_dbm),
-            cell(row.interference_dbm), cell(row.noise_dbm), cell(row.sinr_db), cell(row.jammer_to_signal_db),
-            receiver.hasThreshold() ? row.is_received ? "yes" : "no" : "-", path);
+    out.add("  {:>8g} {:>9} {:>9} {:>10} {:>10} {:>16} {:>10} {:>9} {:>8} {:>9}  {}\n", row.time_s,
+            rangeCell(row), cell(row.pattern_db), row.has_path ? cell(radToDeg(row.off_axis_rad), 0) : "-",
+            cell(row.received_power_dbm), cell(row.interference_dbm), cell(row.noise_dbm), cell(row.sinr_db),
+            cell(row.jammer_to_signal_db), receiver.hasThreshold() ? row.is_received ? "yes" : "no" : "-",
+            path);
   });
   out.add("\n");
 }
@@ -194,8 +199,8 @@ void addDetection(Text& out, const NamedLinks& links, const Detection& detection
           "path, where it changes");
   const auto pathOf = [](const DetectionRow& row) { return pathText(row, row.look_pattern_db); };
   addThinned(out, detection.rows, pathOf, [&](const DetectionRow& row, const std::string& path) {
-    out.add("  {:>8g} {:>9.3f} {:>9} {:>9} {:>8}{} {:>8} {:>6} {:>6} {:>10}  {}\n", row.time_s,
-            row.range_m / 1000, cell(row.look_pattern_db), cell(ratioToDb(row.rcs_m2)), cell(row.snr_db),
+    out.add("  {:>8g} {:>9} {:>9} {:>9} {:>8}{} {:>8} {:>6} {:>6} {:>10}  {}\n", row.time_s, rangeCell(row),
+            cell(row.look_pattern_db), cell(ratioToDb(row.rcs_m2)), cell(row.snr_db),
             ofClutter(cell(row.radial_speed_mps.value_or(0)), cell(row.sclnr_db)),
             cell(row.jammer_to_signal_db), cell(row.detection_probability, 3), row.looks,
             cell(row.cumulative_probability, 3), path);
@@ -241,6 +246,9 @@ emfield::LinkReport computeLinks(const std::shared_ptr<const scenario::Scenario>
                                  const emfield::LinkOptions& options, const ProgressSink& progress) {
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   emfield::LinkReport report = emfield::computeLinks(scenario, terrain.get(), options, progress);
+  if (terrain) {
+    for (std::string& warning : terrain->warnings()) report.warnings.push_back(std::move(warning));
+  }
   if (report.links.empty() && report.detections.empty()) {
     throw Error(ErrorCode::bad_input, {scenario->file},
                 "there is no link: it takes a receiver with a platform that is tuned to an emitter, or a "

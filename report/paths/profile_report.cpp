@@ -183,6 +183,9 @@ ProfileReport profileReport(const std::string& file, const scenario::Scenario& s
   if (const std::string outside = scenario::outsideClockText({request.time_s}, scenario.clock);
       !outside.empty())
     report.budget.warnings.push_back(outside);
+  if (terrain) {
+    for (std::string& warning : terrain->warnings()) report.budget.warnings.push_back(std::move(warning));
+  }
   for (const propagation::PropagationModel model : request.models) {
     Comparison comparison;
     comparison.model = model;

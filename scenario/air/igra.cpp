@@ -5,14 +5,15 @@
 
 #include "base/files/file_reading.h"
 #include "base/text/utc.h"
+#include "document/text_lines.h"
 #include "propagation/air/moist_air.h"
 #include "scenario/air/sounding.h"
-#include "scenario/antenna/text.h"
 
 namespace emscape::scenario {
 namespace {
 
 using namespace propagation;
+using document::numberIn;
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 

@@ -11,9 +11,9 @@
 #include "base/files/file_reading.h"
 #include "document/csv.h"
 #include "document/text_file.h"
+#include "document/text_lines.h"
 #include "emscape/base/error.h"
 #include "propagation/air/moist_air.h"
-#include "scenario/antenna/text.h"
 
 namespace emscape::scenario {
 namespace {
@@ -21,6 +21,7 @@ namespace {
 using namespace propagation;
 using document::CsvCell;
 using document::CsvRow;
+using document::numberIn;
 using Position = RefractivityField::Position;
 
 constexpr const char* kHeader =

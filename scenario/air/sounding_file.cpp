@@ -8,16 +8,17 @@
 #include <string_view>
 
 #include "document/csv.h"
+#include "document/text_lines.h"
 #include "emscape/base/error.h"
 #include "propagation/air/moist_air.h"
 #include "scenario/air/refractivity_file.h"
 #include "scenario/air/sounding.h"
-#include "scenario/antenna/text.h"
 
 namespace emscape::scenario {
 namespace {
 
 using namespace propagation;
+using document::numberIn;
 
 constexpr double kHighest_m = 10000;
 constexpr double kMinStep_m = 1;  ///< between levels

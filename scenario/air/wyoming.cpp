@@ -8,14 +8,18 @@
 #include "base/files/file_reading.h"
 #include "base/text/utc.h"
 #include "document/csv.h"
+#include "document/text_lines.h"
 #include "propagation/air/moist_air.h"
 #include "scenario/air/sounding.h"
-#include "scenario/antenna/text.h"
 
 namespace emscape::scenario {
 namespace {
 
 using namespace propagation;
+using document::numberIn;
+using document::TextField;
+using document::withoutBlanks;
+using document::wordsOf;
 
 constexpr double kEmptyCell = std::numeric_limits<double>::quiet_NaN();
 
@@ -35,12 +39,6 @@ std::string withoutTags(std::string_view line) {
     if (c == '>') is_tag = false;
   }
   return text;
-}
-
-std::string_view withoutBlanks(std::string_view text) {
-  const std::size_t begin = std::min(text.find_first_not_of(" \t"), text.size());
-  const std::size_t end = text.find_last_not_of(" \t");
-  return end == std::string_view::npos ? std::string_view() : text.substr(begin, end + 1 - begin);
 }
 
 class WyomingList : public SoundingArchive {
@@ -156,10 +154,8 @@ class WyomingList : public SoundingArchive {
       return numberIn(
           withoutBlanks(std::string_view(lines_[index]).substr(at + std::string_view(name).size())));
     };
-    if (const auto latitude_deg = valueOf("Station latitude:"))
-      record.position = GeodeticPosition{*latitude_deg, 0, 0};
-    if (const auto longitude_deg = valueOf("Station longitude:"); longitude_deg && record.position)
-      record.position->longitude_deg = *longitude_deg;
+    const auto latitude_deg = valueOf("Station latitude:"), longitude_deg = valueOf("Station longitude:");
+    if (latitude_deg && longitude_deg) record.position = GeodeticPosition{*latitude_deg, *longitude_deg, 0};
   }
 
   /// The columns below the titles of a line; their units are in the next one.

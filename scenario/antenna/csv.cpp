@@ -9,11 +9,13 @@
 #include <limits>
 #include <utility>
 
+#include "document/text_lines.h"
+#include "emscape/base/log.h"
 #include "emscape/base/units.h"
 #include "scenario/antenna/csv_grid.h"
+#include "scenario/antenna/pattern_file.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/antenna/tables.h"
-#include "scenario/antenna/text.h"
 
 namespace emscape::scenario {
 namespace {
@@ -21,6 +23,9 @@ namespace {
 using document::CsvCell;
 using document::CsvReader;
 using document::CsvRow;
+using document::numberIn;
+using document::TextLines;
+using document::upperCase;
 
 constexpr ColumnSpec kAzimuthColumn{"azimuth_deg", -360, 360, "deg"};
 constexpr ColumnSpec kElevationColumn{"elevation_deg", -90, 90, "deg"};
@@ -32,7 +37,7 @@ struct GridRow {
 };
 
 /// The rows of a table with exactly the requested columns, in any order.
-std::vector<GridRow> readRows(const AntennaText& text, const std::vector<ColumnSpec>& columns) {
+std::vector<GridRow> readRows(const TextLines& text, const std::vector<ColumnSpec>& columns) {
   int line = 1;
   const auto fail = [&](const CsvCell& cell, const std::string& message) {
     throw Error(ErrorCode::bad_input, {text.file(), line, cell.column}, message);
@@ -90,7 +95,7 @@ std::vector<GridRow> readRows(const AntennaText& text, const std::vector<ColumnS
 }
 
 MeasuredCut readCut(const std::string& file, const ColumnSpec& angle, AxisKind kind) {
-  const AntennaText text(file);
+  const TextLines text(file);
   std::vector<CutRow> rows;
   double smallest_db = std::numeric_limits<double>::infinity();
   for (const GridRow& row : readRows(text, {angle, kAttenuation})) {
@@ -141,6 +146,15 @@ std::vector<double> inGridOrder(std::vector<GridRow> rows, const MeasuredAxis& a
 
 AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& elevation_file, double gain_dbi) {
   requireGain(gain_dbi);
+  const auto endingOfCut = [](const std::string& file) {
+    return upperCase(std::filesystem::path(file).extension().string());
+  };
+  if (endingOfCut(azimuth_file) == ".AZ" && endingOfCut(elevation_file) == ".EL") {
+    std::vector<std::string> warnings;
+    AntennaPtr antenna = antennaOf(azimuth_file, readSplat(azimuth_file, elevation_file), gain_dbi, warnings);
+    for (const std::string& warning : warnings) logWarning(warning);
+    return antenna;
+  }
   ShapeTable azimuth = tableOf(readCut(azimuth_file, kAzimuthColumn, AxisKind::circle), kPi);
   ShapeTable elevation = tableOf(readCut(elevation_file, kElevationColumn, AxisKind::elevation), kPi / 2);
   const double azimuth_deg = radToDeg(halfPowerWidth(azimuth.values, azimuth.half_span, true));
@@ -157,10 +171,19 @@ double MeasuredGrid::valueAt(const AxisSample& a, const AxisSample& e) const {
   return at_below + e.fraction * (at_above - at_below);
 }
 
-MeasuredGrid readMeasuredGrid(const std::string& file, const ColumnSpec& value) {
+MeasuredGrid readMeasuredGrid(const std::string& file, const ColumnSpec& value, bool allows_azimuth_alone) {
   const SourceLocation location{file, 0, 0};
-  const AntennaText text(file);
-  std::vector<GridRow> rows = readRows(text, {kElevationColumn, kAzimuthColumn, value});
+  const TextLines text(file);
+  std::vector<GridRow> rows;
+  const std::vector<std::string> names = document::csvColumnsOf(file);
+  if (allows_azimuth_alone && std::count(names.begin(), names.end(), kElevationColumn.name) == 0) {
+    for (const GridRow& row : readRows(text, {kAzimuthColumn, value})) {
+      for (const double elevation_deg : {-90.0, 0.0, 90.0})
+        rows.push_back({{elevation_deg, row.values[0], row.values[1]}, row.line});
+    }
+  } else {
+    rows = readRows(text, {kElevationColumn, kAzimuthColumn, value});
+  }
   std::vector<double> azimuths_deg, elevations_deg;
   for (GridRow& row : rows) {
     elevations_deg.push_back(row.values[0] = MeasuredAxis::normalized(AxisKind::elevation, row.values[0]));
@@ -173,30 +196,27 @@ MeasuredGrid readMeasuredGrid(const std::string& file, const ColumnSpec& value) 
   return grid;
 }
 
-AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
-  requireGain(gain_dbi);
+PatternFile readGridPattern(const std::string& file) {
   MeasuredGrid grid = readMeasuredGrid(file, kAttenuation);
   requireMaximum(*std::min_element(grid.values.begin(), grid.values.end()), {file, 0, 0}, "grid");
   std::transform(grid.values.begin(), grid.values.end(), grid.values.begin(), amplitudeOfAttenuation);
-
-  const GridNodes nodes = gridNodes(grid.azimuth.angles_deg(), grid.elevation.angles_deg());
+  PatternFile pattern;
+  pattern.format = "CSV grid";
+  pattern.name = "measured grid";
+  pattern.nodes = gridNodes(grid.azimuth.angles_deg(), grid.elevation.angles_deg());
   std::vector<AxisSample> columns;
-  for (const double azimuth_deg : nodes.azimuths_deg) columns.push_back(grid.azimuth.locate(azimuth_deg));
-  std::vector<float> amplitudes;
-  for (const double elevation_deg : nodes.elevations_deg) {
+  for (const double azimuth_deg : pattern.nodes.azimuths_deg)
+    columns.push_back(grid.azimuth.locate(azimuth_deg));
+  for (const double elevation_deg : pattern.nodes.elevations_deg) {
     const AxisSample e = grid.elevation.locate(elevation_deg);
-    for (const AxisSample& a : columns) amplitudes.push_back(static_cast<float>(grid.valueAt(a, e)));
+    for (const AxisSample& a : columns) pattern.amplitudes.push_back(static_cast<float>(grid.valueAt(a, e)));
   }
-  return makeGridAntenna(nodes, std::move(amplitudes), gain_dbi, "measured grid");
+  return pattern;
 }
 
-AntennaPtr readAntenna(const std::string& file, double gain_dbi) {
-  if (upperCase(std::filesystem::path(file).extension().string()) != ".CSV") return readMsi(file, gain_dbi);
-  if (std::isnan(gain_dbi)) {
-    throw Error(ErrorCode::bad_input, {file, 0, 0},
-                "a CSV grid has no gain; gain_dbi must be given with the file");
-  }
-  return readCsvGrid(file, gain_dbi);
+AntennaPtr readCsvGrid(const std::string& file, double gain_dbi) {
+  std::vector<std::string> warnings;
+  return antennaOf(file, readGridPattern(file), gain_dbi, warnings);
 }
 
 }  // namespace emscape::scenario

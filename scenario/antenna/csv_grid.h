@@ -25,7 +25,9 @@ struct MeasuredGrid {
 };
 
 /// Reads a file with exactly the columns azimuth_deg, elevation_deg and `value`, in any order.
+/// @param allows_azimuth_alone  without elevation_deg the values are those of all elevations
 /// @throws Error (bad_input) with line and column
-MeasuredGrid readMeasuredGrid(const std::string& file, const ColumnSpec& value);
+MeasuredGrid readMeasuredGrid(const std::string& file, const ColumnSpec& value,
+                              bool allows_azimuth_alone = false);
 
 }  // namespace emscape::scenario

@@ -1,46 +1,43 @@
-/// MSI/Planet antenna files, and the interpolation of a pattern in space from their two cuts.
-///
-/// The file gives the attenuation in the horizontal plane, H(azimuth), and in the vertical plane through
-/// boresight, V(angle), whose angle runs from the horizon ahead (0) downwards to the nadir (90), the horizon
-/// behind (180) and the zenith (270). Between them, horizontal projection interpolation is used:
-///
-///     A(az, el) = max(0, H(az) + (1 - w) (V(-el) - H(0)) + w (V(180 + el) - H(180))),   w = |az| / 180
-///
-/// It reproduces both cuts in their planes, and gives the usual sum of the two attenuations near the beam;
-/// towards the rear the back of the vertical cut replaces its front. Limits: away from both planes,
-/// particularly to the sides and behind, it is an estimate with errors of about 10 dB; at the zenith and the
-/// nadir it depends on azimuth.
-///
-/// @see F. Gil, A. R. Claro, J. M. Ferreira, C. Pardelinha, L. M. Correia, "A 3D interpolation method for
-/// base-station-antenna radiation patterns", IEEE Antennas and Propagation Magazine 43(2), 2001
+/// MSI/Planet antenna files: the attenuation in the horizontal plane, H(azimuth), and in the vertical plane
+/// through boresight, V(angle), whose angle runs from the horizon ahead (0) downwards to the nadir (90), the
+/// horizon behind (180) and the zenith (270).
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
-#include "emscape/base/log.h"
+#include "document/text_lines.h"
 #include "emscape/base/units.h"
 #include "scenario/antenna/cut.h"
+#include "scenario/antenna/pattern_file.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/antenna/tables.h"
-#include "scenario/antenna/text.h"
 
 namespace emscape::scenario {
 namespace {
+
+using document::numberIn;
+using document::numberOrCommaIn;
+using document::restOf;
+using document::TextField;
+using document::TextLines;
+using document::upperCase;
+using document::wordsOf;
 
 struct MsiFile {
   std::string name;
   std::string title;  ///< the first line that is no keyword, before the cuts
   std::optional<double> gain_dbi;
   std::optional<double> tilt_deg;  ///< downwards
+  std::optional<double> width_az_deg, width_el_deg;
+  std::vector<std::string> ignored;  ///< first words of lines that do not describe the pattern
   std::vector<CutRow> horizontal, vertical;
 };
 
 class MsiReader {
  public:
-  explicit MsiReader(const AntennaText& text) : text_(text) {}
+  explicit MsiReader(const TextLines& text) : text_(text) {}
 
   MsiFile read() {
     while (next_ < text_.lines().size()) readKeyword(text_.lines()[next_++]);
@@ -66,25 +63,25 @@ class MsiReader {
       content_.name = std::string(value.text);
     } else if (keyword == "TILT" || keyword == "ELECTRICAL_TILT") {
       // TILT often contains a word (ELECTRICAL, MECHANICAL) instead of an angle.
-      if (const auto tilt_deg = valueIn(value.text)) content_.tilt_deg = tilt_deg;
-    } else if (words.size() == 2 && valueIn(words[0].text) && valueIn(words[1].text)) {
+      if (const auto tilt_deg = numberOrCommaIn(value.text)) content_.tilt_deg = tilt_deg;
+    } else if (keyword == "H_WIDTH") {
+      content_.width_az_deg = numberOrCommaIn(value.text);
+    } else if (keyword == "V_WIDTH") {
+      content_.width_el_deg = numberOrCommaIn(value.text);
+    } else if (hasCut() && words.size() == 2 && numberOrCommaIn(words[0].text) &&
+               numberOrCommaIn(words[1].text)) {
       fail(line,
            fmt::format(
                "'{}' is a row of numbers outside a HORIZONTAL or VERTICAL cut; more rows than announced?",
                line.text));
-    } else if (content_.title.empty() && content_.horizontal.empty() && content_.vertical.empty()) {
-      content_.title = std::string(line.text);
+    } else {
+      // Other keywords do not describe the pattern; manufacturers add their own.
+      if (content_.title.empty() && !hasCut()) content_.title = std::string(line.text);
+      content_.ignored.emplace_back(words[0].text);
     }
-    // Other keywords do not describe the pattern; manufacturers add their own.
   }
 
-  /// A number; also with a decimal comma.
-  static std::optional<double> valueIn(std::string_view text) {
-    std::string with_point(text);
-    if (std::count(text.begin(), text.end(), ',') == 1 && text.find('.') == std::string_view::npos)
-      std::replace(with_point.begin(), with_point.end(), ',', '.');
-    return numberIn(with_point);
-  }
+  bool hasCut() const { return !content_.horizontal.empty() || !content_.vertical.empty(); }
 
   void readCut(const std::vector<TextField>& words, std::vector<CutRow>& rows) {
     constexpr int kMinRows = 4;
@@ -111,13 +108,14 @@ class MsiReader {
       fail(line, fmt::format("{} is '{}'; it should be an angle and an attenuation", what, line.text));
     }
     const double angle_deg = numberWithin(words[0], -360, 360, what + ": angle", "deg");
-    return {angle_deg, numberWithin(words[1], 0, kMaxAttenuation_db, what + ": attenuation", "dB"),
+    return {angle_deg,
+            numberWithin(words[1], -kMaxAttenuation_db, kMaxAttenuation_db, what + ": attenuation", "dB"),
             words[0].line, words[0].column};
   }
 
   double numberWithin(const TextField& field, double lowest, double highest, const std::string& what,
                       const char* unit) const {
-    const std::optional<double> value = valueIn(field.text);
+    const std::optional<double> value = numberOrCommaIn(field.text);
     if (!value) fail(field, fmt::format("{} '{}' is not a number", what, field.text));
     if (*value < lowest || *value > highest) {
       fail(field,
@@ -145,7 +143,7 @@ class MsiReader {
     fail(unit, fmt::format("unit '{}' of GAIN; allowed are dBd (the default) and dBi", unit.text));
   }
 
-  const AntennaText& text_;
+  const TextLines& text_;
   std::size_t next_ = 0;
   MsiFile content_;
 };
@@ -157,10 +155,23 @@ double smallestAttenuation_db(const std::vector<CutRow>& rows) {
       ->attenuation_db;
 }
 
-/// Angle (deg) of a cut's maximum.
-double peakAngle_deg(const MeasuredCut& cut) {
-  return *std::max_element(cut.angles_deg().begin(), cut.angles_deg().end(),
-                           [&](double a, double b) { return cut.amplitudeAt(a) < cut.amplitudeAt(b); });
+/// Turns the gains of a cut, all of them 0 or below, to attenuations.
+void turnGains(const std::string& file, const char* name, std::vector<CutRow>& rows, PatternFile& pattern) {
+  const auto by_value = [](const CutRow& a, const CutRow& b) { return a.attenuation_db < b.attenuation_db; };
+  const auto [smallest, largest] = std::minmax_element(rows.begin(), rows.end(), by_value);
+  if (smallest->attenuation_db >= 0) return;
+  if (largest->attenuation_db > 0) {
+    throw Error(
+        ErrorCode::bad_input, {file, smallest->line, smallest->column},
+        fmt::format("{} {}: attenuation is {} dB; allowed are 0 to {} dB, or gains of 0 dB and below in "
+                    "all rows",
+                    name, smallest->angle_deg, smallest->attenuation_db, kMaxAttenuation_db));
+  }
+  pattern.warnings.push_back(fmt::format(
+      "{}: the {} cut has gains relative to the maximum, down to {} dB, where the format has attenuations; "
+      "their signs are changed",
+      file, name, smallest->attenuation_db));
+  for (CutRow& row : rows) row.attenuation_db = std::abs(row.attenuation_db);
 }
 
 /// Difference (deg) of the stated tilt and the cut's maximum above which a warning is given.
@@ -168,55 +179,40 @@ constexpr double kTiltTolerance_deg = 2;
 
 }  // namespace
 
-AntennaPtr readMsi(const std::string& file, double gain_dbi) {
-  const AntennaText text(file);
+PatternFile readMsiPattern(const std::string& file) {
+  const TextLines text(file);
   MsiFile content = MsiReader(text).read();
   const SourceLocation location{file, 0, 0};
-  if (content.horizontal.empty())
-    throw Error(ErrorCode::bad_input, location, "no HORIZONTAL cut: not an MSI antenna file?");
-  if (content.vertical.empty()) throw Error(ErrorCode::bad_input, location, "no VERTICAL cut");
-  if (std::isnan(gain_dbi)) {
-    if (!content.gain_dbi)
-      throw Error(ErrorCode::bad_input, location, "no GAIN, and gain_dbi is not given with the file");
-    gain_dbi = *content.gain_dbi;
+  if (content.horizontal.empty()) {
+    throw Error(
+        ErrorCode::bad_input, location,
+        "no HORIZONTAL cut: not an MSI antenna file? Others are .adf (NSMA), .ant and .pattern (STK), "
+        ".az and .el (SPLAT!) and .csv");
   }
-  requireGain(gain_dbi);
+  if (content.vertical.empty()) throw Error(ErrorCode::bad_input, location, "no VERTICAL cut");
+  PatternFile pattern;
+  pattern.format = "MSI/Planet file";
+  pattern.name = !content.name.empty()    ? content.name
+                 : !content.title.empty() ? content.title
+                                          : "MSI pattern";
+  pattern.gain_dbi = content.gain_dbi;
+  pattern.stated_az_deg = content.width_az_deg;
+  pattern.stated_el_deg = content.width_el_deg;
+  turnGains(file, "HORIZONTAL", content.horizontal, pattern);
+  turnGains(file, "VERTICAL", content.vertical, pattern);
   // The horizontal cut may miss the maximum of a tilted beam; the vertical one passes through it.
   requireMaximum(smallestAttenuation_db(content.vertical), location, "VERTICAL cut");
   const MeasuredCut horizontal(AxisKind::circle, std::move(content.horizontal), location, "HORIZONTAL cut");
   const MeasuredCut vertical(AxisKind::circle, std::move(content.vertical), location, "VERTICAL cut");
-
   if (content.tilt_deg && std::abs(peakAngle_deg(vertical) - *content.tilt_deg) > kTiltTolerance_deg) {
-    logWarning(fmt::format(
+    pattern.warnings.push_back(fmt::format(
         "{}: the file states {} deg of tilt, but its VERTICAL cut has its maximum at {} deg; the cut is "
         "used unchanged",
         file, *content.tilt_deg, peakAngle_deg(vertical)));
   }
-
-  const GridNodes nodes = gridNodes(horizontal.angles_deg(), vertical.angles_deg());
-  std::vector<double> horizontal_db;
-  for (const double azimuth_deg : nodes.azimuths_deg)
-    horizontal_db.push_back(horizontal.attenuationAt_db(azimuth_deg));
-  const double ahead_db = horizontal.attenuationAt_db(0);
-  const double behind_db = horizontal.attenuationAt_db(180);
-  std::vector<float> amplitudes;
-  for (const double elevation_deg : nodes.elevations_deg) {
-    const double front_db = vertical.attenuationAt_db(-elevation_deg) - ahead_db;
-    const double back_db = vertical.attenuationAt_db(180 + elevation_deg) - behind_db;
-    for (std::size_t i = 0; i < horizontal_db.size(); ++i) {
-      const double w = std::abs(nodes.azimuths_deg[i]) / 180;
-      const double attenuation_db = horizontal_db[i] + (1 - w) * front_db + w * back_db;
-      amplitudes.push_back(static_cast<float>(amplitudeOfAttenuation(std::max(attenuation_db, 0.0))));
-    }
-  }
-  return makeGridAntenna(nodes, std::move(amplitudes), gain_dbi,
-                         !content.name.empty()    ? content.name
-                         : !content.title.empty() ? content.title
-                                                  : "MSI pattern");
-}
-
-AntennaPtr readMsi(const std::string& file) {
-  return readMsi(file, std::numeric_limits<double>::quiet_NaN());
+  noteIgnored(pattern, "lines", content.ignored);
+  fillFromCuts(horizontal, vertical, pattern);
+  return pattern;
 }
 
 }  // namespace emscape::scenario

@@ -2,6 +2,7 @@
 /// value and its range.
 #pragma once
 
+#include <limits>
 #include <string>
 
 #include "emscape/scenario/antenna/antenna.h"
@@ -63,18 +64,10 @@ double gainFromBeamwidths_dbi(double beamwidth_az_deg, double beamwidth_el_deg);
 /// not below 0 dBi.
 double gainFromArray_dbi(int columns, int rows, double spacing_wavelengths, const Taper& taper = Taper());
 
-/// MSI/Planet (.msi, .pln): horizontal and vertical cuts, attenuations below the maximum. GAIN is in dBd
-/// unless the file says dBi. Azimuth runs clockwise, the vertical angle downwards from the horizon ahead, so
-/// that a cut with tilt has its maximum at a positive angle; the cut includes the tilt; TILT and
-/// ELECTRICAL_TILT are informative. For the interpolation in space see scenario/antenna/msi.cpp.
-/// @param gain_dbi  NaN: the file's own
-/// @throws Error (bad_input) with file, line and column
-AntennaPtr readMsi(const std::string& file, double gain_dbi);
-AntennaPtr readMsi(const std::string& file);
-
-/// CSV cuts, two files: columns `azimuth_deg,attenuation_db` and `elevation_deg,attenuation_db`, rows in any
-/// order, attenuation >= 0 below the maximum. Azimuths cover the full circle, elevations from -90 to 90, with
-/// gaps of at most 90 degrees. The attenuations are added. Interpolation is linear in amplitude.
+/// Cuts in two files, SPLAT!'s .az and .el, or CSV: columns `azimuth_deg,attenuation_db` and
+/// `elevation_deg,attenuation_db`, rows in any order, attenuation >= 0 below the maximum. Azimuths cover the
+/// full circle, elevations from -90 to 90, with gaps of at most 90 degrees. The attenuations are added.
+/// Interpolation is linear in amplitude.
 /// @throws Error (bad_input) with file, line and column
 AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& elevation_file, double gain_dbi);
 
@@ -83,8 +76,15 @@ AntennaPtr readCsvCuts(const std::string& azimuth_file, const std::string& eleva
 /// @throws Error (bad_input) with file, line and column; a missing row is named by its pair
 AntennaPtr readCsvGrid(const std::string& file, double gain_dbi);
 
-/// Reads a CSV grid if the extension is .csv; else an MSI/PLN file (.msi, .pln, .txt).
-/// @param gain_dbi  NaN: from the file (MSI) or an error (CSV)
-AntennaPtr readAntenna(const std::string& file, double gain_dbi);
+/// Reads a file of any format (scenario/antenna/pattern_file.h): MSI/Planet (.msi, .pln), NSMA (.adf), STK
+/// (.ant, .pattern), SPLAT! (.az, .el), CSV (.csv).
+///
+/// MSI/Planet has horizontal and vertical cuts, attenuations below the maximum. GAIN is in dBd unless the
+/// file says dBi. Azimuth runs clockwise, the vertical angle downwards from the horizon ahead, so that a cut
+/// with tilt has its maximum at a positive angle; the cut includes the tilt; TILT and ELECTRICAL_TILT are
+/// informative.
+/// @param gain_dbi  NaN: the file's own
+/// @throws Error (bad_input) with file, line and column; without a gain
+AntennaPtr readAntenna(const std::string& file, double gain_dbi = std::numeric_limits<double>::quiet_NaN());
 
 }  // namespace emscape::scenario

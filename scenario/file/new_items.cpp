@@ -268,7 +268,8 @@ std::vector<Edit> editsForTrack(const Scenario& scenario, const std::string& pla
                           document::resolvePath(path + key, scenario.source->root, scenarioSpec()).exists;
     if (is_given) edits.push_back({path + key, "null"});
   }
-  edits.push_back({path + ".track", fmt::format("{{points: [{}]}}", list)});
+  // The platform was somewhere before, and stays where the line ends.
+  edits.push_back({path + ".track", fmt::format("{{points: [{}], outside: hold}}", list)});
   return edits;
 }
 

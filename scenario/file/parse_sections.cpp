@@ -8,11 +8,13 @@
 #include <limits>
 
 #include "base/files/file_reading.h"
+#include "base/text/utc.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
 #include "emscape/base/units.h"
 #include "propagation/air/sky_noise.h"
 #include "propagation/registry/model_info.h"
+#include "recording/read_recording.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/antenna/tables.h"
 
@@ -24,7 +26,7 @@ Taper taperOf(const Section& section) {
   return Taper(section.choice<TaperKind>("taper"), section.number("taper_side_lobe_db"));
 }
 
-constexpr std::size_t kMaxNamedFileBytes = std::size_t{64} << 20;
+constexpr std::size_t kMaxNamedFileBytes = std::size_t{64} << 20, kMaxTrackBytes = std::size_t{256} << 20;
 
 /// @param default_dbi  gain of a section without one; NaN: by formula
 AntennaPtr makeAntenna(const Section& section, const ParseContext& context,
@@ -202,13 +204,14 @@ bool ParseContext::addNamed(const Section& section, const std::string& key, std:
   if (name.empty()) return false;
   const std::string named = resolve(name);
   std::string digest;
-  const bool known = before != nullptr && before->digests.count(named) != 0 &&
-                     (bytes == nullptr || before->tracks.count(named) != 0);
-  if (known) {
-    digest = before->digests.at(named);
+  const auto isKnownTo = [&](const NamedFiles* read) {
+    return bytes == nullptr && read != nullptr && read->digests.count(named) != 0;
+  };
+  if (isKnownTo(before) || isKnownTo(&files)) {
+    digest = (isKnownTo(before) ? before : &files)->digests.at(named);
   } else {
     try {
-      std::string content = readWholeText(named, kMaxNamedFileBytes);
+      std::string content = readWholeText(named, bytes == nullptr ? kMaxNamedFileBytes : kMaxTrackBytes);
       document::ContentHash of_file;
       of_file.add(content);
       digest = of_file.hex();
@@ -250,19 +253,53 @@ std::vector<TrackPoint> listedTrack(const Section& track, ParseContext& context)
   return points;
 }
 
+std::vector<TrackPoint> useTrack(const Section& track, const std::string& name,
+                                 const std::shared_ptr<const TrackFile>& read, ParseContext& context) {
+  context.files.tracks[name] = read;
+  for (const std::string& warning : read->warnings) {
+    const std::string text = track.text("file") + ": " + warning;
+    if (context.told_of_tracks.insert(text).second)
+      context.problems.addWarning(track.locationOf("file"), text);
+  }
+  return read->points;
+}
+
 std::vector<TrackPoint> trackOf(const Section& track, ParseContext& context) {
   if (track.has("points")) return listedTrack(track, context);
   const std::string file = context.resolve(track.text("file"));
-  std::string bytes;
-  if (!context.addNamed(track, "file", &bytes)) return {};
-  std::shared_ptr<const std::vector<TrackPoint>>& points = context.files.tracks[file];
-  if (context.before != nullptr && context.before->tracks.count(file) != 0) {
-    points = context.before->tracks.at(file);
-  } else {
-    points = std::make_shared<const std::vector<TrackPoint>>(
-        parseTrack(file, bytes, track.locationOf("file"), context.problems));
+  const TrackChoice choice{track.text("object"), track.text("columns"),
+                           track.optionalNumber("gap_s").value_or(0), track.optionalNumber("height_agl_m")};
+  const auto nameOf = [&](const std::string& extra) {
+    return fmt::format("{}\n{}\n{}\n{}", file, choice.columns, choice.object, extra);
+  };
+  const std::string name = nameOf(
+      fmt::format("{} {} {}", choice.gap_s, choice.height_agl_m.value_or(std::nan("")), context.epoch_utc));
+  for (const NamedFiles* read : {context.before, static_cast<const NamedFiles*>(&context.files)}) {
+    const auto known = read != nullptr ? read->tracks.find(name) : context.files.tracks.end();
+    if (read == nullptr || known == read->tracks.end()) continue;
+    if (!context.addNamed(track, "file")) return {};
+    return useTrack(track, name, known->second, context);
   }
-  return *points;
+  std::string bytes;
+  std::shared_ptr<const interop::Recording>& recording = context.recordings[file + "\n" + choice.columns];
+  if (!context.addNamed(track, "file", recording ? nullptr : &bytes)) return {};
+  TrackFile read;
+  try {
+    if (!recording && isRecordedTrack(bytes, choice)) {
+      interop::ReadOptions options;
+      options.columns = choice.columns;
+      recording = std::make_shared<const interop::Recording>(interop::readRecordingIn(bytes, file, options));
+    }
+    read = recording ? recordedTrack(*recording, choice, parseUtc_ms(context.epoch_utc))
+                     : TrackFile{parseTrack(file, bytes, track.locationOf("file"), context.problems), {}};
+  } catch (const Error& error) {
+    const SourceLocation location =
+        error.location().file.empty() ? SourceLocation{file, 0, 0} : error.location();
+    context.problems.addErrorElsewhere(track.locationOf("file"), location, error.message());
+    return {};
+  }
+  applyChoice(choice, read.points);
+  return useTrack(track, name, std::make_shared<const TrackFile>(std::move(read)), context);
 }
 
 }  // namespace
@@ -362,6 +399,7 @@ Platform parsePlatform(const Section& section, ParseContext& context) {
   if (section.has("track")) {
     const Section track = section.section("track");
     platform.track = trackOf(track, context);
+    platform.outside_track = track.choice<OutsideTrack>("outside");
     if (!platform.track.empty() && track.has("file"))
       platform.track_file = context.resolve(track.text("file"));
     return platform;

@@ -1,7 +1,10 @@
 /// Parsers of the checked sections of a scenario file.
 #pragma once
 
+#include <map>
+#include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,11 +37,14 @@ struct ParseContext {
   propagation::Atmosphere atmosphere;  ///< of the scenario
   std::string epoch_utc;               ///< of the scenario; empty: none
   FrameOrigin origin;                  ///< of its region
+  /// Recordings of other programs that were read, by resolved name and columns.
+  std::map<std::string, std::shared_ptr<const interop::Recording>> recordings;
+  std::set<std::string> told_of_tracks;  ///< warnings: a file may have the tracks of many platforms
 
   /// Path of a file named in the scenario; relative names are relative to the scenario's folder.
   std::string resolve(const std::string& name) const;
   /// Adds the content of a file named in a section to the hash; false, and a problem, if it cannot be read.
-  /// @param bytes  of a track; set to the content if the file was read now
+  /// @param bytes  set to the content; null: the content is not needed if it was read before
   bool addNamed(const Section& section, const std::string& key, std::string* bytes = nullptr);
 };
 

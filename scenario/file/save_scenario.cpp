@@ -28,7 +28,7 @@ std::string renamed(const std::string& name, const fs::path& from, const fs::pat
 /// Calls visit(path, node) for every file name in a value.
 template <class Visit>
 void forEachFileName(const DocumentNodePtr& node, const ValueSpec& spec, NodePath& path, const Visit& visit) {
-  if (spec.type == document::ValueType::file) visit(path, *node);
+  if (spec.type == document::ValueType::file && node->kind == document::NodeKind::scalar) visit(path, *node);
   for (std::size_t i = 0; i < node->items.size() && spec.item; ++i) {
     path.emplace_back(i);
     forEachFileName(node->items[i], *spec.item, path, visit);

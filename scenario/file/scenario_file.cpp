@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "base/files/file_reading.h"
 #include "base/text/utc.h"
@@ -18,6 +19,7 @@
 #include "scenario/file/parse_sections.h"
 #include "scenario/file/quantity_needs.h"
 #include "scenario/file/scenario_warnings.h"
+#include "scenario/terrain/file_names.h"
 
 namespace emscape::scenario {
 
@@ -70,6 +72,34 @@ Region parseRegion(const Section& section, ParseContext& context) {
   return region;
 }
 
+/// What an item of terrain.files states of its files.
+TerrainFileKeys parseTerrainKeys(const Section& section) {
+  TerrainFileKeys keys;
+  if (section.has("vertical_datum")) keys.vertical_datum = section.choice<VerticalDatum>("vertical_datum");
+  if (section.has("height_unit")) keys.height_unit = section.choice<HeightUnit>("height_unit");
+  if (section.has("encoding")) keys.encoding = section.choice<HeightEncoding>("encoding");
+  if (section.has("band")) keys.band = section.integer("band");
+  keys.crs = section.text("crs");
+  return keys;
+}
+
+/// Reports a file that cannot be opened; else returns its size.
+std::optional<std::uintmax_t> openedSize(const std::string& file, const SourceLocation& location,
+                                         ParseContext& context) {
+  std::error_code failure;
+  const std::uintmax_t size = std::filesystem::file_size(file, failure);
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(file, ignored);
+  const bool is_other = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
+                        !std::filesystem::is_directory(status);
+  errno = 0;
+  if (!failure && !is_other && std::ifstream(file)) return size;
+  if (!failure) failure = std::error_code(errno, std::generic_category());
+  context.problems.addError(location, fmt::format("elevation file {}: {}", file,
+                                                  is_other ? "is not a regular file" : failure.message()));
+  return std::nullopt;
+}
+
 /// The files are opened, not read; files of an earlier reading are not opened again.
 TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
   TerrainSpec terrain;
@@ -77,30 +107,33 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
   const NamedFiles* before = context.before;
   const bool known = before != nullptr && before->terrain_node &&
                      document::sameValue(*before->terrain_node, *section.node());
-  terrain.vertical_datum = section.choice<VerticalDatum>("vertical_datum");
-  const std::vector<std::string> names = section.texts("files");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i].empty()) continue;
+  if (section.has("vertical_datum")) terrain.vertical_datum = section.choice<VerticalDatum>("vertical_datum");
+  if (section.has("missing")) terrain.missing = section.choice<MissingTerrain>("missing");
+  const std::vector<Section> items = section.sections("files");
+  context.files.terrain_files.resize(items.size());
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const bool has_keys = items[i].node()->kind == document::NodeKind::map;
+    const std::string name = has_keys ? items[i].text("file") : items[i].node()->text;
+    if (name.empty()) continue;
     const SourceLocation location = section.locationOf("files", i);
-    const std::string file = context.resolve(names[i]);
-    terrain.files.push_back(file);
-    terrain.locations.push_back(location);
-    if (known) continue;
-    std::error_code failure;
-    const std::uintmax_t size = std::filesystem::file_size(file, failure);
-    std::error_code ignored;
-    const std::filesystem::file_status status = std::filesystem::status(file, ignored);
-    const bool is_other = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status) &&
-                          !std::filesystem::is_directory(status);
-    errno = 0;
-    if (failure || is_other || !std::ifstream(file)) {
-      if (!failure) failure = std::error_code(errno, std::generic_category());
-      context.problems.addError(
-          location,
-          fmt::format("elevation file {}: {}", file, is_other ? "is not a regular file" : failure.message()));
+    std::vector<std::string>& files = context.files.terrain_files[i];
+    try {
+      files = known ? before->terrain_files[i] : elevationFilesOf(context.resolve(name));
+    } catch (const Error& error) {
+      context.problems.addError(location, error.message());
       continue;
     }
-    digest += fmt::format("{}:{}", names[i], size);
+    for (const std::string& file : files) {
+      terrain.files.push_back(file);
+      terrain.locations.push_back(location);
+      terrain.keys.push_back(has_keys ? parseTerrainKeys(items[i]) : TerrainFileKeys{});
+      if (known) continue;
+      const std::optional<std::uintmax_t> size = openedSize(file, location, context);
+      const bool is_named = files.size() == 1 && file == context.resolve(name);
+      if (size)
+        digest +=
+            fmt::format("{}:{}", is_named ? name : std::filesystem::path(file).filename().string(), *size);
+    }
   }
   context.files.terrain_node = std::make_shared<const document::DocumentNode>(*section.node());
   context.files.terrain_digest = known ? before->terrain_digest : digest;
@@ -324,19 +357,40 @@ void requireScenario(const ParseResult& result) {
 
 }  // namespace
 
-ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits, ReadFor read_for) {
+namespace {
+
+/// @param readBytes  returns the text; its errors are problems of the result
+ParseResult parsed(const std::string& file, const std::function<std::string()>& readBytes,
+                   const std::vector<Edit>& edits, ReadFor read_for) {
   ParseContext context;
   context.file = file;
   context.read_for = read_for;
   ScenarioSource source;
   try {
-    source.text = {file, document::checkedUtf8(file, readWholeText(file, kMaxScenarioBytes), "a scenario")};
+    source.text = {file, document::checkedUtf8(file, readBytes(), "a scenario")};
     source.root = document::readDocument(file, source.text.text(), context.problems);
   } catch (const Error& error) {
     context.problems.addError(error.location(), error.message());
   }
   if (source.root) applyEdits(source, edits, context);
   return readSource(std::move(source), nullptr, context);
+}
+
+}  // namespace
+
+ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits, ReadFor read_for) {
+  return parsed(
+      file, [&] { return readWholeText(file, kMaxScenarioBytes); }, edits, read_for);
+}
+
+ParseResult parseScenarioText(const std::string& file, const std::string& text,
+                              const std::vector<Edit>& edits, ReadFor read_for) {
+  return parsed(
+      file, [&] { return text; }, edits, read_for);
+}
+
+std::string originalText(const Scenario& scenario) {
+  return scenario.source ? scenario.source->text.original() : "";
 }
 
 ParseResult editScenario(const Scenario& scenario, const std::vector<Edit>& edits) {

@@ -209,21 +209,23 @@ std::string timesOutside(const std::vector<TrackPoint>& track, const Clock& cloc
   return text;
 }
 
-void warnOfTracksThatEndEarly(const Scenario& scenario, const Section& root, ParseContext& context) {
+void warnOfTimesOutsideTracks(const Scenario& scenario, const Section& root, ParseContext& context) {
   const std::vector<Section> sections = root.sections("platforms");
   WarningOfItems warning;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const Platform& platform = scenario.platforms[i];
-    if (!platform.moves()) continue;
+    if (!platform.moves() || platform.outside_track == OutsideTrack::hold) continue;
+    const double first_s = platform.track.front().t_s, last_s = platform.track.back().t_s;
+    const double end_s = scenario.clock.duration_s;
     const std::string outside = timesOutside(platform.track, scenario.clock);
     if (outside.empty()) continue;
+    const bool is_never_there = first_s > end_s || last_s < 0;
     warning.add(
         sections[i].locationOf("track"), platform.name,
         fmt::format("the track of '{}' runs from {:g} to {:g} s, the scenario from 0 to {:g} s: {} the "
-                    "platform stands still at the track's end, with all that is on it; 'active_s' switches "
-                    "its emitters off then",
-                    platform.name, platform.track.front().t_s, platform.track.back().t_s,
-                    scenario.clock.duration_s, outside));
+                    "platform is absent, with all that it carries; 'outside: hold' in 'track' keeps "
+                    "it at the track's ends",
+                    platform.name, first_s, last_s, end_s, is_never_there ? "always" : outside));
   }
   warning.addTo(context.problems);
 }
@@ -269,7 +271,7 @@ void tellOfDisabledEmitters(const Scenario& scenario, const Section& root, Parse
 }  // namespace
 
 void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseContext& context) {
-  warnOfTracksThatEndEarly(scenario, root, context);
+  warnOfTimesOutsideTracks(scenario, root, context);
   warnOfActiveTimesOutside(scenario, root, context);
   tellOfDisabledEmitters(scenario, root, context);
   warnOfEmittersWithoutBand(scenario, root, context);

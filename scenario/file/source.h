@@ -13,6 +13,7 @@
 #include "emscape/scenario/model/platform.h"
 #include "emscape/scenario/model/target.h"
 #include "scenario/air/refractivity_file.h"
+#include "scenario/file/recorded_track.h"
 
 namespace emscape::scenario {
 
@@ -23,13 +24,15 @@ constexpr std::size_t kMaxScenarioBytes = std::size_t{4} << 20;
 /// are not read again.
 struct NamedFiles {
   std::map<std::string, std::string> digests;  ///< ContentHash of a file's bytes, by its resolved name
-  std::map<std::string, std::shared_ptr<const std::vector<TrackPoint>>> tracks;  ///< valid tracks, by name
+  /// By resolved name and, of files of other programs, what the section of the track says.
+  std::map<std::string, std::shared_ptr<const TrackFile>> tracks;
   std::map<std::string, AntennaPtr> antennas;     ///< by the antenna's keys and values, written on one line
   std::map<std::string, RcsTablePtr> rcs_tables;  ///< valid ones, by resolved name
   std::map<std::string, std::shared_ptr<const RefractivityFile>>
-      refractivity;                        ///< by name and sounding's time
-  document::DocumentNodePtr terrain_node;  ///< null without terrain
-  std::string terrain_digest;              ///< names and sizes of the elevation files
+      refractivity;                                     ///< by name and sounding's time
+  document::DocumentNodePtr terrain_node;               ///< null without terrain
+  std::string terrain_digest;                           ///< names and sizes of the elevation files
+  std::vector<std::vector<std::string>> terrain_files;  ///< that each item of terrain.files stands for
 };
 
 /// An applied edit.

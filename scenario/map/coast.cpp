@@ -9,6 +9,7 @@
 
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
+#include "emscape/base/parallel.h"
 #include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::scenario {
@@ -183,6 +184,45 @@ bool Coast::isWater(double latitude_deg, double longitude_deg) const {
     return level % 2 == 0;
   }
   return false;
+}
+
+std::vector<std::uint8_t> waterOnGrid(
+    const Coast& coast, int columns, int rows,
+    const std::function<std::vector<GridPlace>(const std::vector<GeodeticPosition>&)>& onGrid,
+    const std::function<GeodeticPosition(int column, int row)>& positionAt) {
+  std::vector<std::vector<double>> crossings(static_cast<std::size_t>(rows));  // columns, by row
+  for (const CoastLine& line : coast.lines()) {
+    const std::vector<GridPlace> places = onGrid(line.points);
+    for (std::size_t n = 1; n < places.size(); ++n) {
+      const GridPlace &a = places[n - 1], &b = places[n];
+      const double low = std::min(a.row, b.row), high = std::max(a.row, b.row);
+      if (!(low < rows && high > 0)) continue;
+      for (int row = static_cast<int>(std::ceil(std::max(low, 0.0))); row < high && row < rows; ++row)
+        crossings[static_cast<std::size_t>(row)].push_back(a.column + (b.column - a.column) * (row - a.row) /
+                                                                          (b.row - a.row));
+    }
+  }
+  std::vector<std::uint8_t> water(static_cast<std::size_t>(columns) * rows, 0);
+  parallelFor(rows, 8, [&](int begin, int end) {
+    for (int row = begin; row < end; ++row) {
+      int column = 0;
+      GeodeticPosition first;
+      for (; column < columns; ++column) {
+        first = positionAt(column, row);
+        if (!std::isnan(first.latitude_deg)) break;
+      }
+      if (column == columns) continue;
+      bool is_water = coast.isWater(first.latitude_deg, first.longitude_deg);
+      std::vector<double>& of_row = crossings[static_cast<std::size_t>(row)];
+      std::sort(of_row.begin(), of_row.end());
+      auto next = std::upper_bound(of_row.begin(), of_row.end(), column);
+      for (; column < columns; ++column) {
+        for (; next != of_row.end() && *next <= column; ++next) is_water = !is_water;
+        if (is_water) water[static_cast<std::size_t>(row) * columns + column] = 1;
+      }
+    }
+  });
+  return water;
 }
 
 }  // namespace emscape::scenario

@@ -2,6 +2,8 @@
 /// installed (Debian: gmt-gshhg-low, -high, -full).
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,5 +46,20 @@ class Coast {
   std::vector<Bin> bins_;
   std::vector<CoastLine> lines_;
 };
+
+/// A place between the points of a grid: 0 is the first column and the first row.
+struct GridPlace {
+  double column = 0, row = 0;  ///< NaN: no image
+};
+
+/// Water (1) and land (0) at the points of a grid, lakes too: along a row they change where it crosses a
+/// shore. The time grows with the number of points of the grid and that of the shores.
+/// @param onGrid      places of the points of a shore
+/// @param positionAt  the position of a point, which is called for the first ones of each row; latitude NaN:
+///                    it is left out, and is land
+std::vector<std::uint8_t> waterOnGrid(
+    const Coast& coast, int columns, int rows,
+    const std::function<std::vector<GridPlace>(const std::vector<GeodeticPosition>&)>& onGrid,
+    const std::function<GeodeticPosition(int column, int row)>& positionAt);
 
 }  // namespace emscape::scenario

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "emscape/base/error.h"
+#include "scenario/map/point_table.h"
 #include "scenario/map/vector_file.h"
 #include "scenario/terrain/gdal_messages.h"
 #include "scenario/terrain/transformation.h"
@@ -105,6 +106,13 @@ class PlaceReader {
 }  // namespace
 
 std::vector<Place> readPlaces(const std::string& file) {
+  if (const auto points = readPointTable(file)) {
+    std::vector<Place> places;
+    for (const NamedPoint& point : *points) {
+      places.push_back({Place::Kind::point, point.name, {{{point.latitude_deg, point.longitude_deg, 0}}}});
+    }
+    return places;
+  }
   return PlaceReader(file).read();
 }
 

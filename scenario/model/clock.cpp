@@ -126,6 +126,12 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
   return timesOf(values[0], values[1], values.size() == 3 ? values[2] : clock.step_s, limit_s);
 }
 
+double parseTime(const std::string& text, const Clock& clock) {
+  const std::vector<double> times_s = parseTimes(text, clock);
+  if (times_s.size() == 1) return times_s.front();
+  throw Error(ErrorCode::usage, fmt::format("time '{}': a single time is expected", text));
+}
+
 std::string outsideClockText(const std::vector<double>& times_s, const Clock& clock) {
   if (!(clock.duration_s > 0)) return "";
   const auto isOutside = [&](double time_s) { return time_s < 0 || time_s > clock.duration_s; };

@@ -1,5 +1,7 @@
 #include "emscape/scenario/model/platform.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -72,7 +74,36 @@ SitePosition positionOnLeg(const SitePosition& a, const SitePosition& b, double 
   return position;
 }
 
+/// "its track runs from 100 to 130 s ('track: {outside: hold}' keeps it at the track's ends)"
+std::string spanText(const Platform& platform) {
+  return fmt::format(
+      "its track runs from {:g} to {:g} s ('track: {{outside: hold}}' keeps it at the track's ends)",
+      platform.track.front().t_s, platform.track.back().t_s);
+}
+
 }  // namespace
+
+bool Platform::isPresentAt(double t_s) const {
+  constexpr double kRounding_s = 1e-6;
+  if (!moves()) return true;
+  if (t_s < track.front().t_s - kRounding_s || t_s > track.back().t_s + kRounding_s)
+    return outside_track == OutsideTrack::hold;
+  const std::size_t leg = legAt(track, t_s);
+  return !track[leg].gap_after || t_s <= track[leg].t_s + kRounding_s ||
+         t_s >= track[leg + 1].t_s - kRounding_s;
+}
+
+std::string absenceText(const Platform& platform, double t_s) {
+  return fmt::format("'{}' is absent at t = {:g} s: {}", platform.name, t_s, spanText(platform));
+}
+
+std::string absenceText(const Platform& platform, const std::vector<double>& times_s) {
+  const auto absent =
+      std::count_if(times_s.begin(), times_s.end(), [&](double t_s) { return !platform.isPresentAt(t_s); });
+  if (absent == 0) return "";
+  return fmt::format("'{}' is absent at {} of {} times, which have no values: {}", platform.name, absent,
+                     times_s.size(), spanText(platform));
+}
 
 std::size_t legAt(const std::vector<TrackPoint>& track, double t_s) {
   const auto next = std::upper_bound(track.begin() + 1, track.end() - 1, t_s,

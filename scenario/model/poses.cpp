@@ -17,29 +17,35 @@ void checkPose(const Scenario& scenario, const PlatformPose& pose) {
     throw Error(ErrorCode::usage, fmt::format("a pose of platform {}: the scenario has platforms 0..{}",
                                               pose.platform, count - 1));
   }
-  const auto require = [&](const char* what, double value, double low, double high, const char* unit) {
-    if (value >= low && value <= high) return;
-    throw Error(ErrorCode::usage,
-                fmt::format("the pose of platform '{}' has {} {}; allowed: {}..{} {}",
-                            scenario.platforms[static_cast<std::size_t>(pose.platform)].name, what, value,
-                            low, high, unit));
-  };
-  const SitePosition& at = pose.position;
-  require("latitude", at.latitude_deg, -PositionLimits::kLatitude_deg, PositionLimits::kLatitude_deg, "deg");
-  require("longitude", at.longitude_deg, -360, 360, "deg");
-  const int heights = int{at.height_msl_m.has_value()} + int{at.height_agl_m.has_value()} +
-                      int{at.height_ellipsoid_m.has_value()};
-  require("a number of heights of", heights, 1, 1, "");
-  const double height_m = at.height_msl_m   ? *at.height_msl_m
-                          : at.height_agl_m ? *at.height_agl_m
-                                            : *at.height_ellipsoid_m;
-  require("height", height_m, PositionLimits::kLowest_m, PositionLimits::kHighest_m, "m");
-  require("heading", pose.attitude.heading_deg, -360, 360, "deg");
-  require("pitch", pose.attitude.pitch_deg, -90, 90, "deg");
-  require("roll", pose.attitude.roll_deg, -360, 360, "deg");
+  const std::string fault = poseFault(pose.position, pose.attitude);
+  if (fault.empty()) return;
+  throw Error(ErrorCode::usage,
+              fmt::format("the pose of platform '{}' has {}",
+                          scenario.platforms[static_cast<std::size_t>(pose.platform)].name, fault));
 }
 
 }  // namespace
+
+std::string poseFault(const SitePosition& at, const Attitude& attitude) {
+  std::string fault;
+  const auto check = [&fault](const char* what, double value, double low, double high, const char* unit) {
+    if (fault.empty() && !(value >= low && value <= high))
+      fault = fmt::format("{} {}; allowed: {}..{} {}", what, value, low, high, unit);
+  };
+  check("latitude", at.latitude_deg, -PositionLimits::kLatitude_deg, PositionLimits::kLatitude_deg, "deg");
+  check("longitude", at.longitude_deg, -360, 360, "deg");
+  const int heights = int{at.height_msl_m.has_value()} + int{at.height_agl_m.has_value()} +
+                      int{at.height_ellipsoid_m.has_value()};
+  check("a number of heights of", heights, 1, 1, "");
+  const double height_m = at.height_msl_m   ? *at.height_msl_m
+                          : at.height_agl_m ? *at.height_agl_m
+                                            : at.height_ellipsoid_m.value_or(0);
+  check("height", height_m, PositionLimits::kLowest_m, PositionLimits::kHighest_m, "m");
+  check("heading", attitude.heading_deg, -360, 360, "deg");
+  check("pitch", attitude.pitch_deg, -90, 90, "deg");
+  check("roll", attitude.roll_deg, -360, 360, "deg");
+  return fault;
+}
 
 std::vector<const PlatformPose*> posesByPlatform(const Scenario& scenario,
                                                  const std::vector<PlatformPose>& poses) {

@@ -115,4 +115,9 @@ TerrainPtr loadTerrain(const Scenario& scenario) {
   return scenario.terrain ? Terrain::load(*scenario.terrain, terrainBox(scenario)) : nullptr;
 }
 
+bool mayLackTerrain(const Scenario& scenario, bool otherwise) {
+  if (!scenario.terrain || !scenario.terrain->missing) return otherwise;
+  return *scenario.terrain->missing != MissingTerrain::error;
+}
+
 }  // namespace emscape::scenario

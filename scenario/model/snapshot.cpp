@@ -34,6 +34,7 @@ PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Pl
   const double undulation_m = geoidUndulation_m(at.latitude_deg, at.longitude_deg);
   const double ground_m = groundHeight_m(scenario, terrain, at);
   PlatformState state;
+  state.present = platform.isPresentAt(t_s);
   if (at.height_agl_m) {
     if (std::isnan(ground_m)) {
       throw Error(
@@ -152,7 +153,8 @@ Snapshot snapshotOf(const std::shared_ptr<const Scenario>& scenario, const Inter
   for (const Emitter& emitter : scenario->emitters) {
     const PlatformState& carrier = snapshot.platforms[static_cast<std::size_t>(emitter.platform)];
     EmitterState state;
-    state.active = isActive(emitter, t_s, intervalDuration_s(interval, emitter.scan, scenario->clock));
+    state.active = carrier.present &&
+                   isActive(emitter, t_s, intervalDuration_s(interval, emitter.scan, scenario->clock));
     state.position = carrier.position;
     state.height_msl_m = carrier.height_msl_m;
     const BeamPose axes = platformAxes(carrier.attitude);

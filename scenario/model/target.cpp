@@ -24,7 +24,7 @@ double Target::rcsTowards_m2(double azimuth_deg, double elevation_deg) const {
 }
 
 RcsTablePtr readRcsTable(const std::string& file) {
-  return std::make_shared<MeasuredRcs>(readMeasuredGrid(file, {"rcs_dbsm", -200, 100, "dBsm"}));
+  return std::make_shared<MeasuredRcs>(readMeasuredGrid(file, {"rcs_dbsm", -200, 100, "dBsm"}, true));
 }
 
 }  // namespace emscape::scenario

@@ -36,7 +36,7 @@ const ObjectSpec& antennaSpec() {
       "pattern",
       {
           required("pattern", choiceOf<AntennaForm>(),
-                   "shape of the beam; file: MSI/PLN or a CSV grid; cuts: two CSV cuts"),
+                   "shape of the beam; file: MSI/PLN, NSMA, STK, SPLAT! or CSV; cuts: two cuts"),
           byDefault("gain_dbi", kGain, 0.0, "at the maximum", {"isotropic"}),
           optional(
               "gain_dbi", kGain,
@@ -48,8 +48,7 @@ const ObjectSpec& antennaSpec() {
               "at the maximum; by default 4 pi times the aperture in square wavelengths times the taper's "
               "efficiency, at most the pattern's directivity",
               {"phased_array"}),
-          optional("gain_dbi", kGain, "at the maximum; by default the file's own, which only MSI/PLN has",
-                   {"file"}),
+          optional("gain_dbi", kGain, "at the maximum; by default the file's own, if it has one", {"file"}),
           required("gain_dbi", kGain, "at the maximum", {"cosecant2", "cuts"}),
           required("beamwidth_az_deg", number("deg").from(1e-3).to(360),
                    "between half-power points; sinc: at most 180", beams),
@@ -74,8 +73,8 @@ const ObjectSpec& antennaSpec() {
                     "exponent of the element's amplitude, a power of the cosine off boresight",
                     {"phased_array"}),
           required("file", kFile, "relative to the scenario's folder", {"file"}),
-          required("azimuth_file", kFile, "CSV: azimuth_deg, attenuation_db", {"cuts"}),
-          required("elevation_file", kFile, "CSV: elevation_deg, attenuation_db", {"cuts"}),
+          required("azimuth_file", kFile, "CSV: azimuth_deg, attenuation_db; or .az of SPLAT!", {"cuts"}),
+          required("elevation_file", kFile, "CSV: elevation_deg, attenuation_db; or .el of SPLAT!", {"cuts"}),
       }};
   return spec;
 }

@@ -16,6 +16,7 @@ using document::spec::object;
 using document::spec::optional;
 using document::spec::required;
 using document::spec::simple;
+using document::spec::textOf;
 using propagation::Atmosphere;
 using propagation::GasLosses;
 using propagation::Ground;
@@ -55,16 +56,45 @@ const ObjectSpec& regionSpec() {
   return spec;
 }
 
+namespace {
+
+const ObjectSpec& elevationFileSpec() {
+  static const ObjectSpec spec{
+      "elevation file",
+      "",
+      {
+          required("file", kFile, "a name as in `files`; the keys hold for all files that it stands for"),
+          optional("vertical_datum", choiceOf<VerticalDatum>(),
+                   "datum of its heights; by default what the file states"),
+          optional(
+              "height_unit", choiceOf<HeightUnit>(),
+              "unit of its heights, us_ft: US survey feet; by default what the file states, else metres"),
+          byDefault("band", kInteger.from(1).to(65536), 1.0, "that holds the heights"),
+          optional("encoding", choiceOf<HeightEncoding>(), "of heights in the colours of a picture"),
+          optional("crs", textOf(ValueType::text, 4096).printable(),
+                   "coordinate reference system of its posts, such as EPSG:32633, if the file states none"),
+      }};
+  return spec;
+}
+
+}  // namespace
+
 const ObjectSpec& terrainSpec() {
   static const ObjectSpec spec{
       "terrain",
       "",
       {
-          required("files", listOf(kFile, 1, kMaxItems),
-                   "elevation files (HGT, DTED, GeoTIFF, VRT), relative to the scenario's folder"),
-          byDefault("vertical_datum", choice({"egm96", "ellipsoid", "egm2008"}), "egm96",
-                    "datum of the files' heights; egm2008 (Copernicus GLO-30) needs PROJ's or "
-                    "GeographicLib's grid of it"),
+          required("files", listOf(kFile.orObject(elevationFileSpec()), 1, kMaxItems),
+                   "elevation files (HGT, DTED, GeoTIFF, VRT, ASCII grid, BIL, USGS DEM, Erdas Imagine, "
+                   "netCDF, XYZ, GeoPackage), folders and patterns (`tiles/*.tif`) of them, .zip and .gz; "
+                   "relative to the scenario's folder"),
+          optional("vertical_datum", choiceOf<VerticalDatum>(),
+                   "datum of the heights of all files without a key of their own; by default what each file "
+                   "states, egm96 if it states none; egm2008 (Copernicus GLO-30) needs PROJ's or "
+                   "GeographicLib's grid of it"),
+          optional("missing", choiceOf<MissingTerrain>(),
+                   "treatment of voids and of ground that no file covers: an error, sea (0 m), or no value; "
+                   "by default an error for volumes and paths, no value on maps"),
       }};
   return spec;
 }

@@ -24,6 +24,8 @@ KeySpec heightAglKey() {
                   "above the ground; above mean sea level without terrain");
 }
 
+const ValueSpec kObjectName = document::spec::textOf(document::ValueType::text, 200);
+const ValueSpec kColumnMap = document::spec::textOf(document::ValueType::text, 1000);
 const ValueSpec kSymbolCode = document::spec::textOf(document::ValueType::text, 30);
 
 const ObjectSpec& positionSpec() {
@@ -67,10 +69,24 @@ const ObjectSpec& trackSpec() {
       "",
       {optional("file", kFile,
                 "CSV with a header line: t_s, latitude_deg, longitude_deg, height_msl_m or height_agl_m and, "
-                "if wanted, heading_deg, pitch_deg, roll_deg; relative to the scenario's folder"),
+                "if wanted, heading_deg, pitch_deg, roll_deg; or a track of another program: GPX, KML, CZML, "
+                "NMEA, STK, ACMI, DIS, SIMDIS, Cursor on Target, CSV with other columns; relative to the "
+                "scenario's folder"),
+       optional("object", kObjectName, "name or id of the object in a file with several"),
+       optional("columns", kColumnMap,
+                "columns of a CSV with other names: \"time=Zeit,latitude=Breite,longitude=Laenge,"
+                "height=Hoehe:ft\""),
+       optional("gap_s", number("s").above(0).to(1e8),
+                "the platform is absent where the file has no position for longer; by default gaps are "
+                "bridged"),
+       optional("height_agl_m", kHeightAboveGround, "of all positions, in place of the heights in the file"),
        optional("points", listOf(object(trackPointSpec()), 2, kMaxItems),
-                "the rows of such a file, in place of it")},
-      {{"file", "points"}}};
+                "the rows of such a file, in place of it"),
+       byDefault("outside", choiceOf<OutsideTrack>(), "absent",
+                 "before and after the track's time: the platform is not there, with all that it carries, or "
+                 "it stands still at the track's end")},
+      {{"file", "points"}},
+      {{"object", "file"}, {"columns", "file"}, {"gap_s", "file"}, {"height_agl_m", "file"}}};
   return spec;
 }
 

@@ -122,9 +122,10 @@ const ObjectSpec& targetSpec() {
           required("name", kName, ""),
           required("platform", kName, "name of its platform"),
           optional("rcs_m2", kRcs, "radar cross section, the same from every aspect"),
-          optional("rcs_file", kFile,
-                   "CSV: azimuth_deg (clockwise from the nose), elevation_deg, rcs_dbsm; a full grid, "
-                   "relative to the scenario's folder"),
+          optional(
+              "rcs_file", kFile,
+              "CSV: azimuth_deg (clockwise from the nose), elevation_deg, rcs_dbsm; a full grid; without "
+              "elevation_deg the same at all elevations; relative to the scenario's folder"),
           byDefault("swerling", kSwerling, double(Target{}.swerling),
                     "case of fluctuation; radars with detection albersheim take it as 0, with a warning"),
       },

@@ -8,6 +8,8 @@
 
 #include "emscape/base/error.h"
 #include "emscape/scenario/terrain/terrain.h"
+#include "scenario/terrain/file_names.h"
+#include "scenario/terrain/heights.h"
 #include "scenario/terrain/posts.h"
 
 namespace emscape::scenario {
@@ -19,8 +21,9 @@ class TerrainFile {
  public:
   /// Opens the file; reads no heights.
   /// @param location  of its name in the scenario; may be empty
-  /// @throws Error (bad_input): no such file, not a raster, no georeference, heights of an unknown unit
-  TerrainFile(const std::string& file, const SourceLocation& location);
+  /// @throws Error (bad_input): no such file, not a raster, no georeference, heights of an unknown unit, keys
+  /// that contradict the file
+  TerrainFile(const ElevationSource& source, const SourceLocation& location, const TerrainFileKeys& keys);
   ~TerrainFile();
 
   const std::string& name() const;
@@ -30,6 +33,8 @@ class TerrainFile {
   const std::vector<std::string>& notes() const;
   /// What was assumed and may be wrong.
   const std::vector<std::string>& warnings() const;
+  const HeightMeaning& meaning() const;
+  const SourceLocation& location() const;
 
   const PostLattice& lattice() const;
   int columns() const;
@@ -40,9 +45,13 @@ class TerrainFile {
   /// Receives a row of heights (m above the file's datum; NaN for voids); rows are counted from the window's
   /// southern edge.
   using RowSink = std::function<void(long long row, const float* heights_m)>;
-  /// Reads a window of the file, a strip of rows at a time; passes each row once.
+  /// Reads a window of the file, a strip of rows at a time; passes each row once. Packed files are unpacked
+  /// once for opening and reading; see release().
   /// @throws Error (bad_input) if reading fails
   void read(const PostWindow& window, const RowSink& take) const;
+
+  /// Frees the memory of a packed file; it is unpacked again if it is read again.
+  void release() const;
 
   /// True: the lattice is of WGS84 longitudes and latitudes (deg). False: of the plane of the file's
   /// projection.

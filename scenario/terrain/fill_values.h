@@ -1,9 +1,10 @@
 /// Fill values that an elevation file does not declare as no data, found by their shape.
 #pragma once
 
+#include <cstdint>
+#include <limits>
 #include <map>
-#include <unordered_set>
-#include <utility>
+#include <set>
 #include <vector>
 
 namespace emscape::scenario {
@@ -15,7 +16,8 @@ class FillValues {
  public:
   static constexpr float kBelow_m = -500, kStep_m = 500;
 
-  explicit FillValues(long long columns) : columns_(static_cast<std::size_t>(columns)) {}
+  /// @param unit_m  of the file's heights (m), for its usual fill values
+  explicit FillValues(long long columns, double unit_m = 1);
 
   /// Adds the next row of posts (m; NaN: void), one after another.
   void add(const float* heights_m);
@@ -24,21 +26,40 @@ class FillValues {
     float height_m = 0;
     long long posts = 0;
   };
-  /// The values found, the lowest first. To be called once, after the last row.
-  std::vector<Found> found();
+  struct Result {
+    std::vector<Found> fills;  ///< the lowest first
+    /// Of the heights below kBelow_m that are no fill values; lowest > highest: there are none.
+    float lowest_m = std::numeric_limits<float>::infinity();
+    float highest_m = -std::numeric_limits<float>::infinity();
+    /// There are so many different heights below kBelow_m that only the usual fill values (-9999, ...) were
+    /// searched for.
+    bool is_partial = false;
+  };
+  /// To be called once, after the last row.
+  Result result();
 
  private:
   /// Rows around the middle one; null: there is none.
   void judge(const float* below_m, const float* middle_m, const float* above_m);
+  bool isUsual(float height_m) const { return usual_m_.count(height_m) != 0; }
+  void addToRange(float height_m);
 
-  /// More heights than these are no fill values.
-  static constexpr std::size_t kMaxHeights = 65536;
+  /// Heights that were seen beside near ones, as bits: a height has two, which others may have, too.
+  struct Bits {
+    std::uint32_t first, second;
+  };
+  static Bits bitsOf(float height_m);
+  bool hasBit(std::uint32_t bit) const { return (connected_[bit / 64] >> bit % 64 & 1U) != 0; }
+  void setBit(std::uint32_t bit);
 
   std::size_t columns_;
-  std::vector<float> before_m_, last_m_;  ///< the last two rows; empty if neither has low heights
+  std::vector<float> before_m_, last_m_;  ///< the last two rows
   bool has_before_ = false, has_last_ = false;
-  std::map<float, long long> isolated_;
-  std::unordered_set<float> connected_;
+  std::set<float> usual_m_, usual_connected_m_;
+  std::map<float, long long> isolated_;  ///< posts of each height of which one is isolated
+  std::vector<std::uint64_t> connected_;
+  std::size_t bits_ = 0;  ///< that are set
+  Result result_;
 };
 
 }  // namespace emscape::scenario

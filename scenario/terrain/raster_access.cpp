@@ -13,13 +13,16 @@ constexpr double kMebibyte = 1 << 20;
 constexpr double kMaxBlockBytes = 256 * kMebibyte;
 constexpr int kMaxListedFiles = 1000;  ///< GDAL looks for sidecars in any case of letters up to this number
 
-constexpr const char* kElevationDrivers[] = {"GTiff",   "SRTMHGT", "DTED", "VRT",
-                                             "AAIGrid", "USGSDEM", "EHdr", nullptr};
+/// The first one is for pictures whose colours encode heights.
+constexpr const char* kElevationDrivers[] = {"PNG",  "GTiff", "SRTMHGT", "DTED", "VRT",  "AAIGrid", "USGSDEM",
+                                             "EHdr", "HFA",   "netCDF",  "XYZ",  "GPKG", nullptr};
+constexpr const char* const* kWithoutPictures = kElevationDrivers + 1;
 constexpr const char* kNoSiblings[] = {nullptr};
 
 /// @param siblings  names of other files of its folder; null: GDAL lists the folder
-gdal::Dataset open(const std::string& file, const char* const* siblings) {
-  return gdal::openFile(file, GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kElevationDrivers, nullptr, siblings);
+gdal::Dataset open(const std::string& file, const char* const* siblings, bool with_pictures = false) {
+  return gdal::openFile(file, GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
+                        with_pictures ? kElevationDrivers : kWithoutPictures, nullptr, siblings);
 }
 
 /// The driver that GDAL takes for a file if all are allowed; empty if there is none.
@@ -29,7 +32,7 @@ std::string driverOf(const std::string& file, const char* const* siblings) {
 }
 
 bool isElevationDriver(const std::string& name) {
-  for (const char* const* known = kElevationDrivers; *known != nullptr; ++known) {
+  for (const char* const* known = kWithoutPictures; *known != nullptr; ++known) {
     if (name == *known) return true;
   }
   return false;
@@ -64,8 +67,25 @@ std::string faultOfBlock(GDALRasterBandH band, int interleaved_bands) {
 
 }  // namespace
 
-gdal::Dataset openElevation(const std::string& file) {
-  return open(file, nullptr);
+gdal::Dataset openElevation(const std::string& file, bool with_pictures) {
+  return open(file, nullptr, with_pictures);
+}
+
+gdal::Dataset openElevationInMemory(const std::string& name, const std::vector<const char*>& siblings,
+                                    bool with_pictures) {
+  return gdal::openInMemory(name, GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR,
+                            with_pictures ? kElevationDrivers : kWithoutPictures, siblings.data());
+}
+
+std::string elevationFormats() {
+  return "GeoTIFF, HGT, DTED, VRT, ASCII grid, USGS DEM, ESRI BIL, Erdas Imagine, netCDF, XYZ, GeoPackage";
+}
+
+std::string otherFormatOf(const std::string& file) {
+  GDALDriverH driver = GDALIdentifyDriverEx(gdal::localName(file).c_str(), GDAL_OF_RASTER, nullptr, nullptr);
+  if (driver == nullptr || isElevationDriver(GDALGetDriverShortName(driver))) return "";
+  const char* const name = GDALGetMetadataItem(driver, GDAL_DMD_LONGNAME, nullptr);
+  return fmt::format("{} ({})", GDALGetDriverShortName(driver), name == nullptr ? "" : name);
 }
 
 gdal::Dataset openElevationSource(const std::string& file) {
@@ -117,7 +137,26 @@ std::string Sidecars::faultOf(const fs::path& raster) {
   return "";
 }
 
+namespace {
+
+/// An Erdas Imagine file may name others that hold its values.
+std::string faultOfNamedFiles(GDALDatasetH dataset) {
+  if (!EQUAL(GDALGetDriverShortName(GDALGetDatasetDriver(dataset)), "HFA")) return "";
+  const gdal::Owned<CSLDestroy> files(GDALGetFileList(dataset));
+  char** at = files.get();
+  if (at == nullptr || *at == nullptr) return "";
+  const fs::path folder = fs::path(*at).parent_path().lexically_normal();
+  for (; *at != nullptr; ++at) {
+    if (fs::path(*at).lexically_normal().parent_path() != folder)
+      return fmt::format("it names {}, which is not in its own folder", *at);
+  }
+  return "";
+}
+
+}  // namespace
+
 std::string faultOfDataset(GDALDatasetH dataset) {
+  if (std::string fault = faultOfNamedFiles(dataset); !fault.empty()) return fault;
   const char* const other_files[][2] = {{"OVERVIEW_FILE", "OVERVIEWS"}, {"FILENAME", "ProxyOverviewRequest"}};
   for (const auto& [key, domain] : other_files) {
     const char* const file = GDALGetMetadataItem(dataset, key, domain);

@@ -13,8 +13,15 @@ namespace emscape::scenario {
 
 /// Opens an elevation file in one of the allowed formats; GDAL's other drivers read databases, network
 /// services and application files.
+/// @param with_pictures  also PNG, whose colours encode heights
 /// @return null if none of the formats fits; GDAL has then reported a failure
-gdal::Dataset openElevation(const std::string& file);
+gdal::Dataset openElevation(const std::string& file, bool with_pictures = false);
+/// The same in GDAL's memory. @param siblings  names of the files beside it, ended by null
+gdal::Dataset openElevationInMemory(const std::string& name, const std::vector<const char*>& siblings,
+                                    bool with_pictures);
+/// Names of the formats, and that of a file that is of none of them; empty if GDAL does not know it either.
+std::string elevationFormats();
+std::string otherFormatOf(const std::string& file);
 /// The same for one of many files of a folder, which GDAL does not list if the format does not need it.
 gdal::Dataset openElevationSource(const std::string& file);
 

@@ -30,6 +30,7 @@ struct Patch {
 struct LatticeGroup {
   PostLattice lattice;
   std::string plane;
+  VerticalDatum datum;
   std::vector<PlacedTile> tiles;
 };
 
@@ -44,7 +45,7 @@ bool coincide(double first, double last, int count) {
 bool fits(const RasterTile& tile, const LatticeGroup& group) {
   const int columns = tile.file->columns(), rows = tile.file->rows();
   const PostLattice& own = tile.lattice;
-  return tile.file->planeName() == group.plane &&
+  return tile.file->planeName() == group.plane && tile.file->meaning().datum == group.datum &&
          coincide(group.lattice.column(own.x(0)), group.lattice.column(own.x(columns - 1)), columns) &&
          coincide(group.lattice.row(own.y(0)), group.lattice.row(own.y(rows - 1)), rows);
 }
@@ -55,7 +56,7 @@ std::vector<LatticeGroup> groupByLattice(const std::vector<RasterTile>& tiles) {
     auto group = std::find_if(groups.begin(), groups.end(),
                               [&](const LatticeGroup& candidate) { return fits(tile, candidate); });
     if (group == groups.end()) {
-      groups.push_back({tile.lattice, tile.file->planeName(), {}});
+      groups.push_back({tile.lattice, tile.file->planeName(), tile.file->meaning().datum, {}});
       group = groups.end() - 1;
     }
     const PostWindow& window = tile.window;
@@ -128,7 +129,7 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
     sheet.is_area = sheet.is_area || file.isArea();
     const int first_column = static_cast<int>(placed.column_begin - patch.column_begin) + 1;
     const int first_row = static_cast<int>(placed.row_begin - patch.row_begin) + 1;
-    FillValues fills(placed.tile->window.columns);
+    FillValues fills(placed.tile->window.columns, file.meaning().unit_m);
     file.read(placed.tile->window, [&](long long row, const float* heights_m) {
       fills.add(heights_m);
       std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));
@@ -138,7 +139,10 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
         sheet.heights_m[post] = heights_m[column];
       }
     });
-    for (const FillValues::Found& fill : fills.found()) {
+    file.release();
+    const FillValues::Result found = fills.result();
+    if (found.is_partial) sheet.partly_searched.push_back(placed.tile->file);
+    for (const FillValues::Found& fill : found.fills) {
       sheet.fills.push_back({placed.tile->file, fill});
       for (long long row = 0; row < placed.tile->window.rows; ++row) {
         std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));

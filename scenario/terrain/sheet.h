@@ -30,7 +30,7 @@ enum class PostKind : std::uint8_t {
 /// One lattice of posts, filled from files. The outermost ring of posts is not from a file: it has the
 /// heights of neighbouring sheets, so that heights are continuous across the seam.
 struct TerrainSheet {
-  TerrainFilePtr file;  ///< one of the sheet's files, for its plane
+  TerrainFilePtr file;  ///< one of the sheet's files, for its plane and datum
   PostLattice lattice;
   int columns, rows;
   bool is_area = false;  ///< reaches half a post beyond the files' posts
@@ -45,6 +45,7 @@ struct TerrainSheet {
     FillValues::Found value;
   };
   std::vector<Fill> fills;
+  std::vector<TerrainFilePtr> partly_searched;            ///< for fill values; see FillValues::Result
   double first_column, last_column, first_row, last_row;  ///< limits of lookups
 
   /// All posts absent.
@@ -68,7 +69,8 @@ struct TerrainSheet {
 constexpr long long kMaxSheetPosts = 1LL << 31;
 
 /// Reads tiles into sheets. Tiles whose posts coincide (to a hundredth of a post) and whose windows touch
-/// become one sheet. Where several files have the same post, the one listed first takes precedence.
+/// become one sheet, if their heights have the same datum. Where several files have the same post, the one
+/// listed first takes precedence.
 /// @throws Error (bad_input) if reading fails
 std::vector<TerrainSheet> readSheets(const std::vector<RasterTile>& tiles);
 

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
-#include <map>
 #include <optional>
 
 #include "base/geodesy/geoid_grid.h"
@@ -13,6 +13,7 @@
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "scenario/terrain/file_notes.h"
 #include "scenario/terrain/place.h"
 #include "scenario/terrain/view.h"
 
@@ -37,15 +38,25 @@ const GeoBox& checked(const GeoBox& box) {
 }
 
 /// Heights above a datum become heights above mean sea level (EGM96).
-/// @param location  of the elevation files, for errors
-void toMeanSeaLevel(TerrainSheet& sheet, VerticalDatum datum, const SourceLocation& location) {
+/// @param warnings  receives that a grid is missing, where the scenario does not ask for it
+void toMeanSeaLevel(TerrainSheet& sheet, FileNotes& warnings) {
+  const HeightMeaning& meaning = sheet.file->meaning();
+  const VerticalDatum datum = meaning.datum;
+  if (datum == VerticalDatum::egm96 || datum == VerticalDatum::navd88) return;
   std::optional<GeoidGrid> egm2008;
   if (datum == VerticalDatum::egm2008) {
     try {
       egm2008 = egm2008Grid({sheet.lattice.y(0), sheet.lattice.y(sheet.rows - 1), sheet.lattice.x(0),
                              sheet.lattice.x(sheet.columns - 1)});
     } catch (const Error& error) {
-      throw Error(error.code(), location, error.message());
+      if (meaning.origin == DatumOrigin::key)
+        throw Error(error.code(), sheet.file->location(), error.message());
+      warnings.add(
+          sheet.file->name(),
+          "its heights are above EGM2008 and are taken as above EGM96, since the grid that converts them is "
+          "missing: " +
+              error.message());
+      return;
     }
   }
   parallelFor(sheet.rows, 16, [&](int begin, int end) {
@@ -61,57 +72,113 @@ void toMeanSeaLevel(TerrainSheet& sheet, VerticalDatum datum, const SourceLocati
   });
 }
 
-std::string fillText(const FillValues::Found& fill) {
-  return fmt::format(
-      "{} post{} of {:g} m {} more than {:g} m below all posts around: a fill value that the file "
-      "does not declare; void",
-      fill.posts, fill.posts == 1 ? "" : "s", fill.height_m, fill.posts == 1 ? "is" : "are",
-      FillValues::kStep_m);
+/// True if a tile of one degree reaches a box.
+bool touches(const TileCorner& corner, const GeoBox& box) {
+  constexpr double kReach_deg = 0.01;  // of a post outside, and of half a post
+  if (corner.latitude_deg > box.north_deg + kReach_deg ||
+      corner.latitude_deg + 1 < box.south_deg - kReach_deg)
+    return false;
+  for (const double turn_deg : {-360.0, 0.0, 360.0, 720.0}) {
+    if (corner.longitude_deg + turn_deg <= box.east_deg + kReach_deg &&
+        corner.longitude_deg + 1 + turn_deg >= box.west_deg - kReach_deg)
+      return true;
+  }
+  return false;
 }
 
-/// Notes on elevation files; a note on many files is logged once.
-class FileNotes {
- public:
-  void add(const TerrainFile& file, const std::string& note) {
-    const auto known =
-        std::find_if(notes_.begin(), notes_.end(), [&](const Note& other) { return other.text == note; });
-    if (known != notes_.end()) {
-      ++known->files;
-    } else {
-      notes_.push_back({note, file.name(), 1});
-    }
-  }
-  void log(LogLevel level) const {
-    for (const Note& note : notes_) {
-      const std::string others = note.files > 1 ? fmt::format(" and {} more", note.files - 1) : "";
-      const std::string text = fmt::format("elevation file {}{}: {}", note.first_file, others, note.text);
-      level == LogLevel::warning ? logWarning(text) : logInfo(text);
-    }
-  }
-
- private:
-  struct Note {
-    std::string text, first_file;
-    int files;
-  };
-  std::vector<Note> notes_;
+/// The files of a terrain and what they hold within a box.
+struct FilesWithin {
+  std::vector<RasterTile> tiles;
+  std::vector<GeoBox> boxes;  ///< of all files
+  FileNotes notes, warnings;
 };
 
-/// Sheets of longitudes and latitudes, the finest first, with closed seams.
-std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& box) {
-  FileNotes notes, warnings;
-  std::vector<RasterTile> tiles;
+void addFile(const ElevationSource& source, const SourceLocation& location, const TerrainFileKeys& keys,
+             const GeoBox& box, FilesWithin& all) {
+  // A tile of one degree is placed by its name: those outside the box need not be opened.
+  const bool is_tile = lowerEnding(source.ownName()) == ".hgt";
+  const std::optional<TileCorner> corner = is_tile ? cornerInName(source.ownName()) : std::nullopt;
+  if (corner && !touches(*corner, box)) {
+    std::error_code failed;
+    if (std::filesystem::is_regular_file(source.file, failed)) {
+      all.boxes.push_back({1.0 * corner->latitude_deg, corner->latitude_deg + 1.0,
+                           1.0 * corner->longitude_deg, corner->longitude_deg + 1.0});
+      return;
+    }
+  }
+  const auto file = std::make_shared<const TerrainFile>(source, location, keys);
+  all.boxes.push_back(geographicBoxOf(*file));
+  std::vector<RasterTile> tiles = tilesWithin(file, box);
+  if (tiles.empty()) return;
+  for (const std::string& note : file->notes()) all.notes.add(file->name(), note);
+  if (isDatumAssumed(*file)) all.warnings.add(file->name(), kAssumedDatum, effectOfAssumedDatum(*file));
+  for (const std::string& warning : file->warnings()) all.warnings.add(file->name(), warning);
+  for (RasterTile& tile : tiles) all.tiles.push_back(std::move(tile));
+}
+
+FilesWithin filesWithin(const TerrainSpec& spec, const GeoBox& box) {
+  FilesWithin all;
   for (std::size_t k = 0; k < spec.files.size(); ++k) {
     const SourceLocation location = k < spec.locations.size() ? spec.locations[k] : SourceLocation{};
-    const auto file = std::make_shared<const TerrainFile>(spec.files[k], location);
-    for (const std::string& note : file->notes()) notes.add(*file, note);
-    for (const std::string& warning : file->warnings()) warnings.add(*file, warning);
-    for (RasterTile& tile : tilesWithin(file, box)) tiles.push_back(std::move(tile));
+    for (const ElevationSource& source : sourcesOf(spec, k))
+      addFile(source, location, keysOf(spec, k), box, all);
   }
-  notes.log(LogLevel::info);
+  return all;
+}
+
+std::string textOf(const GeoBox& box) {
+  return fmt::format("latitudes {:.5g} to {:.5g}, longitudes {:.5g} to {:.5g} deg", box.south_deg,
+                     box.north_deg, box.west_deg, box.east_deg);
+}
+
+bool contains(const GeoBox& box, double latitude_deg, double longitude_deg) {
+  const double middle_deg = 0.5 * (box.west_deg + box.east_deg);
+  return latitude_deg >= box.south_deg && latitude_deg <= box.north_deg &&
+         std::abs(wrapLongitude_deg(longitude_deg - middle_deg)) <= 0.5 * (box.east_deg - box.west_deg);
+}
+
+/// Where the files are, where ground is needed, and which other sign would bring both together.
+std::string placeTextOf(const std::vector<GeoBox>& boxes, const GeoBox& needed) {
+  if (boxes.empty()) return "there are no elevation files";
+  GeoBox all = boxes.front();
+  for (const GeoBox& box : boxes) {
+    all = {std::min(all.south_deg, box.south_deg), std::max(all.north_deg, box.north_deg),
+           std::min(all.west_deg, box.west_deg), std::max(all.east_deg, box.east_deg)};
+  }
+  std::string text =
+      fmt::format("the elevation files cover {}; ground is needed at {}", textOf(all), textOf(needed));
+  const double latitude_deg = 0.5 * (needed.south_deg + needed.north_deg);
+  const double longitude_deg = wrapLongitude_deg(0.5 * (needed.west_deg + needed.east_deg));
+  struct Other {
+    double latitude_deg, longitude_deg;
+    const char* mistake;
+  };
+  const Other others[] = {{latitude_deg, -longitude_deg, "longitude has the other sign"},
+                          {-latitude_deg, longitude_deg, "latitude has the other sign"},
+                          {-latitude_deg, -longitude_deg, "both have the other sign"},
+                          {longitude_deg, latitude_deg, "latitude and longitude are exchanged"}};
+  const auto isIn = [&](double latitude, double longitude) {
+    return std::any_of(boxes.begin(), boxes.end(),
+                       [&](const GeoBox& box) { return contains(box, latitude, longitude); });
+  };
+  if (isIn(latitude_deg, longitude_deg)) return text;
+  for (const Other& other : others) {
+    if (!isIn(other.latitude_deg, other.longitude_deg)) continue;
+    return text + fmt::format("; they would cover latitude {:.5g}, longitude {:.5g} deg: perhaps {}",
+                              other.latitude_deg, other.longitude_deg, other.mistake);
+  }
+  return text;
+}
+
+/// Sheets of longitudes and latitudes, the finest first, with closed seams.
+std::vector<TerrainSheet> sheetsWithin(FilesWithin& files, const GeoBox& box) {
+  for (const std::string& note : files.notes.texts()) logInfo(note);
   std::vector<TerrainSheet> sheets;
-  for (TerrainSheet& sheet : readSheets(tiles)) {
-    for (const TerrainSheet::Fill& fill : sheet.fills) warnings.add(*fill.file, fillText(fill.value));
+  for (TerrainSheet& sheet : readSheets(files.tiles)) {
+    for (const TerrainSheet::Fill& fill : sheet.fills)
+      files.warnings.add(fill.file->name(), fillText(fill.value));
+    for (const TerrainFilePtr& file : sheet.partly_searched)
+      files.warnings.add(file->name(), kPartlySearched);
     if (sheet.file->isGeographic()) {
       sheets.push_back(std::move(sheet));
     } else {
@@ -119,13 +186,9 @@ std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& bo
         sheets.push_back(std::move(brought));
     }
   }
-  warnings.log(LogLevel::warning);
   std::stable_sort(sheets.begin(), sheets.end(),
                    [](const TerrainSheet& a, const TerrainSheet& b) { return a.spacing_m < b.spacing_m; });
-  if (spec.vertical_datum != VerticalDatum::egm96) {
-    const SourceLocation location = spec.locations.empty() ? SourceLocation{} : spec.locations.front();
-    for (TerrainSheet& sheet : sheets) toMeanSeaLevel(sheet, spec.vertical_datum, location);
-  }
+  for (TerrainSheet& sheet : sheets) toMeanSeaLevel(sheet, files.warnings);
   closeSeams(sheets);
   return sheets;
 }
@@ -133,11 +196,15 @@ std::vector<TerrainSheet> sheetsWithin(const TerrainSpec& spec, const GeoBox& bo
 class TerrainMosaic : public Terrain {
  public:
   TerrainMosaic(const TerrainSpec& spec, const GeoBox& box) : box_(checked(box)) {
-    std::vector<TerrainSheet> sheets = sheetsWithin(spec, box);
+    FilesWithin files = filesWithin(spec, box);
+    std::vector<TerrainSheet> sheets = sheetsWithin(files, box);
     for (const TerrainSheet& sheet : sheets) rasters_.push_back(sheet.raster());
     survey(sheets);
+    place_text_ = placeTextOf(files.boxes, box);
+    warnings_ = files.warnings.texts();
     // The heights do not move in memory: the rasters' pointers stay valid.
     for (TerrainSheet& sheet : sheets) heights_m_.push_back(std::move(sheet.heights_m));
+    if (spec.missing == MissingTerrain::sea) addSea();
   }
 
   double heightMsl_m(double latitude_deg, double longitude_deg) const override {
@@ -151,8 +218,11 @@ class TerrainMosaic : public Terrain {
   GeoBox coverage() const override { return coverage_; }
   double lowest_m() const override { return lowest_m_; }
   double highest_m() const override { return highest_m_; }
+  std::vector<std::string> warnings() const override { return warnings_; }
+  std::string placeText() const override { return place_text_; }
 
  private:
+  void addSea();
   void survey(const std::vector<TerrainSheet>& sheets);
   void surveyPosts(const TerrainSheet& sheet);
   bool covered(const std::vector<TerrainSheet>& sheets, double latitude_deg, double longitude_deg) const;
@@ -166,7 +236,33 @@ class TerrainMosaic : public Terrain {
   GeoBox coverage_;
   double lowest_m_ = std::numeric_limits<double>::quiet_NaN();
   double highest_m_ = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::string> warnings_;
+  std::string place_text_;
 };
+
+/// A raster of sea level below all others, over the whole box and beyond.
+void TerrainMosaic::addSea() {
+  constexpr int kPosts = 5;
+  const GeoBox all{-90, 90, -180, 180};
+  TerrainRaster sea;
+  heights_m_.emplace_back(kPosts * kPosts, 0.0f);
+  sea.heights_msl_m = heights_m_.back().data();
+  sea.columns = sea.rows = kPosts;
+  sea.south_rad = degToRad(all.south_deg);
+  sea.west_rad = degToRad(all.west_deg);
+  sea.posts_per_rad_lat = (kPosts - 1) / degToRad(all.north_deg - all.south_deg);
+  sea.posts_per_rad_lon = (kPosts - 1) / degToRad(all.east_deg - all.west_deg);
+  sea.last_column = sea.last_row = kPosts - 1;
+  rasters_.push_back(sea);
+  if (void_posts_ == 0 && uncovered_fraction_ == 0) return;
+  lowest_m_ = std::fmin(lowest_m_, 0.0);
+  highest_m_ = std::fmax(highest_m_, 0.0);
+  warnings_.push_back(fmt::format(
+      "terrain: {} void posts and {:.3g} % of the area, which no elevation file covers, are taken as sea (0 "
+      "m), as "
+      "'missing: sea' says{}",
+      void_posts_, 100 * uncovered_fraction_, uncovered_fraction_ == 1 ? "; " + place_text_ : ""));
+}
 
 void TerrainMosaic::survey(const std::vector<TerrainSheet>& sheets) {
   for (std::size_t k = 0; k < sheets.size(); ++k) {
@@ -231,84 +327,10 @@ bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double lati
   return false;
 }
 
-/// Reads all heights of a file, or of a very large one a part: kStrips strips of rows from the first to the
-/// last.
-void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
-  constexpr long long kMaxPosts = 1LL << 28;
-  constexpr int kStrips = 64;
-  const long long rows = file.rows(), columns = file.columns();
-  const bool is_partial = rows * columns > kMaxPosts;
-  const int strips = is_partial ? kStrips : 1;
-  const long long rows_of_strip = is_partial ? std::max(1LL, kMaxPosts / columns / kStrips) : rows;
-  for (int strip = 0; strip < strips; ++strip) {
-    const long long first_row = strip == 0 ? 0 : (rows - rows_of_strip) * strip / (strips - 1);
-    FillValues fills(columns);
-    // Heights that may be fill values count once they are known not to be.
-    std::map<float, long long> low_m;
-    file.read({0, first_row, columns, rows_of_strip}, [&](long long, const float* heights_m) {
-      fills.add(heights_m);
-      int voids = 0;
-      float lowest_m = HUGE_VALF, highest_m = -HUGE_VALF;
-      for (long long column = 0; column < columns; ++column) {
-        const float height_m = heights_m[column];  // NaN is neither smaller nor larger
-        if (height_m < FillValues::kBelow_m) ++low_m[height_m];
-        lowest_m = height_m < lowest_m && height_m >= FillValues::kBelow_m ? height_m : lowest_m;
-        highest_m = height_m > highest_m && height_m >= FillValues::kBelow_m ? height_m : highest_m;
-        voids += std::isnan(height_m) ? 1 : 0;
-      }
-      info.void_posts += voids;
-      if (lowest_m > highest_m) return;
-      info.lowest_m = std::fmin(info.lowest_m, lowest_m);
-      info.highest_m = std::fmax(info.highest_m, highest_m);
-    });
-    for (const FillValues::Found& fill : fills.found()) {
-      info.notes.push_back(fillText(fill));
-      info.void_posts += fill.posts;
-      low_m.erase(fill.height_m);
-    }
-    if (!low_m.empty()) {
-      info.lowest_m = std::fmin(info.lowest_m, low_m.begin()->first);
-      info.highest_m = std::fmax(info.highest_m, low_m.rbegin()->first);
-    }
-  }
-  if (is_partial) {
-    info.notes.push_back("is large: its range and voids are those of " +
-                         std::to_string(strips * rows_of_strip) + " of its " + std::to_string(rows) +
-                         " rows");
-  }
-}
-
 }  // namespace
 
 std::shared_ptr<const Terrain> Terrain::load(const TerrainSpec& spec, const GeoBox& box) {
   return std::make_shared<const TerrainMosaic>(spec, box);
-}
-
-TerrainFileInfo Terrain::describe(const std::string& name, bool read_heights) {
-  const TerrainFile file(name, SourceLocation{});
-  TerrainFileInfo info;
-  info.file = name;
-  info.format = file.format();
-  info.crs = file.crs();
-  info.box = geographicBoxOf(file);
-  info.columns = file.columns();
-  info.rows = file.rows();
-  info.pixel_is_area = file.isArea();
-  info.notes = file.notes();
-  info.notes.insert(info.notes.end(), file.warnings().begin(), file.warnings().end());
-  const double column = 0.5 * (file.columns() - 1), row = 0.5 * (file.rows() - 1);
-  const PostLattice& lattice = file.lattice();
-  std::vector<double> x{lattice.x(column - 0.5), lattice.x(column + 0.5), lattice.x(column),
-                        lattice.x(column)};
-  std::vector<double> y{lattice.y(row), lattice.y(row), lattice.y(row - 0.5), lattice.y(row + 0.5)};
-  file.toGeographic(x, y);
-  if (!std::isfinite(x[2]) || !std::isfinite(y[2]))
-    throw Error(ErrorCode::bad_input, "elevation file " + name + ": its posts are not on the earth");
-  info.post_spacing_lon_deg = std::abs(wrapLongitude_deg(x[1] - x[0]));
-  info.post_spacing_lat_deg = std::abs(y[3] - y[2]);
-  info.lowest_m = info.highest_m = std::numeric_limits<double>::quiet_NaN();
-  if (read_heights) surveyHeights(file, info);
-  return info;
 }
 
 }  // namespace emscape::scenario

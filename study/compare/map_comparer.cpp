@@ -58,6 +58,7 @@ class Pair {
     map.name += "_change";
     map.kind = MapKind::classes;
     map.title = "change of " + a_.title;
+    map.subject = "change of " + a_.subject;
     map.description = "change of " + a_.description;
     map.labels = {"neither", "gained", "lost", "kept"};
     map.colors = {0, kGreen, kVermilion, kSkyBlue};
@@ -76,6 +77,7 @@ class Pair {
     map.name += "_difference";
     map.kind = MapKind::difference;
     map.title = "difference of " + a_.title;
+    map.subject = "difference of " + a_.subject;
     map.description = "difference of " + a_.description;
     if (map.unit.rfind("dB", 0) == 0) map.unit = row.unit = "dB";
     double sum = 0;

@@ -31,12 +31,17 @@ void checkRequest(const scenario::Scenario& scenario, const ExposureRequest& req
     throw Error(ErrorCode::usage,
                 fmt::format("quantity '{}' is an index; an exposure asks for a level", quantity.name));
   }
+  const scenario::Platform& platform = scenario.platforms[request.platform];
+  if (std::none_of(request.times_s.begin(), request.times_s.end(),
+                   [&](double t_s) { return platform.isPresentAt(t_s); })) {
+    throw Error(ErrorCode::usage, scenario::absenceText(platform, request.times_s.front()) +
+                                      (request.times_s.size() > 1 ? "; likewise at all other times" : ""));
+  }
   if (request.target && scenario.targets[*request.target].platform != request.platform) {
     throw Error(
         ErrorCode::usage,
         fmt::format("target '{}' is on platform '{}', not on '{}'", scenario.targets[*request.target].name,
-                    scenario.platforms[scenario.targets[*request.target].platform].name,
-                    scenario.platforms[request.platform].name));
+                    scenario.platforms[scenario.targets[*request.target].platform].name, platform.name));
   }
 }
 
@@ -59,7 +64,8 @@ class Track {
     scenario_ = own;
     options_.quantities.clear();
     options_.also_per_emitter = true;
-    options_.allow_missing_terrain = options_.keep_partly_unknown = true;
+    options_.allow_missing_terrain = scenario::mayLackTerrain(*own, true);
+    options_.keep_partly_unknown = true;
     const std::vector<emfield::Channel> channels =
         emfield::channelsOf(*own, own->output.quantities, scenario::CombineMode::per_emitter);
     for (std::size_t c = 0; c < channels.size(); ++c) {
@@ -147,6 +153,12 @@ class Track {
     };
     ExposureRow row;
     row.time_s = snapshot.time_s;
+    if (!state.present) {
+      row.latitude_deg = row.longitude_deg = row.height_msl_m = row.height_agl_m = row.value = NAN;
+      row.each.assign(emitters.size(), NAN);
+      row.state = ExposureState::absent;
+      return row;
+    }
     row.latitude_deg = state.position.latitude_deg;
     row.longitude_deg = state.position.longitude_deg;
     row.height_msl_m = state.height_msl_m;
@@ -224,6 +236,10 @@ ExposureSummary summaryOf(const std::string& name, const Exposure& exposure, con
       summary.max_time_s = rows[t].time_s;
     }
     const bool is_alone = rows.size() == 1;  // a single time represents the whole time
+    if (rows[t].state == ExposureState::absent) {
+      gap_s = 0;
+      continue;
+    }
     const double length_s = is_alone ? 1 : t + 1 < rows.size() ? rows[t + 1].time_s - rows[t].time_s : 0;
     all_s += length_s;
     const ExposureState state = stateOf(value, exposure.request.threshold);
@@ -235,7 +251,7 @@ ExposureSummary summaryOf(const std::string& name, const Exposure& exposure, con
     gap_s = state == ExposureState::below && !is_alone ? gap_s + length_s : 0;
     summary.longest_gap_s = std::max(summary.longest_gap_s, gap_s);
   }
-  summary.unknown_fraction = unknown_s / all_s;
+  summary.unknown_fraction = all_s > 0 ? unknown_s / all_s : 0;
   summary.fraction = unknown_s < all_s ? reached_s / (all_s - unknown_s) : NAN;
   return summary;
 }
@@ -293,9 +309,11 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
   }
   if (progress) progress("track", 1);
   exposure.warnings.assign(track.warnings.begin(), track.warnings.end());
-  if (const std::string outside = scenario::outsideClockText(request.times_s, scenario->clock);
-      !outside.empty())
-    exposure.warnings.push_back(outside);
+  for (const std::string& warning :
+       {scenario::outsideClockText(request.times_s, scenario->clock),
+        scenario::absenceText(scenario->platforms[request.platform], request.times_s)}) {
+    if (!warning.empty()) exposure.warnings.push_back(warning);
+  }
   for (std::size_t n = 0; n < exposure.names.size(); ++n) {
     exposure.each.push_back(
         summaryOf(exposure.names[n], exposure, [n](const ExposureRow& row) { return row.each[n]; }));

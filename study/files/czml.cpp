@@ -95,17 +95,19 @@ class Czml : public MapCollection {
         addPosition(samples, at.position.longitude_deg, at.position.latitude_deg,
                     at.position.height_ellipsoid_m);
       }
-      packets_.push_back(
-          {{"id", "track/" + std::to_string(track_names_.size())},
-           {"name", track.platform},
-           {"position",
-            {{"epoch", utcOf(study_, 0)},
-             {"cartographicDegrees", samples},
-             {"interpolationAlgorithm", "LINEAR"},
-             {"forwardExtrapolationType", "HOLD"},
-             {"backwardExtrapolationType", "HOLD"}}},
-           {"path", {{"width", 2}, {"material", {{"solidColor", {{"color", colorJson({1, 1, 1}, 200)}}}}}}}});
-      track_names_.push_back(track.platform);
+      const bool holds = track.platform->outside_track == scenario::OutsideTrack::hold;
+      const char* const outside = holds ? "HOLD" : "NONE";
+      Json packet{{"id", "track/" + std::to_string(tracks_.size())}, {"name", track.platform->name}};
+      if (!holds)
+        packet["availability"] = intervalOf(track.positions.front().time_s, track.positions.back().time_s);
+      packet["position"] = {{"epoch", utcOf(study_, 0)},
+                            {"cartographicDegrees", samples},
+                            {"interpolationAlgorithm", "LINEAR"},
+                            {"forwardExtrapolationType", outside},
+                            {"backwardExtrapolationType", outside}};
+      packet["path"] = {{"width", 2}, {"material", {{"solidColor", {{"color", colorJson({1, 1, 1}, 200)}}}}}};
+      packets_.push_back(std::move(packet));
+      tracks_.push_back(track);
     }
   }
 
@@ -113,22 +115,32 @@ class Czml : public MapCollection {
     const std::vector<MapEmitter> emitters = emittersOf(study_);
     for (std::size_t e = 0; e < emitters.size(); ++e) {
       const scenario::Emitter& emitter = *emitters[e].emitter;
-      if (!emitter.enabled) continue;
+      if (!emitter.enabled || emitters[e].positions.empty()) continue;
+      const auto track = std::find_if(tracks_.begin(), tracks_.end(), [&](const MapTrack& each) {
+        return each.platform->name == emitters[e].platform;
+      });
+      double first_s = begin_s_, last_s = end_s_;  // of the time in which its platform is present
+      if (track != tracks_.end() && track->platform->outside_track == scenario::OutsideTrack::absent) {
+        first_s = std::max(first_s, track->positions.front().time_s);
+        last_s = std::min(last_s, track->positions.back().time_s);
+      }
       Json packet{{"id", "emitter/" + std::to_string(e)},
                   {"name", emitter.name},
                   {"description", escapedXml(std::string(scenario::toString(emitter.kind)) + " on " +
                                              emitters[e].platform)}};
       Json availability = Json::array();
       for (const scenario::TimeInterval& active : emitter.active_s) {
-        const double begin_s = std::max(active.begin_s, begin_s_), end_s = std::min(active.end_s, end_s_);
+        const double begin_s = std::max(active.begin_s, first_s), end_s = std::min(active.end_s, last_s);
         if (begin_s < end_s) availability.push_back(intervalOf(begin_s, end_s));
       }
       if (!emitter.active_s.empty() && availability.empty()) continue;  // never active
+      if (availability.empty() && (first_s > begin_s_ || last_s < end_s_)) {
+        availability.push_back(intervalOf(first_s, last_s));
+      }
       if (!availability.empty()) packet["availability"] = availability;
-      const auto track = std::find(track_names_.begin(), track_names_.end(), emitters[e].platform);
-      if (emitters[e].positions.size() > 1 && track != track_names_.end()) {
+      if (track != tracks_.end()) {
         packet["position"] = {
-            {"reference", "track/" + std::to_string(track - track_names_.begin()) + "#position"}};
+            {"reference", "track/" + std::to_string(track - tracks_.begin()) + "#position"}};
       } else {
         Json place = Json::array();
         const GeodeticPosition& at = emitters[e].positions.front().position;
@@ -176,7 +188,8 @@ class Czml : public MapCollection {
   const MapStudy& study_;
   double begin_s_ = 0, end_s_ = 0;
   gdal::Transformation to_earth_;
-  std::vector<std::string> track_names_, groups_;
+  std::vector<MapTrack> tracks_;
+  std::vector<std::string> groups_;
   Json packets_ = Json::array();
 };
 

@@ -250,7 +250,7 @@ class GeoPackage : public MapCollection {
         feature.set("power_w", emitter.emitter->power_w);
         feature.set("height_msl_m", at.height_msl_m);
         feature.set("color", hexOf(render::colorOf(playback::markerKindOf(emitter.emitter->kind))));
-        if (emitter.positions.size() > 1) setTimes(feature, at.time_s);
+        if (emitter.is_moving && study_.times_s.size() > 1) setTimes(feature, at.time_s);
         feature.setGeometry(pointAt(at.position));
         check(scope, feature.write());
       }
@@ -298,7 +298,7 @@ class GeoPackage : public MapCollection {
     }
     for (const MapTrack& track : tracks) {
       NewFeature feature(layer);
-      feature.set("platform", track.platform);
+      feature.set("platform", track.platform->name);
       feature.set("begin", utcOf(study_, track.positions.front().time_s));
       feature.set("end", utcOf(study_, track.positions.back().time_s));
       const gdal::Geometry line(OGR_G_CreateGeometry(wkbLineStringZM));

@@ -221,8 +221,8 @@ class Kmz : public MapCollection {
     for (const MapEmitter& emitter : emittersOf(study_)) {
       const render::Rgb color = render::colorOf(playback::markerKindOf(emitter.emitter->kind));
       for (const MapPosition& at : emitter.positions) {
-        const std::string span =
-            emitter.positions.size() > 1 ? spanOf(at.time_s, endOf(study_, at.time_s)) : "";
+        const bool is_of_a_time = emitter.is_moving && study_.times_s.size() > 1;
+        const std::string span = is_of_a_time ? spanOf(at.time_s, endOf(study_, at.time_s)) : "";
         text += fmt::format(
             "<Placemark><name>{}</name><description>{}, {:.6g} MHz, {:.6g} W</description>{}<Style>"
             "<IconStyle><color>{}</color><scale>0.8</scale></IconStyle></Style><Point>"
@@ -242,7 +242,7 @@ class Kmz : public MapCollection {
       text += fmt::format(
           "<Placemark><name>{}</name><Style><LineStyle><color>ff404040</color><width>2</width></LineStyle>"
           "</Style><LineString><altitudeMode>absolute</altitudeMode><coordinates>",
-          escapedXml(track.platform));
+          escapedXml(track.platform->name));
       for (const MapPosition& at : track.positions) {
         text += fmt::format("{:.8f},{:.8f},{:.2f} ", at.position.longitude_deg, at.position.latitude_deg,
                             at.height_msl_m);

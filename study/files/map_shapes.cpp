@@ -73,6 +73,28 @@ class Layer {
   OGRLayerH layer_ = nullptr;
 };
 
+/// Adds the polygons of a geometry, without its lines and points, to a multipolygon.
+void addPolygons(OGRGeometryH geometry, OGRGeometryH polygons) {
+  const OGRwkbGeometryType type = wkbFlatten(OGR_G_GetGeometryType(geometry));
+  if (type == wkbPolygon) {
+    OGR_G_AddGeometry(polygons, geometry);
+  } else if (type == wkbMultiPolygon || type == wkbGeometryCollection) {
+    for (int n = 0; n < OGR_G_GetGeometryCount(geometry); ++n)
+      addPolygons(OGR_G_GetGeometryRef(geometry, n), polygons);
+  }
+}
+
+/// Rings that touch themselves, as GDAL makes them around pixels without a value, are split.
+gdal::Geometry validPolygons(gdal::Geometry geometry) {
+  const scenario::GdalMessages quiet;  // GEOS tells where a ring touches itself
+  if (OGR_G_IsValid(geometry.get()) != 0) return geometry;
+  const gdal::Geometry valid(OGR_G_MakeValid(geometry.get()));
+  if (valid == nullptr) return geometry;
+  gdal::Geometry polygons(OGR_G_CreateGeometry(wkbMultiPolygon));
+  addPolygons(valid.get(), polygons.get());
+  return polygons;
+}
+
 void addContours(const MapGrid& grid, const Map& map, const std::filesystem::path& file, MapShapes& shapes) {
   const std::vector<double> levels = levelsOf(map);
   const bool by_log_odds = map.kind == MapKind::probability;
@@ -128,6 +150,7 @@ void addContours(const MapGrid& grid, const Map& map, const std::filesystem::pat
     one.max = is_last ? range.max : levels[above];
     one.geometry.reset(OGR_F_StealGeometry(feature.get()));
     if (one.geometry == nullptr || OGR_G_IsEmpty(one.geometry.get())) continue;
+    one.geometry = validPolygons(std::move(one.geometry));
     const bool is_nothing = isFraction(map.kind) && above == 0 && !is_last;
     if (!is_nothing) one.color = colorOf(map, legend, static_cast<float>((one.min + one.max) / 2));
     shapes.bands.push_back(std::move(one));
@@ -166,7 +189,7 @@ void addOutlines(const MapGrid& grid, const Map& map, const std::filesystem::pat
     one.min = one.max = number;
     one.color = colorOf(map, legend, static_cast<float>(number));
     if (number < static_cast<int>(map.labels.size())) one.label = map.labels[number];
-    one.geometry = std::move(outline);
+    one.geometry = validPolygons(std::move(outline));
     shapes.bands.push_back(std::move(one));
   }
 }

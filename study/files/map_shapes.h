@@ -25,7 +25,7 @@ struct MapBand {
   double min = 0, max = 0;           ///< values; equal for whole numbers
   std::string label;                 ///< of a class or category
   std::optional<render::Rgb> color;  ///< by the map's legend; none: transparent
-  gdal::Geometry geometry;           ///< multipolygon
+  gdal::Geometry geometry;           ///< multipolygon, valid
 };
 
 struct MapShapes {

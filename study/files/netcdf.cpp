@@ -225,8 +225,7 @@ class NetCdf : public MapCollection {
     const char* const options[] = {"COMPRESS=DEFLATE", nullptr};
     variable = addArray(root_, name, dimensions, numberType(is_whole ? GDT_Int16 : GDT_Float32), options);
     check(messages, variable != nullptr);
-    const std::string description = map.description.substr(0, map.description.find(" at "));
-    setText(variable, "long_name", description + (map.unit.empty() ? "" : " (" + map.unit + ")"));
+    setText(variable, "long_name", map.subject + (map.unit.empty() ? "" : " (" + map.unit + ")"));
     setText(variable, "coordinates", "lat lon");
     if (is_whole) {
       GDALMDArraySetRawNoDataValue(variable.get(), &kNoNumber);

@@ -10,6 +10,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
+#include "emscape/study/maps/map_grid.h"
 
 namespace emscape::study {
 
@@ -95,6 +96,29 @@ scenario::GeoBox terrainBoxOf(const scenario::Scenario& scenario, const MapArea&
 scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapArea& area) {
   if (!scenario.terrain) return nullptr;
   return scenario::Terrain::load(*scenario.terrain, terrainBoxOf(scenario, area));
+}
+
+void requireGround(const scenario::Scenario& scenario, const scenario::Terrain& terrain,
+                   const MapGrid& grid) {
+  std::size_t missing = 0, pixels = 0;
+  emfield::Surface::Position first{};
+  for (const emfield::Surface::Position& at : grid.positions) {
+    if (std::isnan(at.latitude_deg)) continue;
+    ++pixels;
+    if (!std::isnan(terrain.heightMsl_m(at.latitude_deg, at.longitude_deg))) continue;
+    if (missing++ == 0) first = at;
+  }
+  if (missing == 0 || (missing < pixels && scenario::mayLackTerrain(scenario, true))) return;
+  const bool is_all = missing == pixels;
+  const SourceLocation location = scenario.terrain->locations.empty() ? SourceLocation{scenario.file, 0, 0}
+                                                                      : scenario.terrain->locations.front();
+  throw Error(
+      ErrorCode::bad_input, location,
+      fmt::format(
+          "terrain is missing below {} of the map's {} pixels, first at latitude {:.5f}, longitude {:.5f} "
+          "deg{}; {}",
+          missing, pixels, first.latitude_deg, first.longitude_deg, is_all ? "; " + terrain.placeText() : "",
+          is_all ? "'terrain: {missing: sea}' takes it as sea" : scenario::kMissingTerrainRemedy));
 }
 
 MapArea parseArea(const std::string& text) {

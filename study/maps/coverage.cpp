@@ -95,11 +95,14 @@ std::optional<std::string> inactiveWarning(const std::shared_ptr<const scenario:
   if (empty_s.empty()) return std::nullopt;
   const char* const kind = of_radars ? "radar" : "emitter";
   if (empty_s.size() == 1) {
-    return fmt::format("no {} is active at t = {} s (active_s): the maps of this time are empty", kind,
-                       empty_s.front());
+    return fmt::format(
+        "no {} is active at t = {} s (active_s, or outside its track): the maps of this time are empty", kind,
+        empty_s.front());
   }
-  return fmt::format("no {} is active at {} of {} times, first at t = {} s (active_s): their maps are empty",
-                     kind, empty_s.size(), times_s.size(), empty_s.front());
+  return fmt::format(
+      "no {} is active at {} of {} times, first at t = {} s (active_s, or outside its track): their maps are "
+      "empty",
+      kind, empty_s.size(), times_s.size(), empty_s.front());
 }
 
 /// Warning for heights that only make sense in kilometres.

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <cmath>
 
+#include "base/text/display_units.h"
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
 
@@ -120,9 +121,11 @@ Product productNamed(const std::string& name) {
   throw Error(ErrorCode::usage, "unknown product '" + name + "'; one of " + known);
 }
 
-std::string describe(const MapHeight& height) {
+std::string describe(const MapHeight& height, Units units) {
   const bool above_ground = height.reference == emfield::HeightReference::ground;
-  return fmt::format("{} m above {}", height.metres, above_ground ? "ground" : "mean sea level");
+  const std::string text =
+      units == Units::metric ? fmt::format("{} m", height.metres) : heightText(height.metres, units);
+  return text + " above " + (above_ground ? "ground" : "mean sea level");
 }
 
 std::string nameOf(const MapHeight& height) {

@@ -101,11 +101,11 @@ CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& 
     const Quantity named = product == Product::best ? Quantity::dominant_emitter : request.quantity;
     map.labels = emfield::categoryNames(scenario, named);
   }
-  map.description = product == Product::value
+  map.subject = product == Product::value
                         ? map.title
                         : fmt::format("{} ({} >= {})", map.title, titleOf(request.quantity),
                                       quantityText(request.threshold, quantity.unit));
-  if (height) map.description += " at " + describe(*height);
+  map.description = map.subject + (height ? " at " + describe(*height) : "");
   return map;
 }
 
@@ -135,7 +135,7 @@ SurfaceField::SurfaceField(const MapGrid& grid, const std::vector<CoverageReques
   surface->heights_m.erase(std::unique(surface->heights_m.begin(), surface->heights_m.end()),
                            surface->heights_m.end());
   options_.surface = surface;
-  options_.allow_missing_terrain = true;  // masked, and reported as the maps' known area
+  options_.allow_missing_terrain = true;  // masked, and reported as the maps' known area; see requireGround()
   options_.keep_partly_unknown = true;
 }
 

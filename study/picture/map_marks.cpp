@@ -6,7 +6,6 @@
 #include <cmath>
 #include <memory>
 
-#include "base/text/display_units.h"
 #include "emscape/base/error.h"
 #include "scenario/map/places.h"
 #include "study/picture/map_plane.h"
@@ -92,13 +91,7 @@ scenario::MapColors drapeOf(const MapGrid& squares, const std::string& file) {
 }
 
 std::string descriptionOf(const Map& map, Units units) {
-  if (!map.height || units == Units::metric) return map.description;
-  const std::string metric = describe(*map.height);
-  const std::size_t at = map.description.rfind(metric);
-  if (at == std::string::npos) return map.description;
-  const std::string above = metric.substr(metric.find(" above"));
-  return map.description.substr(0, at) + heightText(map.height->metres, units) + above +
-         map.description.substr(at + metric.size());
+  return map.height ? map.subject + " at " + describe(*map.height, units) : map.subject;
 }
 
 }  // namespace emscape::study

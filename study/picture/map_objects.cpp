@@ -8,25 +8,21 @@
 #include "emscape/scenario/model/snapshot.h"
 
 namespace emscape::study {
-namespace {
-
-bool isMoving(const scenario::Platform& platform) {
-  return platform.track.size() > 1;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::vector<MapEmitter> emittersOf(const MapStudy& study) {
   const auto& scenario = study.scenarios.front();
   std::vector<MapEmitter> emitters;
   for (const scenario::Emitter& emitter : scenario->emitters) {
-    emitters.push_back({&emitter, scenario->platforms[emitter.platform].name, {}});
+    const scenario::Platform& platform = scenario->platforms[emitter.platform];
+    emitters.push_back({&emitter, platform.name, platform.moves(), {}});
   }
   for (const double time_s : study.times_s) {
     const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, study.terrain.get(), time_s);
     for (std::size_t e = 0; e < emitters.size(); ++e) {
-      const bool is_moving = isMoving(scenario->platforms[scenario->emitters[e].platform]);
-      if (!is_moving && !emitters[e].positions.empty()) continue;
+      const int platform = scenario->emitters[e].platform;
+      if (!emitters[e].is_moving && !emitters[e].positions.empty()) continue;
+      if (!snapshot.platforms[static_cast<std::size_t>(platform)].present) continue;
       const scenario::EmitterState& state = snapshot.emitters[e];
       emitters[e].positions.push_back({time_s, state.position, state.height_msl_m});
     }
@@ -38,7 +34,7 @@ std::vector<MapSite> sitesOf(const MapStudy& study) {
   const auto& scenario = study.scenarios.front();
   std::vector<MapSite> sites;
   for (const scenario::Platform& platform : scenario->platforms) {
-    sites.push_back({platform.name, isMoving(platform), {}, {}, {}, {}});
+    sites.push_back({platform.name, platform.moves(), {}, {}, {}, {}});
   }
   const auto carry = [&](const auto& items, std::vector<std::string> MapSite::*names) {
     for (const auto& item : items)
@@ -52,6 +48,7 @@ std::vector<MapSite> sitesOf(const MapStudy& study) {
     for (std::size_t p = 0; p < sites.size(); ++p) {
       if (!sites[p].is_moving && !sites[p].positions.empty()) continue;
       const scenario::PlatformState& state = snapshot.platforms[p];
+      if (!state.present) continue;
       sites[p].positions.push_back({time_s, state.position, state.height_msl_m});
     }
   }
@@ -64,14 +61,15 @@ std::vector<MapTrack> tracksOf(const MapStudy& study) {
   std::vector<MapTrack> tracks;
   for (std::size_t p = 0; p < scenario->platforms.size(); ++p) {
     const scenario::Platform& platform = scenario->platforms[p];
-    if (!isMoving(platform)) continue;
+    if (!platform.moves()) continue;
     std::vector<double> times_s = study.times_s;
     for (const scenario::TrackPoint& point : platform.track) times_s.push_back(point.t_s);
     if (duration_s > 0) times_s.insert(times_s.end(), {0, duration_s});
     std::sort(times_s.begin(), times_s.end());
     times_s.erase(std::unique(times_s.begin(), times_s.end()), times_s.end());
-    MapTrack track{platform.name, {}};
+    MapTrack track{&platform, {}};
     for (const double time_s : times_s) {
+      if (!platform.isPresentAt(time_s)) continue;
       if (duration_s > 0 && (time_s < 0 || time_s > duration_s)) continue;
       try {
         const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, study.terrain.get(), time_s);

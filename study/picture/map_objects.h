@@ -19,7 +19,9 @@ struct MapPosition {
 struct MapEmitter {
   const scenario::Emitter* emitter = nullptr;
   std::string platform;
-  std::vector<MapPosition> positions;  ///< one if it is fixed; else one for each of the study's times
+  bool is_moving = false;
+  /// One if it is fixed; else one for each of the study's times at which its platform is present.
+  std::vector<MapPosition> positions;
 };
 
 /// A platform and its loads, by name.
@@ -27,11 +29,12 @@ struct MapSite {
   std::string platform;
   bool is_moving = false;
   std::vector<std::string> emitters, receivers, targets;
-  std::vector<MapPosition> positions;  ///< one if it is fixed; else one for each of the study's times
+  /// One if it is fixed; else one for each of the study's times at which it is present.
+  std::vector<MapPosition> positions;
 };
 
 struct MapTrack {
-  std::string platform;
+  const scenario::Platform* platform = nullptr;
   std::vector<MapPosition> positions;  ///< two or more, in the order of time
 };
 
@@ -39,8 +42,8 @@ struct MapTrack {
 std::vector<MapEmitter> emittersOf(const MapStudy& study);
 /// All platforms of the study's first scenario.
 std::vector<MapSite> sitesOf(const MapStudy& study);
-/// The tracks of its moving platforms within the scenario's duration: their own points and the study's times.
-/// Points over missing terrain whose height is given above ground are left out.
+/// The tracks of its moving platforms within the scenario's duration, where they are present: their own
+/// points and the study's times. Points over missing terrain whose height is given above ground are left out.
 std::vector<MapTrack> tracksOf(const MapStudy& study);
 
 /// The parts of a track between its crossings of the antimeridian, which end and begin at +-180 degrees: a

@@ -13,6 +13,7 @@
 #include "render/annotate/label_placement.h"
 #include "render/annotate/overlay_parts.h"
 #include "scenario/map/coast.h"
+#include "scenario/terrain/sea.h"
 #include "study/maps/contour_lines.h"
 #include "study/picture/map_colors.h"
 #include "study/picture/map_frame.h"
@@ -43,7 +44,9 @@ class MapPicture {
         style_({options.width, options.width * 3 / 4}, render::Theme::light),
         relief_{grid.width * options.refinement, grid.height * options.refinement,
                 grid.cell_m / options.refinement, options.ground_msl_m},
-        sea_(options.water.empty() ? seaOf(relief_) : options.water) {
+        sea_(options.water.empty()
+                 ? scenario::seaByHeights(relief_.width, relief_.height, relief_.ground_msl_m)
+                 : options.water) {
     if (hasNoValue())
       legend_.note += std::string(legend_.note.empty() ? "no colour: " : ", or ") + "no value";
     const double left = 84 * style_.unit, top = 96 * style_.unit;
@@ -297,6 +300,7 @@ std::vector<MapMarker> markersOf(const scenario::Snapshot& snapshot) {
   std::vector<MapMarker> markers;
   std::vector<bool> has_emitter(platforms.size());
   const auto add = [&](std::size_t p, const std::string& label, render::MarkerKind kind) {
+    if (!snapshot.platforms[p].present) return;
     const GeodeticPosition& position = snapshot.platforms[p].position;
     markers.push_back({position.latitude_deg, position.longitude_deg, label, kind,
                        playback::affiliationOf(platforms[p].side), platforms[p].sidc});
@@ -333,13 +337,28 @@ std::vector<float> groundOf(const MapGrid& grid, const scenario::Terrain& terrai
 void addCoast(const MapGrid& grid, const MapGrid& squares, MapPictureOptions& options) {
   const auto coast = grid.area ? scenario::Coast::installed(grid.area->box) : nullptr;
   if (coast == nullptr) return;
-  options.water.assign(squares.pixels(), 0);
-  parallelFor(static_cast<int>(squares.pixels()), 4096, [&](int begin, int end) {
-    for (int p = begin; p < end; ++p) {
-      const auto [latitude_deg, longitude_deg] = squares.positions[p];
-      if (!std::isnan(latitude_deg)) options.water[p] = coast->isWater(latitude_deg, longitude_deg) ? 1 : 0;
-    }
-  });
+  const MapPlane plane(squares);
+  options.water = scenario::waterOnGrid(
+      *coast, squares.width, squares.height,
+      [&](const std::vector<GeodeticPosition>& shore) {
+        std::vector<GeoPoint> points;
+        points.reserve(shore.size());
+        for (const GeodeticPosition& position : shore)
+          points.push_back({position.latitude_deg, position.longitude_deg});
+        std::vector<scenario::GridPlace> places;
+        places.reserve(shore.size());
+        for (const PlanePoint& at : plane.pointsAt(points))
+          places.push_back({(at.east_m - squares.left_m) / squares.cell_m - 0.5,
+                            (squares.top_m - at.north_m) / squares.cell_m - 0.5});
+        return places;
+      },
+      [&](int column, int row) {
+        const auto [latitude_deg, longitude_deg] =
+            squares.positions[static_cast<std::size_t>(row) * squares.width + column];
+        return GeodeticPosition{latitude_deg, longitude_deg, 0};
+      });
+  for (std::size_t p = 0; p < squares.pixels(); ++p)
+    if (std::isnan(squares.positions[p].latitude_deg)) options.water[p] = 0;
   constexpr double kSeen_px = 12;  // of a lake, so that it is no sliver
   const double squares_px = 0.75 * options.width / squares.width;
   const int seen = static_cast<int>(std::ceil(kSeen_px / squares_px));

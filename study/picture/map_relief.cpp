@@ -33,16 +33,6 @@ void forSquares(const Relief& relief, const Change& change) {
   });
 }
 
-/// Whether a test holds of the 3 x 3 squares around one, as far as they are on the map.
-template <class Test>
-bool allAround(const Relief& relief, int i, int j, const Test& test) {
-  for (int y = std::max(j - 1, 0); y <= std::min(j + 1, relief.height - 1); ++y) {
-    for (int x = std::max(i - 1, 0); x <= std::min(i + 1, relief.width - 1); ++x)
-      if (!test(static_cast<std::size_t>(y) * relief.width + x)) return false;
-  }
-  return true;
-}
-
 }  // namespace
 
 std::vector<float> shadesOf(const Relief& relief) {
@@ -57,23 +47,6 @@ std::vector<float> shadesOf(const Relief& relief) {
     if (!std::isnan(toward)) shades[p] = toward - kLevel;
   });
   return shades;
-}
-
-std::vector<std::uint8_t> seaOf(const Relief& relief) {
-  constexpr float kSea_m = 0.5F;
-  std::vector<std::uint8_t> sea(relief.posts(), 0);
-  if (relief.ground_msl_m.empty()) return sea;
-  const auto isLevel = [&](std::size_t p) { return std::abs(relief.ground_msl_m[p]) <= kSea_m; };
-  const auto mayBeLevel = [&](std::size_t p) { return std::isnan(relief.ground_msl_m[p]) || isLevel(p); };
-  std::vector<std::uint8_t> open(relief.posts(), 0);  // sea on all sides
-  forSquares(relief, [&](int i, int j, std::size_t p) {
-    open[p] = isLevel(p) && allAround(relief, i, j, mayBeLevel) ? 1 : 0;
-  });
-  forSquares(relief, [&](int i, int j, std::size_t p) {
-    const bool is_near_open = !allAround(relief, i, j, [&](std::size_t near) { return open[near] == 0; });
-    sea[p] = isLevel(p) && is_near_open ? 1 : 0;
-  });
-  return sea;
 }
 
 void dropSmallWater(std::vector<std::uint8_t>& water, int width, int height, int smallest) {

@@ -21,9 +21,6 @@ struct Relief {
 /// towards the light, down to -1.7 on slopes away from it; 0 where the slope is unknown.
 std::vector<float> shadesOf(const Relief& relief);
 
-/// The sea: level ground at mean sea level, wider than a square. 1 sea, 0 land or unknown.
-std::vector<std::uint8_t> seaOf(const Relief& relief);
-
 /// Makes land of connected water that is neither as wide nor as high as a number of squares and does not
 /// reach the edge of the map.
 void dropSmallWater(std::vector<std::uint8_t>& water, int width, int height, int smallest);

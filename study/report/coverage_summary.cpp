@@ -182,10 +182,12 @@ std::vector<std::string> coverageSummary(const MapStudy& study, const std::vecto
   }
   constexpr double kWorthSaying = 5e-4;
   if (known.isAny() && area_m2 > 0 && known.min < (1 - kWorthSaying) * area_m2) {
-    sentences.push_back(fmt::format(
-        "Shares are of the pixels with a known answer, {} % of the area: the others are below the ground, or "
-        "elevation data are missing there or on a path that decides.",
-        spreadText({100 * known.min / area_m2, 100 * known.max / area_m2}, 1)));
+    sentences.push_back(
+        fmt::format("Shares are of the pixels with a known answer, {} of {:.1f} km², {} % of the area: the "
+                    "others are below the "
+                    "ground, or elevation data are missing there or on a path that decides.",
+                    spreadText({known.min / 1e6, known.max / 1e6}, 1), area_m2 / 1e6,
+                    spreadText({100 * known.min / area_m2, 100 * known.max / area_m2}, 1)));
   } else if (known.isAny()) {
     sentences.push_back(
         fmt::format("The area is {:.0f} km²; the answer is known in all its pixels.", area_m2 / 1e6));

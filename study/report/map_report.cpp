@@ -220,10 +220,11 @@ ReportTable tableOf(const std::vector<MapRecord>& records) {
         return map.kind == MapKind::count && std::isfinite(value) ? fmt::format("{}", value)
                                                                   : figureText(value, map.unit);
       };
-      const double share = area_m2 && summary.known_area_m2 > 0 ? 100 * *area_m2 / summary.known_area_m2 : 0;
+      const bool has_share = area_m2 && summary.known_area_m2 > 0;
+      const double share = has_share ? 100 * *area_m2 / summary.known_area_m2 : 0;
       table.rows.push_back(
           {name, map.height ? describe(*map.height) : "", map.time_s ? fmt::format("{}", *map.time_s) : "all",
-           area_m2 ? figureText(*area_m2 / 1e6, "km2") : "", area_m2 ? figureText(share, "percent") : "",
+           area_m2 ? figureText(*area_m2 / 1e6, "km2") : "", has_share ? figureText(share, "percent") : "",
            text(summary.min), text(summary.max), render::unitText(map.unit)});
       if (has_unknown) table.rows.back().push_back(figureText(summary.unknown_area_m2 / 1e6, "km2"));
     };

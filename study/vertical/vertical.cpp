@@ -297,6 +297,10 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
   const auto e = static_cast<std::size_t>(index);
   scenario::Snapshot snapshot = scenario::instantAt(own, terrain.get(), request.time_s);
   const scenario::EmitterState& state = snapshot.emitters[e];
+  const auto platform = static_cast<std::size_t>(own->emitters[e].platform);
+  if (!snapshot.platforms[platform].present) {
+    throw Error(ErrorCode::usage, scenario::absenceText(own->platforms[platform], request.time_s));
+  }
   if (!state.active) {
     throw Error(ErrorCode::usage,
                 fmt::format("'{}' is off at t = {:g} s", own->emitters[e].name, request.time_s));

@@ -192,6 +192,15 @@ TEST(Areps, LossesGiveTheProbabilitiesOfTheDiagram) {
     }
   }
   EXPECT_GT(compared, 50);
+  const ProgramResult again =
+      run({"vertical", shippedScenario("jamming.yaml"), "--set", "emitters.stand-off jammer.enabled=false",
+           "--emitter", "search radar", "--azimuth", "30", "--compare",
+           folder / "areps/search_radar_APM_30.txt", "--json"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  const json comparison = json::parse(again.out)["comparison"];
+  EXPECT_EQ(comparison["points"], compared) << "its own points";
+  EXPECT_LT(std::abs(comparison["mean_db"].get<double>()), 0.02);
+  EXPECT_LE(std::abs(comparison["largest_db"].get<double>()), 0.051) << "it has tenths of a decibel";
 }
 
 /// The field of a scenario's power density in a region, in dBW/m2.

@@ -14,6 +14,7 @@ TEST(DisplayUnits, LengthsAndSpeedsHaveThreeDigits) {
   EXPECT_EQ(roundDistanceText(10000, Units::metric), "10 km");
   EXPECT_EQ(roundDistanceText(500, Units::metric), "500 m");
   EXPECT_EQ(roundDistanceText(926, Units::nautical), "0.5 NM");
+  EXPECT_EQ(roundDistanceText(15000, Units::nautical), "8.1 NM");
   EXPECT_EQ(heightText(250, Units::metric), "250 m");
   EXPECT_EQ(heightText(250, Units::nautical), "820 ft");
   EXPECT_EQ(speedText(120, Units::nautical), "233 kt");

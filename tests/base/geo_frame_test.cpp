@@ -115,6 +115,10 @@ TEST(Geodesy, GeodesicsOfKnownLength) {
   EXPECT_EQ(end.height_ellipsoid_m, 0);
 }
 
+TEST(FrameWkt, RefusesAnOriginThatIsNotOnTheEarth) {
+  EXPECT_THROW(wktOf({FrameKind::altitude, 95, 0, 0}), Error);
+}
+
 TEST(Geodesy, WrapsLongitudes) {
   EXPECT_EQ(wrapLongitude_deg(190), -170);
   EXPECT_EQ(wrapLongitude_deg(-190), 170);

@@ -34,7 +34,7 @@ std::vector<NamedAntenna> antennas() {
           {"cosecant squared", scenario::makeCosecant2(34, 2, 5, 40, -40)},
           {"sinc", scenario::makeSinc(30, 6, 6, -50)},
           {"array", scenario::makePhasedArray(30, 16, 16, 0.5, 1)},
-          {"measured", scenario::readMsi(test::shippedScenario("data/sector_450mhz.msi"))}};
+          {"measured", scenario::readAntenna(test::shippedScenario("data/sector_450mhz.msi"))}};
 }
 
 TEST(Combine, RowsEqualPlainFunction) {

@@ -160,7 +160,7 @@ TEST(PatternReach, HoldsAllDirectionsAboveALevel) {
   for (const AntennaPtr& antenna :
        {scenario::makeGaussian(30, 4, 12, -35), scenario::makeCosecant2(30, 4, 5, 40, -35),
         scenario::makeSinc(30, 1.2, 3, -40), scenario::makePhasedArray(25, 24, 16, 0.5, 1, -45),
-        scenario::readMsi(test::shippedScenario("data/sector_450mhz.msi"))}) {
+        scenario::readAntenna(test::shippedScenario("data/sector_450mhz.msi"))}) {
     for (const double elevation_deg : {0.0, 4.0, 60.0}) {
       SCOPED_TRACE(antenna->description);
       const PatternReach& reach = reaches.of(antenna, elevation_deg);

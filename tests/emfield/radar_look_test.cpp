@@ -124,7 +124,7 @@ TEST(RadarRows, EqualVoxelFunction) {
   const scenario::AntennaPtr antennas[] = {
       scenario::makeIsotropic(3), scenario::makeGaussian(30, 3, 4, -35),
       scenario::makeCosecant2(34, 2, 5, 40, -40), scenario::makePhasedArray(30, 16, 16, 0.5, 1),
-      scenario::readMsi(test::shippedScenario("data/sector_450mhz.msi"))};
+      scenario::readAntenna(test::shippedScenario("data/sector_450mhz.msi"))};
   const auto scenario = emptyScenario(FrameKind::altitude, 40, 5, {37e3, 23e3, 5000}, {70, 9, 7});
   const volume::Grid grid = gridOf(scenario->region);
   const GridColumns columns = makeGridColumns(grid, nullptr);

@@ -255,7 +255,7 @@ TEST_P(TwoRays, AreWeighedByThePatternAlongEachInEveryVoxel) {
       scenario::makeCosecant2(32, 8, 5, 40, -45),
       scenario::makeSinc(30, 15, 9, -60),
       scenario::makePhasedArray(28, 8, 12, 0.5, 1),
-      scenario::readMsi(test::shippedScenario("data/sector_450mhz.msi"))};
+      scenario::readAntenna(test::shippedScenario("data/sector_450mhz.msi"))};
   using propagation::Polarization;
   const Polarization polarizations[] = {Polarization::horizontal, Polarization::vertical,
                                         Polarization::slant_45};

@@ -4,17 +4,20 @@
 #include <stdexcept>
 
 #include "emscape/scenario/file/scenario_file.h"
-#include "interop/acmi/acmi_reader.h"
-#include "interop/cot/cot_reader.h"
-#include "interop/dis/datagrams.h"
-#include "interop/dis/dis_recorder.h"
+#include "emscape/scenario/model/poses.h"
 #include "interop/emitters/emitter_database.h"
 #include "interop/emitters/emitter_names.h"
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
 #include "interop/live/live_acmi.h"
+#include "interop/live/live_cot.h"
 #include "interop/live/live_dis.h"
-#include "interop/recording/read_recording.h"
+#include "recording/acmi/acmi_reader.h"
+#include "recording/cot/cot_reader.h"
+#include "recording/dis/datagrams.h"
+#include "recording/dis/dis_recorder.h"
+#include "recording/read_recording.h"
+#include "scenario/model/posed_platform.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
@@ -96,14 +99,16 @@ void takeStream(interop::LiveState& live, const std::string& bytes) {
   live.expire(time_s);
   const interop::LiveRecording now = live.recording(time_s);
   if (now.keys.size() != now.recording.objects.size() || now.keys.size() > interop::LiveLimits::kObjects ||
-      now.keys.size() != live.objectCount() || now.keys.size() != live.poses(time_s).size())
+      now.keys.size() != live.objectCount() || now.keys.size() > live.poses(time_s).size())
     throw std::logic_error("the live state has other objects than its recording");
   for (const interop::RecordedBeam& beam : now.recording.beams) {
     if (beam.object >= now.keys.size()) throw std::logic_error("a beam of no object");
   }
   for (const interop::LivePose& at : live.poses(time_s + 5)) {
-    if (!(std::abs(at.pose.latitude_deg) <= 90) || !std::isfinite(at.pose.height_msl_m))
-      throw std::logic_error("a pose that is nowhere");
+    const std::string fault = scenario::poseFault(
+        scenario::positionMsl(at.pose.latitude_deg, at.pose.longitude_deg, at.pose.height_msl_m),
+        {at.pose.heading_deg, at.pose.pitch_deg, at.pose.roll_deg});
+    if (!fault.empty()) throw std::logic_error("a pose that cannot be shown: " + fault);
   }
   checkFuzzMessage(live.counts().first_bad);
   live.expire(time_s + 20);
@@ -240,6 +245,22 @@ const FuzzTargetsAdded added({
        for (const std::string& part : {bytes.substr(0, bytes.size() / 2), bytes.substr(bytes.size() / 2)})
          splitter.take(part, [&](std::string_view event) { reader.takeEvent(event); });
        checkFuzzMessage(reader.finish().tally.first_bad);
+     },
+     [] { return std::vector<std::string>{recordingOf(".cot")}; }},
+    {"cot_live", "",
+     [](const fs::path&, const std::string& bytes) {
+       for (const bool is_text : {true, false}) {
+         interop::LiveCot live(is_text);
+         for (const std::string& part :
+              {bytes.substr(0, bytes.size() / 2), bytes.substr(bytes.size() / 2), bytes})
+           live.take(reinterpret_cast<const std::uint8_t*>(part.data()), part.size(), 0);
+         const interop::LiveRecording now = live.recording(1);
+         if (now.keys.size() != now.recording.objects.size() || live.poses(1).size() < now.keys.size())
+           std::abort();
+         checkFuzzMessage(live.counts().first_bad);
+         live.expire(1e9);
+         if (live.objectCount() != 0) std::abort();
+       }
      },
      [] { return std::vector<std::string>{recordingOf(".cot")}; }},
     {"emitter_names", "input.xml",

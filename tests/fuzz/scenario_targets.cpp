@@ -9,6 +9,7 @@
 #include "emscape/scenario/model/target.h"
 #include "scenario/air/refractivity_file.h"
 #include "scenario/antenna/shapes.h"
+#include "scenario/map/point_table.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/support/files.h"
 
@@ -135,7 +136,40 @@ const FuzzTargetsAdded added({
      [] {
        return std::vector<std::string>{
            "azimuth_deg,elevation_deg,gain_db\n-180,-90,-30\n0,-90,-10\n180,-90,-30\n-180,90,-30\n0,90,0\n"
-           "180,90,-30\n"};
+           "180,90,-30\n",
+           "Freq "
+           "[GHz];Phi[deg];Theta[deg];dB(GainTotal)[]\n3;0;0;-3\n3;0;90;5,5\n3;0;180;-9\n3;90;0;-3\n3;90;"
+           "90;1\n3;90;180;-9\n"};
+     }},
+    {"antenna_nsma", "input.adf",
+     [](const fs::path& file, const std::string&) { scenario::readAntenna(file, 20); },
+     [] {
+       return std::vector<std::string>{
+           "REVNUM:,NSMA WG16.99.050\nANTMAN:,Acme\nGUNITS:,DBD/DBR\nMDGAIN:,15\nELWIDT:,8\nELTILT:,4\n"
+           "PATCUT:,H\nPOLARI:,V/V\nNUPOIN:,4\nFSTLST:,-180,90\n-180,-30\n-90,-20\n0,0\n90,-20\n"
+           "PATCUT:,V\nPOLARI:,V/"
+           "V\nNUPOIN:,4\nFSTLST:,-180,90\n-180,-30\n-90,-20\n0,0\n90,-20\nENDFIL:,EOF\n"};
+     }},
+    {"antenna_stk", "input.ant",
+     [](const fs::path& file, const std::string&) { scenario::readAntenna(file, 20); },
+     [] {
+       return std::vector<std::string>{
+           "stk.v.11.0\nThetaPhiPattern\nAngleUnits Degrees\nNumberOfPoints 6\nPatternData\n0 0 30\n90 0 "
+           "3\n180 0 "
+           "-9\n0 90 30\n90 90 3\n180 90 -9\n",
+           "stk.v.4.3\nSymmetricPattern\nAngleUnits Radians\nPatternData\n0 30\n0.5 10\n1 0\n"};
+     }},
+    {"antenna_splat_az", "input.az",
+     [](const fs::path& file, const std::string&) { scenario::readAntenna(file, 20); },
+     [] { return std::vector<std::string>{"45.0\n0 1.0\n90 0.5\n180 0.1 ; back\n270 0.5\n"}; }},
+    {"antenna_splat_el", "input.el",
+     [](const fs::path& file, const std::string&) { scenario::readAntenna(file, 20); },
+     [] { return std::vector<std::string>{"1.1 130.0\n-10.0 0.172\n0 0.95\n1 1.0\n90 0.2\n"}; }},
+    {"points_csv", "input.csv",
+     [](const fs::path& file, const std::string&) { scenario::readPointTable(file); },
+     [] {
+       return std::vector<std::string>{"name,latitude_deg,longitude_deg,owner\nhill,52.5,5.25,A\n",
+                                       "Name;Lat;Lon\nhill;52,5;5,25\n", "lat\tlon\n52.5\t5.25\n"};
      }},
     {"antenna_msi", "input.msi",
      [](const fs::path& file, const std::string&) {

@@ -9,6 +9,7 @@
 #include "emscape/study/maps/coverage.h"
 #include "emscape/study/maps/map_grid.h"
 #include "emscape/study/maps/products.h"
+#include "report/maps/areps_table.h"
 #include "study/report/coverage_folder.h"
 #include "study/report/map_folder.h"
 #include "study/sweep/definition/candidate_sites.h"
@@ -144,6 +145,17 @@ std::vector<std::string> studySeed(const std::string& file) {
 }
 
 const FuzzTargetsAdded added({
+    {"areps", "input.txt",
+     [](const fs::path& file, const std::string&) {
+       const report::ArepsTable table = report::readAreps(file.string());
+       table.at_db(table.max_range_m, table.max_height_m);
+       table.at_db(0.7 * table.max_range_m, 0.5 * (table.min_height_m + table.max_height_m));
+     },
+     [] {
+       return std::vector<std::string>{
+           "Bearing angle = 30\nHmin = 0\nHmax = 100\nNzout = 2\nRmax = 3000\nNrout = 3\n[Apm Loss Data]\n"
+           "GroundValue = -32766\n-32766 1010 1020\n1100 1110 1120\n1200 1210 1220\n"};
+     }},
     {"study", "study/input.yaml",
      [](const fs::path& file, const std::string&) { study::loadStudy(file, {}, "0", false); },
      [] {

@@ -55,6 +55,34 @@ void readDescribed(const fs::path& file, const std::string& bytes) {
   readElevation(fs::path(file).replace_extension().replace_extension(), bytes);
 }
 
+/// A tile of HGT at 52 degrees north, 5 east, packed. @param ending  .zip or .gz
+std::string packedTile(const std::string& ending) {
+  const TemporaryFolder folder;
+  writeHgt(folder / "N52E005.hgt", 11, [](int column, int row) { return column - row; });
+  const std::string packed = folder / ("a" + ending);
+  if (ending == ".zip") {
+    writeZip(packed, {{"N52E005.hgt", folder / "N52E005.hgt"}});
+  } else {
+    writeGzip(folder / "N52E005.hgt", packed);
+  }
+  return readFile(packed);
+}
+
+/// A GeoTIFF in red, green and blue at 50 degrees north, 10 east, whose colours encode heights.
+std::string colours() {
+  const TemporaryFolder folder;
+  writeColours(folder / "a.tif", [](int column, int row) { return (32768L + column - row) * 256; });
+  return readFile(folder / "a.tif");
+}
+
+void readColours(const fs::path& file, const std::string&) {
+  scenario::TerrainSpec spec;
+  spec.files = {file.string()};
+  spec.keys.resize(1);
+  spec.keys[0].encoding = scenario::HeightEncoding::terrarium;
+  scenario::Terrain::load(spec, {49, 50, 10, 11});
+}
+
 /// The first columns of a tile of DTED level 0 from 40 to 41 degrees north and 5 to 6 degrees east.
 std::string dtedColumns() {
   constexpr int kTilePosts = 121, kColumns = 12;
@@ -85,6 +113,18 @@ const FuzzTargetsAdded added({
     {"terrain_tif", "input.tif", readElevation, geotiffs},
     {"terrain_asc", "input.asc", readElevation,
      [] { return std::vector<std::string>{converted("AAIGrid", "a.asc", "a.asc")}; }},
+    {"terrain_colours", "input.tif", readColours, [] { return std::vector<std::string>{colours()}; }},
+    {"terrain_gz", "N52E005.hgt.gz", readElevation,
+     [] { return std::vector<std::string>{packedTile(".gz")}; }},
+    {"terrain_img", "input.img", readElevation,
+     [] { return std::vector<std::string>{converted("HFA", "a.img", "a.img")}; }},
+    {"terrain_nc", "input.nc", readElevation,
+     [] { return std::vector<std::string>{converted("netCDF", "a.nc", "a.nc")}; }},
+    {"terrain_gpkg", "input.gpkg", readElevation,
+     [] { return std::vector<std::string>{converted("GPKG", "a.gpkg", "a.gpkg")}; }},
+    {"terrain_xyz", "input.xyz", readElevation,
+     [] { return std::vector<std::string>{converted("XYZ", "a.xyz", "a.xyz")}; }},
+    {"terrain_zip", "input.zip", readElevation, [] { return std::vector<std::string>{packedTile(".zip")}; }},
     {"terrain_dem", "input.dem", readElevation,
      [] { return std::vector<std::string>{converted("USGSDEM", "a.dem", "a.dem")}; }},
     {"terrain_dted", "input.dt0",

@@ -2,13 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
-#include "interop/recording/read_recording.h"
+#include "recording/read_recording.h"
+#include "tests/interop/there_and_back.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/temporary_folder.h"
@@ -16,24 +18,18 @@
 namespace emscape::interop {
 namespace {
 
+using test::ScenarioPtr;
 using testing::HasSubstr;
-using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 
 class RoundTrip : public testing::TestWithParam<const char*> {};
 
 TEST_P(RoundTrip, PositionsAnglesAndEmittersStay) {
-  const test::TemporaryFolder folder;
-  const ScenarioPtr before = scenario::loadScenario(test::shippedScenario("jacksboro.yaml"));
+  const ScenarioPtr before = scenario::loadScenario(emscape::test::shippedScenario("jacksboro.yaml"));
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
-  const std::string file = folder / (std::string("a") + GetParam());
-  const ExportResult exported = exportScenario(before, terrain.get(), file);
-  EXPECT_GT(exported.records, 100);
-  ImportOptions options;
-  options.scenario = folder / "back.yaml";
-  options.emitters = exported.emitters;
-  const ImportResult result = importRecording(readRecording(file), options);
-  EXPECT_EQ(result.tally.bad, 0) << result.tally.first_bad;
-  const ScenarioPtr after = scenario::loadScenario(options.scenario);
+  const test::ThereAndBack way(before, terrain.get(), GetParam());
+  EXPECT_GT(way.exported.records, 100);
+  EXPECT_EQ(way.back.result.tally.bad, 0) << way.back.result.tally.first_bad;
+  const ScenarioPtr after = way.back.scenario;
   EXPECT_EQ(after->clock.epoch_utc.substr(0, 19), before->clock.epoch_utc.substr(0, 19));
   EXPECT_NEAR(after->clock.duration_s, before->clock.duration_s, 0.01);
   EXPECT_EQ(after->platforms.size(), before->platforms.size());
@@ -99,9 +95,10 @@ output: {quantities: [field_strength_dbuvm]}
 )";
 
 TEST_P(RoundTrip, SidesAndDurationOfFixedSitesStayAndTheRestIsTold) {
-  const test::TemporaryFolder folder;
+  const emscape::test::TemporaryFolder folder;
   const ScenarioPtr before = scenario::loadScenario(folder.write("sites.yaml", kFixedSites));
-  const ExportResult exported = exportScenario(before, nullptr, folder / (std::string("a") + GetParam()));
+  const test::ThereAndBack way(before, nullptr, GetParam());
+  const ExportResult& exported = way.exported;
   const bool is_dis = std::string(GetParam()) == ".pcap";
   const bool needs_epoch = std::string(GetParam()) == ".cot";
   ASSERT_EQ(exported.notes.size(), is_dis || needs_epoch ? 2u : 1u);
@@ -109,11 +106,7 @@ TEST_P(RoundTrip, SidesAndDurationOfFixedSitesStayAndTheRestIsTold) {
   if (is_dis) {
     EXPECT_THAT(exported.notes[1], HasSubstr("not ASCII: 2"));
   }
-  ImportOptions options;
-  options.scenario = folder / "back.yaml";
-  options.emitters = exported.emitters;
-  importRecording(readRecording(exported.file), options);
-  const ScenarioPtr after = scenario::loadScenario(options.scenario);
+  const ScenarioPtr after = way.back.scenario;
   EXPECT_NEAR(after->clock.duration_s, 30, 1e-3);
   std::vector<std::optional<scenario::Side>> sides;
   for (const scenario::Platform& platform : after->platforms) {
@@ -130,19 +123,13 @@ TEST_P(RoundTrip, SidesAndDurationOfFixedSitesStayAndTheRestIsTold) {
 class TracksThereAndBack : public testing::TestWithParam<const char*> {};
 
 TEST_P(TracksThereAndBack, PositionsStayAndTheRestIsTold) {
-  const test::TemporaryFolder folder;
-  const ScenarioPtr before = scenario::loadScenario(test::shippedScenario("jamming.yaml"));
+  const ScenarioPtr before = scenario::loadScenario(emscape::test::shippedScenario("jamming.yaml"));
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
-  const ExportResult exported =
-      exportScenario(before, terrain.get(), folder / (std::string("a") + GetParam()));
-  ASSERT_EQ(exported.notes.size(), 1u);
-  EXPECT_THAT(exported.notes[0], HasSubstr("not in the recording: times and directions of emitters"));
-  ImportOptions options;
-  options.scenario = folder / "back.yaml";
-  options.emitters = exported.emitters;
-  const ImportResult result = importRecording(readRecording(exported.file), options);
-  EXPECT_EQ(result.tally.bad, 0) << result.tally.first_bad;
-  const ScenarioPtr after = scenario::loadScenario(options.scenario);
+  const test::ThereAndBack way(before, terrain.get(), GetParam());
+  ASSERT_EQ(way.exported.notes.size(), 1u);
+  EXPECT_THAT(way.exported.notes[0], HasSubstr("not in the recording: times and directions of emitters"));
+  EXPECT_EQ(way.back.result.tally.bad, 0) << way.back.result.tally.first_bad;
+  const ScenarioPtr after = way.back.scenario;
   ASSERT_EQ(after->platforms.size(), before->platforms.size());
   ASSERT_EQ(after->emitters.size(), before->emitters.size());
   EXPECT_EQ(after->clock.epoch_utc.substr(0, 19), before->clock.epoch_utc.substr(0, 19));
@@ -161,9 +148,62 @@ TEST_P(TracksThereAndBack, PositionsStayAndTheRestIsTold) {
 INSTANTIATE_TEST_SUITE_P(Formats, TracksThereAndBack, testing::Values(".kml", ".czml"),
                          [](const auto& format) { return std::string(format.param).substr(1); });
 
+/// 20 aircraft over a day are to have less than 5 MB.
+TEST(Export, CzmlOfATurnHasFewDigitsAndIsWithinAMetre) {
+  const emscape::test::TemporaryFolder folder;
+  std::string track = "t_s,latitude_deg,longitude_deg,height_msl_m\n";
+  for (int t_s = 0; t_s <= 1000; t_s += 10) {
+    track += std::to_string(t_s) + "," + std::to_string(52 + 0.2 * std::cos(0.01 * t_s)) + "," +
+             std::to_string(5 + 0.3 * std::sin(0.01 * t_s)) + "," + std::to_string(6000 + 0.3 * t_s) + "\n";
+  }
+  folder.write("turn.csv", track);
+  std::string text = kFixedSites;
+  text.replace(text.find("duration_s: 30"), 14, "duration_s: 1000");
+  const std::string site = "position: {latitude_deg: 52.03, longitude_deg: 5, height_agl_m: 40}";
+  text.replace(text.find(site), site.size(), "track: {file: turn.csv}");
+  const ScenarioPtr before = scenario::loadScenario(folder.write("turn.yaml", text));
+  const test::ThereAndBack way(before, nullptr, ".czml");
+  const std::string czml = emscape::test::readFile(way.exported.file);
+  const std::size_t packet = czml.find("\"platform/4\""), begin = czml.find('[', packet),
+                    end = czml.find(']', begin);
+  const auto numbers = std::count(czml.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  czml.begin() + static_cast<std::ptrdiff_t>(end), ',') +
+                       1;
+  EXPECT_EQ(numbers, 4 * 101) << "each point of the track is a corner";
+  EXPECT_LT(static_cast<double>(end - begin) / 101, 5e6 / (20 * 8641));
+  for (double t_s = 0; t_s <= 1000; t_s += 3.7) {
+    const scenario::Snapshot a = scenario::instantAt(before, nullptr, t_s),
+                             b = scenario::instantAt(way.back.scenario, nullptr, t_s);
+    EXPECT_LT(length(toEcef(a.platforms[3].position) - toEcef(b.platforms[3].position)), 1) << t_s;
+  }
+}
+
+TEST(Export, PlatformIsInTheRecordingOnlyDuringItsTrack) {
+  scenario::Scenario late = *scenario::loadScenario(test::shippedScenario("jamming.yaml"));
+  const std::string platform = "helicopter";
+  late.set("platforms." + platform + ".track",
+           "{points: [{t_s: 20, latitude_deg: 36.3, longitude_deg: -84.2, height_msl_m: 2000}, {t_s: 40, "
+           "latitude_deg: 36.31, longitude_deg: -84.2, height_msl_m: 2000}]}");
+  const auto before = std::make_shared<const scenario::Scenario>(late);
+  const scenario::TerrainPtr terrain = scenario::loadTerrain(*before);
+  for (const char* ending : {".acmi", ".pcap", ".asi", ".cot", ".kml", ".czml"}) {
+    const emscape::test::TemporaryFolder folder;
+    const ExportResult exported = exportScenario(before, terrain.get(), folder / (std::string("a") + ending));
+    const Recording recording = readRecording(exported.file);
+    bool is_found = false;
+    for (const RecordedObject& object : recording.objects) {
+      if (object.name != platform || object.poses.empty()) continue;
+      is_found = true;
+      double begin_s = object.poses.front().t_s, end_s = object.poses.back().t_s;
+      EXPECT_NEAR(end_s - begin_s, 20, 0.1) << ending;
+    }
+    EXPECT_TRUE(is_found) << ending;
+  }
+}
+
 TEST(Export, OfAnEmitterThatIsSwitchedOffIsSilent) {
-  const test::TemporaryFolder folder;
-  scenario::Scenario off = *scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  const emscape::test::TemporaryFolder folder;
+  scenario::Scenario off = *scenario::loadScenario(emscape::test::shippedScenario("quick.yaml"));
   for (const char* name : {"radar", "transmitter"})
     off.set(std::string("emitters.") + name + ".enabled", "false");
   const ExportResult exported =
@@ -175,24 +215,24 @@ TEST(Export, OfAnEmitterThatIsSwitchedOffIsSilent) {
 }
 
 TEST(Export, TimesThatACaptureCannotHoldAreRefused) {
-  const test::TemporaryFolder folder;
-  scenario::Scenario early = *scenario::loadScenario(test::shippedScenario("quick.yaml"));
+  const emscape::test::TemporaryFolder folder;
+  scenario::Scenario early = *scenario::loadScenario(emscape::test::shippedScenario("quick.yaml"));
   early.set("epoch", "1944-06-06T05:00:00Z");
   const auto scenario = std::make_shared<scenario::Scenario>(early);
-  EXPECT_THAT(
-      test::errorOf([&] { exportScenario(scenario, nullptr, folder / "a.pcap"); }, ErrorCode::bad_input),
-      HasSubstr("epoch: 1944-06-06T05:00:00Z: captures hold times from 1970 to 2106"));
+  EXPECT_THAT(emscape::test::errorOf([&] { exportScenario(scenario, nullptr, folder / "a.pcap"); },
+                                     ErrorCode::bad_input),
+              HasSubstr("epoch: 1944-06-06T05:00:00Z: captures hold times from 1970 to 2106"));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.pcap"));
 }
 
 TEST(Export, UnknownEndingIsRefused) {
-  const ScenarioPtr scenario = scenario::loadScenario(test::shippedScenario("quick.yaml"));
-  EXPECT_THAT(test::errorOf([&] { exportScenario(scenario, nullptr, "a.hla"); }, ErrorCode::usage),
+  const ScenarioPtr scenario = scenario::loadScenario(emscape::test::shippedScenario("quick.yaml"));
+  EXPECT_THAT(emscape::test::errorOf([&] { exportScenario(scenario, nullptr, "a.hla"); }, ErrorCode::usage),
               HasSubstr("'a.hla' is no name of a recording; it ends in .zip.acmi, .acmi, .pcap, .asi, .cot"));
 }
 
 TEST(Export, EmittersOfOneNameWithTheirPlatformStayApart) {
-  const test::TemporaryFolder folder;
+  const emscape::test::TemporaryFolder folder;
   const ScenarioPtr before = scenario::loadScenario(folder.write("twins.yaml", R"(schema_version: 1
 name: twins
 duration_s: 30
@@ -216,14 +256,8 @@ emitters:
 output: {quantities: [power_density_dbwm2]}
 )"));
   for (const char* ending : {".acmi", ".pcap", ".asi", ".cot"}) {
-    const ExportResult exported =
-        exportScenario(before, nullptr, folder / (std::string("a") + ending), {1, true});
-    ImportOptions options;
-    options.scenario = folder / "back.yaml";
-    options.replace = true;
-    options.emitters = exported.emitters;
-    importRecording(readRecording(exported.file), options);
-    const ScenarioPtr after = scenario::loadScenario(options.scenario);
+    const test::ThereAndBack way(before, nullptr, ending);
+    const ScenarioPtr after = way.back.scenario;
     std::vector<double> frequencies;
     for (const scenario::Emitter& emitter : after->emitters) {
       EXPECT_EQ(after->platforms[static_cast<std::size_t>(emitter.platform)].name, "jammer") << ending;
@@ -235,12 +269,12 @@ output: {quantities: [power_density_dbwm2]}
 }
 
 TEST(Export, ShippedRecordingAndItsDatabaseAreWhatItWrites) {
-  const test::TemporaryFolder folder;
-  const ScenarioPtr scenario = scenario::loadScenario(test::shippedScenario("jamming.yaml"));
+  const emscape::test::TemporaryFolder folder;
+  const ScenarioPtr scenario = scenario::loadScenario(emscape::test::shippedScenario("jamming.yaml"));
   const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
   const ExportResult exported = exportScenario(scenario, terrain.get(), folder / "jamming.zip.acmi");
-  const std::string shipped = test::shippedScenario("recordings/jamming.zip.acmi");
-  EXPECT_EQ(test::readFile(exported.emitters), test::readFile(shipped + ".emitters.yaml"));
+  const std::string shipped = emscape::test::shippedScenario("recordings/jamming.zip.acmi");
+  EXPECT_EQ(emscape::test::readFile(exported.emitters), emscape::test::readFile(shipped + ".emitters.yaml"));
   const Recording a = readRecording(exported.file), b = readRecording(shipped);
   ASSERT_EQ(a.objects.size(), b.objects.size());
   for (std::size_t i = 0; i < a.objects.size(); ++i)
@@ -248,7 +282,7 @@ TEST(Export, ShippedRecordingAndItsDatabaseAreWhatItWrites) {
 }
 
 TEST(Export, MoreEmittersThanDisCanNumberAreRefused) {
-  const test::TemporaryFolder folder;
+  const emscape::test::TemporaryFolder folder;
   std::string text = kFixedSites;
   const std::size_t at = text.find("targets:");
   std::string emitters;
@@ -260,7 +294,7 @@ TEST(Export, MoreEmittersThanDisCanNumberAreRefused) {
   }
   const ScenarioPtr many = scenario::loadScenario(folder.write("many.yaml", text.insert(at, emitters)));
   EXPECT_THAT(
-      test::errorOf([&] { exportScenario(many, nullptr, folder / "a.pcap"); }, ErrorCode::bad_input),
+      emscape::test::errorOf([&] { exportScenario(many, nullptr, folder / "a.pcap"); }, ErrorCode::bad_input),
       HasSubstr("the platform 'ours' has 256 radars and jammers, more than the 255 that DIS can number"));
 }
 

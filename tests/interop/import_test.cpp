@@ -9,7 +9,8 @@
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
 #include "interop/importing/beam_pieces.h"
-#include "interop/recording/read_recording.h"
+#include "recording/read_recording.h"
+#include "tests/interop/there_and_back.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
 #include "tests/support/reference_data.h"
@@ -18,8 +19,8 @@
 namespace emscape::interop {
 namespace {
 
+using test::ScenarioPtr;
 using testing::HasSubstr;
-using ScenarioPtr = std::shared_ptr<const scenario::Scenario>;
 
 RecordedObject objectAt(const std::string& name, const std::string& type, double latitude_deg,
                         double height_m, double moves_deg = 0) {
@@ -55,16 +56,14 @@ Recording smallRecording() {
 
 class Import : public testing::Test {
  protected:
-  ImportResult import(const Recording& recording, ImportOptions options = {}) {
-    options.scenario = folder_ / "out.yaml";
-    options.replace = true;
-    result_ = importRecording(recording, options);
-    scenario_ = scenario::loadScenario(options.scenario);
+  ImportResult import(const Recording& recording, const ImportOptions& options = {}) {
+    imported_.import(recording, options);
     return result_;
   }
-  const test::TemporaryFolder folder_;
-  ImportResult result_;
-  ScenarioPtr scenario_;
+  test::Imported imported_;
+  const emscape::test::TemporaryFolder& folder_ = imported_.folder;
+  const ImportResult& result_ = imported_.result;
+  const ScenarioPtr& scenario_ = imported_.scenario;
 };
 
 TEST_F(Import, ObjectsHaveThePlatformsAndEmittersOfTheirTypes) {
@@ -90,7 +89,7 @@ TEST_F(Import, PositionsBelowTheGroundAreRaisedAndTold) {
 
 TEST_F(Import, PositionsOutsideTheTerrainAreTold) {
   ImportOptions options;
-  options.terrain = {test::shippedScenario("data/jacksboro.tif")};
+  options.terrain = {emscape::test::shippedScenario("data/jacksboro.tif")};
   import(smallRecording(), options);
   EXPECT_THAT(result_.notes,
               testing::Contains(HasSubstr("positions are where the elevation files have no height")));
@@ -282,7 +281,7 @@ output: {quantities: [field_strength_dbuvm]}
   EXPECT_EQ(scenario_->emitters[0].name, "beacon");
   EXPECT_EQ(scenario_->output.quantities, std::vector<std::string>{"field_strength_dbuvm"});
   EXPECT_EQ(scenario_->clock.duration_s, 100);
-  EXPECT_THAT(test::readFile(folder_ / "out.yaml"), HasSubstr("# of the mast"));
+  EXPECT_THAT(emscape::test::readFile(folder_ / "out.yaml"), HasSubstr("# of the mast"));
 }
 
 TEST_F(Import, OnlyTheNamedObjectsAreTaken) {
@@ -291,7 +290,7 @@ TEST_F(Import, OnlyTheNamedObjectsAreTaken) {
   import(smallRecording(), options);
   ASSERT_EQ(scenario_->platforms.size(), 1u);
   options.only = {"nothing"};
-  EXPECT_THAT(test::errorOf([&] { import(smallRecording(), options); }, ErrorCode::bad_input),
+  EXPECT_THAT(emscape::test::errorOf([&] { import(smallRecording(), options); }, ErrorCode::bad_input),
               HasSubstr("no object is left"));
 }
 
@@ -301,14 +300,14 @@ TEST_F(Import, WithoutAnyEmitterTheErrorNamesTheRemedy) {
   recording.objects[0].domain = Domain::land;
   recording.objects[0].keys = {};
   EXPECT_THAT(
-      test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
-      HasSubstr("no emitter is left of 1 object. Give a database that matches them (--emitters FILE"));
+      emscape::test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
+      HasSubstr("no emitter is left of 1 object. Add the objects to a scenario with emitters (--base FILE), give "));
 }
 
 TEST(ImportRegion, TextIsALatitudeALongitudeAndASize) {
   EXPECT_EQ(parseRegion("36.3,-84,80").longitude_deg, -84);
   for (const char* text : {"", "1,2", "1,2,3,4", "91,0,10", "1,2,x", "1,2,0"})
-    EXPECT_THAT(test::errorOf([&] { parseRegion(text); }, ErrorCode::usage),
+    EXPECT_THAT(emscape::test::errorOf([&] { parseRegion(text); }, ErrorCode::usage),
                 HasSubstr("is not auto or LAT,LON,SIZE_KM"));
 }
 
@@ -343,13 +342,12 @@ TEST(BeamPieces, SettingsAboveTheirLargestNumberAreLeftOut) {
 
 TEST(ShippedRecordings, BecomeTheScenarioThatTheyWereMadeOf) {
   for (const char* name : {"jamming.zip.acmi", "jamming.pcap"}) {
-    const test::TemporaryFolder folder;
-    const std::string file = test::shippedScenario(std::string("recordings/") + name);
+    const std::string file = emscape::test::shippedScenario(std::string("recordings/") + name);
     ImportOptions options;
-    options.scenario = folder / "out.yaml";
     options.emitters = file + ".emitters.yaml";
-    const ImportResult result = importRecording(readRecording(file), options);
-    const ScenarioPtr scenario = scenario::loadScenario(options.scenario);
+    const test::Imported imported(readRecording(file), options);
+    const ScenarioPtr scenario = imported.scenario;
+    const ImportResult& result = imported.result;
     ASSERT_EQ(scenario->emitters.size(), 2u) << name;
     EXPECT_EQ(scenario->emitters[0].name, "ridge site search radar") << name;
     EXPECT_EQ(scenario->emitters[1].name, "helicopter stand-off jammer") << name;
@@ -359,13 +357,11 @@ TEST(ShippedRecordings, BecomeTheScenarioThatTheyWereMadeOf) {
 }
 
 TEST(PublicRecordings, BecomeScenarios) {
-  const test::TemporaryFolder folder;
-  const auto file = test::referenceFile("interop/acmi/kavinsky_simple.zip.acmi");
-  if (!file) GTEST_SKIP() << test::notInRepository("interop/acmi/kavinsky_simple.zip.acmi");
-  ImportOptions options;
-  options.scenario = folder / "flight.yaml";
-  const ImportResult result = importRecording(readRecording(*file), options);
-  const ScenarioPtr scenario = scenario::loadScenario(options.scenario);
+  const auto file = emscape::test::referenceFile("interop/acmi/kavinsky_simple.zip.acmi");
+  if (!file) GTEST_SKIP() << emscape::test::notInRepository("interop/acmi/kavinsky_simple.zip.acmi");
+  const test::Imported imported(readRecording(*file));
+  const ScenarioPtr scenario = imported.scenario;
+  const ImportResult& result = imported.result;
   EXPECT_EQ(scenario->platforms.size(), 11u) << "without the three reference points";
   EXPECT_EQ(scenario->emitters.size(), 7u) << "six ships and the F-14";
   EXPECT_NEAR(result.duration_s, 221, 1);

@@ -7,10 +7,12 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
-#include "interop/acmi/acmi_handshake.h"
-#include "interop/dis/dead_reckoning.h"
 #include "interop/live/live_acmi.h"
+#include "interop/live/live_cot.h"
 #include "interop/live/live_dis.h"
+#include "recording/acmi/acmi_handshake.h"
+#include "recording/common/dates.h"
+#include "recording/dis/dead_reckoning.h"
 
 namespace emscape::interop {
 namespace {
@@ -105,6 +107,26 @@ TEST(LiveDis, MovementsDoNotChangeTheRevisionAndOtherChangesDo) {
   EXPECT_TRUE(changes([&] { stream.send(9, destroyed); }));
 }
 
+TEST(LiveDis, PositionsOutsideOfTheLimitsAreCountedAndNotUsed) {
+  Stream stream;
+  const auto stateAt = [](int entity, double height_m) {
+    dis::EntityState state = stateOf(entity);
+    state.position_m = toEcef({0, 5, height_m});
+    return state;
+  };
+  stream.send(1, stateAt(1, 35786000));
+  stream.send(1, stateAt(2, 500));
+  EXPECT_EQ(stream.live.counts().outside, 1);
+  EXPECT_EQ(stream.live.objectCount(), 1u);
+  EXPECT_THAT(stream.live.recording(1).recording.objects, SizeIs(1));
+  stream.send(2, stateAt(1, 90000));
+  EXPECT_EQ(stream.live.objectCount(), 2u) << "it has come down";
+  dis::EntityState climbs = stateAt(2, 99000);
+  climbs.velocity_mps = {5000, 0, 0};
+  stream.send(3, climbs);
+  for (const LivePose& at : stream.live.poses(5)) EXPECT_LE(at.pose.height_msl_m, 100000);
+}
+
 TEST(LiveDis, WhatIsNotUpdatedIsForgotten) {
   Stream stream;
   stream.send(0, stateOf(1));
@@ -172,12 +194,12 @@ TEST(LiveDis, AHostileStreamIsCountedAndItsMemoryIsBounded) {
 }
 
 /// Feeds a text in pieces.
-void feed(LiveAcmi& live, const std::string& text, std::size_t piece = 7) {
+void feed(LiveState& live, const std::string& text, std::size_t piece = 7, double time_s = 0) {
   for (std::size_t at = 0; at < text.size(); at += piece) {
     const std::string part = text.substr(at, piece);
     live.take(reinterpret_cast<const std::uint8_t*>(part.data()), part.size(), 0);
   }
-  live.expire(0);
+  live.expire(time_s);
 }
 
 const char* const kAcmiHeader =
@@ -192,11 +214,11 @@ TEST(LiveAcmi, ObjectsAreWhereTheyWereToldLastUntilTheyAreRemoved) {
            "RadarHorizontalBeamwidth=3\nb,T=0.2|52|0,Type=Sea+Watercraft,Name=Boat\n");
   EXPECT_EQ(live.objectCount(), 2u);
   const long long revision = live.revision();
-  feed(live, "#2\na,T=0.15|\n");
+  feed(live, "#2\na,T=0.15|\n", 7, 1);
   EXPECT_EQ(live.revision(), revision);
   EXPECT_NEAR(live.poses(0).at(0).pose.longitude_deg, 5.15, 1e-9);
   EXPECT_THAT(live.recording(0).recording.beams, SizeIs(1));
-  feed(live, "-b\n");
+  feed(live, "-b\n", 7, 2);
   EXPECT_NE(live.revision(), revision);
   EXPECT_EQ(live.objectCount(), 1u);
 }
@@ -207,10 +229,112 @@ TEST(LiveAcmi, AStreamThatLiesIsCountedAndItsMemoryIsBounded) {
   std::string many;
   for (int id = 1; id <= 20000; ++id)
     many += "#" + std::to_string(id) + "\n" + std::to_string(id) + ",T=5|52|0\n";
-  feed(live, many, 1000);
+  feed(live, many, 1000, 1);
   EXPECT_EQ(live.objectCount(), LiveLimits::kObjects);
-  feed(live, std::string(3 << 20, 'x') + "\n1,T=nonsense\nno id\n", 1 << 16);
-  EXPECT_GE(live.counts().bad, 2);
+  feed(live, std::string(3 << 20, 'x') + "\n1,T=nonsense\nno id\n", 1 << 16, 2);
+  EXPECT_EQ(live.counts().bad, 3) << "a line that is too long, a place, an id";
+}
+
+TEST(LiveAcmi, WhatIsTakenIsThereAtOnceAndMeasuredAgainAFifthOfASecondLater) {
+  LiveAcmi live;
+  feed(live, std::string(kAcmiHeader) + "a,T=5|52|0,Type=Sea,Name=Boat\n");
+  const auto takeAt = [&live](double time_s, const std::string& text) {
+    live.take(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), time_s);
+    live.expire(time_s);
+  };
+  takeAt(1000, "b,T=5.1|52|0,Type=Sea,Name=Second\n");
+  EXPECT_EQ(live.objectCount(), 2u);
+  takeAt(1000.05, "a,T=6||\nc,T=5.2|52|0,Type=Sea,Name=Third\n");
+  EXPECT_EQ(live.objectCount(), 2u);
+  EXPECT_THAT(live.poses(0), testing::Contains(testing::Truly([](const LivePose& at) {
+                return at.key == 0xa && at.pose.longitude_deg == 6;
+              })));
+  live.expire(1000.3);
+  EXPECT_EQ(live.objectCount(), 3u);
+}
+
+TEST(LiveAcmi, AnglesBeyondATurnAreDirectionsWithinIt) {
+  LiveAcmi live;
+  feed(live, std::string(kAcmiHeader) + "a,T=5|52|3000|-725|3|400,Type=Air,Name=F-14B\n");
+  for (const PoseSample& pose :
+       {live.poses(0).at(0).pose, live.recording(0).recording.objects.at(0).poses.at(0)}) {
+    EXPECT_NEAR(pose.heading_deg, 40, 1e-9);
+    EXPECT_NEAR(pose.roll_deg, -5, 1e-9);
+  }
+}
+
+TEST(LiveAcmi, APositionBeyondThePoleIsCountedOnce) {
+  LiveAcmi live;
+  feed(live, std::string(kAcmiHeader) + "0,ReferenceLatitude=50\n#1\na,T=5|2|0,Name=Boat\n#2\na,T=5|60|0\n");
+  feed(live, "b,T=5|1|0,Name=Second\n", 7, 1);
+  EXPECT_EQ(live.counts().bad, 1);
+  EXPECT_THAT(live.counts().first_bad, HasSubstr("ReferenceLatitude"));
+  for (const LivePose& at : live.poses(0)) EXPECT_LE(at.pose.latitude_deg, 52);
+  EXPECT_EQ(live.objectCount(), 2u) << "the position before it stays";
+}
+
+TEST(LiveAcmi, JoinedLinesAreOneRecord) {
+  LiveAcmi live;
+  feed(live, std::string(kAcmiHeader) + "a,T=5|52|0,Label=two\\\nlines,Name=Boat\r\n");
+  EXPECT_EQ(live.counts().bad, 0);
+  EXPECT_EQ(live.recording(0).recording.objects.at(0).name, "Boat");
+}
+
+std::string cotOf(const std::string& uid, const std::string& type, int time_s, int life_s,
+                  const std::string& detail, double longitude_deg = 5) {
+  return "<event version='2.0' uid='" + uid + "' type='" + type + "' time='" + utcTextOf(time_s) +
+         "' start='" + utcTextOf(time_s) + "' stale='" + utcTextOf(time_s + life_s) +
+         "'><point lat='52' lon='" + std::to_string(longitude_deg) + "' hae='50'/><detail>" + detail +
+         "</detail></event>";
+}
+
+TEST(LiveCot, ObjectsAreWhereTheyWereToldLastUntilTheyAreStaleByTheirOwnClock) {
+  LiveCot live(true);
+  const std::string carrier = "<contact callsign='Viper'/><track course='90' speed='0'/>";
+  const std::string text = cotOf("a", "a-h-A-M-F", 1000, 20, carrier) +
+                           cotOf("s", "b-m-p-s-p-loc", 1000, 20,
+                                 "<link uid='a' relation='p-p'/><sensor azimuth='100' fov='30'/>") +
+                           cotOf("b", "a-f-G", 1000, 300, "");
+  feed(live, text, 7);
+  EXPECT_EQ(live.objectCount(), 2u);
+  const LiveRecording now = live.recording(0);
+  ASSERT_THAT(now.recording.objects, SizeIs(2));
+  EXPECT_EQ(now.recording.objects[0].name, "Viper");
+  EXPECT_EQ(now.recording.objects[0].side, Side::hostile);
+  ASSERT_THAT(now.recording.beams, SizeIs(1));
+  EXPECT_NEAR(now.recording.beams[0].states.at(0).azimuth_deg, 10, 1e-9) << "from the carrier's heading";
+  const long long revision = live.revision();
+  feed(live, cotOf("b", "a-f-G", 1010, 300, "", 5.1));
+  EXPECT_EQ(live.revision(), revision) << "a movement";
+  EXPECT_NEAR(live.poses(0).at(1).pose.longitude_deg, 5.1, 1e-6);
+  EXPECT_EQ(live.poses(0).at(1).key, now.keys.at(1));
+  feed(live, cotOf("b", "a-f-G", 1005, 300, "", 5.2) + cotOf("b", "a-f-G", 1010, 300, "", 5.1));
+  EXPECT_EQ(live.counts().late, 1);
+  EXPECT_EQ(live.counts().duplicates, 1);
+  live.expire(19);
+  EXPECT_EQ(live.objectCount(), 2u);
+  live.expire(21);
+  EXPECT_EQ(live.objectCount(), 1u) << "whatever the clock of this computer tells";
+  EXPECT_THAT(live.recording(0).recording.beams, IsEmpty());
+  feed(live, cotOf("x", "t-x-d-d", 1020, 20, "<link uid='b' relation='none'/>"));
+  EXPECT_EQ(live.objectCount(), 0u);
+}
+
+TEST(LiveCot, AHostileStreamIsCountedAndItsMemoryIsBounded) {
+  LiveCot live(false);
+  const auto send = [&](const std::string& bytes) {
+    live.take(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), 0);
+  };
+  for (int i = 0; i < 20000; ++i) send(cotOf("o" + std::to_string(i), "a-f-G", 1000, 1000000, ""));
+  EXPECT_EQ(live.objectCount(), LiveLimits::kObjects);
+  EXPECT_EQ(live.counts().forgotten, 20000 - static_cast<long long>(LiveLimits::kObjects));
+  send("<event uid='cut'");
+  send("/></event>");
+  send("\xBF\x01\xBF\x12");
+  send(cotOf("o1", "a-f-G", 2000, 10, "", 1e9));
+  EXPECT_EQ(live.counts().bad, 4);
+  EXPECT_THAT(live.counts().first_bad, HasSubstr("without an <event>"));
+  EXPECT_THAT(live.recording(0).recording.objects, SizeIs(LiveLimits::kObjects));
 }
 
 TEST(AcmiHandshake, HashesOfPasswordsAreThePublishedOnes) {

@@ -3,10 +3,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "interop/dis/datagrams.h"
-#include "interop/dis/pdu.h"
-#include "interop/recording/byte_source.h"
-#include "interop/recording/recording.h"
+#include "recording/common/byte_source.h"
+#include "recording/common/recording.h"
+#include "recording/dis/datagrams.h"
+#include "recording/dis/pdu.h"
 
 namespace {
 

@@ -16,6 +16,7 @@ try:
 except ImportError:
     series.skip("python3-vtk9 is not installed")
 
+PYTHON = pathlib.Path(__file__).resolve().parent.parent.parent / ".cache" / "peers" / "bin" / "python"
 LAYERS = 8
 POINTS = series.DIMS[0] * series.DIMS[1] * (LAYERS + 1)
 CELLS = 6 * (series.DIMS[0] - 1) * (series.DIMS[1] - 1) * LAYERS
@@ -71,6 +72,12 @@ if __name__ == "__main__":
             series.check(math.isclose(value, expected, abs_tol=series.TOLERANCE_DB), f"{value} at {position}: {expected}")
         emitters = set(vtk_to_numpy(grid.GetPointData().GetArray("dominant_emitter")))
         series.check(emitters == {1 if time_s >= 0.5 else 0}, f"dominant emitters {emitters}")
+
+    if PYTHON.exists():  # with meshio
+        script = "import meshio, sys; m = meshio.read(sys.argv[1]); print(len(m.points), len(m.cells_dict['tetra']))"
+        read_by_meshio = subprocess.run([PYTHON, "-c", script, folder / "hollow_0001.vtu"], check=True, text=True,
+                                        stdout=subprocess.PIPE).stdout
+        series.check(read_by_meshio.split() == [str(POINTS), str(CELLS)], f"meshio reads {read_by_meshio}")
 
     expected = info(emscape, folder / "hollow_0001.vtu")
     for name, configure in (("compressed", lambda w: w.SetCompressorTypeToZLib()),

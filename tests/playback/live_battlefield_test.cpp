@@ -1,36 +1,36 @@
 // Streams over the loopback interface as scenarios and poses.
 #include "playback/stream/live_battlefield.h"
 
-#include <unistd.h>
+#include <sys/resource.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <mutex>
 #include <thread>
 
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/scenario/model/poses.h"
-#include "interop/acmi/acmi_handshake.h"
-#include "interop/dis/orientation.h"
-#include "interop/dis/pdu.h"
-#include "interop/recording/read_recording.h"
 #include "playback/sockets/socket.h"
 #include "playback/stream/acmi_server.h"
+#include "recording/acmi/acmi_handshake.h"
+#include "recording/dis/orientation.h"
+#include "recording/dis/pdu.h"
+#include "recording/read_recording.h"
 #include "tests/playback/playback_samples.h"
 #include "tests/support/errors.h"
+#include "tests/support/file_size_limit.h"
 #include "tests/support/files.h"
+#include "tests/support/ports.h"
 
 namespace emscape::playback::test {
 namespace {
 
 using emscape::test::errorOf;
+using emscape::test::freePort;
 using emscape::test::shippedScenario;
 using testing::HasSubstr;
-
-/// A port that is free: the system chooses one for a socket that is closed again.
-std::uint16_t freePort() {
-  static std::uint16_t next = static_cast<std::uint16_t>(20000 + getpid() % 20000);
-  return ++next;
-}
 
 bool waitFor(const std::function<bool()>& condition) {
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(20);
@@ -46,6 +46,7 @@ constexpr std::uint32_t kLocal = 0x7F000001;
 StreamRequest requestAt(std::uint16_t port, StreamKind kind = StreamKind::dis) {
   StreamRequest request;
   request.kind = kind;
+  request.connects = kind == StreamKind::acmi;
   request.address = {kLocal, port};
   request.interface = kLocal;
   request.base = shippedScenario("quick.yaml");
@@ -91,9 +92,9 @@ TEST(LiveBattlefield, EntitiesBecomePlatformsAndMove) {
       waitFor([&] { return battlefield.now().scenario->emitters.size() == base->emitters.size() + 1; }));
   const BattlefieldNow there = battlefield.now();
   ASSERT_EQ(there.poses->size(), 1u);
-  const scenario::PlatformPose& pose = there.poses->front();
-  EXPECT_EQ(there.scenario->platforms[static_cast<std::size_t>(pose.platform)].name, "ship");
-  EXPECT_EQ(there.scenario->emitters.back().platform, pose.platform);
+  const NamedPose& pose = there.poses->front();
+  EXPECT_EQ(pose.platform, "ship");
+  EXPECT_EQ(there.scenario->emitters.back().platform, scenario::platformNamed(*there.scenario, "ship"));
   EXPECT_NEAR(pose.position.latitude_deg, 52.02, 1e-7);
   EXPECT_EQ(battlefield.now().poses, there.poses) << "it rests";
   send(sender, stateOf("ship", 52.03, 5));
@@ -116,7 +117,7 @@ TEST(LiveBattlefield, AnEntityWithTheNameOfAPlatformOfTheBaseMovesIt) {
   send(sender, stateOf(name, 52.04, 5.01));
   ASSERT_TRUE(waitFor([&] { return !battlefield.now().poses->empty(); }));
   EXPECT_EQ(battlefield.now().scenario->platforms.size(), base->platforms.size());
-  EXPECT_EQ(battlefield.now().poses->front().platform, 0);
+  EXPECT_EQ(battlefield.now().poses->front().platform, name);
 }
 
 TEST(LiveBattlefield, WhatArrivesIsRecordedAndReadAgain) {
@@ -178,6 +179,57 @@ TEST(LiveBattlefield, AnAcmiHostIsReadAndItsEndIsTold) {
   EXPECT_TRUE(waitFor([&] { return battlefield.status().trouble.find("the host has ended") == 0; }));
 }
 
+std::string cotOf(const std::string& uid, double latitude_deg) {
+  return "<event version='2.0' uid='" + uid +
+         "' type='a-h-S' time='2026-06-01T06:00:00Z' start='2026-06-01T06:00:00Z' "
+         "stale='2026-06-01T07:00:00Z'>"
+         "<point lat='" +
+         std::to_string(latitude_deg) + "' lon='5' hae='100'/><detail><contact callsign='" + uid +
+         "'/></detail></event>";
+}
+
+TEST(LiveBattlefield, EventsOfTakComeAsDatagramsAndAreRecorded) {
+  const emscape::test::TemporaryFolder folder;
+  StreamRequest request = requestAt(freePort(), StreamKind::cot);
+  request.record = folder / "team.cot";
+  {
+    LiveBattlefield battlefield(request, {});
+    DatagramSender sender(request.address, kLocal, 0);
+    const std::string event = cotOf("boat", 52.02);
+    ASSERT_TRUE(sender.send(reinterpret_cast<const std::uint8_t*>(event.data()), event.size()));
+    ASSERT_TRUE(waitFor([&] { return battlefield.now().poses->size() == 1; }));
+    EXPECT_NEAR(battlefield.now().poses->front().position.latitude_deg, 52.02, 1e-9);
+    EXPECT_THAT(battlefield.status().text(), HasSubstr("1 object"));
+    battlefield.finishRecording();
+  }
+  EXPECT_EQ(interop::readRecording(request.record).objects.at(0).name, "boat");
+}
+
+TEST(LiveBattlefield, AServerOfTakIsAskedAndItsEventsMayComeInPieces) {
+  StreamRequest request = requestAt(freePort(), StreamKind::cot);
+  request.connects = true;
+  std::atomic<bool> ends{false};
+  Listener listener(request.address);
+  std::string asked;
+  std::thread server([&] {
+    auto client = listener.accept(10);
+    if (!client) return;
+    std::array<char, 4096> bytes{};
+    asked.assign(bytes.data(), client->read(10, bytes.data(), bytes.size()).value_or(0));
+    const std::string text = "<?xml version='1.0'?>" + cotOf("boat", 52.02) + cotOf("tug", 52.03);
+    client->write(text.substr(0, 100), 1);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    client->write(text.substr(100), 1);
+    while (!ends) std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  });
+  LiveBattlefield battlefield(request, {});
+  EXPECT_TRUE(waitFor([&] { return battlefield.now().poses->size() == 2; }));
+  EXPECT_EQ(battlefield.status().trouble, "");
+  ends = true;
+  server.join();
+  EXPECT_THAT(asked, HasSubstr("t-x-c-t"));
+}
+
 TEST(LiveBattlefield, AWrongPasswordIsTold) {
   const std::uint16_t port = freePort();
   AcmiServer server(Address{kLocal, port}, "secret");
@@ -189,6 +241,174 @@ TEST(LiveBattlefield, AWrongPasswordIsTold) {
   EXPECT_TRUE(waitFor([&] { return battlefield.status().trouble.find("password") != std::string::npos; }));
   ends = true;
   host.join();
+}
+
+/// A host of ACMI on a thread.
+class Host {
+ public:
+  Host(std::uint16_t port, const std::vector<std::string>& lines)
+      : server_(std::in_place, Address{kLocal, port}, ""), thread_([this, lines] {
+          server_->send("FileType=text/acmi/tacview");
+          server_->send("FileVersion=2.2");
+          for (const std::string& line : lines) server_->send(line);
+          while (!ends_) {
+            {
+              const std::lock_guard<std::mutex> lock(mutex_);
+              for (const std::string& line : std::exchange(more_, {})) server_->send(line);
+            }
+            server_->serve(0.01);
+          }
+          server_.reset();
+        }) {}
+  ~Host() {
+    ends_ = true;
+    thread_.join();
+  }
+  void send(const std::string& line) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    more_.push_back(line);
+  }
+
+ private:
+  std::optional<AcmiServer> server_;
+  std::mutex mutex_;
+  std::vector<std::string> more_;
+  std::atomic<bool> ends_{false};
+  std::thread thread_;
+};
+
+std::string namesOf(const LiveBattlefield& battlefield) {
+  std::string names;
+  for (const scenario::Platform& platform : battlefield.now().scenario->platforms)
+    names += platform.name + ";";
+  return names;
+}
+
+bool hasPlatform(const LiveBattlefield& battlefield, const std::string& name) {
+  const auto scenario = battlefield.now().scenario;
+  return platformIndices(*scenario).count(name) == 1;
+}
+
+TEST(LiveBattlefield, AfterAnotherConnectionTheObjectsAreThoseOfTheNewHost) {
+  const std::uint16_t port = freePort();
+  auto host = std::make_unique<Host>(port, std::vector<std::string>{"1,T=5|52|3000,Type=Air,Name=First"});
+  LiveBattlefield battlefield(requestAt(port, StreamKind::acmi), {});
+  ASSERT_TRUE(waitFor([&] { return hasPlatform(battlefield, "First"); }));
+  host.reset();
+  ASSERT_TRUE(waitFor([&] { return !battlefield.status().trouble.empty(); }));
+  host = std::make_unique<Host>(port, std::vector<std::string>{"1,T=5.02|52|3000,Type=Air,Name=Second",
+                                                               "2,T=5|52.02|3000,Type=Air,Name=Third"});
+  EXPECT_TRUE(
+      waitFor([&] { return hasPlatform(battlefield, "Second") && hasPlatform(battlefield, "Third"); }));
+  EXPECT_FALSE(hasPlatform(battlefield, "First"));
+  EXPECT_EQ(battlefield.status().trouble, "");
+}
+
+TEST(LiveBattlefield, WhateverItsPosesAreTheyCanBeShown) {
+  const std::uint16_t port = freePort();
+  Host host(port,
+            {"1,T=5|52|3000|0|0|400,Type=Air,Name=Turning", "2,T=5.02|52|3000|0|0|0,Type=Air,Name=Other"});
+  LiveBattlefield battlefield(requestAt(port, StreamKind::acmi), {});
+  ASSERT_TRUE(waitFor([&] { return battlefield.now().poses->size() == 2; }));
+  host.send("2,T=5.03||");
+  EXPECT_TRUE(waitFor([&] {
+    const BattlefieldNow now = battlefield.now();
+    const auto shown =
+        scenario::withPoses(*now.scenario, *posesOf(platformIndices(*now.scenario), *now.poses));
+    const auto index = static_cast<std::size_t>(scenario::platformNamed(*shown, "Other"));
+    return std::abs(shown->platforms[index].track.front().position.longitude_deg - 5.03) < 1e-9;
+  }));
+}
+
+TEST(LiveBattlefield, AnObjectOutsideOfTheLimitsIsToldAndTheOthersAreShown) {
+  const std::uint16_t port = freePort();
+  LiveBattlefield battlefield(requestAt(port), {});
+  DatagramSender sender({kLocal, port}, kLocal, 0);
+  interop::dis::EntityState satellite = stateOf("satellite", 0, 5);
+  satellite.position_m = toEcef({0, 5, 35786000});
+  send(sender, satellite);
+  send(sender, radioOf("satellite"));
+  interop::dis::EntityState edge = stateOf("edge", 52, 5);
+  edge.position_m = toEcef({52, 5, 99999 + geoidUndulation_m(52, 5)});
+  send(sender, edge);
+  interop::dis::Transmitter on_edge = radioOf("edge");
+  on_edge.relative_antenna_m = {0, 0, -5};
+  send(sender, on_edge);
+  send(sender, stateOf("boat", 52.02, 5));
+  send(sender, radioOf("boat"));
+  ASSERT_TRUE(waitFor([&] { return hasPlatform(battlefield, "boat") && hasPlatform(battlefield, "edge"); }))
+      << namesOf(battlefield) << battlefield.status().trouble;
+  EXPECT_FALSE(hasPlatform(battlefield, "satellite"));
+  EXPECT_EQ(battlefield.status().outside, 1);
+  EXPECT_EQ(battlefield.status().trouble, "1 position is higher than 100 km or lower than -12 km, not used");
+}
+
+TEST(LiveBattlefield, AWakeThatEndsLeavesTheLaterOne) {
+  const std::uint16_t port = freePort();
+  LiveBattlefield battlefield(requestAt(port), {});
+  std::atomic<int> first{0}, second{0};
+  auto of_first = battlefield.setWake([&] { ++first; });
+  const auto of_second = battlefield.setWake([&] { ++second; });
+  of_first.reset();
+  DatagramSender sender({kLocal, port}, kLocal, 0);
+  send(sender, stateOf("ship", 52.02, 5));
+  EXPECT_TRUE(waitFor([&] { return second > 0; }));
+  EXPECT_EQ(first, 0);
+}
+
+TEST(LiveBattlefield, ARecordingThatEndsEarlyIsAnErrorAtItsEnd) {
+  const emscape::test::TemporaryFolder folder;
+  StreamRequest request = requestAt(freePort());
+  request.record = folder / "seen.pcap";
+  LiveBattlefield battlefield(request, {});
+  DatagramSender sender(request.address, kLocal, 0);
+  {
+    const emscape::test::FileSizeLimit full(4096);
+    for (int n = 0; n < 200; ++n) send(sender, stateOf("ship", 52.02, 5));
+    ASSERT_TRUE(waitFor([&] { return battlefield.status().records == 200; }));
+    EXPECT_THAT(errorOf([&] { battlefield.finishRecording(); }, ErrorCode::other), HasSubstr("seen.pcap"));
+  }
+}
+
+TEST(LiveBattlefield, AHostThatDoesNotGreetIsTold) {
+  const Address address{kLocal, freePort()};
+  Listener silent(address);
+  LiveBattlefield battlefield(requestAt(address.port, StreamKind::acmi), {});
+  EXPECT_TRUE(waitFor([&] { return battlefield.status().trouble.find("no greeting in") == 0; }));
+}
+
+TEST(AcmiServer, WhoComesLateGetsJoinedLinesWhole) {
+  const std::uint16_t port = freePort();
+  const Host host(port, {"1,T=5|52|3000,Type=Air,Label=two\nlines,Name=Jet"});
+  LiveBattlefield battlefield(requestAt(port, StreamKind::acmi), {});
+  EXPECT_TRUE(waitFor([&] { return hasPlatform(battlefield, "Jet"); }));
+  EXPECT_EQ(battlefield.status().bad, 0);
+}
+
+TEST(Sockets, BroadcastIsSent) {
+  const std::uint16_t port = freePort();
+  DatagramReceiver receiver({0, port}, kLocal);
+  DatagramSender sender({0x7FFFFFFF, port}, kLocal, 0);
+  const std::uint8_t byte = 7;
+  EXPECT_TRUE(sender.send(&byte, 1));
+  EXPECT_EQ(receiver.receive(5, [](const std::uint8_t*, std::size_t) {}), 1u);
+}
+
+TEST(Sockets, AListenerThatCannotAcceptWaits) {
+  const Address address{kLocal, freePort()};
+  Listener listener(address);
+  const Connection client = Connection::to(address);
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{1, before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &none);
+  const auto begin = std::chrono::steady_clock::now();
+  const bool is_accepted = listener.accept(0.02).has_value();
+  const std::chrono::duration<double> waited = std::chrono::steady_clock::now() - begin;
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_FALSE(is_accepted);
+  EXPECT_GE(waited.count(), 0.02);
+  EXPECT_TRUE(listener.accept(5).has_value());
 }
 
 TEST(Sockets, AddressesAreReadAndOthersRefusedWithAnExample) {

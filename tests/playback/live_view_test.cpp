@@ -148,7 +148,7 @@ struct Expected {
     const auto source = openFrameSource(selection, {});
     Painter painter(view, *source, {});
     painter.setFrame(source->frameAt(view.time_s));
-    painter.draw({});
+    painter.draw(render::FramePlan::exact());
     render::Image8 image;
     painter.fetch(image);
     return image;

@@ -44,7 +44,7 @@ render::Image8 draw(const Shot& shot) {
   const auto source = openFrameSource(selection, {});
   Painter painter(view, *source, {});
   painter.setFrame(source->frame(0));
-  painter.draw({});
+  painter.draw(render::FramePlan::exact());
   return shot.labelled ? painter.picture("note") : render::quantize(painter.image());
 }
 

@@ -154,6 +154,31 @@ TEST_F(SeriesWriter, AnInterruptedSeriesResumesToTheSameBytes) {
   EXPECT_TRUE(volumes("s") == volumes("whole"));
 }
 
+TEST_F(SeriesWriter, FogIsTheOpacityOfTheFirstStepsLookAndResumesToTheSameBytes) {
+  SeriesOptions options = into("fog", {"vdb", "raw"});
+  options.with_fog = true;
+  write(3, options);
+  for (const char* step : {"fog/quick_0001.vdb", "fog/quick_0003.vdb"}) {
+    const volume::DenseVolume fog = volume::readVolume(*this / step, "density"),
+                              field = volume::readVolume(*this / step, "power_density_dbwm2");
+    EXPECT_EQ(fog.grid, field.grid);
+    EXPECT_EQ(fog.info.extra.at("density_of"), "power_density_dbwm2");
+    const auto [least, greatest] = std::minmax_element(fog.values.begin(), fog.values.end());
+    EXPECT_EQ(*least, 0);
+    EXPECT_EQ(*greatest, 1);
+    // Stronger fields are at least as dense.
+    const auto strongest = std::max_element(field.values.begin(), field.values.end()) - field.values.begin();
+    EXPECT_EQ(fog.values[static_cast<std::size_t>(strongest)], 1);
+  }
+  EXPECT_EQ(volume::listVolume(*this / "fog/quick_0001.raw").volumes.size(), 1u);
+  SeriesOptions stopped = into("again", {"vdb", "raw"});
+  stopped.with_fog = true;
+  writeAndStopAfter(1, 3, stopped);
+  stopped.existing = Existing::resume;
+  write(3, stopped);
+  EXPECT_EQ(contents("again"), contents("fog"));
+}
+
 TEST_F(SeriesWriter, AnInterruptedPassOverTheRangesIsCompleted) {
   write(6, into("whole"));
   // The 6 steps, then the third of those that get another range.

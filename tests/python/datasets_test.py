@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from conftest import SCENARIOS
 
+import emscape as em
 from emscape import datasets
 
 
@@ -53,8 +54,9 @@ def test_terrain_is_below_the_emitters():
     data = datasets.VolumeDataset(
         2, 3, shape=(20, 20, 20), terrain=SCENARIOS / "data" / "jacksboro.tif", origin_deg=(36.303, -84.246), backend="cpu"
     )
-    field = data.field(0)
+    field, sample = data.field(0), data.sample(0)
     assert field.mask().any()
+    assert np.array_equal(sample.mask, field.mask()) and np.array_equal(sample.ground_msl_m, field.ground_msl_m())
     assert np.array_equal(data.field(1).numpy(), datasets.VolumeDataset.field(pickle.loads(pickle.dumps(data)), 1).numpy())
 
 
@@ -78,7 +80,19 @@ def test_statistics_are_those_that_the_documentation_states():
     assert column["log10_frequency_hz"].mean() == pytest.approx(9, abs=0.1)
     assert (column["log10_frequency_hz"].min(), column["log10_frequency_hz"].max()) == pytest.approx((8, 10), abs=0.05)
     assert column["power_dbw"][column["kind"] == 0].mean() == pytest.approx(30, abs=1.5)
-    assert column["azimuth_deg"].mean() == pytest.approx(180, abs=15)
+    with_beam = column["kind"] != 2
+    assert column["azimuth_deg"][with_beam].mean() == pytest.approx(180, abs=15)
+    assert np.isnan(column["azimuth_deg"][~with_beam]).all() and np.isnan(column["elevation_deg"][~with_beam]).all()
+
+
+def test_the_frequency_enters_the_volume():
+    data = datasets.VolumeDataset(1, 5, shape=(16, 32, 32), backend="cpu")
+    scenario = data.scenario(0)
+    lower = scenario
+    for emitter in data.describe(0)[0]["emitters"]:
+        lower = lower.with_set({f"emitters.{emitter['name']}.frequency_hz": 0.3 * emitter["frequency_hz"]})
+    before, after = em.Solver(scenario, "cpu").at(0).numpy(), em.Solver(lower, "cpu").at(0).numpy()
+    assert np.abs(before - after).max() > 1
 
 
 def test_a_data_loader_takes_it():

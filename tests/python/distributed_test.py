@@ -29,3 +29,14 @@ def test_the_number_of_parts_has_a_range(parts, tmp_path):
 
     with pytest.raises(em.UsageError, match=f"parts is {parts}, outside the allowed range 1 to the number of variants"):
         studies.study(SCENARIOS / "study" / "jammer_power.yaml", tmp_path / "study", None, parts=parts)
+
+
+def test_the_error_of_a_worker_has_its_place_without_warnings():
+    from emscape.distributed import _error_of
+
+    warnings = "emscape: warning: a.yaml:38:45: the gain of 33.00 dBi is above\n"
+    error = _error_of(f"3 {warnings}emscape: error: /data/a.yaml:12:5: unknown key 'power_kw'\n")
+    assert isinstance(error, em.InputError)
+    assert (error.file, error.line, error.column, error.message) == ("/data/a.yaml", 12, 5, "unknown key 'power_kw'")
+    error = _error_of(f"1 {warnings}emscape: error: the disk is full")
+    assert (type(error), error.file, error.message) == (em.OtherError, "", "the disk is full")

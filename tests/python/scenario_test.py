@@ -54,6 +54,77 @@ def test_times_are_finite_and_ascending(quick, times, message):
         quick.times(times)
 
 
+def test_times_are_utc_or_intervals_too(quick):
+    utc = datetime.timezone.utc
+    at_2_s = datetime.datetime(2026, 6, 1, 6, 0, 2, tzinfo=utc)
+    for time in ("2026-06-01T06:00:02Z", at_2_s, np.datetime64("2026-06-01T06:00:02"), datetime.timedelta(seconds=2), np.timedelta64(2, "s")):
+        assert quick.times([time]) == [2]
+        assert quick.positions(time) == quick.positions(2)
+    assert quick.times("2026-06-01T06:00:01Z:2026-06-01T06:00:03Z:1") == [1, 2, 3]
+    with pytest.raises(em.UsageError, match="has no time zone"):
+        quick.times([at_2_s.replace(tzinfo=None)])
+    with pytest.raises(em.UsageError, match="the scenario has no epoch"):
+        quick.with_set({"epoch": None}).times("2026-06-01T06:00:02Z")
+    solver = em.Solver(quick)
+    assert solver.at(at_2_s).time_s == 2
+    with pytest.raises(em.UsageError, match="time_s: 'noon' is not a number|'noon' is not a number of seconds"):
+        solver.at("noon")
+
+
+def test_a_text_or_dict_is_a_scenario_without_a_file(quick, tmp_path):
+    text = (SCENARIOS / "quick.yaml").read_text(encoding="utf-8")
+    parsed = em.parse(text, folder=tmp_path)
+    assert (parsed.name, parsed.emitters) == (quick.name, quick.emitters)
+    assert not os.path.exists(parsed.file)
+    edited = parsed.with_set({"emitters.radar.power_w": 500})
+    again = pickle.loads(pickle.dumps(edited))
+    assert (again.hash, again.edits) == (edited.hash, edited.edits)
+    described = {
+        "schema_version": 1,
+        "name": "beacon",
+        "epoch": datetime.datetime(2026, 6, 1, 6, tzinfo=datetime.timezone.utc),
+        "region": {"origin": {"latitude_deg": 52, "longitude_deg": 5}, "size_m": [20000, 20000, 5000], "dims": [10, 10, 5]},
+        "platforms": [{"name": "mast", "position": {"latitude_deg": 52, "longitude_deg": 5, "height_agl_m": 40}}],
+        "emitters": [
+            {"name": "beacon", "platform": "mast", "kind": "transmitter", "frequency_hz": 1e8, "power_w": 1, "antenna": {"pattern": "isotropic"}}
+        ],
+    }
+    assert em.Solver(em.parse(described)).at(0).time == described["epoch"]
+    with pytest.raises(em.ScenarioError, match="power_kw"):
+        em.parse({**described, "emitters": [{**described["emitters"][0], "power_kw": 1}]})
+    with pytest.raises(em.UsageError, match="a list is no scenario"):
+        em.parse([])
+
+
+def test_a_warning_of_a_scenario_is_logged_once(caplog):
+    edits = {"region.size_m": [29, 29, 6000]}
+    scenario = em.load(SCENARIOS / "quick.yaml", edits)
+    caplog.clear()
+    for power_w in (1, 2, 3):
+        scenario.with_set({"emitters.radar.power_w": power_w})
+    em.load(SCENARIOS / "quick.yaml", edits)
+    assert not [record for record in caplog.records if "size_m" in record.message]
+
+
+def test_ctrl_c_in_a_handler_of_messages_is_not_lost(tmp_path):
+    script = f"""
+import logging, os, signal
+import emscape as em
+class Interrupts(logging.Handler):
+    def emit(self, record):
+        os.kill(os.getpid(), signal.SIGINT)
+logger = logging.getLogger("emscape")
+logger.setLevel(logging.DEBUG)
+logger.addHandler(Interrupts())
+try:
+    em.simulate(em.load({str(SCENARIOS / "jamming.yaml")!r}), {str(tmp_path / "out")!r}, ("raw",), times="0:1000:0.01")
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=120)
+    assert done.stdout.strip() == "interrupted", done.stderr
+
+
 def test_an_edit_gives_another_scenario(quick):
     edited = quick.with_set({"emitters.radar.power_w": np.float64(500), "name": 'a "name": #1'})
     assert edited.edits == {"emitters.radar.power_w": "500.0", "name": '"a \\"name\\": #1"'}

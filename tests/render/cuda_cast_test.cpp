@@ -107,6 +107,27 @@ TEST(CudaCast, CutVolumesEqualCpu) {
   EXPECT_LE(all.shareApart(), kShareApart);
 }
 
+TEST(CudaCast, SmoothEdgesEqualCpu) {
+  EMSCAPE_NEEDS_GPU();
+  // A pixel whose contrast is on the edge of being smoothed may be so on only one of them.
+  constexpr double kShareOnTheEdge = 5e-3;
+  std::mt19937 random(28);
+  Renderer cpu, gpu(onGpu());
+  Agreement all;
+  for (int scene = 0; scene < 60; ++scene) {
+    const ImageSize size{1 + static_cast<int>(random() % 60), 1 + static_cast<int>(random() % 60)};
+    setSameRandomScene(cpu, gpu, random, size);
+    if (scene % 3 == 0) {
+      std::mt19937 again = random;
+      testing::addRandomPlanes(cpu, random);
+      testing::addRandomPlanes(gpu, again);
+    }
+    all.add(gpu.render(size, FramePlan::exact()), cpu.render(size, FramePlan::exact()));
+  }
+  std::printf("smooth edges: %.4f %% apart, at most %d levels\n", 100 * all.shareApart(), all.largest_levels);
+  EXPECT_LE(all.shareApart(), kShareApart + kShareOnTheEdge);
+}
+
 TEST(CudaCast, IndicesEqualCpu) {
   EMSCAPE_NEEDS_GPU();
   const ImageSize size{80, 60};

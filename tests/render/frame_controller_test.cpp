@@ -92,6 +92,17 @@ TEST(FrameController, AFullFrameNeedsNoRestoration) {
   EXPECT_EQ(controller.state(), State::idle);
 }
 
+TEST(FrameController, AFullFrameWhoseEdgesAreToBeSmoothedIsRestored) {
+  ControllerOptions options = with(Pattern::full);
+  options.smooths_edges = true;
+  FrameController controller(options);
+  eventAndFrame(controller, 0);
+  EXPECT_EQ(controller.next(50).kind, Kind::wait);
+  EXPECT_EQ(controller.next(100).kind, Kind::restore);
+  EXPECT_TRUE(controller.restoreDone(true));
+  EXPECT_EQ(controller.state(), State::idle);
+}
+
 TEST(FrameController, EventsFasterThanEpsilonKeepItBusy) {
   FrameController controller(with(Pattern::columns));
   for (int n = 0; n < 50; ++n) {

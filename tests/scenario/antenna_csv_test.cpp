@@ -156,7 +156,7 @@ TEST(AntennaFile, IsReadByItsEnding) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const TemporaryFile csv("grid.CSV", grid(30));
   EXPECT_EQ(readAntenna(csv.path(), 7)->gain_dbi, 7);
-  expectFault([&] { readAntenna(csv.path(), kNan); }, csv.path(), 0, 0, "a CSV grid has no gain");
+  expectFault([&] { readAntenna(csv.path(), kNan); }, csv.path(), 0, 0, "the CSV grid has no gain");
   const TemporaryFile msi("antenna.pln",
                           "NAME a, b\nGAIN 10\nHORIZONTAL 4\n0 0\n90 10\n180 20\n270 11\nVERTICAL 4\n0 0\n90 "
                           "15\n180 20\n270 16\n");

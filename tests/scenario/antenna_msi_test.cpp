@@ -43,7 +43,7 @@ std::string sector(const std::string& header, int tilt_deg = 0, const std::strin
 }
 
 AntennaPtr readText(const std::string& content) {
-  return readMsi(TemporaryFile("antenna.msi", content).path());
+  return readAntenna(TemporaryFile("antenna.msi", content).path());
 }
 
 double lossAt_db(const AntennaPtr& antenna, double azimuth_deg, double elevation_deg) {
@@ -77,8 +77,8 @@ TEST(MsiAntenna, TakesTheLibertiesOfManufacturers) {
 
 TEST(MsiAntenna, TakesAGainGivenBesideTheFile) {
   const TemporaryFile file("antenna.msi", sector(""));
-  EXPECT_EQ(readMsi(file.path(), 12)->gain_dbi, 12);
-  expectFault([&] { readMsi(file.path()); }, file.path(), 0, 0, "no GAIN");
+  EXPECT_EQ(readAntenna(file.path(), 12)->gain_dbi, 12);
+  expectFault([&] { readAntenna(file.path()); }, file.path(), 0, 0, "has no gain; gain_dbi must be given");
 }
 
 TEST(MsiAntenna, ReproducesBothCuts) {
@@ -176,7 +176,7 @@ TEST(MsiAntenna, ReadsOtherCountsAndIrregularAngles) {
 
 TEST(MsiAntenna, ErrorsHaveReasonAndLocation) {
   const TemporaryFile file("antenna.msi", kSmall);
-  EXPECT_NO_THROW(readMsi(file.path()));
+  EXPECT_NO_THROW(readAntenna(file.path()));
   const auto expectBroken = [&](const std::string& from, const std::string& to, int line, int column,
                                 const std::string& part) {
     std::string content = kSmall;
@@ -184,7 +184,7 @@ TEST(MsiAntenna, ErrorsHaveReasonAndLocation) {
     ASSERT_NE(at, std::string::npos);
     content.replace(at, from.size(), to);
     file.rewrite(content);
-    expectFault([&] { readMsi(file.path()); }, file.path(), line, column, part);
+    expectFault([&] { readAntenna(file.path()); }, file.path(), line, column, part);
   };
   expectBroken("GAIN 10 dBi", "GAIN 10 dBm", 2, 9,
                "unit 'dBm' of GAIN; allowed are dBd (the default) and dBi");
@@ -200,7 +200,7 @@ TEST(MsiAntenna, ErrorsHaveReasonAndLocation) {
   expectBroken("90 10", "90", 5, 1,
                "row 2 of HORIZONTAL 4 is '90'; it should be an angle and an attenuation");
   expectBroken("90 10", "90 1O", 5, 4, "row 2 of HORIZONTAL 4: attenuation '1O' is not a number");
-  expectBroken("90 10", "90 -10", 5, 4, "attenuation is -10 dB; allowed are 0 to 300 dB");
+  expectBroken("90 10", "90 -10", 5, 1, "attenuation is -10 dB; allowed are 0 to 300 dB");
   expectBroken("90 10", "900 10", 5, 1, "angle is 900 deg; allowed are -360 to 360 deg");
   expectBroken("HORIZONTAL 4\n0 0", "HORIZONTAL 5\n0 0\n90 12", 6, 1,
                "the HORIZONTAL cut has 90 deg twice, with different attenuations");
@@ -210,13 +210,13 @@ TEST(MsiAntenna, ErrorsHaveReasonAndLocation) {
                "the smallest attenuation of the VERTICAL cut is 5 dB");
   expectBroken("VERTICAL 4", "HORIZONTAL 4", 8, 1, "a second HORIZONTAL cut");
   file.rewrite("Dear reader,\nthis is not an antenna.\n");
-  expectFault([&] { readMsi(file.path()); }, file.path(), 0, 0,
+  expectFault([&] { readAntenna(file.path()); }, file.path(), 0, 0,
               "no HORIZONTAL cut: not an MSI antenna file?");
   file.rewrite("");
-  expectFault([&] { readMsi(file.path()); }, file.path(), 0, 0, "no HORIZONTAL cut");
+  expectFault([&] { readAntenna(file.path()); }, file.path(), 0, 0, "no HORIZONTAL cut");
   file.rewrite(std::string("NAME a\0b\n", 9));
-  expectFault([&] { readMsi(file.path()); }, file.path(), 1, 7, "zero byte");
-  expectFault([] { readMsi("/nowhere/antenna.msi"); }, "/nowhere/antenna.msi", 0, 0, "no such file");
+  expectFault([&] { readAntenna(file.path()); }, file.path(), 1, 7, "zero byte");
+  expectFault([] { readAntenna("/nowhere/antenna.msi"); }, "/nowhere/antenna.msi", 0, 0, "no such file");
 }
 
 TEST(MsiAntenna, NameHasOnlyPrintableCharacters) {
@@ -226,7 +226,7 @@ TEST(MsiAntenna, NameHasOnlyPrintableCharacters) {
 
 TEST(MsiAntenna, SurvivesDamageToEveryByte) {
   const TemporaryFile file("antenna.msi", kSmall);
-  surviveDamage(file, kSmall, [&] { readMsi(file.path()); });
+  surviveDamage(file, kSmall, [&] { readAntenna(file.path()); });
 }
 
 }  // namespace

@@ -12,6 +12,8 @@
 namespace emscape::scenario {
 namespace {
 
+using ::testing::HasSubstr;
+
 TEST(Clock, TimesHoldBothEndsIfTheStepMeetsThem) {
   EXPECT_EQ(timesOf(0, 1, 0.5), (std::vector<double>{0, 0.5, 1}));
   EXPECT_EQ(timesOf(0, 1.2, 0.5), (std::vector<double>{0, 0.5, 1}));
@@ -44,6 +46,25 @@ TEST(Clock, TimesThatAreNoShortDecimalNumbersAreLeft) {
   }
   EXPECT_EQ(timesOf(1e9 - 1, 1e9, 0.125)[1], 999999999.125);
   EXPECT_EQ(timesOf(0, 0, 1), (std::vector<double>{0}));
+}
+
+TEST(Clock, TimesInUtcAreSecondsSinceTheEpoch) {
+  const Clock clock{"2026-11-28T06:00:00Z", 600, 10};
+  EXPECT_EQ(parseTimes("2026-11-28T06:05:00Z", clock), (std::vector<double>{300}));
+  EXPECT_EQ(parseTimes("2026-11-28T05:59:59.5Z", clock), (std::vector<double>{-0.5}));
+  EXPECT_EQ(parseTimes("2026-11-28T06:00:10Z:2026-11-28T06:00:30Z:10", clock),
+            (std::vector<double>{10, 20, 30}));
+  EXPECT_EQ(parseTimes("0:2026-11-28T06:00:20Z", clock), (std::vector<double>{0, 10, 20}));
+  EXPECT_EQ(parseTime("2026-11-28T06:01:00Z", clock), 60);
+  const auto faultOf = [](const std::string& text, const Clock& of) {
+    return test::errorOf([&] { parseTimes(text, of); }, ErrorCode::usage);
+  };
+  EXPECT_THAT(faultOf("2026-11-28T06:05:00", clock), HasSubstr("is not a UTC time such as"));
+  EXPECT_THAT(faultOf("2026-13-28T06:05:00Z", clock), HasSubstr("is not a UTC time such as"));
+  EXPECT_THAT(faultOf("2026-11-28T06:05:00Z5", clock), HasSubstr("'5' follows a UTC time"));
+  EXPECT_THAT(faultOf("2026-11-28T06:05:00Z", Clock{"", 600, 10}), HasSubstr("the scenario has no epoch"));
+  EXPECT_THAT(test::errorOf([&] { parseTime("0:1", clock); }, ErrorCode::usage),
+              HasSubstr("a single time is expected"));
 }
 
 TEST(Clock, ParsesTimesInItsThreeForms) {

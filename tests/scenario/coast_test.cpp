@@ -84,6 +84,32 @@ TEST(Coast, SeaAndLakesAreWaterAndIslandsLand) {
   EXPECT_FALSE(coast->isWater(-45, 45)) << "outside of the bins that were read";
 }
 
+TEST(Coast, WaterOnAGridIsThatOfItsPositions) {
+  const test::TemporaryFolder folder;
+  const auto coast = Coast::read(writeCoast(folder), {10, 80, 10, 80});
+  constexpr int kColumns = 40, kRows = 30;  // from the north-west, 2 degrees apart, oblique
+  const auto positionAt = [](int column, int row) {
+    return GeodeticPosition{75.3 - 2 * row + 0.1 * column, 3.1 + 2 * column, 0};
+  };
+  const auto onGrid = [](const std::vector<GeodeticPosition>& line) {
+    std::vector<GridPlace> places;
+    for (const GeodeticPosition& at : line) {
+      const double column = (at.longitude_deg - 3.1) / 2;
+      places.push_back({column, (75.3 + 0.1 * column - at.latitude_deg) / 2});
+    }
+    return places;
+  };
+  const std::vector<std::uint8_t> water = waterOnGrid(*coast, kColumns, kRows, onGrid, positionAt);
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      const GeodeticPosition at = positionAt(column, row);
+      EXPECT_EQ(water[static_cast<std::size_t>(row) * kColumns + column] != 0,
+                coast->isWater(at.latitude_deg, at.longitude_deg))
+          << at.latitude_deg << " " << at.longitude_deg;
+    }
+  }
+}
+
 TEST(Coast, FilesThatAreNotAsExpectedAreRefused) {
   const test::TemporaryFolder folder;
   const auto faultOf = [](const std::string& file) {

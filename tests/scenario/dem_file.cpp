@@ -3,6 +3,8 @@
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
+#include <cstdint>
+#include <fstream>
 #include <memory>
 #include <stdexcept>
 #include <vector>
@@ -22,8 +24,10 @@ OGRSpatialReference spatialReference(const std::string& crs) {
 void DemFile::write(const std::filesystem::path& path) const {
   GDALAllRegister();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+  const char* const version[] = {"GEOTIFF_VERSION=1.0", nullptr};
+  const char* const* options = is_geotiff_1_0 ? version : nullptr;
   std::unique_ptr<GDALDataset> dataset(
-      driver->Create(path.c_str(), columns, rows, bands, GDT_Float32, nullptr));
+      driver->Create(path.c_str(), columns, rows, bands, GDT_Float32, const_cast<char**>(options)));
   if (!dataset) throw std::runtime_error("cannot write " + path.string());
   // Set before the transform, since GDAL writes the transform accordingly.
   if (is_point) dataset->SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_POINT);
@@ -79,6 +83,68 @@ std::array<double, 2> projected(const std::string& crs, double latitude_deg, dou
   if (!transformation || !transformation->Transform(1, &x, &y))
     throw std::runtime_error("cannot project to " + crs);
   return {x, y};
+}
+
+namespace {
+
+/// Copies a file within GDAL's file systems.
+void copyTo(const std::string& from, const std::string& to) {
+  VSILFILE* const in = VSIFOpenL(from.c_str(), "rb");
+  VSILFILE* const out = VSIFOpenL(to.c_str(), "wb");
+  if (in == nullptr || out == nullptr) throw std::runtime_error("cannot copy " + from + " to " + to);
+  std::vector<char> part(1 << 20);
+  for (std::size_t got = 1; got > 0;) {
+    got = VSIFReadL(part.data(), 1, part.size(), in);
+    if (VSIFWriteL(part.data(), 1, got, out) != got) throw std::runtime_error("cannot write " + to);
+  }
+  VSIFCloseL(in);
+  VSIFCloseL(out);
+}
+
+}  // namespace
+
+void writeZip(const std::string& archive, const std::vector<std::pair<std::string, std::string>>& members) {
+  for (const auto& [name, file] : members) copyTo(file, "/vsizip/" + archive + "/" + name);
+}
+
+void writeGzip(const std::string& from, const std::string& to) {
+  copyTo(from, "/vsigzip/" + to);
+}
+
+void writeHgt(const std::string& file, int posts, const std::function<int(int, int)>& height) {
+  std::ofstream stream(file, std::ios::binary);
+  std::vector<char> line(static_cast<std::size_t>(posts) * 2);
+  for (int row = 0; row < posts; ++row) {
+    for (int column = 0; column < posts; ++column) {
+      const auto value = static_cast<std::uint16_t>(static_cast<std::int16_t>(height(column, row)));
+      line[static_cast<std::size_t>(column) * 2] = static_cast<char>(value >> 8);
+      line[static_cast<std::size_t>(column) * 2 + 1] = static_cast<char>(value & 255);
+    }
+    stream.write(line.data(), static_cast<std::streamsize>(line.size()));
+  }
+}
+
+void writeColours(const std::string& file, const std::function<long(int, int)>& value) {
+  constexpr int kSize = 10;
+  GDALAllRegister();
+  const char* const options[] = {"PHOTOMETRIC=RGB", nullptr};
+  const std::unique_ptr<GDALDataset> dataset(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      file.c_str(), kSize, kSize, 3, GDT_Byte, const_cast<char**>(options)));
+  const OGRSpatialReference reference = spatialReference("EPSG:4326");
+  dataset->SetSpatialRef(&reference);
+  std::array<double, 6> corners{10, 0.1, 0, 50, 0, -0.1};
+  dataset->SetGeoTransform(corners.data());
+  for (int row = 0; row < kSize; ++row) {
+    for (int column = 0; column < kSize; ++column) {
+      const long bits = value(column, row);
+      for (int band = 0; band < 3; ++band) {
+        auto byte = static_cast<unsigned char>(bits >> (16 - 8 * band) & 255);
+        if (dataset->GetRasterBand(band + 1)->RasterIO(GF_Write, column, row, 1, 1, &byte, 1, 1, GDT_Byte, 0,
+                                                       0, nullptr) != CE_None)
+          throw std::runtime_error("cannot write " + file);
+      }
+    }
+  }
 }
 
 void convertDem(const std::string& from, const std::string& driver, const std::string& to) {

@@ -6,6 +6,8 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace emscape::test {
 
@@ -20,6 +22,7 @@ struct DemFile {
   std::optional<double> nodata;
   std::string unit;
   double scale = 1, offset = 0;
+  bool is_geotiff_1_0 = false;
   int bands = 1;  ///< all but the first hold 12345
 
   void write(const std::filesystem::path& path) const;
@@ -35,6 +38,16 @@ DemFile geographicPointDem(double west_deg, double north_deg, double step_deg, i
 
 /// A CRS's coordinates (east, north) of a point of WGS84.
 std::array<double, 2> projected(const std::string& crs, double latitude_deg, double longitude_deg);
+
+/// Writes files into a ZIP archive, and one file as .gz. @param members  names in the archive and files
+void writeZip(const std::string& archive, const std::vector<std::pair<std::string, std::string>>& members);
+void writeGzip(const std::string& from, const std::string& to);
+/// An HGT tile: big-endian posts, `height(column, row)` from the north-western corner.
+void writeHgt(const std::string& file, int posts, const std::function<int(int column, int row)>& height);
+
+/// A GeoTIFF of bytes in red, green and blue, 10 x 10 pixels of 0.1 degrees from 10 E, 50 N. @param value  24
+/// bits
+void writeColours(const std::string& file, const std::function<long(int column, int row)>& value);
 
 /// Writes a raster in another format. @param driver  GDAL's name of the format
 void convertDem(const std::string& from, const std::string& driver, const std::string& to);

@@ -76,7 +76,7 @@ TEST(Directivity, ErrorFloorOfArrayCounts) {
 
 TEST(Directivity, TablesEqualPlainSum) {
   for (const AntennaPtr& antenna :
-       {makeCosecant2(0, 3, 4, 40, -45), readMsi(test::shippedScenario("data/sector_450mhz.msi"))}) {
+       {makeCosecant2(0, 3, 4, 40, -45), readAntenna(test::shippedScenario("data/sector_450mhz.msi"))}) {
     double integral = 0;
     constexpr double kStep_deg = 0.2;
     for (double elevation_deg = -90 + kStep_deg / 2; elevation_deg < 90; elevation_deg += kStep_deg) {

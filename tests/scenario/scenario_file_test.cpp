@@ -312,7 +312,11 @@ TEST(ScenarioWarnings, NameWhatIsOutsideOfTheTimesOfTheScenario) {
       warningsOf({{"platforms.mast.position", "null"}, {"platforms.mast.track", track}}),
       HasSubstr(
           "the track of 'mast' runs from 1 to 3 s, the scenario from 0 to 4 s: before 1 s and after 3 s "
-          "the platform stands still"));
+          "the platform is absent, with all that it carries; 'outside: hold'"));
+  EXPECT_THAT(warningsOf({{"platforms.mast.position", "null"},
+                          {"platforms.mast.track", track.substr(0, track.size() - 1) + ", outside: hold}"}}),
+              Not(HasSubstr("the track of")))
+      << "who asks for it knows";
   EXPECT_THAT(
       warningsOf({{"emitters.radar.active_s", "[[10, 20]]"}}),
       HasSubstr("emitter 'radar' is active from 10 s, but the scenario ends at 4 s: it never transmits"));

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/log.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/terrain/terrain.h"
@@ -111,7 +112,7 @@ TEST_F(TerrainFileTest, ANoteOnManyFilesIsLoggedOnce) {
   }
   std::vector<std::string> messages;
   setLogSink([&](LogLevel, const std::string& message) { messages.push_back(message); });
-  load(files, {49, 50, 10, 13});
+  const TerrainPtr terrain = load(files, {49, 50, 10, 13});
   setLogSink({});
   EXPECT_THAT(
       messages,
@@ -325,8 +326,9 @@ TEST_F(TerrainFileTest, HeightsOfAThreeDimensionalCrsAreAboveTheEllipsoid) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
   file.crs = "EPSG:4979";
   const TerrainFileInfo info = Terrain::describe(write("a.tif", file));
-  EXPECT_THAT(info.notes, Contains("says that its heights are above the ellipsoid"));
-  EXPECT_EQ(load({info.file}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100);
+  EXPECT_THAT(info.vertical_datum, HasSubstr("the ellipsoid (stated by the file"));
+  EXPECT_NEAR(Terrain::load({{info.file}, {}, {}}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5),
+              100 - geoidUndulation_m(49.5, 10.5), 0.01);
 }
 
 TEST_F(TerrainFileTest, FillValuesFarBelowTheirNeighboursAreVoid) {
@@ -335,17 +337,13 @@ TEST_F(TerrainFileTest, FillValuesFarBelowTheirNeighboursAreVoid) {
     file.value = [fill](int column, int) { return column == 3 || column == 4 ? fill : 100.0; };
     const std::string undeclared = write("a.tif", file);
     const TerrainFileInfo info = Terrain::describe(undeclared);
-    EXPECT_THAT(info.notes,
+    EXPECT_THAT(info.warnings,
                 Contains(HasSubstr(fmt::format("20 posts of {:g} m are more than 500 m below", fill))));
     EXPECT_EQ(info.lowest_m, 100);
     EXPECT_EQ(info.void_posts, 20);
-    std::vector<std::string> messages;
-    setLogSink([&](LogLevel level, const std::string& message) {
-      if (level == LogLevel::warning) messages.push_back(message);
-    });
     const TerrainPtr terrain = load({undeclared}, {49, 50, 10, 11});
-    setLogSink({});
-    EXPECT_THAT(messages, ElementsAre(HasSubstr("elevation file " + undeclared + ": 20 posts of")));
+    EXPECT_THAT(terrain->warnings(),
+                ElementsAre(HasSubstr("elevation file " + undeclared + ": 20 posts of")));
     EXPECT_TRUE(std::isnan(terrain->heightMsl_m(49.55, 10.35)));
     EXPECT_EQ(terrain->heightMsl_m(49.55, 10.75), 100);
   }
@@ -356,9 +354,23 @@ TEST_F(TerrainFileTest, DepthsOfTheSeaAreNoFillValues) {
   // A trench, its bottom flat, with sides of up to 400 m from post to post.
   file.value = [](int column, int) { return -1000.0 - 400.0 * std::min({column, 9 - column, 3}); };
   const std::string sea = write("sea.tif", file);
-  EXPECT_TRUE(Terrain::describe(sea).notes.empty());
+  EXPECT_THAT(Terrain::describe(sea).warnings, ElementsAre(HasSubstr("states no vertical datum")));
   EXPECT_EQ(Terrain::describe(sea).lowest_m, -2200);
   EXPECT_EQ(load({sea}, {49, 50, 10, 11})->heightMsl_m(49.55, 10.45), -2200);
+}
+
+TEST_F(TerrainFileTest, FillValuesAreFoundAmongManyDifferentDepths) {
+  constexpr int kPosts = 400;
+  DemFile file = geographicDem(10, 50, 1.0 / kPosts, kPosts, kPosts, flat);
+  // More than 65536 different depths, and a block of a fill value on land beside them.
+  file.value = [](int column, int row) {
+    if (column < 20) return row >= 100 && row < 110 && column >= 5 && column < 10 ? -9999.0 : 50.0;
+    return column < 40 ? -30.0 * (column - 19) : -600.0 - 0.002 * (column * kPosts + row);
+  };
+  const TerrainFileInfo info = Terrain::describe(write("a.tif", file));
+  EXPECT_EQ(info.void_posts, 50);
+  EXPECT_NEAR(info.lowest_m, -600 - 0.002 * kPosts * kPosts, 1);
+  EXPECT_THAT(info.warnings, Contains(HasSubstr("50 posts of -9999 m")));
 }
 
 TEST_F(TerrainFileTest, APictureIsNoTerrain) {
@@ -367,7 +379,7 @@ TEST_F(TerrainFileTest, APictureIsNoTerrain) {
   GDALSetRasterColorInterpretation(GDALGetRasterBand(dataset, 1), GCI_RedBand);
   GDALClose(dataset);
   EXPECT_THAT(test::errorOf([&] { Terrain::describe(file); }, ErrorCode::bad_input),
-              HasSubstr("is a picture, not heights: its first band is 'Red'"));
+              HasSubstr("is a picture, not heights: its band 1 is 'Red'"));
 }
 
 TEST_F(TerrainFileTest, HeightsOfAMapInFeetWithoutAUnitAreWarnedOf) {
@@ -377,7 +389,7 @@ TEST_F(TerrainFileTest, HeightsOfAMapInFeetWithoutAUnitAreWarnedOf) {
   file.transform = {3000000, 1000, 0, 1300000, 0, -1000};
   file.value = flat;
   const TerrainFileInfo info = Terrain::describe(write("feet.tif", file));
-  EXPECT_THAT(info.notes, Contains(HasSubstr("it has no unit of heights: they are taken as metres")));
+  EXPECT_THAT(info.warnings, Contains(HasSubstr("it has no unit of heights: they are taken as metres")));
 }
 
 // --- faults
@@ -391,7 +403,9 @@ TEST_F(TerrainFileTest, AMissingFileIsNamed) {
 TEST_F(TerrainFileTest, FileThatIsNoRasterIsRefused) {
   std::ofstream(folder_ / "notes.tif") << "not a raster";
   EXPECT_THAT(problemOf(folder_ / "notes.tif"), AllOf(HasSubstr("notes.tif"), HasSubstr("not a raster")));
-  EXPECT_THAT(problemOf(folder_.path().string()), HasSubstr("not a regular file"));
+  EXPECT_THAT(problemOf(folder_.path().string()), HasSubstr("notes.tif"));
+  std::filesystem::create_directory(folder_ / "folder.tif");
+  EXPECT_THAT(problemOf(folder_ / "folder.tif"), HasSubstr("folder.tif has none"));
   std::ofstream(folder_ / "empty.dt1").flush();
   EXPECT_THAT(problemOf(folder_ / "empty.dt1"), HasSubstr("not a raster"));
 }
@@ -605,19 +619,6 @@ TEST_F(TerrainFileTest, FileWithoutGeoreferenceIsRefused) {
   file.transform = {0, 1, 0, 0, 0, -1};
   file.crs = "LOCAL_CS[\"building site\",UNIT[\"metre\",1]]";
   EXPECT_THAT(problemOf(write("c.tif", file)), HasSubstr("cannot be brought to latitude and longitude"));
-}
-
-TEST_F(TerrainFileTest, TextGridWithoutReferenceIsReadAsTheMessageSays) {
-  const std::filesystem::path grid = folder_ / "a.asc";
-  test::writeFile(grid,
-                  "ncols 3\nnrows 3\nxllcorner 10\nyllcorner 50\ncellsize 0.001\n1 2 3\n4 5 6\n7 8 9\n");
-  EXPECT_THAT(problemOf(grid), AllOf(HasSubstr("a file of the same name that ends in .prj"),
-                                     testing::Not(HasSubstr("gdal_edit"))));
-  test::writeFile(
-      folder_ / "a.prj",
-      "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],"
-      "PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]");
-  EXPECT_EQ(load({grid}, {50.0005, 50.0025, 10.0005, 10.0025})->heightMsl_m(50.0015, 10.0015), 5);
 }
 
 TEST_F(TerrainFileTest, ComplexNumbersAreNoHeights) {

@@ -72,6 +72,37 @@ TEST(CandidateSites, WithoutANameAreNumbered) {
   EXPECT_EQ(sites[2].name, "site 3");
 }
 
+TEST(CandidateSites, TablesOfLatitudesAndLongitudesNeedNoWkt) {
+  const test::TemporaryFolder folder;
+  int files = 0;
+  for (const char* text :
+       {"name,latitude_deg,longitude_deg\nhill,52.5,5.25\n",
+        "\xEF\xBB\xBFlongitude_deg,owner,latitude_deg,mast_m,name\r\n5.25,\"A, B\",52.5,30,hill\r\n",
+        "Name;Latitude;Longitude\nhill;52,5;5,25\n", "lat\tlon\tname\n52.5\t5.25\thill\n",
+        "name,lat,lon\nhill,\"52,5\",\"5,25\"\n"}) {
+    const auto sites = readCandidates(folder.write("a" + std::to_string(++files) + ".csv", text));
+    ASSERT_EQ(sites.size(), 1u) << text;
+    EXPECT_EQ(sites[0].name, "hill") << text;
+    EXPECT_EQ(sites[0].latitude_deg, 52.5) << text;
+    EXPECT_EQ(sites[0].longitude_deg, 5.25) << text;
+  }
+  const auto unnamed = readCandidates(folder.write("b.csv", "latitude_deg,longitude_deg\n52,5\n52,6\n"));
+  ASSERT_EQ(unnamed.size(), 2u);
+  EXPECT_EQ(unnamed[1].name, "site 2");
+}
+
+TEST(CandidateSites, UnreadableCellOfATableIsNamedByItsPlace) {
+  const test::TemporaryFolder folder;
+  const auto faultOf = [&](const std::string& rows) {
+    return test::errorOf(
+        [&] { readCandidates(folder.write("a.csv", "latitude_deg,longitude_deg\n" + rows)); });
+  };
+  EXPECT_THAT(faultOf("52,5\n52.1,east\n"),
+              HasSubstr("a.csv:3:6: the longitude is 'east', not a number of degrees"));
+  EXPECT_THAT(faultOf("520,5\n"), HasSubstr("a.csv:2:1: the latitude is 520; allowed are -90 to 90 deg"));
+  EXPECT_THAT(faultOf("52,5,7\n"), HasSubstr("3 values, but the header names 2 columns"));
+}
+
 TEST(CandidateSites, NumberOutsideLimitsIsRefused) {
   const test::TemporaryFolder folder;
   std::string points = "WKT,name\n";
@@ -79,8 +110,11 @@ TEST(CandidateSites, NumberOutsideLimitsIsRefused) {
   const std::string many = test::errorOf([&] { readCandidates(folder.write("many.csv", points)); });
   EXPECT_THAT(many, HasSubstr("10001 points, outside the allowed range 1 to 10000"));
   EXPECT_THAT(many, Not(HasSubstr("WKT")));
-  EXPECT_THAT(test::errorOf([&] { readCandidates(folder.write("none.csv", "WKT,name\n")); }),
-              HasSubstr("0 points, outside the allowed range 1 to 10000; a CSV file needs a column WKT"));
+  EXPECT_THAT(
+      test::errorOf([&] { readCandidates(folder.write("none.csv", "WKT,name\n")); }),
+      HasSubstr(
+          "0 points, outside the allowed range 1 to 10000; a CSV file needs the columns latitude_deg and "
+          "longitude_deg, or WKT"));
 }
 
 TEST(CandidateSites, UnreadablePointIsAnError) {

@@ -85,10 +85,11 @@ TEST(Coverage, WarnsOfTimesWithoutAnActiveRadar) {
                            [](const CoverageMap&) {});
   };
   EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, {0, 40}),
-              Contains("no radar is active at t = 40 s (active_s): the maps of this time are empty"));
-  EXPECT_THAT(
-      warningsOf(scenario::Quantity::snr_db, {20, 60, 100}),
-      Contains("no radar is active at 2 of 3 times, first at t = 60 s (active_s): their maps are empty"));
+              Contains("no radar is active at t = 40 s (active_s, or outside its track): the maps of this "
+                       "time are empty"));
+  EXPECT_THAT(warningsOf(scenario::Quantity::snr_db, {20, 60, 100}),
+              Contains("no radar is active at 2 of 3 times, first at t = 60 s (active_s, or outside its "
+                       "track): their maps are empty"));
   const auto inactive = Contains(HasSubstr("is active"));
   EXPECT_THAT(warningsOf(scenario::Quantity::detection_probability, {0, 39}), Not(inactive));
   EXPECT_THAT(warningsOf(scenario::Quantity::power_density_dbwm2, {60}), Not(inactive))

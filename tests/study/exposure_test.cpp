@@ -24,6 +24,8 @@ struct Given {
   explicit Given(const std::string& name)
       : scenario(scenario::loadScenario(test::shippedScenario(name))),
         terrain(scenario::loadTerrain(*scenario)) {}
+  Given(const std::string& file, scenario::TerrainPtr ground)
+      : scenario(scenario::loadScenario(file)), terrain(std::move(ground)) {}
   std::shared_ptr<const scenario::Scenario> scenario;
   scenario::TerrainPtr terrain;
 };
@@ -58,6 +60,102 @@ TEST(Exposure, ValueEqualsProfileAtThePlatform) {
     EXPECT_NEAR(row.value, std::max(10 * std::log10(sum), given.scenario->output.floor), 0.01);
     ASSERT_GE(row.best, 0);
     for (const double value : row.each) EXPECT_LE(value, row.each[static_cast<std::size_t>(row.best)]);
+  }
+}
+
+/// A radar and an aircraft that flies from 100 to 130 s of 200 s, with a target, a receiver and a jammer.
+Given passingAircraft(const TemporaryFolder& folder, const char* outside = "absent") {
+  const std::string text = R"(schema_version: 1
+name: passing
+duration_s: 200
+step_s: 10
+region: {origin: {latitude_deg: 52, longitude_deg: 5}, size_m: [40000, 40000, 5000], dims: [20, 20, 10]}
+platforms:
+  - {name: site, position: {latitude_deg: 52, longitude_deg: 5, height_agl_m: 20}}
+  - name: aircraft
+    track:
+      outside: )" + std::string(outside) +
+                           R"(
+      points:
+        - {t_s: 100, latitude_deg: 52.1, longitude_deg: 5, height_msl_m: 3000}
+        - {t_s: 130, latitude_deg: 52.12, longitude_deg: 5.1, height_msl_m: 3000}
+emitters:
+  - name: radar
+    platform: site
+    kind: radar
+    frequency_hz: 3.0e9
+    power_w: 50000
+    antenna: {pattern: gaussian, gain_dbi: 33, beamwidth_az_deg: 2, beamwidth_el_deg: 8}
+    scan: {kind: rotate, rate_rpm: 6}
+    receiver: {noise_figure_db: 4, bandwidth_hz: 1.0e6}
+  - {name: jammer, platform: aircraft, kind: jammer, frequency_hz: 3.0e9, bandwidth_hz: 1.0e6, power_w: 1, antenna: {pattern: isotropic}}
+receivers:
+  - {name: warning, platform: aircraft, gain_dbi: 0, bandwidth_hz: 1.0e6, center_frequency_hz: 3.0e9}
+targets:
+  - {name: skin, platform: aircraft, rcs_m2: 5}
+)";
+  return Given(folder.write(std::string(outside) + ".yaml", text), nullptr);
+}
+
+TEST(Exposure, AbsentPlatformHasNoValuesAndIsNoGap) {
+  const TemporaryFolder folder;
+  const Given given = passingAircraft(folder);
+  ExposureRequest request;
+  request.platform = 1;
+  request.target = 0;
+  for (int t = 0; t <= 200; t += 10) request.times_s.push_back(t);
+  const Exposure exposure = computeExposure(given.scenario, given.terrain, request, {});
+  for (const ExposureRow& row : exposure.rows) {
+    const bool is_there = row.time_s >= 100 && row.time_s <= 130;
+    EXPECT_EQ(row.state == ExposureState::absent, !is_there) << row.time_s;
+    EXPECT_EQ(std::isnan(row.latitude_deg), !is_there);
+    EXPECT_EQ(std::isnan(row.value), !is_there);
+  }
+  EXPECT_EQ(exposure.together.unknown_fraction, 0) << "absence is not unknown";
+  EXPECT_GT(exposure.together.fraction, 0.9) << "of the time in which it is there";
+  EXPECT_THAT(exposure.warnings,
+              testing::Contains(HasSubstr("'aircraft' is absent at 17 of 21 times, which have no values: its "
+                                          "track runs from 100 to 130 s")));
+  request.times_s = {0, 10};
+  EXPECT_THAT(
+      test::errorOf([&] { computeExposure(given.scenario, given.terrain, request, {}); }, ErrorCode::usage),
+      HasSubstr("'aircraft' is absent at t = 0 s"));
+}
+
+TEST(Links, AbsentEndsHaveNoPath) {
+  const TemporaryFolder folder;
+  for (const char* outside : {"absent", "hold"}) {
+    const Given given = passingAircraft(folder, outside);
+    emfield::LinkOptions options;
+    options.times_s = {0, 100, 110, 130, 140};
+    options.emitters = {0};
+    options.receivers = {0};
+    options.targets = {0};
+    const emfield::LinkReport report = emfield::computeLinks(given.scenario, nullptr, options);
+    ASSERT_EQ(report.links.size(), 1u);
+    ASSERT_EQ(report.detections.size(), 1u);
+    for (std::size_t t = 0; t < options.times_s.size(); ++t) {
+      const double time_s = options.times_s[t];
+      const bool is_there = std::string(outside) == "hold" || (time_s >= 100 && time_s <= 130);
+      EXPECT_EQ(report.links[0].rows[t].has_path, is_there) << outside << " " << time_s;
+      EXPECT_EQ(std::isfinite(report.links[0].rows[t].received_power_dbm), is_there);
+      EXPECT_EQ(report.detections[0].rows[t].has_path, is_there);
+      EXPECT_EQ(std::isfinite(report.detections[0].rows[t].snr_db), is_there);
+      if (is_there) continue;
+      EXPECT_EQ(report.detections[0].rows[t].looks, 0);
+      EXPECT_THAT(report.links[0].rows[t].verdict, HasSubstr("No path: 'aircraft' is absent at t = "));
+    }
+    // Its jammer does not jam while it is absent, and explains itself.
+    const scenario::Snapshot early = scenario::instantAt(given.scenario, nullptr, 0);
+    EXPECT_EQ(early.emitters[1].active, std::string(outside) == "hold");
+    if (early.platforms[1].present) continue;
+    EXPECT_THAT(test::errorOf(
+                    [&] {
+                      emfield::pathBudget(early, 1, {early.platforms[0].position, 20},
+                                          propagation::PropagationModel::diffraction, nullptr);
+                    },
+                    ErrorCode::usage),
+                HasSubstr("'aircraft' is absent at t = 0 s"));
   }
 }
 

@@ -63,6 +63,7 @@ struct Fixture {
     map.kind = kind;
     map.title = map.name;
     map.unit = kind == MapKind::level ? "dB" : "";
+    map.subject = map.name;
     map.description = map.name + " at 1500 m above mean sea level";
     map.height = height;
     map.time_s = time_s;
@@ -140,6 +141,20 @@ TEST(MapShapes, BandsTileThePixelsThatHaveAValue) {
     }
     EXPECT_NEAR(area_m2 / expected_m2, 1, 1e-6) << "neither overlap";
     EXPECT_NEAR(OGR_G_Area(all.get()) / expected_m2, 1, 1e-6) << "nor gap";
+  }
+}
+
+TEST(MapShapes, BandsAroundPixelsThatTouchAtCornersAreValid) {
+  const Fixture fixture;
+  Map map = fixture.map(MapKind::level, 70, -37, 26);
+  const int width = fixture.grid->width;
+  for (std::size_t p = 0; p < map.values.size(); ++p) {
+    const int column = static_cast<int>(p) % width, row = static_cast<int>(p) / width;
+    if (row % 7 < 4 && column % 5 < 4 && (row + column) % 2 == 0) map.values[p] = NAN;
+  }
+  for (const MapBand& band : shapesOf(*fixture.grid, map, "test").bands) {
+    EXPECT_TRUE(OGR_G_IsValid(band.geometry.get())) << band.min;
+    EXPECT_EQ(wkbFlatten(OGR_G_GetGeometryType(band.geometry.get())), wkbMultiPolygon);
   }
 }
 
@@ -488,6 +503,54 @@ TEST_F(MapFiles, TheCzmlHasPolygonsForTheirTimes) {
                                  "2026-06-01T06:01:20.000Z/2026-06-01T06:01:30.000Z"));
 }
 
+TEST_F(MapFiles, EmittersOfTheCzmlMoveWithTheirTracksAlsoForASingleTime) {
+  MapStudy study = fixture.study();
+  study.times_s = {70};
+  MapFolder maps(folder.path() / "one", study, {"czml"});
+  for (const Map& map : mapsOf(70)) maps.add(map);
+  maps.finish({});
+  const auto packets = nlohmann::json::parse(test::readFile(folder / "one/maps/coverage.czml"));
+  int moving = 0;
+  for (const scenario::Emitter& emitter : fixture.scenario->emitters) {
+    if (!fixture.scenario->platforms[static_cast<std::size_t>(emitter.platform)].moves()) continue;
+    for (const auto& packet : packets) {
+      if (packet.value("name", "") != emitter.name) continue;
+      EXPECT_EQ(packet["position"].value("reference", ""), "track/0#position") << packet;
+      ++moving;
+    }
+  }
+  EXPECT_EQ(moving, 1);
+}
+
+TEST_F(MapFiles, AbsentPlatformsHaveNoPositionInMaps) {
+  const std::string track =
+      "{points: [{t_s: 75, latitude_deg: 36.3, longitude_deg: -84.2, height_msl_m: 2000}, {t_s: 85, "
+      "latitude_deg: "
+      "36.31, longitude_deg: -84.2, height_msl_m: 2000}]}";
+  MapStudy study = fixture.study();
+  scenario::Scenario late = *fixture.scenario;
+  late.set("platforms.helicopter.track", track);
+  study.scenarios = {std::make_shared<const scenario::Scenario>(late)};
+  for (const MapSite& site : sitesOf(study)) {
+    if (site.platform != "helicopter") continue;
+    ASSERT_EQ(site.positions.size(), 1u);
+    EXPECT_EQ(site.positions[0].time_s, 80);
+  }
+  ASSERT_EQ(tracksOf(study).size(), 1u);
+  EXPECT_EQ(tracksOf(study)[0].positions.front().time_s, 75);
+  EXPECT_EQ(tracksOf(study)[0].positions.back().time_s, 85);
+  MapFolder maps(folder.path() / "late", study, {"czml", "gpkg", "kmz"});
+  for (const Map& map : mapsOf(70)) maps.add(map);
+  maps.finish({});
+  const auto packets = nlohmann::json::parse(test::readFile(folder / "late/maps/coverage.czml"));
+  for (const auto& packet : packets) {
+    if (packet["id"] != "track/0") continue;
+    EXPECT_EQ(packet["availability"], "2026-06-01T06:01:15.000Z/2026-06-01T06:01:25.000Z");
+    EXPECT_EQ(packet["position"]["forwardExtrapolationType"], "NONE");
+    EXPECT_EQ(packet["position"]["backwardExtrapolationType"], "NONE");
+  }
+}
+
 TEST_F(MapFiles, FullDiskOfGeoPackageIsOneErrorWithoutGdalOutput) {
   for (const rlim_t bytes : {0, 50000, 100000, 150000}) {
     const test::TemporaryFolder full;
@@ -546,7 +609,8 @@ TEST_F(MapFiles, UnknownFormatsAndHeightsAreRefused) {
 }
 
 TEST(MapObjects, TracksAreCutAtTheAntimeridian) {
-  MapTrack track{"aircraft", {{0, {10, 179, 0}, 100}, {10, {12, -179, 0}, 300}, {20, {12, -178, 0}, 300}}};
+  scenario::Platform aircraft;
+  MapTrack track{&aircraft, {{0, {10, 179, 0}, 100}, {10, {12, -179, 0}, 300}, {20, {12, -178, 0}, 300}}};
   const std::vector<MapTrack> parts = cutAtAntimeridian(track);
   ASSERT_EQ(parts.size(), 2u);
   ASSERT_EQ(parts[0].positions.size(), 2u);
@@ -559,7 +623,7 @@ TEST(MapObjects, TracksAreCutAtTheAntimeridian) {
     EXPECT_NEAR(at->time_s, 5, 1e-12);
     EXPECT_NEAR(at->height_msl_m, 200, 1e-9);
   }
-  EXPECT_EQ(parts[1].platform, "aircraft");
+  EXPECT_EQ(parts[1].platform, &aircraft);
   track.positions.erase(track.positions.begin());
   EXPECT_EQ(cutAtAntimeridian(track).size(), 1u);
 }

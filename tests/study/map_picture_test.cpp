@@ -230,18 +230,6 @@ TEST(MapPicture, TheAreaEndsAtItsBorderNotAtPixels) {
   }
 }
 
-TEST(MapPicture, SeaIsLevelGroundAtMeanSeaLevel) {
-  const MapGrid grid = smallGrid();
-  std::vector<float> ground_m(grid.pixels(), 0.0F);
-  for (std::size_t p = 0; p < grid.pixels(); ++p)
-    if (p % grid.width >= 10) ground_m[p] = 5.0F + static_cast<float>(p % 7);
-  ground_m[3 * 20 + 15] = 0;  // a well, no sea
-  const std::vector<std::uint8_t> sea = seaOf({grid.width, grid.height, grid.cell_m, ground_m});
-  for (std::size_t p = 0; p < grid.pixels(); ++p) EXPECT_EQ(sea[p], p % grid.width < 10 ? 1 : 0) << p;
-  EXPECT_EQ(seaOf({grid.width, grid.height, grid.cell_m, {}}), std::vector<std::uint8_t>(grid.pixels(), 0))
-      << "unknown ground is no sea";
-}
-
 TEST(MapPicture, WithoutGroundTheSeaIsThatOfTheCoastLines) {
   const MapGrid grid = makeMapGrid(parseArea("bbox:6.3,0,6.9,0.5"), 2000, "utm");  // the island of Sao Tome
   MapPictureOptions options;
@@ -348,6 +336,7 @@ TEST(MapPicture, LengthsAndFieldsAreShownInTheChosenUnits) {
   EXPECT_EQ(legend.unit, "V/m");
   EXPECT_EQ(legend.quantity, "Field strength");
   map.height = MapHeight{emfield::HeightReference::ground, 150};
+  map.subject = "coverage (SNR >= 10 dB)";
   map.description = "coverage (SNR >= 10 dB) at 150 m above ground";
   EXPECT_EQ(descriptionOf(map, Units::nautical), "coverage (SNR >= 10 dB) at 492 ft above ground");
   EXPECT_EQ(descriptionOf(map, Units::metric), map.description);

@@ -1,4 +1,4 @@
-/// A file that another program drags onto the window: both sides of XDND.
+/// What X knows of the window: a file that another program drags onto it (both sides of XDND), and resizes.
 #include <X11/Xatom.h>
 #include <X11/Xlib.h>
 #include <X11/Xutil.h>
@@ -128,6 +128,26 @@ TEST_F(Window, AFileThatIsDroppedOnItIsOpened) {
   XCloseDisplay(display);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.status, 0) << result.err;
+}
+
+/// Else X clears the window at each step of a resize, and it flashes.
+TEST_F(Window, AResizeLeavesTheLastPictureUntilTheNextIsDrawn) {
+  RunningProgram program(viewOf(quick(), R"({"do":"wait_state","state":"exact"}
+{"do":"mark","text":"ready"}
+{"do":"wait_s","seconds":2}
+{"do":"quit"}
+)"),
+                         environment());
+  for (int i = 0; i < 600 && log("mark").empty(); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  Display* const display = XOpenDisplay(display_->name().c_str());
+  ASSERT_NE(display, nullptr);
+  XWindowAttributes attributes{};
+  const ::Window window = windowNamed(display, DefaultRootWindow(display), "quick.yaml");
+  EXPECT_NE(XGetWindowAttributes(display, window, &attributes), 0);
+  EXPECT_EQ(attributes.bit_gravity, NorthWestGravity);
+  XCloseDisplay(display);
+  EXPECT_EQ(program.wait().status, 0);
 }
 
 }  // namespace

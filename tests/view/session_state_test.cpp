@@ -30,7 +30,7 @@ Rendered render(const std::string& input, const playback::ViewState& written,
   const auto source = playback::openFrameSource(selection, cpu());
   playback::Painter painter(view, *source, cpu(), must_show_isosurface);
   painter.setFrame(source->frame(0));
-  painter.draw({});
+  painter.draw(render::FramePlan::exact());
   return {render::quantize(painter.image()), painter.picture(painter.note(render::Pattern::full))};
 }
 

@@ -1,14 +1,15 @@
 /// Battlefields of other programs in a session: live streams and recordings.
-#include <unistd.h>
-
 #include "apps/view/parts/opening.h"
+#include "apps/view/session/session_opener.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/emfield/solver/field_solver.h"
 #include "emscape/scenario/model/poses.h"
 #include "emscape/scenario/terrain/terrain.h"
-#include "interop/dis/orientation.h"
-#include "interop/dis/pdu.h"
 #include "playback/sockets/socket.h"
+#include "playback/stream/acmi_server.h"
+#include "recording/dis/orientation.h"
+#include "recording/dis/pdu.h"
+#include "tests/support/ports.h"
 #include "tests/view/session_sample.h"
 
 namespace emscape::view::test {
@@ -21,18 +22,18 @@ constexpr std::uint32_t kLocal = 0x7F000001;
 /// A session on quick.yaml with a stream, and its sender.
 class StreamTest : public testing::Test {
  protected:
-  static playback::StreamRequest request() {
-    static std::uint16_t port = static_cast<std::uint16_t>(42000 + getpid() % 10000);
+  playback::StreamRequest request() const {
     playback::StreamRequest request;
-    request.address = {kLocal, ++port};
+    request.address = {kLocal, emscape::test::freePort()};
     request.interface = kLocal;
-    request.base = shippedScenario("quick.yaml");
+    request.base = base_;
     return request;
   }
 
   ViewOptions options() {
     ViewOptions options = optionsFor(stream_->file(), {160, 120});
     options.stream = stream_;
+    options.made_of = base_;
     return options;
   }
   void send(double latitude_deg, double longitude_deg) {
@@ -60,14 +61,23 @@ class StreamTest : public testing::Test {
     const auto bytes = interop::dis::encode({}, pdu);
     ASSERT_TRUE(sender_.send(bytes.data(), bytes.size()));
   }
-  static const scenario::Platform* boatOf(const Session& session) {
+  static const scenario::Platform* boatOf(const Session& session, const std::string& name = "boat") {
     if (session.picture() == nullptr || !session.picture()->scenario) return nullptr;
     for (const scenario::Platform& platform : session.picture()->scenario->platforms) {
-      if (platform.name == "boat") return &platform;
+      if (platform.name == name) return &platform;
     }
     return nullptr;
   }
+  /// True if the picture comes to show the boat there.
+  static bool comesTo(SessionSample& session, double latitude_deg, const std::string& name = "boat") {
+    return session.waitUntil([&] {
+      const scenario::Platform* const boat = boatOf(*session, name);
+      return boat != nullptr && std::abs(boat->track.front().position.latitude_deg - latitude_deg) < 1e-6;
+    });
+  }
 
+  const StateFolder folder_;
+  const std::string base_ = folder_.write("base.yaml", readFile(shippedScenario("quick.yaml")));
   const playback::StreamRequest request_ = request();
   std::shared_ptr<playback::LiveBattlefield> stream_ =
       std::make_shared<playback::LiveBattlefield>(request_, nullptr);
@@ -110,9 +120,103 @@ TEST_F(StreamTest, EditsStayWhenObjectsCome) {
   EXPECT_TRUE(session->hasUnsavedEdits());
 }
 
-TEST_F(StreamTest, AnotherInputEndsTheStream) {
-  const Opening opening = prepareOpening({shippedScenario("quick.yaml"), "", std::nullopt, false}, options());
-  EXPECT_EQ(opening.options.stream, nullptr);
+TEST_F(StreamTest, ThePlatformsMoveWhateverTheUserEdits) {
+  SessionSample session(options());
+  session.settle();
+  send(52.01, 5);
+  ASSERT_TRUE(comesTo(session, 52.01));
+  EXPECT_EQ(
+      session.perform(R"({"do":"add","what":"platform","name":"Aa","latitude_deg":52,"longitude_deg":5})"),
+      "");
+  send(52.02, 5);
+  EXPECT_TRUE(comesTo(session, 52.02)) << "after one more";
+  EXPECT_EQ(session.perform(R"({"do":"set","path":"platforms.boat.name","value":"ship"})"), "");
+  send(52.03, 5);
+  EXPECT_TRUE(comesTo(session, 52.03, "ship")) << "with another name";
+  const scenario::Platform* const added = boatOf(*session, "Aa");
+  ASSERT_NE(added, nullptr);
+  EXPECT_EQ(added->track.front().position.latitude_deg, 52) << "what the stream does not know stays";
+}
+
+TEST_F(StreamTest, OutputsWithoutANameAreBesideTheBaseAndStay) {
+  const std::string home = std::getenv("HOME") == nullptr ? "" : std::getenv("HOME");
+  setenv("HOME", folder_.path().c_str(), 1);  // without Pictures
+  {
+    SessionSample session(options());
+    session.settle();
+    EXPECT_EQ(session->usualScenarioFile(), folder_ / "base.edited.yaml");
+    EXPECT_EQ(session->usualColorsFile(), folder_ / "base.transfer.json");
+    EXPECT_EQ(session.perform(R"({"do":"set","path":"emitters.radar.power_w","value":"3"})"), "");
+    for (const char* verb : {"save", "save_state", "save_transfer", "picture"}) {
+      session.settle();
+      EXPECT_EQ(session.perform(std::string(R"({"do":")") + verb + R"("})"), "") << verb;
+      session.waitUntil([&] { return !session->working(); });
+    }
+  }
+  setenv("HOME", home.c_str(), 1);
+  stream_.reset();
+  for (const char* file : {"base.edited.yaml", "base.view.json", "base.transfer.json", "emscape-0001.png"})
+    EXPECT_TRUE(std::filesystem::exists(folder_ / file)) << file;
+}
+
+TEST_F(StreamTest, AViewFileKeepsTheStreamAndAnotherInputEndsItWithItsRecording) {
+  const std::string view = folder_ / "a.view.json";
+  playback::StreamRequest recorded = request();
+  recorded.record = folder_ / "seen.pcap";
+  stream_ = std::make_shared<playback::LiveBattlefield>(recorded, nullptr);
+  const std::weak_ptr<playback::LiveBattlefield> stream = stream_;
+  SessionSample session(options());
+  stream_.reset();
+  SessionOpener opener(session.files, [&](const ViewOptions& options) { return session.make(options); });
+  const auto open = [&](const std::string& file) {
+    session->perform({"open", {{"file", file}}});
+    session.waitUntil([&] {
+      opener.update(session.session);
+      return !opener.active() && session->settled();
+    });
+    EXPECT_EQ(session.error(), "");
+  };
+  session.settle();
+  session.perform(R"({"do":"save_state","file":")" + view + R"("})");
+  session.waitUntil([&] { return !session->working(); });
+  open(view);
+  EXPECT_NE(session->options().stream, nullptr);
+  EXPECT_FALSE(std::filesystem::exists(recorded.record));
+  open(base_);
+  EXPECT_EQ(session->options().stream, nullptr);
+  EXPECT_TRUE(std::filesystem::exists(recorded.record));
+  EXPECT_TRUE(session.waitUntil([&] { return stream.expired(); })) << "the port is free";
+}
+
+TEST(AcmiStream, TheCameraFollowsAnObjectByItsNameWhenOthersComeAndGo) {
+  const StateFolder folder;
+  playback::StreamRequest request;
+  request.kind = playback::StreamKind::acmi;
+  request.connects = true;
+  request.address = {kLocal, emscape::test::freePort()};
+  request.base = shippedScenario("quick.yaml");
+  playback::AcmiServer host(request.address, "");
+  for (const char* line : {"FileType=text/acmi/tacview", "FileVersion=2.2",
+                           "1,T=5|52|900,Type=Air,Name=Alpha", "2,T=5.01|52|900,Type=Air,Name=Bravo"})
+    host.send(line);
+  const auto stream = std::make_shared<playback::LiveBattlefield>(request, nullptr);
+  ViewOptions options = optionsFor(stream->file(), {160, 120});
+  options.stream = stream;
+  options.made_of = request.base;
+  SessionSample session(options);
+  const auto waitFor = [&](const char* name) {
+    return session.waitUntil([&] {
+      host.serve(0);
+      return session->scenario() && playback::platformIndices(*session->scenario()).count(name) == 1 &&
+             session->settled();
+    });
+  };
+  ASSERT_TRUE(waitFor("Bravo"));
+  EXPECT_EQ(session.perform(R"({"do":"follow","name":"Bravo"})"), "");
+  host.send("-1");
+  host.send("3,T=5.02|52|900,Type=Air,Name=Xray");
+  ASSERT_TRUE(waitFor("Xray"));
+  EXPECT_EQ(session->view().follow, "Bravo");
 }
 
 TEST(Recordings, AreOpenedAsScenariosInTheFolderOfTheState) {
@@ -126,6 +230,7 @@ TEST(Recordings, AreOpenedAsScenariosInTheFolderOfTheState) {
   EXPECT_EQ(std::filesystem::path(opening.options.view.input).filename(), "flight.yaml");
   EXPECT_THAT(opening.note, HasSubstr("flight.acmi: 1 platform, emitters of the starter set"));
   EXPECT_EQ(opening.options.view.input.find(folder.path().string()), 0u);
+  EXPECT_EQ(opening.options.namesake(), recording) << "outputs are beside it";
   folder.write("torn.acmi", "nothing of the kind\n");
   EXPECT_THAT(errorOf([&] {
                 prepareOpening({folder / "torn.acmi", "", std::nullopt, false}, {});

@@ -117,6 +117,8 @@ void setMetadata(openvdb::GridBase& grid, const DenseVolume& volume) {
   set("range_min", openvdb::FloatMetadata(info.range_min));
   set("range_max", openvdb::FloatMetadata(info.range_max));
   set("categorical", openvdb::BoolMetadata(info.categorical));
+  for (const auto& [key, text] : standardWords(volume.grid.georeferenced, volume.grid.frame))
+    set(key.c_str(), openvdb::StringMetadata(text));
   const Dims& dims = volume.grid.dims;
   const Vec3d& spacing_m = volume.grid.spacing_m;
   set("spacing_m", openvdb::Vec3DMetadata(openvdb::Vec3d(spacing_m.x, spacing_m.y, spacing_m.z)));

@@ -5,6 +5,7 @@
 #include <boost/iostreams/device/array.hpp>
 #include <boost/iostreams/stream.hpp>
 #include <cmath>
+#include <set>
 
 #include "base/files/file_reading.h"
 #include "base/text/failure_text.h"
@@ -173,9 +174,10 @@ DenseVolume volumeOf(const VdbGrid& entry) {
   info.range_min = floatOf("range_min");
   info.range_max = floatOf("range_max");
   info.categorical = number("categorical").value_or(0) != 0;
-  static const char* const kOwn[] = {"emscape:quantity", "emscape:unit", "emscape:time_utc", "emscape:frame"};
+  std::set<std::string> own_keys = {"emscape:quantity", "emscape:unit", "emscape:time_utc", "emscape:frame"};
+  for (const auto& [key, value] : standardWords(true, {})) own_keys.insert("emscape:" + key);
   for (const auto& [key, value] : metadata) {
-    const bool own = std::find(std::begin(kOwn), std::end(kOwn), key) != std::end(kOwn);
+    const bool own = own_keys.count(key) > 0;
     if (key.rfind("emscape:", 0) == 0 && value.type == "string" && !own)
       info.extra[key.substr(8)] = value.bytes;
   }

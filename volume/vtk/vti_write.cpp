@@ -80,7 +80,7 @@ void writeVti(const std::filesystem::path& path, const std::vector<const DenseVo
   std::vector<std::pair<std::string, nlohmann::ordered_json>> descriptions;
   for (const DenseVolume* volume : volumes)
     descriptions.emplace_back(volume->info.quantity, toJson(*volume, false));
-  appendFieldData(image, volumes.front()->info.time_s, descriptions);
+  appendFieldData(image, volumes.front()->info.time_s, FieldTextType::string, descriptions);
   pugi::xml_node piece = image.append_child("Piece");
   piece.append_attribute("Extent") = extentText(grid.dims).c_str();
   pugi::xml_node points = piece.append_child("PointData");

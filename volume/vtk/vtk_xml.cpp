@@ -297,7 +297,8 @@ std::string VtkXmlFile::storedFieldText(const std::string& name) const {
 std::string VtkXmlFile::fieldText(const std::string& name) const {
   const pugi::xml_node array = fieldArray(name);
   if (std::string_view(array.attribute("format").value()) == "ascii") return spelledText(array.child_value());
-  if (std::string_view(array.attribute("type").value()) != "String") return "";
+  const std::string_view type = array.attribute("type").value();
+  if (type != "String" && type != "UInt8") return "";
   const std::vector<std::uint8_t> bytes = binaryBytes(array, 0, kMaxTextBytes);
   return {bytes.begin(), std::find(bytes.begin(), bytes.end(), 0)};
 }

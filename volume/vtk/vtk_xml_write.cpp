@@ -22,16 +22,17 @@ std::string characterNumbers(const std::string& text) {
   return numbers + "0";
 }
 
-/// Description of a volume for its array in the field data. Blanks at the end make the length independent of
-/// the range, so that setVtkRange() can replace the text in place.
+/// Description of a volume for its array in the field data. Blanks at the end of the JSON text make the
+/// number of characters independent of the range, and blanks after the codes their length, so that
+/// setVtkRange() can replace the text in place.
 std::string descriptionText(const Json& description) {
-  constexpr std::size_t kMaxRangeCharacters =
-      4 * 2 * 24;  // two doubles, up to four characters for each of theirs
-  const auto lengthOf = [](const Json& json) { return characterNumbers(dumpJson(json)).size(); };
-  const std::string text = dumpJson(description, 2);
-  const std::size_t range_characters =
-      lengthOf(description["range_min"]) + lengthOf(description["range_max"]);
-  return characterNumbers(text) + std::string(kMaxRangeCharacters - range_characters, ' ');
+  constexpr std::size_t kMaxRangeCharacters = 2 * 24;  // of two doubles
+  constexpr std::size_t kMaxCodeLength = 4;            // a code of three digits and a blank
+  const std::string range = dumpJson(description["range_min"]) + dumpJson(description["range_max"]);
+  const std::string blanks(kMaxRangeCharacters - range.size(), ' ');
+  const std::size_t codes_length = characterNumbers(range + blanks).size();
+  return characterNumbers(dumpJson(description, 2) + blanks) +
+         std::string(kMaxCodeLength * kMaxRangeCharacters + 1 - codes_length, ' ');
 }
 
 }  // namespace
@@ -49,21 +50,26 @@ pugi::xml_node appendVtkRoot(pugi::xml_document& document, const char* type) {
   return root.append_child(type);
 }
 
-void appendFieldData(pugi::xml_node data_set, double time_s,
+void appendFieldData(pugi::xml_node data_set, double time_s, FieldTextType text_type,
                      const std::vector<std::pair<std::string, Json>>& descriptions) {
   pugi::xml_node field = data_set.append_child("FieldData");
   const auto addArray = [&](const char* element, const char* type, const std::string& name,
-                            const std::string& text) {
+                            const std::string& text, std::size_t tuples) {
     pugi::xml_node array = field.append_child(element);
     array.append_attribute("type") = type;
     array.append_attribute("Name") = xmlCharacters(name).c_str();
-    array.append_attribute("NumberOfTuples") = 1;
+    array.append_attribute("NumberOfTuples") = static_cast<unsigned long long>(tuples);
     array.append_attribute("format") = "ascii";
     array.text() = text.c_str();
   };
-  addArray("DataArray", "Float64", "TimeValue", numberText(time_s));
+  addArray("DataArray", "Float64", "TimeValue", numberText(time_s), 1);
   for (const auto& [quantity, description] : descriptions) {
-    addArray("Array", "String", "emscape:" + quantity, descriptionText(description));
+    const std::string text = descriptionText(description);
+    if (text_type == FieldTextType::string) {
+      addArray("Array", "String", "emscape:" + quantity, text, 1);
+    } else {
+      addArray("DataArray", "UInt8", "emscape:" + quantity, text, spelledText(text).size() + 1);
+    }
   }
 }
 

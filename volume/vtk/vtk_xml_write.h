@@ -20,8 +20,12 @@ std::string numberText(double value);
 /// @return its child of that name
 pugi::xml_node appendVtkRoot(pugi::xml_document& document, const char* type);
 
-/// Appends TimeValue, and for each quantity a string `emscape:NAME` with its description.
-void appendFieldData(pugi::xml_node data_set, double time_s,
+/// string: shown as text by VTK's programs. uint8: the same codes as numbers, for readers of meshes that know
+/// arrays of numbers only, such as meshio's.
+enum class FieldTextType { string, uint8 };
+
+/// Appends TimeValue, and for each quantity a text `emscape:NAME` with its description.
+void appendFieldData(pugi::xml_node data_set, double time_s, FieldTextType text_type,
                      const std::vector<std::pair<std::string, nlohmann::ordered_json>>& descriptions);
 
 /// An array of the appended data. Its bytes must outlive AppendedArrays::write().

@@ -59,7 +59,7 @@ void writeMesh(const std::filesystem::path& path, const std::vector<const MeshFi
   pugi::xml_node grid = appendVtkRoot(document, "UnstructuredGrid");
   std::vector<std::pair<std::string, nlohmann::ordered_json>> descriptions;
   for (const MeshField* field : fields) descriptions.emplace_back(field->info.quantity, toJson(*field));
-  appendFieldData(grid, fields.front()->info.time_s, descriptions);
+  appendFieldData(grid, fields.front()->info.time_s, FieldTextType::uint8, descriptions);
   pugi::xml_node piece = grid.append_child("Piece");
   piece.append_attribute("NumberOfPoints") = static_cast<unsigned long long>(mesh.points_m.size());
   piece.append_attribute("NumberOfCells") = static_cast<unsigned long long>(mesh.cells.size());

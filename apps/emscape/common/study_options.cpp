@@ -51,9 +51,9 @@ void addMapOptions(CLI::App& command, report::MapOptions& options, ViewArguments
   addListOption(command, "--products", options.products, "Products, with commas between them");
   command.add_option("--quantity", options.quantity, "Quantity to map; see docs/scenario-format.md");
   addThresholdOption(command, options.threshold);
-  command.add_option(
-      "--times", options.times,
-      "BEGIN:END:STEP, BEGIN:END (in steps of the scenario) or T, in seconds since the scenario's epoch");
+  command.add_option("--times", options.times,
+                     "BEGIN:END:STEP, BEGIN:END (in steps of the scenario) or T, in seconds since the "
+                     "scenario's epoch or in UTC");
   command.add_option("--cell", options.cell_m, "Side of a pixel (m); default: the scenario's voxels")
       ->default_str("");
   command.add_option(

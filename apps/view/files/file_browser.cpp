@@ -42,7 +42,7 @@ bool mayChoose(FileBrowser::Purpose purpose, FileKind kind) {
     case FileBrowser::Purpose::drape:
       return kind == FileKind::image;
     case FileBrowser::Purpose::places:
-      return kind == FileKind::places;
+      return kind == FileKind::places || kind == FileKind::places_or_tracks;
     case FileBrowser::Purpose::view:
       return kind == FileKind::view;
     case FileBrowser::Purpose::scenario:
@@ -65,7 +65,8 @@ FileKind fileKindOf(const fs::path& file, bool is_folder) {
   if (endsWith(name, ".view.json")) return FileKind::view;
   if (endsWith(name, ".transfer.json")) return FileKind::colors;
   if (hasOneOf({".tif", ".tiff", ".mbtiles", ".vrt", ".png", ".jpg", ".jpeg"})) return FileKind::image;
-  if (hasOneOf({".geojson", ".gpkg", ".shp", ".kml", ".gml"})) return FileKind::places;
+  if (hasOneOf({".geojson", ".gpkg", ".shp", ".gml"})) return FileKind::places;
+  if (endsWith(name, ".kml")) return FileKind::places_or_tracks;
   try {
     switch (playback::inputKindOf(file.string())) {
       case playback::InputKind::scenario:

@@ -11,7 +11,18 @@
 namespace emscape::view {
 
 /// Files that the window reads, by their extension: image and places are on the ground.
-enum class FileKind { folder, scenario, volume, view, colors, image, places, recording, other };
+enum class FileKind {
+  folder,
+  scenario,
+  volume,
+  view,
+  colors,
+  image,
+  places,
+  places_or_tracks,
+  recording,
+  other
+};
 FileKind fileKindOf(const std::filesystem::path& file, bool is_folder);
 
 struct FolderEntry {

@@ -40,9 +40,9 @@ void draw(const RecordJob& job, const StopFlag& stop, const std::function<void(i
   const playback::Film film = playback::filmOf(job.view, *source, frames_per_s);
   painter.setSpeed(film.speed);
   painter.setFrame(source->frame(0));
-  const render::FramePlan plan{render::Pattern::full, {}};
   playback::drawPictures(
-      *source, painter, plan, sinks, film, [&](int pictures) { done(pictures, source->count()); }, &stop);
+      *source, painter, render::FramePlan::exact(), sinks, film,
+      [&](int pictures) { done(pictures, source->count()); }, &stop);
 }
 
 }  // namespace

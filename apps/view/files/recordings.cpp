@@ -7,9 +7,10 @@
 
 #include "base/files/folder.h"
 #include "base/text/count_text.h"
+#include "emscape/base/error.h"
 #include "interop/import_scenario.h"
-#include "interop/recording/read_recording.h"
 #include "playback/editing/autosave.h"
+#include "recording/read_recording.h"
 
 namespace emscape::view {
 
@@ -28,7 +29,16 @@ std::string importRecordingFile(const std::string& file, std::string& note) {
   const std::string database = file + ".emitters.yaml";
   std::error_code ignored;
   if (fs::exists(database, ignored)) options.emitters = database;
-  const interop::ImportResult result = interop::importRecording(interop::readRecording(file), options);
+  const interop::ImportResult result = [&] {
+    const auto recorded = interop::readRecording(file);
+    try {
+      return interop::importRecording(recorded, options);
+    } catch (const Error& error) {
+      const bool lacks_database = options.emitters.empty() && error.message().find("--emitters") != std::string::npos;
+      if (!lacks_database) throw;
+      throw Error(error.code(), error.location(), error.message() + "; the window reads the database " + database);
+    }
+  }();
   int unmatched = 0;
   for (const interop::ImportedEmitters& use : result.emitters) unmatched += use.fault.empty() ? 0 : use.count;
   note =

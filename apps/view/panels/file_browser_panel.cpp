@@ -28,6 +28,7 @@ const char* nameOf(FileKind kind) {
     case FileKind::image:
       return "picture";
     case FileKind::places:
+    case FileKind::places_or_tracks:
       return "places";
     case FileKind::recording:
       return "recording";

@@ -35,6 +35,7 @@ bool drawRow(PanelContext& context, const ImGuiTextFilter& filter, const std::st
   ImGui::TextWrapped("%s", drawable(keys).c_str());
   ImGui::TableNextColumn();
   ImGui::TextWrapped("%s", drawable(does).c_str());
+  if (command_line.empty()) return true;
   ImGui::TableNextColumn();
   ImGui::PushStyleColor(ImGuiCol_Text, mutedColor(context.session.theme()));
   ImGui::TextWrapped("%s", drawable(command_line).c_str());
@@ -43,13 +44,18 @@ bool drawRow(PanelContext& context, const ImGuiTextFilter& filter, const std::st
 }
 
 void drawKeys(PanelContext& context, const ImGuiTextFilter& filter) {
+  bool found = false;
+  if (ImGui::BeginTable("gestures", 2, ImGuiTableFlags_RowBg)) {
+    ImGui::TableSetupColumn("gesture", ImGuiTableColumnFlags_WidthStretch, 0.4F);
+    ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch, 0.6F);
+    for (const Gesture& gesture : gestures())
+      found |= drawRow(context, filter, gesture.gesture, gesture.does, "");
+    ImGui::EndTable();
+  }
   if (!ImGui::BeginTable("help", 3, ImGuiTableFlags_RowBg)) return;
   ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthStretch, 0.3F);
   ImGui::TableSetupColumn("does", ImGuiTableColumnFlags_WidthStretch, 0.34F);
   ImGui::TableSetupColumn("command line", ImGuiTableColumnFlags_WidthStretch, 0.36F);
-  bool found = false;
-  for (const Gesture& gesture : gestures())
-    found |= drawRow(context, filter, gesture.gesture, gesture.does, "");
   for (const std::string& menu : menuNames()) {
     if (!filter.IsActive()) {
       ImGui::TableNextRow();

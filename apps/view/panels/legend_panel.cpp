@@ -20,7 +20,7 @@ void drawLegendMenu(PanelContext& context, const Area& picture) {
                to = at(heading.x + heading.width, heading.y + heading.height);
   const float margin = 4 * s, arrow = 5 * s;
   ImGui::SetNextWindowPos({from.x - margin, from.y - margin});
-  ImGui::SetNextWindowSize({to.x - from.x + 2 * margin, to.y - from.y + 2 * margin});
+  ImGui::SetNextWindowSize({to.x - from.x + 3 * margin + 2 * arrow, to.y - from.y + 2 * margin});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
   ImGui::Begin("legend", nullptr, kFixedPanel | ImGuiWindowFlags_NoScrollbar);
@@ -33,7 +33,7 @@ void drawLegendMenu(PanelContext& context, const Area& picture) {
     list.AddRect(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
                  ImGui::ColorConvertFloat4ToU32(accentColor(session.theme())), 4 * s);
   }
-  const ImVec2 tip{to.x - arrow, to.y - 2 * arrow};
+  const ImVec2 tip{to.x + margin + arrow, to.y - 2.5F * arrow};  // beside the text
   list.AddTriangleFilled({tip.x - arrow, tip.y}, {tip.x + arrow, tip.y}, {tip.x, tip.y + arrow},
                          ImGui::ColorConvertFloat4ToU32(accentColor(session.theme())));
   ImGui::SetNextWindowPos({to.x + margin, to.y + margin}, ImGuiCond_Appearing, {1, 0});

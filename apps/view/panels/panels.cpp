@@ -79,7 +79,8 @@ void drawSideButton(PanelContext& context) {
   if (!layout.side_is_over) return;
   const char* const text = context.session.panels.side ? "Picture##side" : "Side##side";
   const float width = ImGui::CalcTextSize(text, nullptr, /*hide_text_after_double_hash=*/true).x;
-  ImGui::SameLine(ImGui::GetIO().DisplaySize.x - width - 24 * context.scale);
+  const float padding = 2 * ImGui::GetStyle().FramePadding.x + 8 * context.scale;
+  ImGui::SameLine(std::max(ImGui::GetCursorPosX(), ImGui::GetIO().DisplaySize.x - width - padding));
   if (ImGui::SmallButton(text)) perform(context, R"({"do":"panel","name":"side"})");
 }
 

@@ -221,7 +221,8 @@ void drawPictureOverlay(const PanelContext& context, const Area& picture) {
     if (const auto pixel = planeHandle(*session.picture(), plane)) overlay.handle(overlay.at(*pixel));
   }
   if (const SceneObject* object = session.objectOf(session.selected())) {
-    if (object->pixel) overlay.selection(overlay.at(render::Projected{object->pixel->x, object->pixel->y}));
+    if (object->pixel && object->present)
+      overlay.selection(overlay.at(render::Projected{object->pixel->x, object->pixel->y}));
   }
   drawTool(overlay, session);
 }

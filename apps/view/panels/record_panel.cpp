@@ -90,7 +90,7 @@ void fillIn(Typed& typed, const Session& session) {
   typed.end_s = times_s.back();
   typed.step_s = times_s.size() > 1 ? times_s[1] - times_s[0] : 1;
   if (std::exchange(typed.input, session.view().input) != session.view().input || typed.file[0] == '\0') {
-    typed.setFile(besideInput(session.view().input, ".mp4"));
+    typed.setFile(besideInput(session.options().namesake(), ".mp4"));
   }
 }
 

@@ -1,10 +1,12 @@
 /// The panel shown while nothing is open.
 #include <algorithm>
 #include <filesystem>
+#include <string>
 
 #include "apps/view/panels/panels.h"
 #include "apps/view/widgets/names.h"
 #include "apps/view/widgets/theme.h"
+#include "recording/read_recording.h"
 
 namespace emscape::view {
 
@@ -76,10 +78,11 @@ void drawStart(PanelContext& context, const Area& picture) {
                    ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoSavedSettings |
                    ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoBringToFrontOnFocus);
   ImGui::PushTextWrapPos(width - 12 * s);
-  ImGui::TextUnformatted(
+  static const std::string text =
       "Open a scenario (.yaml, .json), whose field is computed, or volumes of any program: a file "
-      "(.vdb .nvdb .vti .raw .dat), a series (.pvd) or a folder; or a recording of a battlefield (.acmi, "
-      ".pcap).");
+      "(.vdb .nvdb .vti .raw .dat), a series (.pvd) or a folder; or a recording of a battlefield (" +
+      interop::recordingEndingsText() + ").";
+  ImGui::TextUnformatted(text.c_str());
   ImGui::PopTextWrapPos();
   if (ImGui::Button("Open (Ctrl+O)")) perform(context, R"({"do":"open"})");
   ImGui::SameLine(0, 16 * s);

@@ -60,12 +60,14 @@ void checkInput(const ViewOptions& options, Opening& opening) {
 Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
   OpenRequest request = asked;
   Opening opening;
+  std::string made_of;
   if (playback::inputKindOf(request.file) ==
-      playback::InputKind::recording)  // throws if there is no such file
+      playback::InputKind::recording) {  // throws if there is no such file
+    made_of = request.file;
     request.file = importRecordingFile(request.file, opening.note);
+  }
   opening.options = present;
   ViewOptions& options = opening.options;
-  if (request.file != present.view.input) options.stream.reset();
   using playback::JsonContent;
   switch (playback::jsonContentOf(request.file)) {
     case JsonContent::transfer:
@@ -99,6 +101,10 @@ Opening prepareOpening(const OpenRequest& asked, const ViewOptions& present) {
       options.fits_labels = !request.view;
       options.offers_kept_view = !request.view;
       break;
+  }
+  if (options.view.input != present.view.input) {
+    options.stream.reset();
+    options.made_of = made_of;
   }
   options.view.transfer_file.clear();
   options.unsaved_edits = request.unsaved_edits;

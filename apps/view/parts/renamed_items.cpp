@@ -72,9 +72,13 @@ std::vector<RenamedItem> renamedItems(const scenario::Scenario& before, const sc
   std::vector<RenamedItem> renamed;
   const auto compare = [&](const std::string& list, const auto& old_items, const auto& items) {
     if (old_items.size() != items.size()) return;
+    const auto has = [](const auto& list_of_items, const std::string& name) {
+      return std::any_of(list_of_items.begin(), list_of_items.end(),
+                         [&name](const auto& item) { return item.name == name; });
+    };
     for (std::size_t i = 0; i < items.size(); ++i) {
       const std::string &old_name = old_items[i].name, &name = items[i].name;
-      if (old_name == name) continue;
+      if (old_name == name || has(items, old_name) || has(old_items, name)) continue;
       renamed.push_back({list, old_name, name, list + "." + scenario::pathStep(old_name),
                          list + "." + scenario::pathStep(name)});
     }
@@ -95,6 +99,14 @@ std::string renamedPath(const std::vector<RenamedItem>& items, const std::string
     if (is_within) return item.path_now + path.substr(length);
   }
   return path;
+}
+
+std::string nameAfter(const std::vector<scenario::Edit>& edits, const std::string& list, std::string name) {
+  for (const scenario::Edit& edit : edits) {
+    const std::optional<RenamedItem> item = renamedBy(edit);
+    if (item && item->path_before == list + "." + scenario::pathStep(name)) name = item->now;
+  }
+  return name;
 }
 
 std::vector<scenario::Edit> foldedEdits(const std::vector<scenario::Edit>& edits) {

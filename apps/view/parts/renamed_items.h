@@ -15,11 +15,15 @@ struct RenamedItem {
   std::string path_before, path_now;  ///< "emitters.jammer"
 };
 
-/// The items that have another name at the same place of their list. None of lists with more or fewer items.
+/// The items that have another name at the same place of their list. None of lists with more or fewer items,
+/// and none whose name is elsewhere in the list now or whose other name was there before.
 std::vector<RenamedItem> renamedItems(const scenario::Scenario& before, const scenario::Scenario& now);
 
 /// A path with the new name in place of the old one, if it leads to one of the items or into it.
 std::string renamedPath(const std::vector<RenamedItem>& items, const std::string& path);
+
+/// The name that an item has after edits.
+std::string nameAfter(const std::vector<scenario::Edit>& edits, const std::string& list, std::string name);
 
 /// The paths that edits change, with the names that the items have after all of them.
 std::set<std::string> editedPaths(const std::vector<scenario::Edit>& edits);

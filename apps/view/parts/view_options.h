@@ -28,6 +28,10 @@ struct ViewOptions {
   /// A battlefield that another program streams, of which `view` shows the scenario; null: none.
   std::shared_ptr<playback::LiveBattlefield> stream;
   std::optional<playback::StreamRequest> stream_request;  ///< of the command line
+  /// The user's file of which the program has made the input: the base of a stream, a recording; else empty.
+  std::string made_of;
+  /// The file whose name and folder those of outputs follow.
+  const std::string& namesake() const { return made_of.empty() ? view.input : made_of; }
   std::string script, log;
   bool share_gpu =
       true;  ///< busy pictures are passed from CUDA to OpenGL on the GPU if both use the same one

@@ -65,14 +65,12 @@ Session::Session(const ViewOptions& options, const playback::ComputeTarget& targ
       has_kept_(options.unsaved_edits),
       file_watch_(wake_),
       jobs_(wake_) {
-  if (options_.stream) options_.stream->setWake(wake_);
+  if (options_.stream) stream_.wake = options_.stream->setWake(wake_);
   watchFiles();
   showView(options.view);
 }
 
-Session::~Session() {
-  if (options_.stream) options_.stream->setWake({});
-}
+Session::~Session() = default;
 
 std::vector<Verb> Session::verbs() {
   std::vector<Verb> all;

@@ -302,11 +302,13 @@ class Session {
   void finishJobs();
   void askTime();
   void takeStream();
-  void adoptStreamed(const playback::BattlefieldNow& now);
+  void adoptStreamed();
+  void indexStreamed();
   double untilStream_s() const;
   void takeScenario();
   void takePicture();
-  void showScenario();
+  void showEdits();
+  void showScenario(const std::vector<RenamedItem>& renamed);
   void followNames(const std::vector<RenamedItem>& renamed);
   /// Takes effect with one of the next updates.
   void changeScenario(const std::vector<scenario::Edit>& edits);
@@ -406,7 +408,9 @@ class Session {
   } last_shown_;  // of the view of the last computed field
   struct {
     playback::ScenarioPtr scenario;  // as the stream has it
-    playback::PosesPtr poses;
+    playback::NamedPosesPtr poses;
+    playback::PlatformIndices indices;  // in the shown scenario
+    std::shared_ptr<void> wake;
     std::string text;  // of its status
     double told_s = -1e9;
     long long records = 0;

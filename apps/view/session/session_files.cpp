@@ -25,7 +25,7 @@ void Session::requireInput() const {
 }
 
 void Session::browse(FileBrowser::Purpose purpose, const std::string& proposed) {
-  files_->browser.open(purpose, std::filesystem::path(options_.view.input).parent_path(), proposed);
+  files_->browser.open(purpose, std::filesystem::path(options_.namesake()).parent_path(), proposed);
   panels.open = true;
 }
 
@@ -90,8 +90,9 @@ bool Session::working() const {
 }
 
 std::string Session::usualScenarioFile() const {
-  const std::filesystem::path input(scenario()->file);
-  return (input.parent_path() / (input.stem().string() + ".edited" + input.extension().string())).string();
+  const std::filesystem::path scenario_file(scenario()->file);
+  return besideInput(options_.made_of.empty() ? scenario_file.string() : options_.made_of,
+                     ".edited" + scenario_file.extension().string());
 }
 
 void Session::saveScenario(const std::string& file) {
@@ -136,6 +137,7 @@ void Session::keepEdits(double now_s) {
 }
 
 void Session::keepView() {
+  if (options_.stream) return;  // no other run has its scenario
   has_kept_ = true;
   kept_view_.reset();  // replaced
   jobs_.run([this, autosaves = files_->autosaves, input = options_.view.input,

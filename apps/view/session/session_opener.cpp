@@ -8,6 +8,22 @@
 #include "emscape/base/error.h"
 
 namespace emscape::view {
+namespace {
+
+/// Completes the recording of a stream that the next session does not show.
+/// @return why it cannot be completed; empty: it can, or there is none
+std::string endStream(const Session& session, const ViewOptions& next) {
+  const std::shared_ptr<playback::LiveBattlefield>& stream = session.options().stream;
+  if (!stream || stream == next.stream) return "";
+  try {
+    stream->finishRecording();
+  } catch (const Error& error) {
+    return failureText(error);
+  }
+  return "";
+}
+
+}  // namespace
 
 bool SessionOpener::update(std::unique_ptr<Session>& session) {
   if (std::exchange(files_->cancels_opening, false)) {
@@ -66,12 +82,15 @@ void SessionOpener::replace(std::unique_ptr<Session>& session) {
   const bool takes_edits_along =
       opening_.options.unsaved_edits && session->view().input == opening_.options.view.input;
   session->leave(!takes_edits_along);
+  const std::string fault = endStream(*session, next_->options());
   endBeside(std::move(session));
   session = std::move(next_);
   messages_before_.reset();
   files_->is_opening = files_->request.has_value();
   session->shown(opening_.left_out);
   if (!opening_.note.empty()) session->tell(opening_.note);
+  if (!fault.empty()) session->tell(fault, true);
+  opening_ = {};
 }
 
 void SessionOpener::cancel(Session& session) {
@@ -88,11 +107,15 @@ bool SessionOpener::close(std::unique_ptr<Session>& session) {
   nothing.view = {};
   nothing.view.theme = session->theme();
   nothing.state.clear();
+  nothing.stream.reset();
+  nothing.made_of.clear();
   session->leave(true);
+  const std::string fault = endStream(*session, nothing);
   endBeside(std::move(session));
   session = make_(nothing);
   session->shown("");
   session->show(notice);
+  if (!fault.empty()) session->tell(fault, true);
   return true;
 }
 

@@ -51,7 +51,7 @@ void Session::cancel() {
   timeline_.pause();
   if (edits_) {
     edit_queue_.clear(*edits_);
-    if (edits_->scenario() != shown_scenario_) showScenario();
+    if (edits_->scenario() != shown_scenario_) showEdits();
   }
   if (!hasField()) {
     is_opened_ = true;

@@ -85,7 +85,7 @@ void Session::takeEdits() {
     }
   }
   noteSteps();
-  if (edits_->scenario() != shown_scenario_) showScenario();
+  if (edits_->scenario() != shown_scenario_) showEdits();
 }
 
 void Session::noteSteps() {
@@ -109,7 +109,7 @@ void Session::undoOrRedo(bool undo) {
   const std::optional<History> history = undo ? undo_order_.undo() : undo_order_.redo();
   if (history == History::scenario) {
     undo ? edits_->undo() : edits_->redo();
-    showScenario();
+    showEdits();
   } else if (history == History::transfer) {
     changeTransfer([undo](playback::TransferEditor& editor) { undo ? editor.undo() : editor.redo(); });
   } else if (history == History::planes) {
@@ -143,11 +143,17 @@ void Session::followNames(const std::vector<RenamedItem>& renamed) {
               rings.end());
 }
 
-void Session::showScenario() {
+void Session::showEdits() {
+  showScenario(renamedItems(*shown_scenario_, *edits_->scenario()));
+}
+
+/// @param renamed  items that the user's edits have given another name
+void Session::showScenario(const std::vector<RenamedItem>& renamed) {
   touched_ = true;
   const playback::ScenarioPtr before = std::exchange(shown_scenario_, edits_->scenario());
   view_.edits = edits_->edits();
-  followNames(renamedItems(*before, *shown_scenario_));
+  followNames(renamed);
+  indexStreamed();
   watchFiles();
   timeline_.setScenario(*shown_scenario_);
   if (computedScenario()) {

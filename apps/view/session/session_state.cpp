@@ -132,7 +132,8 @@ std::vector<Verb> Session::stateVerbs() {
        [](Session& session, const Command& command) {
          session.requireInput();
          const std::string given = command.text("file");
-         const std::string file = given.empty() ? besideInput(session.view_.input, ".view.json") : given;
+         const std::string file =
+             given.empty() ? besideInput(session.options_.namesake(), ".view.json") : given;
          if (!session.asksToReplace(command, file)) session.saveView(file);
        }},
       {"load_state",
@@ -153,7 +154,7 @@ std::vector<Verb> Session::stateVerbs() {
          session.requireInput();
          const std::string given = command.text("file");
          const std::string file =
-             given.empty() ? newPictureFile(session.view_.input, session.files_->pictures) : given;
+             given.empty() ? newPictureFile(session.options_.namesake(), session.files_->pictures) : given;
          if (!session.asksToReplace(command, file)) session.picture_file_ = file;
        }},
       {"copy_command",

@@ -44,14 +44,14 @@ void Session::takeStream() {
   stream_.poses = now.poses;
   if (is_other) {
     stream_.scenario = now.scenario;
-    adoptStreamed(now);
-  } else if (edits_->scenario()->platforms.size() == now.scenario->platforms.size()) {
-    live_.pose(now.poses);
+    adoptStreamed();
+  } else {
+    live_.pose(playback::posesOf(stream_.indices, *stream_.poses));
   }
 }
 
-void Session::adoptStreamed(const playback::BattlefieldNow& now) {
-  playback::ScenarioPtr scenario = now.scenario;
+void Session::adoptStreamed() {
+  playback::ScenarioPtr scenario = stream_.scenario;
   const std::vector<scenario::Edit> edits = edits_->edits();
   try {
     if (!edits.empty()) scenario = playback::edited(scenario, edits);
@@ -61,10 +61,21 @@ void Session::adoptStreamed(const playback::BattlefieldNow& now) {
   edit_queue_.clear(*edits_);
   edits_.emplace(scenario);
   undo_order_.forget(History::scenario);
-  opened_unsaved_ = scenario != now.scenario;
-  live_.pose(now.poses, scenario);
-  showScenario();
+  opened_unsaved_ = scenario != stream_.scenario;
+  showScenario({});  // objects keep their names
   log_.write("stream", {{"platforms", scenario->platforms.size()}, {"emitters", scenario->emitters.size()}});
+}
+
+/// Finds the platforms that the stream moves in the shown scenario, and shows them where they are.
+void Session::indexStreamed() {
+  if (!options_.stream || !stream_.scenario) return;
+  playback::PlatformIndices& indices = stream_.indices;
+  indices = playback::platformIndices(*shown_scenario_);
+  for (const scenario::Platform& platform : stream_.scenario->platforms) {
+    const auto renamed = indices.find(nameAfter(edits_->edits(), "platforms", platform.name));
+    if (renamed != indices.end()) indices[platform.name] = renamed->second;
+  }
+  live_.pose(playback::posesOf(indices, *stream_.poses), shown_scenario_);
 }
 
 double Session::untilStream_s() const {

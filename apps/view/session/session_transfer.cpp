@@ -170,7 +170,7 @@ void Session::readTransfer(const std::string& file) {
 }
 
 std::string Session::usualColorsFile() const {
-  return besideInput(view_.input, ".transfer.json");
+  return besideInput(options_.namesake(), ".transfer.json");
 }
 
 void Session::saveTransfer(const std::string& file) {

@@ -86,7 +86,7 @@ std::vector<Verb> Session::windowVerbs() {
        [](Session& session, const Command& command) {
          const std::string given = command.text("file");
          const std::string file =
-             given.empty() ? newPictureFile(session.view_.input, session.files_->pictures) : given;
+             given.empty() ? newPictureFile(session.options_.namesake(), session.files_->pictures) : given;
          if (!session.asksToReplace(command, file)) session.window_.screenshot(file);
        }},
       {"back",

@@ -22,7 +22,8 @@ class Collector {
     const scenario::Scenario& scenario = *snapshot_.scenario;
     for (const scenario::Emitter& emitter : scenario.emitters) {
       SceneObject& object = add("emitters.", emitter.name, toString(emitter.kind), emitter.platform);
-      object.details = quantityText(emitter.frequency_hz, "Hz") + ", " + quantityText(emitter.power_w, "W");
+      object.details = quantityText(emitter.frequency_hz, "Hz") + ", " + quantityText(emitter.power_w, "W") +
+                       (object.details.empty() ? "" : ", " + object.details);
     }
     for (const scenario::PlacedReceiver& receiver : scenario.placed_receivers)
       add("receivers.", receiver.name, "receiver", receiver.platform);
@@ -41,6 +42,8 @@ class Collector {
     object.name = name;
     object.kind = kind;
     object.platform = platform;
+    object.present = state.present;
+    if (!state.present) object.details = "absent at this time";
     object.position = state.position;
     object.position_m = frame_.toLocal(state.position);
     object.height_msl_m = state.height_msl_m;

@@ -16,8 +16,9 @@ struct SceneObject {
   std::string path;  ///< "emitters.search radar", of edits
   std::string name;
   std::string kind;     ///< "radar", "receiver", ...
-  std::string details;  ///< frequency and power of an emitter; may be empty
+  std::string details;  ///< frequency and power of an emitter, "absent at this time"; may be empty
   int platform = -1;    ///< index into Scenario::platforms
+  bool present = true;  ///< false: before or after its track, at whose nearer end the position is
   Vec3d position_m;     ///< frame metres
   GeodeticPosition position;
   double height_msl_m = 0;
@@ -34,7 +35,7 @@ std::vector<SceneObject> sceneObjectsOf(const playback::LivePicture& picture);
 void findPixels(std::vector<SceneObject>& objects, const playback::LivePicture& picture);
 
 /// The object under a pixel of the picture: that of the nearest symbol within some pixels, else the nearest
-/// without a symbol; of those at one place the first. @return null if there is none
+/// without a symbol; of those at one place the first. Absent ones are not there. @return null if there is none
 const SceneObject* objectAt(const std::vector<SceneObject>& objects, double x, double y);
 
 /// True if a scenario has an item with a path: "emitters.NAME", "platforms.NAME", "receivers.NAME" or

@@ -1,6 +1,10 @@
 /// A regular grid of voxels in a local frame.
 #pragma once
 
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/vec.h"
 
@@ -27,6 +31,11 @@ struct Grid {
     return lower_m() + Vec3d{spacing_m.x * dims.x, spacing_m.y * dims.y, spacing_m.z * dims.z};
   }
 };
+
+/// The frame of a grid or mesh, and what its values without a field are, in the words of other programs: keys
+/// and texts that every file has beside our own, the same in all formats (docs/volume-files.md). crs_wkt,
+/// vertical_datum, axes only with a position on the earth.
+std::vector<std::pair<std::string, std::string>> standardWords(bool georeferenced, const FrameOrigin& frame);
 
 bool operator==(const Grid& a, const Grid& b);
 inline bool operator!=(const Grid& a, const Grid& b) {

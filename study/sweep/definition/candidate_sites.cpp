@@ -8,6 +8,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/units.h"
+#include "scenario/map/point_table.h"
 #include "scenario/map/vector_file.h"
 #include "scenario/terrain/transformation.h"
 #include "study/sweep/definition/study_reading.h"
@@ -20,6 +21,10 @@ constexpr std::size_t kMaxCandidates = 10000;
 /// To a centimetre, so that values are short.
 double rounded(double degrees) {
   return std::round(degrees * 1e7) / 1e7;
+}
+
+std::string numberedName(const std::vector<CandidateSite>& sites) {
+  return fmt::format("site {}", sites.size() + 1);
 }
 
 void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::string& file,
@@ -56,7 +61,7 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
       fail(fmt::format("is at longitude {}, latitude {}, outside the allowed range -180 to 180, -90 to 90", x,
                        y));
     std::string name = name_field < 0 ? "" : OGR_F_GetFieldAsString(feature, name_field);
-    if (name.empty()) name = fmt::format("site {}", sites.size() + 1);
+    if (name.empty()) name = numberedName(sites);
     sites.push_back({std::move(name), y, x});
   });
 }
@@ -64,14 +69,23 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
 }  // namespace
 
 std::vector<CandidateSite> readCandidates(const std::string& file) {
-  const scenario::VectorFile points(file);
-  const scenario::GdalMessages messages;
   std::vector<CandidateSite> sites;
-  for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites);
+  if (const auto table = scenario::readPointTable(file)) {
+    for (const scenario::NamedPoint& point : *table) {
+      sites.push_back(
+          {point.name.empty() ? numberedName(sites) : point.name, point.latitude_deg, point.longitude_deg});
+    }
+  } else {
+    const scenario::VectorFile points(file);
+    const scenario::GdalMessages messages;
+    for (OGRLayerH layer : points.layers()) addLayer(points, layer, file, sites);
+  }
   if (sites.empty() || sites.size() > kMaxCandidates) {
-    throw Error(ErrorCode::bad_input, {file, 0, 0},
-                fmt::format("{} points, outside the allowed range 1 to {}{}", sites.size(), kMaxCandidates,
-                            sites.empty() ? "; a CSV file needs a column WKT" : ""));
+    throw Error(
+        ErrorCode::bad_input, {file, 0, 0},
+        fmt::format(
+            "{} points, outside the allowed range 1 to {}{}", sites.size(), kMaxCandidates,
+            sites.empty() ? "; a CSV file needs the columns latitude_deg and longitude_deg, or WKT" : ""));
   }
   std::set<std::string> names;
   for (const CandidateSite& site : sites) {

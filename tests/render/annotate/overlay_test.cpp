@@ -55,6 +55,64 @@ long long differingPixels(const Image8& a, const Image8& b) {
   return compare(a, b).erroneous;
 }
 
+TEST(Overlay, LegendsOfManyCategoriesEndInsideThePicture) {
+  const ImageSize size{800, 600};
+  const Camera camera = makeCamera({}, kBox, size);
+  const auto with = [&](int count) {
+    Annotations annotations;
+    volume::VolumeInfo info;
+    info.quantity = "dominant_emitter";
+    info.categorical = true;
+    info.range_min = 0;
+    info.range_max = 300;
+    annotations.legend = legendOf(info, defaultTransferFunction(info));
+    for (int n = 0; n < count; ++n) annotations.legend->categories.push_back({n, std::to_string(1000 + n)});
+    annotations.axes = annotations.georeferenced = false;
+    return compose(Image(size), camera, kBox, annotations);
+  };
+  const Image8 few = with(3), many = with(300);
+  EXPECT_GT(differingPixels(few, many), 100);
+  for (int x = 0; x < size.width; ++x) {
+    for (int y = size.height - 3; y < size.height; ++y) {
+      EXPECT_TRUE(std::equal(few.at(x, y), few.at(x, y) + 4, many.at(x, y))) << x << " " << y;
+    }
+  }
+}
+
+TEST(Overlay, SymbolsAndLabelsAreOfTheColumnsThatAreSeen) {
+  const ImageSize size{800, 600};
+  const Camera camera = makeCamera({}, kBox, size);
+  Annotations annotations;
+  annotations.axes = annotations.georeferenced = false;
+  const Image8 empty = compose(Image(size), camera, kBox, annotations);
+  Marker marker;
+  marker.position_m = {0, 0, 3000};
+  marker.label = "a name that is long";
+  annotations.markers = {marker};
+  const int at = static_cast<int>(project(camera, size, kBox.toDrawn(marker.position_m)).x);
+  const auto drawn = [&](int first, int end) {
+    Annotations part = annotations;
+    part.first_column = first;
+    part.end_column = end;
+    const Image8 picture = compose(Image(size), camera, kBox, part);
+    std::pair<int, int> columns{size.width, -1};
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        if (std::equal(empty.at(x, y), empty.at(x, y) + 4, picture.at(x, y))) continue;
+        columns = {std::min(columns.first, x), std::max(columns.second, x)};
+      }
+    }
+    return columns;
+  };
+  EXPECT_EQ(drawn(0, at - 5).second, -1) << "the symbol is in the other part";
+  EXPECT_EQ(drawn(at + 5, size.width).second, -1);
+  const int edge = 30;  // of the symbol, with room for its half
+  EXPECT_LT(drawn(0, at + edge).second, at + edge) << "the name is at the left";
+  EXPECT_LT(drawn(0, at + edge).first, at - edge);
+  EXPECT_GE(drawn(at - edge, size.width).first, at - edge);
+  EXPECT_GT(drawn(at - edge, size.width).second, at + edge);
+}
+
 TEST(Overlay, PicturesAreOpaqueInEverySizeThemeAndView) {
   const Annotations all = everything(testing::fog(0.5));
   for (ImageSize size : {ImageSize{1, 1}, ImageSize{7, 300}, ImageSize{160, 90}, ImageSize{640, 360}}) {

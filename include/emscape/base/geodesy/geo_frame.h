@@ -35,6 +35,12 @@ struct FrameOrigin {
   double height_msl_m = 0;
 };
 
+/// The frame as WKT 2 (ISO 19162:2019), with x, y, z as its axes. altitude: the azimuthal equidistant
+/// projection with heights above EGM96 (EPSG:5773). enu: a topocentric system derived from WGS84 (EPSG's
+/// method 9837).
+/// @throws Error (bad_input) for an origin that is not on the earth
+std::string wktOf(const FrameOrigin& frame);
+
 /// Converts between a local frame and WGS84. Immutable; safe to share between threads.
 class GeoFrame {
  public:

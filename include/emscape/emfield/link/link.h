@@ -26,9 +26,10 @@ struct LinkOptions {
 /// Conditions that a row of a link and one of a detection share.
 struct PathRow {
   double time_s = 0;
-  bool active = true;    ///< the emitter radiates; if not, powers are -infinity
-  bool has_path = true;  ///< false: one end is vertically above the other, and no path is computed
-  double range_m = 0;    ///< slant
+  bool active = true;  ///< the emitter radiates; if not, powers are -infinity
+  /// False: no path is computed, because an end is absent or vertically above the other.
+  bool has_path = true;
+  double range_m = 0;  ///< slant
   double power_density_dbwm2 = 0;
   double pattern_db = 0;    ///< emitter's antenna towards the other end, relative to its maximum
   double off_axis_rad = 0;  ///< of the ray from the axis of the emitter's beam
@@ -64,7 +65,7 @@ struct DetectionRow : PathRow {
   /// Of the radar's beam at its look at the target, relative to its maximum: far below 0 if the scan does not
   /// reach there.
   double look_pattern_db = 0;
-  double rcs_m2 = 0;    ///< from the radar's aspect
+  double rcs_m2 = 0;    ///< from the radar's aspect; NaN: an end is absent
   double snr_db = 0;    ///< one pulse
   double sclnr_db = 0;  ///< echo over clutter and noise after the radar's filter; snr_db without clutter
   std::optional<double>

@@ -99,7 +99,7 @@ class Painter {
 
   render::FrameReport draw(const render::FramePlan& plan, const StopFlag* stop = nullptr);
   /// Casts the pixels that the last draw() interpolated.
-  render::FrameReport restore(const StopFlag* stop = nullptr);
+  render::FrameReport restore(const StopFlag* stop = nullptr, render::Edges edges = render::Edges::as_cast);
   /// The last picture: premultiplied, without background and labels.
   const render::Image& image();
   /// The same in 8 bits per channel; cheaper on a GPU, which quantises it.

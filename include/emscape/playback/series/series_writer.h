@@ -38,6 +38,9 @@ struct SeriesOptions {
   std::shared_ptr<const emfield::TerrainMesh> mesh;
   std::string mesh_text;            ///< the mesh option as text; part of the recorded inputs
   std::optional<ValueRange> range;  ///< of the values, if it is known; for one channel
+  /// Files of the formats vdb and nvdb hold a grid "density" (0..1) too: what the default transfer function
+  /// makes of the first channel, so that programs that expect a fog draw it without settings.
+  bool with_fog = false;
   Existing existing = Existing::refuse;
 };
 

@@ -90,6 +90,10 @@ struct Annotations {
   bool reserves_legend = false;  ///< without a legend its room stays free, so that the scene does not move
   bool georeferenced = true;     ///< compass, axes in km and altitude; otherwise axes in the grid's unit
   bool axes = true;
+  /// Columns of the picture that are seen of it (joinParts()): symbols in others are left out, and labels
+  /// stay between them. No end: all.
+  int first_column = 0;
+  std::optional<int> end_column;
   /// Position of the frame's origin, from which the axes count: "84.15000°W" and "36.30000°N"; may be empty.
   std::string origin_longitude, origin_latitude;
   bool compass = true;     ///< of georeferenced pictures

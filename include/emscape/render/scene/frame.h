@@ -5,6 +5,10 @@
 
 namespace emscape::render {
 
+/// How the pixels at edges of an exact picture are made. Smooth: their colours are means of several rays, so
+/// that silhouettes are no stairs.
+enum class Edges { as_cast, smooth };
+
 /// How each pixel of a frame is produced: cast or interpolated.
 struct FramePlan {
   Pattern pattern = Pattern::full;
@@ -13,6 +17,14 @@ struct FramePlan {
   /// For adaptive: of the pixels whose ray meets the box, the fraction that a frame may cast after the first
   /// few frames; > 0
   double ray_share = kDefaultRayShare;
+  Edges edges = Edges::as_cast;  ///< for full
+
+  /// The picture of a still or a film.
+  static FramePlan exact() {
+    FramePlan plan;
+    plan.edges = Edges::smooth;
+    return plan;
+  }
 };
 
 /// Cost of a frame or a restoration.

@@ -24,7 +24,7 @@ struct RendererOptions {
 };
 
 /// Casts a scene: volume, ground, transfer function, camera. A pixel of a scene depends only on its
-/// coordinates and the picture's size, not on the pattern.
+/// coordinates and the picture's size, not on the pattern; a smoothed one also on the picture around it.
 ///
 /// For one thread, except setVolume(), which any thread may call at any time: it waits for the frame in
 /// progress. On the CPU a frame uses all threads that base/parallel.h allows. On a GPU it is cast on a
@@ -72,7 +72,7 @@ class Renderer {
   /// Casts the pixels that the last draw() interpolated. The picture is then bit-identical to a full cast of
   /// the same scene, which must not have changed in between. A stopped restoration starts again from the
   /// beginning.
-  FrameReport restore(const StopFlag* stop = nullptr);
+  FrameReport restore(const StopFlag* stop = nullptr, Edges edges = Edges::as_cast);
   /// The picture of the last draw() or restore(), in float or quantised. The latter is cheaper on a GPU,
   /// which quantises it. Not to be used after an incomplete frame.
   void fetch(Image& image);
@@ -86,7 +86,7 @@ class Renderer {
   /// draw() wrote.
   /// @param image  resized to `size`
   FrameReport draw(const FramePlan& plan, ImageSize size, Image& image, const StopFlag* stop = nullptr);
-  FrameReport restore(Image& image, const StopFlag* stop = nullptr);
+  FrameReport restore(Image& image, const StopFlag* stop = nullptr, Edges edges = Edges::as_cast);
   /// draw() into a new image.
   Image render(ImageSize size, const FramePlan& plan = {}, FrameReport* report = nullptr);
 

@@ -32,6 +32,11 @@ enum class ReadFor {
 ParseResult parseScenario(const std::string& file, const std::vector<Edit>& edits = {},
                           ReadFor read_for = ReadFor::series);
 
+/// The same for a text, as if it were in a file of a name, which need not exist: relative names of files are
+/// those of its folder.
+ParseResult parseScenarioText(const std::string& file, const std::string& text,
+                              const std::vector<Edit>& edits = {}, ReadFor read_for = ReadFor::series);
+
 /// The same, but throws one Error (bad_input) that lists all errors, one per line. Warnings are logged.
 std::shared_ptr<const Scenario> loadScenario(const std::string& file, const std::vector<Edit>& edits = {},
                                              ReadFor read_for = ReadFor::series);
@@ -55,6 +60,9 @@ std::vector<std::string> filesOf(const Scenario& scenario);
 /// @throws Error (bad_input) if the scenario was not read from a file, or a name cannot be changed in the
 /// text; (other) if the file cannot be written
 void saveScenario(const Scenario& scenario, const std::string& file);
+
+/// The text that a scenario was read from, without its edits; empty if it was not read.
+std::string originalText(const Scenario& scenario);
 
 /// The JSON Schema (draft 2020-12) of the format, made from the table that the parser uses.
 std::string scenarioJsonSchema();

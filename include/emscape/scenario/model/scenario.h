@@ -112,4 +112,8 @@ GeoBox terrainBox(const Scenario& scenario);
 /// @throws Error (bad_input) naming the file
 TerrainPtr loadTerrain(const Scenario& scenario);
 
+/// True if results may be without values where terrain is missing, as the scenario says.
+/// @param otherwise  if it says nothing
+bool mayLackTerrain(const Scenario& scenario, bool otherwise);
+
 }  // namespace emscape::scenario

@@ -12,6 +12,7 @@ namespace emscape::scenario {
 
 /// Position of a platform.
 struct PlatformState {
+  bool present = true;  ///< false: before or after its track; the position is that of the track's nearer end
   GeodeticPosition position;
   double height_msl_m = 0;
   Attitude attitude;
@@ -25,7 +26,9 @@ struct BeamPose {
 };
 
 struct EmitterState {
-  bool active = true;  ///< active at the time, or at some time of the output's interval that begins then
+  /// Its platform is present, and it is active at the time or at some time of the output's interval that
+  /// begins then.
+  bool active = true;
   GeodeticPosition position;
   double height_msl_m = 0;
   BeamPose beam;

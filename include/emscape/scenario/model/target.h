@@ -30,7 +30,8 @@ struct Target {
 };
 
 /// Reads a table: CSV with the columns azimuth_deg, elevation_deg, rcs_dbsm in any order; a full grid that
-/// covers the sphere with gaps of at most 90 deg, elevations from -90 to 90.
+/// covers the sphere with gaps of at most 90 deg, elevations from -90 to 90. Without elevation_deg the cross
+/// section is the same at all elevations.
 /// @throws Error (bad_input) with line and column
 RcsTablePtr readRcsTable(const std::string& file);
 

@@ -32,19 +32,20 @@ struct ExposureRequest {
 };
 
 /// Whether the value of all emitters together is at or above the threshold; unknown if the path from some
-/// emitters to the platform crosses missing terrain and the others do not reach it.
-enum class ExposureState { reached, below, unknown };
+/// emitters to the platform crosses missing terrain and the others do not reach it; absent before and after
+/// the platform's track.
+enum class ExposureState { reached, below, unknown, absent };
 constexpr auto namesOf(ExposureState) {
-  return std::array{"reached", "below", "unknown"};
+  return std::array{"reached", "below", "unknown", "absent"};
 }
 
 struct ExposureRow {
-  double time_s = 0, latitude_deg = 0, longitude_deg = 0;
-  double height_msl_m = 0;
-  double height_agl_m = 0;   ///< NaN: over missing terrain
+  double time_s = 0;
+  double latitude_deg = 0, longitude_deg = 0, height_msl_m = 0;  ///< NaN: absent
+  double height_agl_m = 0;                                       ///< NaN: over missing terrain, or absent
   double value = 0;          ///< of all emitters together, or of those with a known path if they reach the
-                             ///< threshold; NaN: unknown
-  std::vector<double> each;  ///< one per Exposure::emitters; -infinity: off; NaN: unknown
+                             ///< threshold; NaN: unknown or absent
+  std::vector<double> each;  ///< one per Exposure::emitters; -infinity: off; NaN: unknown or absent
   ExposureState state = ExposureState::unknown;
   int best = -1;  ///< index into `each` of the largest value; -1: none
   /// Probability of detection by any radar so far: 1 - prod(1 - Pd) over all looks with a known value. NaN
@@ -52,7 +53,7 @@ struct ExposureRow {
   double cumulative_probability = 0;
 };
 
-/// Statistics over all times of one emitter, or of all together.
+/// Statistics over all times at which the platform is present, of one emitter or of all together.
 struct ExposureSummary {
   std::string name;                   ///< of the emitter; "together"
   double max = 0;                     ///< maximum value; NaN: none
@@ -86,7 +87,8 @@ std::optional<int> targetOn(const scenario::Scenario& scenario, int platform);
 /// emitters, but jam the radars.
 /// @param terrain  over the region and all platforms; null: a smooth earth
 /// @param options  backend and memory; other members are overwritten
-/// @throws Error (usage) for an index quantity, no times, and a target on another platform; as FieldSolver
+/// @throws Error (usage) for an index quantity, no times, a target on another platform, and a platform that
+/// is absent at all times; as FieldSolver
 Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenario,
                          const scenario::TerrainPtr& terrain, const ExposureRequest& request,
                          emfield::FieldOptions options, const ProgressSink& progress = {});

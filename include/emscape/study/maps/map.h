@@ -43,6 +43,7 @@ struct Map {
   MapKind kind = MapKind::level;
   std::string title;                ///< of its legend, in words: "minimum height above ground"
   std::string unit;                 ///< "": none
+  std::string subject;              ///< "detection probability": the description without its height
   std::string description;          ///< "detection probability at 150 m above ground"
   std::optional<MapHeight> height;  ///< none: for all heights
   std::optional<double> time_s;     ///< since the scenario's epoch; none: over all times

@@ -36,6 +36,10 @@ struct MapGrid {
 /// @accuracy positions within 1 mm of the exact projection
 MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs);
 
+/// @throws Error (bad_input) if terrain is missing below all pixels, or below some although the scenario says
+/// that this is an error
+void requireGround(const scenario::Scenario& scenario, const scenario::Terrain& terrain, const MapGrid& grid);
+
 /// The pixels of an existing map, none left out.
 /// @param wkt  of its projection, in metres  @param crs  its name
 /// @throws Error (bad_input) if the projection cannot be used

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "emscape/base/units.h"
 #include "emscape/emfield/columns/surface.h"
 #include "emscape/scenario/model/quantities.h"
 
@@ -13,8 +14,8 @@ struct MapHeight {
   emfield::HeightReference reference = emfield::HeightReference::ground;
   double metres = 0;
 };
-/// "150 m above ground", "3000 m above mean sea level".
-std::string describe(const MapHeight& height);
+/// "150 m above ground", "3000 m above mean sea level", "500 ft above ground".
+std::string describe(const MapHeight& height, Units units = Units::metric);
 /// "agl150m", "msl3000m": for file names.
 std::string nameOf(const MapHeight& height);
 

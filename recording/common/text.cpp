@@ -1,0 +1,74 @@
+#include "recording/common/text.h"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+
+#include "base/text/utf8.h"
+
+namespace emscape::interop {
+namespace {
+
+constexpr std::size_t kLongestName = 150;
+
+}  // namespace
+
+std::string_view trimmed(std::string_view text) {
+  const auto isBlank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+  while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::optional<double> numberIn(std::string_view text) {
+  text = trimmed(text);
+  if (!text.empty() && text.front() == '+') text.remove_prefix(1);
+  double value = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (fault != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+std::string lowerCase(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return std::tolower(c); });
+  return text;
+}
+
+std::string printableText(std::string_view text) {
+  std::string value(text);
+  for (char& c : value) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7F) c = ' ';
+  }
+  value = xmlCharacters(value);
+  if (value.size() > kLongestName) value = xmlCharacters(value.substr(0, kLongestName));
+  return value;
+}
+
+std::vector<std::string> wordsOf(std::string_view line, const std::vector<std::string_view>& comments) {
+  std::vector<std::string> words;
+  std::size_t at = 0;
+  while (at < line.size()) {
+    if (line[at] == ' ' || line[at] == '\t' || line[at] == '\r') {
+      ++at;
+      continue;
+    }
+    const std::string_view rest = line.substr(at);
+    const bool is_comment = std::any_of(comments.begin(), comments.end(), [&](std::string_view begin) {
+      return rest.substr(0, begin.size()) == begin;
+    });
+    if (is_comment) break;
+    if (rest.front() == '"') {
+      const std::size_t end = std::min(rest.find('"', 1), rest.size());
+      words.emplace_back(rest.substr(1, end - 1));
+      at += std::min(end + 1, rest.size());
+    } else {
+      const std::size_t end = std::min(rest.find_first_of(" \t\r"), rest.size());
+      words.emplace_back(rest.substr(0, end));
+      at += end;
+    }
+  }
+  return words;
+}
+
+}  // namespace emscape::interop

@@ -1,0 +1,27 @@
+/// Texts and numbers in recordings.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace emscape::interop {
+
+/// Without blanks, tabs and line ends around it.
+std::string_view trimmed(std::string_view text);
+
+/// The number that a text is, blanks around it apart; none for another text, infinities and NaN.
+std::optional<double> numberIn(std::string_view text);
+
+/// ASCII letters in lower case.
+std::string lowerCase(std::string text);
+
+/// A text that can be a name: control characters are blanks, at most 150 bytes.
+std::string printableText(std::string_view text);
+
+/// The words of a line. Blanks and tabs separate them; a text in double quotes is one word.
+/// @param comments  beginnings of comments, outside of quotes
+std::vector<std::string> wordsOf(std::string_view line, const std::vector<std::string_view>& comments = {});
+
+}  // namespace emscape::interop

@@ -1,0 +1,189 @@
+#include "recording/common/track_recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/geodesy/position_limits.h"
+#include "base/text/count_text.h"
+#include "emscape/base/error.h"
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "recording/common/samples.h"
+#include "recording/common/tally.h"
+
+namespace emscape::interop {
+namespace {
+
+constexpr double kMaxTime_s = 2.6e11;  ///< the year 9999
+constexpr double kMaxSpan_s = 9.9e7;   ///< of a scenario's track
+constexpr double kOutlierFactor = 3;   ///< of the speed without the position
+constexpr double kNoise_mps = 1;       ///< noise of a receiver that stands
+constexpr double kShortestStep_s = 1e-3;
+
+/// A place in ECEF; heights above the sea stand for those above the ellipsoid.
+Vec3d roughEcef(const PoseSample& pose) {
+  return toEcef({pose.latitude_deg, pose.longitude_deg, pose.height_msl_m});
+}
+
+}  // namespace
+
+double heightMsl_m(double latitude_deg, double longitude_deg, double height_ellipsoid_m) {
+  return height_ellipsoid_m - geoidUndulation_m(latitude_deg, longitude_deg);
+}
+
+PoseSample poseOfEcef(double t_s, const Vec3d& position_m) {
+  PoseSample pose;
+  const GeodeticPosition position = fromEcef(position_m);
+  pose.t_s = t_s;
+  pose.latitude_deg = position.latitude_deg;
+  pose.longitude_deg = position.longitude_deg;
+  pose.height_msl_m = heightMsl_m(position.latitude_deg, position.longitude_deg, position.height_ellipsoid_m);
+  return pose;
+}
+
+TrackRecorder::TrackRecorder(std::string format, const ReadOptions& options) : options_(options) {
+  recording_.format = std::move(format);
+}
+
+std::size_t TrackRecorder::objectOf(const std::string& id) {
+  const auto [found, is_new] = indices_.try_emplace(id, recording_.objects.size());
+  if (!is_new) return found->second;
+  if (recording_.objects.size() >= RecordingLimits::kObjects) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("more than {} objects; cut the recording into parts", RecordingLimits::kObjects));
+  }
+  RecordedObject object;
+  object.id = object.name = id.empty() ? "object" : id;
+  recording_.objects.push_back(std::move(object));
+  return found->second;
+}
+
+std::size_t TrackRecorder::addBeam(std::size_t object) {
+  if (recording_.beams.size() >= RecordingLimits::kObjects)
+    throw Error(ErrorCode::bad_input, fmt::format("more than {} beams", RecordingLimits::kObjects));
+  RecordedBeam beam;
+  beam.object = object;
+  recording_.beams.push_back(std::move(beam));
+  return recording_.beams.size() - 1;
+}
+
+void TrackRecorder::countSample() {
+  if (++samples_ > RecordingLimits::kSamples) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("more than {} positions and states; cut the recording into parts",
+                            RecordingLimits::kSamples));
+  }
+}
+
+bool TrackRecorder::isPosition(PoseSample& pose, const std::string& location) {
+  const bool is_sound = std::abs(pose.latitude_deg) <= PositionLimits::kLatitude_deg &&
+                        std::abs(pose.longitude_deg) <= 720 &&
+                        pose.height_msl_m >= PositionLimits::kLowest_m &&
+                        pose.height_msl_m <= PositionLimits::kHighest_m && std::abs(pose.t_s) <= kMaxTime_s;
+  if (!is_sound) {
+    countBad(
+        recording_.tally, location,
+        fmt::format("latitude {:.6g}, longitude {:.6g}, height {:.6g} m: no position within -90 to 90 and "
+                    "-720 to 720 degrees and {} to {} m above mean sea level",
+                    pose.latitude_deg, pose.longitude_deg, pose.height_msl_m, PositionLimits::kLowest_m,
+                    PositionLimits::kHighest_m));
+    return false;
+  }
+  pose.longitude_deg = wrapLongitude_deg(pose.longitude_deg);
+  // A heading alone is that of a level object.
+  const bool has_heading = !std::isnan(pose.heading_deg);
+  pose.pitch_deg = !has_heading                 ? kUnknown
+                   : std::isnan(pose.pitch_deg) ? 0
+                                                : std::clamp(pose.pitch_deg, -90.0, 90.0);
+  pose.roll_deg = !has_heading ? kUnknown : std::isnan(pose.roll_deg) ? 0 : pose.roll_deg;
+  return true;
+}
+
+void TrackRecorder::add(std::size_t object, PoseSample pose, const std::string& location) {
+  if (!isPosition(pose, location)) return;
+  recording_.objects[object].poses.push_back(pose);
+  countSample();
+}
+
+void TrackRecorder::addFixed(std::size_t object, PoseSample pose, const std::string& location) {
+  if (isPosition(pose, location)) fixed_[object] = pose;
+}
+
+void TrackRecorder::endAtGaps(RecordedObject& object, double gap_s) {
+  for (std::size_t i = 1; i < object.poses.size(); ++i) {
+    const double begin_s = object.poses[i - 1].t_s, end_s = object.poses[i].t_s;
+    if (end_s - begin_s <= gap_s) continue;
+    object.presence.push_back({begin_s, false});
+    object.presence.push_back({end_s, true});
+  }
+}
+
+void TrackRecorder::tellOutliers() {
+  long long outliers = 0;
+  std::string first;
+  for (const RecordedObject& object : recording_.objects) {
+    const auto& poses = object.poses;
+    if (poses.size() < 3) continue;
+    const auto speed_mps = [&](const Vec3d& from, const Vec3d& to, std::size_t i, std::size_t k) {
+      return length(to - from) / std::max(poses[k].t_s - poses[i].t_s, kShortestStep_s);
+    };
+    Vec3d before = roughEcef(poses[0]), here = roughEcef(poses[1]);
+    for (std::size_t i = 1; i + 1 < poses.size(); ++i) {
+      const Vec3d after = roughEcef(poses[i + 1]);
+      const double limit_mps = kOutlierFactor * std::max(speed_mps(before, after, i - 1, i + 1), kNoise_mps);
+      const bool is_outlier =
+          speed_mps(before, here, i - 1, i) > limit_mps && speed_mps(here, after, i, i + 1) > limit_mps;
+      if (is_outlier && outliers++ == 0) first = fmt::format("{} at {:.3f} s", object.name, poses[i].t_s);
+      before = here;
+      here = after;
+    }
+  }
+  if (outliers == 0) return;
+  recording_.tally.notes.push_back(
+      fmt::format("{} more than {} times as fast as without it; the first: {}",
+                  countText(outliers, "position makes its object", "positions make their objects"),
+                  kOutlierFactor, first));
+}
+
+Recording TrackRecorder::finish() {
+  for (RecordedObject& object : recording_.objects) sortByTime(object);
+  for (RecordedBeam& beam : recording_.beams) sortByTime(beam);
+  const TimeSpan span = spanOf(recording_);
+  if (span.end_s - span.begin_s > kMaxSpan_s) {
+    throw Error(ErrorCode::bad_input,
+                fmt::format("its times are {:.6g} s apart, more than {:.6g} s; cut the recording into parts",
+                            span.end_s - span.begin_s, kMaxSpan_s));
+  }
+  const double origin_s = std::floor(span.begin_s);
+  const bool has_times = std::any_of(recording_.objects.begin(), recording_.objects.end(),
+                                     [](const RecordedObject& object) { return !object.poses.empty(); });
+  for (const auto& [index, pose] : fixed_) {
+    auto& poses = recording_.objects[index].poses;
+    if (!poses.empty()) continue;
+    poses.push_back(pose);
+    poses.back().t_s = span.begin_s;
+  }
+  for (RecordedObject& object : recording_.objects) {
+    if (options_.gap_s > 0) endAtGaps(object, options_.gap_s);
+    for (PoseSample& pose : object.poses) pose.t_s -= origin_s;
+    for (PresenceSample& sample : object.presence) sample.t_s -= origin_s;
+    std::stable_sort(object.presence.begin(), object.presence.end(),
+                     [](const auto& a, const auto& b) { return a.t_s < b.t_s; });
+  }
+  for (RecordedBeam& beam : recording_.beams) {
+    for (BeamState& state : beam.states) state.t_s -= origin_s;
+  }
+  tellOutliers();
+  if (utc_begin_s_ && has_times) {
+    recording_.epoch_ms = std::llround((*utc_begin_s_ + origin_s) * 1000);
+  } else {
+    recording_.origin_s = origin_s;
+  }
+  for (const auto& [assumption, count] : assumptions_)
+    recording_.tally.notes.push_back(fmt::format("{} ({})", assumption, countText(count, "time", "times")));
+  return std::move(recording_);
+}
+
+}  // namespace emscape::interop

@@ -1,0 +1,68 @@
+/// Tracks as a recording.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "emscape/base/vec.h"
+#include "recording/common/read_options.h"
+#include "recording/common/recording.h"
+
+namespace emscape::interop {
+
+/// Takes positions of objects in any order.
+class TrackRecorder {
+ public:
+  /// @param format  its name, for people
+  TrackRecorder(std::string format, const ReadOptions& options);
+
+  /// Index of the object of an id, which is made at its first call.
+  /// @throws Error (bad_input) if there are too many
+  std::size_t objectOf(const std::string& id);
+  RecordedObject& object(std::size_t index) { return recording_.objects[index]; }
+  /// Adds a beam of an object.
+  std::size_t addBeam(std::size_t object);
+  RecordedBeam& beam(std::size_t index) { return recording_.beams[index]; }
+
+  /// Adds a pose. With a heading unknown angles are 0; one that is no position is counted as bad; of two at
+  /// one time the later one is kept.
+  /// @param pose  t_s counts from any begin, or from that of hasUtc()
+  /// @param location  in the file, for messages
+  void add(std::size_t object, PoseSample pose, const std::string& location);
+  /// Adds the place of an object that does not move.
+  void addFixed(std::size_t object, PoseSample pose, const std::string& location);
+  /// Times are UTC: seconds since `begin_s` after 1970.
+  void hasUtc(double begin_s = 0) { utc_begin_s_ = begin_s; }
+
+  ReadingTally& tally() { return recording_.tally; }
+  /// Counts a position that needs an assumption, which becomes a note.
+  void assume(const std::string& assumption) { ++assumptions_[assumption]; }
+  /// Counts a pose or state against the limit of a recording. @throws Error (bad_input)
+  void countSample();
+
+  /// The recording, with t = 0 at the second at or before the first pose. Call once.
+  Recording finish();
+
+ private:
+  bool isPosition(PoseSample& pose, const std::string& location);
+  void endAtGaps(RecordedObject& object, double gap_s);
+  void tellOutliers();
+
+  Recording recording_;
+  ReadOptions options_;
+  std::unordered_map<std::string, std::size_t> indices_;
+  std::unordered_map<std::size_t, PoseSample> fixed_;
+  std::map<std::string, long long> assumptions_;
+  std::size_t samples_ = 0;
+  std::optional<double> utc_begin_s_;
+};
+
+/// A pose at a position in ECEF (m), with its height above mean sea level by EGM96.
+PoseSample poseOfEcef(double t_s, const Vec3d& position_m);
+/// Height above mean sea level (m) of a height above the ellipsoid.
+double heightMsl_m(double latitude_deg, double longitude_deg, double height_ellipsoid_m);
+
+}  // namespace emscape::interop

@@ -1,0 +1,219 @@
+#include "recording/tracks/table_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "emscape/base/error.h"
+#include "recording/common/text.h"
+
+namespace emscape::interop {
+namespace {
+
+/// What a column may be called, in lower case, without a unit, blanks and underscores; the first that a
+/// header has is taken.
+struct ColumnNames {
+  Column column;
+  const char* role;  ///< name in --columns
+  std::vector<std::string> names;
+};
+const std::vector<ColumnNames>& columnNames() {
+  static const std::vector<ColumnNames> names{
+      {Column::time,
+       "time",
+       {"timestamp", "datetime", "basedatetime", "utc", "utctime", "timeutc", "gpstime", "unixtime",
+        "updatetime", "time", "t", "seconds"}},
+      {Column::date, "date", {"date", "utcdate", "dateutc"}},
+      {Column::latitude, "latitude", {"latitude", "lat"}},
+      {Column::longitude, "longitude", {"longitude", "lon", "lng", "long"}},
+      {Column::position, "position", {"position", "latlon", "latlng", "coordinates"}},
+      {Column::height_msl,
+       "height",
+       {"heightmsl", "altitudemsl", "altmsl", "altitudeabovesealevel", "altitude", "alt", "height",
+        "elevation", "ele"}},
+      {Column::height_ellipsoid,
+       "height_ellipsoid",
+       {"heightellipsoid", "ellipsoidheight", "geoaltitude", "altgeom", "hae"}},
+      {Column::height_pressure, "height_pressure", {"baroaltitude", "altbaro"}},
+      {Column::heading,
+       "heading",
+       {"heading", "trueheading", "hdg", "yaw", "course", "cog", "track", "truetrack", "direction"}},
+      {Column::pitch, "pitch", {"pitch"}},
+      {Column::roll, "roll", {"roll"}},
+      {Column::id, "id", {"icao24", "icao", "hex", "mmsi", "id", "platform", "object", "name", "callsign"}},
+  };
+  return names;
+}
+
+/// Factor to metres, degrees or seconds.
+std::optional<double> factorOf(const std::string& unit) {
+  static const std::map<std::string, double> factors{{"", 1},
+                                                     {"m", 1},
+                                                     {"metres", 1},
+                                                     {"meters", 1},
+                                                     {"metre", 1},
+                                                     {"meter", 1},
+                                                     {"m amsl", 1},
+                                                     {"m msl", 1},
+                                                     {"deg", 1},
+                                                     {"degrees", 1},
+                                                     {"degree", 1},
+                                                     {"\xC2\xB0", 1},
+                                                     {"s", 1},
+                                                     {"sec", 1},
+                                                     {"seconds", 1},
+                                                     {"utc", 1},
+                                                     {"ft", kMetresPerFoot},
+                                                     {"feet", kMetresPerFoot},
+                                                     {"ft amsl", kMetresPerFoot},
+                                                     {"km", 1000},
+                                                     {"rad", 180 / 3.14159265358979323846},
+                                                     {"ms", 1e-3},
+                                                     {"millisecond", 1e-3}};
+  const auto found = factors.find(unit);
+  return found == factors.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// A name without its unit and what stands before a dot: "Alt (ft)", "altitude_ft", "alt[m]", "OSD.height
+/// [m]".
+std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
+  std::string name = lowerCase(told), unit;
+  const std::size_t at = name.find_first_of("([");
+  if (at != std::string::npos) {
+    unit = std::string(trimmed(std::string_view(name).substr(at + 1, name.find_first_of(")]", at) - at - 1)));
+    name.resize(at);
+  }
+  name.erase(0, name.rfind('.') + 1);
+  for (const char* end : {"ft", "m", "deg", "rad", "s", "km", "ms", "utc"}) {
+    const std::string ending = std::string("_") + end;
+    if (name.size() > ending.size() &&
+        name.compare(name.size() - ending.size(), ending.size(), ending) == 0) {
+      unit = end;
+      name.resize(name.size() - ending.size());
+      break;
+    }
+  }
+  name.erase(
+      std::remove_if(name.begin(), name.end(), [](char c) { return c == ' ' || c == '_' || c == '#'; }),
+      name.end());
+  return {name, unit};
+}
+
+[[noreturn]] void refuseEntry(const std::string& entry) {
+  std::string roles;
+  for (const ColumnNames& names : columnNames())
+    roles += (roles.empty() ? "" : ", ") + std::string(names.role);
+  throw Error(ErrorCode::usage, fmt::format("columns: '{}' is not ROLE=NAME or ROLE=NAME:UNIT; roles are {}",
+                                            printableText(entry), roles));
+}
+
+}  // namespace
+
+const char* roleOf(Column column) {
+  return columnNames()[static_cast<std::size_t>(column)].role;
+}
+
+std::vector<std::string> cellsOf(std::string_view line, char separator) {
+  std::vector<std::string> cells(1);
+  bool is_quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    const bool is_quote = c == '"' && (is_quoted || trimmed(cells.back()).empty());  // else seconds of an arc
+    if (is_quote && is_quoted && i + 1 < line.size() && line[i + 1] == '"') {
+      cells.back() += line[++i];
+    } else if (is_quote) {
+      is_quoted = !is_quoted;
+    } else if (c == separator && !is_quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  for (std::string& cell : cells) cell = std::string(trimmed(cell));
+  return cells;
+}
+
+char separatorOf(std::string_view line) {
+  char best = ',';
+  for (const char c : {';', '\t'}) {
+    if (std::count(line.begin(), line.end(), c) > std::count(line.begin(), line.end(), best)) best = c;
+  }
+  return best;
+}
+
+Columns columnsByName(const std::vector<std::string>& header) {
+  std::vector<std::pair<std::string, std::string>> told;
+  for (const std::string& cell : header) told.push_back(nameAndUnit(cell));
+  Columns columns;
+  for (const ColumnNames& known : columnNames()) {
+    for (const std::string& name : known.names) {
+      for (std::size_t i = 0; i < told.size() && columns.count(known.column) == 0; ++i) {
+        const auto factor = factorOf(told[i].second);
+        if (told[i].first == name && factor)
+          columns[known.column] = {i, *factor, !told[i].second.empty(), DateOrder::unknown};
+      }
+    }
+  }
+  return columns;
+}
+
+Columns columnsByMap(const std::vector<std::string>& header, const std::string& map) {
+  Columns columns;
+  for (const std::string& entry : cellsOf(map, ',')) {
+    const std::size_t at = entry.find('=');
+    const std::string role = entry.substr(0, at);
+    const auto known = std::find_if(columnNames().begin(), columnNames().end(),
+                                    [&](const ColumnNames& names) { return names.role == role; });
+    if (at == std::string::npos || known == columnNames().end()) refuseEntry(entry);
+    std::string name = entry.substr(at + 1), unit;
+    auto found = std::find(header.begin(), header.end(), name);
+    const std::size_t colon = name.rfind(':');
+    if (found == header.end() && colon != std::string::npos) {
+      unit = lowerCase(name.substr(colon + 1));
+      name.resize(colon);
+      found = std::find(header.begin(), header.end(), name);
+    }
+    if (found == header.end()) {
+      throw Error(ErrorCode::usage,
+                  fmt::format("columns: the table has no column '{}'; it has {}", printableText(name),
+                              printableText(fmt::format("{}", fmt::join(header, ", ")))));
+    }
+    TableColumn& column = columns[known->column];
+    column.index = static_cast<std::size_t>(found - header.begin());
+    column.has_unit = !unit.empty();
+    if (unit == "dmy" || unit == "mdy") {
+      column.order = unit == "dmy" ? DateOrder::day_first : DateOrder::month_first;
+      continue;
+    }
+    const auto factor = factorOf(unit);
+    if (!factor) {
+      throw Error(
+          ErrorCode::usage,
+          fmt::format("columns: '{}' is no unit; allowed are m, km, ft, deg, rad, s, ms, and of dates dmy "
+                      "and mdy",
+                      printableText(unit)));
+    }
+    column.factor = *factor;
+  }
+  return columns;
+}
+
+bool isBaseStation(std::string_view line) {
+  return line.substr(0, 4) == "MSG," && std::count(line.begin(), line.end(), ',') >= 15;
+}
+
+/// @see http://woodair.net/sbs/article/barebones42_socket_data.htm
+Columns columnsOfBaseStation() {
+  const auto at = [](std::size_t index, double factor = 1) {
+    return TableColumn{index, factor, true, DateOrder::unknown};
+  };
+  return {{Column::id, at(4)},        {Column::date, at(6)},
+          {Column::time, at(7)},      {Column::height_pressure, at(11, kMetresPerFoot)},
+          {Column::heading, at(13)},  {Column::latitude, at(14)},
+          {Column::longitude, at(15)}};
+}
+
+}  // namespace emscape::interop

@@ -1,0 +1,56 @@
+/// Columns of a table of positions: which is what, in which unit.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "recording/common/dates.h"
+
+namespace emscape::interop {
+
+constexpr double kMetresPerFoot = 0.3048;
+
+enum class Column {
+  time,
+  date,  ///< of the time of day in `time`
+  latitude,
+  longitude,
+  position,  ///< latitude and longitude in one cell
+  height_msl,
+  height_ellipsoid,
+  height_pressure,
+  heading,
+  pitch,
+  roll,
+  id
+};
+
+/// Name of a column's meaning in --columns.
+const char* roleOf(Column column);
+
+struct TableColumn {
+  std::size_t index = 0;
+  double factor = 1;  ///< to metres, degrees or seconds
+  bool has_unit = false;
+  DateOrder order = DateOrder::unknown;  ///< of dates
+};
+using Columns = std::map<Column, TableColumn>;
+
+std::vector<std::string> cellsOf(std::string_view line, char separator);
+/// The separator of a header line: comma, semicolon or tab.
+char separatorOf(std::string_view line);
+
+/// The columns of a header by common names, among them those of the OpenSky network, Flightradar24, of AIS
+/// archives and of logs of drones.
+Columns columnsByName(const std::vector<std::string>& header);
+/// @param map  "latitude=Breite,height=Hoehe:ft,time=Zeit:dmy"  @throws Error (usage)
+Columns columnsByMap(const std::vector<std::string>& header, const std::string& map);
+
+/// True for a line of the BaseStation format, which has no header: MSG,3,...
+bool isBaseStation(std::string_view line);
+Columns columnsOfBaseStation();
+
+}  // namespace emscape::interop

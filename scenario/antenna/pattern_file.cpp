@@ -1,0 +1,127 @@
+#include "scenario/antenna/pattern_file.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "document/csv.h"
+#include "document/text_lines.h"
+#include "emscape/base/log.h"
+#include "scenario/antenna/shapes.h"
+
+namespace emscape::scenario {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string endingOf(const std::string& file) {
+  return document::upperCase(fs::path(file).extension().string());
+}
+
+/// The file beside one of a SPLAT! pattern with the other ending, in the case of letters that exists.
+std::string splatPartner(const std::string& file, const char* lower, const char* upper) {
+  for (const char* ending : {lower, upper}) {
+    const fs::path other = fs::path(file).replace_extension(ending);
+    std::error_code ignored;
+    if (fs::exists(other, ignored)) return other.string();
+  }
+  return "";
+}
+
+/// True for a CSV file with no other columns than those of a grid.
+bool isOwnGrid(const std::string& file) {
+  const std::vector<std::string> names = document::csvColumnsOf(file);
+  const bool is_own = std::all_of(names.begin(), names.end(), [](const std::string& name) {
+    return name == "azimuth_deg" || name == "elevation_deg" || name == "attenuation_db";
+  });
+  return is_own;
+}
+
+/// A stated beamwidth that differs from the measured one.
+void addWidthContradiction(std::vector<std::string>& warnings, const std::string& file, const char* plane,
+                           const std::optional<double>& stated_deg, double measured_deg) {
+  constexpr double kPart = 0.25, kSmallest_deg = 2;
+  if (!stated_deg || !(*stated_deg > 0)) return;
+  if (std::abs(*stated_deg - measured_deg) <= std::max(kSmallest_deg, kPart * *stated_deg)) return;
+  warnings.push_back(fmt::format(
+      "{}: the file states a beamwidth of {:g} deg in {}, but its pattern is {:.1f} deg wide; the "
+      "pattern is used",
+      file, *stated_deg, plane, measured_deg));
+}
+
+}  // namespace
+
+PatternFile readPatternFile(const std::string& file) {
+  const std::string ending = endingOf(file);
+  if (ending == ".AZ") return readSplat(file, splatPartner(file, ".el", ".EL"));
+  if (ending == ".EL") return readSplat(splatPartner(file, ".az", ".AZ"), file);
+  if (ending == ".CSV") return isOwnGrid(file) ? readGridPattern(file) : readTablePattern(file);
+  const document::TextLines text(file);
+  for (std::size_t i = 0; i < std::min<std::size_t>(text.lines().size(), 40); ++i) {
+    const std::string line = document::upperCase(text.lines()[i].text);
+    if (line.rfind("REVNUM:", 0) == 0 || line.rfind("PATCUT:", 0) == 0) return readNsma(file);
+    if (line.rfind("STK.V", 0) == 0 || line.rfind("PATTERNDATA", 0) == 0) return readStkPattern(file);
+  }
+  return readMsiPattern(file);
+}
+
+AntennaPtr antennaOf(const std::string& file, const PatternFile& pattern, double gain_dbi,
+                     std::vector<std::string>& warnings) {
+  if (std::isnan(gain_dbi)) {
+    if (!pattern.gain_dbi) {
+      throw Error(ErrorCode::bad_input, {file, 0, 0},
+                  fmt::format("the {} has no gain; gain_dbi must be given with the file", pattern.format));
+    }
+    gain_dbi = *pattern.gain_dbi;
+  }
+  requireGain(gain_dbi);
+  AntennaPtr antenna = makeGridAntenna(pattern.nodes, pattern.amplitudes, gain_dbi, pattern.name);
+  warnings.insert(warnings.end(), pattern.warnings.begin(), pattern.warnings.end());
+  addWidthContradiction(warnings, file, "azimuth", pattern.stated_az_deg, antenna->beamwidth_az_deg);
+  addWidthContradiction(warnings, file, "elevation", pattern.stated_el_deg, antenna->beamwidth_el_deg);
+  return antenna;
+}
+
+AntennaPtr readAntenna(const std::string& file, double gain_dbi) {
+  std::vector<std::string> warnings;
+  AntennaPtr antenna = antennaOf(file, readPatternFile(file), gain_dbi, warnings);
+  for (const std::string& warning : warnings) logWarning(warning);
+  return antenna;
+}
+
+void fillFromCuts(const MeasuredCut& horizontal, const MeasuredCut& vertical, PatternFile& pattern) {
+  pattern.nodes = gridNodes(horizontal.angles_deg(), vertical.angles_deg());
+  std::vector<double> horizontal_db;
+  for (const double azimuth_deg : pattern.nodes.azimuths_deg)
+    horizontal_db.push_back(horizontal.attenuationAt_db(azimuth_deg));
+  const double ahead_db = horizontal.attenuationAt_db(0);
+  const double behind_db = horizontal.attenuationAt_db(180);
+  for (const double elevation_deg : pattern.nodes.elevations_deg) {
+    const double front_db = vertical.attenuationAt_db(-elevation_deg) - ahead_db;
+    const double back_db = vertical.attenuationAt_db(180 + elevation_deg) - behind_db;
+    for (std::size_t i = 0; i < horizontal_db.size(); ++i) {
+      const double w = std::abs(pattern.nodes.azimuths_deg[i]) / 180;
+      const double attenuation_db = horizontal_db[i] + (1 - w) * front_db + w * back_db;
+      pattern.amplitudes.push_back(static_cast<float>(amplitudeOfAttenuation(std::max(attenuation_db, 0.0))));
+    }
+  }
+}
+
+double peakAngle_deg(const MeasuredCut& cut) {
+  return *std::max_element(cut.angles_deg().begin(), cut.angles_deg().end(),
+                           [&](double a, double b) { return cut.amplitudeAt(a) < cut.amplitudeAt(b); });
+}
+
+void noteIgnored(PatternFile& pattern, const char* what, const std::vector<std::string>& ignored) {
+  constexpr std::size_t kMaxNames = 8;
+  if (ignored.empty()) return;
+  const auto end = ignored.begin() + static_cast<std::ptrdiff_t>(std::min(ignored.size(), kMaxNames));
+  pattern.notes.push_back(fmt::format("ignored: {} {} ({}{})", ignored.size(), what,
+                                      fmt::join(ignored.begin(), end, ", "),
+                                      ignored.size() > kMaxNames ? ", ..." : ""));
+}
+
+}  // namespace emscape::scenario

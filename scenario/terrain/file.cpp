@@ -1,0 +1,431 @@
+#include "scenario/terrain/file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "base/files/file_reading.h"
+#include "base/geodesy/gdal_file.h"
+#include "emscape/base/units.h"
+#include "emscape/base/work.h"
+#include "scenario/terrain/file_remedies.h"
+#include "scenario/terrain/gdal_messages.h"
+#include "scenario/terrain/georeference.h"
+#include "scenario/terrain/raster_access.h"
+#include "scenario/terrain/vrt.h"
+
+namespace emscape::scenario {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Values that mean void in HGT and DTED whatever a file's header says.
+constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
+/// Largest height or depth on earth (m), with a margin; values beyond are undeclared voids.
+constexpr float kMaxHeightOnEarth_m = 20000.0f;
+constexpr long long kStripPosts = 1 << 21;
+constexpr int kMaxPostsPerAxis = 1 << 22;                ///< the whole earth in a third of an arc second
+constexpr int kMinTilePosts = 2, kMaxTilePosts = 21601;  ///< of an HGT, per axis
+
+/// Reports vertical systems of GeoTIFF 1.0, which GDAL otherwise leaves out.
+class VerticalSystems {
+ public:
+  VerticalSystems() { CPLSetThreadLocalConfigOption(kKey, "YES"); }
+  ~VerticalSystems() { CPLSetThreadLocalConfigOption(kKey, nullptr); }
+
+ private:
+  static constexpr const char* kKey = "GTIFF_REPORT_COMPD_CS";
+};
+
+/// Posts per axis of an HGT of a number of bytes; 0 if it is not square.
+int tilePosts(std::uintmax_t bytes) {
+  const auto posts = static_cast<int>(std::lround(std::sqrt(static_cast<double>(bytes / 2))));
+  const bool is_square =
+      bytes == std::uintmax_t{2} * static_cast<unsigned>(posts) * static_cast<unsigned>(posts);
+  return is_square && posts >= kMinTilePosts && posts <= kMaxTilePosts ? posts : 0;
+}
+
+/// True if GDAL reads an HGT of this name and size.
+bool isStandardTile(const std::string& name, int posts) {
+  const auto is = [&](std::size_t at, const char* letters) {
+    return at < name.size() && std::strchr(letters, name[at]) != nullptr;
+  };
+  const auto digits = [&](std::size_t at, std::size_t count) {
+    for (std::size_t k = at; k < at + count; ++k) {
+      if (k >= name.size() || std::isdigit(static_cast<unsigned char>(name[k])) == 0) return false;
+    }
+    return true;
+  };
+  return (posts == 1201 || posts == 3601) && is(0, "NSns") && digits(1, 2) && is(3, "EWew") && digits(4, 3) &&
+         is(7, ".");
+}
+
+/// The height in a colour.
+double decoded(HeightEncoding encoding, float red, float green, float blue) {
+  const double r = static_cast<double>(red), g = static_cast<double>(green), b = static_cast<double>(blue);
+  return encoding == HeightEncoding::terrarium ? r * 256 + g + b / 256 - 32768
+                                               : -10000 + (r * 65536 + g * 256 + b) * 0.1;
+}
+
+}  // namespace
+
+struct TerrainFile::Impl {
+  std::string name;
+  ElevationSource source;
+  SourceLocation location;
+  TerrainFileKeys keys;
+  std::vector<std::string> notes;
+  std::string format;
+  int columns = 0, rows = 0;
+  double scale = 1.0, offset = 0.0;
+  int band = 1;
+  HeightMeaning meaning;
+  std::optional<Georeference> georeference;
+  bool is_tile = false;  ///< an HGT that GDAL does not read by itself
+  mutable std::unique_ptr<MemoryFiles> unpacked;
+  mutable std::string unpacked_name;
+
+  [[noreturn]] void fail(const std::string& problem) const {
+    throw Error(ErrorCode::bad_input, location, "elevation file " + name + ": " + problem);
+  }
+  /// Errors of what a function finds become those of the file.
+  template <class Find>
+  auto found(const Find& find) const {
+    try {
+      return find();
+    } catch (const Error& error) {
+      if (!error.location().file.empty()) throw;
+      fail(error.message());
+    }
+  }
+
+  std::set<fs::path> checkedSources() const;  ///< none if the file is not a VRT
+  gdal::Dataset open() const;                 ///< after checkedSources()
+  bool isInMemory() const { return !source.member.empty() || is_tile; }
+  void unpack() const;
+  std::string tileInMemory(MemoryFiles& files, std::string bytes) const;
+  void checkDatasets(GDALDatasetH dataset, const std::set<fs::path>& sources) const;
+  void readHead();
+  void readBand(GDALDatasetH dataset);
+  void placePosts(GDALDatasetH dataset);
+};
+
+std::set<fs::path> TerrainFile::Impl::checkedSources() const {
+  if (isInMemory()) return {};
+  return found([&] { return sourcesOfVrt(name); });
+}
+
+/// The bytes of an HGT as a raster that GDAL reads.
+std::string TerrainFile::Impl::tileInMemory(MemoryFiles& files, std::string bytes) const {
+  const std::optional<TileCorner> corner = cornerInName(source.ownName());
+  const int posts = tilePosts(bytes.size());
+  if (posts == 0) {
+    fail(fmt::format(
+        "has {} bytes, which is no square of posts of 2 bytes as an HGT tile has (1201, 3601, 7201 or "
+        "10801 posts a side); it may be cut off or of another format",
+        bytes.size()));
+  }
+  if (!corner) fail(remedyForTileWithoutPosition());
+  const double step_deg = 1.0 / (posts - 1);
+  files.add("tile.hdr",
+            fmt::format("NROWS {0}\nNCOLS {0}\nNBANDS 1\nNBITS 16\nPIXELTYPE SIGNEDINT\nBYTEORDER M\n"
+                        "LAYOUT BIL\nULXMAP {1}\nULYMAP {2}\nXDIM {3:.17g}\nYDIM {3:.17g}\nNODATA -32768\n",
+                        posts, corner->longitude_deg, corner->latitude_deg + 1, step_deg));
+  files.add("tile.prj",
+            "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],"
+            "PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]");
+  return files.add("tile.bil", std::move(bytes));
+}
+
+void TerrainFile::Impl::unpack() const {
+  if (unpacked) return;
+  found([&] {
+    auto files = std::make_unique<MemoryFiles>();
+    if (is_tile) {
+      unpacked_name =
+          tileInMemory(*files, source.member.empty() ? readWholeText(source.file) : unpackedContent(source));
+    } else {
+      unpacked_name = files->unpack(source);
+    }
+    unpacked = std::move(files);
+  });
+}
+
+gdal::Dataset TerrainFile::Impl::open() const {
+  if (const std::string fault = gdal::faultOfName(source.file); !fault.empty()) fail(fault);
+  const GdalMessages messages;
+  const bool is_picture = keys.encoding.has_value();
+  gdal::Dataset dataset;
+  if (isInMemory()) {
+    unpack();
+    dataset = openElevationInMemory(unpacked_name, unpacked->siblings(), is_picture);
+  } else {
+    dataset = openElevation(name, is_picture);
+  }
+  if (!dataset) fail(messages.explain(faultOfUnreadable(source, is_picture)));
+  return dataset;
+}
+
+void TerrainFile::Impl::checkDatasets(GDALDatasetH dataset, const std::set<fs::path>& sources) const {
+  const std::string fault = faultOfDataset(dataset);
+  if (!fault.empty()) fail(fault);
+  std::error_code ignored;
+  for (const fs::path& file : sources) {
+    if (!fs::exists(file, ignored)) continue;  // GDAL reports it if its heights are read
+    const GdalMessages messages;
+    const gdal::Dataset opened = openElevationSource(file);
+    const std::string fault_of_source =
+        opened ? faultOfDataset(opened.get()) : messages.explain("cannot be read as an elevation file");
+    if (!fault_of_source.empty()) fail("source " + file.string() + ": " + fault_of_source);
+  }
+}
+
+void TerrainFile::Impl::readHead() {
+  const GdalMessages quiet;  // constructed before the dataset, whose destructor may report errors
+  const VerticalSystems vertical_systems;
+  gdal::prepare();
+  if (lowerEnding(source.ownName()) == ".hgt" && gdal::faultOfName(source.file).empty()) {
+    std::error_code ignored;
+    // The size of a packed tile is not known; by the name alone, GDAL's driver is tried where it may be
+    // right.
+    const int posts = source.member.empty() ? tilePosts(fs::file_size(source.file, ignored)) : 0;
+    is_tile = !isStandardTile(fs::path(source.ownName()).filename().string(), posts);
+  }
+  const std::set<fs::path> sources = checkedSources();
+  const gdal::Dataset dataset = open();
+  const int bands = GDALGetRasterCount(dataset.get());
+  if (bands == 0) fail(remedyForContainer(dataset.get(), source));
+  GDALDriverH driver = GDALGetDatasetDriver(dataset.get());
+  const char* long_name = GDALGetMetadataItem(driver, GDAL_DMD_LONGNAME, nullptr);
+  format = is_tile ? "SRTMHGT File Format" : long_name ? long_name : GDALGetDriverShortName(driver);
+  columns = GDALGetRasterXSize(dataset.get());
+  rows = GDALGetRasterYSize(dataset.get());
+  if (columns > kMaxPostsPerAxis || rows > kMaxPostsPerAxis) {
+    fail("has " + std::to_string(columns) + " x " + std::to_string(rows) + " posts, more than the allowed " +
+         std::to_string(kMaxPostsPerAxis) + " in a row or column");
+  }
+  if (keys.band > bands)
+    fail(fmt::format("'band: {}' of the scenario is outside the allowed range 1 to {}, the file's bands",
+                     keys.band, bands));
+  band = std::max(keys.band, 1);
+  if (bands > 1 && keys.band == 0 && !keys.encoding) {
+    notes.push_back("has " + std::to_string(bands) + " bands: heights are taken from the first");
+  }
+  checkDatasets(dataset.get(), sources);
+  readBand(dataset.get());
+  placePosts(dataset.get());
+}
+
+void TerrainFile::Impl::readBand(GDALDatasetH dataset) {
+  GDALRasterBandH of_heights = GDALGetRasterBand(dataset, band);
+  if (GDALDataTypeIsComplex(GDALGetRasterDataType(of_heights))) fail("holds complex numbers, not heights");
+  const GDALColorInterp colour = GDALGetRasterColorInterpretation(of_heights);
+  if (keys.encoding) {
+    if (GDALGetRasterCount(dataset) < band + 2 || GDALGetRasterDataType(of_heights) != GDT_Byte)
+      fail(fmt::format(
+          "'encoding: {}' of the scenario needs red, green and blue as bands of bytes; the file has {} "
+          "band{} of {}",
+          toString(*keys.encoding), GDALGetRasterCount(dataset), GDALGetRasterCount(dataset) == 1 ? "" : "s",
+          GDALGetDataTypeName(GDALGetRasterDataType(of_heights))));
+    notes.push_back(fmt::format("heights are decoded from colours ({})", toString(*keys.encoding)));
+  } else if (colour != GCI_Undefined && colour != GCI_GrayIndex) {
+    fail(remedyForPicture(band, GDALGetColorInterpretationName(colour), GDALGetRasterCount(dataset)));
+  }
+  scale = GDALGetRasterScale(of_heights, nullptr);
+  offset = GDALGetRasterOffset(of_heights, nullptr);
+  if (scale != 1.0 || offset != 0.0) {
+    notes.push_back("heights are stored with scale " + std::to_string(scale) + " and offset " +
+                    std::to_string(offset));
+  }
+}
+
+void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
+  GdalMessages messages;
+  double transform[6];
+  OGRSpatialReferenceH given = GDALGetSpatialRef(dataset);
+  bool is_tile_of_web = false;
+  if (GDALGetGeoTransform(dataset, transform) != CE_None) {
+    is_tile_of_web = keys.encoding && webTileTransform(source.file, columns, rows, transform);
+    if (!is_tile_of_web) fail(remedyForNoGeoreference(source));
+  }
+  const char* meaning_of_pixels = GDALGetMetadataItem(dataset, GDALMD_AREA_OR_POINT, nullptr);
+  const bool is_area =
+      !is_tile && (meaning_of_pixels == nullptr || !EQUAL(meaning_of_pixels, GDALMD_AOP_POINT));
+  found([&] { georeference.emplace(transform, columns, rows, is_area); });
+  gdal::SpatialReference system;
+  const bool has_system = given != nullptr && OSRGetName(given) != nullptr;
+  if (!keys.crs.empty()) {
+    system.reset(OSRNewSpatialReference(nullptr));
+    const std::optional<int> code = epsgCodeIn(keys.crs);
+    if (!code || OSRImportFromEPSG(system.get(), *code) != OGRERR_NONE)
+      fail("'crs: " + keys.crs +
+           "' of the scenario is not EPSG: and the number of a coordinate reference system, such "
+           "as EPSG:4326 for latitudes and longitudes");
+    if (has_system && !OSRIsSame(system.get(), given)) {
+      gdal::SpatialReference flat(OSRClone(given));
+      OSRStripVertical(flat.get());
+      if (!OSRIsSame(system.get(), flat.get()))
+        fail(fmt::format(
+            "'crs: {}' of the scenario contradicts the file, which states '{}'. Leave out the key to use "
+            "what the file states; if the file is wrong, gdal_translate -a_srs {} makes a copy",
+            keys.crs, OSRGetName(given), keys.crs));
+    }
+  } else if (is_tile_of_web) {
+    system.reset(OSRNewSpatialReference(nullptr));
+    OSRImportFromEPSG(system.get(), 3857);
+  } else if (has_system) {
+    system.reset(OSRClone(given));
+  } else {
+    constexpr double kTurn_deg = 360;
+    const double east = transform[0] + columns * transform[1] + rows * transform[2];
+    fail(remedyForNoSystem(std::max(std::abs(transform[0]), std::abs(east)) > kTurn_deg));
+  }
+  HeightFacts facts{name,
+                    source.ownName(),
+                    GDALGetDriverShortName(GDALGetDatasetDriver(dataset)),
+                    GDALGetRasterUnitType(GDALGetRasterBand(dataset, band)),
+                    scale,
+                    has_system ? given : system.get(),
+                    keys};
+  if (is_tile) facts.driver = "SRTMHGT";
+  if (facts.driver == "SRTMHGT" || keys.encoding) facts.band_unit = "m";
+  meaning = found([&] { return heightMeaningOf(facts); });
+  notes.insert(notes.end(), meaning.notes.begin(), meaning.notes.end());
+  OSRStripVertical(system.get());
+  found([&] { georeference->placeOnEarth(std::move(system), name); });
+  if (!georeference->is_geographic)
+    notes.push_back(std::string("posts in ") + OSRGetName(georeference->system()) +
+                    (georeference->turned ? ", turned," : "") +
+                    " are brought to latitudes and longitudes of WGS84, bilinear");
+}
+
+TerrainFile::TerrainFile(const ElevationSource& source, const SourceLocation& location,
+                         const TerrainFileKeys& keys)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->name = source.name();
+  impl_->source = source;
+  impl_->location = location;
+  impl_->keys = keys;
+  impl_->readHead();
+}
+TerrainFile::~TerrainFile() = default;
+
+const std::string& TerrainFile::name() const {
+  return impl_->name;
+}
+const std::string& TerrainFile::format() const {
+  return impl_->format;
+}
+std::string TerrainFile::crs() const {
+  OGRSpatialReferenceH system = impl_->georeference->system();
+  const char* authority = OSRGetAuthorityName(system, nullptr);
+  const char* code = OSRGetAuthorityCode(system, nullptr);
+  std::string text = OSRGetName(system);
+  if (authority && code) text += std::string(" (") + authority + ":" + code + ")";
+  return text;
+}
+const std::vector<std::string>& TerrainFile::notes() const {
+  return impl_->notes;
+}
+const std::vector<std::string>& TerrainFile::warnings() const {
+  return impl_->meaning.warnings;
+}
+const HeightMeaning& TerrainFile::meaning() const {
+  return impl_->meaning;
+}
+const SourceLocation& TerrainFile::location() const {
+  return impl_->location;
+}
+const PostLattice& TerrainFile::lattice() const {
+  return impl_->georeference->lattice;
+}
+int TerrainFile::columns() const {
+  return impl_->columns;
+}
+int TerrainFile::rows() const {
+  return impl_->rows;
+}
+bool TerrainFile::isArea() const {
+  return impl_->georeference->is_area;
+}
+bool TerrainFile::isGeographic() const {
+  return impl_->georeference->is_geographic;
+}
+const std::string& TerrainFile::planeName() const {
+  return impl_->georeference->plane_name;
+}
+void TerrainFile::release() const {
+  impl_->unpacked.reset();
+}
+
+void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
+  const Georeference& georeference = *impl_->georeference;
+  const GdalMessages messages;  // constructed before the dataset, whose destructor may report errors
+  impl_->checkedSources();
+  const gdal::Dataset dataset = impl_->open();
+  GDALRasterBandH band = GDALGetRasterBand(dataset.get(), impl_->band);
+  GDALRasterBandH mask_band = (GDALGetMaskFlags(band) & GMF_ALL_VALID) == 0 ? GDALGetMaskBand(band) : nullptr;
+  const int columns = static_cast<int>(window.columns);
+  const int left = static_cast<int>(window.first_column);
+  const long long strip_rows = std::max(1LL, kStripPosts / std::max(1LL, window.columns));
+  std::vector<float> strip;
+  std::vector<GByte> mask;
+  for (long long begin = 0; begin < window.rows; begin += strip_rows) {
+    checkpoint();
+    const int rows = static_cast<int>(std::min(strip_rows, window.rows - begin));
+    const long long south = window.first_row + begin;
+    const int top = static_cast<int>(georeference.north_first ? impl_->rows - south - rows : south);
+    strip.resize(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    mask.assign(strip.size(), 255);
+    if (GDALRasterIO(band, GF_Read, left, top, columns, rows, strip.data(), columns, rows, GDT_Float32, 0,
+                     0) != CE_None ||
+        (mask_band != nullptr && GDALRasterIO(mask_band, GF_Read, left, top, columns, rows, mask.data(),
+                                              columns, rows, GDT_Byte, 0, 0) != CE_None)) {
+      impl_->fail(messages.explain("rows " + std::to_string(top) + " to " + std::to_string(top + rows - 1) +
+                                   " cannot be read"));
+    }
+    if (impl_->keys.encoding) {
+      std::vector<float> green(strip.size()), blue(strip.size());
+      for (auto [next, values] : {std::pair{1, &green}, std::pair{2, &blue}}) {
+        if (GDALRasterIO(GDALGetRasterBand(dataset.get(), impl_->band + next), GF_Read, left, top, columns,
+                         rows, values->data(), columns, rows, GDT_Float32, 0, 0) != CE_None)
+          impl_->fail(messages.explain("rows " + std::to_string(top) + " cannot be read"));
+      }
+      for (std::size_t k = 0; k < strip.size(); ++k)
+        strip[k] = static_cast<float>(decoded(*impl_->keys.encoding, strip[k], green[k], blue[k]));
+    }
+    for (std::size_t k = 0; k < strip.size(); ++k) {
+      const bool declared_void = mask[k] == 0 || strip[k] == kVoidValues[0] || strip[k] == kVoidValues[1];
+      const double height_m = (strip[k] * impl_->scale + impl_->offset) * impl_->meaning.unit_m;
+      const bool known = !declared_void && std::abs(height_m) <= kMaxHeightOnEarth_m;
+      strip[k] = known ? static_cast<float>(height_m) : std::numeric_limits<float>::quiet_NaN();
+    }
+    for (int row = 0; row < rows; ++row) {
+      const int row_of_file = georeference.north_first ? rows - 1 - row : row;
+      take(begin + row, strip.data() + static_cast<std::ptrdiff_t>(row_of_file) * columns);
+    }
+  }
+}
+
+void TerrainFile::toGeographic(std::vector<double>& x, std::vector<double>& y) const {
+  impl_->georeference->toGeographic(x, y);
+}
+
+void TerrainFile::toPlane(std::vector<double>& x, std::vector<double>& y) const {
+  impl_->georeference->toPlane(x, y);
+}
+
+void TerrainFile::lineToPlane(std::vector<double>& x, std::vector<double>& y) const {
+  impl_->georeference->lineToPlane(x, y);
+}
+
+}  // namespace emscape::scenario

@@ -1,0 +1,43 @@
+/// Unit and datum of the heights in an elevation file: what the file, its format, its name and the scenario
+/// say of them, and what is assumed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "base/geodesy/gdal.h"
+#include "emscape/scenario/terrain/terrain.h"
+
+namespace emscape::scenario {
+
+/// Where the datum of a file comes from, the strongest last.
+enum class DatumOrigin { assumed, product, format, file, key };
+
+/// A file, as far as its heights depend on it.
+struct HeightFacts {
+  std::string name;             ///< for messages
+  std::string own_name;         ///< without archive
+  std::string driver;           ///< GDAL's short name
+  std::string band_unit;        ///< empty: the band states none
+  double scale = 1;             ///< of the band
+  OGRSpatialReferenceH system;  ///< of the file, with its vertical part
+  TerrainFileKeys keys;
+};
+
+/// The meaning of a file's numbers.
+struct HeightMeaning {
+  double unit_m = 1;
+  std::string unit;  ///< for messages
+  VerticalDatum datum = VerticalDatum::egm96;
+  DatumOrigin origin = DatumOrigin::assumed;
+  std::string datum_text;  ///< such as "EGM96 (stated by the file: EGM96 height)"
+  std::vector<std::string> notes, warnings;
+};
+
+/// @throws Error (bad_input), without a location: an unknown unit, depths, a key that contradicts the file
+HeightMeaning heightMeaningOf(const HeightFacts& facts);
+
+/// "EGM96", "the ellipsoid" ...
+std::string textOf(VerticalDatum datum);
+
+}  // namespace emscape::scenario

@@ -1,0 +1,305 @@
+// Readers of tracks: GPX, KML, CZML, STK, NMEA and tables.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "recording/read_recording.h"
+#include "recording/tracks/interpolated_track.h"
+#include "recording/tracks/track_formats.h"
+#include "tests/support/errors.h"
+#include "tests/support/reference_data.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::interop {
+namespace {
+
+using testing::HasSubstr;
+
+/// Reads a file by its content, as import does.
+Recording readAs(const std::string& name, const std::string& text, const ReadOptions& options = {}) {
+  const test::TemporaryFolder folder;
+  return readRecording(folder.write(name, text), options);
+}
+
+constexpr std::int64_t kSix_ms = 1780293600000;  // 2026-06-01T06:00:00Z
+
+TEST(Gpx, TracksAreObjectsAndWaypointsFixedOnes) {
+  const Recording r =
+      readAs("walk.gpx",
+             "<?xml version='1.0'?><gpx><wpt lat='52' lon='5'><ele>7</ele><name>mast</name></wpt><trk>"
+             "<name>hiker</name><trkseg><trkpt lat='52.1' lon='5.1'><ele>10</ele>"
+             "<time>2026-06-01T06:00:00Z</time></trkpt><trkpt lat='52.2' lon='5.1'><ele>12</ele>"
+             "<time>2026-06-01T08:00:30+02:00</time></trkpt></trkseg></trk><trk><trkseg>"
+             "<trkpt lat='1' lon='2'><time>2026-06-01T06:00:00Z</time></trkpt>"
+             "<trkpt lat='1' lon='2'/></trkseg></trk></gpx>");
+  ASSERT_EQ(r.objects.size(), 3u);
+  EXPECT_EQ(r.objects[0].name, "mast");
+  EXPECT_EQ(r.objects[0].poses.at(0).height_msl_m, 7);
+  EXPECT_EQ(r.objects[1].name, "hiker");
+  ASSERT_EQ(r.objects[1].poses.size(), 2u);
+  EXPECT_EQ(r.objects[1].poses[1].t_s, 30);
+  EXPECT_EQ(r.objects[1].poses[1].height_msl_m, 12);
+  EXPECT_TRUE(std::isnan(r.objects[1].poses[1].heading_deg)) << "along the track";
+  EXPECT_EQ(r.objects[2].name, "walk") << "that of the file";
+  EXPECT_EQ(r.epoch_ms, kSix_ms);
+  EXPECT_THAT(r.tally.first_bad, HasSubstr("point 5: it has no time"));
+}
+
+TEST(Kml, TracksHaveAnglesAndStampedPointsOfOneNameAreOneObject) {
+  const Recording r = readAs(
+      "a.kml",
+      "<kml "
+      "xmlns:gx='g'><Document><Folder><Placemark><name>jet</name><gx:Track><altitudeMode>absolute</"
+      "altitudeMode>"
+      "<when>2026-06-01T06:00:00Z</when><when>2026-06-01T06:00:10Z</when><gx:coord>5 52 3000</gx:coord>"
+      "<gx:coord>5.1 52 3100</gx:coord><gx:angles>90 3 -2</gx:angles></gx:Track></Placemark></Folder>"
+      "<Placemark><name>van</name><TimeStamp><when>2026-06-01T06:00:05Z</when></"
+      "TimeStamp><Point><coordinates>"
+      "5,52,0</coordinates></Point></Placemark><Placemark><name>van</"
+      "name><TimeStamp><when>2026-06-01T06:00:09Z"
+      "</when></TimeStamp><Point><coordinates>5.01,52</coordinates></Point></"
+      "Placemark><Placemark><name>mast</name>"
+      "<Point><altitudeMode>absolute</altitudeMode><coordinates>5,52,30</coordinates></Point></Placemark></"
+      "Document>"
+      "</kml>");
+  ASSERT_EQ(r.objects.size(), 3u);
+  EXPECT_EQ(r.objects[0].name, "jet");
+  EXPECT_EQ(r.objects[0].poses.at(1).height_msl_m, 3100);
+  EXPECT_EQ(r.objects[0].poses[0].heading_deg, 90);
+  EXPECT_EQ(r.objects[0].poses[0].pitch_deg, 3);
+  EXPECT_EQ(r.objects[0].poses[0].roll_deg, -2);
+  EXPECT_EQ(r.objects[1].poses.size(), 2u);
+  EXPECT_EQ(r.objects[1].poses[1].t_s, 9);
+  EXPECT_EQ(r.objects[2].poses.at(0).height_msl_m, 30);
+}
+
+TEST(Kml, TrackWithoutATimeForEachPositionIsCounted) {
+  const Recording r = readAs("a.kml",
+                             "<kml><Placemark><name>a</name><Track><when>2026-06-01T06:00:00Z</when></"
+                             "Track></Placemark><Placemark><name>b"
+                             "</name><Point><coordinates>5,52</coordinates></Point></Placemark></kml>");
+  EXPECT_THAT(r.tally.first_bad, HasSubstr("a: a track of 1 times and 0 positions"));
+}
+
+TEST(Nmea, SentencesOfOneTimeAreOneFix) {
+  const Recording r = readAs("ship.nmea",
+                             "$GPGGA,235958,5200.000,N,00500.000,E,1,8,1.0,12.5,M,46.0,M,,\r\n"
+                             "$GPRMC,235958,A,5200.000,N,00500.000,E,10.0,90.0,310526,,\r\n"
+                             "$GPGGA,000002,5200.600,N,00501.200,W,1,8,1.0,13.5,M,46.0,M,,\r\n"
+                             "$GPGSV,1,1,00\r\n$GPRMC,000003,V,,,,,,,010626,,\r\n"
+                             "$GPRMC,000004,A,5230.000,S,00500.000,E,0,0,010626,,*00\r\n");
+  ASSERT_EQ(r.objects.size(), 1u);
+  EXPECT_EQ(r.objects[0].name, "ship");
+  const auto& poses = r.objects[0].poses;
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[0].height_msl_m, 12.5);
+  EXPECT_EQ(poses[1].t_s, 4) << "over midnight";
+  EXPECT_DOUBLE_EQ(poses[1].latitude_deg, 52.01);
+  EXPECT_DOUBLE_EQ(poses[1].longitude_deg, -5.02);
+  EXPECT_EQ(r.epoch_ms, kSix_ms - 6 * 3600 * 1000 - 2000);
+  EXPECT_EQ(r.tally.bad, 1) << "a wrong checksum";
+  EXPECT_EQ(r.tally.ignored.at("fix that is not valid"), 1);
+}
+
+TEST(Stk, FixedPositionsFollowTheInterpolation) {
+  // A circle of 300 m around the north pole's axis would be a straight line without the interpolation.
+  std::string text =
+      "stk.v.4.3\n# a comment\nBEGIN Ephemeris\nNumberOfEphemerisPoints 6\nScenarioEpoch 1 Jun 2026 "
+      "06:00:00.000\n"
+      "InterpolationMethod Lagrange\nInterpolationOrder 5\nCentralBody Earth\nCoordinateSystem Fixed\n"
+      "DistanceUnit Kilometers\nEphemerisTimePos\n";
+  const GeoFrame frame(FrameOrigin{FrameKind::enu, 52, 5, 1000});
+  const auto at = [&](double t_s) {
+    return toEcef(frame.toGeodetic({3000 * std::sin(0.02 * t_s), 3000 * std::cos(0.02 * t_s), 0}));
+  };
+  for (int i = 0; i < 6; ++i) {
+    const Vec3d position = at(20 * i);
+    text += std::to_string(20 * i) + " " + std::to_string(position.x / 1000) + " " +
+            std::to_string(position.y / 1000) + " " + std::to_string(position.z / 1000) + "\n";
+  }
+  const Recording r = readAs("sat.e", text + "END Ephemeris\n");
+  EXPECT_EQ(r.tally.bad, 0) << r.tally.first_bad;
+  EXPECT_EQ(r.tally.torn, "");
+  EXPECT_EQ(r.epoch_ms, kSix_ms);
+  ASSERT_EQ(r.objects.size(), 1u);
+  EXPECT_EQ(r.objects[0].name, "sat");
+  for (double t_s = 0; t_s <= 100; t_s += 3) {
+    const PoseSample pose = poseAt(r.objects[0], t_s);
+    const double height_m = pose.height_msl_m + geoidUndulation_m(pose.latitude_deg, pose.longitude_deg);
+    EXPECT_LT(length(toEcef({pose.latitude_deg, pose.longitude_deg, height_m}) - at(t_s)), 3) << t_s;
+  }
+  EXPECT_THAT(readAs("sat.e", text).tally.torn, HasSubstr("END Ephemeris is missing"));
+}
+
+TEST(Stk, OtherAxesAndBodiesAreRefusedWithAHint) {
+  const auto errorOf = [](const std::string& line) {
+    return test::errorOf([&] { readAs("a.e", "stk.v.4.3\nBEGIN Ephemeris\n" + line + "\n"); },
+                         ErrorCode::bad_input);
+  };
+  EXPECT_THAT(
+      errorOf("CoordinateSystem J2000"),
+      HasSubstr("a.e: line 3: CoordinateSystem J2000: only Fixed is read; export the ephemeris in STK"));
+  EXPECT_THAT(errorOf("CentralBody Moon"), HasSubstr("only Earth is read"));
+  EXPECT_THAT(errorOf("DistanceUnit Furlongs"), HasSubstr("DistanceUnit Furlongs"));
+  EXPECT_THAT(errorOf("ScenarioEpoch yesterday"), HasSubstr("'yesterday' is no time such as 1 Jun 2003"));
+}
+
+TEST(Czml, PositionsAreSampledConstantOrLeftOutWithTheReason) {
+  const Recording r = readAs("a.czml", R"([
+{"id": "document", "version": "1.0", "clock": {"interval": "2026-06-01T06:00:00Z/2026-06-01T06:01:00Z"}},
+{"id": "jet", "name": "Jet 1", "availability": "2026-06-01T06:00:10Z/2026-06-01T06:00:30Z",
+ "position": {"epoch": "2026-06-01T06:00:00Z", "cartographicDegrees": [0, 5, 52, 1000, 60, 5.1, 52.1, 2000]}},
+{"id": "mast", "position": {"cartographicRadians": [0.1, 0.9, 100]}},
+{"id": "sat", "position": {"referenceFrame": "INERTIAL", "cartesian": [1, 2, 3]}},
+{"id": "bad", "position": {"cartographicDegrees": [1, 2, 3, 4, 5]}},
+{"id": "sensor", "agi_conicSensor": {}, "position": {"reference": "jet#position"}}
+])");
+  ASSERT_EQ(r.objects.size(), 2u);
+  EXPECT_EQ(r.objects[0].name, "Jet 1");
+  EXPECT_EQ(r.objects[0].poses.at(1).t_s, 60);
+  EXPECT_NEAR(r.objects[0].poses[0].height_msl_m, 1000 - geoidUndulation_m(52, 5), 1e-9);
+  ASSERT_EQ(r.objects[0].presence.size(), 3u);
+  EXPECT_EQ(r.objects[0].presence[1].t_s, 10);
+  EXPECT_EQ(r.objects[0].presence[2].t_s, 30);
+  EXPECT_NEAR(r.objects[1].poses.at(0).latitude_deg, 0.9 * 57.29577951308232, 1e-9);
+  EXPECT_THAT(r.tally.first_bad, HasSubstr("packet 5: its cartographicDegrees has 5 numbers"));
+  EXPECT_EQ(r.tally.ignored.at("position in the reference frame INERTIAL (only FIXED is read)"), 1);
+  EXPECT_EQ(r.tally.ignored.at("position of another object"), 1);
+}
+
+TEST(Czml, FaultyJsonNamesTheLine) {
+  EXPECT_THAT(test::errorOf([] { readAs("a.czml", "[{\"id\": 1},\n  oops]"); }, ErrorCode::bad_input),
+              HasSubstr("a.czml:2:3: not valid JSON; is the file cut?"));
+  EXPECT_THAT(test::errorOf([] { readAs("a.czml", "[{\"id\": 1e3001}]"); }, ErrorCode::bad_input),
+              HasSubstr("a.czml: number overflow"));
+}
+
+TEST(TrackTable, CommonNamesUnitsAndSeparatorsAreKnown) {
+  const Recording r =
+      readAs("a.csv",
+             "Zeit;time;Lat (deg);lon;altitude_ft;heading;id\nx;2026-06-01T06:00:00Z;52,5;5,25;1000;90;A\n"
+             "x;2026-06-01T06:00:02Z;52,6;5,25;2000;90;A\nx;2026-06-01T06:00:02Z;51;5;0;;B\n");
+  ASSERT_EQ(r.objects.size(), 2u);
+  EXPECT_EQ(r.objects[0].name, "A");
+  EXPECT_EQ(r.objects[0].poses.at(0).latitude_deg, 52.5);
+  EXPECT_NEAR(r.objects[0].poses[1].height_msl_m, 609.6, 1e-9);
+  EXPECT_EQ(r.objects[0].poses[1].heading_deg, 90);
+  EXPECT_TRUE(std::isnan(r.objects[1].poses.at(0).heading_deg));
+  EXPECT_EQ(r.epoch_ms, kSix_ms);
+}
+
+TEST(TrackTable, ColumnsCanBeNamed) {
+  ReadOptions options;
+  options.columns = "time=Uhr,latitude=Breite,longitude=Länge,height=Höhe:ft";
+  const Recording r = readAs("a.csv", "Uhr,Breite,Länge,Höhe\n0,52,5,1000\n1,52,5.1,1000\n", options);
+  EXPECT_NEAR(r.objects.at(0).poses.at(1).height_msl_m, 304.8, 1e-9);
+  EXPECT_FALSE(r.epoch_ms.has_value());
+  const auto errorOf = [](const std::string& columns) {
+    ReadOptions wrong;
+    wrong.columns = columns;
+    return test::errorOf([&] { readAs("a.csv", "Uhr,Breite,Länge,Höhe\n0,52,5,1000\n", wrong); },
+                         ErrorCode::usage);
+  };
+  EXPECT_THAT(errorOf("time=Zeit"), HasSubstr("the table has no column 'Zeit'; it has Uhr, Breite"));
+  EXPECT_THAT(errorOf("clock=Uhr"), HasSubstr("'clock=Uhr' is not ROLE=NAME"));
+  EXPECT_THAT(errorOf("height=Höhe:mile"),
+              HasSubstr("'mile' is no unit; allowed are m, km, ft, deg, rad, s, ms"));
+  EXPECT_THAT(test::errorOf([] { readAs("a.csv", "lat,lon\n1,2\n"); }, ErrorCode::bad_input),
+              HasSubstr("no column for the time; name it (--columns, or 'columns' of a track): time=NAME"));
+}
+
+TEST(Tracks, GapsEndATrackWhereAskedForAndOutliersAreTold) {
+  const std::string text =
+      "t_s,latitude_deg,longitude_deg,height_msl_m\n0,52,5,0\n1,52.0001,5,0\n2,52.9,5,0\n3,52.0003,5,0\n"
+      "100,52.0004,5,0\n";
+  const Recording bridged = readAs("a.csv", text);
+  EXPECT_TRUE(bridged.objects.at(0).presence.empty());
+  EXPECT_THAT(bridged.tally.notes, testing::Contains(HasSubstr("the first: a at 2.000 s")));
+  ReadOptions options;
+  options.gap_s = 60;
+  const Recording ended = readAs("a.csv", text, options);
+  ASSERT_EQ(ended.objects.at(0).presence.size(), 2u);
+  EXPECT_EQ(ended.objects[0].presence[0].t_s, 3);
+  EXPECT_EQ(ended.objects[0].presence[1].t_s, 100);
+}
+
+TEST(MergedRecordings, WithoutACommonEpochSaySo) {
+  const std::string with = "time,lat,lon\n2026-06-01T06:00:10Z,52,5\n2026-06-01T06:00:20Z,52,5.1\n";
+  const std::string later = "time,lat,lon\n2026-06-01T06:00:30Z,52,5\n2026-06-01T06:00:40Z,52,5.1\n";
+  const std::string without = "time,lat,lon\n10,52,5\n20,52,5.1\n";
+  const std::string fixed = "<gpx><wpt lat='52' lon='5'><name>mast</name></wpt></gpx>";
+  const Recording aligned =
+      merged({readAs("b.csv", later), readAs("a.csv", with), readAs("mast.gpx", fixed)});
+  EXPECT_EQ(aligned.epoch_ms, kSix_ms + 10000);
+  EXPECT_EQ(aligned.objects.at(0).poses.at(0).t_s, 20);
+  EXPECT_EQ(aligned.objects.at(2).poses.at(0).t_s, 0);
+  EXPECT_THAT(aligned.tally.notes, testing::Not(testing::Contains(HasSubstr("epoch"))));
+  const Recording loose = merged({readAs("a.csv", with), readAs("c.csv", without)});
+  EXPECT_FALSE(loose.epoch_ms.has_value());
+  EXPECT_THAT(loose.tally.notes,
+              testing::Contains(HasSubstr("c.csv has none: each recording begins at its own t = 0")));
+}
+
+TEST(InterpolatedTrack, PolynomialOfTheDegreeIsExact) {
+  // A parabola in the earth's axes is followed within the metre that is promised.
+  std::vector<EcefSample> samples;
+  const Vec3d begin = toEcef({0, 0, 20000});
+  const auto at = [&](double t_s) { return begin + Vec3d{0, 200 * t_s, 5 * t_s * t_s}; };
+  for (int i = 0; i <= 5; ++i) samples.push_back({20.0 * i, at(20.0 * i)});
+  TrackRecorder recorder("test", {});
+  addInterpolated(recorder, recorder.objectOf("a"), samples, 2, "here");
+  const Recording r = recorder.finish();
+  for (double t_s = 0; t_s <= 100; t_s += 1.7) {
+    const PoseSample pose = poseAt(r.objects.at(0), t_s);
+    const double height_m = pose.height_msl_m + geoidUndulation_m(pose.latitude_deg, pose.longitude_deg);
+    EXPECT_LT(length(toEcef({pose.latitude_deg, pose.longitude_deg, height_m}) - at(t_s)), 1.2) << t_s;
+  }
+}
+
+/// Files of other programs: their first and last positions.
+class PublicTracks : public testing::Test {
+ protected:
+  static std::optional<Recording> read(const std::string& path) {
+    const auto file = test::referenceFile(path);
+    if (!file) return std::nullopt;
+    return readRecording(*file);
+  }
+};
+
+TEST_F(PublicTracks, OneFlightInEachFormat) {
+  int read_files = 0;
+  for (const char* name : {"t.gpx", "opensky.csv", "tacview.csv", "renamed_unix.csv"}) {
+    const auto r = read(std::string("field/tracks/") + name);
+    if (!r) continue;
+    ++read_files;
+    ASSERT_EQ(r->objects.size(), 1u) << name;
+    const auto& poses = r->objects[0].poses;
+    ASSERT_GE(poses.size(), 30u) << name;
+    EXPECT_EQ(poses[1].t_s, 1) << name;
+    EXPECT_NEAR(poses[1].latitude_deg, 52.001, 1e-9) << name;
+    EXPECT_NEAR(poses[1].longitude_deg, 5.001, 1e-9) << name;
+    const bool is_ellipsoid = std::string(name) == "opensky.csv" || std::string(name) == "renamed_unix.csv";
+    const double height_msl_m = 3053.3 - (is_ellipsoid ? geoidUndulation_m(52.001, 5.001) : 0);
+    EXPECT_NEAR(poses[1].height_msl_m, height_msl_m, 1e-6) << name;
+    EXPECT_TRUE(r->epoch_ms.has_value()) << name;
+    EXPECT_EQ(r->tally.bad, 0) << name << ": " << r->tally.first_bad;
+  }
+  if (read_files == 0) GTEST_SKIP() << test::notInRepository("field/tracks");
+}
+
+TEST_F(PublicTracks, CesiumsSimpleCzmlHasTwoPlacesOnTheGround) {
+  const auto r = read("reference/interop/czml/cesium_simple.czml");
+  if (!r) GTEST_SKIP() << test::notInRepository("reference/interop/czml/cesium_simple.czml");
+  ASSERT_EQ(r->objects.size(), 2u);
+  EXPECT_EQ(r->objects[0].name, "Pennsylvania");
+  EXPECT_EQ(r->objects[1].name, "AGI");
+  EXPECT_NEAR(r->objects[1].poses.at(0).latitude_deg, 40.04, 0.01);
+  EXPECT_NEAR(r->objects[1].poses.at(0).longitude_deg, -75.60, 0.01);
+  EXPECT_EQ(r->tally.ignored.at("position in the reference frame INERTIAL (only FIXED is read)"), 3);
+}
+
+}  // namespace
+}  // namespace emscape::interop

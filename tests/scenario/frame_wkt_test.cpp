@@ -1,0 +1,21 @@
+#include <gtest/gtest.h>
+
+#include "emscape/base/geodesy/geo_frame.h"
+#include "tests/scenario/dem_file.h"
+
+namespace emscape {
+namespace {
+
+TEST(FrameWkt, ProjectsAsTheFrame) {
+  for (const FrameKind kind : {FrameKind::altitude, FrameKind::enu}) {
+    SCOPED_TRACE(toString(kind));
+    const FrameOrigin origin{kind, -33.25, 179.9, 750};
+    const auto found = test::projected(wktOf(origin), -33.1, -179.8);
+    const Vec3d expected = GeoFrame(origin).toLocal({-33.1, -179.8, 0});
+    EXPECT_NEAR(found[0], expected.x, 1e-3);
+    EXPECT_NEAR(found[1], expected.y, 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace emscape

@@ -1,0 +1,325 @@
+/// Elevation files as they are downloaded: folders, patterns, archives, HGT of all sizes, other formats,
+/// pictures.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/terrain/terrain.h"
+#include "scenario/terrain/file_names.h"
+#include "tests/scenario/dem_file.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::scenario {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr GeoBox kBox{49.2, 49.8, 10.2, 10.8};
+
+class TerrainNames : public testing::Test {
+ protected:
+  /// A tile of 1 degree at 49 N, 10 E: 1000 in the west, 1000 + posts in the east.
+  std::string tile(const std::string& name, int posts = 121) const {
+    test::writeHgt(folder_ / name, posts, [](int column, int) { return 1000 + column; });
+    return folder_ / name;
+  }
+  std::string raster(const std::string& name) const {
+    test::geographicDem(10, 50, 0.1, 10, 10, [](double, double longitude_deg) {
+      return 100 * longitude_deg;
+    }).write(folder_ / name);
+    return folder_ / name;
+  }
+  static TerrainPtr load(const std::vector<std::string>& files, const TerrainFileKeys& keys = {},
+                         const GeoBox& box = kBox) {
+    TerrainSpec spec;
+    spec.files = files;
+    spec.keys.assign(files.size(), keys);
+    return Terrain::load(spec, box);
+  }
+  static std::string problemOf(const std::string& file, const TerrainFileKeys& keys = {}) {
+    return test::errorOf([&] { load({file}, keys); }, ErrorCode::bad_input);
+  }
+  void expectTile(const std::string& name, int posts) const {
+    const TerrainPtr terrain = load({name});
+    EXPECT_NEAR(terrain->heightMsl_m(49.5, 10.25), 1000 + 0.25 * (posts - 1), 0.01) << name;
+    EXPECT_NEAR(terrain->postSpacing_m(), 111200.0 * std::cos(49.5 / 57.2958) / (posts - 1), 1500.0 / posts)
+        << name;
+    EXPECT_THAT(terrain->warnings(), IsEmpty()) << name;
+  }
+  /// Runs a command line of a message. False: the program is not installed.
+  bool run(const std::string& command) const {
+    if (std::system("command -v gdal_translate > /dev/null") != 0) return false;
+    EXPECT_EQ(std::system(("cd " + folder_.path().string() + " && " + command + " > log 2>&1").c_str()), 0)
+        << command;
+    return true;
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(TerrainNames, HgtOfAnySquareSizeIsPlacedByItsName) {
+  for (const int posts : {121, 1201, 1801}) {
+    for (const char* name :
+         {"N49E010.hgt", "n49_e010_1arc_v3.hgt", "copy of N49E010 (1).hgt", "N49E010.SRTMGL1.hgt"})
+      expectTile(tile(name, posts), posts);
+  }
+}
+
+TEST_F(TerrainNames, SLOW_HgtOfHalfAndThirdOfASecondIsRead) {
+  for (const int posts : {7201, 10801}) expectTile(tile("N49E010.hgt", posts), posts);
+}
+
+TEST_F(TerrainNames, HgtWithoutAPositionIsReadAfterItIsRenamed) {
+  EXPECT_THAT(problemOf(tile("elevation.hgt")), HasSubstr("Rename it to that of its south-western corner"));
+  fs::rename(folder_ / "elevation.hgt", folder_ / "N49E010.hgt");
+  expectTile(folder_ / "N49E010.hgt", 121);
+  std::ofstream(folder_ / "N49E010.hgt") << "abc";
+  EXPECT_THAT(problemOf(folder_ / "N49E010.hgt"), HasSubstr("has 3 bytes, which is no square of posts"));
+}
+
+TEST_F(TerrainNames, FolderStandsForItsFilesWithoutMasks) {
+  const std::string a = tile("N49E010.hgt"), b = raster("b.tif");
+  raster("N49E010_num.tif");
+  std::ofstream(folder_ / "readme.txt") << "text";
+  EXPECT_THAT(elevationFilesOf(folder_.path().string()), ElementsAre(a, b));
+  EXPECT_EQ(load({folder_.path().string()})->uncoveredFraction(), 0);
+  fs::create_directory(folder_ / "empty");
+  EXPECT_THAT(problemOf(folder_ / "empty"), HasSubstr("empty has none (by their endings: .tif"));
+}
+
+TEST_F(TerrainNames, PatternStandsForTheFilesThatMatch) {
+  const std::string a = tile("N49E010.hgt"), b = tile("N49E011.hgt");
+  EXPECT_THAT(elevationFilesOf(folder_ / "N*.hgt"), ElementsAre(a, b));
+  EXPECT_THAT(elevationFilesOf(folder_ / "N49E01?.hgt"), ElementsAre(a, b));
+  EXPECT_THAT(problemOf(folder_ / "*.dt1"), HasSubstr("no file matches the pattern"));
+  std::ofstream(folder_ / "odd*name.tif") << "";
+  EXPECT_THAT(elevationFilesOf(folder_ / "odd*name.tif"), ElementsAre(folder_ / "odd*name.tif"));
+}
+
+TEST_F(TerrainNames, ArchivesAreReadWithoutUnpackingThemOnTheDisk) {
+  tile("N49E010.hgt");
+  test::writeZip(folder_ / "N49E010.SRTMGL1.hgt.zip", {{"N49E010.hgt", folder_ / "N49E010.hgt"}});
+  test::writeGzip(folder_ / "N49E010.hgt", folder_ / "N49E010.hgt.gz");
+  test::writeZip(folder_ / "two.zip", {{"a/N49E010.hgt", folder_ / "N49E010.hgt"},
+                                       {"a/N49E010.num", folder_ / "N49E010.hgt"},
+                                       {"a/N49E011.hgt", folder_ / "N49E010.hgt"}});
+  fs::remove(folder_ / "N49E010.hgt");
+  for (const char* name : {"N49E010.SRTMGL1.hgt.zip", "N49E010.hgt.gz", "two.zip"})
+    expectTile(folder_ / name, 121);
+  EXPECT_EQ(load({folder_ / "two.zip"}, {}, {49.2, 49.8, 11.2, 11.8})->uncoveredFraction(), 0);
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(folder_.path())) files += entry.exists() ? 1 : 0;
+  EXPECT_EQ(files, 3) << "nothing is written beside them";
+}
+
+TEST_F(TerrainNames, ArchiveOfABilHasItsHeader) {
+  test::convertDem(raster("a.tif"), "EHdr", folder_ / "a.bil");
+  test::writeZip(
+      folder_ / "a.zip",
+      {{"x/a.bil", folder_ / "a.bil"}, {"x/a.hdr", folder_ / "a.hdr"}, {"x/a.prj", folder_ / "a.prj"}});
+  EXPECT_NEAR(load({folder_ / "a.zip"})->heightMsl_m(49.5, 10.5), 1050, 1e-3);
+}
+
+TEST_F(TerrainNames, BrokenArchivesAreNamed) {
+  std::ofstream(folder_ / "a.zip") << "not a zip";
+  EXPECT_THAT(problemOf(folder_ / "a.zip"), HasSubstr("a.zip: cannot be read as a ZIP archive"));
+  std::ofstream(folder_ / "a.tif.gz") << "not a gz";
+  EXPECT_THAT(problemOf(folder_ / "a.tif.gz"), HasSubstr("a.tif.gz"));
+  std::ofstream(folder_ / "notes.txt") << "text";
+  test::writeZip(folder_ / "notes.zip", {{"notes.txt", folder_ / "notes.txt"}});
+  EXPECT_THAT(problemOf(folder_ / "notes.zip"), HasSubstr("none of its 1 members is an elevation file"));
+  std::ofstream(folder_ / "a.tar.gz") << "";
+  EXPECT_THAT(problemOf(folder_ / "a.tar.gz"), HasSubstr("unpack it (tar xf)"));
+}
+
+TEST_F(TerrainNames, OtherFormatsAreRead) {
+  const std::string from = raster("a.tif");
+  for (const auto& [driver, ending] :
+       {std::pair{"HFA", "img"}, {"netCDF", "nc"}, {"GPKG", "gpkg"}, {"EHdr", "bil"}, {"AAIGrid", "asc"}}) {
+    const std::string file = folder_ / ("b." + std::string(ending));
+    test::convertDem(from, driver, file);
+    EXPECT_NEAR(load({file})->heightMsl_m(49.5, 10.5), 1050, 1e-3) << driver;
+    EXPECT_TRUE(isElevationName(file));
+  }
+}
+
+TEST_F(TerrainNames, KeyOfTheSystemIsTheRemedyForFilesWithoutOne) {
+  const std::string from = raster("a.tif");
+  TerrainFileKeys keys;
+  keys.crs = "EPSG:4326";
+  for (const auto& [driver, ending] : {std::pair{"XYZ", "xyz"}, {"AAIGrid", "asc"}}) {
+    const std::string file = folder_ / ("c." + std::string(ending));
+    test::convertDem(from, driver, file);
+    fs::remove(folder_ / "c.prj");
+    fs::remove(file + ".aux.xml");
+    EXPECT_THAT(problemOf(file), HasSubstr("`crs: EPSG:4326` of the file in the scenario states")) << driver;
+    EXPECT_NEAR(load({file}, keys)->heightMsl_m(49.5, 10.5), 1050, 1e-3) << driver;
+  }
+  keys.crs = "EPSG:32632";
+  EXPECT_THAT(problemOf(from, keys),
+              HasSubstr("'crs: EPSG:32632' of the scenario contradicts the file, which states"));
+  keys.crs = "http://127.0.0.1:1/x.prj";
+  EXPECT_THAT(problemOf(from, keys), HasSubstr("is not EPSG: and the number"));
+}
+
+TEST_F(TerrainNames, OtherFormatsNameThemselvesAndTheCommandThatWorks) {
+  test::convertDem(raster("a.tif"), "RST", folder_ / "a.rst");
+  EXPECT_THAT(problemOf(folder_ / "a.rst"),
+              AllOf(HasSubstr("RST (Idrisi Raster"),
+                    HasSubstr("gdal_translate " + folder_ / "a.rst" + " HEIGHTS.tif")));
+  if (!run("gdal_translate a.rst HEIGHTS.tif")) GTEST_SKIP() << "gdal_translate is not installed";
+  EXPECT_NEAR(load({folder_ / "HEIGHTS.tif"})->heightMsl_m(49.5, 10.5), 1050, 1e-3);
+}
+
+TEST_F(TerrainNames, CommandsOfMessagesMakeFilesThatAreRead) {
+  if (!run("true")) GTEST_SKIP() << "gdal_translate is not installed";
+  test::DemFile file = test::geographicDem(10, 50, 0.1, 10, 10, [](double, double) { return 100; });
+  const auto write = [&](const std::string& name) {
+    file.write(folder_ / name);
+    return folder_ / name;
+  };
+  const auto heightOf = [](const std::string& name, const TerrainFileKeys& keys = {}) {
+    return load({name}, keys)->heightMsl_m(49.5, 10.5);
+  };
+  TerrainFileKeys egm96;
+  egm96.vertical_datum = VerticalDatum::egm96;
+
+  file.crs = "EPSG:4979";
+  EXPECT_THAT(problemOf(write("datum.tif"), egm96),
+              AllOf(HasSubstr("gdal_translate -a_srs"), HasSubstr("EPSG:4326+5773")));
+  run("gdal_translate -a_srs EPSG:4326+5773 datum.tif datum2.tif");
+  EXPECT_EQ(heightOf(folder_ / "datum2.tif", egm96), 100);
+
+  file.crs = "EPSG:4326+5715";
+  EXPECT_THAT(problemOf(write("depth.tif")), HasSubstr("gdal_translate -a_scale -1 -a_srs EPSG:4326+5714"));
+  run("gdal_translate -a_scale -1 -a_srs EPSG:4326+5714 depth.tif height.tif");
+  EXPECT_EQ(heightOf(folder_ / "height.tif"), -100);
+
+  file.crs = "EPSG:4326";
+  file.unit = "fathom";
+  TerrainFileKeys metres;
+  metres.height_unit = HeightUnit::m;
+  EXPECT_THAT(problemOf(write("unit.tif")), HasSubstr("`height_unit: m`"));
+  EXPECT_EQ(heightOf(folder_ / "unit.tif", metres), 100);
+  file.unit = "ft";
+  EXPECT_THAT(problemOf(write("feet.tif"), metres), HasSubstr("gdal_translate -of VRT"));
+  run("gdal_translate -of VRT feet.tif feet.vrt && sed -i s/ft/m/ feet.vrt");
+  EXPECT_EQ(heightOf(folder_ / "feet.vrt", metres), 100);
+
+  file.unit = "";
+  file.crs = "";
+  file.transform = {};
+  EXPECT_THAT(
+      problemOf(write("bare.tif")),
+      HasSubstr("gdal_translate -a_srs EPSG:4326 -a_ullr WEST NORTH EAST SOUTH " + folder_ / "bare.tif"));
+  run("gdal_translate -a_srs EPSG:4326 -a_ullr 10 50 11 49 bare.tif placed.tif");
+  EXPECT_EQ(heightOf(folder_ / "placed.tif"), 100);
+}
+
+TEST_F(TerrainNames, FileOfSeveralRastersNamesThemAndTheCommand) {
+  if (!run("true")) GTEST_SKIP() << "gdal_translate is not installed";
+  test::geographicDem(10, 50, 0.1, 10, 10, [](double, double) { return 100; }).write(folder_ / "a.tif");
+  if (!run("gdal_translate -of GPKG -co RASTER_TABLE=one a.tif two.gpkg && gdal_translate -of GPKG -co "
+           "APPEND_SUBDATASET=YES -co RASTER_TABLE=two a.tif two.gpkg"))
+    return;
+  const std::string message = problemOf(folder_ / "two.gpkg");
+  EXPECT_THAT(message,
+              AllOf(HasSubstr("has no raster itself, but 2 in it: one, two."), HasSubstr("gdal_translate ")));
+  const std::size_t begin = message.find("gdal_translate "), end = message.find(" makes a file");
+  run(message.substr(begin, end - begin));
+  EXPECT_EQ(load({folder_ / "HEIGHTS.tif"})->heightMsl_m(49.5, 10.5), 100);
+}
+
+TEST_F(TerrainNames, BandIsChosen) {
+  test::DemFile file = test::geographicDem(10, 50, 0.1, 10, 10, [](double, double) { return 100; });
+  file.bands = 2;
+  file.write(folder_ / "a.tif");
+  TerrainFileKeys keys;
+  keys.band = 2;
+  EXPECT_EQ(load({folder_ / "a.tif"}, keys)->heightMsl_m(49.5, 10.5), 12345);
+  keys.band = 3;
+  EXPECT_THAT(problemOf(folder_ / "a.tif", keys),
+              HasSubstr("'band: 3' of the scenario is outside the allowed range 1 to 2"));
+}
+
+TEST_F(TerrainNames, ColoursAreDecodedWhenAsked) {
+  for (const HeightEncoding encoding : {HeightEncoding::terrain_rgb, HeightEncoding::terrarium}) {
+    const std::string file = folder_ / "12.tif";
+    test::writeColours(file, [&](int column, int) {
+      const double height_m = 1500 + column;
+      return encoding == HeightEncoding::terrarium ? std::lround((height_m + 32768) * 256)
+                                                   : std::lround((height_m + 10000) * 10);
+    });
+    EXPECT_THAT(problemOf(file),
+                AllOf(HasSubstr("is a picture, not heights"), HasSubstr("`encoding: terrain-rgb`")));
+    TerrainFileKeys keys;
+    keys.encoding = encoding;
+    EXPECT_NEAR(load({file}, keys)->heightMsl_m(49.55, 10.45), 1504, 0.01);
+  }
+  TerrainFileKeys keys;
+  keys.encoding = HeightEncoding::terrarium;
+  EXPECT_THAT(problemOf(raster("a.tif"), keys), HasSubstr("needs red, green and blue as bands of bytes"));
+}
+
+TEST_F(TerrainNames, TileOfAWebMapIsPlacedByItsPath) {
+  fs::create_directories(folder_ / "8/135");
+  test::writeColours(folder_ / "a.tif", [](int, int) { return std::lround((700.0 + 32768) * 256); });
+  test::convertDem(folder_ / "a.tif", "PNG", folder_ / "8/135/87.png");
+  fs::remove(folder_ / "8/135/87.png.aux.xml");
+  EXPECT_THAT(problemOf(folder_ / "8/135/87.png"), HasSubstr("`encoding: terrain-rgb` (or terrarium)"));
+  TerrainFileKeys keys;
+  keys.encoding = HeightEncoding::terrarium;
+  const TerrainPtr terrain = load({folder_ / "8/135/87.png"}, keys);
+  EXPECT_NEAR(terrain->heightMsl_m(49.5, 10.5), 700, 1e-3);
+  EXPECT_EQ(terrain->uncoveredFraction(), 0);
+}
+
+TEST_F(TerrainNames, TilesOutsideTheBoxAreNotOpened) {
+  tile("N49E010.hgt");
+  std::ofstream(folder_ / "N20E100.hgt") << "broken";
+  EXPECT_EQ(load({folder_ / "*.hgt"})->uncoveredFraction(), 0);
+}
+
+TEST_F(TerrainNames, MissingGroundIsSeaIfTheSpecSaysSo) {
+  test::writeHgt(folder_ / "N49E010.hgt", 121, [](int column, int) { return column < 60 ? 50 : -32768; });
+  TerrainSpec spec;
+  spec.files = {folder_ / "N49E010.hgt"};
+  const GeoBox box{49, 50, 9.5, 11};
+  const TerrainPtr masked = Terrain::load(spec, box);
+  EXPECT_TRUE(std::isnan(masked->heightMsl_m(49.5, 10.9)));
+  EXPECT_THAT(masked->warnings(), IsEmpty());
+  spec.missing = MissingTerrain::sea;
+  const TerrainPtr sea = Terrain::load(spec, box);
+  EXPECT_EQ(sea->heightMsl_m(49.5, 10.25), 50);
+  EXPECT_EQ(sea->heightMsl_m(49.5, 10.9), 0) << "a void";
+  EXPECT_EQ(sea->heightMsl_m(49.5, 9.6), 0) << "no file";
+  EXPECT_EQ(sea->lowest_m(), 0);
+  EXPECT_THAT(sea->warnings(), ElementsAre(HasSubstr("void posts and 33.")));
+}
+
+TEST_F(TerrainNames, AnotherSignIsOfferedIfItFits) {
+  tile("N49W010.hgt");
+  const TerrainPtr terrain = load({folder_ / "N49W010.hgt"}, {}, {49.2, 49.8, 9.2, 9.8});
+  EXPECT_THAT(terrain->placeText(),
+              AllOf(HasSubstr("cover latitudes 49 to 50, longitudes -10 to -9 deg"),
+                    HasSubstr("longitudes 9.2 to 9.8"),
+                    HasSubstr("latitude 49.5, longitude -9.5 deg: perhaps longitude has the other sign")));
+  EXPECT_THAT(load({folder_ / "N49W010.hgt"}, {}, {9.2, 9.8, 49.2, 49.8})->placeText(),
+              testing::Not(HasSubstr("perhaps")));
+}
+
+}  // namespace
+}  // namespace emscape::scenario
