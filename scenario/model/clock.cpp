@@ -128,8 +128,8 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
 }
 
 double parseTime(const std::string& text, const Clock& clock) {
-  if (const std::optional<double> time_s =
-          emscape::parseTime_s(text)) {  // also M:SS, which parseTimes() splits
+  // M:SS would be BEGIN:END in parseTimes().
+  if (const std::optional<double> time_s = emscape::parseTime_s(text)) {
     requireTime(clock, *time_s);
     return *time_s;
   }
