@@ -66,7 +66,8 @@ void show(ViewOptions options) {
       !scenario::parseScenario(options.view.input, options.view.edits).scenario) {
     scenario::loadScenario(options.view.input, options.view.edits);
   }
-  App(std::move(options), messages).run();
+  App app(std::move(options), messages);  // a copy would keep the stream open after another input
+  app.run();
 }
 
 }  // namespace
