@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "apps/view/parts/opening.h"
 #include "apps/view/session/session.h"
@@ -37,7 +38,7 @@ class SessionOpener {
   std::shared_ptr<Files> files_;
   const Make make_;
   AsyncTasks<Opening> task_;
-  Opening opening_;
+  std::optional<Opening> opening_;  // whenever there is a next session
   std::optional<std::vector<std::string>>
       messages_before_;  // of the input that stays if the next one cannot be opened
   std::unique_ptr<Session> next_;
