@@ -50,7 +50,7 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
   files_->opening.progress = next_->status().progress;
   next_->setPictureSize(session->pictureSize());
   next_->update();
-  const bool is_other_input = session->view().input != opening_->options.view.input;
+  const bool is_other_input = session->view().input != opening_.options.view.input;
   if (next_->hasField() || (next_->picture() && is_other_input)) {
     replace(session);
     return true;
@@ -65,12 +65,12 @@ void SessionOpener::take(Session& session) {
   try {
     opening_ = task_.take();
     if (files_->request || !files_->is_opening) return;  // there is a newer request, or it was cancelled
-    if (!opening_->colors.empty()) {
+    if (!opening_.colors.empty()) {
       giveUp();
-      session.perform({"transfer", {{"file", opening_->colors}}});
+      session.perform({"transfer", {{"file", opening_.colors}}});
       return;
     }
-    next_ = make_(opening_->options);
+    next_ = make_(opening_.options);
   } catch (const std::exception& error) {
     if (!files_->is_opening) return;  // cancelled
     session.tell(failureText(error), true);
@@ -80,17 +80,17 @@ void SessionOpener::take(Session& session) {
 
 void SessionOpener::replace(std::unique_ptr<Session>& session) {
   const bool takes_edits_along =
-      opening_->options.unsaved_edits && session->view().input == opening_->options.view.input;
+      opening_.options.unsaved_edits && session->view().input == opening_.options.view.input;
   session->leave(!takes_edits_along);
   const std::string fault = endStream(*session, next_->options());
   endBeside(std::move(session));
   session = std::move(next_);
   messages_before_.reset();
   files_->is_opening = files_->request.has_value();
-  session->shown(opening_->left_out);
-  if (!opening_->note.empty()) session->tell(opening_->note);
+  session->shown(opening_.left_out);
+  if (!opening_.note.empty()) session->tell(opening_.note);
   if (!fault.empty()) session->tell(fault, true);
-  opening_.reset();
+  opening_ = {};
 }
 
 void SessionOpener::cancel(Session& session) {

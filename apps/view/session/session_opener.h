@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 
 #include "apps/view/parts/opening.h"
 #include "apps/view/session/session.h"
@@ -38,7 +37,7 @@ class SessionOpener {
   std::shared_ptr<Files> files_;
   const Make make_;
   AsyncTasks<Opening> task_;
-  std::optional<Opening> opening_;  // whenever there is a next session
+  Opening opening_;
   std::optional<std::vector<std::string>>
       messages_before_;  // of the input that stays if the next one cannot be opened
   std::unique_ptr<Session> next_;
