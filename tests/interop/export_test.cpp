@@ -179,7 +179,7 @@ TEST(Export, CzmlOfATurnHasFewDigitsAndIsWithinAMetre) {
 }
 
 TEST(Export, PlatformIsInTheRecordingOnlyDuringItsTrack) {
-  scenario::Scenario late = *scenario::loadScenario(test::shippedScenario("jamming.yaml"));
+  scenario::Scenario late = *scenario::loadScenario(emscape::test::shippedScenario("jamming.yaml"));
   const std::string platform = "helicopter";
   late.set("platforms." + platform + ".track",
            "{points: [{t_s: 20, latitude_deg: 36.3, longitude_deg: -84.2, height_msl_m: 2000}, {t_s: 40, "

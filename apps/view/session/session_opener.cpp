@@ -90,7 +90,8 @@ void SessionOpener::replace(std::unique_ptr<Session>& session) {
   session->shown(opening_.left_out);
   if (!opening_.note.empty()) session->tell(opening_.note);
   if (!fault.empty()) session->tell(fault, true);
-  opening_ = {};
+  Opening none;
+  std::swap(opening_, none);
 }
 
 void SessionOpener::cancel(Session& session) {
