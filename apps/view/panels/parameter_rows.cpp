@@ -37,7 +37,8 @@ std::string numberText(double value) {
 }
 
 std::string rangeOf(const Parameter& parameter) {
-  return rangeText(parameter.minimum, parameter.maximum, unitSigns(parameter.unit));
+  return (parameter.minimum_excluded ? "above " : "") +
+         rangeText(parameter.minimum, parameter.maximum, unitSigns(parameter.unit));
 }
 
 /// What was expected of a text: " in one of the units W, kW, dBm"; empty without a unit.
@@ -362,7 +363,9 @@ void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
     state_.refused = {path, text, why, context_.session.scenario()};
   };
   const bool is_word = !number && text.find_first_of("0123456789") == std::string::npos;
-  if (number && !(*number >= parameter.minimum && *number <= parameter.maximum)) {
+  const bool is_above =
+      number && (parameter.minimum_excluded ? *number > parameter.minimum : *number >= parameter.minimum);
+  if (number && !(is_above && *number <= parameter.maximum)) {
     return refuse(fmt::format("{}: {} is not allowed; {}", parameter.name, text, rangeOf(parameter)));
   }
   if (number && parameter.type == Type::integer && *number != std::round(*number)) {
