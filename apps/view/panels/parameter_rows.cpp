@@ -180,7 +180,8 @@ bool ParameterRows::drawSubheading(const std::string& id, const std::string& nam
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  list.PushClipRect({at.x, at.y}, {right, at.y + ImGui::GetTextLineHeight()});  // over both columns
+  const ImRect& inside = ImGui::GetCurrentWindow()->InnerClipRect;
+  list.PushClipRect({at.x, inside.Min.y}, {right, inside.Max.y});  // over both columns
   ImGui::PushStyleColor(ImGuiCol_Text, accentColor(context_.session.theme()));
   drawName(list, name, at, right);
   ImGui::PopStyleColor();
