@@ -4,6 +4,8 @@
 #include <mutex>
 #include <system_error>
 
+#include "base/geodesy/netcdf_header.h"
+
 namespace emscape::gdal {
 namespace fs = std::filesystem;
 
@@ -47,6 +49,10 @@ Dataset openFile(const fs::path& file, unsigned flags, const char* const* driver
   prepare();
   if (const std::string fault = faultOfName(file); !fault.empty()) {
     CPLError(CE_Failure, CPLE_OpenFailed, "%s", fault.c_str());
+    return nullptr;
+  }
+  if (const std::string fault = netcdfHeaderFault(file); !fault.empty()) {
+    CPLError(CE_Failure, CPLE_OpenFailed, "damaged netCDF file: %s", fault.c_str());
     return nullptr;
   }
   silenceHdf5();

@@ -82,7 +82,7 @@ void findPixels(std::vector<SceneObject>& objects, const playback::LivePicture& 
   const std::vector<std::optional<render::MarkerPlace>> places =
       render::markerPlaces(picture.size, picture.camera, picture.box, picture.annotations);
   // The first markers are those of the emitters, in their order.
-  const std::size_t emitters = picture.scenario->emitters.size();
+  const std::size_t emitters = picture.scenario ? picture.scenario->emitters.size() : 0;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     SceneObject& object = objects[i];
     object.has_symbol = i < emitters && i < places.size() && places[i];
