@@ -20,6 +20,7 @@
 #include "scenario/terrain/file_remedies.h"
 #include "scenario/terrain/gdal_messages.h"
 #include "scenario/terrain/georeference.h"
+#include "scenario/terrain/netcdf_header.h"
 #include "scenario/terrain/raster_access.h"
 #include "scenario/terrain/vrt.h"
 
@@ -169,6 +170,7 @@ gdal::Dataset TerrainFile::Impl::open() const {
     unpack();
     dataset = openElevationInMemory(unpacked_name, unpacked->siblings(), is_picture);
   } else {
+    if (const std::string fault = faultOfNetcdfHeader(name); !fault.empty()) fail(fault);
     dataset = openElevation(name, is_picture);
   }
   if (!dataset) fail(messages.explain(faultOfUnreadable(source, is_picture)));

@@ -9,10 +9,12 @@
 #include <cstring>
 #include <filesystem>
 #include <set>
+#include <sstream>
 
 #include "base/geodesy/gdal_file.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/gdal_messages.h"
+#include "scenario/terrain/netcdf_header.h"
 
 namespace emscape::scenario {
 namespace {
@@ -268,7 +270,13 @@ std::string MemoryFiles::unpack(const ElevationSource& source) {
         add(path.filename().string(), unpackedContent({source.file, other}));
     }
   }
-  return add(member.filename().string(), unpackedContent(source));
+  std::string content = unpackedContent(source);
+  if (content.rfind("CDF", 0) == 0) {
+    std::istringstream stream(content);
+    if (const std::string fault = faultOfNetcdfHeader(stream, content.size()); !fault.empty())
+      throw Error(ErrorCode::bad_input, fault);
+  }
+  return add(member.filename().string(), std::move(content));
 }
 
 std::vector<const char*> MemoryFiles::siblings() const {

@@ -91,7 +91,7 @@ TEST(CoverageSummary, SharesOfMinimumHeightsAreOfTheKnownPixels) {
   ASSERT_EQ(sentences.size(), 3u);
   EXPECT_THAT(sentences[1],
               HasSubstr("On 25.0 % of the area (20 km²) a target is detected from some height on"));
-  EXPECT_THAT(sentences[2], HasSubstr("known answer, 80.0 % of the area"));
+  EXPECT_THAT(sentences[2], HasSubstr("known answer, 80.0 of 100.0 km², 80.0 % of the area"));
 }
 
 TEST(CoverageSummary, MapsWithoutAreasHaveNone) {
