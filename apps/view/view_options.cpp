@@ -53,7 +53,8 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
   typed.given.addTo(app, "--size");
   typed.stream.addTo(app, "", "--emitter-database");
   app.add_option("--size", typed.size,
-                 "Window size in pixels, WxH; default: 1200x900 times the scale, with --state as large as its picture needs");
+                 "Window size in pixels, WxH; default: 1200x900 times the scale, with --state as large as "
+                 "its picture needs");
   app.add_option("--scale", options.scale, "Size of texts and controls; default: that of the screen")
       ->check(CLI::Range(0.5, 4.0))
       ->default_str("");

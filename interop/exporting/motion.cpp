@@ -75,7 +75,11 @@ std::vector<double> timesOfPositions(const scenario::Scenario& scenario, const s
   for (const scenario::TrackPoint& point : platform.track) {
     if (point.t_s > begin_s && point.t_s < end_s) times.push_back(point.t_s);
   }
-  return filled(std::move(times), step_s);
+  times = filled(std::move(times), step_s);
+  times.erase(
+      std::remove_if(times.begin(), times.end(), [&](double t_s) { return !platform.isPresentAt(t_s); }),
+      times.end());  // in gaps of the track
+  return times;
 }
 
 PoseSample poseOf(const scenario::Platform& platform, const scenario::Terrain* terrain, double t_s) {

@@ -220,10 +220,12 @@ std::optional<PickedPoint> pick(const render::Camera& camera, const render::Scen
 
 Vec3d aboveGround(const Vec3d& ground_m, double height_agl_m, const DenseVolume& volume,
                   const scenario::Terrain* terrain) {
-  if (!volume.grid.georeferenced || terrain == nullptr) return ground_m;
+  if (!volume.grid.georeferenced) return ground_m;
   const GeoFrame frame(volume.grid.frame);
   const GeodeticPosition below = frame.toGeodetic(ground_m);
-  const double ground_msl_m = terrain->heightMsl_m(below.latitude_deg, below.longitude_deg);
+  // Without terrain the smooth earth is drawn.
+  const double ground_msl_m =
+      terrain != nullptr ? terrain->heightMsl_m(below.latitude_deg, below.longitude_deg) : 0;
   if (std::isnan(ground_msl_m)) return ground_m;
   Vec3d position_m = ground_m;
   position_m.z += ground_msl_m + height_agl_m - frame.heightMsl_m(ground_m);

@@ -54,8 +54,8 @@ std::optional<Vec3d> pickLevel(const render::Camera& camera, const render::Scene
 /// The position of a receiver above a point of the ground. The drawn ground differs from the terrain by some
 /// metres.
 /// @param ground_m      frame metres; of PickedPoint::On::ground
-/// @param height_agl_m  above the terrain; more if the voxel at that height is masked
-/// @return `ground_m` if the terrain is not known
+/// @param height_agl_m  above the terrain, or above mean sea level without; more if the voxel there is masked
+/// @return `ground_m` over missing terrain
 Vec3d aboveGround(const Vec3d& ground_m, double height_agl_m, const volume::DenseVolume& volume,
                   const scenario::Terrain* terrain);
 

@@ -157,6 +157,7 @@ class GroupBuilder {
     result.description = row.description;
     result.type = typeOf(row.value);
     result.minimum = row.value.minimum;
+    result.minimum_excluded = row.value.minimum_excluded;
     result.maximum = row.value.maximum;
     result.choices = row.value.type == ValueType::list ? row.value.item->choices : row.value.choices;
     result.required = row.required;

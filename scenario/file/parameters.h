@@ -18,6 +18,7 @@ struct Parameter {
   std::string description;
   Type type = Type::text;
   double minimum = 0, maximum = 0;   ///< number, integer
+  bool minimum_excluded = false;     ///< values are above the minimum
   std::vector<std::string> choices;  ///< choice; list: the allowed items, empty: any
   std::vector<std::string> titles;   ///< of the choices, for people
   bool required = false;             ///< else null removes it

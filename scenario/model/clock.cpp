@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/text/quantity_text.h"
+#include "base/text/time_text.h"
 #include "base/text/utc.h"
 #include "emscape/base/error.h"
 
@@ -127,6 +128,11 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
 }
 
 double parseTime(const std::string& text, const Clock& clock) {
+  // M:SS would be BEGIN:END in parseTimes().
+  if (const std::optional<double> time_s = emscape::parseTime_s(text)) {
+    requireTime(clock, *time_s);
+    return *time_s;
+  }
   const std::vector<double> times_s = parseTimes(text, clock);
   if (times_s.size() == 1) return times_s.front();
   throw Error(ErrorCode::usage, fmt::format("time '{}': a single time is expected", text));

@@ -76,9 +76,11 @@ SitePosition positionOnLeg(const SitePosition& a, const SitePosition& b, double 
 
 /// "its track runs from 100 to 130 s ('track: {outside: hold}' keeps it at the track's ends)"
 std::string spanText(const Platform& platform) {
+  const bool has_gap = std::any_of(platform.track.begin(), platform.track.end(),
+                                   [](const TrackPoint& point) { return point.gap_after; });
   return fmt::format(
-      "its track runs from {:g} to {:g} s ('track: {{outside: hold}}' keeps it at the track's ends)",
-      platform.track.front().t_s, platform.track.back().t_s);
+      "its track runs from {:g} to {:g} s{} ('track: {{outside: hold}}' keeps it at the track's ends)",
+      platform.track.front().t_s, platform.track.back().t_s, has_gap ? ", with gaps" : "");
 }
 
 }  // namespace

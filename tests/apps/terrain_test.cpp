@@ -51,99 +51,102 @@ receivers:
          {Arguments{"simulate", file, "-o", folder_ / "out", "--force"},
           Arguments{"coverage", file, "-o", folder_ / "maps", "--heights", "msl:1500", "--cell", "500",
                     "--quantity", "power_density_dbwm2", "--threshold", "-60"},
-          Arguments{"exposure", file, "--platform", "ship", "--quantity", "power_density_dbwm2", "--threshold", "-60",
-                    "-o", folder_ / "e.csv"}, Arguments{"link", file},
-          Arguments{"profile", file, "--emitter", "tx", "--to", "36.3,-84.06,1100"}) {
-        const ProgramResult result = run(arguments);
-        if (result.status != 0) EXPECT_THAT(result.err, HasSubstr("missing: sea")) << arguments.front();
-        all.push_back(result.status);
-        last_[arguments.front()] = result;
+          Arguments{"exposure", file, "--platform", "ship", "--quantity", "power_density_dbwm2",
+                    "--threshold", "-60", "-o", folder_ / "e.csv"},
+          Arguments{"link", file},
+          Arguments{"profile", file, "--emitter", "tx", "--to", "36.3,-84.06,1100"}}) {
+      const ProgramResult result = run(arguments);
+      if (result.status != 0) {
+        EXPECT_THAT(result.err, HasSubstr("missing: sea")) << arguments.front();
       }
-      return all;
+      all.push_back(result.status);
+      last_[arguments.front()] = result;
+    }
+    return all;
   }
 
   TemporaryFolder folder_;
   std::map<std::string, ProgramResult> last_;
+};
+
+TEST_F(TerrainProgram, DescribesAndDrawsFilesAndScenarios) {
+  const std::string tile = sourceFile("scenarios/data/jacksboro.tif");
+  const ProgramResult result = run({"terrain", tile, "--json", "-o", folder_ / "a.png"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(readFile(folder_ / "a.png").substr(1, 3), "PNG");
+  const json report = json::parse(result.out);
+  const json& file = report.at("files").at(0);
+  for (const char* key : {"file", "format", "columns", "rows", "post_spacing_lat_deg", "spacing_m", "crs",
+                          "box", "used", "height_unit", "lowest_m", "highest_m", "notes"})
+    EXPECT_TRUE(file.contains(key)) << key;
+  EXPECT_EQ(file.at("vertical_datum"), "EGM96 (assumed)");
+  EXPECT_EQ(file.at("void_posts"), 0);
+  EXPECT_THAT(file.at("warnings").at(0),
+              HasSubstr("if they are above the ellipsoid, the ground is 30.9 m too low"));
+  EXPECT_EQ(report.at("uncovered_percent"), 0);
+  EXPECT_EQ(report.at("warnings").size(), 1);
+
+  const json stated = json::parse(run({"terrain", shippedScenario("jacksboro.yaml"), "--json"}).out);
+  EXPECT_EQ(stated.at("files").at(0).at("vertical_datum"), "EGM96 (of the scenario)");
+  EXPECT_TRUE(stated.at("warnings").empty());
+  EXPECT_THAT(run({"terrain", tile}).out,
+              AllOf(HasSubstr("datum    EGM96 (assumed); unit m"), HasSubstr("Ground: ")));
+  EXPECT_EQ(run({"terrain", tile, "-o", folder_ / "a.jpg"}).status, 2);
+  EXPECT_EQ(run({"terrain", folder_ / "none.tif"}).status, 3);
+}
+
+TEST_F(TerrainProgram, WhatIsAssumedIsAWarningOfEveryResult) {
+  const std::string file = scenario(", missing: sea");
+  const auto hasWarning = [](const json& warnings) {
+    return std::count_if(warnings.begin(), warnings.end(), [](const json& warning) {
+      const std::string text =
+          warning.is_string() ? warning.get<std::string>() : warning.value("message", "");
+      return text.find("states no vertical datum") != std::string::npos;
+    });
   };
+  EXPECT_EQ(hasWarning(json::parse(run({"validate", file, "--json"}).out).at("problems")), 1);
+  EXPECT_EQ(hasWarning(json::parse(run({"link", file, "--json"}).out).at("warnings")), 1);
+  EXPECT_EQ(hasWarning(json::parse(
+                           run({"profile", file, "--emitter", "tx", "--to", "36.3,-84.1,1100", "--json"}).out)
+                           .at("warnings")),
+            1);
+  const ProgramResult maps =
+      run({"coverage", file, "-o", folder_ / "maps", "--heights", "msl:1500", "--cell", "500", "--quantity",
+           "power_density_dbwm2", "--threshold", "-60", "--json"});
+  EXPECT_EQ(hasWarning(json::parse(maps.out).at("warnings")), 1);
+  const ProgramResult series = run({"simulate", file, "-o", folder_ / "out"});
+  EXPECT_EQ(series.err.find("states no vertical datum"), series.err.rfind("states no vertical datum"))
+      << "once";
+  EXPECT_NE(series.err.find("states no vertical datum"), std::string::npos) << series.err;
+}
 
-  TEST_F(TerrainProgram, DescribesAndDrawsFilesAndScenarios) {
-    const std::string tile = sourceFile("scenarios/data/jacksboro.tif");
-    const ProgramResult result = run({"terrain", tile, "--json", "-o", folder_ / "a.png"});
-    ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_EQ(readFile(folder_ / "a.png").substr(1, 3), "PNG");
-    const json report = json::parse(result.out);
-    const json& file = report.at("files").at(0);
-    for (const char* key : {"file", "format", "columns", "rows", "post_spacing_lat_deg", "spacing_m", "crs",
-                            "box", "used", "height_unit", "lowest_m", "highest_m", "notes"})
-      EXPECT_TRUE(file.contains(key)) << key;
-    EXPECT_EQ(file.at("vertical_datum"), "EGM96 (assumed)");
-    EXPECT_EQ(file.at("void_posts"), 0);
-    EXPECT_THAT(file.at("warnings").at(0), HasSubstr("if they are above the ellipsoid, the ground is 30.9 m too low"));
-    EXPECT_EQ(report.at("uncovered_percent"), 0);
-    EXPECT_EQ(report.at("warnings").size(), 1);
+TEST_F(TerrainProgram, MissingTerrainIsTreatedAlikeBySubcommands) {
+  EXPECT_EQ(statuses(scenario(", missing: error")), (std::vector<int>{3, 3, 3, 3, 3}));
+  EXPECT_EQ(statuses(scenario(", missing: sea")), (std::vector<int>{0, 0, 0, 0, 0}));
+  EXPECT_THAT(last_["link"].out, Not(HasSubstr("Unknown")));
+  EXPECT_EQ(statuses(scenario(", missing: mask")), (std::vector<int>{0, 0, 3, 0, 3}));
+  EXPECT_THAT(last_["link"].out, HasSubstr("Unknown: terrain is missing on the path."));
+  EXPECT_THAT(last_["coverage"].out, AllOf(HasSubstr(" km2 known, "), HasSubstr(" km2 unknown")));
+  EXPECT_EQ(statuses(scenario("")), (std::vector<int>{3, 0, 3, 3, 3}));
+}
 
-    const json stated = json::parse(run({"terrain", shippedScenario("jacksboro.yaml"), "--json"}).out);
-    EXPECT_EQ(stated.at("files").at(0).at("vertical_datum"), "EGM96 (of the scenario)");
-    EXPECT_TRUE(stated.at("warnings").empty());
-    EXPECT_THAT(run({"terrain", tile}).out,
-                AllOf(HasSubstr("datum    EGM96 (assumed); unit m"), HasSubstr("Ground: ")));
-    EXPECT_EQ(run({"terrain", tile, "-o", folder_ / "a.jpg"}).status, 2);
-    EXPECT_EQ(run({"terrain", folder_ / "none.tif"}).status, 3);
-  }
+TEST_F(TerrainProgram, AMapOfNothingKnownIsAnErrorThatOffersTheOtherSign) {
+  const std::string file = scenario("", 84.2);
+  const ProgramResult maps = run({"coverage", file, "-o", folder_ / "maps", "--heights", "msl:1500",
+                                  "--quantity", "power_density_dbwm2", "--threshold", "-60"});
+  EXPECT_EQ(maps.status, 3);
+  EXPECT_THAT(maps.err, HasSubstr("perhaps longitude has the other sign"));
+  EXPECT_THAT(run({"validate", file}).out, HasSubstr("perhaps longitude has the other sign"));
+  EXPECT_THAT(run({"simulate", file, "-o", folder_ / "out"}).err,
+              HasSubstr("perhaps longitude has the other sign"));
+}
 
-  TEST_F(TerrainProgram, WhatIsAssumedIsAWarningOfEveryResult) {
-    const std::string file = scenario(", missing: sea");
-    const auto hasWarning = [](const json& warnings) {
-      return std::count_if(warnings.begin(), warnings.end(), [](const json& warning) {
-        const std::string text =
-            warning.is_string() ? warning.get<std::string>() : warning.value("message", "");
-        return text.find("states no vertical datum") != std::string::npos;
-      });
-    };
-    EXPECT_EQ(hasWarning(json::parse(run({"validate", file, "--json"}).out).at("problems")), 1);
-    EXPECT_EQ(hasWarning(json::parse(run({"link", file, "--json"}).out).at("warnings")), 1);
-    EXPECT_EQ(
-        hasWarning(
-            json::parse(run({"profile", file, "--emitter", "tx", "--to", "36.3,-84.1,1100", "--json"}).out)
-                .at("warnings")),
-        1);
-    const ProgramResult maps =
-        run({"coverage", file, "-o", folder_ / "maps", "--heights", "msl:1500", "--cell", "500", "--quantity",
-             "power_density_dbwm2", "--threshold", "-60", "--json"});
-    EXPECT_EQ(hasWarning(json::parse(maps.out).at("warnings")), 1);
-    const ProgramResult series = run({"simulate", file, "-o", folder_ / "out"});
-    EXPECT_EQ(series.err.find("states no vertical datum"), series.err.rfind("states no vertical datum"))
-        << "once";
-    EXPECT_NE(series.err.find("states no vertical datum"), std::string::npos) << series.err;
-  }
-
-  TEST_F(TerrainProgram, MissingTerrainIsTreatedAlikeBySubcommands) {
-    EXPECT_EQ(statuses(scenario(", missing: error")), (std::vector<int>{3, 3, 3, 3, 3}));
-    EXPECT_EQ(statuses(scenario(", missing: sea")), (std::vector<int>{0, 0, 0, 0, 0}));
-    EXPECT_THAT(last_["link"].out, Not(HasSubstr("Unknown")));
-    EXPECT_EQ(statuses(scenario(", missing: mask")), (std::vector<int>{0, 0, 3, 0, 3}));
-    EXPECT_THAT(last_["link"].out, HasSubstr("Unknown: terrain is missing on the path."));
-    EXPECT_THAT(last_["coverage"].out, AllOf(HasSubstr(" km2 known, "), HasSubstr(" km2 unknown")));
-    EXPECT_EQ(statuses(scenario("")), (std::vector<int>{3, 0, 3, 3, 3}));
-  }
-
-  TEST_F(TerrainProgram, AMapOfNothingKnownIsAnErrorThatOffersTheOtherSign) {
-    const std::string file = scenario("", 84.2);
-    const ProgramResult maps = run({"coverage", file, "-o", folder_ / "maps", "--heights", "msl:1500",
-                                    "--quantity", "power_density_dbwm2", "--threshold", "-60"});
-    EXPECT_EQ(maps.status, 3);
-    EXPECT_THAT(maps.err, HasSubstr("perhaps longitude has the other sign"));
-    EXPECT_THAT(run({"validate", file}).out, HasSubstr("perhaps longitude has the other sign"));
-    EXPECT_THAT(run({"simulate", file, "-o", folder_ / "out"}).err,
-                HasSubstr("perhaps longitude has the other sign"));
-  }
-
-  TEST_F(TerrainProgram, LandBelowSeaLevelIsWarnedOfWhereAModelTakesItForSea) {
-    std::string grid = "ncols 60\nnrows 60\nxllcorner 10\nyllcorner 50\ncellsize 0.002\n";
-    for (int post = 0; post < 3600; ++post) grid += "-25 ";
-    folder_.write("low.asc", grid);
-    const auto warningsOf = [&](const std::string& propagation) {
-      const std::string file = folder_.write("low.yaml", R"(schema_version: 1
+TEST_F(TerrainProgram, LandBelowSeaLevelIsWarnedOfWhereAModelTakesItForSea) {
+  std::string grid = "ncols 60\nnrows 60\nxllcorner 10\nyllcorner 50\ncellsize 0.002\n";
+  for (int post = 0; post < 3600; ++post) grid += "-25 ";
+  folder_.write("low.asc", grid);
+  const auto warningsOf = [&](const std::string& propagation) {
+    const std::string file = folder_.write("low.yaml", R"(schema_version: 1
 name: low
 epoch: 2026-06-01T06:00:00Z
 duration_s: 0
@@ -153,17 +156,17 @@ terrain: {files: [{file: low.asc, crs: "EPSG:4326", vertical_datum: egm96}]}
 platforms: [{name: site, position: {latitude_deg: 50.06, longitude_deg: 10.06, height_agl_m: 20}}]
 emitters:
   - {name: tx, platform: site, kind: transmitter, frequency_hz: 1.0e9, power_w: 100, antenna: {pattern: isotropic})" +
-                                                             propagation + "}\n");
-      return run({"validate", file}).out +
-             run({"profile", file, "--emitter", "tx", "--to", "50.07,10.07,10"}).out;
-    };
-    EXPECT_THAT(
-        warningsOf(", propagation: p452"),
-        AllOf(HasSubstr("ground lies down to -25 m, and 'p452' takes"), HasSubstr("'p452: {zone: inland}'")));
-    EXPECT_THAT(warningsOf(", propagation: p1812"), HasSubstr("'p1812: {zone: inland}'"));
-    EXPECT_THAT(warningsOf(", propagation: p452, p452: {zone: inland}"), Not(HasSubstr("for sea")));
-    EXPECT_THAT(warningsOf(""), Not(HasSubstr("for sea")));
-  }
+                                                           propagation + "}\n");
+    return run({"validate", file}).out +
+           run({"profile", file, "--emitter", "tx", "--to", "50.07,10.07,10"}).out;
+  };
+  EXPECT_THAT(
+      warningsOf(", propagation: p452"),
+      AllOf(HasSubstr("ground lies down to -25 m, and 'p452' takes"), HasSubstr("'p452: {zone: inland}'")));
+  EXPECT_THAT(warningsOf(", propagation: p1812"), HasSubstr("'p1812: {zone: inland}'"));
+  EXPECT_THAT(warningsOf(", propagation: p452, p452: {zone: inland}"), Not(HasSubstr("for sea")));
+  EXPECT_THAT(warningsOf(""), Not(HasSubstr("for sea")));
+}
 
 }  // namespace
 }  // namespace emscape::test

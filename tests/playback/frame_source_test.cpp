@@ -206,6 +206,20 @@ TEST(FrameSource, AQuantityThatAFolderLacksIsRefusedWithThoseThatItHas) {
                         "snr_db"));
 }
 
+TEST(FrameSource, AFolderOfSeveralFormatsWarnsOfTheFilesThatAreNotShown) {
+  const TemporaryFolder folder;
+  const volume::DenseVolume volume = *MadeFrames(seconds(1)).frame(0).volume.host();
+  FrameSelection selection;
+  selection.input = folder.path().string();
+  const auto warnings = [&] { return openFrameSource(selection, {})->warnings(); };
+  volume::writeVolumes(folder / "a.vti", {&volume});
+  volume::writeVolumes(folder / "a.raw", {&volume});
+  EXPECT_TRUE(warnings().empty()) << "the same volume in two formats";
+  volume::writeVolumes(folder / "b.raw", {&volume});
+  EXPECT_THAT(warnings(), testing::ElementsAre(HasSubstr(
+                              "the .vti files are shown; not shown: b.raw. Open such a file to see it")));
+}
+
 TEST(FrameSource, InvalidInputIsRefusedByName) {
   FrameSelection selection;
   selection.input = "/nowhere/there.vdb";

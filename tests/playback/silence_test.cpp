@@ -58,7 +58,9 @@ TEST(Silence, IsSaidBelowTheLegend) {
     return painter.annotations().legend->note;
   };
   EXPECT_EQ(noteOf({}).find("transmits"), std::string::npos);
-  EXPECT_NE(noteOf({{"emitters.radar.enabled", "false"}}).find("no emitter transmits"), std::string::npos);
+  EXPECT_NE(noteOf({{"emitters.radar.enabled", "false"}, {"emitters.transmitter.enabled", "false"}})
+                .find("no emitter transmits"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -43,6 +43,7 @@ TEST(Parameters, StateValueAndAllowedValues) {
   EXPECT_EQ(power->name, "power");
   EXPECT_EQ(power->unit, "W");
   EXPECT_EQ(power->value, "20000");
+  EXPECT_TRUE(power->minimum_excluded) << "above 0";
   EXPECT_TRUE(power->is_given && power->required);
   const Parameter* pulses = find(radar, "emitters.search radar.receiver.pulses");
   ASSERT_TRUE(pulses);

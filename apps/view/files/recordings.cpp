@@ -34,9 +34,11 @@ std::string importRecordingFile(const std::string& file, std::string& note) {
     try {
       return interop::importRecording(recorded, options);
     } catch (const Error& error) {
-      const bool lacks_database = options.emitters.empty() && error.message().find("--emitters") != std::string::npos;
+      const bool lacks_database =
+          options.emitters.empty() && error.message().find("--emitters") != std::string::npos;
       if (!lacks_database) throw;
-      throw Error(error.code(), error.location(), error.message() + "; the window reads the database " + database);
+      throw Error(error.code(), error.location(),
+                  error.message() + "; the window reads the database " + database);
     }
   }();
   int unmatched = 0;

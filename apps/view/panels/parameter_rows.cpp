@@ -37,7 +37,8 @@ std::string numberText(double value) {
 }
 
 std::string rangeOf(const Parameter& parameter) {
-  return rangeText(parameter.minimum, parameter.maximum, unitSigns(parameter.unit));
+  return (parameter.minimum_excluded ? "above " : "") +
+         rangeText(parameter.minimum, parameter.maximum, unitSigns(parameter.unit));
 }
 
 /// What was expected of a text: " in one of the units W, kW, dBm"; empty without a unit.
@@ -179,7 +180,8 @@ bool ParameterRows::drawSubheading(const std::string& id, const std::string& nam
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
-  list.PushClipRect({at.x, at.y}, {right, at.y + ImGui::GetTextLineHeight()});  // over both columns
+  const ImRect& inside = ImGui::GetCurrentWindow()->InnerClipRect;
+  list.PushClipRect({at.x, inside.Min.y}, {right, inside.Max.y});  // over both columns
   ImGui::PushStyleColor(ImGuiCol_Text, accentColor(context_.session.theme()));
   drawName(list, name, at, right);
   ImGui::PopStyleColor();
@@ -362,7 +364,9 @@ void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
     state_.refused = {path, text, why, context_.session.scenario()};
   };
   const bool is_word = !number && text.find_first_of("0123456789") == std::string::npos;
-  if (number && !(*number >= parameter.minimum && *number <= parameter.maximum)) {
+  const bool is_above =
+      number && (parameter.minimum_excluded ? *number > parameter.minimum : *number >= parameter.minimum);
+  if (number && !(is_above && *number <= parameter.maximum)) {
     return refuse(fmt::format("{}: {} is not allowed; {}", parameter.name, text, rangeOf(parameter)));
   }
   if (number && parameter.type == Type::integer && *number != std::round(*number)) {

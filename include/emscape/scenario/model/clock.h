@@ -30,7 +30,7 @@ std::vector<double> timesOf(const Clock& clock);
 /// min") or, with an epoch, UTC ("2026-06-01T06:01:10Z"). @param limit_s  as for timesOf()
 /// @throws Error (usage), as timesOf() and requireTime() too
 std::vector<double> parseTimes(const std::string& text, const Clock& clock, double limit_s = kMaxTime_s);
-/// A single time as parseTimes(). @throws Error (usage)
+/// A single time as parseTimes(), or M:SS, H:MM:SS. @throws Error (usage)
 double parseTime(const std::string& text, const Clock& clock);
 /// A warning about times before or after those of the clock; empty: there are none.
 /// @param times_s  ascending
