@@ -123,10 +123,11 @@ def exercise(arguments):
             sent += 1
         steps += 1
     lines = [json.loads(line) for line in program.stdout]
-    first = next(line for line in lines if line["t_s"] > 5 and line["emitters"] >= arguments.emitters)
-    last = next(line for line in reversed(lines) if line["t_s"] <= arguments.seconds + 4)
+    between = [line for line in lines if line["emitters"] >= arguments.emitters and line["entities"] >= arguments.entities]
+    first, last = between[0], between[-1]
+    if first is last:
+        sys.exit("fields take too long: more --seconds")
     rate = (last["fields"] - first["fields"]) / (last["t_s"] - first["t_s"])
-    between = lines[lines.index(first):lines.index(last) + 1]
     print(f"{last['entities']} entities, {last['emitters']} emitters, {sent / (arguments.seconds + 5):.0f} states/s, {last['lost']} lost: "
           f"{rate:.2f} fields/s of {statistics.median(line['field_ms'] for line in between):.0f} ms, "
           f"{statistics.median(line['latency_ms'] for line in between):.0f} ms from the last PDU to its field")

@@ -266,7 +266,7 @@ class CzmlWriter {
         dis::axesOf(dis::LocalAttitude{pose.heading_deg, pose.pitch_deg, pose.roll_deg}, pose.latitude_deg,
                     pose.longitude_deg);
     const TimedPlace apex = timedPlace(pose);
-    if (!is_circle) addTo(corners, apex.position);
+    if (!is_circle) addTo(corners, apex.position, kCoarse);
     const int parts = is_circle ? 3 * kArcParts : kArcParts;
     for (int i = 0; i < parts + (is_circle ? 0 : 1); ++i) {
       const double azimuth_rad =
@@ -274,7 +274,7 @@ class CzmlWriter {
       const double elevation_rad = degToRad(state.elevation_deg);
       const Vec3d body{std::cos(elevation_rad) * std::cos(azimuth_rad),
                        std::cos(elevation_rad) * std::sin(azimuth_rad), -std::sin(elevation_rad)};
-      addTo(corners, fromEcef(apex.ecef + axes.toWorld(body) * drawnRange_m(scenario_)));
+      addTo(corners, fromEcef(apex.ecef + axes.toWorld(body) * drawnRange_m(scenario_)), kCoarse);
     }
   }
 

@@ -110,7 +110,8 @@ def recorded_pdus(folder):
         if path.suffix == ".raw":
             pdus = [path.read_bytes()]
         elif path.suffix == ".log":
-            pdus = [bytes.fromhex(line) for line in path.read_text().splitlines()[1::2]]
+            # Digits below 16 stand alone.
+            pdus = [bytes(int(byte, 16) for byte in line.split()) for line in path.read_text().splitlines()[1::2]]
         elif path.suffix == ".session":
             pdus, data, at = [], path.read_bytes(), 0
             while at + 10 <= len(data):
