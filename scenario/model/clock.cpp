@@ -128,14 +128,18 @@ std::vector<double> parseTimes(const std::string& text, const Clock& clock, doub
 }
 
 double parseTime(const std::string& text, const Clock& clock) {
-  // M:SS would be BEGIN:END in parseTimes().
-  if (const std::optional<double> time_s = emscape::parseTime_s(text)) {
-    requireTime(clock, *time_s);
-    return *time_s;
+  const auto time_ms = parseUtc_ms(text), epoch_ms = parseUtc_ms(clock.epoch_utc);
+  std::optional<double> time_s = emscape::parseTime_s(text);
+  if (time_ms && epoch_ms) time_s = static_cast<double>(*time_ms - *epoch_ms) / 1000;
+  if (!time_s) {
+    const std::string fault = time_ms ? "the scenario has no epoch" : utcFault(text);
+    throw Error(ErrorCode::usage,
+                fmt::format("time '{}': a single time is expected, such as 90, '1.5 min', 1:30 or "
+                            "2026-06-01T06:01:10Z{}",
+                            text, fault.empty() ? "" : "; " + fault));
   }
-  const std::vector<double> times_s = parseTimes(text, clock);
-  if (times_s.size() == 1) return times_s.front();
-  throw Error(ErrorCode::usage, fmt::format("time '{}': a single time is expected", text));
+  requireTime(clock, *time_s);
+  return *time_s;
 }
 
 std::string outsideClockText(const std::vector<double>& times_s, const Clock& clock) {

@@ -37,7 +37,7 @@ TEST(CommandLine, NumbersAreFinite) {
     const ProgramResult result = run({"vertical", shippedScenario("jacksboro.yaml"), "--emitter",
                                       "search radar", "--azimuth", "30", "-o", "out.png", "--time", number});
     EXPECT_EQ(result.status, kUsage);
-    EXPECT_THAT(result.err, HasSubstr("'" + number + "' is not a time in seconds or UTC"));
+    EXPECT_THAT(result.err, HasSubstr("time '" + number + "': a single time is expected"));
   }
 }
 

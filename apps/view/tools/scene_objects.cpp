@@ -79,6 +79,7 @@ std::vector<SceneObject> sceneObjectsOf(const playback::LivePicture& picture) {
 }
 
 void findPixels(std::vector<SceneObject>& objects, const playback::LivePicture& picture) {
+  if (objects.empty()) return;  // volumes without a scenario
   const std::vector<std::optional<render::MarkerPlace>> places =
       render::markerPlaces(picture.size, picture.camera, picture.box, picture.annotations);
   // The first markers are those of the emitters, in their order.
