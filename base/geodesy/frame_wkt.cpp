@@ -24,7 +24,7 @@ std::string wgs84(const char* keyword, int epsg) {
 std::string altitudeWkt(const FrameOrigin& frame) {
   const std::string plane = fmt::format(
       R"_(PROJCRS["Azimuthal equidistant about the origin of the region",{},)_"
-      R"_(CONVERSION["Azimuthal equidistant",METHOD["Azimuthal Equidistant"],{},{},{},{}],)_"
+      R"_(CONVERSION["Azimuthal equidistant",METHOD["Modified Azimuthal Equidistant",ID["EPSG",9832]],{},{},{},{}],)_"
       R"_(CS[Cartesian,2],AXIS["(E)",east,ORDER[1],{}],AXIS["(N)",north,ORDER[2],{}]])_",
       wgs84("BASEGEOGCRS", 4326), parameter("Latitude of natural origin", frame.latitude_deg, kDegree, 8801),
       parameter("Longitude of natural origin", frame.longitude_deg, kDegree, 8802),

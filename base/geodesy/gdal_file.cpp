@@ -51,8 +51,8 @@ Dataset openFile(const fs::path& file, unsigned flags, const char* const* driver
     CPLError(CE_Failure, CPLE_OpenFailed, "%s", fault.c_str());
     return nullptr;
   }
-  if (const std::string fault = netcdfHeaderFault(file); !fault.empty()) {
-    CPLError(CE_Failure, CPLE_OpenFailed, "damaged netCDF file: %s", fault.c_str());
+  if (const std::string fault = faultOfNetcdfHeader(file.string()); !fault.empty()) {
+    CPLError(CE_Failure, CPLE_OpenFailed, "%s", fault.c_str());
     return nullptr;
   }
   silenceHdf5();

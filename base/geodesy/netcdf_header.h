@@ -1,14 +1,16 @@
-/// Check of the header of classic netCDF files (CDF-1, -2 and -5): the netCDF library ends the program on
-/// some damaged ones.
+/// The header of a classic netCDF file.
 #pragma once
 
-#include <filesystem>
+#include <cstdint>
+#include <istream>
 #include <string>
 
 namespace emscape {
 
-/// Why the header of a classic netCDF file cannot be read; empty: it can, or the file is of another format.
-/// Format: NetCDF Classic Format Specification, Unidata.
-std::string netcdfHeaderFault(const std::filesystem::path& file);
+/// Reports a header of a classic netCDF file (versions 1, 2 and 5) that does not follow the format: the
+/// library that reads such files does not survive it. Empty for a sound header and for other files.
+std::string faultOfNetcdfHeader(const std::string& file);
+/// The same for bytes of a file.
+std::string faultOfNetcdfHeader(std::istream& stream, std::uintmax_t size);
 
 }  // namespace emscape

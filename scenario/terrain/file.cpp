@@ -15,12 +15,12 @@
 
 #include "base/files/file_reading.h"
 #include "base/geodesy/gdal_file.h"
+#include "base/geodesy/netcdf_header.h"
 #include "emscape/base/units.h"
 #include "emscape/base/work.h"
 #include "scenario/terrain/file_remedies.h"
 #include "scenario/terrain/gdal_messages.h"
 #include "scenario/terrain/georeference.h"
-#include "scenario/terrain/netcdf_header.h"
 #include "scenario/terrain/raster_access.h"
 #include "scenario/terrain/vrt.h"
 

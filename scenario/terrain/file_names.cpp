@@ -12,9 +12,9 @@
 #include <sstream>
 
 #include "base/geodesy/gdal_file.h"
+#include "base/geodesy/netcdf_header.h"
 #include "emscape/base/error.h"
 #include "scenario/terrain/gdal_messages.h"
-#include "scenario/terrain/netcdf_header.h"
 
 namespace emscape::scenario {
 namespace {
