@@ -55,6 +55,9 @@ class WyomingList : public SoundingArchive {
       if (at != std::string::npos) records.push_back(recordAt(i, at));
       if (!records.empty()) readPlace(i, records.back());
     }
+    for (SoundingRecord& record : records) {
+      if (record.position && std::isnan(record.position->longitude_deg)) record.position.reset();
+    }
     return records;
   }
 
@@ -154,8 +157,11 @@ class WyomingList : public SoundingArchive {
       return numberIn(
           withoutBlanks(std::string_view(lines_[index]).substr(at + std::string_view(name).size())));
     };
-    const auto latitude_deg = valueOf("Station latitude:"), longitude_deg = valueOf("Station longitude:");
-    if (latitude_deg && longitude_deg) record.position = GeodeticPosition{*latitude_deg, *longitude_deg, 0};
+    // Until its longitude is read, and if there is none, a place has none.
+    if (const auto latitude_deg = valueOf("Station latitude:"))
+      record.position = GeodeticPosition{*latitude_deg, std::nan(""), 0};
+    if (const auto longitude_deg = valueOf("Station longitude:"); longitude_deg && record.position)
+      record.position->longitude_deg = *longitude_deg;
   }
 
   /// The columns below the titles of a line; their units are in the next one.

@@ -101,10 +101,9 @@ CoverageMap emptyMap(const scenario::Scenario& scenario, const CoverageRequest& 
     const Quantity named = product == Product::best ? Quantity::dominant_emitter : request.quantity;
     map.labels = emfield::categoryNames(scenario, named);
   }
-  map.subject = product == Product::value
-                        ? map.title
-                        : fmt::format("{} ({} >= {})", map.title, titleOf(request.quantity),
-                                      quantityText(request.threshold, quantity.unit));
+  map.subject = product == Product::value ? map.title
+                                          : fmt::format("{} ({} >= {})", map.title, titleOf(request.quantity),
+                                                        quantityText(request.threshold, quantity.unit));
   map.description = map.subject + (height ? " at " + describe(*height) : "");
   return map;
 }

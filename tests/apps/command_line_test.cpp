@@ -34,8 +34,9 @@ TEST(CommandLine, HelpAndVersionAreNoErrors) {
 
 TEST(CommandLine, NumbersAreFinite) {
   for (const std::string number : {"nan", "inf", "-inf"}) {
-    const ProgramResult result = run({"vertical", shippedScenario("jacksboro.yaml"), "--emitter",
-                                      "search radar", "--azimuth", "30", "-o", "out.png", "--time", number});
+    const ProgramResult result =
+        run({"vertical", shippedScenario("jacksboro.yaml"), "--emitter", "search radar", "--azimuth", "30",
+             "-o", "out.png", "--threshold", number});
     EXPECT_EQ(result.status, kUsage);
     EXPECT_THAT(result.err, HasSubstr("time '" + number + "': a single time is expected"));
   }

@@ -94,11 +94,11 @@ TEST(Info, NamesDescribedTables) {
   const ProgramResult track =
       run({"info", folder.write("track.csv", "t_s,latitude_deg,longitude_deg,height_msl_m\n0,50,6,100\n")});
   EXPECT_EQ(track.status, 3);
-  EXPECT_THAT(track.err, HasSubstr("no column 'elevation_deg': info describes grids of antennas"));
-  EXPECT_THAT(track.err, HasSubstr("profiles of refractivity"));
-  EXPECT_THAT(track.err, HasSubstr("tracks and other CSV files are checked with their scenario"));
+  EXPECT_THAT(track.err,
+              HasSubstr("track.csv:1:1: no pair of angles among the columns 't_s', 'latitude_deg'"));
+  EXPECT_THAT(track.err, HasSubstr("a table of a pattern has columns such as"));
   EXPECT_THAT(run({"info", folder.write("rcs.csv", "azimuth_deg;elevation_deg;rcs_dbsm\n")}).err,
-              HasSubstr("rcs.csv:1:1: columns are separated by commas, not semicolons"));
+              HasSubstr("rcs.csv:1:1: no gain, directivity or attenuation among the columns"));
 }
 
 TEST(Info, ReportsBytesThatAreNotUtf8AsReplacements) {

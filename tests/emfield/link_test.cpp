@@ -210,6 +210,7 @@ TEST(Link, RowEqualsBudgetOfItsPathForMovingEnds) {
   end.t_s = 5;
   end.position.latitude_deg += 0.02;
   scenario->platforms[1].track.push_back(end);
+  scenario->platforms[1].outside_track = scenario::OutsideTrack::hold;
   expectBudgets();
 }
 

@@ -299,9 +299,9 @@ TEST_F(Import, WithoutAnyEmitterTheErrorNamesTheRemedy) {
   recording.objects.erase(recording.objects.begin(), recording.objects.begin() + 2);
   recording.objects[0].domain = Domain::land;
   recording.objects[0].keys = {};
-  EXPECT_THAT(
-      emscape::test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
-      HasSubstr("no emitter is left of 1 object. Add the objects to a scenario with emitters (--base FILE), give "));
+  EXPECT_THAT(emscape::test::errorOf([&] { import(recording); }, ErrorCode::bad_input),
+              HasSubstr("no emitter is left of 1 object. Add the objects to a scenario with emitters (--base "
+                        "FILE), give "));
 }
 
 TEST(ImportRegion, TextIsALatitudeALongitudeAndASize) {

@@ -90,7 +90,7 @@ emitters:
     receiver: {noise_figure_db: 4, bandwidth_hz: 1.0e6}
   - {name: jammer, platform: aircraft, kind: jammer, frequency_hz: 3.0e9, bandwidth_hz: 1.0e6, power_w: 1, antenna: {pattern: isotropic}}
 receivers:
-  - {name: warning, platform: aircraft, gain_dbi: 0, bandwidth_hz: 1.0e6, center_frequency_hz: 3.0e9}
+  - {name: warning, platform: aircraft, gain_dbi: 0, noise_figure_db: 5, bandwidth_hz: 1.0e6, center_frequency_hz: 3.0e9}
 targets:
   - {name: skin, platform: aircraft, rcs_m2: 5}
 )";
@@ -102,7 +102,8 @@ TEST(Exposure, AbsentPlatformHasNoValuesAndIsNoGap) {
   const Given given = passingAircraft(folder);
   ExposureRequest request;
   request.platform = 1;
-  request.target = 0;
+  request.quantity = scenario::Quantity::power_density_dbwm2;
+  request.threshold = -190;
   for (int t = 0; t <= 200; t += 10) request.times_s.push_back(t);
   const Exposure exposure = computeExposure(given.scenario, given.terrain, request, {});
   for (const ExposureRow& row : exposure.rows) {

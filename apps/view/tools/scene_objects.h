@@ -35,7 +35,8 @@ std::vector<SceneObject> sceneObjectsOf(const playback::LivePicture& picture);
 void findPixels(std::vector<SceneObject>& objects, const playback::LivePicture& picture);
 
 /// The object under a pixel of the picture: that of the nearest symbol within some pixels, else the nearest
-/// without a symbol; of those at one place the first. Absent ones are not there. @return null if there is none
+/// without a symbol; of those at one place the first. Absent ones are not there. @return null if there is
+/// none
 const SceneObject* objectAt(const std::vector<SceneObject>& objects, double x, double y);
 
 /// True if a scenario has an item with a path: "emitters.NAME", "platforms.NAME", "receivers.NAME" or
