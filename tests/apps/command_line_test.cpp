@@ -38,7 +38,7 @@ TEST(CommandLine, NumbersAreFinite) {
         run({"vertical", shippedScenario("jacksboro.yaml"), "--emitter", "search radar", "--azimuth", "30",
              "-o", "out.png", "--threshold", number});
     EXPECT_EQ(result.status, kUsage);
-    EXPECT_THAT(result.err, HasSubstr("time '" + number + "': a single time is expected"));
+    EXPECT_THAT(result.err, HasSubstr("--threshold: '" + number + "' is not a number"));
   }
 }
 
