@@ -352,7 +352,14 @@ TEST(Render, RemovesTemporariesOfKilledProcess) {
     }
     return false;
   };
-  while (!hasParts()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  // With its record and something of the video; killed before, it leaves an empty folder.
+  const auto isBegun = [&] {
+    int files = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder / "out"))
+      files += entry.is_regular_file() ? 1 : 0;
+    return files >= 2;
+  };
+  while (!isBegun()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
   first.signal(SIGKILL);
   ASSERT_EQ(first.wait().status, 128 + SIGKILL);
   ASSERT_TRUE(hasParts());
