@@ -142,9 +142,9 @@ void bindScenario(nb::module_& module) {
       nb::arg("file"), nb::arg("edits"), "The scenario, None if it has errors; and its problems.");
   module.def(
       "load_text",
-      [](const std::string& file, const std::string& text, const Edits& edits) {
+      [](const std::string& file, const std::string& content, const Edits& edits) {
         const nb::gil_scoped_release unlocked;
-        return parsedOf(scenario::parseScenarioText(file, text, editsOf(edits)));
+        return parsedOf(scenario::parseScenarioText(file, content, editsOf(edits)));
       },
       nb::arg("file"), nb::arg("text"), nb::arg("edits"),
       "As load() for a text; file need not exist: its folder is that of relative names.");
