@@ -15,7 +15,7 @@ GLOW = 2.0         # their light
 WIDTH = 10.0       # of the volume, in Blender's units
 
 
-def main(volume_file, picture):
+def main(volume_file: pathlib.Path, picture: str) -> None:
     bpy.ops.wm.read_factory_settings(use_empty=True)
     bpy.ops.object.volume_import(filepath=str(volume_file.resolve()), align="WORLD")
     volume = bpy.context.object

@@ -8,7 +8,7 @@ import sys
 from paraview import simple
 
 
-def main(volume_file, picture):
+def main(volume_file: str, picture: str) -> None:
     reader = simple.OpenDataFile(volume_file)
     reader.UpdatePipeline()
     name = reader.PointData[0].Name
