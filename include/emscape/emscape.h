@@ -11,6 +11,7 @@
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/progress.h"
+#include "emscape/base/side.h"
 #include "emscape/base/units.h"
 #include "emscape/base/unset_vector.h"
 #include "emscape/base/vec.h"
