@@ -113,8 +113,11 @@ class RealInput : public Window {
 
   /// Waits until the log meets a condition, at most a minute.
   static bool comes(const std::function<bool()>& condition) {
-    for (int i = 0; i < 600 && !condition(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    return condition();
+    for (int i = 0; i < 600; ++i) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return false;
   }
   /// Waits until a value of the report, which each frame logs, meets a condition.
   bool reports(const std::string& key, const std::function<bool(const Json&)>& condition) const {
