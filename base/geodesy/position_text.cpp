@@ -110,7 +110,7 @@ std::string joinedCoordinates(std::string text) {
       joined += text[i];
       continue;
     }
-    const std::size_t next = text.find_first_not_of(" \t\r\n", i);
+    const std::size_t next = text.find_first_not_of(" \t\r\n\f\v", i);
     if (next == std::string::npos) break;
     const char before = joined.empty() ? ' ' : joined.back(), after = text[next];
     const char first = joined.empty() ? ' ' : joined[joined.find_last_of(" ,") + 1];  // of this coordinate

@@ -76,7 +76,7 @@ TEST(ParsePosition, ReadsAHeightAfterAnyForm) {
 TEST(ParsePosition, RefusesOtherTexts) {
   for (const char* const text :
        {"", "  ", "36.5", "91,0", "36.5,-84.2,x", "36.5,-84.2,150,3", "north", "36.5N 84.2N", "16S", "16SGF",
-        "16S GF", "nan,nan", "99SGF1234567890", "36.5;84.2"}) {
+        "16S GF", "nan,nan", "99SGF1234567890", "36.5;84.2", "36.5, 8\f4.2", "\v"}) {
     EXPECT_EQ(test::errorOf([&] { parsePosition(text); }, ErrorCode::usage).find("is not a position") !=
                   std::string::npos,
               true)
