@@ -16,7 +16,8 @@ namespace emscape::emfield {
 struct ClutterBeam {
   double azimuth_rad = 0;  ///< at the elevation of the maximum; 2 pi for an isotropic antenna
   double elevation_rad =
-      0;  ///< at azimuth 0, weighted by the cosine of the elevation; 2 for an isotropic antenna
+      0;             ///< at azimuth 0, weighted by the cosine of the elevation; 2 for an isotropic antenna
+  PowerBelow below;  ///< of the same cut
 };
 ClutterBeam clutterBeam(const scenario::Antenna& antenna);
 

@@ -1,8 +1,9 @@
 /// Clutter in the resolution cell of a voxel while a radar's beam is aimed at it.
 ///
 /// Land and sea: the map at the beam's azimuth and the voxel's slant range, weighted by the two-way pattern
-/// towards the surface. Rain: the beam's cross section times the range cell, in the part of the beam between
-/// mean sea level and the top of the rain.
+/// towards the surface. Rain: the beam's cross section times the range cell, in the part of the two-way power
+/// between mean sea level and the top of the rain. An array's beam widens with the steering, by the direction
+/// cosines of its plane (Mailloux, Phased Array Antenna Handbook, ch. 1).
 #pragma once
 
 #include <cmath>
@@ -15,15 +16,32 @@
 
 namespace emscape::emfield {
 
+/// Part of a beam's two-way power that is below an elevation, by the angle from its axis: log2(part / (1 -
+/// part)), which is smooth far into the side lobes, evenly spaced from -reach_rad to reach_rad.
+struct PowerBelow {
+  static constexpr int kNodes = 65;
+  float reach_rad = 1;
+  float log2_odds[kNodes] = {};
+
+  EMSCAPE_HD float at(float from_axis_rad) const {
+    const float node = (from_axis_rad / reach_rad + 1) * (0.5f * (kNodes - 1));
+    const float inside = node > 0 ? node : 0.0f;
+    const float bounded = inside < kNodes - 1 ? inside : kNodes - 1.0f;
+    const int below = static_cast<int>(bounded < kNodes - 2 ? bounded : kNodes - 2.0f);
+    const float odds = log2_odds[below] + (bounded - below) * (log2_odds[below + 1] - log2_odds[below]);
+    return 1 / (1 + fastExp2(-odds));
+  }
+};
+
 /// A radar's clutter in a channel, after its filter, as plain data; all 0: none.
 struct ClutterTask {
-  float surface = 0;              ///< clutter over noise on boresight, per value of a map's cell (m2 rad)
-  float rain = 0;                 ///< clutter over noise times range^2, with the whole beam in rain (m2)
-  float rain_octaves_per_m = 0;   ///< two-way loss through gases and rain, log2
-  float rain_top_m = 0;           ///< of the rain, above the radar
-  float sea_level_m = 0;          ///< above the radar
-  float elevation_width_rad = 0;  ///< two-way width of the beam
-  float curvature_per_m = 0;      ///< 1 / (2 effective earth radius)
+  float surface = 0;             ///< clutter over noise on boresight, per value of a map's cell (m2 rad)
+  float rain = 0;                ///< clutter over noise times range^2, with the whole beam in rain (m2)
+  float rain_octaves_per_m = 0;  ///< two-way loss through gases and rain, log2
+  float rain_top_m = 0;          ///< of the rain, above the radar
+  float sea_level_m = 0;         ///< above the radar
+  float curvature_per_m = 0;     ///< 1 / (2 effective earth radius)
+  PowerBelow below;              ///< of the beam that is not steered
 
   EMSCAPE_HD bool isNone() const { return surface == 0 && rain == 0; }
 };
@@ -45,20 +63,31 @@ EMSCAPE_HD inline Vec3f axisOf(const EmitterBeam& beam, const Aim& aim) {
   return beam.forward * axis.x + beam.right * axis.y + beam.up * axis.z;
 }
 
+/// The part of an array's boresight that remains in the direction of its steering, a cosine; 1 of others.
+EMSCAPE_HD inline float cosineOfSteering(const Aim& aim) {
+  constexpr float kLeast2 = 1e-4f;
+  const float cosine2 = 1 - aim.steer_u * aim.steer_u - aim.steer_v * aim.steer_v;
+  return std::sqrt(cosine2 > kLeast2 ? cosine2 : kLeast2);
+}
+
 /// Rain's clutter over noise at a slant range. Without branches, for SIMD.
 EMSCAPE_HD inline float rainToNoise(const ClutterTask& task, const EmitterBeam& beam, const Aim& aim,
                                     float range_m) {
-  const float sine = axisOf(beam, aim).z;
-  const float height_m = range_m * (sine + range_m * (1 - sine * sine) * task.curvature_per_m);
-  const float depth_m = range_m * task.elevation_width_rad + 1e-6f;
-  const auto part = [&](float top_m) {
-    const float below = (top_m - height_m) / depth_m + 0.5f;
-    const float not_negative = below > 0 ? below : 0.0f;
-    return not_negative < 1 ? not_negative : 1.0f;
+  const auto elevation = [](float sine) {
+    const float bounded = sine < -1 ? -1.0f : sine > 1 ? 1.0f : sine;
+    return fastAtan2(bounded, std::sqrt(1 - bounded * bounded));
   };
-  const float in_rain = part(task.rain_top_m) - part(task.sea_level_m);
-  return task.rain * (in_rain > 0 ? in_rain : 0.0f) * fastExp2(-task.rain_octaves_per_m * range_m) /
-         (range_m * range_m);
+  const float sine = axisOf(beam, aim).z, axis_rad = elevation(sine);
+  const float drop_m = range_m * range_m * (1 - sine * sine) * task.curvature_per_m;
+  const float narrowing = std::sqrt(1 - aim.steer_v * aim.steer_v);
+  const auto below = [&](float height_m) {
+    return task.below.at((elevation((height_m - drop_m) / range_m) - axis_rad) * narrowing);
+  };
+  const float in_rain = below(task.rain_top_m) - below(task.sea_level_m);
+  const float ahead = cosineOfSteering(aim);
+  const float element2 = fastExp2(4 * beam.pattern.element_exponent * fastLog2(ahead));  // there and back
+  return task.rain * element2 / ahead * (in_rain > 0 ? in_rain : 0.0f) *
+         fastExp2(-task.rain_octaves_per_m * range_m) / (range_m * range_m);
 }
 
 /// Clutter of land and sea over noise at a slant range. Without branches, for SIMD.
@@ -76,7 +105,8 @@ EMSCAPE_HD inline float surfaceToNoise(const ClutterTask& task, const Map& map, 
   const Vec3f to_surface = inAntennaFrame(beam, {direction.x * scale, direction.y * scale, sine});
   const float amplitude = amplitudeTowards<kind>(beam.pattern, aim, to_surface);
   const float power = amplitude * amplitude;
-  return task.surface * cell.echo * power * power;
+  const float widening = std::sqrt(1 - aim.steer_v * aim.steer_v) / cosineOfSteering(aim);
+  return task.surface * widening * cell.echo * power * power;
 }
 
 /// The sum of both.

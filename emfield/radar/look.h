@@ -40,8 +40,8 @@ struct RadarLook {
   float steer_u = 0, steer_v = 0;
 };
 
-/// A look as plain data; for LookKind::turned, if there are arcs, each look is at the nearest direction of
-/// any arc, whatever the limits of `plain`.
+/// A look as plain data; for LookKind::turned and steered, if there are arcs, each look is at the nearest
+/// direction of any arc, whatever the limits of `plain`.
 struct ArcLook {
   RadarLook plain;
   const LookArc* arcs = nullptr;
@@ -188,8 +188,13 @@ EMSCAPE_HD inline Aim aimAt(const RadarLook& look, const Vec3f& target) {
 /// The same for a look that may have arcs.
 EMSCAPE_HD inline Aim aimAt(const ArcLook& look, const Vec3f& target) {
   Aim aim = aimAt(look.plain, target);
-  if (look.arc_count == 0 || look.plain.kind != LookKind::turned) return aim;
+  if (look.arc_count == 0 || look.plain.kind == LookKind::held) return aim;
   const AimAngles nearest = nearestOf(look.arcs, look.arc_count, anglesOf(target));
+  if (look.plain.kind == LookKind::steered) {
+    aim.steer_u = nearest.sin_azimuth * nearest.cos_elevation;
+    aim.steer_v = nearest.sin_elevation;
+    return aim;
+  }
   aim.cos_azimuth = nearest.cos_azimuth;
   aim.sin_azimuth = nearest.sin_azimuth;
   aim.cos_elevation = nearest.cos_elevation;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <vector>
 
 #include "propagation/parabolic_equation/air/refractivity_field.h"
 #include "propagation/registry/model_info.h"
@@ -60,10 +61,10 @@ auto membersOf(const DetectionCurveView& curve) {
 }
 
 auto membersOf(const ClutterTask& clutter) {
-  const auto& [surface, rain, rain_octaves_per_m, rain_top_m, sea_level_m, elevation_width_rad,
-               curvature_per_m] = clutter;
-  return std::tie(surface, rain, rain_octaves_per_m, rain_top_m, sea_level_m, elevation_width_rad,
-                  curvature_per_m);
+  const auto& [surface, rain, rain_octaves_per_m, rain_top_m, sea_level_m, curvature_per_m, below] = clutter;
+  return std::make_tuple(surface, rain, rain_octaves_per_m, rain_top_m, sea_level_m, curvature_per_m,
+                         below.reach_rad,
+                         std::vector<float>(below.log2_odds, below.log2_odds + PowerBelow::kNodes));
 }
 auto membersOf(const ClutterMapInputs& map) {
   const auto& [land_gamma_db, sea_state, range_cell_m, azimuths] = map;

@@ -59,7 +59,7 @@ IntervalBeam intervalBeam(const scenario::Scenario& scenario, const Emitter& emi
   if (stays(sweep)) {
     beam.looks = intervalLooks(scenario, emitter, t_s, sweep, 0);
     beam.pose = state.beam;
-    beam.look_frame = state.mount;
+    beam.look_frame = sweepFrame(emitter, state);
     if (interval.kind == IntervalKind::mean) {
       beam.power_share = 0;
       for (const SweptArc& arc : sweep.arcs) beam.power_share += arc.share;

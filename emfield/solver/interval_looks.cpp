@@ -195,6 +195,27 @@ std::vector<PassedArc> lastPasses(std::vector<scenario::TimedPass> passes, doubl
   return last;
 }
 
+/// The directions of a sweep's dwells: those of a turning antenna are arcs without width.
+std::vector<LookArc> dwellDirections(const ScanSweep& sweep) {
+  std::vector<std::pair<double, double>> angles_deg;
+  for (const SweptArc& arc : sweep.arcs) angles_deg.push_back({arc.first_deg, arc.elevation_deg});
+  for (const scenario::SweptDwell& dwell : sweep.dwells)
+    angles_deg.push_back({dwell.azimuth_deg, dwell.elevation_deg});
+  std::sort(angles_deg.begin(), angles_deg.end());
+  angles_deg.erase(std::unique(angles_deg.begin(), angles_deg.end()), angles_deg.end());
+  std::vector<LookArc> directions;
+  for (const auto& [azimuth_deg, elevation_deg] : angles_deg) {
+    LookArc arc;
+    arc.cos_middle = static_cast<float>(std::cos(degToRad(azimuth_deg)));
+    arc.sin_middle = static_cast<float>(std::sin(degToRad(azimuth_deg)));
+    arc.cos_azimuth = 1;
+    arc.sin_lowest = arc.sin_highest = static_cast<float>(std::sin(degToRad(elevation_deg)));
+    arc.cos_lowest = arc.cos_highest = static_cast<float>(std::cos(degToRad(elevation_deg)));
+    directions.push_back(arc);
+  }
+  return directions;
+}
+
 /// Number of cycles of the dwells in the active time of an interval; each cycle is one look in every
 /// direction.
 float dwellLooks(const scenario::ScanSpec& scan, double active_s) {
@@ -237,6 +258,7 @@ IntervalLooks intervalLooks(const scenario::Scenario& scenario, const Emitter& e
   IntervalLooks looks;
   if (scan.kind == ScanKind::dwell_list) {
     looks.everywhere = dwellLooks(scan, scenario::activeTime_s(emitter, t_s, duration_s));
+    looks.arcs.directions = dwellDirections(sweep);
     return looks;
   }
   const bool is_still = stays(sweep);

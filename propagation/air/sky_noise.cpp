@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emscape/base/units.h"
 #include "propagation/air/gases.h"
 
 namespace emscape::propagation {
@@ -12,6 +13,17 @@ constexpr double kGround_k = 290;
 constexpr double kGroundShare = 0.124;
 constexpr double kCosmic_k = 2.7;
 constexpr double kEarth_m = 6371e3;
+
+/// Places and weights of Gauss and Legendre's rule from -1 to 1.
+/// @see Abramowitz and Stegun, Handbook of Mathematical Functions, table 25.4
+struct Node {
+  double place, weight;
+};
+constexpr Node kGaussLegendre8[] = {
+    {-0.960289856497536, 0.101228536290376}, {-0.796666477413627, 0.222381034453374},
+    {-0.525532409916329, 0.313706645877887}, {-0.183434642495650, 0.362683783378362},
+    {0.183434642495650, 0.362683783378362},  {0.525532409916329, 0.313706645877887},
+    {0.796666477413627, 0.222381034453374},  {0.960289856497536, 0.101228536290376}};
 
 double galaxy_k(double frequency_hz) {
   constexpr double kLast_mhz = 100;  // of P.372-16 eq. (13)
@@ -52,9 +64,29 @@ double skyTemperature_k(double frequency_hz, double elevation_rad, const Atmosph
   return temperature_k + transmission * (galaxy_k(frequency_hz) + kCosmic_k);
 }
 
-double antennaTemperature_k(double frequency_hz, double elevation_rad, const Atmosphere& atmosphere) {
-  return (1 - kGroundShare) * skyTemperature_k(frequency_hz, elevation_rad, atmosphere) +
-         kGroundShare * kGround_k;
+double antennaTemperature_k(double frequency_hz, double elevation_rad, double beamwidth_rad,
+                            const Atmosphere& atmosphere) {
+  constexpr double kReach = 2.5;  // of the beam, in standard deviations
+  const double deviation_rad = std::min(beamwidth_rad, kPi / 3) / std::sqrt(8 * std::log(2.0));
+  const double first_rad = std::max(elevation_rad - kReach * deviation_rad, 0.0);
+  const double last_rad = elevation_rad + kReach * deviation_rad;
+  const auto shareBelow = [&](double angle_rad) {
+    return 0.5 * std::erfc((elevation_rad - angle_rad) / (std::sqrt(2.0) * deviation_rad));
+  };
+  double beam_k = kGround_k, of_sky = 0, weights = 0;
+  if (last_rad > first_rad) {
+    for (const auto& [place, weight] : kGaussLegendre8) {
+      const double angle_rad = first_rad + (last_rad - first_rad) * (place + 1) / 2;
+      const double off = (angle_rad - elevation_rad) / deviation_rad;
+      const double here = weight * std::exp(-off * off / 2);
+      const double from_level_rad = std::min(angle_rad, kPi - angle_rad);  // beyond the zenith
+      of_sky += here * skyTemperature_k(frequency_hz, from_level_rad, atmosphere);
+      weights += here;
+    }
+    const double ground = shareBelow(0);
+    beam_k = ground * kGround_k + (1 - ground) * of_sky / weights;
+  }
+  return (1 - kGroundShare) * beam_k + kGroundShare * kGround_k;
 }
 
 }  // namespace emscape::propagation

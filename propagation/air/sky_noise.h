@@ -14,9 +14,13 @@ namespace emscape::propagation {
 /// @param elevation_rad  0..pi/2 from sea level; below the horizon the result is that of the ground, 290 K
 double skyTemperature_k(double frequency_hz, double elevation_rad, const Atmosphere& atmosphere);
 
-/// Noise temperature (K) of an antenna by the elevation of its main beam: the sky there, and the ground at
-/// 290 K with a fraction of 0.124 of its pattern. The fraction is that of Blake's T_a = (0.876 T_sky - 254) /
-/// L + 290 (citation not checked).
-double antennaTemperature_k(double frequency_hz, double elevation_rad, const Atmosphere& atmosphere);
+/// Noise temperature (K) of an antenna: of a fraction of 0.876 of its pattern the mean of sky and ground over
+/// the main beam, a Gaussian one about its elevation over a level horizon; of the rest, its side lobes, the
+/// ground at 290 K. The fraction is that of Blake's T_a = (0.876 T_sky - 254) / L + 290 (citation not
+/// checked).
+/// @param elevation_rad  of the beam's axis, -pi/2..pi/2
+/// @param beamwidth_rad  half-power width in elevation, > 0; taken as 60 degrees if it is more
+double antennaTemperature_k(double frequency_hz, double elevation_rad, double beamwidth_rad,
+                            const Atmosphere& atmosphere);
 
 }  // namespace emscape::propagation

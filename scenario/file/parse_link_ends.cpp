@@ -39,7 +39,7 @@ PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Pla
     receiver.antenna = makeIsotropic(section.number("gain_dbi"));
   }
   receiver.scan = parseScan(section.section("scan"), receiver.antenna && receiver.antenna->is_array, context);
-  parseAntennaNoise(section, receiver.center_frequency_hz, receiver.scan, context,
+  parseAntennaNoise(section, receiver.center_frequency_hz, receiver.antenna, receiver.scan, context,
                     receiver.antenna_temperature_k);
   if (receiver.scan.kind == ScanKind::track) {
     context.problems.addWarning(

@@ -141,29 +141,63 @@ std::optional<Waveform> parseWaveform(const Section& section, ParseContext& cont
   return waveform;
 }
 
+/// Warns of a receiver whose echo over noise exceeds that of a matched filter, which is P tau / (k T) for
+/// each of the pulses that are summed coherently.
+void checkBandwidth(const Emitter& radar, const Section& receiver, ParseContext& context) {
+  constexpr double kTolerance_db = 1;
+  const bool sums = radar.clutter && radar.clutter->mti && radar.clutter->mti->kind == MtiKind::pulse_doppler;
+  const double coherent = sums ? radar.clutter->mti->pulses : 1;
+  const double excess_db = radar.receiver.processing_gain_db -
+                           ratioToDb(radar.receiver.bandwidth_hz * radar.waveform->pulse_width_s * coherent);
+  if (!(excess_db > kTolerance_db)) return;
+  const bool has_gain = receiver.has("processing_gain_db");
+  context.problems.addWarning(
+      receiver.locationOf(has_gain ? "processing_gain_db" : "bandwidth_hz"),
+      fmt::format("the echoes of '{}' are {:.1f} dB above those of a matched filter: a bandwidth of {:g} Hz, "
+                  "pulses of {:g} s and {} together allow a 'processing_gain_db' of at most {:.1f}",
+                  radar.name, excess_db, radar.receiver.bandwidth_hz, radar.waveform->pulse_width_s,
+                  sums ? fmt::format("{} of them summed coherently", coherent) : "no coherent sum",
+                  radar.receiver.processing_gain_db - excess_db));
+}
+
 /// Takes the number of integrated pulses from the waveform unless it is given, and compares it with the hits
-/// of one scan.
+/// of one scan, of which the Doppler filter uses a part.
 void matchPulses(Emitter& radar, const Section& receiver, ParseContext& context) {
   const std::optional<double> hits =
       radar.waveform && radar.antenna
           ? hitsPerScan(radar.scan, radar.antenna->beamwidth_az_deg, radar.waveform->prf_hz)
           : std::nullopt;
   int& pulses = radar.receiver.pulses;
-  if (hits && !receiver.has("pulses")) {
-    pulses = static_cast<int>(std::clamp(std::floor(*hits * (1 + 1e-9)), 1.0, 1e6));
-  } else if (hits && pulses > *hits * (1 + 1e-9)) {
-    context.problems.addWarning(
-        receiver.locationOf("pulses"),
-        fmt::format(
-            "'pulses' is {}, but one pass of the beam of '{}' gives {:.4g} hits; {} are integrated all "
-            "the same. Without 'pulses' it is the hits",
-            pulses, radar.name, *hits, pulses));
+  const Mti* const filter = radar.clutter && radar.clutter->mti ? &*radar.clutter->mti : nullptr;
+  if (hits) {
+    const double most = filter == nullptr ? *hits : filter->outputsOf(*hits);
+    if (!receiver.has("pulses")) {
+      pulses = static_cast<int>(std::clamp(std::floor(most * (1 + 1e-9)), 1.0, 1e6));
+    } else if (pulses > std::max(most, 1.0) * (1 + 1e-9)) {
+      context.problems.addWarning(
+          receiver.locationOf("pulses"),
+          fmt::format(
+              "'pulses' is {}, but one pass of the beam of '{}' gives {:.4g} hits{}; {} are integrated all "
+              "the same. Without 'pulses' it is {}",
+              pulses, radar.name, *hits,
+              filter == nullptr ? ""
+                                : fmt::format(", {:.4g} after its filter of {} pulses", most, filter->pulses),
+              pulses, filter == nullptr ? "the hits" : "those after the filter"));
+    }
+    if (filter != nullptr && filter->pulses > *hits * (1 + 1e-9)) {
+      context.problems.addWarning(
+          receiver.location(),
+          fmt::format("the Doppler filter of '{}' has {} pulses, but one pass of its beam "
+                      "gives {:.4g} hits",
+                      radar.name, filter->pulses, *hits));
+    }
   }
   if (radar.receiver.binary_threshold > pulses) {
     context.problems.addError(receiver.locationOf("binary_threshold"),
                               fmt::format("'binary_threshold' is {}, more than the {} pulses integrated",
                                           radar.receiver.binary_threshold, pulses));
   }
+  if (radar.waveform) checkBandwidth(radar, receiver, context);
 }
 
 /// The model and the settings of all models; settings of a model that is not used are an error.
@@ -454,8 +488,8 @@ int parseCarrier(const Section& section, const std::vector<Platform>& platforms,
   return -1;
 }
 
-void parseAntennaNoise(const Section& section, double frequency_hz, const ScanSpec& scan,
-                       ParseContext& context, double& antenna_temperature_k) {
+void parseAntennaNoise(const Section& section, double frequency_hz, const AntennaPtr& antenna,
+                       const ScanSpec& scan, ParseContext& context, double& antenna_temperature_k) {
   if (!section.has("antenna_noise")) return;
   if (section.has("antenna_temperature_k")) {
     context.problems.addError(section.locationOf("antenna_temperature_k"),
@@ -464,8 +498,9 @@ void parseAntennaNoise(const Section& section, double frequency_hz, const ScanSp
     context.problems.addError(section.locationOf("antenna_noise"),
                               "'antenna_noise' needs the receiver's 'center_frequency_hz'");
   } else {
-    antenna_temperature_k =
-        propagation::antennaTemperature_k(frequency_hz, degToRad(scan.elevation_deg), context.atmosphere);
+    antenna_temperature_k = propagation::antennaTemperature_k(
+        frequency_hz, degToRad(scan.elevation_deg), degToRad(antenna ? antenna->beamwidth_el_deg : 180.0),
+        context.atmosphere);
   }
 }
 
@@ -497,7 +532,7 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   if (section.has("receiver")) {
     const Section receiver = section.section("receiver");
     emitter.receiver = parseReceiver(receiver, context);
-    parseAntennaNoise(receiver, emitter.frequency_hz, emitter.scan, context,
+    parseAntennaNoise(receiver, emitter.frequency_hz, emitter.antenna, emitter.scan, context,
                       emitter.receiver.antenna_temperature_k);
     matchPulses(emitter, receiver, context);
   }

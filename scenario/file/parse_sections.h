@@ -71,8 +71,9 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
 /// Sets the noise temperature of an antenna if its receiver requests that of the sky (antenna_noise).
 /// @param section       of the receiver
 /// @param frequency_hz  0: unknown, which is a problem
-void parseAntennaNoise(const Section& section, double frequency_hz, const ScanSpec& scan,
-                       ParseContext& context, double& antenna_temperature_k);
+/// @param antenna       null: faulty
+void parseAntennaNoise(const Section& section, double frequency_hz, const AntennaPtr& antenna,
+                       const ScanSpec& scan, ParseContext& context, double& antenna_temperature_k);
 
 /// The common values of receivers with and without a platform.
 ReceiverProfile parseReceiverProfile(const Section& section);

@@ -9,4 +9,8 @@ double landGammaDb(LandKind kind, double frequency_hz) {
   return kAt10GHz_db[static_cast<int>(kind)] + 5 * std::log10(frequency_hz / 10e9);
 }
 
+double Mti::outputsOf(double hits) const {
+  return kind == MtiKind::canceller ? hits - pulses + 1 : hits / pulses;
+}
+
 }  // namespace emscape::scenario

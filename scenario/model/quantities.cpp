@@ -25,7 +25,8 @@ const std::vector<QuantityInfo>& quantityTable() {
       {Quantity::dominant_emitter, "dominant_emitter", "", QuantityKind::of_emitters,
        "index of the emitter with the largest power density", true},
       {Quantity::mean_power_density_dbwm2, "mean_power_density_dbwm2", "dBW/m2", QuantityKind::of_emitters,
-       "power density averaged over the radars' pulses and pauses"},
+       "power density averaged over the radars' pulses and pauses; over an interval of kind mean also over "
+       "their scans"},
       {Quantity::sclnr_db, "sclnr_db", "dB", QuantityKind::of_radars,
        "best radar's single-pulse echo over noise and the clutter of land, sea and rain, after its Doppler "
        "filter"},
@@ -58,6 +59,7 @@ bool hasInterval(const QuantityInfo& quantity, IntervalKind interval) {
       return !quantity.needs_jammer && quantity.quantity != Quantity::sinr_db;
     case IntervalKind::mean:
       return quantity.quantity == Quantity::power_density_dbwm2 ||
+             quantity.quantity == Quantity::mean_power_density_dbwm2 ||
              quantity.quantity == Quantity::field_strength_dbuvm ||
              quantity.quantity == Quantity::received_power_dbm;
     case IntervalKind::cumulative:

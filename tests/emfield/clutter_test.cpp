@@ -106,6 +106,89 @@ TEST(Beam, HasTheWidthsOfItsTwoWayPower) {
   EXPECT_NEAR(all_round.azimuth_rad * all_round.elevation_rad, 4 * kPi, 1e-4);
 }
 
+/// Rain's clutter over noise of a beam along an axis, per that of rain all round.
+double partInRain(const scenario::Antenna& antenna, const Aim& aim, double axis_elevation_rad,
+                  double top_elevation_rad) {
+  constexpr float kRange_m = 20e3f;
+  ClutterTask task;
+  task.rain = kRange_m * kRange_m;
+  task.rain_top_m = kRange_m * static_cast<float>(std::sin(top_elevation_rad));
+  task.sea_level_m = -1e6f;
+  task.below = clutterBeam(antenna).below;
+  EmitterBeam beam;
+  beam.forward = {0, static_cast<float>(std::cos(axis_elevation_rad)),
+                  static_cast<float>(std::sin(axis_elevation_rad))};
+  beam.right = {1, 0, 0};
+  beam.up = {0, -beam.forward.z, beam.forward.y};
+  beam.pattern = antenna.view();
+  return static_cast<double>(rainToNoise(task, beam, aim, kRange_m));
+}
+
+TEST(RainClutter, AboveItsTopIsThatOfTheTwoWayPatternBelow) {
+  constexpr double kWidth_deg = 2;
+  const scenario::AntennaPtr antenna = scenario::makeGaussian(35, kWidth_deg, kWidth_deg, -80);
+  // The two-way power of a Gaussian beam has a standard deviation of 0.3003 half-power widths.
+  const double deviation_deg = kWidth_deg / std::sqrt(16 * std::log(2.0));
+  for (double above = -1; above <= 1; above += 0.125) {
+    const double axis_deg = 5, top_deg = axis_deg - above * kWidth_deg;
+    const double part = 0.5 * std::erfc(above * kWidth_deg / deviation_deg / std::sqrt(2.0));
+    EXPECT_NEAR(ratioToDb(partInRain(*antenna, Aim{}, degToRad(axis_deg), degToRad(top_deg))),
+                ratioToDb(part), 0.1)
+        << above << " beamwidths above the rain";
+  }
+  EXPECT_NEAR(partInRain(*scenario::makeIsotropic(), Aim{}, 0, degToRad(30.0)), 0.75, 1e-3);
+}
+
+TEST(RainClutter, OfASteeredArrayEqualsTheIntegralOverItsPattern) {
+  const scenario::AntennaPtr array = scenario::makePhasedArray(33, 40, 20, 0.5, 1.2);
+  const auto solidAngle = [&](double steer_u) {  // of the two-way power, along the sines of both angles
+    constexpr int kSteps = 1200;
+    constexpr double kReach = 0.3;
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+      for (int j = 0; j < kSteps; ++j) {
+        const double u = steer_u + kReach * (2 * (i + 0.5) / kSteps - 1),
+                     v = kReach * (2 * (j + 0.5) / kSteps - 1);
+        const double ahead2 = 1 - u * u - v * v;
+        if (ahead2 <= 1e-6) continue;
+        const double ahead = std::sqrt(ahead2);
+        sum += std::pow(array->amplitudeTowards({ahead, u, v}, steer_u, 0), 4) / ahead;
+      }
+    }
+    return sum * std::pow(2 * kReach / kSteps, 2);
+  };
+  const double broadside = solidAngle(0), alone = partInRain(*array, Aim{}, 0, kPi / 2);
+  for (const double azimuth_deg : {15.0, 30.0, 45.0, 60.0}) {
+    Aim aim;
+    aim.steer_u = static_cast<float>(std::sin(degToRad(azimuth_deg)));
+    const double ratio = partInRain(*array, aim, 0, kPi / 2) / alone;
+    EXPECT_NEAR(ratioToDb(ratio / (solidAngle(std::sin(degToRad(azimuth_deg))) / broadside)), 0, 0.15)
+        << azimuth_deg;
+  }
+}
+
+TEST(SurfaceClutter, OfASteeredArrayIsWiderByTheCosine) {
+  // Without elements' patterns echo and clutter fall alike but for the width of the beam.
+  const scenario::AntennaPtr array = scenario::makePhasedArray(33, 40, 20, 0.5, 0);
+  struct OneCell {
+    ClutterCell cellAt(float, float) const { return {1, 0}; }
+  };
+  ClutterTask task;
+  task.surface = 1;
+  EmitterBeam beam;
+  beam.forward = {0, 1, 0};
+  beam.right = {1, 0, 0};
+  beam.up = {0, 0, 1};
+  beam.pattern = array->view();
+  for (const double azimuth_deg : {0.0, 30.0, 60.0}) {
+    Aim aim;
+    aim.steer_u = static_cast<float>(std::sin(degToRad(azimuth_deg)));
+    const auto found = static_cast<double>(
+        surfaceToNoise<scenario::PatternKind::phased_array>(task, OneCell{}, beam, aim, 10e3f));
+    EXPECT_NEAR(ratioToDb(found), -ratioToDb(std::cos(degToRad(azimuth_deg))), 0.01) << azimuth_deg;
+  }
+}
+
 // ---- the map
 // -----------------------------------------------------------------------------------------------
 

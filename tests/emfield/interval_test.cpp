@@ -522,6 +522,48 @@ TEST_P(Intervals, CountCyclesOfDwellsInActiveTimes) {
     EXPECT_NEAR(thrice[v], 1 - std::pow(1 - once[v], 3), 1e-5) << v;
 }
 
+TEST_P(Intervals, DetectAwayFromAllDwellsOnlyByTheNearestDwellsBeam) {
+  ScanSpec scan;
+  scan.kind = ScanKind::dwell_list;
+  scan.dwells = {{-20, 3, 0.4}, {10, 3, 0.3}, {35, 3, 0.3}};
+  for (const bool is_array : {false, true}) {
+    const auto scenario = radarAround(scan);
+    Emitter& radar = scenario->emitters[0];
+    radar.antenna =
+        is_array ? scenario::makePhasedArray(30, 24, 24, 0.5, 1, -60) : scenario::makeGaussian(30, 4, 4, -60);
+    radar.power_w = 6e4;
+    const UnsetVector<float> held = overInterval(scenario, IntervalKind::max_hold, 1.0);
+    std::vector<float> largest(held.size(), 0);
+    for (const scenario::Dwell& dwell : scan.dwells) {  // each alone, the beam as the scan has it
+      const auto one = radarAround(scan);
+      one->emitters[0].antenna = radar.antenna;
+      one->emitters[0].power_w = radar.power_w;
+      one->emitters[0].scan.dwells = {dwell};
+      one->output.radar_look = scenario::RadarAim::scan;
+      FieldSolver solver = solverOf(one);
+      const UnsetVector<float> here = valuesOf(solver, one, kBegin_s);
+      for (std::size_t v = 0; v < held.size(); ++v) largest[v] = std::max(largest[v], here[v]);
+    }
+    int seen = 0;
+    for (std::size_t v = 0; v < held.size(); ++v) {
+      ASSERT_NEAR(held[v], largest[v], 2e-3) << v << (is_array ? ", array" : ", turning");
+      seen += largest[v] > 0.5f;
+    }
+    EXPECT_GT(seen, 10);
+  }
+}
+
+TEST_P(Intervals, MeanPowerDensityIsThatOfThePulsesTimesTheDutyCycle) {
+  auto scenario = radarAround(rotating(10));
+  scenario->emitters[0].waveform = scenario::Waveform{1000, 1e-5, {}};
+  scenario->output.floor = -300;
+  scenario->output.quantities = {"power_density_dbwm2"};
+  const UnsetVector<float> pulses = overInterval(scenario, IntervalKind::mean, 6);
+  scenario->output.quantities = {"mean_power_density_dbwm2"};
+  const UnsetVector<float> mean = overInterval(scenario, IntervalKind::mean, 6);
+  for (std::size_t v = 0; v < mean.size(); ++v) ASSERT_NEAR(mean[v], pulses[v] - 20, 1e-3) << v;
+}
+
 TEST_P(Intervals, AdjacentActiveTimesEqualOne) {
   auto scenario = radarAround(rotating(10));
   for (const IntervalKind kind : {IntervalKind::max_hold, IntervalKind::cumulative}) {

@@ -49,20 +49,37 @@ TEST(SkyNoise, RisesTowardHorizonAndEqualsGroundBelow) {
       above_k = sky_k;
     }
     EXPECT_EQ(skyTemperature_k(hz, degToRad(-1.0), {}), 290);
-    EXPECT_DOUBLE_EQ(antennaTemperature_k(hz, degToRad(-1.0), {}), 290);
+    EXPECT_NEAR(antennaTemperature_k(hz, degToRad(-2.0), degToRad(1.0), {}), 290, 0.01);
   }
   // A dark gas: at the oxygen line the sky is as warm as the air.
   EXPECT_NEAR(skyTemperature_k(60e9, kPi / 2, {}), 285, 5);
   // The share of the ground is left on a cold sky.
-  EXPECT_NEAR(antennaTemperature_k(3e9, kPi / 2, {}), 0.876 * skyTemperature_k(3e9, kPi / 2, {}) + 36, 0.1);
+  EXPECT_NEAR(antennaTemperature_k(3e9, kPi / 2, degToRad(2.0), {}),
+              0.876 * skyTemperature_k(3e9, kPi / 2, {}) + 36, 0.1);
 }
 
 TEST(SkyNoise, EqualsDocumentedTable) {
   // Rows of the table in docs/models.md.
-  const double expected_k[][4] = {{0, 100e6, 1029, 1}, {0, 3e9, 124, 1},   {1, 9.4e9, 113, 1},
-                                  {5, 16e9, 87, 1},    {30, 430e6, 59, 1}, {90, 35e9, 53, 1}};
+  const double expected_k[][4] = {{0, 100e6, 661, 1}, {0, 3e9, 197, 1},   {1, 9.4e9, 133, 1},
+                                  {5, 16e9, 88, 1},   {30, 430e6, 59, 1}, {90, 35e9, 53, 1}};
   for (const auto& [elevation_deg, frequency_hz, value_k, tolerance_k] : expected_k)
-    EXPECT_NEAR(antennaTemperature_k(frequency_hz, degToRad(elevation_deg), {}), value_k, tolerance_k);
+    EXPECT_NEAR(antennaTemperature_k(frequency_hz, degToRad(elevation_deg), degToRad(2.0), {}), value_k,
+                tolerance_k);
+}
+
+TEST(SkyNoise, ChangesSlowlyWhereTheBeamPassesTheHorizon) {
+  constexpr double kStep_deg = 0.1, kWidth_deg = 2, kSkyToGround_k = 290;
+  double before_k = antennaTemperature_k(3e9, degToRad(-6.0), degToRad(kWidth_deg), {});
+  EXPECT_NEAR(before_k, 290, 0.1);
+  for (double elevation_deg = -6 + kStep_deg; elevation_deg < 6; elevation_deg += kStep_deg) {
+    const double here_k = antennaTemperature_k(3e9, degToRad(elevation_deg), degToRad(kWidth_deg), {});
+    EXPECT_LE(here_k, before_k + 0.01) << elevation_deg;
+    EXPECT_LT(before_k - here_k, kSkyToGround_k * kStep_deg / kWidth_deg) << elevation_deg;
+    before_k = here_k;
+  }
+  // On the horizon one half of the main beam sees the ground.
+  const double on_horizon_k = antennaTemperature_k(3e9, 0, degToRad(0.2), {});
+  EXPECT_NEAR(on_horizon_k, 0.124 * 290 + 0.876 * (290 + skyTemperature_k(3e9, degToRad(0.05), {})) / 2, 3);
 }
 
 }  // namespace

@@ -88,8 +88,10 @@ receivers:
   EXPECT_EQ(scenario->atmosphere.refraction, propagation::RefractionProfile::exponential);
   propagation::Atmosphere air;
   air.vapour_g_m3 = 3;
-  EXPECT_DOUBLE_EQ(scenario->placed_receivers[0].antenna_temperature_k,
-                   propagation::antennaTemperature_k(10e9, degToRad(20.0), air));
+  EXPECT_DOUBLE_EQ(
+      scenario->placed_receivers[0].antenna_temperature_k,
+      propagation::antennaTemperature_k(
+          10e9, degToRad(20.0), degToRad(scenario->placed_receivers[0].antenna->beamwidth_el_deg), air));
 }
 
 TEST_F(LinkEnds, TheSkysNoiseNeedsAFrequencyAndNoOtherTemperature) {

@@ -93,9 +93,9 @@ TEST(RadarReceiver, TakesTheSkysNoiseAtItsOwnFrequency) {
   ASSERT_TRUE(fixed.scenario && sky.scenario);
   const Emitter& radar = sky.scenario->emitters.front();
   EXPECT_EQ(fixed.scenario->emitters.front().receiver.antenna_temperature_k, 290);
-  EXPECT_DOUBLE_EQ(
-      radar.receiver.antenna_temperature_k,
-      propagation::antennaTemperature_k(radar.frequency_hz, degToRad(radar.scan.elevation_deg), {}));
+  EXPECT_DOUBLE_EQ(radar.receiver.antenna_temperature_k,
+                   propagation::antennaTemperature_k(radar.frequency_hz, degToRad(radar.scan.elevation_deg),
+                                                     degToRad(radar.antenna->beamwidth_el_deg), {}));
   EXPECT_LT(radar.receiver.antenna_temperature_k, 200);
 }
 
@@ -117,6 +117,45 @@ TEST(Waveform, PulsesThatAreGivenStayAndMoreThanTheHitsAreAWarning) {
   EXPECT_EQ(more.scenario->emitters.front().receiver.pulses, 20);
   EXPECT_THAT(problems(more),
               HasSubstr("'pulses' is 20, but one pass of the beam of 'search' gives 15 hits"));
+}
+
+/// The warnings about the echoes and pulses of a radar with a Doppler filter, and its integrated pulses.
+std::pair<int, std::string> filtered(const std::string& receiver_keys, const std::string& mti) {
+  const ParseResult result = parsed(
+      receiver_keys, "{prf_hz: 1280, pulse_width_s: 1.0e-6}\n    clutter: {land: woods, mti: " + mti + "}");
+  std::string warnings;
+  for (const Problem& problem : result.problems) {
+    if (problem.message.find("sweeps") == std::string::npos) warnings += problem.message + "\n";
+  }
+  EXPECT_TRUE(result.scenario) << warnings;
+  return {result.scenario ? result.scenario->emitters.front().receiver.pulses : -1, warnings};
+}
+
+TEST(Waveform, PulsesOfADopplerFilterAreNotIntegratedAgain) {
+  // 64 hits: one coherent sum of 64 pulses, four of 16, or 62 outputs of a canceller of three.
+  const std::string coherent_64 = ", processing_gain_db: 18";
+  EXPECT_EQ(filtered(coherent_64, "{kind: pulse_doppler, pulses: 64}"), std::make_pair(1, std::string()));
+  EXPECT_EQ(filtered("", "{kind: pulse_doppler, pulses: 16}"), std::make_pair(4, std::string()));
+  EXPECT_EQ(filtered("", "{kind: canceller, pulses: 3}"), std::make_pair(62, std::string()));
+  EXPECT_EQ(filtered(", pulses: 4", "{kind: pulse_doppler, pulses: 16}").second, "");
+  EXPECT_THAT(filtered(", pulses: 64", "{kind: pulse_doppler, pulses: 16}").second,
+              HasSubstr("gives 64 hits, 4 after its filter of 16 pulses; 64 are integrated all the same"));
+  EXPECT_THAT(filtered("", "{kind: pulse_doppler, pulses: 100}").second,
+              HasSubstr("filter of 'search' has 100 pulses, but one pass of its beam gives 64 hits"));
+}
+
+TEST(Waveform, EchoesAboveAMatchedFilterAreAWarning) {
+  const auto warned = [](const std::string& keys, const std::string& mti) {
+    return filtered(keys, mti).second;
+  };
+  // 1 MHz and 1 us are matched; 16 pulses summed coherently allow 12.04 dB.
+  EXPECT_EQ(warned(", processing_gain_db: 12", "{kind: pulse_doppler, pulses: 16}"), "");
+  EXPECT_THAT(warned(", processing_gain_db: 15", "{kind: pulse_doppler, pulses: 16}"),
+              HasSubstr("3.0 dB above those of a matched filter"));
+  EXPECT_THAT(warned(", processing_gain_db: 15", "{kind: pulse_doppler, pulses: 16}"),
+              HasSubstr("a 'processing_gain_db' of at most 12.0"));
+  EXPECT_THAT(warned(", processing_gain_db: 12", "{kind: canceller, pulses: 3}"),
+              HasSubstr("12.0 dB above those of a matched filter"));
 }
 
 TEST(Waveform, IsRefusedWherePulsesOverlapOrMissTheirCount) {

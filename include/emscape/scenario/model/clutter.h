@@ -44,6 +44,11 @@ struct Mti {
   double surface_spread_mps = 0;
   double rain_spread_mps = 0;
   std::optional<double> improvement_limit_db;  ///< by the radar's instability; none: no limit
+
+  /// Pulses that leave the filter and are left to integrate: hits - N + 1 of a canceller, hits / N coherent
+  /// sums of a pulse Doppler filter. Below 1: the hits do not fill the filter.
+  /// @param hits  on a target in one pass of the beam, > 0
+  double outputsOf(double hits) const;
 };
 
 /// At least one of land, sea and rain.
