@@ -27,6 +27,15 @@ bool isAgainstClutter(Quantity quantity) {
 }
 
 /// The task of a radar in a channel of a radar quantity, without the look.
+/// The ranges in which a radar can detect.
+HeardRanges heardRanges(const scenario::Waveform& waveform) {
+  HeardRanges heard;
+  heard.farthest_m = static_cast<float>(waveform.farthestDetection_m());
+  heard.repeat_m = static_cast<float>(waveform.unambiguousRange_m());
+  heard.pulse_m = static_cast<float>(waveform.minRange_m());
+  return heard;
+}
+
 RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Scenario& scenario) {
   const scenario::OutputSpec& output = scenario.output;
   RadarTask task;
@@ -40,6 +49,10 @@ RadarTask radarTask(Quantity quantity, const Emitter& radar, const scenario::Sce
   task.look = lookOf(radar, looks_at_scan && is_instant ? output.radar_look : scenario::RadarAim::target);
   task.is_cumulative = output.interval.kind == scenario::IntervalKind::cumulative;
   const double processing = dbToRatio(radar.receiver.processing_gain_db);
+  const bool is_detection =
+      quantity == Quantity::detection_probability || quantity == Quantity::detection_age_s;
+  if (is_detection && radar.waveform && radar.waveform->limits_detection)
+    task.heard = heardRanges(*radar.waveform);
   switch (quantity) {
     case Quantity::detection_probability:
       task.measure = RadarMeasure::detection;

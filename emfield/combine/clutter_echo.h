@@ -117,6 +117,15 @@ EMSCAPE_HD inline float clutterToNoise(const ClutterTask& task, const Map& map, 
          (task.rain > 0 ? rainToNoise(task, beam, aim, range_m) : 0.0f);
 }
 
+/// Slant range (m) of a voxel, at least kMinDistance_m.
+template <class Geometry>
+EMSCAPE_HD inline float slantRange_m(const Geometry& geometry, std::size_t column, float t_m) {
+  const float along_m = t_m - geometry.nearest_t_m[column];
+  const float distance2 = geometry.offset2_m2[column] + along_m * along_m;
+  constexpr float kMin2 = kMinDistance_m * kMinDistance_m;
+  return std::sqrt(distance2 > kMin2 ? distance2 : kMin2);
+}
+
 /// The aim of a radar at a voxel, and the voxel's slant range.
 struct AimedVoxel {
   Aim aim;
@@ -126,10 +135,7 @@ template <class Look>
 EMSCAPE_HD inline AimedVoxel aimedVoxel(const Look& look, const EmitterBeam& beam, std::size_t column,
                                         float t_m) {
   const Vec3f target = inAntennaFrame(beam, directRay(beam.geometry, column, t_m));
-  const float along_m = t_m - beam.geometry.nearest_t_m[column];
-  const float distance2 = beam.geometry.offset2_m2[column] + along_m * along_m;
-  constexpr float kMin2 = kMinDistance_m * kMinDistance_m;
-  return {aimAt(look, target), std::sqrt(distance2 > kMin2 ? distance2 : kMin2)};
+  return {aimAt(look, target), slantRange_m(beam.geometry, column, t_m)};
 }
 
 }  // namespace emscape::emfield

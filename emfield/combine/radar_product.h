@@ -43,6 +43,22 @@ struct JammerAtRadar {
   float direct_amplitude = 1, reflected_amplitude = 1;
 };
 
+/// Slant ranges from which a radar's echoes arrive while it listens, as plain data; by default all.
+struct HeardRanges {
+  float farthest_m = 1e30f;
+  float repeat_m = 1e30f;  ///< c / (2 PRF)
+  float pulse_m = 1e-30f;  ///< c tau / 2
+
+  EMSCAPE_HD bool isLimited() const { return farthest_m < 1e30f || repeat_m < 1e30f; }
+  /// Amplitude (0..1) of an echo after the filter matched to the whole pulse, by the part of the pulse that
+  /// arrives between transmissions.
+  EMSCAPE_HD float amplitudeOf(float range_m) const {
+    const float from_pulse_m = std::fabs(range_m - repeat_m * std::floor(range_m / repeat_m + 0.5f));
+    const float part = from_pulse_m < pulse_m ? from_pulse_m / pulse_m : 1.0f;
+    return range_m <= farthest_m ? part : 0.0f;
+  }
+};
+
 /// A radar's contribution to a channel, as plain data.
 struct RadarTask {
   RadarMeasure measure = RadarMeasure::root_of_signal_to_noise;
@@ -58,6 +74,7 @@ struct RadarTask {
   float lowest = 0, ceiling = 1e30f;
   DetectionCurveView curve;  ///< detection and its age
   ClutterTask clutter;
+  HeardRanges heard;  ///< of detection and its age
   const JammerAtRadar* jammers = nullptr;
   int jammer_count = 0;
 };
@@ -193,9 +210,9 @@ struct RadarPass {
   ClutterMapView clutter_map;        ///< without cells: no surface clutter
 };
 
-/// True if a pass has no reflected rays, no clutter and no ages.
+/// True if a pass has no reflected rays, no clutter, no limits of range and no ages.
 inline bool isPlain(const RadarPass& pass) {
-  return !pass.has_reflected_rays && pass.task.clutter.isNone() &&
+  return !pass.has_reflected_rays && pass.task.clutter.isNone() && !pass.task.heard.isLimited() &&
          pass.task.measure != RadarMeasure::detection_age;
 }
 
@@ -214,6 +231,8 @@ EMSCAPE_HD inline void addEcho(const RadarPass& pass, std::size_t column, int k)
     weight = echoWeight<kind>(look, pass.beam, column, t_m);
   }
   if (!pass.beam.geometry.excess.isEmpty()) weight *= pass.beam.geometry.excess.factor(voxel);
+  if (kAny && task.heard.isLimited())
+    weight *= task.heard.amplitudeOf(slantRange_m(pass.beam.geometry, column, t_m));
   const float root = task.echo_root * weight;
   float jamming = 0;
   for (int n = 0; n < task.jammer_count; ++n) {

@@ -39,6 +39,16 @@ EMSCAPE_SIMD_CLONES void addWeighted(float factor, const float* weights, int cou
   for (int i = 0; i < count; ++i) sum[i] += factor * weights[i];
 }
 
+/// Weights of echoes that arrive while the radar listens.
+EMSCAPE_SIMD_CLONES void limitToHeard(const RadarPass& pass, const Row& row, const float* weights,
+                                      float* out) {
+  const HeardRanges heard = pass.task.heard;
+  const EmitterBeam beam = pass.beam;
+#pragma omp simd
+  for (int i = 0; i < row.count; ++i)
+    out[i] = weights[i] * heard.amplitudeOf(slantRange_m(beam.geometry, row.column + i, row.t_m));
+}
+
 EMSCAPE_SIMD_CLONES void countLooks(const RadarPass& pass, const Row& row, float* looks) {
   const RadarTask task = pass.task;
   const EmitterBeam beam = pass.beam;
@@ -101,7 +111,11 @@ void radarCpu(const RadarPass& pass, const LookWeights& weights) {
           if (!kept.is_known) weightsOf(pass, jammer, voxel, row, out);
           return static_cast<const float*>(out);
         };
-        const float* const of_echo = weightsIn(weights.echo, nullptr, echo.data());
+        const float* of_echo = weightsIn(weights.echo, nullptr, echo.data());
+        if (pass.task.heard.isLimited()) {
+          limitToHeard(pass, row, of_echo, echo.data());
+          of_echo = echo.data();
+        }
         std::fill(jamming.begin(), jamming.end(), 0.0f);
         for (int n = 0; n < pass.task.jammer_count; ++n) {
           const JammerAtRadar& jammer = pass.task.jammers[n];

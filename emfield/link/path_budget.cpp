@@ -136,26 +136,30 @@ void addReceiverTerms(const scenario::Scenario& scenario, int emitter_index, dou
                    "dB", "", Kind::sum});
 }
 
-/// Reasons why a radar does not detect an echo from a range, whatever its strength.
+/// Why a radar detects nothing from a range, whatever its echo; empty: it may.
+std::string unheardRange(const scenario::Waveform& waveform, double range_m) {
+  if (range_m <= waveform.farthestDetection_m()) return "";
+  const bool is_instrumented = waveform.instrumented_range_m && range_m > *waveform.instrumented_range_m;
+  return fmt::format("beyond the radar's {} range of {:.1f} km",
+                     is_instrumented ? "instrumented" : "unambiguous", waveform.farthestDetection_m() / 1000);
+}
+
+/// Reasons why a radar detects less from a range than by its echo.
 std::vector<std::string> rangeWarnings(const scenario::Waveform& waveform, double range_m) {
+  const auto detection = [&](const char* applied) {
+    return waveform.limits_detection ? applied
+                                     : "detection is computed nevertheless ('limits_detection: false')";
+  };
   std::vector<std::string> warnings;
   const double eclipsed = waveform.eclipsedPart(range_m);
   if (eclipsed > 0) {
-    warnings.push_back(fmt::format(
-        "{:.0f} % of the echo arrives while the radar transmits (eclipsed); detection is computed without it",
-        100 * eclipsed));
+    const std::string part = eclipsed < 0.01 ? "less than 1 %" : fmt::format("{:.0f} %", 100 * eclipsed);
+    warnings.push_back(part + " of the echo arrives while the radar transmits (eclipsed); " +
+                       detection("detection is computed with the rest"));
   }
-  if (waveform.instrumented_range_m && range_m > *waveform.instrumented_range_m) {
-    warnings.push_back(
-        fmt::format("the point is beyond the radar's instrumented range of {:.1f} km; detection is computed "
-                    "nevertheless",
-                    *waveform.instrumented_range_m / 1000));
-  } else if (range_m > waveform.unambiguousRange_m()) {
-    warnings.push_back(
-        fmt::format("the point is beyond the radar's unambiguous range of {:.1f} km: its echo arrives after "
-                    "the next pulse",
-                    waveform.unambiguousRange_m() / 1000));
-  }
+  const std::string unheard = unheardRange(waveform, range_m);
+  if (!unheard.empty())
+    warnings.push_back("the point is " + unheard + "; " + detection("nothing is detected there"));
   return warnings;
 }
 
@@ -361,6 +365,8 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
         geometry.slant_range_m, geometry.far_field_m));
   }
   if (with_detection && emitter.waveform) {
+    if (emitter.waveform->limits_detection)
+      budget.unheard = unheardRange(*emitter.waveform, geometry.slant_range_m);
     for (std::string& warning : rangeWarnings(*emitter.waveform, geometry.slant_range_m))
       budget.warnings.push_back(std::move(warning));
   }

@@ -28,7 +28,8 @@ class RadarPoint {
         radar_(radar),
         ray_(ray * (1 / length(ray))),
         reflection_(path.excess.reflection),
-        boresight_wm2_(dbToRatio(path.boresight_dbwm2)) {}
+        boresight_wm2_(dbToRatio(path.boresight_dbwm2)),
+        range_m_(path.geometry.slant_range_m) {}
 
   /// Accumulated value of a quantity's channel for this radar alone.
   double accumulated(const Channel& channel, const std::vector<JammerPath>& jammers) const {
@@ -67,7 +68,8 @@ class RadarPoint {
     if (!share.task.clutter.isNone()) {
       jamming += static_cast<double>(clutter_.toNoise(share.task.clutter, beamOf(share), aim));
     }
-    const double root = static_cast<double>(task.echo_root) * boresight_wm2_ * pattern_power;
+    const double root = static_cast<double>(task.echo_root) * boresight_wm2_ * pattern_power *
+                        static_cast<double>(task.heard.amplitudeOf(static_cast<float>(range_m_)));
     return static_cast<double>(
         withRadar(share.task, static_cast<float>(root), static_cast<float>(jamming), 1, 0));
   }
@@ -120,6 +122,7 @@ class RadarPoint {
   Vec3d ray_;
   std::optional<propagation::PathReflection> reflection_;
   double boresight_wm2_;
+  double range_m_;
 };
 
 RadarAtPoint::Clutter clutterAt(const RadarPoint& point, const scenario::Scenario& scenario,

@@ -102,6 +102,8 @@ std::string detectionText(const PathBudget& budget) {
   const BudgetTerm* probability = budget.find("detection_probability");
   if (probability == nullptr) return "";
   const double snr_db = budget.find("snr_db")->value;
+  if (!budget.unheard.empty())
+    return fmt::format("; a target there is not detected (SNR {:.1f} dB): it is {}", snr_db, budget.unheard);
   if (!std::isfinite(snr_db)) return "; a target there gives no echo";
   std::string ratios = fmt::format("SNR {:.1f} dB", snr_db);
   const BudgetTerm* with_clutter = budget.find("sclnr_db");

@@ -66,6 +66,10 @@ auto membersOf(const ClutterTask& clutter) {
                          below.reach_rad,
                          std::vector<float>(below.log2_odds, below.log2_odds + PowerBelow::kNodes));
 }
+auto membersOf(const HeardRanges& heard) {
+  const auto& [farthest_m, repeat_m, pulse_m] = heard;
+  return std::tie(farthest_m, repeat_m, pulse_m);
+}
 auto membersOf(const ClutterMapInputs& map) {
   const auto& [land_gamma_db, sea_state, range_cell_m, azimuths] = map;
   return std::tie(land_gamma_db, sea_state, range_cell_m, azimuths);
@@ -88,10 +92,11 @@ bool sameJammer(const JammerAtRadar& a, const JammerAtRadar& b) {
 bool sameTask(const RadarTask& a, const RadarTask& b) {
   // The jammers and the arcs are in RadarShare; sameLook() compares the look.
   const auto& [measure, reduction, look, look_arcs, look_arc_count, is_cumulative, looks, last_passes,
-               echo_root, factor, lowest, ceiling, curve, clutter, jammers, jammer_count] = a;
+               echo_root, factor, lowest, ceiling, curve, clutter, heard, jammers, jammer_count] = a;
   return measure == b.measure && reduction == b.reduction && is_cumulative == b.is_cumulative &&
          looks.everywhere == b.looks.everywhere && echo_root == b.echo_root && factor == b.factor &&
-         lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) && same(clutter, b.clutter);
+         lowest == b.lowest && ceiling == b.ceiling && same(curve, b.curve) && same(clutter, b.clutter) &&
+         same(heard, b.heard);
 }
 
 bool sameShare(const RadarShare& a, const RadarShare& b) {

@@ -130,7 +130,8 @@ RadarReceiver parseReceiver(const Section& section, ParseContext& context) {
 
 std::optional<Waveform> parseWaveform(const Section& section, ParseContext& context) {
   const Waveform waveform{section.number("prf_hz"), section.number("pulse_width_s"),
-                          section.optionalNumber("instrumented_range_m")};
+                          section.optionalNumber("instrumented_range_m"),
+                          section.optionalBoolean("limits_detection").value_or(true)};
   if (waveform.dutyCycle() >= 1) {
     context.problems.addError(
         section.locationOf("pulse_width_s"),

@@ -27,6 +27,10 @@ double Waveform::unambiguousRange_m() const {
   return kSpeedOfLight / (2 * prf_hz);
 }
 
+double Waveform::farthestDetection_m() const {
+  return std::min(instrumented_range_m.value_or(unambiguousRange_m()), unambiguousRange_m());
+}
+
 double Waveform::minRange_m() const {
   return kSpeedOfLight * pulse_width_s / 2;
 }

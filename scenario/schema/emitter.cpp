@@ -79,7 +79,12 @@ const ObjectSpec& waveformSpec() {
           required("pulse_width_s", number("s").above(0).to(1),
                    "of the transmitted pulse, before compression; shorter than 1 / prf_hz"),
           optional("instrumented_range_m", number("m").above(0).to(1e8),
-                   "beyond which the radar does not look; reports say where a point is beyond it"),
+                   "beyond which the radar does not look"),
+          optional(
+              "limits_detection", simple(ValueType::boolean),
+              "true (the default): nothing is detected beyond the instrumented and the unambiguous range, "
+              "and echoes that arrive while the radar transmits are weaker by the part that is lost; "
+              "false: detection wherever there are echoes"),
       }};
   return spec;
 }

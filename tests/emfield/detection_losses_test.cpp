@@ -135,5 +135,43 @@ TEST(PathBudget, RadarWarnsOfRangesOutsideItsPulses) {
   EXPECT_NE(warningsAt(20e3).find("unambiguous range of 15.0 km"), std::string::npos);
 }
 
+TEST(DetectionRange, EndsWithTheInstrumentedAndTheUnambiguousRange) {
+  scenario::Emitter radar = trackingRadar();
+  radar.power_w *= 1e8;
+  const auto at = [&](const scenario::Waveform& waveform, double range_m) {
+    auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
+    radar.waveform = waveform;
+    addEmitter(*scenario, middleOf(*scenario), radar);
+    return static_cast<double>(east(scenario, "detection_probability", range_m));
+  };
+  scenario::Waveform waveform{1000, 1e-6, 20e3};
+  EXPECT_GT(at(waveform, 18e3), 0.99);
+  EXPECT_EQ(at(waveform, 22e3), 0);
+  waveform.limits_detection = false;
+  EXPECT_GT(at(waveform, 22e3), 0.98);
+  waveform = scenario::Waveform{10e3, 1e-6, {}};  // unambiguous up to 15 km
+  EXPECT_GT(at(waveform, 13e3), 0.99);
+  EXPECT_EQ(at(waveform, 17e3), 0);
+}
+
+TEST(DetectionRange, InBlindRangesEqualsThatOfTheRestOfThePulse) {
+  scenario::Emitter radar = trackingRadar();
+  auto scenario = lineOfVoxels(kFarthest_m, kSpacing_m);
+  radar.waveform =
+      scenario::Waveform{5e3, 60e-6, {}};  // echoes from up to 9 km and from beyond 21 km are cut
+  addEmitter(*scenario, middleOf(*scenario), radar);
+  const Detector detector = detectorOf(radar.receiver);
+  int partial = 0;
+  for (double range_m = 1e3; range_m < 29e3; range_m += 2e3) {
+    const double snr_db = static_cast<double>(east(scenario, "snr_db", range_m));
+    const double part = 1 - radar.waveform->eclipsedPart(range_m);
+    const double expected =
+        detectionProbability(detector, detectionThreshold(detector), dbToRatio(snr_db) * part * part);
+    EXPECT_NEAR(east(scenario, "detection_probability", range_m), expected, 5e-4) << range_m;
+    partial += part < 0.9;
+  }
+  EXPECT_GT(partial, 4);
+}
+
 }  // namespace
 }  // namespace emscape::emfield

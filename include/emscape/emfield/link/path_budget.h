@@ -70,6 +70,7 @@ struct PathBudget {
   /// scan): gain of that beam towards the end of the path, relative to its maximum (dB), <= 0.
   std::optional<double> look_pattern_db;
   PathJamming jamming;  ///< of the terms of detection
+  std::string unheard;  ///< why the radar detects nothing from this range; empty: it may
   std::vector<PathObstacle> obstacles;
   propagation::PropagationModel model = propagation::PropagationModel::free_space;
   PathExcess excess;

@@ -12,11 +12,15 @@ struct Waveform {
   double prf_hz = 0;         ///< pulse repetition frequency, > 0
   double pulse_width_s = 0;  ///< as transmitted, before compression, > 0; shorter than 1 / prf_hz
   std::optional<double> instrumented_range_m;  ///< beyond which the radar does not look; none: no limit
+  /// Nothing is detected beyond farthestDetection_m(), and less in blind ranges. False: wherever echoes are.
+  bool limits_detection = true;
 
   /// Part (0..1] of the time in which the transmitter is on: mean over peak power.
   double dutyCycle() const { return prf_hz * pulse_width_s; }
   /// c / (2 PRF): echoes from beyond arrive after the next pulse.
   double unambiguousRange_m() const;
+  /// The instrumented range, at most the unambiguous one.
+  double farthestDetection_m() const;
   /// c tau / 2: echoes from nearer arrive while the pulse is transmitted.
   double minRange_m() const;
   /// Part (0..1) of the pulse's echo that arrives while the transmitter is on, and is lost.
