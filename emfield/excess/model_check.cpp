@@ -2,9 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "emfield/excess/elevation_cut.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emscape/base/error.h"
+#include "emscape/base/units.h"
+#include "propagation/parabolic_equation/air/path_air.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
@@ -17,6 +22,11 @@ using scenario::Scenario;
 
 std::string inModel(const Emitter& emitter, const std::string& model, const std::string& message) {
   return fmt::format("emitter '{}': '{}': {}", emitter.name, model, message);
+}
+
+/// Whether a radar has clutter of land and none of the sea.
+bool hasLandOnly(const Emitter& emitter) {
+  return emitter.clutter && emitter.clutter->land_gamma_db && !emitter.clutter->sea_state;
 }
 
 const SourceLocation& locationOf(InputOrigin origin, const Scenario& scenario, const Emitter& emitter) {
@@ -61,13 +71,58 @@ std::vector<std::string> pathWarnings(const Emitter& emitter, const propagation:
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   std::vector<std::string> messages = model.warningMessages(warnings);
   for (std::string& warning : model.pathWarnings(inputs)) messages.push_back(std::move(warning));
+  const bool has_ducts = emitter.propagation.model == propagation::PropagationModel::parabolic_equation &&
+                         propagation::pathAir(inputs.emitter.atmosphere, inputs.site, 0).traps();
+  if (has_ducts && emitter.clutter && emitter.clutter->hasSurface()) {
+    messages.push_back(
+        "the air has ducts, which carry the echo of a target but not that of the surface: the clutter of "
+        "land "
+        "and sea is that of standard air, and ends at its horizon; beyond, detection is too good");
+  }
   for (std::string& message : messages) message = inModel(emitter, model.name, message);
   return messages;
 }
 
-std::vector<std::string> seaWarnings(const Scenario& scenario, const Emitter& emitter, double lowest_m) {
+double partAtSeaLevel(const std::vector<float>& heights_m) {
+  constexpr float kSame_m = 0.5f;
+  std::size_t count = 0, known = 0;
+  for (const float height_m : heights_m) {
+    known += std::isnan(height_m) ? 0 : 1;
+    count += std::abs(height_m) <= kSame_m ? 1 : 0;
+  }
+  return known == 0 ? 0 : static_cast<double>(count) / static_cast<double>(known);
+}
+
+double partAtSeaLevel(const Scenario& scenario, const scenario::Terrain& terrain) {
+  if (std::none_of(scenario.emitters.begin(), scenario.emitters.end(), hasLandOnly)) return 0;
+  constexpr int kSide = 64;
+  constexpr double kDegree_m = 111.2e3;
+  const scenario::Region& region = scenario.region;
+  const double north_deg = region.size_m.y / kDegree_m;
+  const double east_deg = north_deg * region.size_m.x / region.size_m.y /
+                          std::max(0.01, std::cos(degToRad(region.origin.latitude_deg)));
+  std::vector<float> heights_m;
+  for (int j = 0; j < kSide; ++j) {
+    for (int i = 0; i < kSide; ++i) {
+      heights_m.push_back(static_cast<float>(
+          terrain.heightMsl_m(region.origin.latitude_deg + north_deg * ((j + 0.5) / kSide - 0.5),
+                              region.origin.longitude_deg + east_deg * ((i + 0.5) / kSide - 0.5))));
+    }
+  }
+  return partAtSeaLevel(heights_m);
+}
+
+std::vector<std::string> seaWarnings(const Scenario& scenario, const Emitter& emitter, double lowest_m,
+                                     double at_sea_level) {
   constexpr double kNoise_m = -2;  // heights of a calm sea in elevation files are this close to 0
+  constexpr double kWorthSaying = 0.01;
   std::vector<std::string> warnings;
+  if (hasLandOnly(emitter) && at_sea_level > kWorthSaying) {
+    warnings.push_back(fmt::format(
+        "emitter '{}': its clutter takes all ground for land, also the {:.0f} % of it that are at "
+        "mean sea level; where that is water, 'sea_state' of the clutter says so",
+        emitter.name, 100 * at_sea_level));
+  }
   if (!(lowest_m < kNoise_m)) return warnings;
   const auto warn = [&](const std::string& who, const std::string& remedy) {
     warnings.push_back(

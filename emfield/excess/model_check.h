@@ -25,9 +25,15 @@ std::vector<std::string> pathWarnings(const scenario::Emitter& emitter, const pr
                                       unsigned warnings);
 
 /// A warning if ground lies clearly below mean sea level and the emitter's model, its clutter or the ground's
-/// constants take it for sea.
+/// constants take it for sea; and one if its clutter takes ground at mean sea level for land.
 /// @param lowest_m  of the ground (above mean sea level); NaN: unknown
+/// @param at_sea_level  part of the ground that is at mean sea level, 0..1; see partAtSeaLevel()
 std::vector<std::string> seaWarnings(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
-                                     double lowest_m);
+                                     double lowest_m, double at_sea_level);
+
+/// Part of heights (m above mean sea level) that are within 0.5 m of it; 0 without heights.
+double partAtSeaLevel(const std::vector<float>& heights_m);
+/// The same of a sample of the region's ground; 0 unless some clutter is of land without sea.
+double partAtSeaLevel(const scenario::Scenario& scenario, const scenario::Terrain& terrain);
 
 }  // namespace emscape::emfield

@@ -354,7 +354,8 @@ PathBudget budgetOf(const scenario::Snapshot& snapshot, int emitter_index, const
   budget.warnings = budget.excess.warnings;
   if (terrain != nullptr) {
     const float lowest_m = *std::min_element(profile.ground_msl_m.begin(), profile.ground_msl_m.end());
-    for (std::string& warning : seaWarnings(scenario, by_model, static_cast<double>(lowest_m)))
+    for (std::string& warning :
+         seaWarnings(scenario, by_model, static_cast<double>(lowest_m), partAtSeaLevel(profile.ground_msl_m)))
       budget.warnings.push_back(std::move(warning));
   }
   if (geometry.slant_range_m < geometry.far_field_m) {

@@ -48,8 +48,10 @@ std::string pathText(const PathBudget& budget) {
                       1;
   const std::string company = others > 0 ? fmt::format(", {} more above it", others) : "";
   if (radii < 0) {
-    return fmt::format("Blocked: {} is {:.0f} m above the ray ({:.1f} Fresnel radii){}, and {}",
-                       thingAt(*decisive), -decisive->clearance_m, -radii, company, costText(loss_db));
+    return fmt::format("{}: {} is {:.0f} m above the ray ({:.1f} Fresnel radii){}, {} {}",
+                       loss_db < 0 ? "Beyond the line of sight" : "Blocked", thingAt(*decisive),
+                       -decisive->clearance_m, -radii, company, loss_db < 0 ? "yet" : "and",
+                       costText(loss_db));
   }
   if (radii < kFree_radii) {
     return fmt::format(

@@ -349,9 +349,10 @@ std::vector<std::string> FieldSolver::warnings() const {
   for (const std::string& warning : impl_->setup.warnings) ++all[warning];
   if (impl_->setup.terrain) {
     for (const std::string& warning : impl_->setup.terrain->warnings()) ++all[warning];
+    const double at_sea_level = partAtSeaLevel(*impl_->setup.scenario, *impl_->setup.terrain);
     for (const scenario::Emitter& emitter : impl_->setup.scenario->emitters) {
       for (const std::string& warning :
-           seaWarnings(*impl_->setup.scenario, emitter, impl_->setup.terrain->lowest_m()))
+           seaWarnings(*impl_->setup.scenario, emitter, impl_->setup.terrain->lowest_m(), at_sea_level))
         ++all[warning];
     }
   }

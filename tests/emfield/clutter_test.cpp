@@ -397,6 +397,24 @@ TEST_P(Clutter, IsMappedWhenAQuantityNeedsItAndKept) {
   EXPECT_EQ(update(of("sclnr_db", 2)), 1u);
 }
 
+TEST(ClutterWarnings, NameThePartOfTheGroundAtSeaLevelThatIsTakenForLand) {
+  const auto scenario =
+      emptyScenario(FrameKind::altitude, kLatitude_deg, kLongitude_deg, {40e3, 40e3, 1000}, {8, 8, 2});
+  const auto coast = std::make_shared<Ridges>([](double east_m) { return east_m > 5000 ? 0.0 : 20.0; });
+  scenario::Emitter radar = cluttered(trackingRadar());
+  radar.clutter->land_gamma_db = -15;
+  addEmitter(*scenario, middleOf(*scenario), radar);
+  scenario->output.quantities = {"sclnr_db"};
+  const auto warnings = [&] {
+    std::string all;
+    for (const std::string& warning : FieldSolver(scenario, coast, {}).warnings()) all += warning + "\n";
+    return all;
+  };
+  EXPECT_THAT(warnings(), ::testing::ContainsRegex("also the 3[78] % of it that are at mean sea level"));
+  scenario->emitters[0].clutter->sea_state = 2;
+  EXPECT_THAT(warnings(), ::testing::Not(::testing::HasSubstr("at mean sea level; where")));
+}
+
 TEST_P(Clutter, EntersDetectionAsNoise) {
   scenario::Emitter radar = cluttered(trackingRadar());
   radar.antenna = scenario::makeGaussian(kGain_dbi, 3, 40, -80);
