@@ -41,12 +41,32 @@ const SourceLocation& locationOf(InputOrigin origin, const Scenario& scenario, c
   return emitter.location;
 }
 
+/// A warning if the table of an interval's pattern is coarse for the beam; see scenario/scan/swept_antenna.h.
+std::vector<std::string> coarseIntervals(const Scenario& scenario, const Emitter& emitter) {
+  using scenario::IntervalKind;
+  using scenario::ScanKind;
+  constexpr double kStep_deg = 0.125, kWorthSaying_db = 0.1;
+  const scenario::IntervalSpec& interval = scenario.output.interval;
+  const ScanKind scan = emitter.scan.kind;
+  const bool has_table = interval.kind == IntervalKind::max_hold || interval.kind == IntervalKind::mean;
+  const bool is_grid = scan == ScanKind::sector || scan == ScanKind::raster || scan == ScanKind::dwell_list;
+  if (!has_table || !is_grid) return {};
+  const double width_deg = std::min(emitter.antenna->beamwidth_az_deg, emitter.antenna->beamwidth_el_deg);
+  const double low_db =
+      12 * std::pow(kStep_deg / 2 / width_deg, 2);  // of a Gaussian beam between two entries
+  if (low_db < kWorthSaying_db) return {};
+  return {
+      fmt::format("emitter '{}': an interval's pattern is tabulated every {} degrees, and the beam is {:g} "
+                  "degrees wide: values of the interval on its axis are up to {:.1f} dB low",
+                  emitter.name, kStep_deg, width_deg, low_db)};
+}
+
 }  // namespace
 
 std::vector<std::string> checkModel(const Scenario& scenario, const Emitter& emitter) {
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   checkElevationCut(scenario, emitter);
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = coarseIntervals(scenario, emitter);
   for (const propagation::InputFault& fault : model.check(emitterInputs(scenario, emitter))) {
     const std::string message = inModel(emitter, model.name, fault.message);
     if (fault.is_refused) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "emfield/excess/model_check.h"
 #include "emfield/solver/interval_beam.h"
 #include "emscape/base/units.h"
 #include "scenario/scan/scan_sweep.h"
@@ -562,6 +563,25 @@ TEST_P(Intervals, MeanPowerDensityIsThatOfThePulsesTimesTheDutyCycle) {
   scenario->output.quantities = {"mean_power_density_dbwm2"};
   const UnsetVector<float> mean = overInterval(scenario, IntervalKind::mean, 6);
   for (std::size_t v = 0; v < mean.size(); ++v) ASSERT_NEAR(mean[v], pulses[v] - 20, 1e-3) << v;
+}
+
+TEST(IntervalWarnings, NameTheErrorOfATableThatIsCoarseForTheBeam) {
+  ScanSpec scan;
+  scan.kind = ScanKind::sector;
+  scan.width_deg = 60;
+  scan.rate_deg_s = 20;
+  const auto warnings = [&](double width_deg, IntervalKind kind) {
+    const auto scenario = around(scenario::makeGaussian(45, width_deg, 4, -40), scan);
+    scenario->output.interval = {kind, 6.0, {}};
+    std::string all;
+    for (const std::string& warning : checkModels(*scenario)) all += warning;
+    return all;
+  };
+  EXPECT_EQ(warnings(0.8, IntervalKind::max_hold), "");
+  EXPECT_EQ(warnings(0.2, IntervalKind::instant), "");
+  EXPECT_NE(warnings(0.2, IntervalKind::max_hold).find("on its axis are up to 1.2 dB low"),
+            std::string::npos);
+  EXPECT_NE(warnings(0.5, IntervalKind::mean).find("up to 0.2 dB low"), std::string::npos);
 }
 
 TEST_P(Intervals, AdjacentActiveTimesEqualOne) {
