@@ -36,6 +36,8 @@ std::string motionInElevation(const scenario::Scenario& scenario, const scenario
     }
     case scenario::ScanKind::track:
       return "it turns onto its targets (scan: track)";
+    case scenario::ScanKind::victim:
+      return "it turns onto its victim (scan: victim)";
     case scenario::ScanKind::fixed:
     case scenario::ScanKind::rotate:
     case scenario::ScanKind::sector:

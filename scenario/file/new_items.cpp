@@ -193,6 +193,10 @@ std::vector<Edit> editsWithReferences(const Scenario& scenario, const Edit& edit
     add("emitters", scenario.emitters);
     add("receivers", scenario.placed_receivers);
     add("targets", scenario.targets);
+    for (const Emitter& emitter : scenario.emitters) {
+      if (emitter.scan.kind == ScanKind::victim && emitter.scan.victim == static_cast<int>(index))
+        edits.push_back({"emitters." + pathStep(emitter.name) + ".scan.victim", edit.value});
+    }
   }
   const char* const of_output = list == "emitters" ? "wanted_emitter" : "receiver";
   const DocumentNodePtr named = document::valueAt(scenario.source->root, {"output", of_output});
@@ -214,6 +218,12 @@ Edit editToRemove(const Scenario& scenario, const std::string& path) {
     collect(scenario.emitters);
     collect(scenario.placed_receivers);
     collect(scenario.targets);
+    for (const Emitter& emitter : scenario.emitters) {
+      if (emitter.scan.kind != ScanKind::victim || emitter.scan.victim != platform) continue;
+      throw Error(
+          ErrorCode::bad_input,
+          fmt::format("{} is the victim of '{}': give its scan another one first", found.name, emitter.name));
+    }
     if (!carried.empty()) {
       throw Error(ErrorCode::bad_input,
                   fmt::format("{} carries {}: remove these, or give them another platform, first", found.name,

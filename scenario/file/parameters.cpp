@@ -170,7 +170,7 @@ class GroupBuilder {
       // Keys instead of a number.
       if (node->kind == NodeKind::map) result.type = Parameter::Type::text;
     }
-    if (row.name == "platform") offerNames(scenario_.platforms, result);
+    if (row.name == "platform" || row.name == "victim") offerNames(scenario_.platforms, result);
     if (spec.name == "output" && row.name == "receiver") offerNames(scenario_.receivers, result);
     if (row.name == "wanted_emitter") offerNames(scenario_.emitters, result);
     if (result.titles.empty()) {

@@ -41,6 +41,11 @@ PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Pla
   receiver.scan = parseScan(section.section("scan"), receiver.antenna && receiver.antenna->is_array, context);
   parseAntennaNoise(section, receiver.center_frequency_hz, receiver.antenna, receiver.scan, context,
                     receiver.antenna_temperature_k);
+  if (receiver.scan.kind == ScanKind::victim) {
+    context.problems.addError(
+        section.section("scan").locationOf("kind"),
+        "'kind' is victim, for emitters; a receiver's antenna does not turn to a platform");
+  }
   if (receiver.scan.kind == ScanKind::track) {
     context.problems.addWarning(
         section.section("scan").locationOf("kind"),

@@ -474,19 +474,28 @@ AntennaPtr parseAntenna(const Section& section, ParseContext& context) {
   return antenna;
 }
 
-int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
-  const std::string carrier = section.text("platform");
+namespace {
+
+/// Index of the platform that a key names; -1: none, which is a problem unless the key is empty.
+int indexOfPlatform(const Section& section, const char* key, const std::vector<Platform>& platforms,
+                    ParseContext& context) {
+  const std::string wanted = section.text(key);
   std::vector<std::string> names;
   for (std::size_t i = 0; i < platforms.size(); ++i) {
-    if (platforms[i].name == carrier) return static_cast<int>(i);
+    if (platforms[i].name == wanted) return static_cast<int>(i);
     names.push_back(platforms[i].name);
   }
-  if (!carrier.empty()) {
-    context.problems.addError(
-        section.locationOf("platform"),
-        fmt::format("there is no platform '{}'{}", carrier, document::didYouMean(carrier, names)));
+  if (!wanted.empty()) {
+    context.problems.addError(section.locationOf(key), fmt::format("there is no platform '{}'{}", wanted,
+                                                                   document::didYouMean(wanted, names)));
   }
   return -1;
+}
+
+}  // namespace
+
+int parseCarrier(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
+  return indexOfPlatform(section, "platform", platforms, context);
 }
 
 void parseAntennaNoise(const Section& section, double frequency_hz, const AntennaPtr& antenna,
@@ -505,6 +514,30 @@ void parseAntennaNoise(const Section& section, double frequency_hz, const Antenn
   }
 }
 
+namespace {
+
+/// Index of the platform to which an emitter's antenna turns; -1: a problem.
+int parseVictim(const Section& section, const Emitter& emitter, const std::vector<Platform>& platforms,
+                ParseContext& context) {
+  const Section scan = section.section("scan");
+  const int victim = indexOfPlatform(scan, "victim", platforms, context);
+  if (victim >= 0 && victim == emitter.platform) {
+    context.problems.addError(
+        scan.locationOf("victim"),
+        fmt::format("'victim' is '{}', the platform of '{}' itself", scan.text("victim"), emitter.name));
+  }
+  if (emitter.kind == EmitterKind::radar) {
+    context.problems.addError(
+        scan.locationOf("kind"),
+        fmt::format("'kind' is victim, for jammers and transmitters; '{}' is a radar: track "
+                    "turns it onto its targets",
+                    emitter.name));
+  }
+  return victim;
+}
+
+}  // namespace
+
 Emitter parseEmitter(const Section& section, const std::vector<Platform>& platforms, ParseContext& context) {
   Emitter emitter;
   emitter.name = section.text("name");
@@ -522,6 +555,8 @@ Emitter parseEmitter(const Section& section, const std::vector<Platform>& platfo
   if (section.has("antenna")) emitter.antenna = parseAntenna(section.section("antenna"), context);
   const bool steers = emitter.antenna && emitter.antenna->is_array;
   emitter.scan = parseScan(section.section("scan"), steers, context);
+  if (emitter.scan.kind == ScanKind::victim)
+    emitter.scan.victim = parseVictim(section, emitter, platforms, context);
   if (emitter.scan.kind == ScanKind::track && emitter.kind != EmitterKind::radar) {
     context.problems.addWarning(
         section.section("scan").locationOf("kind"),

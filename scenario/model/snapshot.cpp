@@ -94,6 +94,22 @@ BeamPose beamPose(BeamPose pose, const AntennaPtr& antenna, const ScanSpec& scan
   return pose;
 }
 
+/// The beam along the straight line to another position; level across it.
+BeamPose poseTowards(const GeodeticPosition& from, const GeodeticPosition& to, const BeamPose& otherwise) {
+  constexpr double kLeast_m = 0.1;
+  const Vec3d ecef = toEcef(to) - toEcef(from);
+  const double latitude_rad = degToRad(from.latitude_deg), longitude_rad = degToRad(from.longitude_deg);
+  const double north_to_axis = std::sin(latitude_rad), up_to_axis = std::cos(latitude_rad);
+  const double outward = ecef.x * std::cos(longitude_rad) + ecef.y * std::sin(longitude_rad);
+  const Vec3d ray{ecef.y * std::cos(longitude_rad) - ecef.x * std::sin(longitude_rad),
+                  ecef.z * up_to_axis - outward * north_to_axis,
+                  ecef.z * north_to_axis + outward * up_to_axis};  // east, north, up
+  if (!(length(ray) > kLeast_m)) return otherwise;
+  BeamPose pose = platformAxes({0, 0, 0});
+  aim(pose, radToDeg(std::atan2(ray.x, ray.y)), radToDeg(std::atan2(ray.z, std::hypot(ray.x, ray.y))));
+  return pose;
+}
+
 BeamPose mountPose(BeamPose pose, const Emitter& emitter) {
   const ScanSpec& scan = emitter.scan;
   if (isSteered(emitter)) {
@@ -159,6 +175,10 @@ Snapshot snapshotOf(const std::shared_ptr<const Scenario>& scenario, const Inter
     state.height_msl_m = carrier.height_msl_m;
     const BeamPose axes = platformAxes(carrier.attitude);
     state.beam = beamPose(axes, emitter.antenna, emitter.scan, t_s);
+    if (emitter.scan.kind == ScanKind::victim) {
+      const PlatformState& victim = snapshot.platforms[static_cast<std::size_t>(emitter.scan.victim)];
+      state.beam = poseTowards(carrier.position, victim.position, state.beam);
+    }
     state.mount = mountPose(axes, emitter);
     snapshot.emitters.push_back(state);
   }

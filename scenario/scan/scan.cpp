@@ -59,6 +59,7 @@ BeamDirection beamAt(const ScanSpec& scan, double t_s) {
       return dwellAt(scan, t_s);
     case ScanKind::fixed:
     case ScanKind::track:
+    case ScanKind::victim:
       break;
   }
   return {scan.azimuth_deg, scan.elevation_deg, false};

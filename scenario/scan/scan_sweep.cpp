@@ -177,6 +177,7 @@ double scanCycle_s(const ScanSpec& scan) {
       return cycle_s;
     case ScanKind::fixed:
     case ScanKind::track:
+    case ScanKind::victim:
       break;
   }
   return 0;

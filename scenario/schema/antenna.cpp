@@ -86,7 +86,9 @@ const ObjectSpec& scanSpec() {
       "kind",
       {
           required("kind", choiceOf<ScanKind>(),
-                   "motion of the beam; track: a radar's antenna that turns onto its target"),
+                   "motion of the beam; track: a radar's antenna that turns onto its target; victim: an "
+                   "antenna that "
+                   "turns to a platform, such as a jammer's"),
           byDefault(
               "azimuth_deg", kAngle, 0.0,
               "off the platform's heading, clockwise: boresight; rotate: at t = 0; sector, raster: centre"),
@@ -97,6 +99,8 @@ const ObjectSpec& scanSpec() {
           required("rate_deg_s", number("deg/s").above(0).to(1e5), "azimuth speed", sweeps),
           required("elevation_step_deg", number("deg").above(0).to(90), "between bars", {"raster"}),
           required("bars", kInteger.from(1).to(1000), "sweeps stacked, from the lowest upwards", {"raster"}),
+          required("victim", kName, "platform to which the antenna turns, along the straight line",
+                   {"victim"}),
           required("dwells", listOf(object(dwellSpec()), 1, kMaxItems), "repeated", {"dwell_list"}),
       }};
   return spec;

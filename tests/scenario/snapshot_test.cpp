@@ -197,6 +197,25 @@ TEST(Snapshot, RotatingBeamIsWhereItsRateSays) {
   expectVector(snap(scenario, 1e8 + 3).emitters[0].beam.forward, {0, 1, 0});
 }
 
+TEST(Snapshot, BeamOfAVictimScanIsAlongTheLineToItsPlatform) {
+  Scenario scenario = oneEmitter(atMsl(3000));
+  scenario.platforms[0].attitude = {130, 10, -20};
+  scenario.platforms.push_back(scenario.platforms[0]);
+  scenario.platforms[1].track[0].position = {36.4, -83.6, 200.0, {}, {}};
+  ScanSpec& scan = scenario.emitters[0].scan;
+  scan.kind = ScanKind::victim;
+  scan.victim = 1;
+  const Snapshot snapshot = snap(scenario);
+  const BeamPose& pose = snapshot.emitters[0].beam;
+  const GeodeticPosition from = snapshot.platforms[0].position, to = snapshot.platforms[1].position;
+  const GeodesicInverse path =
+      geodesicInverse(from.latitude_deg, from.longitude_deg, to.latitude_deg, to.longitude_deg);
+  EXPECT_NEAR(std::atan2(pose.forward.x, pose.forward.y), path.azimuth_rad, 1e-4);
+  const double down_rad = -(2800.0 / path.distance_m + path.distance_m / (2 * 6371e3));
+  EXPECT_NEAR(std::asin(pose.forward.z), down_rad, 1e-4);
+  EXPECT_NEAR(pose.right.z, 0, 1e-12) << "level across the line";
+}
+
 TEST(Snapshot, DwellSteersAnArrayAndTurnsAnythingElse) {
   Scenario scenario = oneEmitter(atMsl(100));
   Emitter& emitter = scenario.emitters[0];

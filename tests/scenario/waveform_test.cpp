@@ -169,5 +169,37 @@ TEST(Waveform, IsRefusedWherePulsesOverlapOrMissTheirCount) {
               HasSubstr("'binary_threshold' is 16, more than the 15 pulses integrated"));
 }
 
+TEST(VictimScan, NamesAPlatformOtherThanItsOwn) {
+  const auto problems = [](const std::string& kind, const std::string& victim) {
+    const test::TemporaryFolder folder;
+    const ParseResult result = parseScenario(folder.write("s.yaml", R"(schema_version: 1
+name: victim
+region: {origin: {latitude_deg: 50, longitude_deg: 8}, size_m: [1e4, 1e4, 1e3], dims: [4, 4, 4]}
+platforms:
+  - {name: radar site, position: {latitude_deg: 50, longitude_deg: 8, height_agl_m: 10}}
+  - {name: aircraft, position: {latitude_deg: 50.01, longitude_deg: 8, height_msl_m: 900}}
+emitters:
+  - name: jammer
+    platform: aircraft
+    kind: )" + kind + R"(
+    frequency_hz: 3.0e9
+    power_w: 100
+    antenna: {pattern: gaussian, gain_dbi: 15, beamwidth_az_deg: 30, beamwidth_el_deg: 30}
+    scan: {kind: victim, victim: )" + victim + "}\n"));
+    std::string all;
+    for (const Problem& problem : result.problems) all += problem.message + "\n";
+    if (result.scenario) {
+      EXPECT_EQ(result.scenario->emitters[0].scan.victim, 0);
+    }
+    return all;
+  };
+  EXPECT_EQ(problems("jammer\n    bandwidth_hz: 1.0e6", "radar site").find("victim"), std::string::npos);
+  EXPECT_THAT(problems("transmitter", "aircraft"), HasSubstr("the platform of 'jammer' itself"));
+  EXPECT_THAT(problems("transmitter", "radar sight"),
+              HasSubstr("there is no platform 'radar sight'; did you mean"));
+  EXPECT_THAT(problems("radar", "radar site"),
+              HasSubstr("'jammer' is a radar: track turns it onto its targets"));
+}
+
 }  // namespace
 }  // namespace emscape::scenario

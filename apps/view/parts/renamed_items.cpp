@@ -23,9 +23,11 @@ std::optional<RenamedItem> renamedBy(const scenario::Edit& edit) {
 /// True if an edit gives an item's name to a key that refers to items of the list.
 bool isReference(const scenario::Edit& edit, const RenamedItem& item) {
   const std::string& path = edit.path;
-  const std::string suffix = ".platform";
-  const bool is_platform =
-      path.size() > suffix.size() && path.compare(path.size() - suffix.size(), suffix.size(), suffix) == 0;
+  const auto endsWith = [&path](const std::string& suffix) {
+    return path.size() > suffix.size() &&
+           path.compare(path.size() - suffix.size(), suffix.size(), suffix) == 0;
+  };
+  const bool is_platform = endsWith(".platform") || endsWith(".scan.victim");
   if (item.list == "platforms"
           ? !is_platform
           : path != (item.list == "emitters" ? "output.wanted_emitter" : "output.receiver"))

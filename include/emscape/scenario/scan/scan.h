@@ -11,10 +11,11 @@ namespace emscape::scenario {
 using emscape::toString;
 
 /// fixed: the beam does not move. track: a radar whose antenna turns to its target in any direction; for
-/// quantities without a target (power density, radar_look: scan) it points as if fixed.
-enum class ScanKind { fixed, rotate, sector, raster, dwell_list, track };
+/// quantities without a target (power density, radar_look: scan) it points as if fixed. victim: the antenna
+/// turns to a platform in any direction, along the straight line.
+enum class ScanKind { fixed, rotate, sector, raster, dwell_list, track, victim };
 constexpr auto namesOf(ScanKind) {
-  return std::array{"fixed", "rotate", "sector", "raster", "dwell_list", "track"};
+  return std::array{"fixed", "rotate", "sector", "raster", "dwell_list", "track", "victim"};
 }
 
 /// One position of an electronically steered beam, held for duration_s.
@@ -36,6 +37,7 @@ struct ScanSpec {
   double elevation_step_deg = 0;  ///< raster: between bars
   int bars = 1;                   ///< raster
   std::vector<Dwell> dwells;      ///< dwell_list, repeated
+  int victim = -1;                ///< victim: index of the platform
 };
 
 /// Direction of a beam (deg), relative to the platform's axes if the antenna turns. If the beam is steered
