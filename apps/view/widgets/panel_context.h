@@ -29,7 +29,8 @@ bool isPopupOpen();
 bool isKeyPressed(ImGuiKey key, bool repeats = false);
 /// The same for Enter of the main block or the keypad.
 bool isEnterPressed();
-/// A number field as wide as the next item. A text that cannot be read is refused with a notice.
+/// A number field as wide as the next item. A text that cannot be read stays in it, with the reason beside
+/// it, until another one is entered, Esc is pressed or the value changes (widgets/refusal.cpp).
 /// @return true if a number was entered: with Enter, or because the focus is lost
 bool numberField(const PanelContext& context, const char* id, double& value, const NumberForm& form);
 
