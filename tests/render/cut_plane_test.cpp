@@ -219,7 +219,8 @@ TEST(Cut, SectionIsTransparentWithoutField) {
 
 TEST(Cut, PositionsOnTheRemovedSideAreHidden) {
   Renderer renderer;
-  show(renderer, makeVolume({20, 10, 8}, {3, 5, 2}, [](int, int, int) { return 1.0F; }), fog(0.03));
+  // Without a value: sections hide nothing.
+  show(renderer, makeVolume({20, 10, 8}, {3, 5, 2}, [](int, int, int) { return 0.0F; }), fog(0.03));
   const SceneBox box = renderer.sceneBox();
   const Vec3d center = (box.lower_m + box.upper_m) * 0.5;
   const Vec3d step{0, 0, 0.1 * (box.upper_m.z - box.lower_m.z)};

@@ -201,7 +201,7 @@ TEST(Opening, DropsEditsThatNoLongerApply) {
   EXPECT_EQ(opening.options.view.edits[0].path, "emitters.radar.power_w");
   ASSERT_EQ(opening.left_out.size(), 1U);
   EXPECT_THAT(opening.left_out[0], HasSubstr("the edit emitters.gone.power_w=5 is left out"));
-  EXPECT_THAT(opening.left_out[0], HasSubstr("quick.yaml: there is no 'gone'"));
+  EXPECT_THAT(opening.left_out[0], HasSubstr("quick.yaml: there is no emitter 'gone'"));
   EXPECT_TRUE(opening.options.unsaved_edits);
 }
 
