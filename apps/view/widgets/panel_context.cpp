@@ -19,8 +19,18 @@ void perform(PanelContext& context, const char* command) {
   context.session.perform(parseCommand(std::string(command)));
 }
 
+namespace {
+int popup_frame = -2;  // the last one with an open popup
+}
+
 bool isPopupOpen() {
-  return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  const bool is_open = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  if (is_open) popup_frame = ImGui::GetFrameCount();
+  return is_open;
+}
+
+bool wasPopupOpen() {
+  return isPopupOpen() || ImGui::GetFrameCount() - popup_frame <= 1;
 }
 
 bool isKeyPressed(ImGuiKey key, bool repeats) {

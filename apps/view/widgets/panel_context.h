@@ -25,6 +25,8 @@ void sameLineIfRoom(float width, float spacing = 0);
 void perform(PanelContext& context, const char* command);
 /// True while a menu or a list is unfolded.
 bool isPopupOpen();
+/// The same, or it was in the frame before: the key that closed it is not for what is below.
+bool wasPopupOpen();
 /// True in the frame in which the key was pressed. @param repeats  also while it is held, at intervals
 bool isKeyPressed(ImGuiKey key, bool repeats = false);
 /// The same for Enter of the main block or the keypad.

@@ -18,6 +18,8 @@ struct Refused {
   ImGuiID field = 0;
   std::string text, why;
   std::string value;  ///< that the field had, as text
+  ImGuiID window = 0;
+  int frame = 0;  ///< in which the field was drawn last
 };
 
 Refused& lastRefused() {
@@ -82,6 +84,12 @@ bool isRefused(ImGuiID field) {
   return lastRefused().field == field;
 }
 
+bool hasRefusedField() {
+  const Refused& refused = lastRefused();
+  return refused.field != 0 && refused.window == ImGui::GetCurrentWindow()->RootWindow->ID &&
+         ImGui::GetFrameCount() - refused.frame <= 1;
+}
+
 bool numberField(const PanelContext& context, const char* id, double& value, const NumberForm& form) {
   static std::string typed;  // a field without the focus no longer returns it
   const ImGuiID field = ImGui::GetID(id);
@@ -89,6 +97,7 @@ bool numberField(const PanelContext& context, const char* id, double& value, con
   Refused& refused = lastRefused();
   if (refused.field == field && refused.value != shown) refused = {};  // it was changed elsewhere
   const bool is_refused = refused.field == field;
+  if (is_refused) refused.frame = ImGui::GetFrameCount();
   std::array<char, 96> text{};
   std::strncpy(text.data(), (is_refused ? refused.text : shown).c_str(), text.size() - 1);
   const std::string before = text.data();
@@ -111,7 +120,12 @@ bool numberField(const PanelContext& context, const char* id, double& value, con
     if (isRefused(field)) refused = {};
     return true;
   } catch (const Error& error) {
-    refused = {field, typed, error.message(), shown};
+    refused = {field,
+               typed,
+               error.message(),
+               shown,
+               ImGui::GetCurrentWindow()->RootWindow->ID,
+               ImGui::GetFrameCount()};
     return false;
   }
 }

@@ -18,5 +18,7 @@ void drawRefusal(const PanelContext& context, const std::string& why);
 
 /// True if the text of a field of numberField() is refused; it is drawn instead of the value.
 bool isRefused(ImGuiID field);
+/// True if a field of this window has a refused text.
+bool hasRefusedField();
 
 }  // namespace emscape::view
