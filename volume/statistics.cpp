@@ -127,6 +127,10 @@ Histogram histogramOf(const DenseVolume& volume, int bins, float lower, float up
   return {lower, upper, sums.counts, sums.below, sums.above};
 }
 
+bool holdsNothing(const VolumeInfo& info) {
+  return info.floor != kNoFloor && info.range_min == info.floor && info.range_max == info.floor;
+}
+
 void setRangeFromValues(DenseVolume& volume) {
   const float floor = volume.info.floor;
   const Range range = foldLayers(volume, Range(), [floor](Range& part, float value, bool masked) {

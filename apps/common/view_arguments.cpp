@@ -1,5 +1,6 @@
 #include "apps/common/view_arguments.h"
 
+#include <algorithm>
 #include <cstdint>
 
 #include "emscape/base/error.h"
@@ -9,9 +10,10 @@ namespace emscape::app {
 using playback::ViewSetting;
 using playback::ViewState;
 
-void ViewArguments::addTo(CLI::App& command, const std::string& but) {
+void ViewArguments::addTo(CLI::App& command, const std::vector<std::string>& but) {
   for (const ViewSetting& setting : playback::viewSettings()) {
-    if (!setting.option.empty() && setting.option != but) add(command, setting);
+    const bool is_left_out = std::find(but.begin(), but.end(), setting.option) != but.end();
+    if (!setting.option.empty() && !is_left_out) add(command, setting);
   }
 }
 

@@ -13,8 +13,8 @@ namespace emscape::app {
 /// The options of the table of settings. They have an effect only if they are given.
 class ViewArguments {
  public:
-  /// Adds the options to a command, which refers to this object. @param but  name of an option to leave out
-  void addTo(CLI::App& command, const std::string& but);
+  /// Adds the options to a command, which refers to this object. @param but  names of options to leave out
+  void addTo(CLI::App& command, const std::vector<std::string>& but);
   /// The same of some settings, by their keys.
   void addSomeTo(CLI::App& command, const std::vector<std::string>& keys);
   /// Changes a view by the options that were given. @throws Error (usage) for a value that is not allowed

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -94,7 +95,7 @@ playback::FrameSelection selectionOf(const ViewState& view, const RenderOptions&
   playback::FrameSelection selection(view);
   selection.times = options.times;
   if (selection.times.empty() && !options.realtime && isOnePicture(options.outputs)) {
-    if (options.state.empty()) {
+    if (std::isnan(view.time_s)) {
       selection.first_only = true;
     } else {
       selection.times = fmt::format("{}", view.time_s);
@@ -439,13 +440,13 @@ Examples:
                       "Write the view as a view file; --output may then be omitted");
   command->add_option("-o,--output", options->outputs,
                       "NAME.png, NAME.mp4 or a folder for frames; may be given several times");
-  options->given.addTo(*command, "--time");
+  options->given.addTo(*command, {"--time"});
   command->add_option("--interpolate", options->interpolate, "Precision of interpolated pixels")
       ->check(CLI::IsMember({"float", "8bit"}));
   command->add_option(
-      "--times", options->times,
-      "BEGIN:END:STEP, BEGIN:END or T, in seconds or UTC; default: all steps, or the first if the "
-      "only output is a .png");
+      "--times,--time", options->times,
+      "BEGIN:END:STEP, BEGIN:END or T, in seconds or UTC; default: all steps; if the only output is "
+      "a .png, the first at which an emitter is present");
   command
       ->add_option("--fps", options->frames_per_s,
                    "Frames per second of a video (default 10); with --realtime: the maximum")

@@ -203,6 +203,7 @@ bool App::isFitting() const {
 void App::handleRequests() {
   for (const std::string& file : window_.takeDropped()) session_->perform({"open", {{"file", file}}});
   if (window_.takeCloseRequest()) session_->perform({"quit"});
+  files_->is_typing = ImGui::GetIO().WantTextInput;
   if (!opener_.update(session_)) return;
   has_opened_ = true;
   shown_picture_ = 0;
@@ -218,7 +219,7 @@ bool App::panelsChanged() {
 }
 
 void App::run() {
-  session_->shown("");
+  session_->shown({});
   // Files that are being written are finished, and their errors reported, before the window closes.
   const auto ends = [this] { return quits_ || app::stopFlag(); };
   while (!ends() || session_->writing()) {

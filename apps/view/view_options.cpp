@@ -9,7 +9,9 @@
 #include "apps/common/view_arguments.h"
 #include "apps/view/commands/action.h"
 #include "apps/view/view_parser.h"
+#include "base/text/utc.h"
 #include "emscape/base/error.h"
+#include "emscape/scenario/model/clock.h"
 #include "playback/view/view_file.h"
 #include "recording/read_recording.h"
 
@@ -33,7 +35,7 @@ Exit status: 0 done, 2 usage, 3 bad input, 4 no window or device, 5 an expectati
 
 /// Options that need more than to be stored.
 struct Typed {
-  std::string state, size;
+  std::string state, size, time;
   app::ViewArguments given;
   app::StreamOptions stream;
   std::vector<scenario::Edit> edits;
@@ -50,7 +52,8 @@ void addOptions(CLI::App& app, ViewOptions& options, Typed& typed) {
       "--state", typed.state,
       "View file: camera, colours, time, edits and the rest; options on the command line override it");
   app::addSetOption(app, typed.edits);
-  typed.given.addTo(app, "--size");
+  typed.given.addTo(app, {"--size", "--time"});
+  app.add_option("--time", typed.time, playback::settingOfKey("time_s").option_help);
   typed.stream.addTo(app, "", "--emitter-database");
   app.add_option("--size", typed.size,
                  "Window size in pixels, WxH; default: 1200x900 times the scale, with --state as large as "
@@ -107,6 +110,13 @@ void takeStream(const app::StreamOptions& stream, const CLI::App& app, ViewOptio
   }
 }
 
+/// A UTC time is that of a clock that is known when the input is open. @throws Error (usage)
+void takeTime(const std::string& text, playback::ViewState& view) {
+  const bool is_utc = parseUtc_ms(text).has_value();
+  view.time_utc = is_utc ? text : "";
+  view.time_s = is_utc ? playback::ViewState().time_s : scenario::parseTime(text, {});
+}
+
 /// Sets the first view: that of --state, or the default one, changed by the given options.
 void readView(const Typed& typed, ViewOptions& options) {
   playback::ViewState view;
@@ -123,9 +133,11 @@ void readView(const Typed& typed, ViewOptions& options) {
   const std::string of_file = playback::viewStateText(view);
   playback::setInput(view, options.view);
   typed.given.apply(view);
+  if (!typed.time.empty()) takeTime(typed.time, view);
   if (view.label_scale > 0) options.fits_labels = false;
   view.edits.insert(view.edits.end(), typed.edits.begin(), typed.edits.end());
-  if (playback::viewStateText(view) != of_file || !view.transfer_file.empty()) options.state.clear();
+  if (playback::viewStateText(view) != of_file || !view.transfer_file.empty() || !view.time_utc.empty())
+    options.state.clear();
   options.view = view;
 }
 

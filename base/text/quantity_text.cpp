@@ -69,6 +69,12 @@ std::string lowered(std::string text) {
   return text;
 }
 
+std::string withoutBlanks(std::string text) {
+  text.erase(0, std::min(text.find_first_not_of(' '), text.size()));
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text;
+}
+
 double rounded(double value, int digits) {
   return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
 }
@@ -111,7 +117,8 @@ std::string readUnits(const std::string& unit) {
   const auto add = [&](const std::string& other) { text += ", " + unitSigns(other); };
   if (takesPrefix(unit)) {
     for (auto prefix = kPrefixes.rbegin(); prefix != kPrefixes.rend(); ++prefix) {
-      if (prefix->second != 1) add(prefix->first + unit);
+      const bool is_usual = prefix->second > 1 || (unit == "W" && prefix->second == 1e-3);
+      if (is_usual) add(prefix->first + unit);
     }
   }
   for (const OtherUnit& other : kOtherUnits) {
@@ -124,6 +131,25 @@ std::string readUnits(const std::string& unit) {
     if (unit == other.of && std::string(other.unit) != "dBm2") add(other.unit);
   }
   return text;
+}
+
+std::string quantityFault(const std::string& text, const std::string& units,
+                          const std::function<bool(const std::string&)>& isRead) {
+  if (const std::size_t comma = text.find(','); comma != std::string::npos) {
+    std::string other = text;
+    other[comma] = '.';
+    if (isRead(other)) return fmt::format("'{}': a decimal point is needed, {}", text, other);
+  }
+  char* rest = nullptr;
+  const double number = std::strtod(text.c_str(), &rest);
+  const bool has_digits = text.find_first_of("0123456789") < static_cast<std::size_t>(rest - text.c_str());
+  if (has_digits && std::isinf(number)) return fmt::format("'{}' is too large", text);
+  const std::string suffix = withoutBlanks(rest);
+  const bool has_unit =
+      has_digits && !suffix.empty() && suffix.find_first_of("0123456789") == std::string::npos;
+  if (has_unit && !units.empty())
+    return fmt::format("'{}': '{}' is not one of the units {}", text, suffix, units);
+  return fmt::format("'{}' is not a number{}", text, units.empty() ? "" : "; units: " + units);
 }
 
 std::string quantityText(double value, const std::string& unit, int digits) {
@@ -142,9 +168,7 @@ std::optional<double> parseQuantity(const std::string& text, const std::string& 
   char* rest = nullptr;
   const double number = std::strtod(text.c_str(), &rest);
   if (rest == text.c_str() || !std::isfinite(number)) return std::nullopt;
-  std::string suffix = rest;
-  suffix.erase(0, std::min(suffix.find_first_not_of(' '), suffix.size()));
-  suffix.erase(suffix.find_last_not_of(' ') + 1);
+  const std::string suffix = withoutBlanks(rest);
   if (suffix.empty()) return number * shown;
   if (suffix == unit || suffix == unitSigns(unit)) return number;
   if (takesPrefix(unit)) {

@@ -1,6 +1,7 @@
 /// Values with their unit, as text for people.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -20,9 +21,16 @@ PrefixedUnit prefixedUnit(double value, const std::string& unit, int digits = 6)
 /// The unit with its signs: "°" for deg, "m²" for m2. parseQuantity() reads both.
 std::string unitSigns(const std::string& unit);
 
-/// The units that parseQuantity() reads for a unit, with their signs: "s, ms, µs, ns, min, h"; empty for
-/// none.
+/// The usual ones of the units that parseQuantity() reads for a unit, with their signs: "s, ms, µs, ns, min,
+/// h"; empty for none.
 std::string readUnits(const std::string& unit);
+
+/// Why a text is not read as a number with a unit: "'1,5 MHz': a decimal point is needed, 1.5 MHz", "'1e400'
+/// is too large", "'2 kg': 'kg' is not one of the units m, km", "'much' is not a number; units: m, km".
+/// @param units   of readUnits(); may be empty
+/// @param isRead  whether another text would be read
+std::string quantityFault(const std::string& text, const std::string& units,
+                          const std::function<bool(const std::string&)>& isRead);
 
 /// "10 MW". @param unit    may be empty  @param digits  significant digits, 1..17
 std::string quantityText(double value, const std::string& unit, int digits = 6);

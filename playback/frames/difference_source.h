@@ -37,6 +37,7 @@ class DifferenceSource : public FrameSource {
   }
   std::string name() const override { return source_->name(); }
   const LoadedScenario* scene() const override { return source_->scene(); }
+  scenario::Clock clock() const override { return source_->clock(); }
   std::vector<std::string> warnings() const override {
     return compares() ? difference_.warnings(source_->warnings()) : source_->warnings();
   }

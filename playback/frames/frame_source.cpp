@@ -13,6 +13,7 @@
 #include "emscape/volume/format/file.h"
 #include "playback/frames/difference_source.h"
 #include "playback/frames/platform_tracks.h"
+#include "playback/frames/presence.h"
 #include "playback/frames/range_search.h"
 #include "playback/frames/volume_input.h"
 #include "volume/difference.h"
@@ -21,9 +22,12 @@
 namespace emscape::playback {
 namespace {
 
-std::vector<double> timesOf(const FrameSelection& selection, const scenario::Clock& clock) {
-  if (selection.first_only) return {0.0};
-  return selection.times.empty() ? scenario::timesOf(clock) : scenario::parseTimes(selection.times, clock);
+std::vector<double> timesOf(const FrameSelection& selection, const scenario::Scenario& scenario) {
+  const scenario::Clock& clock = scenario.clock;
+  if (!selection.times.empty()) return scenario::parseTimes(selection.times, clock);
+  std::vector<double> times_s = scenario::timesOf(clock);
+  if (selection.first_only) return {firstPresentTime_s(scenario, times_s)};
+  return times_s;
 }
 
 /// The one quantity that is needed: "snr_db" of the channel "snr_db:search radar".
@@ -83,7 +87,7 @@ class ComputedFrames : public FrameSource {
       : selection_(selection), mesh_(selection.mesh, input), unposed_(input) {
     emfield::FieldOptions options = fieldOptionsOf(selection, target, *input.scenario);
     options.surface = mesh_.surface();
-    series_ = std::make_unique<FieldSeries>(input, timesOf(selection, input.scenario->clock), options, stop);
+    series_ = std::make_unique<FieldSeries>(input, timesOf(selection, *input.scenario), options, stop);
     channelOf(series_->channels(), selection.quantity);  // throws if there is none
   }
 
@@ -92,6 +96,7 @@ class ComputedFrames : public FrameSource {
   bool isContinuous() const override { return true; }
   std::string name() const override { return series_->input().scenario->name; }
   const LoadedScenario* scene() const override { return &series_->input(); }
+  scenario::Clock clock() const override { return series_->input().scenario->clock; }
   std::vector<std::string> warnings() const override { return series_->warnings(); }
 
   std::optional<Frame> withoutField(double time_s) override {
@@ -116,7 +121,7 @@ class ComputedFrames : public FrameSource {
   }
 
   void setScenario(std::shared_ptr<const scenario::Scenario> scenario) override {
-    std::vector<double> times_s = timesOf(selection_, scenario->clock);
+    std::vector<double> times_s = timesOf(selection_, *scenario);
     LoadedScenario edited = withScenario(unposed_, std::move(scenario));
     const bool has_same_ground = sameGround(unposed_, edited);
     if (mesh_.mesh && !has_same_ground) {
@@ -196,6 +201,7 @@ class StoredFrames : public FrameSource {
   double time_s(int index) const override { return files_[static_cast<std::size_t>(index)].time_s; }
   std::string name() const override { return name_; }
   const LoadedScenario* scene() const override { return scene_ ? &*scene_ : nullptr; }
+  scenario::Clock clock() const override { return clockOf(files_); }
   std::vector<std::string> warnings() const override { return warnings_; }
   std::vector<std::string> quantities() const override { return quantities_; }
 
@@ -268,6 +274,14 @@ class StoredFrames : public FrameSource {
 };
 
 }  // namespace
+
+double FrameSource::firstTime_s() const {
+  const LoadedScenario* const loaded = scene();
+  if (loaded == nullptr) return time_s(0);
+  std::vector<double> times_s;
+  for (int index = 0; index < count(); ++index) times_s.push_back(time_s(index));
+  return firstPresentTime_s(*loaded->scenario, times_s);
+}
 
 void FrameSource::setScenario(std::shared_ptr<const scenario::Scenario> /*scenario*/) {
   throw Error(ErrorCode::usage, name() + ": volumes without a scenario cannot be edited");

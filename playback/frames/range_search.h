@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "emscape/volume/dense_volume.h"
+#include "emscape/volume/statistics.h"
 #include "emscape/volume/value_range.h"
 
 namespace emscape::playback {
@@ -17,9 +18,9 @@ class RangeSearch {
 
   /// The step to visit; none: the search is done.
   std::optional<int> next() const { return next_ < steps_ ? std::optional(next_) : std::nullopt; }
-  /// Adds the range of the values of the step next().
+  /// Adds the range of the values of the step next(), if it has any.
   void add(const volume::VolumeInfo& info) {
-    range_.add({info.range_min, info.range_max});
+    if (!volume::holdsNothing(info)) range_.add({info.range_min, info.range_max});
     next_ += stride_;
   }
   const volume::ValueRange& range() const { return range_; }

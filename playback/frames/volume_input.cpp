@@ -5,8 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <set>
 
+#include "base/text/utc.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/clock.h"
 #include "emscape/volume/format/file.h"
@@ -16,16 +19,6 @@ namespace emscape::playback {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// The time line of files, for times on the command line without a step.
-scenario::Clock clockOf(const std::vector<VolumeFile>& files) {
-  scenario::Clock clock;
-  clock.duration_s = files.back().time_s;
-  if (files.size() > 1)
-    clock.step_s = (files.back().time_s - files.front().time_s) / static_cast<double>(files.size() - 1);
-  if (clock.step_s <= 0) clock.step_s = 1;
-  return clock;
-}
 
 /// The files of one quantity, by time, out of all volumes or fields of an input.
 class FilesOfQuantity {
@@ -37,7 +30,7 @@ class FilesOfQuantity {
     if (quantity_.empty()) quantity_ = info.quantity;
     const double time_s = info.has_time ? info.time_s : step.time_s.value_or(info.time_s);
     if (info.quantity == quantity_) {
-      files_.push_back({step.file, time_s, info.has_time || step.time_s.has_value()});
+      files_.push_back({step.file, time_s, info.has_time || step.time_s.has_value(), info.time_utc});
     }
     if (std::find(found_.begin(), found_.end(), info.quantity) == found_.end())
       found_.push_back(info.quantity);
@@ -148,6 +141,18 @@ std::vector<VolumeFile> meshFilesOf(const fs::path& path, std::string& quantity,
     for (const volume::VolumeInfo& info : volume::listMesh(step.file)) files.add(step, info);
   }
   return files.sorted(path, all);
+}
+
+scenario::Clock clockOf(const std::vector<VolumeFile>& files) {
+  scenario::Clock clock;
+  clock.duration_s = files.back().time_s;
+  if (files.size() > 1)
+    clock.step_s = (files.back().time_s - files.front().time_s) / static_cast<double>(files.size() - 1);
+  if (clock.step_s <= 0) clock.step_s = 1;
+  const VolumeFile& first = files.front();
+  if (const std::optional<std::int64_t> first_ms = parseUtc_ms(first.time_utc))
+    clock.epoch_utc = utcText(*first_ms - std::llround(first.time_s * 1000));
+  return clock;
 }
 
 std::vector<VolumeFile> chosenFiles(std::vector<VolumeFile> files, const std::string& times,

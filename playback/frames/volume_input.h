@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "emscape/scenario/model/clock.h"
+
 namespace emscape::playback {
 
 /// One instant of a series on disk.
@@ -12,6 +14,7 @@ struct VolumeFile {
   std::filesystem::path file;
   double time_s = 0;     ///< of the file; of the list (.pvd) for a file without a time
   bool has_time = true;  ///< false: neither states it
+  std::string time_utc;  ///< as the file has it; may be empty
 };
 
 /// One volume file, the steps of a .pvd, or the volumes of a folder, in the order of time.
@@ -33,6 +36,9 @@ std::vector<std::filesystem::path> stepFilesOf(const std::filesystem::path& path
 
 /// A warning if a folder has volumes of other names in other formats than the one that is shown; else empty.
 std::string otherFormatsText(const std::filesystem::path& path);
+
+/// The time line of files, for times on the command line without a step. @param files  as chosenFiles()
+scenario::Clock clockOf(const std::vector<VolumeFile>& files);
 
 /// The files nearest to the times of a selection. @param files  ascending, at least one
 /// @param times  "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all @param first_only  only the first

@@ -138,6 +138,12 @@ void LiveFields::open() {
     content.shown = {opened_scenario_, nullptr, "", wanted_.view.comparison()};
     content.shown.quantity = shownOf(wanted_).quantity;
     content_ = std::make_shared<const Content>(content);
+    const std::string& time_utc = wanted_.view.time_utc;
+    first_s_ = time_utc.empty() ? source_->firstTime_s() : scenario::parseTime(time_utc, source_->clock());
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      status_.first_s = first_s_;
+    }
     noteContent();
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.scenario = opened_scenario_;
@@ -177,7 +183,7 @@ void LiveFields::serve() {
     if (wanted_.has_field && serveFromMemory(wanted)) return;
     const bool is_other = !(wanted == content_->shown);
     begin(fmt::format("{} at {:.6g} s", wanted.quantity.empty() ? content_->title : wanted.quantity,
-                      wanted_.view.time_s));
+                      askedTime_s()));
     if (is_other) change(wanted);
     if (!wanted_.has_field && deliverWithoutField(wanted_.revision)) return;
     if (!last_ && options_.begins_without_field) deliverWithoutField(0);
@@ -187,7 +193,7 @@ void LiveFields::serve() {
           *field_begin_ + milliseconds(plays ? options_.min_play_interval_ms : options_.min_seek_interval_ms);
       if (SteadyClock::now() < may_begin) return waitUntil(may_begin);
     }
-    const double time_s = content_->timeOf(wanted_.view.time_s);
+    const double time_s = content_->timeOf(askedTime_s());
     const int nearest = nearestTime(content_->times_s, time_s);
     if (nearest != index_) is_playing_ = !content_->is_continuous && nearest == index_ + 1;
     index_ = nearest;
@@ -207,7 +213,7 @@ void LiveFields::serve() {
 /// Delivers a field that is in memory: the last one, or a cached step. The source need not show it: it stays
 /// as it is after an abandoned field.
 bool LiveFields::serveFromMemory(const Shown& wanted) {
-  const double asked_s = wanted_.view.time_s;
+  const double asked_s = askedTime_s();
   const auto publishTimes = [this](const Content& content) {
     const std::lock_guard<std::mutex> lock(mutex_);
     status_.times_s = content.times_s;
@@ -227,6 +233,10 @@ bool LiveFields::serveFromMemory(const Shown& wanted) {
   index_ = step;
   deliver(cached_, *frame);
   return true;
+}
+
+double LiveFields::askedTime_s() const {
+  return std::isnan(wanted_.view.time_s) ? first_s_ : wanted_.view.time_s;
 }
 
 /// What a request shows. Without a quantity it is the first of the computed scenario.
@@ -344,7 +354,7 @@ void LiveFields::deliver(const ContentPtr& content, const Frame& frame) {
 /// @param revision  of the delivery
 /// @return false if the source has nothing to show without a field
 bool LiveFields::deliverWithoutField(long long revision) {
-  const std::optional<Frame> frame = source_->withoutField(content_->timeOf(wanted_.view.time_s));
+  const std::optional<Frame> frame = source_->withoutField(content_->timeOf(askedTime_s()));
   if (!frame) return false;
   if (revision > 0) {
     is_due_ = false;

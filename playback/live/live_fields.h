@@ -51,6 +51,7 @@ struct SeriesRange {
 struct FieldsStatus {
   std::vector<double> times_s;                               ///< of the source; empty before it is open
   bool is_continuous = false;                                ///< VolumeSeries::isContinuous()
+  double first_s = 0;                                        ///< time of requests without one
   std::shared_ptr<const scenario::Scenario> scenario;        ///< as it was opened; may be null
   std::vector<std::string> quantities;                       ///< of the input's files
   std::shared_ptr<const std::vector<std::string>> warnings;  ///< of the last field; may be null
@@ -145,6 +146,7 @@ class LiveFields {
   void accept();
   void serve();
   bool serveFromMemory(const Shown& wanted);
+  double askedTime_s() const;
   Shown shownOf(const FieldRequest& request) const;
   void change(const Shown& wanted);
   void noteContent();
@@ -195,6 +197,7 @@ class LiveFields {
   bool is_playing_ = false;          // steps are requested one after another
   std::optional<Time> field_begin_;  // of the last field
   Time quiet_from_{};
+  double first_s_ = 0;    // as FieldsStatus
   long long search_ = 0;  // number of the last search begun
   RangeSearch range_search_;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <deque>
 #include <mutex>
 
@@ -17,7 +18,8 @@ namespace {
 using SteadyClock = std::chrono::steady_clock;
 
 /// The time of the field for a requested time.
-double fieldTime_s(const FieldsStatus& fields, double asked_s) {
+double fieldTime_s(const FieldsStatus& fields, double requested_s) {
+  const double asked_s = std::isnan(requested_s) ? fields.first_s : requested_s;
   const std::vector<double>& times_s = fields.times_s;
   if (times_s.empty()) return asked_s;
   if (fields.is_continuous) return std::clamp(asked_s, times_s.front(), times_s.back());

@@ -10,6 +10,7 @@
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/scene.h"
+#include "emscape/volume/statistics.h"
 #include "playback/frames/difference_series.h"
 #include "playback/frames/platform_tracks.h"
 #include "playback/pictures/followed_camera.h"
@@ -98,9 +99,10 @@ void Painter::prepareCells(const Frame& frame) {
 
 void Painter::setFrame(const Frame& frame) {
   prepareCells(frame);
-  const bool is_first_of_colors = !has_colors_ && frame.has_field;
+  const bool is_first_of_colors =
+      !has_colors_ && frame.has_field && !std::exchange(was_fitted_, frame.has_field);
   if (!has_colors_) onRenderer([&](auto& to) { to.setTransferFunction(functionFor(frame)); });
-  has_colors_ = has_colors_ || frame.has_field;
+  has_colors_ = has_colors_ || (frame.has_field && !isFittedToNothing(frame));
   const bool is_other_grid = !frame_ || frame_->grid() != frame.grid();
   if (frame.cells) {
     cells_->setField(frame.cells->field, frame.cells->faces);
@@ -206,7 +208,7 @@ bool Painter::setColors(const ViewState& view) {
   view_.transfer = view.transfer;
   view_.range = view.range;
   if (!frame_) {
-    has_colors_ = false;
+    has_colors_ = was_fitted_ = false;
     return false;
   }
   const render::TransferFunction function = functionFor(*frame_);
@@ -361,6 +363,12 @@ render::TransferFunction Painter::functionFor(const Frame& frame) const {
                      : frame.defaultColors(frame.color_range);
 }
 
+/// Whether the colours are those of a field without a value, so that the next field gets its own.
+bool Painter::isFittedToNothing(const Frame& frame) const {
+  const bool is_given = !view_.transfer_file.empty() || view_.transfer || view_.range || frame.color_range;
+  return !is_given && !frame.info().categorical && volume::holdsNothing(frame.info());
+}
+
 const render::TransferFunction& Painter::transferFunction() const {
   return cells_ ? cells_->transferFunction() : renderer_.transferFunction();
 }
@@ -452,6 +460,9 @@ void Painter::setLegend() {
     const DisplayUnit unit = heightUnit(view_.units);
     annotations_.legend->map_note = fmt::format("map: at {:.4g} {} above ground",
                                                 *view_.settings.map_height_agl_m / unit.factor, unit.name);
+    const double quiet = volume::isDifference(frame_->info()) ? render::quietBelow(transferFunction()) : 0;
+    if (quiet > 0)
+      annotations_.legend->map_note += fmt::format(", from ±{:.2g} {}", quiet, frame_->info().unit);
   }
   // Of volumes the scenario is another file, whose emitters may be others.
   const bool is_of_scenario = scene_ && view_.scenario.empty() && !volume::isDifference(frame_->info());

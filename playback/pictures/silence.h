@@ -7,8 +7,8 @@
 
 namespace emscape::playback {
 
-/// "no radar transmits", if a quantity has no value anywhere since nothing that it is about transmits at the
-/// time of the field, or in the interval that begins then; empty if something does.
+/// "no radar transmits", or "no radar is present", if a quantity has no value anywhere since nothing that it
+/// is about transmits at the time of the field, or in the interval that begins then; empty if something does.
 /// @param quantity  as volumes name it, "snr_db" or "snr_db:CHANNEL"
 std::string silenceText(const scenario::Scenario& scenario, const std::string& quantity, double time_s);
 

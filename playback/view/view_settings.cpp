@@ -123,8 +123,10 @@ void addCameraAndTime(Table& table) {
   table
       .member(
           "time_s", time, [](auto& view) -> auto& { return view.time_s; }, "since the scenario's epoch")
+      .withTexts("", "the first step at which an emitter is present")
       .withEffect(&ViewChange::time)
-      .withOption("--time", "First instant, in seconds");
+      .withOption("--time",
+                  "First instant, in seconds or UTC; default: the first at which an emitter is present");
   table.member(
       "rate", spec::number().from(-kMaxRate).to(kMaxRate), [](auto& view) -> auto& { return view.rate; },
       "scenario seconds per second; negative: backwards. For a window");

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <tuple>
 
@@ -12,6 +13,35 @@ constexpr std::array kReaches{1.0, 2.4, 4.5, 7.5, 11.0};  // in gaps
 
 Rect around(const Point2& at, double radius) {
   return {at.x - radius, at.y - radius, 2 * radius, 2 * radius};
+}
+
+struct LeaderLine {
+  Point2 from, to;
+};
+
+LeaderLine lineOf(const LabelRequest& label, const Rect& rect) {
+  return {label.at, nearestIn(rect, label.at)};
+}
+
+Rect boxOf(const LeaderLine& line) {
+  const auto [from, to] = line;
+  return {std::min(from.x, to.x), std::min(from.y, to.y), std::abs(to.x - from.x), std::abs(to.y - from.y)};
+}
+
+/// Whether a part of a line is within a rectangle: its part between the left and the right side is cut to
+/// that between the upper and the lower one.
+bool crosses(const LeaderLine& line, const Rect& rect) {
+  double begin = 0, end = 1;
+  const auto cut = [&](double from, double to, double low, double high) {
+    const double along = to - from;
+    if (along == 0) return from >= low && from <= high;
+    const double a = (low - from) / along, b = (high - from) / along;
+    begin = std::max(begin, std::min(a, b));
+    end = std::min(end, std::max(a, b));
+    return begin <= end;
+  };
+  return cut(line.from.x, line.to.x, rect.x, rect.x + rect.width) &&
+         cut(line.from.y, line.to.y, rect.y, rect.y + rect.height);
 }
 
 /// Rectangles in cells, so that few are compared.
@@ -32,6 +62,12 @@ class Occupied {
   bool hits(const Rect& rect) {
     return forCells(rect, [&](const std::vector<Rect>& cell) {
       return std::any_of(cell.begin(), cell.end(), [&](const Rect& other) { return overlap(rect, other); });
+    });
+  }
+
+  bool hits(const LeaderLine& line) {
+    return forCells(boxOf(line), [&](const std::vector<Rect>& cell) {
+      return std::any_of(cell.begin(), cell.end(), [&](const Rect& other) { return crosses(line, other); });
     });
   }
 
@@ -61,11 +97,27 @@ double distanceTo(const Rect& rect, const LabelRequest& label) {
   return length(nearestIn(rect, label.at) - label.at) - label.radius;
 }
 
+/// The placed labels and the lines that lead to them: no line crosses a label.
+struct PlacedLabels {
+  Occupied rects;
+  std::vector<LeaderLine> lines;
+
+  void add(const LabelRequest& label, const LabelPlace& place) {
+    rects.add(place.rect);
+    if (place.needs_line) lines.push_back(lineOf(label, place.rect));
+  }
+  bool isClear(const LabelRequest& label, const LabelPlace& place) {
+    const bool is_crossed = std::any_of(lines.begin(), lines.end(),
+                                        [&](const LeaderLine& line) { return crosses(line, place.rect); });
+    return !is_crossed && !(place.needs_line && rects.hits(lineOf(label, place.rect)));
+  }
+};
+
 /// Tries positions, best first: beside, above, below, oblique, then further away. Of those equally far away,
 /// the ones that are nearer to another symbol are the last.
 /// @param symbols  those that matter
 std::optional<LabelPlace> placeOf(const LabelRequest& label, ImageSize size, double gap, Occupied& occupied,
-                                  const std::vector<const LabelRequest*>& symbols) {
+                                  const std::vector<const LabelRequest*>& symbols, PlacedLabels& placed) {
   const double width = label.width, height = label.height;
   for (const double reach : kReaches) {
     std::optional<LabelPlace> nearer_to_other;
@@ -88,8 +140,10 @@ std::optional<LabelPlace> placeOf(const LabelRequest& label, ImageSize size, dou
       const bool is_own = std::none_of(symbols.begin(), symbols.end(), [&](const LabelRequest* other) {
         return distanceTo(rect, *other) < own;
       });
-      if (is_own) return LabelPlace{rect, reach > kReaches.front()};
-      if (!nearer_to_other) nearer_to_other = LabelPlace{rect, true};
+      const LabelPlace place{rect, !is_own || reach > kReaches.front()};
+      if ((!is_own && nearer_to_other) || !placed.isClear(label, place)) continue;
+      if (is_own) return place;
+      nearer_to_other = place;
     }
     if (nearer_to_other) return nearer_to_other;
   }
@@ -107,6 +161,7 @@ std::vector<std::optional<LabelPlace>> placeLabels(const std::vector<LabelReques
     return std::tie(first.moves, first.rank, first.depth) < std::tie(second.moves, second.rank, second.depth);
   });
   Occupied occupied(size);
+  PlacedLabels placed{Occupied(size), {}};
   for (const Rect& rect : taken) occupied.add(rect);
   std::vector<const LabelRequest*> symbols;
   const auto addSymbols = [&](bool moves) {
@@ -127,9 +182,10 @@ std::vector<std::optional<LabelPlace>> placeLabels(const std::vector<LabelReques
     if (request.moves && !std::exchange(has_moving, true)) addSymbols(true);
     const double area = request.width * request.height;
     if (covered + area > (request.moves ? kLabelsPart : kFixedLabelsPart) * picture) continue;
-    places[index] = placeOf(request, size, gap, occupied, symbols);
+    places[index] = placeOf(request, size, gap, occupied, symbols, placed);
     if (!places[index]) continue;
     occupied.add(places[index]->rect);
+    placed.add(request, *places[index]);
     covered += area;
   }
   return places;

@@ -27,7 +27,8 @@ struct LabelPlace {
   bool needs_line = false;  ///< not beside the symbol, or nearer to another one: a line leads to it
 };
 
-/// No two of the places overlap, and none covers `taken` or the symbol of a fixed object.
+/// No two of the places overlap, none covers `taken` or the symbol of a fixed object, and no line to a place
+/// crosses another one.
 /// @param gap  between symbol and label (pixels)
 /// @return one for each request; none if there is no place left
 std::vector<std::optional<LabelPlace>> placeLabels(const std::vector<LabelRequest>& requests, ImageSize size,

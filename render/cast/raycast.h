@@ -116,6 +116,13 @@ struct MapLayerView {
   bool on = false;
   float height_voxels = 0;
   float opacity = 1;
+  float quiet = 0;  ///< of a difference: smaller values are transparent, twice as large ones have `opacity`
+
+  EMSCAPE_HD float opacityOf(float value) const {
+    if (!(quiet > 0.0F)) return opacity;
+    const float above = fabsf(value) / quiet - 1.0F;
+    return opacity * (above < 0.0F ? 0.0F : above > 1.0F ? 1.0F : above);
+  }
 };
 
 /// A scene ready to be cast. Sampler: TrilinearSampler or NearestSampler; Compositor: see compositing.h.
@@ -142,7 +149,7 @@ struct RaycastTask {
   }
 
   /// The colour of a point on the ground's surface with the map layer, which has the colours of sections. It
-  /// is transparent where the volume has no value; planes do not cut it.
+  /// is transparent where the volume has no value, or next to no difference; planes do not cut it.
   /// @param distance  of the point, along the ray of the pixel  @param ground  its colour without the layer
   template <class Sampler>
   EMSCAPE_HD Rgba mapColor(int x, int y, float distance, const Rgba& ground_color) const {
@@ -154,7 +161,7 @@ struct RaycastTask {
                         at.y <= upper.y && at.z <= upper.z;
     float value = 0;
     if (!inside || !Sampler::sample(volume, vecCast<float>(at), value)) return ground_color;
-    return over(cut.color(transfer, true, value) * map.opacity, ground_color);
+    return over(cut.color(transfer, true, value) * map.opacityOf(value), ground_color);
   }
 
   /// The part of a pixel's ray that the planes keep in front of the ground; all up to `limit` if they do not

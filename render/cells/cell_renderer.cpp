@@ -77,7 +77,9 @@ void CellRenderer::setField(const volume::MeshField& field, std::shared_ptr<cons
   }
   cells.faces = std::move(faces);
   if (impl_->caster) impl_->caster->setMesh(cells, is_new_mesh);
-  impl_->scene.setVolume(grid, false, field.info.floor);
+  volume::VolumeInfo info = field.info;
+  info.categorical = false;
+  impl_->scene.setVolume(grid, info);
 }
 
 void CellRenderer::setHeightField(std::shared_ptr<const HeightField> height_field) {

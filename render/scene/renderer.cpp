@@ -15,6 +15,7 @@ struct Renderer::Impl {
   Backend backend = Backend::cpu;
   std::unique_ptr<FrameCaster> caster;
   Scene scene;
+  volume::Volume volume;
   std::mutex volume_mutex;  ///< held while the volume is set, and while it is drawn
 
   FrameReport draw(const FramePlan& plan, ImageSize size, const StopFlag* stop) {
@@ -50,7 +51,8 @@ void Renderer::setVolume(const volume::Volume& volume) {
   } else {
     impl_->caster->setVolume(volume.dense());
   }
-  impl_->scene.setVolume(volume.grid(), volume.info().categorical, volume.info().floor);
+  impl_->scene.setVolume(volume.grid(), volume.info());
+  impl_->volume = volume;
 }
 
 std::size_t Renderer::volumeBytes() const {
@@ -86,7 +88,7 @@ SceneBox Renderer::sceneBox() const {
   return impl_->scene.box();
 }
 bool Renderer::isHidden(const Vec3d& frame_m) const {
-  return impl_->scene.isHidden(frame_m);
+  return impl_->scene.isHidden(frame_m, &impl_->volume);
 }
 
 FrameReport Renderer::draw(const FramePlan& plan, ImageSize size, const StopFlag* stop) {

@@ -7,6 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "volume/difference.h"
 
 namespace emscape::render {
 namespace {
@@ -81,11 +82,12 @@ ShadingView shadingOf(const Camera& camera, const IndexSpace& space) {
 
 }  // namespace
 
-void Scene::setVolume(const volume::Grid& grid, bool categorical, float floor) {
+void Scene::setVolume(const volume::Grid& grid, const volume::VolumeInfo& info) {
   if (!grid_ || *grid_ != grid) dropGround();
   grid_ = grid;
-  categorical_ = categorical;
-  floor_ = floor;
+  categorical_ = info.categorical;
+  is_difference_ = volume::isDifference(info);
+  floor_ = info.floor;
 }
 
 void Scene::setHeightField(std::shared_ptr<const HeightField> height_field) {
@@ -137,14 +139,33 @@ SceneBox Scene::box() const {
   return sceneBoxOf(grid(), settings_.vertical_exaggeration);
 }
 
-bool Scene::isHidden(const Vec3d& frame_m) {
+/// True if a ray meets a section with a value before a distance.
+/// @param values  of the section; on a GPU all are taken for values
+bool Scene::isBehindSection(const CutView& cut, const Ray& ray, double distance,
+                            const volume::Volume& values) const {
+  const Dims& dims = grid().dims;
+  const RayInterval inside = clip(ray, {-0.5, -0.5, -0.5}, {dims.x - 0.5, dims.y - 0.5, dims.z - 0.5});
+  CutInterval left{inside.begin, inside.end};
+  cut.clip(ray.origin, ray.direction, false, left);
+  if (!left.begins_at_plane || !(left.end > left.begin) || left.begin > distance) return false;
+  const volume::DenseVolume* const dense = values.dense().get();
+  if (dense == nullptr) return true;
+  const Vec3d at = ray.origin + ray.direction * left.begin;
+  const auto index = [](double position, int count) {
+    return std::clamp(static_cast<int>(std::lround(position)), 0, count - 1);
+  };
+  const int i = index(at.x, dims.x), j = index(at.y, dims.y), k = index(at.z, dims.z);
+  if (dense->isMasked(i, j, k)) return false;
+  const std::size_t voxel = (static_cast<std::size_t>(k) * dims.y + j) * dims.x + i;
+  return std::abs(dense->values[voxel] - cut.floor) > cut.near_floor;
+}
+
+bool Scene::isHidden(const Vec3d& frame_m, const volume::Volume* values) {
   const SceneBox drawn = box();
   const IndexSpace space(grid(), drawn);
   const Vec3d target = space.position(drawn.toDrawn(frame_m));
   const CutView cut = cutView();
   if (cut.removes(target)) return true;
-  if (!height_field_) return false;
-  prepareGround();
   Vec3d eye = space.position(camera_.eye_m);
   if (camera_.projection == Projection::orthographic) {
     const Vec3d forward = normalized(space.vector(camera_.forward));
@@ -153,9 +174,12 @@ bool Scene::isHidden(const Vec3d& frame_m) {
   const double distance = length(target - eye);
   if (!(distance > 0)) return false;
   const Ray ray{eye, (target - eye) / distance};
-  const GroundHit hit = groundHit(ground_->view(), cut, ray);
-  // A marker on the ground is not hidden by the ground below it.
+  // A marker on the ground, or on a plane, is not hidden by it.
   constexpr double kStandsOn_voxels = 0.5;
+  if (values != nullptr && isBehindSection(cut, ray, distance - kStandsOn_voxels, *values)) return true;
+  if (!height_field_) return false;
+  prepareGround();
+  const GroundHit hit = groundHit(ground_->view(), cut, ray);
   return hit.found && hit.distance < distance - kStandsOn_voxels;
 }
 
@@ -189,7 +213,8 @@ RaycastTask Scene::task(ImageSize size) const {
   task.cut.colors = table_->opaque().data();
   if (isMapped()) {
     task.map = {true, static_cast<float>(*settings_.map_height_agl_m / grid().spacing_m.z),
-                static_cast<float>(settings_.map_opacity)};
+                static_cast<float>(settings_.map_opacity),
+                is_difference_ ? static_cast<float>(quietBelow(function_)) : 0.0F};
   }
   task.step_voxels = static_cast<float>(settings_.step_voxels);
   task.mida_gamma = static_cast<float>(settings_.mida_gamma);

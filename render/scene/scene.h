@@ -9,6 +9,7 @@
 #include "emscape/render/scene/render_settings.h"
 #include "emscape/render/transfer/transfer_function.h"
 #include "emscape/volume/dense_volume.h"
+#include "emscape/volume/volume.h"
 #include "render/cast/ground.h"
 #include "render/cast/raycast.h"
 #include "render/cast/transfer_table.h"
@@ -27,8 +28,7 @@ class Scene {
     unsigned view = 0;  ///< the camera, the ground, or its cuts by planes
   };
 
-  /// @param floor  value of voxels without a field
-  void setVolume(const volume::Grid& grid, bool categorical, float floor);
+  void setVolume(const volume::Grid& grid, const volume::VolumeInfo& info);
   /// @throws Error (bad_input) for an impossible field
   void setHeightField(std::shared_ptr<const HeightField> height_field);
   void setTransferFunction(const TransferFunction& function);
@@ -45,7 +45,9 @@ class Scene {
   const volume::Grid& grid() const;
   double isoValue() const;
   SceneBox box() const;
-  bool isHidden(const Vec3d& frame_m);
+  /// Whether the ground, a plane or a section hides a position. @param values  of the sections; null: they do
+  /// not matter
+  bool isHidden(const Vec3d& frame_m, const volume::Volume* values = nullptr);
 
   /// Prepares missing data. The functions below must be called after it.
   void prepare();
@@ -66,10 +68,12 @@ class Scene {
  private:
   void dropGround();
   CutView cutView() const;
+  bool isBehindSection(const CutView& cut, const Ray& ray, double distance,
+                       const volume::Volume& values) const;
   void prepareGround();
 
   std::optional<volume::Grid> grid_;
-  bool categorical_ = false;
+  bool categorical_ = false, is_difference_ = false;
   float floor_ = 0;
   std::shared_ptr<const HeightField> height_field_;
   TransferFunction function_;

@@ -229,6 +229,21 @@ std::optional<TransferFunction> functionOfScale(const volume::VolumeInfo& info, 
 
 }  // namespace
 
+double quietBelow(const TransferFunction& function) {
+  const auto& points = function.opacities;
+  const auto is_visible = [](const TransferFunction::OpacityPoint& point) { return point.opacity > 0; };
+  double quiet = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (is_visible(points[i])) continue;
+    // A transparent point next to a visible one ends the visible range on its side of 0.
+    const bool is_end = (points[i].at > 0 && i + 1 < points.size() && is_visible(points[i + 1])) ||
+                        (points[i].at < 0 && i > 0 && is_visible(points[i - 1]));
+    const double size = std::abs(points[i].at);
+    if (is_end) quiet = quiet > 0 ? std::min(quiet, size) : size;
+  }
+  return function.opacity(0) > 0 ? 0 : quiet;
+}
+
 Rgb parseColor(const std::string& text) {
   const bool well_formed = text.size() == 7 && text[0] == '#' &&
                            text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;

@@ -70,6 +70,13 @@ bool forgetAddedItem(std::vector<MadeEdit>& edits, const std::string& path) {
   return true;
 }
 
+/// The edit that changed the value of a path, as the file has it; null if there is none.
+const MadeEdit* changeOf(const std::string& path, const std::vector<MadeEdit>& edits) {
+  const std::size_t last = lastEditOf(path, edits, edits.size());
+  const bool is_changed = last != std::string::npos && edits[last].before && !isNull(edits[last].edit.value);
+  return is_changed ? &edits[last] : nullptr;
+}
+
 /// Adds an edit to the list. A repeated edit of a value replaces the earlier one, and a value that was added
 /// and then removed leaves no edit.
 void remember(std::vector<MadeEdit>& edits, MadeEdit made) {
@@ -83,6 +90,7 @@ void remember(std::vector<MadeEdit>& edits, MadeEdit made) {
   const bool was_removed = isNull(edits[last].edit.value), is_removed = isNull(made.edit.value);
   if (!was_removed && !is_removed) {
     made.adds = edits[last].adds;
+    made.before = edits[last].before;
     edits[last] = std::move(made);
   } else if (is_removed && edits[last].adds) {
     edits.erase(edits.begin() + static_cast<std::ptrdiff_t>(last));
@@ -133,6 +141,9 @@ void apply(ScenarioSource& source, const Edit& edit) {
   DocumentNodePtr value = valueOf(edit);
   if (!path.missing.empty()) value = namedItem(path, value);
   const Edit made{path.text, edit.value};
+  const MadeEdit* const changed = changeOf(path.text, source.edits);
+  const bool is_taken_back = changed != nullptr && value && document::sameValue(*changed->before, *value);
+  if (is_taken_back) value = changed->before;
   const bool is_item = std::holds_alternative<std::size_t>(path.steps.back());
   if (!value && path.required) {
     throw Error(ErrorCode::bad_input, fmt::format("{} must be given; it cannot be removed", path.name));
@@ -162,12 +173,23 @@ void apply(ScenarioSource& source, const Edit& edit) {
       document::valueAt(source.root, document::NodePath(path.steps.begin(), path.steps.end() - 1));
   const bool adds =
       !path.missing.empty() || (!path.exists && parent && parent->kind == document::NodeKind::map);
-  remember(source.edits, {made, is_name || (is_item && !value), adds});
+  if (is_taken_back) {
+    source.edits.erase(source.edits.begin() + (changed - source.edits.data()));
+  } else {
+    const DocumentNodePtr before = path.exists ? document::valueAt(source.root, path.steps) : nullptr;
+    const bool is_scalar = before && before->kind == document::NodeKind::scalar && !is_name;
+    remember(source.edits, {made, is_name || (is_item && !value), adds, is_scalar ? before : nullptr});
+  }
   source.text = std::move(edited.text);
   source.root = std::move(edited.root);
 }
 
 }  // namespace
+
+bool isAdded(const ScenarioSource& source, const std::string& path) {
+  const std::size_t last = lastEditOf(path, source.edits, source.edits.size());
+  return last != std::string::npos && source.edits[last].adds;
+}
 
 void applyEdit(ScenarioSource& source, const Edit& edit) {
   try {

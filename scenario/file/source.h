@@ -41,6 +41,7 @@ struct MadeEdit {
   bool moves_paths = false;  ///< the same path may refer to another value afterwards, because a name changed
                              ///< or an item was removed
   bool adds = false;         ///< a key or an item that was not there: its removal leaves the same text
+  document::DocumentNodePtr before;  ///< the value in the file, if it is a number, text or word; else null
 };
 
 /// Immutable; shared by all copies of a scenario.
@@ -51,7 +52,11 @@ struct ScenarioSource {
   NamedFiles files;
 };
 
-/// Changes text, root and edits.
+/// True if an edit added what is at a path.
+bool isAdded(const ScenarioSource& source, const std::string& path);
+
+/// Changes text, root and edits. A value that becomes again what it was in the file, 20000 in place of 20e3,
+/// is written as in the file and leaves no edit.
 /// @throws Error (bad_input) whose location is the edit itself; the source is then unchanged
 void applyEdit(ScenarioSource& source, const Edit& edit);
 

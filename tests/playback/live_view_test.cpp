@@ -24,6 +24,7 @@ ViewState smallView(const std::string& input) {
   view.input = input;
   view.size = kSize;
   view.pattern = render::Pattern::quarter;
+  view.time_s = 0;
   return view;
 }
 

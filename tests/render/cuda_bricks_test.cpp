@@ -58,7 +58,7 @@ struct Launcher {
     RenderSettings settings = scene.settings();
     settings.mode = mode;
     scene.setSettings(settings);
-    scene.setVolume(from->grid, false, from->info.floor);
+    scene.setVolume(from->grid, from->info);
     scene.setTransferFunction(functionOf(*from));
     scene.setCamera(makeCamera({}, scene.box(), kSize));
     scene.prepare();

@@ -1,5 +1,6 @@
 #include "emscape/render/scene/cut_plane.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -218,7 +219,8 @@ TEST(Cut, SectionIsTransparentWithoutField) {
 
 TEST(Cut, PositionsOnTheRemovedSideAreHidden) {
   Renderer renderer;
-  show(renderer, makeVolume({20, 10, 8}, {3, 5, 2}, [](int, int, int) { return 1.0F; }), fog(0.03));
+  // Without a value: sections hide nothing.
+  show(renderer, makeVolume({20, 10, 8}, {3, 5, 2}, [](int, int, int) { return 0.0F; }), fog(0.03));
   const SceneBox box = renderer.sceneBox();
   const Vec3d center = (box.lower_m + box.upper_m) * 0.5;
   const Vec3d step{0, 0, 0.1 * (box.upper_m.z - box.lower_m.z)};
@@ -241,6 +243,22 @@ TEST(Cut, PositionsOnTheRemovedSideAreHidden) {
     renderer.setSettings(settings);
     EXPECT_FALSE(renderer.isHidden(center + step));
   }
+}
+
+TEST(Cut, PositionsBehindASectionWithAValueAreHidden) {
+  Renderer renderer;
+  const auto half = makeVolume({20, 10, 8}, {3, 5, 2}, [](int i, int, int) { return i < 10 ? 1.0F : 0.0F; });
+  show(renderer, half, testing::makeFunction({{0, {1, 1, 1}}}, {{0, 0}, {1, 0.1}}));
+  const SceneBox box = renderer.sceneBox();
+  const Vec3d center = (box.lower_m + box.upper_m) * 0.5;
+  const Vec3d aside{0.25 * (box.upper_m.x - box.lower_m.x), 0, 0}, up{0, 0, 4};
+  look(renderer, kFromAbove, {fmt::format("horizontal:altitude_m={}", center.z)});
+  EXPECT_TRUE(renderer.isHidden(center - aside - up)) << "below the section";
+  EXPECT_FALSE(renderer.isHidden(center - aside)) << "on the plane";
+  EXPECT_FALSE(renderer.isHidden(center + aside - up)) << "the section is transparent there";
+  look(renderer, "orbit:azimuth_deg=0,elevation_deg=-90,distance=3,fov_deg=1",
+       {fmt::format("horizontal:altitude_m={}", center.z)});
+  EXPECT_FALSE(renderer.isHidden(center - aside - up)) << "in front of it";
 }
 
 TEST(Cut, VerticalPlanesCutTheGroundAndHorizontalOnesLeaveIt) {

@@ -86,6 +86,27 @@ TEST_F(MapLayer, IsNotPaintedOutsideOfTheVolumeOrWhereItHasNoValue) {
   EXPECT_TRUE(picture(kHeight_m).pixels == plain.pixels) << "masked";
 }
 
+TEST_F(MapLayer, OfADifferenceIsTransparentWhereNextToNothingDiffers) {
+  const Image plain = picture(std::nullopt);
+  volume_->info.floor = 0;
+  volume_->info.extra[volume::kScaleKey] = volume::kDifferenceScale;
+  const TransferFunction function = testing::makeFunction(
+      {{-20, {0, 0, 1}}, {0, {1, 1, 1}}, {20, {1, 0.5F, 0}}}, {{-20, 0.1}, {-1, 0}, {1, 0}, {20, 0.1}});
+  EXPECT_EQ(quietBelow(function), 1);
+  const auto pictureOf = [&](float difference_db) {
+    std::fill(volume_->values.begin(), volume_->values.end(), difference_db);
+    renderer_.setVolume(volume_);
+    renderer_.setTransferFunction(function);
+    return picture(kHeight_m, 1);
+  };
+  const auto isPlain = [&](float difference_db) { return pictureOf(difference_db).pixels == plain.pixels; };
+  for (const float quiet : {-0.9F, 0.0F, 0.5F}) EXPECT_TRUE(isPlain(quiet)) << quiet;
+  for (const float visible : {-3.0F, 1.5F, 3.0F}) EXPECT_FALSE(isPlain(visible)) << visible;
+  const Rgba full = pictureOf(-4).at(20, 20), color = Rgba{0.8F, 0.8F, 1, 1};
+  EXPECT_NEAR(full.r, color.r, 0.02);
+  EXPECT_NEAR(full.b, color.b, 0.02);
+}
+
 TEST_F(MapLayer, WithoutGroundNothingIsPainted) {
   renderer_.setHeightField(nullptr);
   const Image plain = picture(std::nullopt);

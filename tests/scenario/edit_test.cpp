@@ -517,5 +517,22 @@ TEST(EditAtRandom, SLOW_RandomEditsKeepTextAndScenarioConsistent) {
   }
 }
 
+TEST(Edit, AValueThatIsAgainThatOfTheFileLeavesNoEditAndNoOtherText) {
+  Scenario scenario = *loadScenario(test::shippedScenario("quick.yaml"));
+  const std::string hash = scenario.hash;
+  scenario.set("emitters.radar.frequency_hz", "2e9");
+  scenario.set("emitters.radar.power_w", "5");
+  scenario.set("emitters.radar.frequency_hz", "3000000000");
+  ASSERT_EQ(scenario.edits().size(), 1U) << "3.0e9 in the file";
+  EXPECT_EQ(toString(scenario.edits()[0]), "emitters.radar.power_w=5");
+  scenario.set("emitters.radar.power_w", "7");
+  scenario.set("emitters.radar.power_w", "1e4");
+  EXPECT_TRUE(scenario.edits().empty());
+  EXPECT_EQ(scenario.hash, hash);
+  scenario.set("emitters.radar.power_w", "10000");
+  EXPECT_EQ(scenario.edits().size(), 1U) << "an edit that never changed it is kept as typed";
+  EXPECT_EQ(loadScenario(scenario.file, scenario.edits())->hash, scenario.hash);
+}
+
 }  // namespace
 }  // namespace emscape::scenario

@@ -88,6 +88,37 @@ TEST_F(RealInput, EscapeAndUndoShowTheValueInPlaceOfARefusedText) {
   EXPECT_TRUE(comes([&] { return log("edit").size() > 1; }));
 }
 
+TEST_F(RealInput, ARefusedNumberStaysInEachFieldUntilItIsMended) {
+  open(quick());
+  ASSERT_TRUE(xdotool(click(kRate) + " key ctrl+a" + type("2,5") + " key Return sleep 0.5"));
+  EXPECT_EQ(commands(), "");
+  ASSERT_TRUE(xdotool(click(kRate) + " key End BackSpace BackSpace Return"));
+  EXPECT_TRUE(commandsBecome("rate")) << commands();
+  EXPECT_TRUE(reports("rate", 2));
+}
+
+TEST_F(RealInput, EnterInAListOrARefusedFieldOfADialogDoesNotEndIt) {
+  constexpr Place kCamera{364, 325}, kBegin{294, 354};
+  open(quick());
+  ASSERT_TRUE(xdotool("key ctrl+m sleep 0.6" + click(kCamera) + " sleep 0.4 key Down Return sleep 0.6"));
+  EXPECT_TRUE(commandsBecome("record camera_path")) << commands();
+  ASSERT_TRUE(
+      xdotool(click(kBegin) + " key ctrl+a" + type("1,x") + " key Return sleep 0.6 key Return sleep 0.6"));
+  EXPECT_TRUE(commandsBecome("record camera_path")) << commands();
+}
+
+TEST_F(RealInput, TheOpenDialogStaysWhenAnOpeningEnds) {
+  open(quick());
+  const std::string name = type(std::filesystem::path(quick()).filename().string());
+  ASSERT_TRUE(xdotool("key ctrl+o sleep 0.4" + name + " key Return key ctrl+o"));
+  EXPECT_TRUE(reports("computing_what", [](const Json& what) {
+    return what.is_string() && what.get<std::string>().find("after the dialog") != std::string::npos;
+  }));
+  ASSERT_TRUE(xdotool(name + " key Return"));
+  EXPECT_TRUE(commandsBecome("open open open open")) << commands();
+  EXPECT_TRUE(reports("program", "IDLE"));
+}
+
 TEST_F(RealInput, ShiftEscapeCancelsAlsoWhileAValueHasTheKeyboard) {
   open(quick());
   ASSERT_TRUE(xdotool(click(kLosses) + " key shift+Escape"));

@@ -199,7 +199,9 @@ TEST(Opening, DropsEditsThatNoLongerApply) {
   const Opening opening = prepareOpening({shippedScenario("quick.yaml"), "", view, true}, present);
   ASSERT_EQ(opening.options.view.edits.size(), 1U);
   EXPECT_EQ(opening.options.view.edits[0].path, "emitters.radar.power_w");
-  EXPECT_EQ(opening.left_out, "emitters.gone.power_w=5");
+  ASSERT_EQ(opening.left_out.size(), 1U);
+  EXPECT_THAT(opening.left_out[0], HasSubstr("the edit emitters.gone.power_w=5 is left out"));
+  EXPECT_THAT(opening.left_out[0], HasSubstr("quick.yaml: there is no emitter 'gone'"));
   EXPECT_TRUE(opening.options.unsaved_edits);
 }
 
@@ -208,7 +210,7 @@ struct NextProgram {
   explicit NextProgram(SessionSample& ended) {
     ended.session.reset();
     ended.files->autosaves.reset();
-    shown->shown("");
+    shown->shown({});
   }
   SessionSample shown{optionsFor(shippedScenario("quick.yaml"))};
   SessionOpener opener{shown.files, [this](const ViewOptions& options) { return shown.make(options); }};
@@ -256,12 +258,46 @@ TEST_F(Opener, ReloadsAChangedFileWithTheEditsThatApply) {
   ASSERT_TRUE(waitUntilOpened(shown_, opener_));
   ASSERT_EQ(shown_->viewState().edits.size(), 1U);
   EXPECT_EQ(shown_->viewState().edits[0].path, "emitters.radar.power_w");
-  EXPECT_THAT(shown_->notice().text, HasSubstr("emitters.transmitter.power_w=7"));
+  EXPECT_THAT(shown_->notice().text, HasSubstr("1 edit is left out"));
+  shown_->update();
+  EXPECT_THAT(shown_->warnings(), testing::Contains(HasSubstr("emitters.transmitter.power_w=7")))
+      << "listed as long as the input is open";
   EXPECT_TRUE(shown_->hasUnsavedEdits());
   fs::remove(folder_ / "own.yaml");
   shown_.perform(R"({"do":"reload"})");
   ASSERT_TRUE(waitUntilOpened(shown_, opener_));
   EXPECT_THAT(shown_->notice().text, HasSubstr("own.yaml: no such file or folder"));
+}
+
+TEST_F(Opener, WaitsForAnOpenDialogAndForTyping) {
+  ASSERT_TRUE(shown_.settle());
+  const Session* const before = shown_.session.get();
+  shown_.perform(fmt::format(R"({{"do":"open","file":"{}"}})", ownScenario(folder_)));
+  shown_.perform(R"({"do":"open"})");
+  const auto isReady = [&] {
+    opener_.update(shown_.session);
+    return shown_.files->opening.progress.fraction == 1 &&
+           shown_.files->opening.progress.what.find("after the dialog") != std::string::npos;
+  };
+  ASSERT_TRUE(shown_.waitUntil(isReady));
+  EXPECT_EQ(shown_.session.get(), before);
+  EXPECT_TRUE(shown_->panels.open);
+  shown_->panels.open = false;
+  shown_.files->is_typing = true;
+  EXPECT_FALSE(opener_.update(shown_.session)) << "the text would become keys";
+  shown_.files->is_typing = false;
+  shown_->panels.help = true;
+  EXPECT_TRUE(opener_.update(shown_.session));
+  EXPECT_EQ(shown_->view().input, folder_ / "own.yaml");
+  EXPECT_TRUE(shown_->panels.help) << "it does not belong to the input";
+}
+
+TEST_F(Opener, ReloadingKeepsTheSelection) {
+  ASSERT_TRUE(shown_.settle());
+  shown_.perform(R"({"do":"select","path":"emitters.radar"})");
+  shown_.perform(R"({"do":"reload"})");
+  ASSERT_TRUE(waitUntilOpened(shown_, opener_));
+  EXPECT_EQ(shown_->selected(), "emitters.radar");
 }
 
 TEST_F(Opener, ShowsViewFiles) {
@@ -317,7 +353,7 @@ TEST_F(Opener, SLOW_EditsAreAutosavedAndRestored) {
   // A second window does not ask.
   {
     SessionSample beside(optionsFor(shippedScenario("quick.yaml")));
-    beside->shown("");
+    beside->shown({});
     ASSERT_TRUE(beside.settle());
     EXPECT_FALSE(beside->keptView());
   }
@@ -325,6 +361,7 @@ TEST_F(Opener, SLOW_EditsAreAutosavedAndRestored) {
   SessionSample& again = next.shown;
   ASSERT_TRUE(again.settle());
   ASSERT_TRUE(again->keptView());
+  again->update();
   EXPECT_TRUE(again->panels.restore);
   again.perform(R"({"do":"restore"})");
   ASSERT_TRUE(waitUntilOpened(again, next.opener));

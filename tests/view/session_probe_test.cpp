@@ -144,5 +144,22 @@ TEST(SessionProbe, ReportsInvalidPositions) {
   EXPECT_EQ(sample.error(), "probe: 91, 5 is outside latitude -90..90 and longitude -180..180 deg");
 }
 
+TEST(SessionProbe, SaysWhereVolumeAndPointDisagree) {
+  using Kind = playback::VolumeSample::Kind;
+  SessionSample sample("quick.yaml");
+  sample.perform(kProbe);
+  sample.settle();
+  ProbeResult result = *sample->prober().result();
+  EXPECT_EQ(pointFieldOf(result), PointField::same);
+  result.reading->sample.kind = Kind::at_floor;
+  EXPECT_EQ(pointFieldOf(result), PointField::of_point_only);
+  for (Contribution& each : result.contributions) each.value = -INFINITY;
+  EXPECT_EQ(pointFieldOf(result), PointField::same) << "none at all";
+  result.reading->sample.kind = Kind::value;
+  EXPECT_EQ(pointFieldOf(result), PointField::of_volume_only);
+  result.reading->sample.kind = Kind::masked;
+  EXPECT_EQ(pointFieldOf(result), PointField::same) << "the volume does not know";
+}
+
 }  // namespace
 }  // namespace emscape::view::test

@@ -39,6 +39,7 @@ struct Files {
   bool is_opening = false;             ///< a request is not on screen yet
   OpeningProgress opening;             ///< of that request
   bool cancels_opening = false;        ///< for the window, which resets it
+  bool is_typing = false;              ///< a text field of the window has the keys
   std::string record_output;           ///< chosen for the next recording; may be empty
   std::set<std::string> pictures;      ///< names that newPictureFile() gave out
 };

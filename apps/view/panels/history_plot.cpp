@@ -71,9 +71,10 @@ void drawHistory(PanelContext& context) {
     max = std::max(max, history.values[i]);
   }
   const bool has_values = min <= max;
-  ImGui::TextDisabled("over time%s", history.computed < history.times_s.size() ? ", being computed …"
-                                     : has_values                              ? ""
-                                                                               : ": no field at any step");
+  ImGui::TextDisabled("at the point itself, over time%s", history.computed < history.times_s.size()
+                                                              ? ", being computed …"
+                                                          : has_values ? ""
+                                                                       : ": no field at any step");
   ImGui::SameLine();
   if (ImGui::SmallButton("copy as CSV")) perform(context, R"({"do":"copy_history"})");
   if (!has_values) return;

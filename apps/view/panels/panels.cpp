@@ -13,6 +13,7 @@
 #include "apps/view/widgets/dialog.h"
 #include "apps/view/widgets/glyphs.h"
 #include "apps/view/widgets/names.h"
+#include "apps/view/widgets/refusal.h"
 #include "apps/view/widgets/theme.h"
 #include "base/text/time_text.h"
 #include "emscape/render/annotate/legend.h"
@@ -181,11 +182,14 @@ void drawNotice(PanelContext& context, const Area& picture) {
   const std::optional<Rejection>& rejection = session.rejection();
   if (context.shows_rejection && rejection && text == rejection->message) return;
   if (text.empty()) return;
-  const float wrap = std::max(120 * s, std::min(picture.width - 60 * s, 760 * s));
+  const float free_width = legendBegin(context, picture.x + picture.width) - picture.x;
+  const float wrap = std::max(120 * s, std::min(free_width - 60 * s, 760 * s));
   const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
-  // Below the picture's title and what else lies at its top; the labels of the axes are at the bottom.
-  const float top = std::min(120 * s, 0.3F * picture.height);
-  ImGui::SetNextWindowPos({picture.x + picture.width / 2, picture.y + top}, ImGuiCond_Always, {0.5F, 0.0F});
+  // Beside the legend, below the picture's title and what else lies at its top; the labels of the axes are at
+  // the bottom, and below them the values and the state.
+  const float top =
+      std::max(0.0F, std::min({120 * s, 0.3F * picture.height, picture.height - size.y - 20 * s}));
+  ImGui::SetNextWindowPos({picture.x + free_width / 2, picture.y + top}, ImGuiCond_Always, {0.5F, 0.0F});
   ImGui::SetNextWindowSize({size.x + 32 * s, size.y + 20 * s});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(16 * s, 10 * s));

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/view/widgets/names.h"
+#include "apps/view/widgets/refusal.h"
 #include "apps/view/widgets/slider_field.h"
 #include "apps/view/widgets/theme.h"
 #include "base/files/json_writing.h"
@@ -15,6 +16,7 @@
 #include "base/text/quantity_text.h"
 #include "base/text/shell_word.h"
 #include "emscape/base/error.h"
+#include "scenario/file/source.h"
 
 namespace emscape::view {
 namespace {
@@ -41,12 +43,31 @@ std::string rangeOf(const Parameter& parameter) {
          rangeText(parameter.minimum, parameter.maximum, unitSigns(parameter.unit));
 }
 
-/// What was expected of a text: " in one of the units W, kW, dBm"; empty without a unit.
-std::string unitsText(const Parameter& parameter) {
-  if (parameter.key == "latitude_deg") return " such as 44.41, 44.41N or 44°24'30\"N, nor a position";
-  if (parameter.key == "longitude_deg") return " such as -71.4, 71.4W or 71°24'W, nor a position";
-  const std::string units = readUnits(parameter.unit);
-  return units.empty() ? "" : " in one of the units " + units;
+bool isCoordinate(const Parameter& parameter) {
+  return parameter.key == "latitude_deg" || parameter.key == "longitude_deg";
+}
+
+/// @param factor  of a number without a unit
+std::optional<double> numberOf(const Parameter& parameter, const std::string& text, double factor) {
+  return isCoordinate(parameter) ? parseCoordinate(text, parameter.key == "latitude_deg")
+                                 : parseQuantity(text, parameter.unit, factor);
+}
+
+/// Why a text is not a number of a parameter.
+std::string faultOfText(const Parameter& parameter, const std::string& text) {
+  const auto is_read = [&](const std::string& other) { return numberOf(parameter, other, 1).has_value(); };
+  const std::string fault =
+      quantityFault(text, isCoordinate(parameter) ? "" : readUnits(parameter.unit), is_read);
+  if (!isCoordinate(parameter) || fault.find("is not a number") == std::string::npos) return fault;
+  return fault + (parameter.key == "latitude_deg" ? " such as 44.41, 44.41N or 44°24'30\"N, nor a position"
+                                                  : " such as -71.4, 71.4W or 71°24'W, nor a position");
+}
+
+/// "44,41" may be a number with a decimal comma.
+bool mayBeDecimal(const std::string& text) {
+  const std::size_t comma = text.find(',');
+  return comma != std::string::npos && comma + 1 < text.size() && text[comma + 1] != ' ' &&
+         text.find('.') == std::string::npos && text.find_first_not_of("+-0123456789,") == std::string::npos;
 }
 
 std::string tooltipOf(const Parameter& parameter) {
@@ -321,8 +342,7 @@ void ParameterRows::drag(const Parameter& parameter, const std::string& value) {
 
 /// A whole position that is typed as latitude or longitude sets both. @return false if the text is none
 bool ParameterRows::enterPosition(const Parameter& parameter, const std::string& text) {
-  const bool is_latitude = parameter.key == "latitude_deg";
-  if ((!is_latitude && parameter.key != "longitude_deg") || parseCoordinate(text, is_latitude)) return false;
+  if (!isCoordinate(parameter) || numberOf(parameter, text, 1) || mayBeDecimal(text)) return false;
   try {
     const ParsedPosition position = parsePosition(text);
     const std::string section = parameter.path.substr(0, parameter.path.size() - parameter.key.size());
@@ -356,10 +376,7 @@ void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
   if (enterPosition(parameter, text)) return;
   const double value = std::strtod(parameter.value.c_str(), nullptr);
   const double factor = prefixedUnit(value, parameter.unit, kTypedDigits).factor;
-  const bool is_latitude = parameter.key == "latitude_deg", is_longitude = parameter.key == "longitude_deg";
-  const std::optional<double> number = is_latitude || is_longitude
-                                           ? parseCoordinate(text, is_latitude)
-                                           : parseQuantity(text, parameter.unit, factor);
+  const std::optional<double> number = numberOf(parameter, text, factor);
   const auto refuse = [&](const std::string& why) {
     state_.refused = {path, text, why, context_.session.scenario()};
   };
@@ -374,14 +391,15 @@ void ParameterRows::enter(const Parameter& parameter, const std::string& text) {
         fmt::format("{}: a whole number is needed; allowed: {}", parameter.name, rangeOf(parameter)));
   }
   if (!number && !(is_word && !parameter.choices.empty())) {
-    return refuse(fmt::format("{}: '{}' is not a number{}; allowed: {}", parameter.name, text,
-                              unitsText(parameter), rangeOf(parameter)));
+    return refuse(
+        fmt::format("{}: {}; allowed: {}", parameter.name, faultOfText(parameter, text), rangeOf(parameter)));
   }
   const std::string next = number ? numberText(*number) : text;
   if (next == numberText(value) && parameter.is_given) return;
   state_.sent_path = path;
   state_.sent_text = text;
-  set(path, next);
+  const bool is_default = number && *number == std::strtod(parameter.default_value.c_str(), nullptr);
+  set(path, is_default && !parameter.default_value.empty() && isAdded(path) ? "null" : next);
 }
 
 void ParameterRows::drawBoolean(const Parameter& parameter) {
@@ -461,23 +479,15 @@ void ParameterRows::restoreValue(const std::string& path) {
   if (is_escaped || state_.refused.scenario != context_.session.scenario()) state_.refused = {};
 }
 
-/// Over the rows below, so that they stay where they are.
 void ParameterRows::drawRefusal(const std::string& path) {
   if (state_.refused.path != path || focus_.isTyping(path)) return;
-  if (!focus_.has(path) && !ImGui::IsItemHovered()) return;
-  const ImVec2 end = ImGui::GetItemRectMax();
-  const float s = context_.scale;
-  ImGui::SetNextWindowPos({end.x, end.y + 2 * s}, ImGuiCond_Always, {1, 0});
-  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(8 * s, 6 * s));
-  ImGui::Begin("refusal", nullptr,
-               ImGuiWindowFlags_Tooltip | ImGuiWindowFlags_NoInputs | ImGuiWindowFlags_NoDecoration |
-                   ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                   ImGuiWindowFlags_AlwaysAutoResize);
-  ImGui::PushTextWrapPos(300 * s);
-  ImGui::TextColored(errorColor(context_.session.theme()), "%s", drawable(state_.refused.why).c_str());
-  ImGui::PopTextWrapPos();
-  ImGui::End();
-  ImGui::PopStyleVar();
+  if (focus_.has(path) || ImGui::IsItemHovered()) emscape::view::drawRefusal(context_, state_.refused.why);
+}
+
+/// True if the file has no value at a path.
+bool ParameterRows::isAdded(const std::string& path) const {
+  const playback::ScenarioPtr scenario = context_.session.scenario();
+  return scenario && scenario->source && scenario::isAdded(*scenario->source, path);
 }
 
 void ParameterRows::set(const std::string& path, const std::string& value) const {

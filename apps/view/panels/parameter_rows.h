@@ -68,6 +68,7 @@ class ParameterRows {
   void takeRejection(const std::string& path);
   void restoreValue(const std::string& path);
   void drawRefusal(const std::string& path);
+  bool isAdded(const std::string& path) const;
   void set(const std::string& path, const std::string& value) const;
 
   PanelContext& context_;

@@ -153,15 +153,24 @@ void drawEmitters(PanelContext& context, const ProbeResult& result) {
 void drawReading(PanelContext& context, const ProbeResult& result) {
   const render::Theme theme = context.session.theme();
   const playback::ProbeReading& reading = *result.reading;
-  const bool is_value = reading.sample.kind == playback::VolumeSample::Kind::value;
+  const PointField point = pointFieldOf(result);
+  const bool is_value =
+      reading.sample.kind == playback::VolumeSample::Kind::value && point == PointField::same;
   ImGui::SetWindowFontScale(1.25F);
   ImGui::PushStyleColor(ImGuiCol_Text,
                         is_value ? accentColor(theme) : ImGui::GetStyleColorVec4(ImGuiCol_Text));
   const playback::ViewState& view = context.session.view();
   const volume::VolumeInfo& info = context.session.picture()->info();
-  ImGui::TextWrapped("%s", drawable(valueText(reading, info, view)).c_str());
+  const std::string value = valueText(reading, info, view);
+  ImGui::TextWrapped(
+      "%s", drawable(point == PointField::of_volume_only ? "no field at the point itself" : value).c_str());
   ImGui::PopStyleColor();
   ImGui::SetWindowFontScale(1);
+  if (point == PointField::of_volume_only) {
+    ImGui::TextWrapped("%s", drawable(value + " in the picture, between voxel centres").c_str());
+  } else if (point == PointField::of_point_only) {
+    ImGui::TextWrapped("in the picture, between voxel centres; the point itself has a field");
+  }
   ImGui::TextDisabled("%s", drawable(render::quantityTitle(result.quantity, info.unit)).c_str());
   drawPlace(result, view, context.scale);
   if (context.session.prober().isLocked()) drawHistory(context);

@@ -11,6 +11,9 @@
 namespace emscape::view {
 namespace {
 
+/// Lag of a playing picture that is stated (seconds of the clock on the wall).
+constexpr double kNoticed_s = 0.5;
+
 enum class Symbol { first, back, play, pause, forward, last };
 
 /// A button with a drawn symbol, since not all fonts have these symbols.
@@ -101,12 +104,17 @@ void drawRate(PanelContext& context) {
     }
     ImGui::EndCombo();
   }
-  ImGui::SameLine(0, 10 * s);
-  bool backwards = rate < 0;
-  if (ImGui::Checkbox("backwards", &backwards)) perform(context, R"({"do":"reverse"})");
-  ImGui::SameLine(0, 10 * s);
-  bool loop = session.timeline().loop();
-  if (ImGui::Checkbox("loop", &loop)) session.perform({"loop", {{"on", loop}}});
+  // What does not fit is left out: both have a key and a menu entry.
+  const auto begins = [&](const char* name) {
+    const float spacing = 10 * s, box = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x;
+    const bool fits = roomInLine(spacing) >= box + ImGui::CalcTextSize(name).x;
+    if (fits) ImGui::SameLine(0, spacing);
+    return fits;
+  };
+  bool backwards = rate < 0, loop = session.timeline().loop();
+  if (begins("backwards") && ImGui::Checkbox("backwards", &backwards))
+    perform(context, R"({"do":"reverse"})");
+  if (begins("loop") && ImGui::Checkbox("loop", &loop)) session.perform({"loop", {{"on", loop}}});
 }
 
 /// The requested time, and the time on screen while it differs, if there is room. The picture has the UTC.
@@ -122,7 +130,10 @@ void drawTimes(const PanelContext& context) {
   };
   const ImVec4 ink = ImGui::GetStyleColorVec4(ImGuiCol_Text);
   draw("t = " + timeText(asked_s, span_s), ink);
-  if (session.picture() && session.status().shown_s != asked_s && !timeline.playing()) {
+  // A playing picture is always a little behind.
+  const double behind_s = std::abs(asked_s - session.status().shown_s);
+  const bool differs = timeline.playing() ? behind_s > kNoticed_s * std::abs(timeline.rate()) : behind_s > 0;
+  if (session.picture() && differs) {
     draw("shown " + timeText(session.status().shown_s, span_s), stateColor(render::ControllerState::busy));
   }
   if (!timeline.playing() && !timeline.times_s().empty() && timeline.step_s() == asked_s) {

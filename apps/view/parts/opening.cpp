@@ -1,6 +1,9 @@
 #include "apps/view/parts/opening.h"
 
+#include <fmt/format.h>
+
 #include "apps/view/files/recordings.h"
+#include "apps/view/values/refusal_text.h"
 #include "emscape/base/error.h"
 #include "emscape/playback/frames/inputs.h"
 #include "emscape/scenario/file/scenario_file.h"
@@ -12,21 +15,29 @@ namespace {
 
 using scenario::Edit;
 
-bool applies(const std::string& file, const std::vector<Edit>& edits) {
-  return scenario::parseScenario(file, edits).scenario != nullptr;
+/// Why edits do not apply to a scenario; empty: they do.
+std::string faultOfEdits(const std::string& file, const std::vector<Edit>& edits) {
+  const scenario::ParseResult parsed = scenario::parseScenario(file, edits);
+  if (parsed.scenario) return "";
+  for (const scenario::Problem& problem : parsed.problems) {
+    if (problem.severity != scenario::Severity::warning) return refusalText(problem.message, edits);
+  }
+  return "it is not valid";
 }
 
 /// Removes edits that no longer apply to the scenario.
-void checkScenario(const std::string& file, std::vector<Edit>& edits, std::string& left_out) {
+void checkScenario(const std::string& file, std::vector<Edit>& edits, std::vector<std::string>& left_out) {
   playback::requireScenarioFile(file);
-  if (applies(file, edits)) return;
+  if (faultOfEdits(file, edits).empty()) return;
   scenario::loadScenario(file);  // throws its errors
   std::vector<Edit> kept;
   for (const Edit& edit : edits) {
     kept.push_back(edit);
-    if (applies(file, kept)) continue;
+    const std::string fault = faultOfEdits(file, kept);
+    if (fault.empty()) continue;
     kept.pop_back();
-    left_out += (left_out.empty() ? "" : ", ") + scenario::toString(edit);
+    left_out.push_back(fmt::format("the edit {} is left out, as it does not apply to {}: {}",
+                                   scenario::toString(edit), file, fault));
   }
   edits = kept;
 }

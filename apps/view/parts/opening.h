@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/view/files/files.h"
 #include "apps/view/parts/view_options.h"
@@ -10,11 +11,10 @@ namespace emscape::view {
 
 /// Result of a request.
 struct Opening {
-  ViewOptions options;  ///< of the new session
-  std::string colors;   ///< a transfer function for the present session; else empty
-  /// Edits that no longer apply, each with the reason; may be empty.
-  std::string left_out;
-  std::string note;  ///< of the import of a recording; may be empty
+  ViewOptions options;                ///< of the new session
+  std::string colors;                 ///< a transfer function for the present session; else empty
+  std::vector<std::string> left_out;  ///< edits that no longer apply, each with the reason
+  std::string note;                   ///< of the import of a recording; may be empty
 };
 
 /// Examines the file: kind by name and content, errors in a scenario, edits that still apply. Reads files: to

@@ -124,7 +124,7 @@ void Session::takeScenario() {
   timeline_.setSteps(std::move(times_s));
   timeline_.setContinuous(live_.status().is_continuous);
   if (is_first) {
-    timeline_.seek(options_.view.time_s);
+    timeline_.seek(std::isnan(options_.view.time_s) ? live_.status().asked_s : options_.view.time_s);
     if (const auto& part = options_.view.play_range) timeline_.setPlayRange(part->begin_s, part->end_s);
     if (const auto& part = options_.view.visible_time) timeline_.setVisible(part->begin_s, part->end_s);
     view_.time_s = timeline_.asked_s();
@@ -201,6 +201,10 @@ bool Session::update() {
     }
   }
   takeChangedFiles();
+  if (asks_to_restore_ && !isOccupied()) {
+    asks_to_restore_ = false;
+    panels.restore = touched_ = true;
+  }
   if (takeWarnings(now_s)) touched_ = true;
   writePendingPicture();
   keepEdits(now_s);

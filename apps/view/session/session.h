@@ -164,10 +164,14 @@ class Session {
   const std::optional<playback::AutosavedView>& keptView() const { return kept_view_; }
   /// Files of the input that have changed on the disk since they were read.
   const std::vector<std::string>& changedFiles() const { return changed_files_; }
+  /// True while a dialog waits for the user or a text is typed: what a finished job shows comes later.
+  bool isOccupied() const;
+  /// Keeps what the user has open beside the input, and of the same input the selection.
+  void takeOver(const Session& before);
   /// Ends this session. @param keeps_edits  true: unsaved edits are offered when the input is opened again
   void leave(bool keeps_edits);
-  /// Called when the session is shown. @param left_out  edits that did not apply; may be empty
-  void shown(const std::string& left_out);
+  /// Called when the session is shown. @param left_out  edits that did not apply: warnings
+  void shown(const std::vector<std::string>& left_out);
   void record(const RecordRange& range, const std::string& output);
   /// Opens the file browser. @param proposed  file name at first; may be empty
   void browse(FileBrowser::Purpose purpose, const std::string& proposed = "");
@@ -443,6 +447,7 @@ class Session {
   std::optional<double> keep_at_s_;
   bool has_kept_;  // true: there is an autosave; a regular end removes it
   std::optional<playback::AutosavedView> kept_view_;
+  bool asks_to_restore_ = false;  // as soon as the user is not occupied
   FieldTimes field_times_;
   FileWatch file_watch_;
   std::vector<std::string> changed_files_;

@@ -33,13 +33,18 @@ void Session::ask(OpenRequest request) {
   files_->opening = {std::filesystem::path(request.file).filename().string(), {}};
   files_->request = std::move(request);
   files_->is_opening = true;
-  panels.open = panels.restore = false;
+  panels.open = panels.restore = asks_to_restore_ = false;
 }
 
-void Session::shown(const std::string& left_out) {
+void Session::shown(const std::vector<std::string>& left_out) {
   is_on_screen_ = true;
   if (options_.stream) return;  // its file is not the user's
-  if (!left_out.empty()) tell("these edits do not apply any more: " + left_out, true);
+  for (const std::string& edit : left_out) files_->messages->add(edit);
+  if (!left_out.empty())
+    tell(fmt::format("{} edit{} left out, as {}: see the warnings", left_out.size(),
+                     left_out.size() == 1 ? " is" : "s are",
+                     left_out.size() == 1 ? "it does not apply any more" : "they do not apply any more"),
+         true);
   jobs_.run([this, input = options_.view.input]() -> BackgroundJobs::Finish {
     auto examples = input.empty() ? findExamples() : std::vector<Example>();
     return [this, examples = std::move(examples),
@@ -109,12 +114,24 @@ void Session::saveScenario(const std::string& file) {
   });
 }
 
+bool Session::isOccupied() const {
+  const Panels& p = panels;
+  return files_->is_typing || p.open || p.record || p.time || p.position || p.restore || p.unsaved ||
+         p.replace;
+}
+
+void Session::takeOver(const Session& before) {
+  for (bool Panels::*const panel : {&Panels::help, &Panels::warnings, &Panels::side, &Panels::hidden})
+    panels.*panel = before.panels.*panel;
+  if (options_.view.input == before.options_.view.input) selected_ = before.selected_;
+}
+
 void Session::lookForKeptView() {
   jobs_.run([this, autosaves = files_->autosaves, input = options_.view.input]() -> BackgroundJobs::Finish {
     std::optional<playback::AutosavedView> found = autosaves->find(input);
     return [this, found = std::move(found)] {
       kept_view_ = found;
-      if (found && options_.script.empty()) panels.restore = true;
+      asks_to_restore_ = found && options_.script.empty();
     };
   });
 }

@@ -52,6 +52,10 @@ bool SessionOpener::update(std::unique_ptr<Session>& session) {
   next_->update();
   const bool is_other_input = session->view().input != opening_.options.view.input;
   if (next_->hasField() || (next_->picture() && is_other_input)) {
+    if (session->isOccupied()) {
+      files_->opening.progress = {"shown after the dialog or text field", "", 1};
+      return false;
+    }
     replace(session);
     return true;
   }
@@ -82,6 +86,7 @@ void SessionOpener::replace(std::unique_ptr<Session>& session) {
   const bool takes_edits_along =
       opening_.options.unsaved_edits && session->view().input == opening_.options.view.input;
   session->leave(!takes_edits_along);
+  next_->takeOver(*session);
   const std::string fault = endStream(*session, next_->options());
   endBeside(std::move(session));
   session = std::move(next_);
@@ -114,7 +119,7 @@ bool SessionOpener::close(std::unique_ptr<Session>& session) {
   const std::string fault = endStream(*session, nothing);
   endBeside(std::move(session));
   session = make_(nothing);
-  session->shown("");
+  session->shown({});
   session->show(notice);
   if (!fault.empty()) session->tell(fault, true);
   return true;

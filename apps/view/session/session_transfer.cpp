@@ -9,6 +9,7 @@
 #include "apps/view/files/file_endings.h"
 #include "apps/view/session/session.h"
 #include "emscape/base/error.h"
+#include "emscape/volume/statistics.h"
 #include "playback/editing/opacity_preset.h"
 
 namespace emscape::view {
@@ -47,7 +48,9 @@ void setPoint(playback::TransferEditor& editor, const Command& command) {
 // --- source of the colours ---
 
 void Session::takeColors() {
-  takes_colors_ = picture_->status.computing;  // then the picture is of an earlier request
+  // Colours of an earlier request, or fitted to a field without a value, are replaced.
+  takes_colors_ = picture_->status.computing ||
+                  (!view_.range && view_.transfer_file.empty() && volume::holdsNothing(picture_->info()));
   const playback::OpacityAxis axis = transfer_ ? transfer_->axis : playback::OpacityAxis{};
   undo_order_.forget(History::transfer);
   transfer_.reset();

@@ -182,6 +182,23 @@ bool Prober::update(const PicturePtr& picture) {
   return is_new;
 }
 
+PointField pointFieldOf(const ProbeResult& result) {
+  using Kind = playback::VolumeSample::Kind;
+  if (!result.reading || !result.scenario || result.contributions.empty()) return PointField::same;
+  const bool is_instant = result.scenario->output.interval.kind == scenario::IntervalKind::instant;
+  const Kind kind = result.reading->sample.kind;
+  if (!is_instant || (kind != Kind::value && kind != Kind::at_floor)) return PointField::same;
+  const auto& all = result.contributions;
+  if (std::any_of(all.begin(), all.end(), [&](const Contribution& each) {
+        return !result.reading->emitters[each.emitter].budget.has_value();
+      }))
+    return PointField::same;
+  const bool has_point =
+      std::any_of(all.begin(), all.end(), [](const Contribution& each) { return std::isfinite(each.value); });
+  if (has_point == (kind == Kind::value)) return PointField::same;
+  return has_point ? PointField::of_point_only : PointField::of_volume_only;
+}
+
 std::vector<Contribution> contributionsOf(const playback::ProbeReading& reading,
                                           const std::string& quantity) {
   std::vector<Contribution> contributions;

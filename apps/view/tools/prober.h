@@ -35,6 +35,14 @@ struct ProbeResult {
   double time_s = 0;
 };
 
+/// What the volume and the point itself say of a field at one time.
+enum class PointField {
+  same,            ///< both have a field, or neither; also where only one of them is known
+  of_volume_only,  ///< the voxels around have one, the point itself has none: at the edge of the field
+  of_point_only
+};
+PointField pointFieldOf(const ProbeResult& result);
+
 /// Reads the picture on screen under the cursor, or at a locked point whenever the field changes. While a
 /// reading is in progress, only the latest request is kept. For use by the window's thread.
 class Prober {

@@ -76,19 +76,17 @@ double NumberForm::valueOf(const std::string& text) const {
     number.resize(number.size() - suffix.size());
   number = withoutSpaces(number);
   if (read) return read(number);
-  std::optional<double> value = parseQuantity(number, unit, shown_factor);
-  if (render::fieldScale(unit, field_unit).unit != unit || !value)
-    value = fieldValueOf(number, unit, field_unit);
+  const auto read_number = [this](const std::string& of) {
+    const std::optional<double> value = parseQuantity(of, unit, shown_factor);
+    const bool is_of_field = render::fieldScale(unit, field_unit).unit != unit || !value;
+    return is_of_field ? fieldValueOf(of, unit, field_unit) : value;
+  };
+  const std::optional<double> value = read_number(number);
   const std::string name = prefix.empty() ? "" : prefix + ": ";
   if (!value) {
-    const std::string of =
-        unit.empty()
-            ? ""
-            : ", such as " +
-                  NumberForm{"", unit, "", -1, shown_unit, shown_factor, field_unit}.textOf(shown_factor);
-    const std::string units = unitsOf(unit);
-    throw Error(ErrorCode::bad_input, fmt::format("{}'{}': expected a number{}{}", name, text, of,
-                                                  units.empty() ? "" : "; units: " + units));
+    throw Error(ErrorCode::bad_input, name + quantityFault(number, unitsOf(unit), [&](auto& other) {
+                                        return bool(read_number(other));
+                                      }));
   }
   if (*value >= min && *value <= max) return *value;
   NumberForm plain = *this;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/widgets/refusal.h"
+
 namespace emscape::view {
 namespace {
 
@@ -133,10 +135,13 @@ void endDialog() {
 }
 
 bool defaultButton(const char* text) {
+  const bool is_refused = hasRefusedField();  // the dialog would act with the value before
+  ImGui::BeginDisabled(is_refused);
   const bool pressed = ImGui::Button((std::string(text) + " (Enter)").c_str());
+  ImGui::EndDisabled();
   ImGui::SameLine();
-  const bool takes_keys =
-      !ImGui::IsWindowAppearing() && !isPopupOpen() && isOnTop(ImGui::GetCurrentWindow()->RootWindow->Name);
+  const bool takes_keys = !is_refused && !ImGui::IsWindowAppearing() && !wasPopupOpen() &&
+                          isOnTop(ImGui::GetCurrentWindow()->RootWindow->Name);
   return pressed || (takes_keys && isEnterPressed());
 }
 

@@ -2,11 +2,7 @@
 
 #include <imgui_internal.h>
 
-#include <array>
-#include <cstring>
-
 #include "apps/view/commands/command.h"
-#include "emscape/base/error.h"
 
 namespace emscape::view {
 
@@ -23,8 +19,18 @@ void perform(PanelContext& context, const char* command) {
   context.session.perform(parseCommand(std::string(command)));
 }
 
+namespace {
+int popup_frame = -2;  // the last one with an open popup
+}
+
 bool isPopupOpen() {
-  return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  const bool is_open = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+  if (is_open) popup_frame = ImGui::GetFrameCount();
+  return is_open;
+}
+
+bool wasPopupOpen() {
+  return isPopupOpen() || ImGui::GetFrameCount() - popup_frame <= 1;
 }
 
 bool isKeyPressed(ImGuiKey key, bool repeats) {
@@ -33,24 +39,6 @@ bool isKeyPressed(ImGuiKey key, bool repeats) {
 
 bool isEnterPressed() {
   return isKeyPressed(ImGuiKey_Enter) || isKeyPressed(ImGuiKey_KeyPadEnter);
-}
-
-bool numberField(const PanelContext& context, const char* id, double& value, const NumberForm& form) {
-  static std::string typed;  // a field without the focus no longer returns it
-  std::array<char, 96> text{};
-  std::strncpy(text.data(), form.textOf(value).c_str(), text.size() - 1);
-  const std::string before = text.data();
-  ImGui::InputText(id, text.data(), text.size(), ImGuiInputTextFlags_AutoSelectAll);
-  // In the frame of its activation another field may still return its text.
-  if (ImGui::IsItemActive() && !ImGui::IsItemActivated()) typed = text.data();
-  if (!ImGui::IsItemDeactivatedAfterEdit() || isKeyPressed(ImGuiKey_Escape) || typed == before) return false;
-  try {
-    value = form.valueOf(typed);
-    return true;
-  } catch (const Error& error) {
-    context.session.tell(error.message(), true);
-    return false;
-  }
 }
 
 }  // namespace emscape::view

@@ -25,11 +25,14 @@ void sameLineIfRoom(float width, float spacing = 0);
 void perform(PanelContext& context, const char* command);
 /// True while a menu or a list is unfolded.
 bool isPopupOpen();
+/// The same, or it was in the frame before: the key that closed it is not for what is below.
+bool wasPopupOpen();
 /// True in the frame in which the key was pressed. @param repeats  also while it is held, at intervals
 bool isKeyPressed(ImGuiKey key, bool repeats = false);
 /// The same for Enter of the main block or the keypad.
 bool isEnterPressed();
-/// A number field as wide as the next item. A text that cannot be read is refused with a notice.
+/// A number field as wide as the next item. A text that cannot be read stays in it, with the reason beside
+/// it, until another one is entered, Esc is pressed or the value changes (widgets/refusal.cpp).
 /// @return true if a number was entered: with Enter, or because the focus is lost
 bool numberField(const PanelContext& context, const char* id, double& value, const NumberForm& form);
 

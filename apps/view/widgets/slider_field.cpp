@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "apps/view/widgets/names.h"
+#include "apps/view/widgets/refusal.h"
 
 namespace emscape::view {
 namespace {
@@ -73,10 +74,12 @@ bool sliderField(const PanelContext& context, const char* id, double& value, con
   } state;
   const ImGuiID item = ImGui::GetID(id);
   const float width = ImGui::CalcItemWidth();
-  if (state.typing == item) {
-    if (!state.is_open) ImGui::SetKeyboardFocusHere();
+  const bool was_refused = isRefused(item);
+  if (state.typing == item || was_refused) {
+    if (state.typing == item && !state.is_open) ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(width);
     const bool is_entered = numberField(context, id, value, form);
+    if (state.typing != item) return is_entered;
     if (state.is_open && !ImGui::IsItemActive()) state.typing = 0;
     state.is_open = state.is_open || ImGui::IsItemActive();
     return is_entered;

@@ -35,6 +35,10 @@ struct Histogram {
 /// @throws Error (bad_input) outside these
 Histogram histogramOf(const DenseVolume& volume, int bins, float lower, float upper);
 
+/// Whether the range in a volume's metadata is that of a volume without a value: all voxels are masked or at
+/// the floor.
+bool holdsNothing(const VolumeInfo& info);
+
 /// Sets info.range_min and range_max to the smallest and largest valid finite value that is not the floor;
 /// both to the floor if there is none, or to 0 if the floor is kNoFloor.
 void setRangeFromValues(DenseVolume& volume);

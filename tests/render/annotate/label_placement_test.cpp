@@ -50,6 +50,36 @@ TEST(LabelPlacement, LabelsOfManyMarkersDoNotOverlapAndLeaveThePictureFree) {
   }
 }
 
+/// Whether the line from a marker to its label has a point within a rectangle.
+bool leadsThrough(const LabelRequest& request, const LabelPlace& place, const Rect& rect) {
+  const Point2 end = nearestIn(place.rect, request.at);
+  for (int n = 0; place.needs_line && n <= 400; ++n) {
+    const Point2 at = request.at + (end - request.at) * (n / 400.0);
+    const Point2 inside = nearestIn(rect, at);
+    if (inside.x == at.x && inside.y == at.y) return true;
+  }
+  return false;
+}
+
+TEST(LabelPlacement, NoLeaderLineCrossesALabel) {
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    std::vector<LabelRequest> requests = crowd(60, false, seed);
+    for (LabelRequest& request : requests)  // so that most need a line
+      request.at = {500 + 0.2 * request.at.x, 350 + 0.2 * request.at.y};
+    const auto places = placeLabels(requests, kSize, kGap, {});
+    int lines = 0;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      if (!places[i]) continue;
+      lines += places[i]->needs_line ? 1 : 0;
+      for (std::size_t j = 0; j < places.size(); ++j) {
+        if (j == i || !places[j]) continue;
+        EXPECT_FALSE(leadsThrough(requests[i], *places[i], places[j]->rect)) << i << " through " << j;
+      }
+    }
+    EXPECT_GT(lines, 3);
+  }
+}
+
 TEST(LabelPlacement, MovingObjectsDoNotMoveLabelsOfFixedOnes) {
   std::vector<LabelRequest> requests = crowd(40, false, 5);
   const std::size_t fixed = requests.size();

@@ -76,7 +76,7 @@ double greatestDifference(const Image& a, const Image& b) {
 /// Chords of a picture's rays in a grid's box (voxels).
 std::vector<double> chordsOf(const CellRenderer& renderer, const TetrahedralMesh& mesh) {
   Scene scene;
-  scene.setVolume(referenceGridOf(mesh), false, 0);
+  scene.setVolume(referenceGridOf(mesh), {});
   scene.setCamera(renderer.camera());
   scene.setTransferFunction(constant(0.1));
   scene.prepare();

@@ -71,7 +71,7 @@ struct FieldChoice {
 /// The frames of a field to draw.
 struct FrameSelection : FieldChoice {
   std::string times;        ///< "BEGIN:END:STEP", "BEGIN:END" or "T" (s); empty: all
-  bool first_only = false;  ///< without times: only the first
+  bool first_only = false;  ///< without times: only firstTime_s() of the scenario, or the first volume
   /// Frames of a scenario are independent of each other and of their order: each has the range of its own
   /// values, and there is no tolerance for the movement of emitters.
   bool independent = false;
@@ -117,10 +117,15 @@ class FrameSource : public VolumeSeries {
     return {comparableVolume(frameAt(time_s))};
   }
 
+  /// The first step at which an emitter of scene() is present, else any platform; else the first step.
+  double firstTime_s() const;
+
   /// For titles and file names.
   virtual std::string name() const = 0;
   /// The scenario that the pictures show; null without one.
   virtual const LoadedScenario* scene() const = 0;
+  /// The time line, for times that are typed.
+  virtual scenario::Clock clock() const { return {}; }
   /// The quantities that the input's files hold; empty if the field is computed.
   virtual std::vector<std::string> quantities() const { return {}; }
 

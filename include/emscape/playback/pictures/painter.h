@@ -158,6 +158,7 @@ class Painter {
   render::Camera cameraOf(const render::CameraSpec& given) const;
   void fitCamera();
   render::TransferFunction functionFor(const Frame& frame) const;
+  bool isFittedToNothing(const Frame& frame) const;
 
   ViewState view_;
   const bool must_show_isosurface_;
@@ -176,6 +177,7 @@ class Painter {
   render::Image image_;
   bool fetched_ = false;  ///< image_ is the last picture
   bool has_colors_ = false;
+  bool was_fitted_ = false;  ///< to a field, perhaps to one without a value
   std::optional<double> speed_;
 };
 

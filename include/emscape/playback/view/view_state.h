@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -132,8 +133,11 @@ struct ViewState : FieldChoice {
   CameraPath camera_path = CameraPath::fixed;
   bool film_speed = true;  ///< videos state their speed
 
-  double time_s = 0;  ///< since the scenario's epoch
-  double rate = 1;    ///< scenario seconds per second; negative: backwards
+  /// Since the scenario's epoch; NaN: FrameSource::firstTime_s().
+  double time_s = std::numeric_limits<double>::quiet_NaN();
+  /// A UTC time of the input's clock, in place of `time_s`; may be empty.
+  std::string time_utc;
+  double rate = 1;  ///< scenario seconds per second; negative: backwards
   bool loop = false;
   std::optional<scenario::TimeInterval> play_range;    ///< range of playing; none: all steps
   std::optional<scenario::TimeInterval> visible_time;  ///< range of the time line; none: all steps

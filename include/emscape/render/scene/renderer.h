@@ -61,7 +61,7 @@ class Renderer {
   /// The box of the volume as drawn. A volume must be set.
   SceneBox sceneBox() const;
   /// True if a position (frame metres) is on the removed side of a plane, or is hidden from the camera by the
-  /// ground. A volume must be set.
+  /// ground or by a section with a value; on a GPU all sections are taken to have one. A volume must be set.
   bool isHidden(const Vec3d& frame_m) const;
 
   /// Draws a frame of the scene: casts the pixels of the plan's pattern and interpolates the others. The

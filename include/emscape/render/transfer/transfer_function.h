@@ -65,6 +65,9 @@ struct TransferFunction {
 };
 bool operator==(const TransferFunction& a, const TransferFunction& b);
 
+/// The largest magnitude below which values of either sign are transparent; 0 if there is none.
+double quietBelow(const TransferFunction& function);
+
 /// The range that colours are fitted to; none: that of the volume's values.
 using ColorRange = std::optional<volume::ValueRange>;
 inline volume::ValueRange colorRangeOf(const volume::VolumeInfo& info, const ColorRange& range) {
