@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "base/text/utc.h"
+#include "emscape/scenario/file/scenario_file.h"
 #include "scenario/model/typed_time.h"
 #include "tests/support/errors.h"
+#include "tests/support/files.h"
 
 namespace emscape::scenario {
 namespace {
@@ -168,6 +170,18 @@ TEST(Clock, UtcOfTheUnixEpochIsZero) {
   EXPECT_EQ(parseUtc_ms("1970-01-01T00:00:00Z"), 0);
   EXPECT_EQ(parseUtc_ms("2000-03-01T00:00:00.001Z"), 951868800001);
   EXPECT_EQ(parseUtc_ms("1969-12-31T23:59:59.9996Z"), -1);
+}
+
+TEST(Clock, TimesWithAnOffsetAreUtc) {
+  const auto six_ms = parseUtc_ms("2026-06-01T06:00:00Z");
+  for (const char* text : {"2026-06-01 06:00:00+00:00", "2026-06-01T08:00:00.000+02:00", "2026-06-01T01:30:00-0430",
+                           "2026-06-01 07:00:00+01", "2026-06-01 06:00:00Z"})
+    EXPECT_EQ(parseUtc_ms(text), six_ms) << text;
+  EXPECT_FALSE(parseUtc_ms("2026-06-01 06:00:00")) << "which zone?";
+  EXPECT_EQ(utcFault("2026-06-01T06:00:00+25:00"), "hours of the zone 25 is outside 0 to 23");
+  const Scenario scenario =
+      *loadScenario(test::shippedScenario("quick.yaml"), {{"epoch", "2026-06-01 08:00:00+02:00"}});
+  EXPECT_EQ(scenario.clock.epoch_utc, "2026-06-01T06:00:00.000Z");
 }
 
 TEST(Clock, SaysWhichNumberOfAUtcTimeIsOutOfRange) {

@@ -354,7 +354,9 @@ TEST_F(TerrainFileTest, DepthsOfTheSeaAreNoFillValues) {
   // A trench, its bottom flat, with sides of up to 400 m from post to post.
   file.value = [](int column, int) { return -1000.0 - 400.0 * std::min({column, 9 - column, 3}); };
   const std::string sea = write("sea.tif", file);
-  EXPECT_THAT(Terrain::describe(sea).warnings, ElementsAre(HasSubstr("states no vertical datum")));
+  EXPECT_THAT(Terrain::describe(sea).warnings,
+              ElementsAre(HasSubstr("states no vertical datum"),
+                          HasSubstr("100 of 100 posts (100 %) are below -500 m, the lowest at -2200 m")));
   EXPECT_EQ(Terrain::describe(sea).lowest_m, -2200);
   EXPECT_EQ(load({sea}, {49, 50, 10, 11})->heightMsl_m(49.55, 10.45), -2200);
 }
