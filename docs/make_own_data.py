@@ -35,12 +35,12 @@ def write_tile(folder, name, height):
 
 
 def write_track(file):
-    """An aircraft at 200 m from the sea to the land, 200 m/s, below the hills at the end."""
+    """An aircraft from the sea to the land, 200 m/s, from 200 to 550 m above sea level."""
     points = []
     for second in range(0, 201, 5):
         part = second / 200
         latitude, longitude = 50.5 - 0.06 * part, 1.22 - 0.56 * part
-        points.append(f'<trkpt lat="{latitude:.6f}" lon="{longitude:.6f}"><ele>{200 + 150 * part:.0f}</ele>'
+        points.append(f'<trkpt lat="{latitude:.6f}" lon="{longitude:.6f}"><ele>{200 + 350 * part:.0f}</ele>'
                       f"<time>2026-06-01T06:{second // 60:02}:{second % 60:02}Z</time></trkpt>")
     file.write_text('<?xml version="1.0"?>\n<gpx version="1.1" creator="logger"><trk><name>intruder</name><trkseg>\n'
                     + "\n".join(points) + "\n</trkseg></trk></gpx>\n")

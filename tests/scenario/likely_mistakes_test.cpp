@@ -29,9 +29,10 @@ TEST(LikelyMistakes, PositionsThousandsOfKilometresAwayAreToldWithTheExchangeTha
     return messagesOf("quick.yaml", {{"platforms.mast.position.latitude_deg", latitude},
                                      {"platforms.mast.position.longitude_deg", longitude}});
   };
-  const ScenarioPtr scenario = loadScenario(test::shippedScenario("quick.yaml"));
+  const auto scenario = loadScenario(test::shippedScenario("quick.yaml"));
   const SitePosition& mast = scenario->platforms.at(0).track.at(0).position;
-  const std::string latitude = std::to_string(mast.latitude_deg), longitude = std::to_string(mast.longitude_deg);
+  const std::string latitude = std::to_string(mast.latitude_deg),
+                    longitude = std::to_string(mast.longitude_deg);
   EXPECT_THAT(at(longitude, latitude),
               AllOf(HasSubstr("platform 'mast': its position is "), HasSubstr(" km outside the region"),
                     HasSubstr("perhaps latitude and longitude are exchanged")));
@@ -48,11 +49,11 @@ TEST(LikelyMistakes, PositionsThousandsOfKilometresAwayAreToldWithTheExchangeTha
 
 TEST(LikelyMistakes, TracksFasterThanAnyObjectAreTold) {
   const auto track = [](const std::string& last) {
-    return messagesOf("quick.yaml",
-                      {{"platforms.mast.position", "null"},
-                       {"platforms.mast.track", "{points: [{t_s: 0, latitude_deg: 52, longitude_deg: 5, height_agl_m: "
-                                                "50}, {t_s: 4, latitude_deg: " +
-                                                    last + ", longitude_deg: 5, height_agl_m: 50}]}"}});
+    return messagesOf("quick.yaml", {{"platforms.mast.position", "null"},
+                                     {"platforms.mast.track",
+                                      "{points: [{t_s: 0, latitude_deg: 52, longitude_deg: 5, height_agl_m: "
+                                      "50}, {t_s: 4, latitude_deg: " +
+                                          last + ", longitude_deg: 5, height_agl_m: 50}]}"}});
   };
   EXPECT_THAT(track("53"), HasSubstr("the track of 'mast' moves 111.3 km from 0 to 4 s, at 27.81 km/s"));
   EXPECT_THAT(track("52.1"), Not(HasSubstr("faster than any object")));
@@ -70,16 +71,19 @@ TEST(LikelyMistakes, GainsWidthsAndStepsThatAreHardlyMeantAreTold) {
 TEST(LikelyMistakes, AreNotToldOfShippedScenarios) {
   for (const char* name : {"quick.yaml", "jacksboro.yaml", "links.yaml", "clutter.yaml", "jamming.yaml",
                            "ship_duct.yaml", "interval.yaml", "sinr.yaml"}) {
-    EXPECT_THAT(messagesOf(name, {}), AllOf(Not(HasSubstr("of its power")), Not(HasSubstr("Hz wide, narrower")),
-                                            Not(HasSubstr("is longer than 'duration_s'")),
-                                            Not(HasSubstr("faster than any")), Not(HasSubstr("km outside"))))
+    EXPECT_THAT(messagesOf(name, {}),
+                AllOf(Not(HasSubstr("of its power")), Not(HasSubstr("Hz wide, narrower")),
+                      Not(HasSubstr("is longer than 'duration_s'")), Not(HasSubstr("faster than any")),
+                      Not(HasSubstr("km outside"))))
         << name;
   }
 }
 
 TEST(LikelyMistakes, TheIntervalThatAWarningOffersIsAccepted) {
-  for (const char* quantity : {"power_density_dbwm2", "detection_probability", "power_density_dbwm2, detection_probability"}) {
-    std::vector<Edit> edits{{"step_s", "10"}, {"duration_s", "60"}, {"output.quantities", "[" + std::string(quantity) + "]"}};
+  for (const char* quantity :
+       {"power_density_dbwm2", "detection_probability", "power_density_dbwm2, detection_probability"}) {
+    std::vector<Edit> edits{
+        {"step_s", "10"}, {"duration_s", "60"}, {"output.quantities", "[" + std::string(quantity) + "]"}};
     const std::string told = messagesOf("jacksboro.yaml", edits);
     const std::string before = "the output's 'interval: ";
     const std::size_t begin = told.find(before);
