@@ -7,8 +7,8 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/scenario/model/quantities.h"
+#include "scenario/file/far_outside.h"
 #include "scenario/file/quantity_needs.h"
-#include "scenario/model/far_outside.h"
 #include "scenario/scan/scan_sampling.h"
 
 namespace emscape::scenario {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "emscape/scenario/file/scenario_file.h"
-#include "scenario/model/far_outside.h"
+#include "scenario/file/far_outside.h"
 #include "tests/scenario/scenario_files.h"
 #include "tests/support/files.h"
 

@@ -1,4 +1,4 @@
-#include "scenario/model/far_outside.h"
+#include "scenario/file/far_outside.h"
 
 #include <fmt/format.h>
 
