@@ -208,7 +208,8 @@ void TrackRecorder::checkSpeeds() {
             "'{}' would move at {:.4g} km/s, faster than any object (10 km/s): from latitude {:.5f}, "
             "longitude {:.5f} to {:.5f}, {:.5f} deg between times {:.10g} and {:.10g}. Another unit or "
             "column is the time; of a table, --columns (or 'columns' of a track) states it: "
-            "time=NAME:UNIT, with ms, s, h, days, or excel for days since 1900",
+            "time=NAME:UNIT, with ms, s, h, days, or excel for days since 1900; where rows are of several "
+            "objects, id=NAME",
             object.name, speed->mps / 1000, from.latitude_deg, from.longitude_deg, to.latitude_deg,
             to.longitude_deg, from.t_s, to.t_s));
   }

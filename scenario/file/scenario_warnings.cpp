@@ -131,27 +131,20 @@ void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& co
   of_low.addTo(context.problems);
 }
 
-/// Warns about receivers of radars that are much narrower than the signal, as 1.0 for 1.0e6 Hz.
+/// Warns about receivers of radars of a few hertz, as 1.0 for 1.0e6 Hz.
 void warnOfNarrowReceivers(const Scenario& scenario, const Section& root, ParseContext& context) {
-  constexpr double kNarrow_hz = 100, kMinPart = 0.5;
+  constexpr double kNarrow_hz = 100;
   const std::vector<Section> sections = root.sections("emitters");
   WarningOfItems warning;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const Emitter& radar = scenario.emitters[i];
-    if (radar.kind != EmitterKind::radar) continue;
     const double bandwidth_hz = radar.receiver.bandwidth_hz;
-    const double of_pulse_hz = radar.waveform ? 1 / radar.waveform->pulse_width_s : 0;
-    const bool is_below_pulse = bandwidth_hz < kMinPart * of_pulse_hz;
-    if (!is_below_pulse && bandwidth_hz >= kNarrow_hz) continue;
-    const std::string reason =
-        is_below_pulse ? fmt::format(
-                             "narrower than the {:g} Hz of its pulse of {:g} s: it loses a part of the echo, "
-                             "which is not in the results",
-                             of_pulse_hz, radar.waveform->pulse_width_s)
-                       : std::string("narrower than that of any radar: its noise would be too low");
-    warning.add(sections[i].section("receiver").locationOf("bandwidth_hz"), radar.name,
-                fmt::format("the receiver of radar '{}' is {:g} Hz wide, {}; 'bandwidth_hz' is in hertz",
-                            radar.name, bandwidth_hz, reason));
+    if (radar.kind != EmitterKind::radar || bandwidth_hz >= kNarrow_hz) continue;
+    warning.add(
+        sections[i].section("receiver").locationOf("bandwidth_hz"), radar.name,
+        fmt::format("the receiver of radar '{}' is {:g} Hz wide, narrower than that of any radar: its "
+                    "noise is too low; 'bandwidth_hz' is in hertz",
+                    radar.name, bandwidth_hz));
   }
   warning.addTo(context.problems);
 }

@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -31,6 +32,7 @@ namespace fs = std::filesystem;
 /// Values that mean void in HGT and DTED whatever a file's header says.
 constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
 constexpr long long kStripPosts = 1 << 21;
+constexpr int kRowsPerSample = 4;                        ///< rows whose steps are looked at: one of these
 constexpr int kMaxPostsPerAxis = 1 << 22;                ///< the whole earth in a third of an arc second
 constexpr int kMinTilePosts = 2, kMaxTilePosts = 21601;  ///< of an HGT, per axis
 
@@ -402,7 +404,7 @@ HeightTally TerrainFile::read(const PostWindow& window, const RowSink& take) con
   const long long strip_rows = std::max(1LL, kStripPosts / std::max(1LL, window.columns));
   std::vector<float> strip;
   std::vector<GByte> mask;
-  std::vector<bool> is_known;
+  std::vector<std::uint8_t> is_known;
   for (long long begin = 0; begin < window.rows; begin += strip_rows) {
     checkpoint();
     const int rows = static_cast<int>(std::min(strip_rows, window.rows - begin));
@@ -427,7 +429,7 @@ HeightTally TerrainFile::read(const PostWindow& window, const RowSink& take) con
       for (std::size_t k = 0; k < strip.size(); ++k)
         strip[k] = static_cast<float>(decoded(*impl_->keys.encoding, strip[k], green[k], blue[k]));
     }
-    is_known.assign(strip.size(), true);
+    is_known.assign(strip.size(), 1);
     for (std::size_t k = 0; k < strip.size(); ++k) {
       if (swaps) {
         strip[k] = withSwappedBytes(strip[k]);
@@ -436,13 +438,13 @@ HeightTally TerrainFile::read(const PostWindow& window, const RowSink& take) con
       is_known[k] =
           mask[k] != 0 && strip[k] != kVoidValues[0] && strip[k] != kVoidValues[1] && !std::isnan(strip[k]);
     }
-    for (int row = 0; impl_->is_16_bits && row < rows; ++row)
+    for (int row = 0; impl_->is_16_bits && row < rows; row += kRowsPerSample)
       tally.addSteps(strip, is_known, static_cast<std::size_t>(row) * static_cast<std::size_t>(columns),
                      static_cast<std::size_t>(columns));
     for (std::size_t k = 0; k < strip.size(); ++k) {
       const double height_m = (strip[k] * impl_->scale + impl_->offset) * impl_->meaning.unit_m;
-      strip[k] = is_known[k] && tally.add(height_m) ? static_cast<float>(height_m)
-                                                    : std::numeric_limits<float>::quiet_NaN();
+      strip[k] = is_known[k] != 0 && tally.add(height_m) ? static_cast<float>(height_m)
+                                                         : std::numeric_limits<float>::quiet_NaN();
     }
     for (int row = 0; row < rows; ++row) {
       const int row_of_file = georeference.north_first ? rows - 1 - row : row;

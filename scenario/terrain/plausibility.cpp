@@ -90,10 +90,10 @@ void HeightTally::add(const HeightTally& other) {
   swapped_step_sum_ += other.swapped_step_sum_;
 }
 
-void HeightTally::addSteps(const std::vector<float>& values, const std::vector<bool>& is_known,
+void HeightTally::addSteps(const std::vector<float>& values, const std::vector<std::uint8_t>& is_known,
                            std::size_t first, std::size_t count) {
   for (std::size_t k = first + 1; k < first + count; ++k) {
-    if (!is_known[k] || !is_known[k - 1]) continue;
+    if (is_known[k] == 0 || is_known[k - 1] == 0) continue;
     ++pairs_;
     if (values[k] == values[k - 1]) continue;
     ++steps_;

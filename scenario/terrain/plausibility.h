@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <string>
 #include <vector>
@@ -30,8 +31,8 @@ class HeightTally {
   }
   /// Compares the steps between neighbours of a row of 16 bits with those of swapped bytes.
   /// @param is_known  of each value; false: void
-  void addSteps(const std::vector<float>& values, const std::vector<bool>& is_known, std::size_t first,
-                std::size_t count);
+  void addSteps(const std::vector<float>& values, const std::vector<std::uint8_t>& is_known,
+                std::size_t first, std::size_t count);
   void add(const HeightTally& other);
 
   /// True if the surface becomes smooth by exchanging the bytes of its heights.
