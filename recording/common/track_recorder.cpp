@@ -39,7 +39,7 @@ struct ImpossibleSpeed {
 
 std::optional<ImpossibleSpeed> impossibleSpeedOf(const RecordedObject& object, double seconds_per_unit) {
   const auto& poses = object.poses;
-  if (poses.size() < 2) return std::nullopt;
+  if (poses.size() < 3) return std::nullopt;  // of two positions one may be wrong
   const double shortest_s = std::min(kShortestStep_s, kShortestStep_s * seconds_per_unit);
   std::size_t fast = 0;
   double path_m = 0;
