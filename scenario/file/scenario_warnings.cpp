@@ -95,7 +95,8 @@ void addGain(WarningOfItems& warning, WarningOfItems& of_low, const std::string&
   const double directivity_dbi = antenna.directivity_dbi();
   const Section own = section.section("antenna");
   const SourceLocation location = own.has("gain_dbi") ? own.locationOf("gain_dbi") : own.location();
-  if (directivity_dbi > kDirective_dbi && antenna.gain_dbi < directivity_dbi - kMaxLoss_db) {
+  if (directivity_dbi > kDirective_dbi && antenna.gain_dbi < 0 &&
+      antenna.gain_dbi < directivity_dbi - kMaxLoss_db) {
     of_low.add(location, name,
                fmt::format("the gain of {:.2f} dBi is {:.2f} dB below the pattern's directivity, {:.2f} dBi: "
                            "the antenna would lose more than nine tenths of its power; is the sign or the "

@@ -436,7 +436,7 @@ HeightTally TerrainFile::read(const PostWindow& window, const RowSink& take) con
         if (has_void_value != 0 && static_cast<double>(strip[k]) == void_value) mask[k] = 0;
       }
       is_known[k] =
-          mask[k] != 0 && strip[k] != kVoidValues[0] && strip[k] != kVoidValues[1] && !std::isnan(strip[k]);
+          mask[k] != 0 && strip[k] != kVoidValues[0] && strip[k] != kVoidValues[1] && std::isfinite(strip[k]);
     }
     for (int row = 0; impl_->is_16_bits && row < rows; row += kRowsPerSample)
       tally.addSteps(strip, is_known, static_cast<std::size_t>(row) * static_cast<std::size_t>(columns),

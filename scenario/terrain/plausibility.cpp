@@ -18,6 +18,7 @@ constexpr double kMaxShareBeyond = 0.01;
 /// Other units in which the heights would be on land, the first with its key.
 std::string otherUnits(const TerrainFile& file, const HeightTally& tally) {
   constexpr double kLowestLand_m = -500;
+  if (!file.meaning().is_unit_assumed && !file.keys().height_unit) return "";  // a key would contradict it
   std::string names;
   for (const HeightUnit unit : {HeightUnit::cm, HeightUnit::dm, HeightUnit::ft}) {
     const double factor = metresOf(unit) / file.meaning().unit_m;

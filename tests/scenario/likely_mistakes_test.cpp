@@ -55,7 +55,7 @@ TEST(LikelyMistakes, TracksFasterThanAnyObjectAreTold) {
                                       "50}, {t_s: 4, latitude_deg: " +
                                           last + ", longitude_deg: 5, height_agl_m: 50}]}"}});
   };
-  EXPECT_THAT(track("53"), HasSubstr("the track of 'mast' moves 111.3 km from 0 to 4 s, at 27.81 km/s"));
+  EXPECT_THAT(track("53"), HasSubstr("the track of 'mast' moves 111.3 km from 0 to 4 s, at 27.82 km/s"));
   EXPECT_THAT(track("52.1"), Not(HasSubstr("faster than any object")));
 }
 

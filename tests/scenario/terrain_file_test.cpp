@@ -333,6 +333,7 @@ TEST_F(TerrainFileTest, HeightsOfAThreeDimensionalCrsAreAboveTheEllipsoid) {
 
 TEST_F(TerrainFileTest, FillValuesFarBelowTheirNeighboursAreVoid) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.unit = "m";
   for (const double fill : {-9999.0, -999.0, -10000.0}) {
     file.value = [fill](int column, int) { return column == 3 || column == 4 ? fill : 100.0; };
     const std::string undeclared = write("a.tif", file);
