@@ -336,6 +336,10 @@ DocumentNodePtr readDocument(const std::string& file, const std::string& text, P
         }
       }
     }
+    if (reason == YAML::ErrorMsg::END_OF_MAP || reason == YAML::ErrorMsg::END_OF_SEQ)
+      reason +=
+          "; this line is indented otherwise than the ones that it belongs to, or a colon, quote or "
+          "bracket is missing before it";
     const bool is_json = file.size() > 5 && file.compare(file.size() - 5, 5, ".json") == 0;
     return fail(position, fmt::format("not valid {}: {}", is_json ? "JSON" : "YAML", reason));
   }

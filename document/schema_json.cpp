@@ -42,7 +42,7 @@ class SchemaWriter {
       case ValueType::timestamp:
         return {{"type", "string"},
                 {"format", "date-time"},
-                {"pattern", R"(^\d{4}-\d{2}-\d{2}T\d{2}:\d{2}:\d{2}(\.\d+)?Z$)"}};
+                {"pattern", R"(^\d{4}-\d{2}-\d{2}[T ]\d{2}:\d{2}:\d{2}(\.\d+)?(Z|[+-]\d{2}(:?\d{2})?)$)"}};
       case ValueType::choice:
         return {{"enum", spec.choices}};
       case ValueType::object:

@@ -93,6 +93,16 @@ int run(const Action& action, const CLI::App* const& app) {
   }
 }
 
+/// The words of the command line that are subcommands: "emscape exposure".
+std::string commandOf(const CLI::App& app) {
+  std::string words = app.get_name();
+  for (const CLI::App* last = &app; !last->get_subcommands().empty();) {
+    last = last->get_subcommands().front();
+    words += " " + last->get_name();
+  }
+  return words;
+}
+
 /// Parses the command line; returns an exit status if there is nothing to run.
 /// @param words  reversed, as CLI11 takes them
 int parseAndReport(CLI::App& app, std::vector<std::string> words) {
@@ -106,8 +116,9 @@ int parseAndReport(CLI::App& app, std::vector<std::string> words) {
     printResult(text.str());
     return 0;
   } catch (const CLI::ParseError& error) {
-    printMessage("emscape: error: {}\nTry 'emscape --help' or 'emscape SUBCOMMAND --help'.\n",
-                 messageOf(app, error));
+    const std::string command = commandOf(app);
+    printMessage("emscape: error: {}\nTry {}'{} --help'.\n", messageOf(app, error),
+                 command == app.get_name() ? "'emscape SUBCOMMAND --help' or " : "", command);
     return static_cast<int>(ErrorCode::usage);
   }
 }

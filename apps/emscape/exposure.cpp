@@ -101,7 +101,7 @@ Exit status: 0, whether the threshold is reached or not; 2 for names that the sc
   auto options = std::make_shared<ExposureCommand>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
-  command->add_option("--platform", options->platform, "Name of the platform")->required();
+  command->add_option("--platform", options->platform, "Name of the platform; required");
   addStudyOutputs(*command, options->outputs);
   command->add_option("--quantity", options->quantity,
                       "A quantity of the field; see docs/scenario-format.md");

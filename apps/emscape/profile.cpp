@@ -108,7 +108,7 @@ or a path over missing terrain.)");
   for (const propagation::ModelInfo& row : propagation::models()) names.push_back(row.name);
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
-  command->add_option("--emitter", options->emitter, "Name of the emitter")->required();
+  command->add_option("--emitter", options->emitter, "Name of the emitter; required");
   command
       ->add_option("--to", options->to,
                    "The point: LAT,LON,HEIGHT (deg, deg, m); also degrees with minutes and seconds, or MGRS")

@@ -55,13 +55,13 @@ void checkCoverage(const scenario::Scenario& scenario, const scenario::Terrain& 
        fmt::format(
            "the elevation files leave {} of the region's {} columns without a height, the first at "
            "latitude {:.5f}, longitude {:.5f} deg; maps have no value there; volumes and pictures have "
-           "holes there{}{}; {}",
+           "holes there{}; {}",
            missing, static_cast<long long>(grid.dims.x) * grid.dims.y, first.latitude_deg,
            first.longitude_deg,
            is_allowed ? ""
                       : ", which validate, simulate, render, view and bench accept only with "
                         "--allow-missing-terrain",
-           is_all ? "; " + terrain.placeText() : "", scenario::kMissingTerrainRemedy)});
+           is_all ? terrain.placeText() : scenario::kMissingTerrainRemedy)});
 }
 
 /// Checks at every step of the clock that no platform is below the ground or over missing terrain.

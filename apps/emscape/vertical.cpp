@@ -166,7 +166,7 @@ not have by itself.)");
   auto options = std::make_shared<VerticalCommand>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
-  command->add_option("--emitter", options->emitter, "Name of the emitter")->required();
+  command->add_option("--emitter", options->emitter, "Name of the emitter; required");
   command
       ->add_option("--azimuth", options->azimuths_deg,
                    "Degrees clockwise from true north, with commas between them: one panel each")

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+
 namespace emscape {
 
 namespace {
@@ -41,20 +43,51 @@ std::string dateText(std::int64_t days) {
   return fmt::format("{:04}-{:02}-{:02}", year_of_era + era * 400 + (month <= 2), month, day);
 }
 
-/// The numbers of a text of the form of a UTC time; they may be out of range.
+/// The numbers of a text of the form of a time with its zone; they may be out of range.
 struct Fields {
   int year, month, day, hour, minute, second, millisecond;
+  int zone_hour, zone_minute;  ///< ahead of UTC
 };
+
+/// The zone of a time, "Z", "+02:00", "-0530" or "+02" at the end of a text, with its first character; empty
+/// if the text has none.
+struct Zone {
+  std::size_t begin;
+  int hour, minute;
+};
+std::optional<Zone> zoneOf(const std::string& text) {
+  if (!text.empty() && text.back() == 'Z') return Zone{text.size() - 1, 0, 0};
+  for (const std::string form : {"+dd:dd", "+dddd", "+dd"}) {
+    if (text.size() <= form.size()) continue;
+    const std::size_t begin = text.size() - form.size();
+    bool fits = true;
+    std::string digits;
+    for (std::size_t i = 0; i < form.size(); ++i) {
+      const char c = text[begin + i];
+      const bool is_digit = c >= '0' && c <= '9';
+      fits = fits && (form[i] == 'd' ? is_digit : form[i] == '+' ? c == '+' || c == '-' : c == form[i]);
+      if (is_digit) digits += c;
+    }
+    if (!fits) continue;
+    const int sign = text[begin] == '-' ? -1 : 1;
+    return Zone{begin, sign * std::stoi(digits.substr(0, 2)),
+                digits.size() == 4 ? sign * std::stoi(digits.substr(2)) : 0};
+  }
+  return std::nullopt;
+}
 
 std::optional<Fields> fieldsOf(const std::string& text) {
   static const std::string kForm = "dddd-dd-ddTdd:dd:dd";
   const auto isDigit = [&](std::size_t i) { return text[i] >= '0' && text[i] <= '9'; };
-  if (text.size() < kForm.size() + 1 || text.back() != 'Z') return std::nullopt;
+  const std::optional<Zone> zone = text.size() > kForm.size() ? zoneOf(text) : std::nullopt;
+  if (!zone || zone->begin < kForm.size()) return std::nullopt;
   for (std::size_t i = 0; i < kForm.size(); ++i) {
-    if (kForm[i] == 'd' ? !isDigit(i) : text[i] != kForm[i]) return std::nullopt;
+    const bool fits =
+        kForm[i] == 'd' ? isDigit(i) : text[i] == kForm[i] || (kForm[i] == 'T' && text[i] == ' ');
+    if (!fits) return std::nullopt;
   }
   int milliseconds = 0;
-  const std::size_t last = text.size() - 1;
+  const std::size_t last = zone->begin;
   if (last > kForm.size()) {
     if (text[kForm.size()] != '.' || last == kForm.size() + 1) return std::nullopt;
     int weight = 100;
@@ -66,8 +99,8 @@ std::optional<Fields> fieldsOf(const std::string& text) {
   const auto field = [&](std::size_t begin, std::size_t length) {
     return std::stoi(text.substr(begin, length));
   };
-  return Fields{field(0, 4),  field(5, 2),  field(8, 2), field(11, 2),
-                field(14, 2), field(17, 2), milliseconds};
+  return Fields{field(0, 4),  field(5, 2),  field(8, 2), field(11, 2), field(14, 2),
+                field(17, 2), milliseconds, zone->hour,  zone->minute};
 }
 
 /// The first number that is out of range, with the range; empty if there is none.
@@ -82,6 +115,8 @@ std::string faultOf(const Fields& at) {
   if (at.hour > 23) return outside("hour", at.hour, 0, 23);
   if (at.minute > 59) return outside("minute", at.minute, 0, 59);
   if (at.second > 59) return outside("second", at.second, 0, 59) + "; there are no leap seconds";
+  if (std::abs(at.zone_hour) > 23) return outside("hours of the zone", std::abs(at.zone_hour), 0, 23);
+  if (std::abs(at.zone_minute) > 59) return outside("minutes of the zone", std::abs(at.zone_minute), 0, 59);
   return "";
 }
 
@@ -91,7 +126,8 @@ std::optional<std::int64_t> parseUtc_ms(const std::string& text) {
   const std::optional<Fields> at = fieldsOf(text);
   if (!at || !faultOf(*at).empty()) return std::nullopt;
   return daysFromDate(at->year, at->month, at->day) * kMillisecondsPerDay +
-         ((at->hour * 60LL + at->minute) * 60 + at->second) * 1000 + at->millisecond;
+         (((at->hour - at->zone_hour) * 60LL + at->minute - at->zone_minute) * 60 + at->second) * 1000 +
+         at->millisecond;
 }
 
 std::string utcFault(const std::string& text) {

@@ -7,8 +7,9 @@
 
 namespace emscape {
 
-/// Milliseconds from 1970-01-01T00:00:00Z to an ISO 8601 time "YYYY-MM-DDTHH:MM:SS[.fraction]Z" (years
-/// 1..9999, no leap seconds, the fraction truncated to milliseconds); empty if the text is not such a time.
+/// Milliseconds from 1970-01-01T00:00:00Z to an ISO 8601 time "YYYY-MM-DDTHH:MM:SS[.fraction]Z", with a blank
+/// for the T and an offset from UTC ("+02:00", "+0200", "+02") for the Z as well (years 1..9999, no leap
+/// seconds, the fraction truncated to milliseconds); empty if the text is not such a time.
 std::optional<std::int64_t> parseUtc_ms(const std::string& text);
 
 /// The number of such a text that is out of range: "month 13 is outside 1 to 12". Empty if there is none or

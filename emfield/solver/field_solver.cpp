@@ -176,13 +176,12 @@ void FieldSolver::Impl::checkHoles() const {
   throw Error(ErrorCode::bad_input, {setup.scenario->file},
               fmt::format("terrain is missing below {} of {} columns of the region, first at {}; the "
                           "elevation data that is loaded covers latitude "
-                          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts{}; {}",
+                          "{:.5f}..{:.5f}, longitude {:.5f}..{:.5f} deg with {} void posts; {}",
                           columns.hole_columns, columns.count(), placeOf(columns.first_hole), box.south_deg,
                           box.north_deg, box.west_deg, box.east_deg, setup.terrain->voidPosts(),
                           static_cast<std::size_t>(columns.hole_columns) == columns.count()
-                              ? "; " + setup.terrain->placeText()
-                              : "",
-                          scenario::kMissingTerrainRemedy),
+                              ? setup.terrain->placeText()
+                              : scenario::kMissingTerrainRemedy),
               Hint::allow_missing_terrain);
 }
 

@@ -54,7 +54,9 @@ InputKind inputKindOf(const std::string& file) {
       "ending '" + ending +
           "' is not known; scenarios: .yaml .yml .json; volumes: .vdb .nvdb .vti .vtu .pvd .raw .dat; "
           "elevation: .tif .hgt .dt0 .dt1 .dt2 .vrt .asc .bil .flt .dem .img .nc .xyz .gpkg, also in .zip "
-          "and .gz; antennas: .msi .pln .adf .ant .pattern .az .el .csv; recordings: " +
+          "and .gz; antennas: .msi .pln .adf .ant .pattern .az .el .csv (a table of theta, phi and gain, as "
+          "field solvers write it as text, is read as .csv with the columns theta_deg,phi_deg,gain_dbi); "
+          "recordings: " +
           interop::recordingEndingsText());
 }
 

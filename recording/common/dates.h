@@ -7,6 +7,10 @@
 
 namespace emscape::interop {
 
+/// Number of 1970-01-01 in spreadsheets, which count days from 1900.
+constexpr double kSpreadsheetDayOf1970 = 25569;
+constexpr double kSecondsPerDay = 86400;
+
 /// Of dates in numbers whose year comes last: 6/1/2026 is the 6th of January, or the 1st of June.
 enum class DateOrder { unknown, day_first, month_first };
 

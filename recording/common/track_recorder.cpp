@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/geodesy/position_limits.h"
 #include "base/text/count_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/geodesy/geoid.h"
+#include "recording/common/dates.h"
 #include "recording/common/samples.h"
 #include "recording/common/tally.h"
 
@@ -21,10 +23,38 @@ constexpr double kMaxSpan_s = 9.9e7;   ///< of a scenario's track
 constexpr double kOutlierFactor = 3;   ///< of the speed without the position
 constexpr double kNoise_mps = 1;       ///< noise of a receiver that stands
 constexpr double kShortestStep_s = 1e-3;
+constexpr double kFastest_mps = 10e3;          ///< of any object; a satellite makes 8 km/s
+constexpr double kLastSpreadsheetDay = 73050;  ///< of the year 2099
 
 /// A place in ECEF; heights above the sea stand for those above the ellipsoid.
 Vec3d roughEcef(const PoseSample& pose) {
   return toEcef({pose.latitude_deg, pose.longitude_deg, pose.height_msl_m});
+}
+
+/// A speed that most of an object's legs exceed.
+struct ImpossibleSpeed {
+  double mps = 0;
+  std::size_t first_leg = 0;  ///< that is so fast
+};
+
+std::optional<ImpossibleSpeed> impossibleSpeedOf(const RecordedObject& object, double seconds_per_unit) {
+  const auto& poses = object.poses;
+  if (poses.size() < 3) return std::nullopt;  // of two positions one may be wrong
+  const double shortest_s = std::min(kShortestStep_s, kShortestStep_s * seconds_per_unit);
+  std::size_t fast = 0;
+  double path_m = 0;
+  ImpossibleSpeed found;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const double leg_m = length(roughEcef(poses[i]) - roughEcef(poses[i - 1]));
+    const double leg_s = (poses[i].t_s - poses[i - 1].t_s) * seconds_per_unit;
+    path_m += leg_m;
+    if (leg_m <= kFastest_mps * std::max(leg_s, shortest_s)) continue;
+    if (fast++ == 0) found.first_leg = i;
+  }
+  const double span_s = (poses.back().t_s - poses.front().t_s) * seconds_per_unit;
+  found.mps = path_m / std::max(span_s, shortest_s);
+  // Single fast legs are outliers, which are told.
+  return 2 * fast > poses.size() - 1 && found.mps > kFastest_mps ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace
@@ -147,8 +177,47 @@ void TrackRecorder::tellOutliers() {
                   kOutlierFactor, first));
 }
 
+/// Days of spreadsheets as UTC.
+void TrackRecorder::takeTimesAsDays() {
+  for (RecordedObject& object : recording_.objects) {
+    for (PoseSample& pose : object.poses) pose.t_s = (pose.t_s - kSpreadsheetDayOf1970) * kSecondsPerDay;
+  }
+  hasUtc();
+  recording_.tally.notes.emplace_back(
+      "times are taken as days since 1900, as spreadsheets number them: as seconds they would make an object "
+      "faster than 10 km/s");
+}
+
+void TrackRecorder::checkSpeeds() {
+  for (const RecordedObject& object : recording_.objects) {
+    const auto speed = impossibleSpeedOf(object, 1);
+    if (!speed) continue;
+    const auto isDay = [](const PoseSample& pose) {
+      return pose.t_s >= kSpreadsheetDayOf1970 && pose.t_s <= kLastSpreadsheetDay;
+    };
+    const bool are_days =
+        std::all_of(recording_.objects.begin(), recording_.objects.end(), [&](const RecordedObject& other) {
+          return std::all_of(other.poses.begin(), other.poses.end(), isDay) &&
+                 !impossibleSpeedOf(other, kSecondsPerDay);
+        });
+    if (may_be_days_ && !utc_begin_s_ && are_days) return takeTimesAsDays();
+    const PoseSample &from = object.poses[speed->first_leg - 1], &to = object.poses[speed->first_leg];
+    throw Error(
+        ErrorCode::bad_input,
+        fmt::format(
+            "'{}' would move at {:.4g} km/s, faster than any object (10 km/s): from latitude {:.5f}, "
+            "longitude {:.5f} to {:.5f}, {:.5f} deg between times {:.10g} and {:.10g}. Another unit or "
+            "column is the time; of a table, --columns (or 'columns' of a track) states it: "
+            "time=NAME:UNIT, with ms, s, h, days, or excel for days since 1900; where rows are of several "
+            "objects, id=NAME",
+            object.name, speed->mps / 1000, from.latitude_deg, from.longitude_deg, to.latitude_deg,
+            to.longitude_deg, from.t_s, to.t_s));
+  }
+}
+
 Recording TrackRecorder::finish() {
   for (RecordedObject& object : recording_.objects) sortByTime(object);
+  checkSpeeds();
   for (RecordedBeam& beam : recording_.beams) sortByTime(beam);
   const TimeSpan span = spanOf(recording_);
   if (span.end_s - span.begin_s > kMaxSpan_s) {

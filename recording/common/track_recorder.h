@@ -37,6 +37,10 @@ class TrackRecorder {
   /// Times are UTC: seconds since `begin_s` after 1970.
   void hasUtc(double begin_s = 0) { utc_begin_s_ = begin_s; }
 
+  /// Times without a unit: if they make an object faster than any, they are days since 1900 as spreadsheets
+  /// write them, as far as these do not. False: times have a unit.
+  void mayBeDays(bool are_numbers) { may_be_days_ = are_numbers; }
+
   ReadingTally& tally() { return recording_.tally; }
   /// Counts a position that needs an assumption, which becomes a note.
   void assume(const std::string& assumption) { ++assumptions_[assumption]; }
@@ -50,6 +54,8 @@ class TrackRecorder {
   bool isPosition(PoseSample& pose, const std::string& location);
   void endAtGaps(RecordedObject& object, double gap_s);
   void tellOutliers();
+  void checkSpeeds();
+  void takeTimesAsDays();
 
   Recording recording_;
   ReadOptions options_;
@@ -57,6 +63,7 @@ class TrackRecorder {
   std::unordered_map<std::size_t, PoseSample> fixed_;
   std::map<std::string, long long> assumptions_;
   std::size_t samples_ = 0;
+  bool may_be_days_ = false;
   std::optional<double> utc_begin_s_;
 };
 

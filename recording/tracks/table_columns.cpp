@@ -71,6 +71,10 @@ std::optional<double> factorOf(const std::string& unit) {
                                                      {"ft amsl", kMetresPerFoot},
                                                      {"km", 1000},
                                                      {"rad", 180 / 3.14159265358979323846},
+                                                     {"h", 3600},
+                                                     {"d", kSecondsPerDay},
+                                                     {"days", kSecondsPerDay},
+                                                     {"us", 1e-6},
                                                      {"ms", 1e-3},
                                                      {"millisecond", 1e-3}};
   const auto found = factors.find(unit);
@@ -87,7 +91,7 @@ std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
     name.resize(at);
   }
   name.erase(0, name.rfind('.') + 1);
-  for (const char* end : {"ft", "m", "deg", "rad", "s", "km", "ms", "utc"}) {
+  for (const char* end : {"ft", "m", "deg", "rad", "s", "km", "ms", "us", "utc"}) {
     const std::string ending = std::string("_") + end;
     if (name.size() > ending.size() &&
         name.compare(name.size() - ending.size(), ending.size(), ending) == 0) {
@@ -100,6 +104,14 @@ std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
       std::remove_if(name.begin(), name.end(), [](char c) { return c == ' ' || c == '_' || c == '#'; }),
       name.end());
   return {name, unit};
+}
+
+/// Numbers of 1970-01-01 in ways to number days.
+std::optional<double> dayOf1970(const std::string& unit) {
+  if (unit == "excel") return kSpreadsheetDayOf1970;
+  if (unit == "mjd") return 40587;
+  if (unit == "jd") return 2440587.5;
+  return std::nullopt;
 }
 
 [[noreturn]] void refuseEntry(const std::string& entry) {
@@ -153,7 +165,7 @@ Columns columnsByName(const std::vector<std::string>& header) {
       for (std::size_t i = 0; i < told.size() && columns.count(known.column) == 0; ++i) {
         const auto factor = factorOf(told[i].second);
         if (told[i].first == name && factor)
-          columns[known.column] = {i, *factor, !told[i].second.empty(), DateOrder::unknown};
+          columns[known.column] = {i, *factor, !told[i].second.empty(), DateOrder::unknown, 0};
       }
     }
   }
@@ -188,17 +200,34 @@ Columns columnsByMap(const std::vector<std::string>& header, const std::string& 
       column.order = unit == "dmy" ? DateOrder::day_first : DateOrder::month_first;
       continue;
     }
+    if (const auto day = dayOf1970(unit); day && known->column == Column::time) {
+      column.day_of_1970 = *day;
+      continue;
+    }
     const auto factor = factorOf(unit);
     if (!factor) {
       throw Error(
           ErrorCode::usage,
-          fmt::format("columns: '{}' is no unit; allowed are m, km, ft, deg, rad, s, ms, and of dates dmy "
-                      "and mdy",
-                      printableText(unit)));
+          fmt::format(
+              "columns: '{}' is no unit; allowed are m, km, ft, deg, rad, s, ms, us, h, days, of dates "
+              "dmy and mdy, and of numbered days excel, mjd and jd",
+              printableText(unit)));
     }
     column.factor = *factor;
   }
   return columns;
+}
+
+std::string mapWithHeightsInFeet(const Columns& columns, const std::vector<std::string>& header) {
+  std::string map;
+  for (const auto& [column, told] : columns) {
+    const bool is_height = column == Column::height_msl || column == Column::height_ellipsoid ||
+                           column == Column::height_pressure;
+    const std::string unit = is_height && !told.has_unit ? "ft" : nameAndUnit(header[told.index]).second;
+    map += fmt::format("{}{}={}{}{}", map.empty() ? "" : ",", roleOf(column), header[told.index],
+                       unit.empty() ? "" : ":", unit);
+  }
+  return map;
 }
 
 bool isBaseStation(std::string_view line) {
@@ -208,7 +237,7 @@ bool isBaseStation(std::string_view line) {
 /// @see http://woodair.net/sbs/article/barebones42_socket_data.htm
 Columns columnsOfBaseStation() {
   const auto at = [](std::size_t index, double factor = 1) {
-    return TableColumn{index, factor, true, DateOrder::unknown};
+    return TableColumn{index, factor, true, DateOrder::unknown, 0};
   };
   return {{Column::id, at(4)},        {Column::date, at(6)},
           {Column::time, at(7)},      {Column::height_pressure, at(11, kMetresPerFoot)},

@@ -36,6 +36,7 @@ struct TableColumn {
   double factor = 1;  ///< to metres, degrees or seconds
   bool has_unit = false;
   DateOrder order = DateOrder::unknown;  ///< of dates
+  double day_of_1970 = 0;                ///< number of that day, for a column of numbered days; 0: of none
 };
 using Columns = std::map<Column, TableColumn>;
 
@@ -48,6 +49,9 @@ char separatorOf(std::string_view line);
 Columns columnsByName(const std::vector<std::string>& header);
 /// @param map  "latitude=Breite,height=Hoehe:ft,time=Zeit:dmy"  @throws Error (usage)
 Columns columnsByMap(const std::vector<std::string>& header, const std::string& map);
+
+/// The entries of a map that say the same of a header's columns; heights in feet.
+std::string mapWithHeightsInFeet(const Columns& columns, const std::vector<std::string>& header);
 
 /// True for a line of the BaseStation format, which has no header: MSG,3,...
 bool isBaseStation(std::string_view line);

@@ -94,7 +94,8 @@ class TableReader {
  private:
   void takeHeader(std::string_view line, long long number) {
     separator_ = separatorOf(line);
-    const std::vector<std::string> header = headerOf(line);
+    header_ = headerOf(line);
+    const std::vector<std::string>& header = header_;
     columns_ = columnsOf(header, options_);
     for (const Column needed : {Column::time, Column::latitude, Column::longitude}) {
       const bool is_in_position = needed != Column::time && columns_.count(Column::position) != 0;
@@ -143,6 +144,11 @@ class TableReader {
     if (date == nullptr) {
       if (const auto number = numberOf(*told)) {
         const double time = *number * column.factor;
+        if (column.day_of_1970 > 0) {
+          is_utc_ = true;
+          return (*number - column.day_of_1970) * kSecondsPerDay;
+        }
+        recorder_.mayBeDays(!column.has_unit);
         if (time > kUnixTime_s) is_utc_ = true;
         return time > kUnixTime_ms ? time / 1000 : time;
       }
@@ -191,6 +197,13 @@ class TableReader {
     return bad(fmt::format("its position '{}' cannot be read", printableText(text)));
   }
 
+  /// Its heights are in metres, by its documentation.
+  bool isOfOpenSky(Column column) const {
+    const std::string name = lowerCase(header_[columns_.at(column).index]);
+    return name == "geoaltitude" || name == "baroaltitude" || name == "geo_altitude" ||
+           name == "baro_altitude";
+  }
+
   /// Height above mean sea level (m); none: counted as bad.
   std::optional<double> heightOf_m(const std::vector<std::string>& cells, double latitude_deg,
                                    double longitude_deg) {
@@ -207,6 +220,14 @@ class TableReader {
       if (columns_.count(Column::position) != 0 && !columns_.at(column).has_unit) {
         recorder_.assume("height without a unit in a table of Flightradar24: taken as feet");
         *height_m *= kMetresPerFoot;
+      } else if (!columns_.at(column).has_unit && options_.columns.empty() && !isOfOpenSky(column)) {
+        if (height_note_.empty())
+          height_note_ = fmt::format(
+              "height without a unit in column '{}': taken as metres; if it is in feet, give the columns as "
+              "{}",
+              printableText(header_[columns_.at(column).index]),
+              printableText(mapWithHeightsInFeet(columns_, header_)));
+        recorder_.assume(height_note_);
       }
       if (column == Column::height_ellipsoid && std::abs(latitude_deg) <= 90 &&
           std::abs(longitude_deg) <= 720)
@@ -243,9 +264,10 @@ class TableReader {
     recorder_.add(recorder_.objectOf(id == nullptr ? stem_ : printableText(*id)), pose, location_);
   }
 
-  std::string name_, stem_, location_;
+  std::string name_, stem_, location_, height_note_;
   const ReadOptions& options_;
   TrackRecorder recorder_;
+  std::vector<std::string> header_;
   Columns columns_;
   char separator_ = ',';
   bool is_utc_ = false, is_base_station_ = false;

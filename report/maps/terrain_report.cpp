@@ -79,7 +79,8 @@ TerrainReport terrainReport(const scenario::Scenario& scenario) {
   TerrainReport report;
   report.needed = scenario::terrainBox(scenario);
   report.files = scenario::Terrain::describeAll(*scenario.terrain, &report.needed);
-  report.terrain = scenario::Terrain::load(*scenario.terrain, report.needed);
+  report.terrain =
+      scenario::Terrain::load(*scenario.terrain, report.needed, scenario::neededPlaces(scenario));
   return report;
 }
 

@@ -29,6 +29,7 @@ struct MsiFile {
   std::string name;
   std::string title;  ///< the first line that is no keyword, before the cuts
   std::optional<double> gain_dbi;
+  bool is_gain_unit_assumed = false;
   std::optional<double> tilt_deg;  ///< downwards
   std::optional<double> width_az_deg, width_el_deg;
   std::vector<std::string> ignored;  ///< first words of lines that do not describe the pattern
@@ -125,7 +126,7 @@ class MsiReader {
   }
 
   /// "17.5 dBi", "15,35dBd", "[dBi] 17.5", "17.5 (dBi)" or "15.35" (in dBd).
-  double gainIn(const TextField& field) const {
+  double gainIn(const TextField& field) {
     constexpr const char* kNumber = "+-.,0123456789";
     const std::size_t begin = std::min(field.text.find_first_of(kNumber), field.text.size());
     const std::size_t end = std::min(field.text.find_first_not_of(kNumber, begin), field.text.size());
@@ -139,6 +140,7 @@ class MsiReader {
       if (std::string_view("[]() \t").find(c) == std::string_view::npos) unit_name += c;
     }
     if (unit_name == "DBI") return gain;
+    content_.is_gain_unit_assumed = unit_name.empty();
     if (unit_name.empty() || unit_name == "DBD") return gain + kDipoleGain_dbi;
     fail(unit, fmt::format("unit '{}' of GAIN; allowed are dBd (the default) and dBi", unit.text));
   }
@@ -187,7 +189,9 @@ PatternFile readMsiPattern(const std::string& file) {
     throw Error(
         ErrorCode::bad_input, location,
         "no HORIZONTAL cut: not an MSI antenna file? Others are .adf (NSMA), .ant and .pattern (STK), "
-        ".az and .el (SPLAT!) and .csv");
+        ".az and .el (SPLAT!) and .csv, as which a table of theta, phi and gain (text of a field solver) is "
+        "read "
+        "with the columns theta_deg,phi_deg,gain_dbi");
   }
   if (content.vertical.empty()) throw Error(ErrorCode::bad_input, location, "no VERTICAL cut");
   PatternFile pattern;
@@ -196,6 +200,11 @@ PatternFile readMsiPattern(const std::string& file) {
                  : !content.title.empty() ? content.title
                                           : "MSI pattern";
   pattern.gain_dbi = content.gain_dbi;
+  if (content.is_gain_unit_assumed)
+    pattern.gain_warning = fmt::format(
+        "{}: its GAIN has no unit and is taken as dBd, as the format defines: {:g} dBi. If it is in dBi, "
+        "'gain_dbi: {:g}' of the antenna states it",
+        file, *content.gain_dbi, *content.gain_dbi - kDipoleGain_dbi);
   pattern.stated_az_deg = content.width_az_deg;
   pattern.stated_el_deg = content.width_el_deg;
   turnGains(file, "HORIZONTAL", content.horizontal, pattern);

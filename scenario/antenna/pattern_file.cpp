@@ -76,6 +76,7 @@ AntennaPtr antennaOf(const std::string& file, const PatternFile& pattern, double
                   fmt::format("the {} has no gain; gain_dbi must be given with the file", pattern.format));
     }
     gain_dbi = *pattern.gain_dbi;
+    if (!pattern.gain_warning.empty()) warnings.push_back(pattern.gain_warning);
   }
   requireGain(gain_dbi);
   AntennaPtr antenna = makeGridAntenna(pattern.nodes, pattern.amplitudes, gain_dbi, pattern.name);

@@ -14,6 +14,7 @@ struct PatternFile {
   std::string format;  ///< "NSMA", "CSV grid", ...
   std::string name;    ///< of the antenna, for descriptions
   std::optional<double> gain_dbi;
+  std::string gain_warning;                            ///< what was assumed of it
   std::optional<double> stated_az_deg, stated_el_deg;  ///< beamwidths that the file states
   GridNodes nodes;
   std::vector<float> amplitudes;      ///< at the nodes, azimuth fastest

@@ -19,6 +19,11 @@ template <class Item>
 int namedIndex(const std::vector<Item>& items, const std::string& name, const std::string& option,
                const char* kind, const std::string& file) {
   if (const auto index = findNamed(items, name)) return static_cast<int>(*index);
+  if (name.empty())
+    throw Error(ErrorCode::usage,
+                items.empty()
+                    ? fmt::format("{} is required, but {} has no {}", option, file, kind)
+                    : fmt::format("{} is required: of {}, one of {}", option, file, quotedNames(items)));
   throw Error(ErrorCode::usage,
               fmt::format("{}: no {} '{}' in {}; it has {}", option, kind, name, file, quotedNames(items)));
 }

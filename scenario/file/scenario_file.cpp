@@ -30,7 +30,12 @@ constexpr double kMaxSteps = 1e7;
 constexpr double kMaxVoxelAspect = 1000;  ///< of x over y
 
 Clock parseClock(const Section& root, ParseContext& context) {
-  const Clock clock{root.text("epoch"), root.number("duration_s"), root.number("step_s")};
+  Clock clock{root.text("epoch"), root.number("duration_s"), root.number("step_s")};
+  // A time with an offset, or with a blank, as writers of YAML put it.
+  const bool has_own_form = !clock.epoch_utc.empty() &&
+                            (clock.epoch_utc.back() != 'Z' || clock.epoch_utc.find(' ') != std::string::npos);
+  if (const auto epoch_ms = parseUtc_ms(clock.epoch_utc); epoch_ms && has_own_form)
+    clock.epoch_utc = utcText(*epoch_ms);
   if (clock.duration_s >= clock.step_s * kMaxSteps) {
     context.problems.addError(root.locationOf("step_s"),
                               fmt::format("steps of {} s over {} s are more than the allowed {}",
@@ -80,6 +85,8 @@ TerrainFileKeys parseTerrainKeys(const Section& section) {
   if (section.has("encoding")) keys.encoding = section.choice<HeightEncoding>("encoding");
   if (section.has("band")) keys.band = section.integer("band");
   keys.crs = section.text("crs");
+  keys.swap_bytes = section.optionalBoolean("swap_bytes").value_or(false);
+  if (section.has("implausible")) keys.implausible = section.choice<ImplausibleHeights>("implausible");
   return keys;
 }
 

@@ -7,6 +7,7 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/scenario/model/quantities.h"
+#include "scenario/file/far_outside.h"
 #include "scenario/file/quantity_needs.h"
 #include "scenario/scan/scan_sampling.h"
 
@@ -85,37 +86,77 @@ void warnOfIdleJammers(const Scenario& scenario, const Section& root, ParseConte
   warning.addTo(context.problems);
 }
 
-/// Adds an antenna to a warning if its gain exceeds the directivity of its pattern.
+/// Adds an antenna to a warning if its gain exceeds the directivity of its pattern, or is far below it.
+/// @param of_low   the warning of gains far below
 /// @param section  of the emitter or receiver
-void addGain(WarningOfItems& warning, const std::string& name, const Antenna& antenna, const Section& section,
-             const char* consequence) {
-  constexpr double kTolerance_db = 0.5;
+void addGain(WarningOfItems& warning, WarningOfItems& of_low, const std::string& name, const Antenna& antenna,
+             const Section& section, const char* consequence) {
+  constexpr double kTolerance_db = 0.5, kDirective_dbi = 6, kMaxLoss_db = 12;
   const double directivity_dbi = antenna.directivity_dbi();
-  if (antenna.gain_dbi <= directivity_dbi + kTolerance_db) return;
   const Section own = section.section("antenna");
+  const SourceLocation location = own.has("gain_dbi") ? own.locationOf("gain_dbi") : own.location();
+  if (directivity_dbi > kDirective_dbi && antenna.gain_dbi < 0 &&
+      antenna.gain_dbi < directivity_dbi - kMaxLoss_db) {
+    of_low.add(location, name,
+               fmt::format("the gain of {:.2f} dBi is {:.2f} dB below the pattern's directivity, {:.2f} dBi: "
+                           "the antenna would lose more than nine tenths of its power; is the sign or the "
+                           "unit of the gain right?",
+                           antenna.gain_dbi, directivity_dbi - antenna.gain_dbi, directivity_dbi));
+  }
+  if (antenna.gain_dbi <= directivity_dbi + kTolerance_db) return;
   warning.add(
-      own.has("gain_dbi") ? own.locationOf("gain_dbi") : own.location(), name,
+      location, name,
       fmt::format("the gain of {:.2f} dBi is {:.2f} dB above the pattern's directivity, {:.2f} dBi: the "
                   "antenna would {}; lower the gain, the beamwidths or the side lobes",
                   antenna.gain_dbi, antenna.gain_dbi - directivity_dbi, directivity_dbi, consequence));
 }
 
 void warnOfGains(const Scenario& scenario, const Section& root, ParseContext& context) {
-  WarningOfItems of_emitters, of_receivers;
+  WarningOfItems of_emitters, of_receivers, of_low;
   const std::vector<Section> emitters = root.sections("emitters");
   for (std::size_t i = 0; i < emitters.size(); ++i) {
     const Emitter& emitter = scenario.emitters[i];
-    addGain(of_emitters, emitter.name, *emitter.antenna, emitters[i], "radiate more power than it is fed");
+    addGain(of_emitters, of_low, emitter.name, *emitter.antenna, emitters[i],
+            "radiate more power than it is fed");
   }
   std::size_t placed = 0;
   for (const Section& item : root.sections("receivers")) {
     if (!item.has("platform")) continue;
     const PlacedReceiver& receiver = scenario.placed_receivers[placed++];
     if (item.has("antenna"))
-      addGain(of_receivers, receiver.name, *receiver.antenna, item, "receive more power than reaches it");
+      addGain(of_receivers, of_low, receiver.name, *receiver.antenna, item,
+              "receive more power than reaches it");
   }
   of_emitters.addTo(context.problems);
   of_receivers.addTo(context.problems);
+  of_low.addTo(context.problems);
+}
+
+/// Warns about receivers of radars of a few hertz, as 1.0 for 1.0e6 Hz.
+void warnOfNarrowReceivers(const Scenario& scenario, const Section& root, ParseContext& context) {
+  constexpr double kNarrow_hz = 100;
+  const std::vector<Section> sections = root.sections("emitters");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const Emitter& radar = scenario.emitters[i];
+    const double bandwidth_hz = radar.receiver.bandwidth_hz;
+    if (radar.kind != EmitterKind::radar || bandwidth_hz >= kNarrow_hz) continue;
+    warning.add(
+        sections[i].section("receiver").locationOf("bandwidth_hz"), radar.name,
+        fmt::format("the receiver of radar '{}' is {:g} Hz wide, narrower than that of any radar: its "
+                    "noise is too low; 'bandwidth_hz' is in hertz",
+                    radar.name, bandwidth_hz));
+  }
+  warning.addTo(context.problems);
+}
+
+void warnOfLongStep(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const Clock& clock = scenario.clock;
+  if (!(clock.duration_s > 0) || clock.step_s <= clock.duration_s) return;
+  context.problems.addWarning(
+      root.locationOf("step_s"),
+      fmt::format("'step_s' of {:g} s is longer than 'duration_s', {:g} s: there is one step, at 0 s",
+                  clock.step_s, clock.duration_s));
 }
 
 /// Warns about fluctuating targets of radars whose method of detection supports only steady ones.
@@ -151,11 +192,54 @@ void warnOfCoarseSteps(const Scenario& scenario, const Section& root, ParseConte
   context.problems.addWarning(scan.locationOf(rotates ? "rate_rpm" : "rate_deg_s"), unlit->warning);
 }
 
+/// Warns about platforms that are never near the region, with the mistake that may be the cause.
+void warnOfPlatformsFarOutside(const Scenario& scenario, const Section& root, ParseContext& context) {
+  const std::vector<Section> sections = root.sections("platforms");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const std::vector<TrackPoint>& track = scenario.platforms[i].track;
+    std::vector<GeodeticPosition> positions;
+    for (const TrackPoint& point : track)
+      positions.push_back({point.position.latitude_deg, point.position.longitude_deg, 0});
+    const std::string text = farOutsideText(scenario.region, positions);
+    if (text.empty()) continue;
+    const std::string& name = scenario.platforms[i].name;
+    warning.add(sections[i].locationOf(sections[i].has("track") ? "track" : "position"), name,
+                fmt::format("platform '{}': {}", name, text));
+  }
+  warning.addTo(context.problems);
+}
+
+/// Warns about tracks whose legs are faster than any object.
+void warnOfSpeeds(const Scenario& scenario, const Section& root, ParseContext& context) {
+  constexpr double kFastest_mps = 10e3, kShortestStep_s = 1e-3;
+  const std::vector<Section> sections = root.sections("platforms");
+  WarningOfItems warning;
+  for (std::size_t i = 0; i < sections.size(); ++i) {
+    const std::vector<TrackPoint>& track = scenario.platforms[i].track;
+    for (std::size_t k = 1; k < track.size(); ++k) {
+      const SitePosition &from = track[k - 1].position, &to = track[k].position;
+      const double leg_m =
+          geodesicInverse(from.latitude_deg, from.longitude_deg, to.latitude_deg, to.longitude_deg)
+              .distance_m;
+      const double leg_s = std::max(track[k].t_s - track[k - 1].t_s, kShortestStep_s);
+      if (leg_m <= kFastest_mps * leg_s) continue;
+      const std::string& name = scenario.platforms[i].name;
+      warning.add(sections[i].locationOf("track"), name,
+                  fmt::format("the track of '{}' moves {:.4g} km from {:g} to {:g} s, at {:.4g} km/s: faster "
+                              "than any object (10 km/s); are the times in seconds?",
+                              name, leg_m / 1000, track[k - 1].t_s, track[k].t_s, leg_m / leg_s / 1000));
+      break;
+    }
+  }
+  warning.addTo(context.problems);
+}
+
 /// Warns about emitters that are never within a region's length of the region, as at a mistyped position.
 void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseContext& context) {
   const GeoFrame frame(scenario.region.origin);
   const Vec3d half = scenario.region.size_m * 0.5;
-  const auto outside_m = [&](const TrackPoint& point) {
+  const auto distance_m = [&](const TrackPoint& point) {
     const Vec3d at = frame.toLocal({point.position.latitude_deg, point.position.longitude_deg, 0});
     return std::hypot(std::max(std::abs(at.x) - half.x, 0.0), std::max(std::abs(at.y) - half.y, 0.0));
   };
@@ -165,8 +249,8 @@ void warnOfEmittersOutside(const Scenario& scenario, const Section& root, ParseC
     const Emitter& emitter = scenario.emitters[i];
     double nearest_m = HUGE_VAL;
     for (const TrackPoint& point : scenario.platforms[emitter.platform].track)
-      nearest_m = std::min(nearest_m, outside_m(point));
-    if (!(nearest_m > 2 * std::max(half.x, half.y)) || std::isinf(nearest_m)) continue;
+      nearest_m = std::min(nearest_m, distance_m(point));
+    if (!(nearest_m > 2 * std::max(half.x, half.y)) || nearest_m > kFarOutside_m) continue;
     warning.add(
         sections[i].locationOf("platform"), emitter.name,
         fmt::format("emitter '{}' is outside the region, {:.1f} km from it: its field in the region is "
@@ -277,7 +361,11 @@ void addScenarioWarnings(const Scenario& scenario, const Section& root, ParseCon
   warnOfEmittersWithoutBand(scenario, root, context);
   warnOfIdleJammers(scenario, root, context);
   warnOfGains(scenario, root, context);
+  warnOfNarrowReceivers(scenario, root, context);
+  if (context.read_for == ReadFor::series) warnOfLongStep(scenario, root, context);
   warnOfTargetsTakenAsSteady(scenario, root, context);
+  warnOfPlatformsFarOutside(scenario, root, context);
+  warnOfSpeeds(scenario, root, context);
   warnOfEmittersOutside(scenario, root, context);
   warnOfKilometres(scenario, root, context);
   if (context.read_for == ReadFor::series) warnOfCoarseSteps(scenario, root, context);

@@ -111,8 +111,21 @@ GeoBox terrainBox(const Scenario& scenario) {
   return builder.box();
 }
 
+std::vector<NeededPlace> neededPlaces(const Scenario& scenario) {
+  std::vector<NeededPlace> places;
+  const FrameOrigin& origin = scenario.region.origin;
+  places.push_back({"the region", origin.latitude_deg, origin.longitude_deg});
+  for (const Platform& platform : scenario.platforms) {
+    if (platform.track.empty()) continue;
+    const SitePosition& first = platform.track.front().position;
+    places.push_back({"platform '" + platform.name + "'", first.latitude_deg, first.longitude_deg});
+  }
+  return places;
+}
+
 TerrainPtr loadTerrain(const Scenario& scenario) {
-  return scenario.terrain ? Terrain::load(*scenario.terrain, terrainBox(scenario)) : nullptr;
+  return scenario.terrain ? Terrain::load(*scenario.terrain, terrainBox(scenario), neededPlaces(scenario))
+                          : nullptr;
 }
 
 bool mayLackTerrain(const Scenario& scenario, bool otherwise) {

@@ -46,6 +46,17 @@ bool showsScans(const OutputSpec& output) {
          });
 }
 
+/// A kind of interval that all quantities of an output have.
+std::optional<IntervalKind> intervalOf(const OutputSpec& output) {
+  for (const IntervalKind kind : {IntervalKind::cumulative, IntervalKind::max_hold, IntervalKind::mean}) {
+    const bool has_all =
+        std::all_of(output.quantities.begin(), output.quantities.end(),
+                    [&](const std::string& name) { return hasInterval(info(quantityFromName(name)), kind); });
+    if (has_all) return kind;
+  }
+  return std::nullopt;
+}
+
 /// Emitters whose beams are alike.
 struct Beams {
   double width_deg = 0;
@@ -111,8 +122,11 @@ std::optional<UnlitAzimuths> unlitAzimuths(const Scenario& scenario, const Clock
   for (const Beams& alike : beams)
     unlit.warning += (unlit.warning.empty() ? "" : "; ") + alike.text(clock.step_s);
   unlit.warning +=
-      ". Smaller steps, or a rate whose steps fall between those of earlier turns, light the others; an "
-      "'interval' of the output shows what is lit between the steps";
+      ". Smaller steps, or a rate whose steps fall between those of earlier turns, light the others";
+  if (const auto kind = intervalOf(scenario.output))
+    unlit.warning +=
+        fmt::format("; the output's 'interval: {{kind: {}, turns: 1}}' shows what is lit between the steps",
+                    toString(*kind));
   return unlit;
 }
 

@@ -73,6 +73,12 @@ const ObjectSpec& elevationFileSpec() {
           optional("encoding", choiceOf<HeightEncoding>(), "of heights in the colours of a picture"),
           optional("crs", textOf(ValueType::text, 4096).printable(),
                    "coordinate reference system of its posts, such as EPSG:32633, if the file states none"),
+          byDefault("swap_bytes", simple(ValueType::boolean), "false",
+                    "true: the two bytes of each height are in the other order than the file states"),
+          byDefault(
+              "implausible", choiceOf<ImplausibleHeights>(), toString(ImplausibleHeights::error),
+              "treatment of heights that are not on earth (-11500 to 9000 m) if they are more than 1 %: "
+              "an error, or voids as fewer are"),
       }};
   return spec;
 }

@@ -28,11 +28,13 @@ void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
   const bool is_partial = rows * columns > kMaxPosts;
   const int strips = is_partial ? kStrips : 1;
   bool is_noted = false;
+  HeightTally tally;
+  FillValues::Result all_found;
   const long long rows_of_strip = is_partial ? std::max(1LL, kMaxPosts / columns / kStrips) : rows;
   for (int strip = 0; strip < strips; ++strip) {
     const long long first_row = strip == 0 ? 0 : (rows - rows_of_strip) * strip / (strips - 1);
     FillValues fills(columns, file.meaning().unit_m);
-    file.read({0, first_row, columns, rows_of_strip}, [&](long long, const float* heights_m) {
+    tally.add(file.read({0, first_row, columns, rows_of_strip}, [&](long long, const float* heights_m) {
       fills.add(heights_m);
       int voids = 0;
       float lowest_m = HUGE_VALF, highest_m = -HUGE_VALF;
@@ -46,7 +48,7 @@ void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
       if (lowest_m > highest_m) return;
       info.lowest_m = std::fmin(info.lowest_m, lowest_m);
       info.highest_m = std::fmax(info.highest_m, highest_m);
-    });
+    }));
     // Heights that may be fill values count once they are known not to be.
     const FillValues::Result found = fills.result();
     if (found.is_partial && !is_noted) info.warnings.emplace_back(kPartlySearched);
@@ -55,11 +57,15 @@ void surveyHeights(const TerrainFile& file, TerrainFileInfo& info) {
       info.warnings.push_back(fillText(fill));
       info.void_posts += fill.posts;
     }
+    all_found.low_posts += found.low_posts;
+    all_found.lowest_m = std::min(all_found.lowest_m, found.lowest_m);
     if (found.lowest_m <= found.highest_m) {
       info.lowest_m = std::fmin(info.lowest_m, found.lowest_m);
       info.highest_m = std::fmax(info.highest_m, found.highest_m);
     }
   }
+  for (const Implausibility& remark : implausibilitiesOf(file, tally, all_found))
+    info.warnings.push_back(remark.text);
   if (is_partial) {
     info.notes.push_back("is large: its range and voids are those of " +
                          std::to_string(strips * rows_of_strip) + " of its " + std::to_string(rows) +
@@ -81,7 +87,8 @@ TerrainFileInfo infoOf(const ElevationSource& source, const SourceLocation& loca
   info.rows = file.rows();
   info.pixel_is_area = file.isArea();
   info.notes.insert(info.notes.end(), file.notes().begin(), file.notes().end());
-  if (isDatumAssumed(file)) info.warnings.push_back(kAssumedDatum + effectOfAssumedDatum(file));
+  const Assumption assumed = assumptionOf(file);
+  if (!assumed.text.empty()) info.warnings.push_back(assumed.text + assumed.effect);
   info.warnings.insert(info.warnings.end(), file.warnings().begin(), file.warnings().end());
   const double column = 0.5 * (file.columns() - 1), row = 0.5 * (file.rows() - 1);
   const PostLattice& lattice = file.lattice();

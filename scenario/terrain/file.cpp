@@ -6,6 +6,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <limits>
@@ -15,7 +16,6 @@
 
 #include "base/files/file_reading.h"
 #include "base/geodesy/gdal_file.h"
-#include "base/geodesy/netcdf_header.h"
 #include "emscape/base/units.h"
 #include "emscape/base/work.h"
 #include "scenario/terrain/file_remedies.h"
@@ -31,9 +31,8 @@ namespace fs = std::filesystem;
 
 /// Values that mean void in HGT and DTED whatever a file's header says.
 constexpr float kVoidValues[] = {-32767.0f, -32768.0f};
-/// Largest height or depth on earth (m), with a margin; values beyond are undeclared voids.
-constexpr float kMaxHeightOnEarth_m = 20000.0f;
 constexpr long long kStripPosts = 1 << 21;
+constexpr int kRowsPerSample = 4;                        ///< rows whose steps are looked at: one of these
 constexpr int kMaxPostsPerAxis = 1 << 22;                ///< the whole earth in a third of an arc second
 constexpr int kMinTilePosts = 2, kMaxTilePosts = 21601;  ///< of an HGT, per axis
 
@@ -53,6 +52,11 @@ int tilePosts(std::uintmax_t bytes) {
   const bool is_square =
       bytes == std::uintmax_t{2} * static_cast<unsigned>(posts) * static_cast<unsigned>(posts);
   return is_square && posts >= kMinTilePosts && posts <= kMaxTilePosts ? posts : 0;
+}
+
+/// True for the sizes of 3", 1", 0.5" and 1/3".
+bool isKnownTile(int posts) {
+  return posts == 1201 || posts == 3601 || posts == 7201 || posts == 10801;
 }
 
 /// True if GDAL reads an HGT of this name and size.
@@ -91,6 +95,7 @@ struct TerrainFile::Impl {
   int band = 1;
   HeightMeaning meaning;
   std::optional<Georeference> georeference;
+  bool is_16_bits = false;
   bool is_tile = false;  ///< an HGT that GDAL does not read by itself
   mutable std::unique_ptr<MemoryFiles> unpacked;
   mutable std::string unpacked_name;
@@ -170,7 +175,6 @@ gdal::Dataset TerrainFile::Impl::open() const {
     unpack();
     dataset = openElevationInMemory(unpacked_name, unpacked->siblings(), is_picture);
   } else {
-    if (const std::string fault = faultOfNetcdfHeader(name); !fault.empty()) fail(fault);
     dataset = openElevation(name, is_picture);
   }
   if (!dataset) fail(messages.explain(faultOfUnreadable(source, is_picture)));
@@ -242,6 +246,11 @@ void TerrainFile::Impl::readBand(GDALDatasetH dataset) {
   } else if (colour != GCI_Undefined && colour != GCI_GrayIndex) {
     fail(remedyForPicture(band, GDALGetColorInterpretationName(colour), GDALGetRasterCount(dataset)));
   }
+  is_16_bits =
+      GDALGetRasterDataType(of_heights) == GDT_Int16 || GDALGetRasterDataType(of_heights) == GDT_UInt16;
+  if (keys.swap_bytes && !is_16_bits)
+    fail(fmt::format("'swap_bytes' of the scenario needs heights of 16 bits; the file has {}",
+                     GDALGetDataTypeName(GDALGetRasterDataType(of_heights))));
   scale = GDALGetRasterScale(of_heights, nullptr);
   offset = GDALGetRasterOffset(of_heights, nullptr);
   if (scale != 1.0 || offset != 0.0) {
@@ -302,6 +311,11 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
   if (facts.driver == "SRTMHGT" || keys.encoding) facts.band_unit = "m";
   meaning = found([&] { return heightMeaningOf(facts); });
   notes.insert(notes.end(), meaning.notes.begin(), meaning.notes.end());
+  if (is_tile && !isKnownTile(columns))
+    meaning.warnings.push_back(fmt::format(
+        "has {} bytes, {} posts a side, {} in a degree: HGT tiles have 1201, 3601, 7201 or 10801 a side. If "
+        "the file is cut off, its heights are at wrong positions; get it again",
+        2LL * columns * columns, columns, columns - 1));
   OSRStripVertical(system.get());
   found([&] { georeference->placeOnEarth(std::move(system), name); });
   if (!georeference->is_geographic)
@@ -347,6 +361,9 @@ const HeightMeaning& TerrainFile::meaning() const {
 const SourceLocation& TerrainFile::location() const {
   return impl_->location;
 }
+const TerrainFileKeys& TerrainFile::keys() const {
+  return impl_->keys;
+}
 const PostLattice& TerrainFile::lattice() const {
   return impl_->georeference->lattice;
 }
@@ -369,18 +386,25 @@ void TerrainFile::release() const {
   impl_->unpacked.reset();
 }
 
-void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
+HeightTally TerrainFile::read(const PostWindow& window, const RowSink& take) const {
   const Georeference& georeference = *impl_->georeference;
   const GdalMessages messages;  // constructed before the dataset, whose destructor may report errors
   impl_->checkedSources();
   const gdal::Dataset dataset = impl_->open();
   GDALRasterBandH band = GDALGetRasterBand(dataset.get(), impl_->band);
-  GDALRasterBandH mask_band = (GDALGetMaskFlags(band) & GMF_ALL_VALID) == 0 ? GDALGetMaskBand(band) : nullptr;
+  const bool swaps = impl_->keys.swap_bytes;
+  int has_void_value = 0;
+  const double void_value = GDALGetRasterNoDataValue(band, &has_void_value);
+  // GDAL's mask is of the values before their bytes are exchanged.
+  GDALRasterBandH mask_band =
+      (GDALGetMaskFlags(band) & GMF_ALL_VALID) == 0 && !swaps ? GDALGetMaskBand(band) : nullptr;
+  HeightTally tally;
   const int columns = static_cast<int>(window.columns);
   const int left = static_cast<int>(window.first_column);
   const long long strip_rows = std::max(1LL, kStripPosts / std::max(1LL, window.columns));
   std::vector<float> strip;
   std::vector<GByte> mask;
+  std::vector<std::uint8_t> is_known;
   for (long long begin = 0; begin < window.rows; begin += strip_rows) {
     checkpoint();
     const int rows = static_cast<int>(std::min(strip_rows, window.rows - begin));
@@ -405,17 +429,29 @@ void TerrainFile::read(const PostWindow& window, const RowSink& take) const {
       for (std::size_t k = 0; k < strip.size(); ++k)
         strip[k] = static_cast<float>(decoded(*impl_->keys.encoding, strip[k], green[k], blue[k]));
     }
+    is_known.assign(strip.size(), 1);
     for (std::size_t k = 0; k < strip.size(); ++k) {
-      const bool declared_void = mask[k] == 0 || strip[k] == kVoidValues[0] || strip[k] == kVoidValues[1];
+      if (swaps) {
+        strip[k] = withSwappedBytes(strip[k]);
+        if (has_void_value != 0 && static_cast<double>(strip[k]) == void_value) mask[k] = 0;
+      }
+      is_known[k] =
+          mask[k] != 0 && strip[k] != kVoidValues[0] && strip[k] != kVoidValues[1] && std::isfinite(strip[k]);
+    }
+    for (int row = 0; impl_->is_16_bits && row < rows; row += kRowsPerSample)
+      tally.addSteps(strip, is_known, static_cast<std::size_t>(row) * static_cast<std::size_t>(columns),
+                     static_cast<std::size_t>(columns));
+    for (std::size_t k = 0; k < strip.size(); ++k) {
       const double height_m = (strip[k] * impl_->scale + impl_->offset) * impl_->meaning.unit_m;
-      const bool known = !declared_void && std::abs(height_m) <= kMaxHeightOnEarth_m;
-      strip[k] = known ? static_cast<float>(height_m) : std::numeric_limits<float>::quiet_NaN();
+      strip[k] = is_known[k] != 0 && tally.add(height_m) ? static_cast<float>(height_m)
+                                                         : std::numeric_limits<float>::quiet_NaN();
     }
     for (int row = 0; row < rows; ++row) {
       const int row_of_file = georeference.north_first ? rows - 1 - row : row;
       take(begin + row, strip.data() + static_cast<std::ptrdiff_t>(row_of_file) * columns);
     }
   }
+  return tally;
 }
 
 void TerrainFile::toGeographic(std::vector<double>& x, std::vector<double>& y) const {

@@ -10,6 +10,7 @@
 #include "emscape/scenario/terrain/terrain.h"
 #include "scenario/terrain/file_names.h"
 #include "scenario/terrain/heights.h"
+#include "scenario/terrain/plausibility.h"
 #include "scenario/terrain/posts.h"
 
 namespace emscape::scenario {
@@ -35,6 +36,7 @@ class TerrainFile {
   const std::vector<std::string>& warnings() const;
   const HeightMeaning& meaning() const;
   const SourceLocation& location() const;
+  const TerrainFileKeys& keys() const;
 
   const PostLattice& lattice() const;
   int columns() const;
@@ -46,9 +48,10 @@ class TerrainFile {
   /// southern edge.
   using RowSink = std::function<void(long long row, const float* heights_m)>;
   /// Reads a window of the file, a strip of rows at a time; passes each row once. Packed files are unpacked
-  /// once for opening and reading; see release().
+  /// once for opening and reading; see release(). Heights that are not on earth become voids.
+  /// @return what the heights look like
   /// @throws Error (bad_input) if reading fails
-  void read(const PostWindow& window, const RowSink& take) const;
+  HeightTally read(const PostWindow& window, const RowSink& take) const;
 
   /// Frees the memory of a packed file; it is unpacked again if it is read again.
   void release() const;

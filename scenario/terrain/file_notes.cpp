@@ -38,19 +38,25 @@ std::string fillText(const FillValues::Found& fill) {
       FillValues::kStep_m);
 }
 
-bool isDatumAssumed(const TerrainFile& file) {
+Assumption assumptionOf(const TerrainFile& file) {
   const HeightMeaning& meaning = file.meaning();
-  return meaning.origin == DatumOrigin::assumed && meaning.datum_text == "EGM96 (assumed)";
-}
-
-std::string effectOfAssumedDatum(const TerrainFile& file) {
+  const bool is_datum_assumed =
+      meaning.origin == DatumOrigin::assumed && meaning.datum_text == "EGM96 (assumed)";
+  if (!is_datum_assumed) {
+    if (!meaning.is_unit_assumed) return {};
+    return {"states no unit: its heights are taken as metres",
+            "; `height_unit: m` (or ft, us_ft, dm, cm) states it"};
+  }
   const GeoBox box = geographicBoxOf(file);
   const double latitude_deg = std::clamp(0.5 * (box.south_deg + box.north_deg), -90.0, 90.0);
   const double undulation_m = geoidUndulation_m(latitude_deg, 0.5 * (box.west_deg + box.east_deg));
-  return fmt::format(
-      "; if they are above the ellipsoid, the ground is {:.1f} m too {} there. `vertical_datum: egm96` "
-      "(or ellipsoid, egm2008, navd88) states it",
-      std::abs(undulation_m), undulation_m > 0 ? "high" : "low");
+  return {meaning.is_unit_assumed
+              ? "states no vertical datum and no unit: its heights are taken as metres above EGM96"
+              : "states no vertical datum: its heights are taken as above EGM96",
+          fmt::format("; if they are above the ellipsoid, the ground is {:.1f} m too {} there. "
+                      "`vertical_datum: egm96` (or ellipsoid, egm2008, navd88) states it{}",
+                      std::abs(undulation_m), undulation_m > 0 ? "high" : "low",
+                      meaning.is_unit_assumed ? ", `height_unit: m` (or ft, us_ft, dm, cm) the unit" : "")};
 }
 
 }  // namespace emscape::scenario

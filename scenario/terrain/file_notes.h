@@ -33,10 +33,11 @@ inline constexpr const char* kPartlySearched =
     "searched for; "
     "others would be ground. gdal_translate -a_nodata VALUE makes a copy that declares them";
 
-/// True if nothing says what the heights of a file are above: the warning, and what follows if the assumed
-/// datum is wrong, in the middle of the file.
-bool isDatumAssumed(const TerrainFile& file);
-inline constexpr const char* kAssumedDatum = "states no vertical datum: its heights are taken as above EGM96";
-std::string effectOfAssumedDatum(const TerrainFile& file);
+/// What is assumed of a file's datum and unit, as nothing states it; empty: nothing is.
+struct Assumption {
+  std::string text;
+  std::string effect;  ///< if the assumption is wrong, in the middle of the file; and how to state it
+};
+Assumption assumptionOf(const TerrainFile& file);
 
 }  // namespace emscape::scenario

@@ -39,7 +39,7 @@ FillValues::Result FillValues::result() {
         isUsual(height_m) ? usual_connected_m_.count(height_m) != 0
                           : result_.is_partial || (bits_ > 0 && hasBit(bits.first) && hasBit(bits.second));
     if (is_connected) {
-      addToRange(height_m);
+      addToRange(height_m, posts);
     } else {
       result_.fills.push_back({height_m, posts});
     }
@@ -47,7 +47,8 @@ FillValues::Result FillValues::result() {
   return result_;
 }
 
-void FillValues::addToRange(float height_m) {
+void FillValues::addToRange(float height_m, long long posts) {
+  result_.low_posts += posts;
   result_.lowest_m = std::min(result_.lowest_m, height_m);
   result_.highest_m = std::max(result_.highest_m, height_m);
 }

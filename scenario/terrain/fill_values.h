@@ -31,6 +31,7 @@ class FillValues {
     /// Of the heights below kBelow_m that are no fill values; lowest > highest: there are none.
     float lowest_m = std::numeric_limits<float>::infinity();
     float highest_m = -std::numeric_limits<float>::infinity();
+    long long low_posts = 0;  ///< of these heights
     /// There are so many different heights below kBelow_m that only the usual fill values (-9999, ...) were
     /// searched for.
     bool is_partial = false;
@@ -42,7 +43,7 @@ class FillValues {
   /// Rows around the middle one; null: there is none.
   void judge(const float* below_m, const float* middle_m, const float* above_m);
   bool isUsual(float height_m) const { return usual_m_.count(height_m) != 0; }
-  void addToRange(float height_m);
+  void addToRange(float height_m, long long posts = 1);
 
   /// Heights that were seen beside near ones, as bits: a height has two, which others may have, too.
   struct Bits {

@@ -20,7 +20,7 @@ constexpr double kUsSurveyFoot_m = 1200.0 / 3937.0;
 }
 
 /// Metres of a unit; 0 if it is unknown.
-double metresOf(const std::string& unit) {
+double metresNamed(const std::string& unit) {
   struct Unit {
     const char* name;
     double metres;
@@ -56,12 +56,9 @@ double metresOf(const std::string& unit) {
   return 0.0;
 }
 
-double metresOf(HeightUnit unit) {
-  return metresOf(std::string(toString(unit)));
-}
-
 std::string textOf(HeightUnit unit) {
-  return unit == HeightUnit::m ? "metres" : unit == HeightUnit::ft ? "feet" : "US survey feet";
+  static constexpr const char* kTexts[] = {"metres", "feet", "US survey feet", "decimetres", "centimetres"};
+  return kTexts[static_cast<int>(unit)];
 }
 
 /// Letters and digits of a name, in capitals.
@@ -218,7 +215,7 @@ void setUnit(const HeightFacts& facts, const Stated& stated, HeightMeaning& mean
   const bool of_band = !facts.band_unit.empty() && !is_nothing;
   if (of_band || stated.unit_m > 0) {
     meaning.unit = of_band ? facts.band_unit : stated.unit;
-    meaning.unit_m = of_band ? metresOf(facts.band_unit) : stated.unit_m;
+    meaning.unit_m = of_band ? metresNamed(facts.band_unit) : stated.unit_m;
     if (meaning.unit_m == 0.0 && !key)
       refuse(
           "heights are in '" + meaning.unit +
@@ -231,8 +228,8 @@ void setUnit(const HeightFacts& facts, const Stated& stated, HeightMeaning& mean
           "key to use what the file states; if the file is wrong, gdal_translate -of VRT makes a "
           "text file whose UnitType can be corrected",
           toString(*key), meaning.unit));
-    if (of_band && stated.unit_m > 0 && metresOf(facts.band_unit) > 0 && !key &&
-        std::abs(stated.unit_m / metresOf(facts.band_unit) - 1) > 1e-7)
+    if (of_band && stated.unit_m > 0 && metresNamed(facts.band_unit) > 0 && !key &&
+        std::abs(stated.unit_m / metresNamed(facts.band_unit) - 1) > 1e-7)
       meaning.warnings.push_back(fmt::format(
           "states '{}' as the unit of its heights, and '{}' as that of its vertical system '{}': the "
           "first is used. If it is wrong, `height_unit` cannot change it: gdal_translate -of VRT makes a "
@@ -245,21 +242,29 @@ void setUnit(const HeightFacts& facts, const Stated& stated, HeightMeaning& mean
     meaning.unit = textOf(*key);
   } else if (meaning.unit.empty()) {
     meaning.unit = "metres, assumed";
+    meaning.is_unit_assumed =
+        stated.datum != VerticalDatum::ellipsoid && productOf(facts.own_name) == nullptr;
     char* unit = nullptr;
     const double of_plane_m =
         facts.system != nullptr && OSRIsProjected(facts.system) ? OSRGetLinearUnits(facts.system, &unit) : 1;
-    if (facts.scale == 1 && std::abs(of_plane_m - kFoot_m) < 1e-5)
+    if (facts.scale == 1 && std::abs(of_plane_m - kFoot_m) < 1e-5) {
+      meaning.is_unit_assumed = false;
       meaning.warnings.push_back(fmt::format(
           "its coordinates are in '{}', and it has no unit of heights: they are taken as metres. If they are "
           "feet, ground is 3.3 times too high: `height_unit: {}` of the file in the scenario states it, as m "
           "does",
           unit, of_plane_m == kFoot_m ? "ft" : "us_ft"));
+    }
   }
   if (meaning.unit_m != 1.0)
     meaning.notes.push_back("heights in '" + meaning.unit + "' are converted to metres");
 }
 
 }  // namespace
+
+double metresOf(HeightUnit unit) {
+  return metresNamed(std::string(toString(unit)));
+}
 
 std::string textOf(VerticalDatum datum) {
   switch (datum) {

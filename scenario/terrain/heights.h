@@ -30,12 +30,16 @@ struct HeightMeaning {
   std::string unit;  ///< for messages
   VerticalDatum datum = VerticalDatum::egm96;
   DatumOrigin origin = DatumOrigin::assumed;
-  std::string datum_text;  ///< such as "EGM96 (stated by the file: EGM96 height)"
+  std::string datum_text;        ///< such as "EGM96 (stated by the file: EGM96 height)"
+  bool is_unit_assumed = false;  ///< nothing says the unit, and no warning of its own was made
   std::vector<std::string> notes, warnings;
 };
 
 /// @throws Error (bad_input), without a location: an unknown unit, depths, a key that contradicts the file
 HeightMeaning heightMeaningOf(const HeightFacts& facts);
+
+/// Metres of a unit.
+double metresOf(HeightUnit unit);
 
 /// "EGM96", "the ellipsoid" ...
 std::string textOf(VerticalDatum datum);

@@ -130,7 +130,7 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
     const int first_column = static_cast<int>(placed.column_begin - patch.column_begin) + 1;
     const int first_row = static_cast<int>(placed.row_begin - patch.row_begin) + 1;
     FillValues fills(placed.tile->window.columns, file.meaning().unit_m);
-    file.read(placed.tile->window, [&](long long row, const float* heights_m) {
+    const HeightTally tally = file.read(placed.tile->window, [&](long long row, const float* heights_m) {
       fills.add(heights_m);
       std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));
       for (long long column = 0; column < placed.tile->window.columns; ++column, ++post) {
@@ -141,6 +141,12 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
     });
     file.release();
     const FillValues::Result found = fills.result();
+    for (const Implausibility& remark : implausibilitiesOf(file, tally, found)) {
+      if (remark.is_error)
+        throw Error(ErrorCode::bad_input, file.location(),
+                    "elevation file " + file.name() + ": " + remark.text);
+      sheet.remarks.push_back({placed.tile->file, remark.text});
+    }
     if (found.is_partial) sheet.partly_searched.push_back(placed.tile->file);
     for (const FillValues::Found& fill : found.fills) {
       sheet.fills.push_back({placed.tile->file, fill});

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "scenario/terrain/file.h"
@@ -45,6 +46,12 @@ struct TerrainSheet {
     FillValues::Found value;
   };
   std::vector<Fill> fills;
+  /// What else is said of heights of files.
+  struct Remark {
+    TerrainFilePtr file;
+    std::string text;
+  };
+  std::vector<Remark> remarks;
   std::vector<TerrainFilePtr> partly_searched;            ///< for fill values; see FillValues::Result
   double first_column, last_column, first_row, last_row;  ///< limits of lookups
 

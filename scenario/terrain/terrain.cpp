@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "base/geodesy/geoid_grid.h"
+#include "base/geodesy/position_mistakes.h"
 #include "emscape/base/geodesy/geoid.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
@@ -111,7 +112,8 @@ void addFile(const ElevationSource& source, const SourceLocation& location, cons
   std::vector<RasterTile> tiles = tilesWithin(file, box);
   if (tiles.empty()) return;
   for (const std::string& note : file->notes()) all.notes.add(file->name(), note);
-  if (isDatumAssumed(*file)) all.warnings.add(file->name(), kAssumedDatum, effectOfAssumedDatum(*file));
+  const Assumption assumed = assumptionOf(*file);
+  if (!assumed.text.empty()) all.warnings.add(file->name(), assumed.text, assumed.effect);
   for (const std::string& warning : file->warnings()) all.warnings.add(file->name(), warning);
   for (RasterTile& tile : tiles) all.tiles.push_back(std::move(tile));
 }
@@ -137,35 +139,31 @@ bool contains(const GeoBox& box, double latitude_deg, double longitude_deg) {
          std::abs(wrapLongitude_deg(longitude_deg - middle_deg)) <= 0.5 * (box.east_deg - box.west_deg);
 }
 
-/// Where the files are, where ground is needed, and which other sign would bring both together.
-std::string placeTextOf(const std::vector<GeoBox>& boxes, const GeoBox& needed) {
+/// Where the files are, where ground is needed, and which mistake keeps them apart.
+std::string placeTextOf(const std::vector<GeoBox>& boxes, const GeoBox& needed,
+                        const std::vector<NeededPlace>& places) {
   if (boxes.empty()) return "there are no elevation files";
   GeoBox all = boxes.front();
   for (const GeoBox& box : boxes) {
     all = {std::min(all.south_deg, box.south_deg), std::max(all.north_deg, box.north_deg),
            std::min(all.west_deg, box.west_deg), std::max(all.east_deg, box.east_deg)};
   }
-  std::string text =
+  const std::string text =
       fmt::format("the elevation files cover {}; ground is needed at {}", textOf(all), textOf(needed));
-  const double latitude_deg = 0.5 * (needed.south_deg + needed.north_deg);
-  const double longitude_deg = wrapLongitude_deg(0.5 * (needed.west_deg + needed.east_deg));
-  struct Other {
-    double latitude_deg, longitude_deg;
-    const char* mistake;
-  };
-  const Other others[] = {{latitude_deg, -longitude_deg, "longitude has the other sign"},
-                          {-latitude_deg, longitude_deg, "latitude has the other sign"},
-                          {-latitude_deg, -longitude_deg, "both have the other sign"},
-                          {longitude_deg, latitude_deg, "latitude and longitude are exchanged"}};
-  const auto isIn = [&](double latitude, double longitude) {
+  const auto isIn = [&](double latitude_deg, double longitude_deg) {
     return std::any_of(boxes.begin(), boxes.end(),
-                       [&](const GeoBox& box) { return contains(box, latitude, longitude); });
+                       [&](const GeoBox& box) { return contains(box, latitude_deg, longitude_deg); });
   };
-  if (isIn(latitude_deg, longitude_deg)) return text;
-  for (const Other& other : others) {
-    if (!isIn(other.latitude_deg, other.longitude_deg)) continue;
-    return text + fmt::format("; they would cover latitude {:.5g}, longitude {:.5g} deg: perhaps {}",
-                              other.latitude_deg, other.longitude_deg, other.mistake);
+  std::vector<NeededPlace> all_places = places;
+  all_places.push_back({"", 0.5 * (needed.south_deg + needed.north_deg),
+                        wrapLongitude_deg(0.5 * (needed.west_deg + needed.east_deg))});
+  for (const NeededPlace& place : all_places) {
+    if (isIn(place.latitude_deg, place.longitude_deg)) continue;
+    const auto mistake = mistakeIn(place.latitude_deg, place.longitude_deg, isIn);
+    if (!mistake) continue;
+    return text + fmt::format("; they would cover latitude {:.5g}, longitude {:.5g} deg: perhaps {}{}",
+                              mistake->latitude_deg, mistake->longitude_deg, mistake->text,
+                              place.name.empty() ? "" : " in " + place.name);
   }
   return text;
 }
@@ -177,6 +175,8 @@ std::vector<TerrainSheet> sheetsWithin(FilesWithin& files, const GeoBox& box) {
   for (TerrainSheet& sheet : readSheets(files.tiles)) {
     for (const TerrainSheet::Fill& fill : sheet.fills)
       files.warnings.add(fill.file->name(), fillText(fill.value));
+    for (const TerrainSheet::Remark& remark : sheet.remarks)
+      files.warnings.add(remark.file->name(), remark.text);
     for (const TerrainFilePtr& file : sheet.partly_searched)
       files.warnings.add(file->name(), kPartlySearched);
     if (sheet.file->isGeographic()) {
@@ -195,12 +195,13 @@ std::vector<TerrainSheet> sheetsWithin(FilesWithin& files, const GeoBox& box) {
 
 class TerrainMosaic : public Terrain {
  public:
-  TerrainMosaic(const TerrainSpec& spec, const GeoBox& box) : box_(checked(box)) {
+  TerrainMosaic(const TerrainSpec& spec, const GeoBox& box, const std::vector<NeededPlace>& places)
+      : box_(checked(box)) {
     FilesWithin files = filesWithin(spec, box);
     std::vector<TerrainSheet> sheets = sheetsWithin(files, box);
     for (const TerrainSheet& sheet : sheets) rasters_.push_back(sheet.raster());
     survey(sheets);
-    place_text_ = placeTextOf(files.boxes, box);
+    place_text_ = placeTextOf(files.boxes, box, places);
     warnings_ = files.warnings.texts();
     // The heights do not move in memory: the rasters' pointers stay valid.
     for (TerrainSheet& sheet : sheets) heights_m_.push_back(std::move(sheet.heights_m));
@@ -329,8 +330,9 @@ bool TerrainMosaic::covered(const std::vector<TerrainSheet>& sheets, double lati
 
 }  // namespace
 
-std::shared_ptr<const Terrain> Terrain::load(const TerrainSpec& spec, const GeoBox& box) {
-  return std::make_shared<const TerrainMosaic>(spec, box);
+std::shared_ptr<const Terrain> Terrain::load(const TerrainSpec& spec, const GeoBox& box,
+                                             const std::vector<NeededPlace>& places) {
+  return std::make_shared<const TerrainMosaic>(spec, box, places);
 }
 
 }  // namespace emscape::scenario

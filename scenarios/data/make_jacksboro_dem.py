@@ -52,7 +52,7 @@ def main():
     })
     image.SetGeoTransform((west, spacing, 0, north, 0, -spacing))
     reference = osr.SpatialReference()
-    reference.ImportFromEPSG(4326)
+    reference.SetFromUserInput("EPSG:4326+5773")  # WGS 84, heights above EGM96
     image.SetProjection(reference.ExportToWkt())
     band = image.GetRasterBand(1)
     band.SetUnitType("m")

@@ -95,7 +95,8 @@ scenario::GeoBox terrainBoxOf(const scenario::Scenario& scenario, const MapArea&
 
 scenario::TerrainPtr loadTerrain(const scenario::Scenario& scenario, const MapArea& area) {
   if (!scenario.terrain) return nullptr;
-  return scenario::Terrain::load(*scenario.terrain, terrainBoxOf(scenario, area));
+  return scenario::Terrain::load(*scenario.terrain, terrainBoxOf(scenario, area),
+                                 scenario::neededPlaces(scenario));
 }
 
 void requireGround(const scenario::Scenario& scenario, const scenario::Terrain& terrain,
@@ -116,9 +117,9 @@ void requireGround(const scenario::Scenario& scenario, const scenario::Terrain& 
       ErrorCode::bad_input, location,
       fmt::format(
           "terrain is missing below {} of the map's {} pixels, first at latitude {:.5f}, longitude {:.5f} "
-          "deg{}; {}",
-          missing, pixels, first.latitude_deg, first.longitude_deg, is_all ? "; " + terrain.placeText() : "",
-          is_all ? "'terrain: {missing: sea}' takes it as sea" : scenario::kMissingTerrainRemedy));
+          "deg; {}",
+          missing, pixels, first.latitude_deg, first.longitude_deg,
+          is_all ? terrain.placeText() : scenario::kMissingTerrainRemedy));
 }
 
 MapArea parseArea(const std::string& text) {

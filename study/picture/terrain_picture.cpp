@@ -35,14 +35,38 @@ std::string labelOf(const TerrainFileInfo& file, bool is_named) {
   return (is_named ? std::filesystem::path(file.file).filename().string() : file.format) + ": " + kind;
 }
 
-/// Categories: voids, then the files or their kinds; no value: ground without a file.
+/// The kind of all files that are needed, if they are of one.
+std::string commonKindOf(const std::vector<TerrainFileInfo>& files) {
+  std::string kind;
+  for (const TerrainFileInfo& file : files) {
+    if (!file.is_needed) continue;
+    const std::string own = labelOf(file, false);
+    if (!kind.empty() && own != kind) return "";
+    kind = own;
+  }
+  return kind;
+}
+
+/// The heights; unknown where there is none.
+Map heightsMap(const std::vector<float>& ground_msl_m) {
+  Map map;
+  map.name = "terrain";
+  map.kind = MapKind::level;
+  map.title = "height above mean sea level";
+  map.unit = "m";
+  map.values = ground_msl_m;
+  for (const float height_m : ground_msl_m)
+    map.answers.push_back(std::isnan(height_m) ? PixelAnswer::unknown : PixelAnswer::exact);
+  return map;
+}
+
+/// Categories: the files or their kinds, then voids, if there are any; no value: ground without a file.
 Map sourcesMap(const std::vector<TerrainFileInfo>& files, const scenario::Terrain& terrain,
                const MapGrid& grid) {
   Map map;
   map.name = "terrain";
   map.kind = MapKind::category;
   map.title = "source of the ground";
-  map.labels = {"void in the files"};
   std::vector<const TerrainFileInfo*> finest_first;
   for (const TerrainFileInfo& file : files) {
     if (file.is_needed) finest_first.push_back(&file);
@@ -54,9 +78,13 @@ Map sourcesMap(const std::vector<TerrainFileInfo>& files, const scenario::Terrai
   for (const TerrainFileInfo* file : finest_first) {
     const std::string label = labelOf(*file, finest_first.size() <= kMaxNamedFiles);
     const auto [known, is_new] = of_label.emplace(label, static_cast<int>(map.labels.size()));
-    if (is_new) map.labels.push_back(label);
+    if (is_new) {
+      map.labels.push_back(label);
+      map.colors.push_back(static_cast<int>(map.labels.size()));
+    }
     categories.push_back(known->second);
   }
+  const int void_category = static_cast<int>(map.labels.size());
   for (const emfield::Surface::Position& at : grid.positions) {
     int category = -1;
     for (std::size_t k = 0; k < finest_first.size() && category < 0; ++k) {
@@ -64,7 +92,12 @@ Map sourcesMap(const std::vector<TerrainFileInfo>& files, const scenario::Terrai
     }
     const bool is_known =
         !std::isnan(at.latitude_deg) && !std::isnan(terrain.heightMsl_m(at.latitude_deg, at.longitude_deg));
-    map.values.push_back(category < 0 ? NAN : static_cast<float>(is_known ? category : 0));
+    map.values.push_back(category < 0 ? NAN : static_cast<float>(is_known ? category : void_category));
+  }
+  if (std::find(map.values.begin(), map.values.end(), static_cast<float>(void_category)) !=
+      map.values.end()) {
+    map.labels.emplace_back("void in the files");
+    map.colors.push_back(0);
   }
   return map;
 }
@@ -106,7 +139,11 @@ render::Image8 drawTerrain(const std::vector<TerrainFileInfo>& files, const scen
                         terrain.lowest_m(), terrain.highest_m(), terrain.voidPosts(),
                         100 * terrain.uncoveredFraction());
   options.ground_msl_m = groundOf(grid, terrain);
-  return drawMap(grid, sourcesMap(files, terrain, grid), options);
+  // With several kinds of files the colours tell the source, else the height.
+  const std::string kind = commonKindOf(files);
+  if (kind.empty()) return drawMap(grid, sourcesMap(files, terrain, grid), options);
+  options.subtitle = kind + "; " + options.subtitle;
+  return drawMap(grid, heightsMap(options.ground_msl_m), options);
 }
 
 }  // namespace emscape::study

@@ -93,9 +93,10 @@ TEST(TablesOfOthers, SpreadsheetsHaveLocalNumbersDatesAndEncodings) {
 }
 
 TEST(TablesOfOthers, CoordinatesMayHaveLettersMinutesAndSeconds) {
-  const Recording r = readAs("a.csv",
-                             "time,lat,lon,alt\n0,52.1N,5.1W,0\n10,52°06'00\"S,5°06'00\"E,0\n20,52 06.6 N,5 "
-                             "06 E,ground\n30,52;1,5,0\n");
+  const Recording r =
+      readAs("a.csv",
+             "time,lat,lon,alt\n0,52.1N,5.1W,0\n10000,52°06'00\"S,5°06'00\"E,0\n20000,52 06.6 N,5 "
+             "06 E,ground\n30000,52;1,5,0\n");
   const auto& poses = r.objects.at(0).poses;
   ASSERT_THAT(poses, SizeIs(3));
   EXPECT_NEAR(poses[0].longitude_deg, -5.1, 1e-9);

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "emscape/base/log.h"
 #include "scenario/antenna/pattern.h"
+#include "scenario/antenna/pattern_file.h"
 #include "scenario/antenna/shapes.h"
 #include "tests/scenario/antenna_directions.h"
 #include "tests/scenario/antenna_files.h"
@@ -56,6 +58,19 @@ const std::string kSmall =
     "GAIN 10 dBi\n"                               // 2
     "HORIZONTAL 4\n0 0\n90 10\n180 20\n270 11\n"  // 3..7
     "VERTICAL 4\n0 0\n90 15\n180 20\n270 16\n";   // 8..12
+
+TEST(MsiAntenna, GainWithoutAUnitIsToldWithItsValue) {
+  const TemporaryFile file("antenna.msi", sector("GAIN 15\n"));
+  const PatternFile pattern = readPatternFile(file.path());
+  std::vector<std::string> warnings;
+  antennaOf(file.path(), pattern, std::nan(""), warnings);
+  EXPECT_THAT(warnings, testing::ElementsAre(testing::HasSubstr(
+                            "has no unit and is taken as dBd, as the format defines: 17.15 dBi. If it is in "
+                            "dBi, 'gain_dbi: 15'")));
+  warnings.clear();
+  antennaOf(file.path(), pattern, 15, warnings);
+  EXPECT_THAT(warnings, testing::IsEmpty()) << "stated";
+}
 
 TEST(MsiAntenna, TakesGainInDbdUnlessTheFileSaysDbi) {
   EXPECT_NEAR(readText(sector("GAIN 15\n"))->gain_dbi, 17.15, 1e-12);

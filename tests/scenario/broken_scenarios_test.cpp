@@ -140,7 +140,7 @@ output: {quantities: [snr_db], combine: per_emitter}
 
 TEST_F(DamagedScenario, IsValidBeforeItIsDamaged) {
   const std::string remarks = told(parseScenario(folder_.write("whole.yaml", text_)).problems);
-  EXPECT_THAT(remarks, testing::HasSubstr("is outside the region"));
+  EXPECT_THAT(remarks, testing::HasSubstr("outside the region"));
   EXPECT_EQ(std::count(remarks.begin(), remarks.end(), '\n'), 1) << remarks;
 }
 

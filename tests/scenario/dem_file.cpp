@@ -52,7 +52,7 @@ void DemFile::write(const std::filesystem::path& path) const {
       throw std::runtime_error("cannot write " + path.string());
     }
   }
-  for (int other = 2; other <= bands; ++other) dataset->GetRasterBand(other)->Fill(12345);
+  for (int other = 2; other <= bands; ++other) dataset->GetRasterBand(other)->Fill(2345);
 }
 
 DemFile geographicDem(double west_deg, double north_deg, double step_deg, int columns, int rows,

@@ -23,7 +23,7 @@ struct DemFile {
   std::string unit;
   double scale = 1, offset = 0;
   bool is_geotiff_1_0 = false;
-  int bands = 1;  ///< all but the first hold 12345
+  int bands = 1;  ///< all but the first hold 2345
 
   void write(const std::filesystem::path& path) const;
 };

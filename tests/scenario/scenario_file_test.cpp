@@ -292,7 +292,7 @@ TEST_F(ScenarioYaml, MistypedPlacesAndLengthsAreWarningsOfOneLine) {
       all += problem.message + "\n";
     return all;
   };
-  EXPECT_THAT(warningsWith("region.origin.latitude_deg", "40"),
+  EXPECT_THAT(warningsWith("region.origin.latitude_deg", "45"),
               AllOf(HasSubstr("is outside the region, "), HasSubstr("; likewise '")));
   EXPECT_THAT(warningsWith("region.size_m", "[29, 29, 6000]"),
               HasSubstr("the region is 29 m by 29 m: 'size_m' is in metres, not in kilometres"));

@@ -81,13 +81,17 @@ TEST_F(TerrainDatum, OfASystemOfACountryIsMeanSeaLevelWithAWarning) {
 
 TEST_F(TerrainDatum, NotStatedIsAssumedWithItsEffect) {
   const std::string expected = fmt::format(
-      "states no vertical datum: its heights are taken as above EGM96; if they are above the ellipsoid, the "
+      "states no vertical datum and no unit: its heights are taken as metres above EGM96; if they are above the ellipsoid, the "
       "ground is "
       "{:.1f} m too high there. `vertical_datum: egm96`",
       kUndulation_m);
   EXPECT_THAT(load(write("a.tif"))->warnings(), ElementsAre(HasSubstr(expected)));
   EXPECT_THAT(Terrain::describe(folder_ / "a.tif").warnings, ElementsAre(HasSubstr(expected)));
-  EXPECT_THAT(load(folder_ / "a.tif", datum(VerticalDatum::egm96))->warnings(), IsEmpty());
+  TerrainFileKeys keys = datum(VerticalDatum::egm96);
+  EXPECT_THAT(load(folder_ / "a.tif", keys)->warnings(),
+              ElementsAre(HasSubstr("states no unit: its heights are taken as metres; `height_unit: m`")));
+  keys.height_unit = HeightUnit::m;
+  EXPECT_THAT(load(folder_ / "a.tif", keys)->warnings(), IsEmpty());
   EXPECT_NEAR(heightOf(folder_ / "a.tif", datum(VerticalDatum::ellipsoid)), 100 - kUndulation_m, 0.01);
 }
 

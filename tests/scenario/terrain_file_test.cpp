@@ -333,6 +333,7 @@ TEST_F(TerrainFileTest, HeightsOfAThreeDimensionalCrsAreAboveTheEllipsoid) {
 
 TEST_F(TerrainFileTest, FillValuesFarBelowTheirNeighboursAreVoid) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
+  file.unit = "m";
   for (const double fill : {-9999.0, -999.0, -10000.0}) {
     file.value = [fill](int column, int) { return column == 3 || column == 4 ? fill : 100.0; };
     const std::string undeclared = write("a.tif", file);
@@ -354,7 +355,9 @@ TEST_F(TerrainFileTest, DepthsOfTheSeaAreNoFillValues) {
   // A trench, its bottom flat, with sides of up to 400 m from post to post.
   file.value = [](int column, int) { return -1000.0 - 400.0 * std::min({column, 9 - column, 3}); };
   const std::string sea = write("sea.tif", file);
-  EXPECT_THAT(Terrain::describe(sea).warnings, ElementsAre(HasSubstr("states no vertical datum")));
+  EXPECT_THAT(Terrain::describe(sea).warnings,
+              ElementsAre(HasSubstr("states no vertical datum"),
+                          HasSubstr("100 of 100 posts (100 %) are below -500 m, the lowest at -2200 m")));
   EXPECT_EQ(Terrain::describe(sea).lowest_m, -2200);
   EXPECT_EQ(load({sea}, {49, 50, 10, 11})->heightMsl_m(49.55, 10.45), -2200);
 }

@@ -31,9 +31,12 @@ constexpr GeoBox kBox{49.2, 49.8, 10.2, 10.8};
 
 class TerrainNames : public testing::Test {
  protected:
+  /// Of the tiles, so that the east of the largest is no higher than the earth.
+  static int postsPerMetre(int posts) { return posts > 8000 ? 2 : 1; }
   /// A tile of 1 degree at 49 N, 10 E: 1000 in the west, 1000 + posts in the east.
   std::string tile(const std::string& name, int posts = 121) const {
-    test::writeHgt(folder_ / name, posts, [](int column, int) { return 1000 + column; });
+    test::writeHgt(folder_ / name, posts,
+                   [&](int column, int) { return 1000 + column / postsPerMetre(posts); });
     return folder_ / name;
   }
   std::string raster(const std::string& name) const {
@@ -54,10 +57,17 @@ class TerrainNames : public testing::Test {
   }
   void expectTile(const std::string& name, int posts) const {
     const TerrainPtr terrain = load({name});
-    EXPECT_NEAR(terrain->heightMsl_m(49.5, 10.25), 1000 + 0.25 * (posts - 1), 0.01) << name;
+    EXPECT_NEAR(terrain->heightMsl_m(49.5, 10.25), 1000 + 0.25 * (posts - 1) / postsPerMetre(posts), 0.01)
+        << name;
     EXPECT_NEAR(terrain->postSpacing_m(), 111200.0 * std::cos(49.5 / 57.2958) / (posts - 1), 1500.0 / posts)
         << name;
-    EXPECT_THAT(terrain->warnings(), IsEmpty()) << name;
+    if (posts == 1201 || posts == 3601 || posts == 7201 || posts == 10801) {
+      EXPECT_THAT(terrain->warnings(), IsEmpty()) << name;
+    } else {
+      EXPECT_THAT(terrain->warnings(),
+                  ElementsAre(HasSubstr(fmt::format("{} posts a side, {} in a degree", posts, posts - 1))))
+          << name;
+    }
   }
   /// Runs a command line of a message. False: the program is not installed.
   bool run(const std::string& command) const {
@@ -249,7 +259,7 @@ TEST_F(TerrainNames, BandIsChosen) {
   file.write(folder_ / "a.tif");
   TerrainFileKeys keys;
   keys.band = 2;
-  EXPECT_EQ(load({folder_ / "a.tif"}, keys)->heightMsl_m(49.5, 10.5), 12345);
+  EXPECT_EQ(load({folder_ / "a.tif"}, keys)->heightMsl_m(49.5, 10.5), 2345);
   keys.band = 3;
   EXPECT_THAT(problemOf(folder_ / "a.tif", keys),
               HasSubstr("'band: 3' of the scenario is outside the allowed range 1 to 2"));
@@ -300,14 +310,28 @@ TEST_F(TerrainNames, MissingGroundIsSeaIfTheSpecSaysSo) {
   const GeoBox box{49, 50, 9.5, 11};
   const TerrainPtr masked = Terrain::load(spec, box);
   EXPECT_TRUE(std::isnan(masked->heightMsl_m(49.5, 10.9)));
-  EXPECT_THAT(masked->warnings(), IsEmpty());
+  EXPECT_THAT(masked->warnings(), ElementsAre(HasSubstr("121 posts a side")));
   spec.missing = MissingTerrain::sea;
   const TerrainPtr sea = Terrain::load(spec, box);
   EXPECT_EQ(sea->heightMsl_m(49.5, 10.25), 50);
   EXPECT_EQ(sea->heightMsl_m(49.5, 10.9), 0) << "a void";
   EXPECT_EQ(sea->heightMsl_m(49.5, 9.6), 0) << "no file";
   EXPECT_EQ(sea->lowest_m(), 0);
-  EXPECT_THAT(sea->warnings(), ElementsAre(HasSubstr("void posts and 33.")));
+  EXPECT_THAT(sea->warnings(), ElementsAre(HasSubstr("121 posts a side"), HasSubstr("void posts and 33.")));
+}
+
+TEST_F(TerrainNames, AnotherSignOfOneNeededPlaceIsOffered) {
+  tile("N49W010.hgt");
+  TerrainSpec spec;
+  spec.files = {folder_ / "N49W010.hgt"};
+  const auto textFor = [&](double latitude_deg, double longitude_deg) {
+    return Terrain::load(spec, {9, 50, -10, 50},
+                         {{"the region", latitude_deg, longitude_deg}, {"platform 'a'", 49.5, -9.5}})
+        ->placeText();
+  };
+  EXPECT_THAT(textFor(49.5, 9.5), HasSubstr("perhaps longitude has the other sign in the region"));
+  EXPECT_THAT(textFor(-9.5, 49.5), HasSubstr("perhaps latitude and longitude are exchanged in the region"));
+  EXPECT_THAT(textFor(20, 40), testing::Not(HasSubstr("perhaps")));
 }
 
 TEST_F(TerrainNames, AnotherSignIsOfferedIfItFits) {

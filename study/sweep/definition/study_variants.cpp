@@ -9,7 +9,9 @@
 #include "document/edit_path.h"
 #include "document/schema_check.h"
 #include "document/text_edit.h"
+#include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
+#include "scenario/file/far_outside.h"
 #include "scenario/file/schema.h"
 #include "scenario/file/source.h"
 #include "study/sweep/definition/candidate_sites.h"
@@ -277,6 +279,12 @@ class VariantReader {
       reading_.reportAt(sites.locationOf("grid_m"),
                         [&] { candidates = candidatesOver(reading_.spec.area, sites.number("grid_m")); });
     }
+    std::vector<GeodeticPosition> positions;
+    for (const CandidateSite& site : candidates)
+      positions.push_back({site.latitude_deg, site.longitude_deg, 0});
+    if (const std::string text = scenario::farOutsideText(reading_.spec.base->region, positions);
+        !text.empty())
+      logWarning(fmt::format("candidate sites: {}", text));
     for (const CandidateSite& site : candidates) {
       factor.names.push_back(site.name);
       factor.values.push_back(fmt::format("{}", site.latitude_deg));

@@ -108,6 +108,9 @@ struct Scenario {
 /// a margin of 2 km. A box that contains a pole spans all longitudes.
 GeoBox terrainBox(const Scenario& scenario);
 
+/// The middle of the region and the begin of each platform's track, for hints on missing terrain.
+std::vector<NeededPlace> neededPlaces(const Scenario& scenario);
+
 /// The terrain that a scenario names, within terrainBox(); null if it names none.
 /// @throws Error (bad_input) naming the file
 TerrainPtr loadTerrain(const Scenario& scenario);

@@ -24,10 +24,16 @@ constexpr auto namesOf(VerticalDatum) {
   return std::array{"egm96", "ellipsoid", "egm2008", "navd88"};
 }
 
-/// Unit of the heights in an elevation file: metres, international feet, US survey feet.
-enum class HeightUnit { m, ft, us_ft };
+/// Unit of the heights in an elevation file: metres, international feet, US survey feet, parts of a metre.
+enum class HeightUnit { m, ft, us_ft, dm, cm };
 constexpr auto namesOf(HeightUnit) {
-  return std::array{"m", "ft", "us_ft"};
+  return std::array{"m", "ft", "us_ft", "dm", "cm"};
+}
+
+/// Treatment of an elevation file with more than a few heights that are not on earth.
+enum class ImplausibleHeights { error, as_void };
+constexpr auto namesOf(ImplausibleHeights) {
+  return std::array{"error", "void"};
 }
 
 /// How heights are stored in the red, green and blue of a picture.
@@ -53,18 +59,26 @@ inline bool operator==(const GeoBox& a, const GeoBox& b) {
          a.east_deg == b.east_deg;
 }
 
+/// A position whose ground is needed, for hints.
+struct NeededPlace {
+  std::string name;  ///< "the region", "platform 'ship'"
+  double latitude_deg = 0, longitude_deg = 0;
+};
+
 /// What a scenario states of an elevation file.
 struct TerrainFileKeys {
   std::optional<VerticalDatum> vertical_datum;
   std::optional<HeightUnit> height_unit;
   std::optional<HeightEncoding> encoding;
-  int band = 0;     ///< that holds the heights, counted from 1; 0: the first
-  std::string crs;  ///< of the posts, for files that state none, such as EPSG:32633
+  int band = 0;             ///< that holds the heights, counted from 1; 0: the first
+  std::string crs;          ///< of the posts, for files that state none, such as EPSG:32633
+  bool swap_bytes = false;  ///< heights of 16 bits are in the other byte order
+  ImplausibleHeights implausible = ImplausibleHeights::error;
 };
 
 inline bool operator==(const TerrainFileKeys& a, const TerrainFileKeys& b) {
   return a.vertical_datum == b.vertical_datum && a.height_unit == b.height_unit && a.encoding == b.encoding &&
-         a.band == b.band && a.crs == b.crs;
+         a.band == b.band && a.crs == b.crs && a.swap_bytes == b.swap_bytes && a.implausible == b.implausible;
 }
 
 struct TerrainSpec {
@@ -131,7 +145,9 @@ class Terrain {
   /// Reads what the files hold within the box (GeoTIFF in any CRS, HGT, DTED, ASCII grid, USGS DEM, EHdr BIL,
   /// Erdas Imagine, netCDF, XYZ, gridded GeoPackage, VRT of files in its own folder), tiles as one mosaic.
   /// @throws Error (bad_input) naming the file; a file outside the box is not an error
-  static std::shared_ptr<const Terrain> load(const TerrainSpec& spec, const GeoBox& box);
+  /// @param places  what the box is made of; see placeText()
+  static std::shared_ptr<const Terrain> load(const TerrainSpec& spec, const GeoBox& box,
+                                             const std::vector<NeededPlace>& places = {});
   /// @param read_heights  false: only the file's head is read
   /// @throws Error (bad_input) as load() would for this file
   static TerrainFileInfo describe(const std::string& file, bool read_heights = true,
@@ -162,8 +178,8 @@ class Terrain {
   virtual double highest_m() const = 0;
   /// What was assumed of the files, its effect, and how to state it; each once for all files.
   virtual std::vector<std::string> warnings() const { return {}; }
-  /// For errors of missing terrain: where the files are, where ground is needed, and the other sign with
-  /// which both would meet.
+  /// For errors of missing terrain: where the files are, where ground is needed, and the mistake without
+  /// which both would meet, in the middle of the box or in one of the needed places.
   virtual std::string placeText() const { return ""; }
 };
 

@@ -1,0 +1,102 @@
+/// Warnings of what a scenario says but hardly means: positions, speeds, gains, widths, steps.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/file/scenario_file.h"
+#include "scenario/file/far_outside.h"
+#include "tests/scenario/scenario_files.h"
+#include "tests/support/files.h"
+
+namespace emscape::scenario {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+std::string messagesOf(const std::string& shipped, const std::vector<Edit>& edits) {
+  std::string all;
+  for (const Problem& problem : parseScenario(test::shippedScenario(shipped), edits).problems)
+    all += problem.message + "\n";
+  return all;
+}
+
+TEST(LikelyMistakes, PositionsThousandsOfKilometresAwayAreToldWithTheExchangeThatBringsThemNear) {
+  const auto at = [](const std::string& latitude, const std::string& longitude) {
+    return messagesOf("quick.yaml", {{"platforms.mast.position.latitude_deg", latitude},
+                                     {"platforms.mast.position.longitude_deg", longitude}});
+  };
+  const auto scenario = loadScenario(test::shippedScenario("quick.yaml"));
+  const SitePosition& mast = scenario->platforms.at(0).track.at(0).position;
+  const std::string latitude = std::to_string(mast.latitude_deg),
+                    longitude = std::to_string(mast.longitude_deg);
+  EXPECT_THAT(at(longitude, latitude),
+              AllOf(HasSubstr("platform 'mast': its position is "), HasSubstr(" km outside the region"),
+                    HasSubstr("perhaps latitude and longitude are exchanged")));
+  EXPECT_THAT(at("-" + latitude, longitude), HasSubstr("perhaps latitude has the other sign"));
+  EXPECT_THAT(at("0", "100"), AllOf(HasSubstr("km outside the region"), Not(HasSubstr("perhaps"))));
+  EXPECT_THAT(at(latitude, longitude), Not(HasSubstr("outside the region")));
+  const Region& region = scenario->region;
+  EXPECT_EQ(farOutsideText(region, {{mast.longitude_deg, mast.latitude_deg, 0},
+                                    {mast.latitude_deg, mast.longitude_deg, 0}}),
+            "")
+      << "one is near";
+  EXPECT_EQ(farOutsideText(region, {}), "");
+}
+
+TEST(LikelyMistakes, TracksFasterThanAnyObjectAreTold) {
+  const auto track = [](const std::string& last) {
+    return messagesOf("quick.yaml", {{"platforms.mast.position", "null"},
+                                     {"platforms.mast.track",
+                                      "{points: [{t_s: 0, latitude_deg: 52, longitude_deg: 5, height_agl_m: "
+                                      "50}, {t_s: 4, latitude_deg: " +
+                                          last + ", longitude_deg: 5, height_agl_m: 50}]}"}});
+  };
+  EXPECT_THAT(track("53"), HasSubstr("the track of 'mast' moves 111.3 km from 0 to 4 s, at 27.82 km/s"));
+  EXPECT_THAT(track("52.1"), Not(HasSubstr("faster than any object")));
+}
+
+TEST(LikelyMistakes, GainsWidthsAndStepsThatAreHardlyMeantAreTold) {
+  EXPECT_THAT(messagesOf("quick.yaml", {{"emitters.radar.antenna.gain_dbi", "-32"}}),
+              HasSubstr("the gain of -32.00 dBi is "));
+  EXPECT_THAT(messagesOf("quick.yaml", {{"emitters.radar.receiver.bandwidth_hz", "1"}}),
+              HasSubstr("the receiver of radar 'radar' is 1 Hz wide, narrower than"));
+  EXPECT_THAT(messagesOf("quick.yaml", {{"step_s", "100"}, {"duration_s", "60"}}),
+              HasSubstr("'step_s' of 100 s is longer than 'duration_s', 60 s: there is one step"));
+}
+
+TEST(LikelyMistakes, AreNotToldOfShippedScenarios) {
+  for (const char* name : {"quick.yaml", "jacksboro.yaml", "links.yaml", "clutter.yaml", "jamming.yaml",
+                           "ship_duct.yaml", "interval.yaml", "sinr.yaml"}) {
+    EXPECT_THAT(messagesOf(name, {}),
+                AllOf(Not(HasSubstr("of its power")), Not(HasSubstr("Hz wide, narrower")),
+                      Not(HasSubstr("is longer than 'duration_s'")), Not(HasSubstr("faster than any")),
+                      Not(HasSubstr("km outside"))))
+        << name;
+  }
+}
+
+TEST(LikelyMistakes, TheIntervalThatAWarningOffersIsAccepted) {
+  for (const char* quantity :
+       {"power_density_dbwm2", "detection_probability", "power_density_dbwm2, detection_probability"}) {
+    std::vector<Edit> edits{
+        {"step_s", "10"}, {"duration_s", "60"}, {"output.quantities", "[" + std::string(quantity) + "]"}};
+    const std::string told = messagesOf("jacksboro.yaml", edits);
+    const std::string before = "the output's 'interval: ";
+    const std::size_t begin = told.find(before);
+    if (begin == std::string::npos) continue;  // no kind fits all quantities, or nothing is lost
+    const std::size_t from = begin + before.size();
+    edits.push_back({"output.interval", told.substr(from, told.find('}', from) + 1 - from)});
+    std::string problems;
+    for (const Problem& problem : parseScenario(test::shippedScenario("jacksboro.yaml"), edits).problems) {
+      if (problem.severity == Severity::error) problems += problem.message;
+    }
+    EXPECT_EQ(problems, "") << quantity;
+  }
+}
+
+}  // namespace
+}  // namespace emscape::scenario

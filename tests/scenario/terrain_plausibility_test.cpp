@@ -1,0 +1,122 @@
+/// Heights that cannot be right: other byte orders, units and encodings; each remedy is tried.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/terrain/terrain.h"
+#include "tests/scenario/dem_file.h"
+#include "tests/support/errors.h"
+#include "tests/support/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace emscape::scenario {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr GeoBox kBox{49.2, 49.8, 10.2, 10.8};
+
+class ImplausibleTerrain : public testing::Test {
+ protected:
+  static TerrainPtr load(const std::string& file, const TerrainFileKeys& keys = {}) {
+    TerrainSpec spec;
+    spec.files = {file};
+    spec.keys = {keys};
+    return Terrain::load(spec, kBox);
+  }
+  static std::string problemOf(const std::string& file, const TerrainFileKeys& keys = {}) {
+    return test::errorOf([&] { load(file, keys); }, ErrorCode::bad_input);
+  }
+  /// 250 m in the west, 350 m in the east, in another byte order.
+  std::string swappedTile() const {
+    const std::string file = folder_ / "N49E010.hgt";
+    test::writeHgt(file, 1201, [](int column, int) {
+      const int height_m = 250 + column / 12;
+      return static_cast<std::int16_t>(static_cast<std::uint16_t>(height_m << 8 | height_m >> 8));
+    });
+    return file;
+  }
+  /// A plain of these values, with a unit and a datum.
+  std::string plain(const std::function<double(int column, int row)>& value,
+                    const std::string& unit = "m") const {
+    test::DemFile file = test::geographicDem(10, 50, 0.01, 100, 100, [](double, double) { return 0.0; });
+    file.value = value;
+    file.crs = unit.empty() ? "EPSG:4326" : "EPSG:4326+5773";
+    file.unit = unit;
+    file.write(folder_ / "a.tif");
+    return folder_ / "a.tif";
+  }
+
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(ImplausibleTerrain, OtherByteOrderIsRefusedWithTheKeyThatReadsIt) {
+  const std::string file = swappedTile();
+  EXPECT_THAT(problemOf(file), AllOf(HasSubstr("in the other byte order"), HasSubstr("`swap_bytes: true`")));
+  EXPECT_THAT(Terrain::describe(file).warnings, ElementsAre(HasSubstr("in the other byte order")));
+  TerrainFileKeys keys;
+  keys.swap_bytes = true;
+  EXPECT_NEAR(load(file, keys)->heightMsl_m(49.5, 10.5), 300, 0.1);
+  EXPECT_THAT(load(file, keys)->warnings(), IsEmpty());
+  test::writeHgt(file, 1201, [](int column, int) { return 250 + column / 12; });
+  EXPECT_THAT(problemOf(file, keys), HasSubstr("leave out `swap_bytes`"));
+  EXPECT_NEAR(load(file)->heightMsl_m(49.5, 10.5), 300, 0.1);
+}
+
+TEST_F(ImplausibleTerrain, HeightsThatAreNotOnEarthAreRefusedWithTheUnitsThatFit) {
+  const std::string file = plain([](int column, int) { return 25000 + 10 * column; }, "");
+  EXPECT_THAT(problemOf(file),
+              AllOf(HasSubstr("(100 %) are not on earth (-11500 to 9000 m)"), HasSubstr("the highest 25"),
+                    HasSubstr("`height_unit: cm` or dm or ft"), HasSubstr("`implausible: void`")));
+  TerrainFileKeys keys;
+  keys.height_unit = HeightUnit::cm;
+  EXPECT_NEAR(load(file, keys)->heightMsl_m(49.5, 10.505), 255, 0.1);
+  keys.height_unit.reset();
+  keys.implausible = ImplausibleHeights::as_void;
+  EXPECT_TRUE(std::isnan(load(file, keys)->heightMsl_m(49.5, 10.505)));
+}
+
+TEST_F(ImplausibleTerrain, FewHeightsThatAreNotOnEarthAreVoidWithAWarning) {
+  const std::string spikes = plain([](int column, int row) {
+    return column == 50 && row >= 40 && row < 45 ? 12000.0 + 500 * row : 100.0;
+  });
+  EXPECT_THAT(load(spikes)->warnings(),
+              ElementsAre(AllOf(HasSubstr("5 of"), HasSubstr("not on earth"), HasSubstr("; void"))));
+  const std::string fill = plain([](int column, int) { return column < 50 ? 100.0 : 32767.0; });
+  EXPECT_THAT(load(fill)->warnings(),
+              ElementsAre(HasSubstr("of 32767 m are not on earth (-11500 to 9000 m): a fill value")));
+  EXPECT_EQ(load(fill)->heightMsl_m(49.5, 10.3), 100);
+  EXPECT_TRUE(std::isnan(load(fill)->heightMsl_m(49.5, 10.7)));
+}
+
+TEST_F(ImplausibleTerrain, TheHighestAndLowestGroundOfTheEarthIsPlausible) {
+  for (const double base_m : {-430.0, 0.0, 8700.0}) {
+    const std::string file = plain([&](int column, int row) { return base_m + column + 0.5 * row; });
+    EXPECT_THAT(load(file)->warnings(), IsEmpty()) << base_m;
+  }
+  // Flat and steep ground of whole metres has its bytes in order.
+  for (const int step : {1, 40}) {
+    test::writeHgt(folder_ / "N49E010.hgt", 1201, [&](int column, int row) {
+      return step * static_cast<int>(10 + 9 * std::sin(column / 60.0) * std::cos(row / 50.0));
+    });
+    EXPECT_THAT(load(folder_ / "N49E010.hgt")->warnings(), IsEmpty()) << step;
+  }
+}
+
+TEST_F(ImplausibleTerrain, TheBedOfASeaIsTold) {
+  const std::string file = plain([](int column, int) { return 200 - 20.0 * column; });
+  EXPECT_THAT(load(file)->warnings(), ElementsAre(AllOf(HasSubstr("are below -500 m, the lowest at -"),
+                                                        HasSubstr("the bed of a sea"))));
+}
+
+}  // namespace
+}  // namespace emscape::scenario
