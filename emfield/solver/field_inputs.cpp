@@ -66,8 +66,8 @@ auto membersOf(const ClutterTask& clutter) {
                   curvature_per_m);
 }
 auto membersOf(const ClutterMapInputs& map) {
-  const auto& [land_gamma_db, sea_state, range_cell_m, azimuths] = map;
-  return std::tie(land_gamma_db, sea_state, range_cell_m, azimuths);
+  const auto& [land_gamma_db, land_by_cover, sea_state, range_cell_m, azimuths] = map;
+  return std::tie(land_gamma_db, land_by_cover, sea_state, range_cell_m, azimuths);
 }
 
 template <class T>

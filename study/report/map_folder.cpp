@@ -132,7 +132,7 @@ struct MapFolder::State {
                         grid.height * parts);
     }
     const MapGrid& squares = finer ? *finer : grid;
-    if (has_drape) background.drape = drapeOf(squares, study.view.drape);
+    if (has_drape) background.drape = drapeOf(squares, study.view.drape, study.terrain.get());
     if (study.terrain != nullptr) {
       background.ground_msl_m = groundOf(squares, *study.terrain);
     } else {

@@ -45,8 +45,8 @@ TEST(Reflectivity, LandEqualsGammaTimesSine) {
   SurfaceEcho surface;
   surface.has_land = true;
   surface.gamma = dbToRatio(scenario::landGammaDb(scenario::LandKind::woods, 10e9));
-  EXPECT_NEAR(surface.reflectivity(false, 0.5), dbToRatio(-15) / 2, 1e-12);
-  EXPECT_EQ(surface.reflectivity(false, -0.1), 0) << "a slope that is turned away";
+  EXPECT_NEAR(surface.reflectivity({false, surface.gamma}, 0.5), dbToRatio(-15) / 2, 1e-12);
+  EXPECT_EQ(surface.reflectivity({false, surface.gamma}, -0.1), 0) << "a slope that is turned away";
   EXPECT_NEAR(scenario::landGammaDb(scenario::LandKind::flatland, 1e9), -25, 1e-12);
 }
 
