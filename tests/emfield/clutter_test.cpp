@@ -50,6 +50,23 @@ TEST(Reflectivity, LandEqualsGammaTimesSine) {
   EXPECT_NEAR(scenario::landGammaDb(scenario::LandKind::flatland, 1e9), -25, 1e-12);
 }
 
+TEST(Clutter, OfAClassOfTheLandCoverIsThatOfItsKindAndOfWaterThatOfTheSea) {
+  SurfaceEcho surface;
+  surface.has_land = true;
+  surface.gamma = 0.5;
+  surface.gamma_of_kind[static_cast<int>(scenario::LandKind::urban)] = 2;
+  const scenario::CoverValues city{true, 15, scenario::CoverZone::land,
+                                   static_cast<int>(scenario::LandKind::urban)};
+  const scenario::CoverValues other{true, 0, scenario::CoverZone::land, -1};
+  const scenario::CoverValues lake{true, 0, scenario::CoverZone::water, -1};
+  EXPECT_EQ(surface.faceOn(city).gamma, 0.5) << "a stated gamma stays";
+  surface.by_cover = true;
+  EXPECT_EQ(surface.faceOn(city).gamma, 2);
+  EXPECT_EQ(surface.faceOn(other).gamma, 0.5);
+  EXPECT_EQ(surface.reflectivity(surface.faceOn(lake), 0.1), 0) << "no sea_state: no echo";
+  EXPECT_TRUE(surface.faceOn(lake).is_sea);
+}
+
 TEST(Reflectivity, RainEqualsRayleighFormula) {
   // eta = 7e-48 f^4 r^1.6 with f in Hz, Skolnik eq. (13.18) to its one digit: 7 f^4 r^1.6 10^-12, f in GHz
   EXPECT_NEAR(rainReflectivity_m2_m3(4, 3e9) / (7e-12 * 81 * std::pow(4, 1.6)), 1, 0.02);

@@ -8,6 +8,7 @@
 
 #include "emscape/base/units.h"
 #include "emscape/scenario/terrain/terrain.h"
+#include "propagation/clear_air/ground.h"
 #include "scenario/terrain/view.h"
 #include "tests/scenario/dem_file.h"
 #include "tests/support/errors.h"
@@ -220,6 +221,23 @@ TEST(TerrainProfileWithCover, TellsTheSeaAndClutterByItAndByHeightsWhereItIsUnkn
   EXPECT_EQ(profile.clutter_m(1, 7.0F), 0);
   EXPECT_EQ(profile.clutter_m(3, 7.0F), 7);
   EXPECT_FALSE((propagation::TerrainProfile{ranges_m, heights_m, 4}.hasCover(0)));
+}
+
+TEST(TerrainProfileWithCover, GivesTheModelsOfClearAirTheirZonesAndClutter) {
+  using propagation::ClearAirZone;
+  const double ranges_m[] = {0, 10e3, 20e3, 30e3};
+  const float heights_m[] = {5, -3, 5, 5}, cover_m[] = {0, 15, propagation::kSeaCover, 20};
+  const propagation::TerrainProfile with{ranges_m, heights_m, 4, cover_m}, without{ranges_m, heights_m, 4};
+  // A post extends half way to its neighbours.
+  EXPECT_NEAR(zonesOf(ClearAirZone::by_height, with).sea_fraction, 1.0 / 3, 1e-12);
+  EXPECT_EQ(zonesOf(ClearAirZone::by_height, with).coast_distance_m[0], 15e3);
+  EXPECT_EQ(zonesOf(ClearAirZone::by_height, without).coast_distance_m[0], 5e3);
+  EXPECT_EQ(zonesOf(ClearAirZone::inland, with).sea_fraction, 0) << "a stated zone stays";
+  const propagation::ClearAirGround ground{ClearAirZone::by_height, 10, 0};
+  EXPECT_EQ(ground.clutterAt(with, 1), 15);
+  EXPECT_EQ(ground.clutterAt(with, 2), 0);
+  EXPECT_EQ(ground.clutterAt(with, 3), 20);
+  EXPECT_EQ(ground.clutterAt(without, 3), 10);
 }
 
 }  // namespace

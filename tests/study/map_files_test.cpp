@@ -189,7 +189,8 @@ TEST(MapShapes, LevelsAreRoundNumbers) {
 class MapFiles : public testing::Test {
  protected:
   void write(const std::string& name) const {
-    MapFolder maps(folder.path() / name, fixture.study(), {"cog", "png", "gpkg", "geojson", "nc", "kmz", "czml"});
+    MapFolder maps(folder.path() / name, fixture.study(),
+                   {"cog", "png", "gpkg", "geojson", "nc", "kmz", "czml"});
     for (const double time_s : {70.0, 80.0}) {
       for (const Map& map : mapsOf(time_s)) maps.add(map);
     }
