@@ -65,7 +65,9 @@ TEST(LandCoverTables, HaveEachCodeOnceAndHeightsOfTheRecommendation) {
       EXPECT_TRUE(codes.insert(of.code).second) << of.code;
       EXPECT_THAT((std::set<double>{0, 10, 15, 20}), Contains(of.clutter_height_m)) << of.name;
       EXPECT_EQ(of.color >> 24, 255U);
-      if (of.zone != CoverZone::land) EXPECT_EQ(of.clutter_height_m, 0) << of.name;
+      if (of.zone != CoverZone::land) {
+        EXPECT_EQ(of.clutter_height_m, 0) << of.name;
+      }
     }
   }
   EXPECT_EQ(coverTable(CoverTable::worldcover).size(), 11U);

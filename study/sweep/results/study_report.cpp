@@ -150,24 +150,24 @@ class ReportWriter {
   /// All candidates as points with their measure; `chosen` counts from 1.
   void writeCandidates(const std::filesystem::path& file, std::size_t m,
                        const std::vector<std::size_t>& chosen) const {
-    using Json = nlohmann::ordered_json;
-    Json features = Json::array();
+    using SitesJson = nlohmann::ordered_json;
+    SitesJson features = SitesJson::array();
     for (std::size_t site = 0; site < computed_.size(); ++site) {
       const std::size_t v = computed_[site];
       const auto rank = std::find(chosen.begin(), chosen.end(), site);
       const double alone = value(v, m);
-      Json place = Json::array();
+      SitesJson place = SitesJson::array();
       place.push_back(degrees(v, 1));
       place.push_back(degrees(v, 0));
-      Json properties;
+      SitesJson properties;
       properties["name"] = study_.variants.factors().front().names[v];
-      properties[study_.measures[m].name] = std::isnan(alone) ? Json() : Json(alone);
-      properties["chosen"] = rank == chosen.end() ? Json() : Json(rank - chosen.begin() + 1);
+      properties[study_.measures[m].name] = std::isnan(alone) ? SitesJson() : SitesJson(alone);
+      properties["chosen"] = rank == chosen.end() ? SitesJson() : SitesJson(rank - chosen.begin() + 1);
       features.push_back({{"type", "Feature"},
                           {"properties", properties},
                           {"geometry", {{"type", "Point"}, {"coordinates", place}}}});
     }
-    Json all;
+    SitesJson all;
     all["type"] = "FeatureCollection";
     all["name"] = study_.name;
     all["features"] = features;
