@@ -132,8 +132,8 @@ void LandCover::Impl::placeCells(const GeoBox& box) {
   const double y0 = is_aligned ? lattice.y(-0.5) : box.south_deg;
   const double west = std::floor((box.west_deg - x0) / size.longitude_deg);
   const double south = std::floor((box.south_deg - y0) / size.latitude_deg);
-  view.columns = static_cast<int>(std::ceil((box.east_deg - x0) / size.longitude_deg) - west) + 1;
-  view.rows = static_cast<int>(std::ceil((box.north_deg - y0) / size.latitude_deg) - south) + 1;
+  view.columns = static_cast<int>(std::floor((box.east_deg - x0) / size.longitude_deg) - west) + 1;
+  view.rows = static_cast<int>(std::floor((box.north_deg - y0) / size.latitude_deg) - south) + 1;
   view.west_rad = degToRad(x0 + west * size.longitude_deg);
   view.south_rad = degToRad(y0 + south * size.latitude_deg);
   view.cells_per_rad_lon = 1 / degToRad(size.longitude_deg);
