@@ -79,7 +79,8 @@ const ObjectSpec& waveformSpec() {
           required("pulse_width_s", number("s").above(0).to(1),
                    "of the transmitted pulse, before compression; shorter than 1 / prf_hz"),
           optional("instrumented_range_m", number("m").above(0).to(1e8),
-                   "beyond which the radar does not look; detection is computed there nevertheless, and reports and "
+                   "beyond which the radar does not look; detection is computed there nevertheless, and "
+                   "reports and "
                    "maps say what is beyond it"),
       }};
   return spec;
