@@ -32,6 +32,10 @@ struct RadialInputs {
   /// Thread-safe. Not called without terrain.
   std::function<void(double azimuth_rad, double length_m, double step_m, int count, float* ground_msl_m)>
       ground;
+  /// TerrainProfile::cover_m at the same points. @param ground_msl_m  read by `ground`; empty: no land cover
+  std::function<void(double azimuth_rad, double length_m, double step_m, int count, const float* ground_msl_m,
+                     float* cover_m)>
+      cover;
 
   bool isAround() const { return azimuth_span_rad >= 2 * kPi; }
 };

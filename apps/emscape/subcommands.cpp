@@ -30,6 +30,7 @@ void addSubcommands(CLI::App& app, const GlobalOptions& global, Action& action) 
   addLink(app, global, action);
   addCoverage(app, global, action);
   addVertical(app, global, action);
+  addBlockage(app, global, action);
   addExposure(app, global, action);
   addCompare(app, global, action);
   addStudy(app, global, action);

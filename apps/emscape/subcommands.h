@@ -14,6 +14,7 @@ void addProfile(CLI::App& app, const GlobalOptions& global, Action& action);
 void addLink(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCoverage(CLI::App& app, const GlobalOptions& global, Action& action);
 void addVertical(CLI::App& app, const GlobalOptions& global, Action& action);
+void addBlockage(CLI::App& app, const GlobalOptions& global, Action& action);
 void addExposure(CLI::App& app, const GlobalOptions& global, Action& action);
 void addCompare(CLI::App& app, const GlobalOptions& global, Action& action);
 void addStudy(CLI::App& app, const GlobalOptions& global, Action& action);

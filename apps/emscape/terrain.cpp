@@ -23,6 +23,7 @@ struct TerrainCommand {
   std::vector<scenario::Edit> edits;
   std::string picture;
   int width = 1200;
+  bool draws_cover = false;
 };
 
 /// True for a single scenario.
@@ -51,9 +52,14 @@ int terrain(const TerrainCommand& command, const GlobalOptions& global) {
     title = result.files.size() == 1 ? std::filesystem::path(result.files.front().file).filename().string()
                                      : fmt::format("{} elevation files", result.files.size());
   }
+  if (command.draws_cover && result.terrain->landCover() == nullptr)
+    throw Error(ErrorCode::usage,
+                "--land-cover draws the land cover of a scenario with 'terrain: {land_cover: ...}'");
   if (!command.picture.empty()) {
-    render::writePng(command.picture,
-                     study::drawTerrain(result.files, *result.terrain, result.needed, title, command.width));
+    const auto content =
+        command.draws_cover ? study::TerrainContent::land_cover : study::TerrainContent::sources;
+    render::writePng(command.picture, study::drawTerrain(result.files, *result.terrain, content,
+                                                         result.needed, title, command.width));
     logInfo("wrote " + command.picture);
   }
   if (global.json) {
@@ -73,7 +79,7 @@ void addTerrain(CLI::App& app, const GlobalOptions& global, Action& action) {
   command->footer(R"(
 Of each file: format, posts, coordinate system, vertical datum and its origin, unit, range, voids, and what was assumed, with its
 effect and how to state it. Of all: the ground that a scenario gets from them, above EGM96 mean sea level. With -o a picture: the
-shaded ground, coloured by file, with voids and ground that no file covers.
+shaded ground, coloured by file, with voids and ground that no file covers; with --land-cover by the classes of the land cover.
 
 Inputs are elevation files, folders and patterns of them, .zip and .gz (see docs/terrain.md), or one scenario: then the files
 that reach its area are read, with the scenario's keys.
@@ -95,6 +101,8 @@ Exit status: 0; 2 for a usage error; 3 for a file that cannot be read, with the 
       });
   command->add_option("--width", options->width, "Width of the picture in pixels")
       ->check(CLI::Range(kMinWidth, kMaxWidth));
+  command->add_flag("--land-cover", options->draws_cover,
+                    "Draw the classes of the scenario's land cover in place of the sources of the ground");
   command->callback(
       [options, &global, &action] { action = [options, &global] { return terrain(*options, global); }; });
 }

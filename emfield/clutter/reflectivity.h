@@ -6,6 +6,7 @@
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
 #include "emscape/propagation/settings.h"
+#include "scenario/terrain/view.h"
 
 namespace emscape::emfield {
 
@@ -37,25 +38,39 @@ EMSCAPE_HD inline double seaReflectivityDb(const SeaConstants& c, double frequen
          c.c5 * angle_deg * angle_deg;
 }
 
+/// The surface at a point.
+struct SurfaceFace {
+  bool is_sea = false;
+  double gamma = 0;  ///< of land
+};
+
 /// The land and the sea below a radar, as plain data.
 struct SurfaceEcho {
   bool has_land = false, has_sea = false;
-  double gamma = 0;  ///< of land: sigma0 = gamma sin(grazing angle)
+  double gamma = 0;       ///< of land: sigma0 = gamma sin(grazing angle)
+  bool by_cover = false;  ///< gamma holds where the land cover names no kind of land
+  double gamma_of_kind[namesOf(scenario::LandKind()).size()] = {};
   double sea_state = 0, frequency_ghz = 0;
   double horizontal_part = 0;  ///< fraction 0..1 of the wave's power; the cross section of the sea is the
                                ///< weighted mean of both polarisations
 
   /// Mean radar cross section per unit area.
   /// @param sine  of the grazing angle; <= 0: a face that is turned away, for which the result is 0
-  EMSCAPE_HD double reflectivity(bool is_sea, double sine) const {
+  EMSCAPE_HD double reflectivity(const SurfaceFace& face, double sine) const {
     if (!(sine > 0)) return 0;
-    if (!is_sea) return has_land ? gamma * sine : 0;
+    if (!face.is_sea) return has_land ? face.gamma * sine : 0;
+    if (!has_sea) return 0;
     const double vertical_part = 1 - horizontal_part;
     return (horizontal_part > 0 ? horizontal_part * seaReflectivity(true, sine) : 0) +
            (vertical_part > 0 ? vertical_part * seaReflectivity(false, sine) : 0);
   }
   /// Ground at or below mean sea level is sea where there is sea.
-  EMSCAPE_HD bool isSea(float ground_msl_m) const { return has_sea && ground_msl_m <= 0; }
+  EMSCAPE_HD SurfaceFace faceOn(float ground_msl_m) const { return {has_sea && ground_msl_m <= 0, gamma}; }
+  /// By the land cover: all water has the echo of the sea.
+  EMSCAPE_HD SurfaceFace faceOn(const scenario::CoverValues& cover) const {
+    return {cover.zone != scenario::CoverZone::land,
+            by_cover && cover.kind >= 0 ? gamma_of_kind[cover.kind] : gamma};
+  }
 
  private:
   EMSCAPE_HD double seaReflectivity(bool is_horizontal, double sine) const {

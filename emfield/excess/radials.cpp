@@ -179,16 +179,26 @@ RadialInputs radialInputs(const Station& station, const GridColumns& columns,
   if (std::isnan(radials.site_ground_msl_m)) {
     throw Error(ErrorCode::bad_input, "the ground below the emitter is missing");
   }
-  radials.ground = [station, terrain](double azimuth_rad, double length_m, double step_m, int count,
-                                      float* ground_msl_m) {
+  const auto pathOf = [](double azimuth_rad, double length_m) {
+    return FastInverse{length_m, std::sin(azimuth_rad), std::cos(azimuth_rad)};
+  };
+  const auto rangesOf = [](int count, double step_m) {
     std::vector<double> ranges_m(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) ranges_m[static_cast<std::size_t>(i)] = i * step_m;
-    FastInverse path;
-    path.distance_m = length_m;
-    path.sin_azimuth = std::sin(azimuth_rad);
-    path.cos_azimuth = std::cos(azimuth_rad);
-    readPostsCpu(station, groundPosts(terrain, ranges_m), path, count, ground_msl_m);
+    return ranges_m;
   };
+  radials.ground = [=](double azimuth_rad, double length_m, double step_m, int count, float* ground_msl_m) {
+    const std::vector<double> ranges_m = rangesOf(count, step_m);
+    readPostsCpu(station, groundPosts(terrain, ranges_m), pathOf(azimuth_rad, length_m), count, ground_msl_m);
+  };
+  if (terrain->view().hasCover()) {
+    radials.cover = [=](double azimuth_rad, double length_m, double step_m, int count,
+                        const float* ground_msl_m, float* cover_m) {
+      const std::vector<double> ranges_m = rangesOf(count, step_m);
+      readCover(station, groundPosts(terrain, ranges_m), pathOf(azimuth_rad, length_m), ranges_m.data(),
+                ground_msl_m, count, cover_m);
+    };
+  }
   // The relief, from a few azimuths: summits between them may be higher by some metres.
   constexpr int kAzimuths = 128, kPosts = 512;
   double lowest_m = radials.site_ground_msl_m, highest_m = radials.site_ground_msl_m;

@@ -77,6 +77,10 @@ std::optional<ClutterMapTask> clutterMapTask(const scenario::Scenario& scenario,
   task.surface.has_land = clutter.land_gamma_db.has_value();
   task.surface.has_sea = clutter.sea_state.has_value();
   task.surface.gamma = task.surface.has_land ? dbToRatio(*clutter.land_gamma_db) : 0;
+  task.surface.by_cover = clutter.land_by_cover;
+  for (std::size_t kind = 0; kind < std::size(task.surface.gamma_of_kind); ++kind)
+    task.surface.gamma_of_kind[kind] =
+        dbToRatio(scenario::landGammaDb(static_cast<scenario::LandKind>(kind), radar.frequency_hz));
   task.surface.sea_state = clutter.sea_state.value_or(0);
   task.surface.frequency_ghz = radar.frequency_hz / 1e9;
   task.surface.horizontal_part = horizontalPart(radar.polarization);
@@ -91,8 +95,8 @@ bool hasClutterMap(const scenario::Emitter& radar) {
 
 ClutterMapInputs clutterMapInputs(const scenario::Emitter& radar) {
   if (!hasClutterMap(radar)) return {};
-  return {radar.clutter->land_gamma_db, radar.clutter->sea_state, radar.clutter->range_cell_m,
-          azimuthsOf(radar)};
+  return {radar.clutter->land_gamma_db, radar.clutter->land_by_cover, radar.clutter->sea_state,
+          radar.clutter->range_cell_m, azimuthsOf(radar)};
 }
 
 std::size_t clutterMapBytes(const scenario::Emitter& radar) {

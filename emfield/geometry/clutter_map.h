@@ -102,6 +102,8 @@ struct ClutterMapTask {
     for (int n = 0; n < grid.ranges; ++n) row[n] = {};
     const double angle_rad = 2 * kPi * azimuth / grid.azimuths;
     const FastInverse path{ground.ranges_m[ground.range_count - 1], std::sin(angle_rad), std::cos(angle_rad)};
+    TerrainWalk walk(station, ground.terrain, path);  // of the land cover
+    const bool has_cover = !ground.is_smooth && ground.terrain.cover.isSet();
     double highest = -HUGE_VAL;
     Post before;
     visitPosts(station, ground, path, ground.range_count, [&](int i, float here_msl_m) {
@@ -110,6 +112,11 @@ struct ClutterMapTask {
       here.height_msl_m = static_cast<double>(here_msl_m);
       const double below_m = this->below_m(here.range_m, here.height_msl_m);
       here.slant_m = std::sqrt(here.range_m * here.range_m + below_m * below_m);
+      here.face = surface.faceOn(here_msl_m);
+      if (has_cover) {
+        const scenario::CoverValues cover = coverAt(walk, ground, here.range_m);
+        if (cover.is_known) here.face = surface.faceOn(cover);
+      }
       if (i > 0 && here_msl_m == here_msl_m) {
         const double slope = -below_m / here.range_m;
         if (slope > highest) {
@@ -124,6 +131,7 @@ struct ClutterMapTask {
  private:
   struct Post {
     double range_m = 0, height_msl_m = 0, slant_m = 0;
+    SurfaceFace face;
   };
 
   /// Depth (m) of a point below the radar's horizontal plane, over the effective earth.
@@ -133,8 +141,7 @@ struct ClutterMapTask {
 
   /// Adds the echo of the face between two posts, cell by cell.
   EMSCAPE_HD void addFace(const Post& a, const Post& b, ClutterCell* row) const {
-    const bool is_sea = surface.isSea(static_cast<float>(a.height_msl_m)) &&
-                        surface.isSea(static_cast<float>(b.height_msl_m));
+    const SurfaceFace face = b.face.is_sea && !a.face.is_sea ? a.face : b.face;
     const double per_m = 1 / static_cast<double>(grid.step_m);
     const double from_a = a.slant_m * per_m, whole = (b.slant_m - a.slant_m) * per_m;
     const double begin = whole > 0 ? from_a : from_a + whole, end = whole > 0 ? from_a + whole : from_a;
@@ -153,7 +160,7 @@ struct ClutterMapTask {
       const double range2_m2 = x_m * x_m + depth_m * depth_m, range_m = std::sqrt(range2_m2);
       const double sine = (x_m * tilt + depth_m) / (range_m * length);
       const double area_m2 = x_m * run_m * share * length;  // per radian
-      const double echo = surface.reflectivity(is_sea, sine) * area_m2 / (range2_m2 * range2_m2) *
+      const double echo = surface.reflectivity(face, sine) * area_m2 / (range2_m2 * range2_m2) *
                           std::pow(10.0, -0.2 * static_cast<double>(air_db_per_m) * range_m) *
                           static_cast<double>(grid.part_of_step);
       row[n].echo += static_cast<float>(echo);
@@ -172,6 +179,7 @@ bool hasClutterMap(const scenario::Emitter& radar);
 /// The settings of a radar that its map depends on, besides its wave.
 struct ClutterMapInputs {
   std::optional<double> land_gamma_db;
+  bool land_by_cover = false;
   std::optional<int> sea_state;
   double range_cell_m = 0;
   int azimuths = 0;

@@ -96,6 +96,28 @@ struct PostReader {
   }
 };
 
+/// The land cover at a range of a walk.
+EMSCAPE_HD inline scenario::CoverValues coverAt(TerrainWalk& walk, const GroundPosts& ground,
+                                                double range_m) {
+  const TerrainChord& chord = walk.chordAt(range_m);
+  const double part = (range_m - chord.in_raster.begin_m) * chord.in_raster.per_m;
+  return ground.terrain.cover.valuesAt(chord.position.latitude_rad.at(part),
+                                       chord.position.longitude_rad.at(part));
+}
+
+/// Reads TerrainProfile::cover_m at ranges along a path.
+EMSCAPE_HD inline void readCover(const Station& station, const GroundPosts& ground, const FastInverse& path,
+                                 const double* ranges_m, const float* ground_msl_m, int count,
+                                 float* cover_m) {
+  TerrainWalk walk(station, ground.terrain, path);
+  for (int i = 0; i < count; ++i) {
+    const TerrainChord& chord = walk.chordAt(ranges_m[i]);
+    const double part = (ranges_m[i] - chord.in_raster.begin_m) * chord.in_raster.per_m;
+    cover_m[i] = ground.terrain.coverAt(chord.position.latitude_rad.at(part),
+                                        chord.position.longitude_rad.at(part), ground_msl_m[i]);
+  }
+}
+
 /// The height (m) of the ground at a point.
 EMSCAPE_HD inline float groundAt(const Station& station, const GroundPosts& ground,
                                  const FastInverse& point) {
@@ -119,7 +141,12 @@ EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts&
     scratch.range_m[last] = range_m;
     scratch.ground_msl_m[last] = ground_msl_m;
   }
-  return {scratch.range_m, scratch.ground_msl_m, last + 1};
+  TerrainProfile profile{scratch.range_m, scratch.ground_msl_m, last + 1};
+  if (!ground.is_smooth && ground.terrain.hasCover()) {
+    readCover(station, ground, point, scratch.range_m, scratch.ground_msl_m, last + 1, scratch.cover_m);
+    profile.cover_m = scratch.cover_m;
+  }
+  return profile;
 }
 
 }  // namespace emscape::emfield

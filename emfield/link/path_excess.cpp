@@ -1,10 +1,12 @@
 #include "emscape/emfield/link/path_excess.h"
 
+#include <cmath>
 #include <vector>
 
 #include "emfield/columns/station.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emfield/excess/model_check.h"
+#include "emfield/ground/ground_posts.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
@@ -42,8 +44,16 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
   }
   const PathInputs inputs = pathInputs(scenario, emitter, beam, station, terrain,
                                        {profile.range_m, profile.end.height_msl_m, profile.end.height_msl_m});
-  propagation::PathColumn path({profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()},
-                               profile.range_m, end_msl_m, profile.azimuth_rad);
+  propagation::TerrainProfile posts{profile.ranges_m.data(), profile.ground_msl_m.data(), profile.count()};
+  std::vector<float> cover_m;
+  const GroundPosts ground = groundPosts(terrain, profile.ranges_m);
+  if (!ground.is_smooth && ground.terrain.hasCover()) {
+    cover_m.resize(profile.ranges_m.size());
+    const FastInverse along{profile.range_m, std::sin(profile.azimuth_rad), std::cos(profile.azimuth_rad)};
+    readCover(station, ground, along, posts.range_m, posts.height_msl_m, posts.count, cover_m.data());
+    posts.cover_m = cover_m.data();
+  }
+  propagation::PathColumn path(posts, profile.range_m, end_msl_m, profile.azimuth_rad);
   inModel(emitter, [&] { static_cast<propagation::Explanation&>(excess) = model.explain(inputs, path); });
   if (propagation::hasAirLoss(inputs.emitter)) {
     std::vector<float> tables;

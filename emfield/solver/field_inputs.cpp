@@ -71,8 +71,8 @@ auto membersOf(const HeardRanges& heard) {
   return std::tie(farthest_m, repeat_m, pulse_m);
 }
 auto membersOf(const ClutterMapInputs& map) {
-  const auto& [land_gamma_db, sea_state, range_cell_m, azimuths] = map;
-  return std::tie(land_gamma_db, sea_state, range_cell_m, azimuths);
+  const auto& [land_gamma_db, land_by_cover, sea_state, range_cell_m, azimuths] = map;
+  return std::tie(land_gamma_db, land_by_cover, sea_state, range_cell_m, azimuths);
 }
 
 template <class T>

@@ -5,12 +5,15 @@
 namespace emscape::emfield {
 
 std::size_t postBytes(const scenario::TerrainView& terrain) {
-  std::size_t posts = 0;
-  for (int r = 0; r < terrain.count; ++r) {
-    posts += static_cast<std::size_t>(terrain.rasters[r].columns) *
-             static_cast<std::size_t>(terrain.rasters[r].rows);
-  }
-  return posts * sizeof(float);
+  const auto posts = [](const scenario::TerrainRaster* rasters, int count) {
+    std::size_t sum = 0;
+    for (int r = 0; r < count; ++r)
+      sum += static_cast<std::size_t>(rasters[r].columns) * static_cast<std::size_t>(rasters[r].rows);
+    return sum;
+  };
+  return (posts(terrain.rasters, terrain.count) + posts(terrain.surfaces, terrain.surface_count)) *
+             sizeof(float) +
+         static_cast<std::size_t>(terrain.cover.columns) * static_cast<std::size_t>(terrain.cover.rows);
 }
 
 std::size_t cpuEngineBytes(const FieldSetup& setup, std::size_t slot_bytes) {

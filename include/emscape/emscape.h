@@ -66,6 +66,8 @@
 #include "emscape/scenario/model/target.h"
 #include "emscape/scenario/model/waveform.h"
 #include "emscape/scenario/scan/scan.h"
+#include "emscape/scenario/terrain/land_cover.h"
+#include "emscape/scenario/terrain/land_kind.h"
 #include "emscape/scenario/terrain/terrain.h"
 #include "emscape/study/exposure/exposure.h"
 #include "emscape/study/maps/area.h"

@@ -164,7 +164,8 @@ bool drawsSmoothEarth(const LoadedScenario& scene, const volume::Grid& grid) {
   return z_m > lower.z - kMaxBelow * (upper.z - lower.z) && z_m < upper.z;
 }
 
-void drape(render::HeightField& ground, const std::string& file, const volume::Grid& grid) {
+void drape(render::HeightField& ground, const std::string& name, const scenario::Terrain* terrain,
+           const volume::Grid& grid) {
   const GeoFrame frame(grid.frame);
   std::vector<GeodeticPosition> positions;
   positions.reserve(ground.heights_m.size());
@@ -175,7 +176,7 @@ void drape(render::HeightField& ground, const std::string& file, const volume::G
       positions.push_back(frame.toGeodetic({at.x, at.y, std::isnan(z) ? 0.0 : double{z}}));
     }
   }
-  ground.colors = scenario::readMapColors(file, positions);
+  ground.colors = scenario::drapeColors(name, terrain, positions);
 }
 
 }  // namespace emscape::playback

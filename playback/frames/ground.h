@@ -43,7 +43,9 @@ Ground groundOf(const LoadedScenario& scene, const volume::Grid& grid, const sce
 /// True if the surface of a scene without terrain is drawn: it is not far below the volume.
 bool drawsSmoothEarth(const LoadedScenario& scene, const volume::Grid& grid);
 
-/// Lays a picture on the ground. @throws Error (bad_input) as scenario::readMapColors()
-void drape(render::HeightField& ground, const std::string& file, const volume::Grid& grid);
+/// Lays a picture on the ground. @throws Error (bad_input) as scenario::drapeColors()
+/// @param terrain  null: none
+void drape(render::HeightField& ground, const std::string& name, const scenario::Terrain* terrain,
+           const volume::Grid& grid);
 
 }  // namespace emscape::playback

@@ -85,7 +85,7 @@ bool Scenery::updateGround(const ViewState& view) {
     drawn->colors = drawn_->colors;
   } else if (is_fine) {
     try {
-      drape(*drawn, view.drape, *grid_);
+      drape(*drawn, view.drape, scene_ ? scene_->terrain.get() : nullptr, *grid_);
     } catch (const Error& error) {
       fault_ = error;
     }

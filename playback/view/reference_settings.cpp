@@ -75,10 +75,13 @@ void addReferences(SettingsTable& table) {
   table
       .member(
           "drape", Table::textSpec(), [](auto& view) -> auto& { return view.drape; },
-          "picture on the ground (GeoTIFF or MBTiles); relative to the folder of the view file, as `compare`")
+          "picture on the ground (GeoTIFF or MBTiles), or land-cover: the classes of the terrain's land "
+          "cover; relative to the folder of the view file, as `compare`")
       .withTexts("text", "none")
       .withEffect(&ViewChange::ground)
-      .withOption("--drape", "Picture on the ground, such as a chart or satellite image: GeoTIFF or MBTiles")
+      .withOption("--drape",
+                  "Picture on the ground, such as a chart or satellite image: GeoTIFF or MBTiles; "
+                  "land-cover: the scenario's land cover")
       .withVerb("drape", "file", "Picture on the ground; an empty name removes it");
   table
       .member(

@@ -19,6 +19,7 @@
 #include "emscape/scenario/model/clock.h"
 #include "playback/view/view_settings.h"
 #include "render/transfer/transfer_format.h"
+#include "scenario/map/map_image.h"
 
 namespace emscape::playback {
 namespace {
@@ -211,7 +212,8 @@ Json toJson(const ViewSetting& setting, const ViewState& view) {
 }
 
 bool isRelativeFile(const std::string& name) {
-  return !name.empty() && name != kOriginal && fs::path(name).is_relative();
+  return !name.empty() && name != kOriginal && name != scenario::kLandCoverDrape &&
+         fs::path(name).is_relative();
 }
 
 /// Changes the names of all files that a view names.

@@ -12,13 +12,13 @@ namespace emscape::propagation {
 constexpr float kCoastalHeight_m = 100;
 constexpr double kCoastalDistance_m = 50e3;
 
-/// Zones by the terrain's heights: posts at or below mean sea level are sea; land up to kCoastalHeight_m high
-/// and within kCoastalDistance_m of a sea post of the path is coastal land; the rest is inland.
+/// Zones by the land cover and the terrain's heights: TerrainProfile::isSea(); land up to kCoastalHeight_m
+/// high and within kCoastalDistance_m of a sea post of the path is coastal land; the rest is inland.
 EMSCAPE_HD inline PathZones zonesByHeight(const TerrainProfile& profile) {
   int next_sea = 0;
   double last_sea_m = -2 * kCoastalDistance_m;
   return sumZones(profile, [&](int i) {
-    const auto isSea = [&](int post) { return profile.height_msl_m[post] <= 0; };
+    const auto isSea = [&](int post) { return profile.isSea(post); };
     const double range_m = profile.range_m[i];
     if (isSea(i)) {
       last_sea_m = range_m;
@@ -56,13 +56,14 @@ EMSCAPE_HD inline bool isNearTerminal(const TerrainProfile& profile, int post, d
 /// Zone setting and clutter of the paths of an emitter.
 struct ClearAirGround {
   ClearAirZone zone = ClearAirZone::by_height;
-  float clutter_height_m = 0;     ///< on land
+  float clutter_height_m = 0;     ///< on land of unknown cover
   double clutter_distance_m = 0;  ///< min distance of clutter from either antenna
 
   EMSCAPE_HD float clutterAt(const TerrainProfile& profile, int post) const {
-    const bool is_sea =
-        zone == ClearAirZone::sea || (zone == ClearAirZone::by_height && profile.height_msl_m[post] <= 0);
-    return is_sea || isNearTerminal(profile, post, clutter_distance_m) ? 0 : clutter_height_m;
+    const bool is_sea = zone == ClearAirZone::sea || (zone == ClearAirZone::by_height && profile.isSea(post));
+    return is_sea || isNearTerminal(profile, post, clutter_distance_m)
+               ? 0
+               : profile.clutter_m(post, clutter_height_m);
   }
 };
 

@@ -25,11 +25,13 @@ std::vector<Setting> clearAirSettings(const ModelLimit& time) {
           "N-units/km (Delta N), through the lowest km; rays are bent by it, not by k_factor"),
       choiceSetting<group, &ClearAirSettings::zone>(
           "zone",
-          "radio-climatic zone of the paths; by_height: sea where the terrain is at or below mean sea level, "
-          "coastal land up to 100 m high within 50 km of it"),
+          "radio-climatic zone of the paths; by_height: sea by the terrain's land cover, or where the "
+          "terrain is at "
+          "or below mean sea level; coastal land up to 100 m high within 50 km of it"),
       numberSetting<group, &ClearAirSettings::clutter_height_m>(
           "clutter_height_m", "m", 0, 100,
-          "of buildings and trees on land along the paths: 0 open, 10 suburban, 15 urban or forest, 20 "
+          "of buildings and trees on land along the paths, where no land cover is known: 0 open, 10 "
+          "suburban, 15 urban or forest, 20 "
           "dense urban"),
   };
 }

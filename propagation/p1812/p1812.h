@@ -33,7 +33,7 @@ struct P1812Model {
   Real sea_level_refractivity = 301;  ///< N_0 (N-units)
   Real location_deviation_db = 0;     ///< sigma_L at and below the height of the clutter
   Real location_deviate = 0;          ///< standard normal deviate of the percentage of locations; 0: median
-  Real clutter_height_m = 0;          ///< R at the receiver
+  Real clutter_height_m = 0;          ///< R at a receiver over unknown land cover
 
   /// Loss (dB) of a path relative to free space.
   /// @param rx_msl_m  of the antenna; see p1812Path
@@ -86,8 +86,10 @@ EMSCAPE_HD P1812Path<Real> p1812Path(const P1812Model<Real>& model, const ClearA
   terms.obstruction_mrad = path.geometry.angle_mrad;
   path.median = clearAirLoss(model.clear_air, column, path.geometry, terms);
   if (!column.zones.ends_at_sea) {
-    path.location_db = -model.location_deviate * model.location_deviation_db *
-                       p1812LocationPart(path.geometry.rx_m - column.rx_ground_m, model.clutter_height_m);
+    path.location_db =
+        -model.location_deviate * model.location_deviation_db *
+        p1812LocationPart(path.geometry.rx_m - column.rx_ground_m,
+                          column.posts.profile.clutter_m(column.posts.count() - 1, model.clutter_height_m));
   }
   const Real loss_db = path.median.loss_db + path.location_db;
   path.loss_db = loss_db > path.median.sight.loss_db ? loss_db : path.median.sight.loss_db;

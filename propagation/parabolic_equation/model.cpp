@@ -130,8 +130,19 @@ double endBehindSteepGround(const PeOthers& others, const PePlan& plan, FieldMar
   return whole > 0 ? length() / whole : 1;
 }
 
+/// Ground that is above mean sea level only where it is land by its cover.
+void separateSea(std::vector<float>& ground_msl_m, const float* cover_m) {
+  constexpr float kLowLand_m = 0.01f;
+  for (std::size_t i = 0; i < ground_msl_m.size(); ++i) {
+    float& height_m = ground_msl_m[i];
+    if (cover_m[i] < 0) height_m = std::min(height_m, 0.0f);
+    if (cover_m[i] >= 0) height_m = std::max(height_m, kLowLand_m);
+  }
+}
+
 /// The air of each azimuth over its ground, or one for all.
 std::vector<RefractivityAlongPath> airOverGround(const std::vector<RefractivityAlongPath>& air,
+                                                 const RadialInputs& radials, const PePlan& plan,
                                                  const AzimuthMarch& march, const Ground& ground) {
   std::vector<RefractivityAlongPath> over_ground;
   if (march.ground_msl_m.empty()) {
@@ -141,9 +152,17 @@ std::vector<RefractivityAlongPath> airOverGround(const std::vector<RefractivityA
   }
   if (std::none_of(air.begin(), air.end(), hasEvaporationDuct)) return air;
   for (std::size_t a = 0; a < std::size_t(march.azimuths); ++a) {
-    over_ground.push_back(withoutDuctOverLand(air[air.size() == 1 ? 0 : a],
-                                              march.ground_msl_m.data() + a * march.ground_steps,
-                                              march.ground_steps, march.grid.range_step_m));
+    const float* const first = march.ground_msl_m.data() + a * march.ground_steps;
+    std::vector<float> ground_msl_m(first, first + march.ground_steps);
+    if (radials.cover) {
+      std::vector<float> cover_m(ground_msl_m.size());
+      const double step_m = march.grid.range_step_m;
+      radials.cover(plan.azimuth_rad(int(a)), step_m * double(cover_m.size() - 1), step_m,
+                    int(cover_m.size()), first, cover_m.data());
+      separateSea(ground_msl_m, cover_m.data());
+    }
+    over_ground.push_back(withoutDuctOverLand(air[air.size() == 1 ? 0 : a], ground_msl_m.data(),
+                                              ground_msl_m.size(), march.grid.range_step_m));
   }
   return over_ground;
 }
@@ -162,6 +181,19 @@ std::vector<float> evenGround(const TerrainProfile& profile, double step_m, int 
                                  part * double(profile.height_msl_m[next] - profile.height_msl_m[post])));
   }
   return ground_msl_m;
+}
+
+/// The land cover of the posts next to even steps; empty: unknown.
+std::vector<float> evenCover(const TerrainProfile& profile, double step_m, int steps) {
+  std::vector<float> cover_m;
+  if (profile.cover_m == nullptr) return cover_m;
+  int post = 0;
+  for (int i = 0; i <= steps; ++i) {
+    while (post + 1 < profile.count && profile.range_m[post + 1] + profile.range_m[post] < 2 * i * step_m)
+      ++post;
+    cover_m.push_back(profile.cover_m[post]);
+  }
+  return cover_m;
 }
 
 /// The other model as a column model.
@@ -195,9 +227,11 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
     path.source = {inputs.site.height_msl_m - double(profile.height_msl_m[0]), inputs.elevation_pattern};
     path.air = isLand(inputs.emitter.ground) ? withoutDuctOverLand(air) : air;
     if (has_terrain) {
-      const std::vector<float> ground_msl_m = evenGround(profile, grid.range_step_m, steps);
-      path.air = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), grid.range_step_m);
+      std::vector<float> ground_msl_m = evenGround(profile, grid.range_step_m, steps);
       path.ground_msl_m.assign(ground_msl_m.begin(), ground_msl_m.end());
+      const std::vector<float> cover_m = evenCover(profile, grid.range_step_m, steps);
+      if (!cover_m.empty()) separateSea(ground_msl_m, cover_m.data());
+      path.air = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), grid.range_step_m);
     }
     RadialMarch<double, 1> march(grid, {std::move(path)});
     for (int i = 0; i < steps; ++i) march.advance();
@@ -301,7 +335,7 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
     field.quantile = inputs.emitter.atmosphere.refractivity->quantile;
   readGround(radials, plan, field);
   for (const std::vector<RefractivityAlongPath>& member : plan.air)
-    field.members.push_back(airOverGround(member, march, inputs.emitter.ground));
+    field.members.push_back(airOverGround(member, radials, plan, march, inputs.emitter.ground));
 
   const RadialCells& cells = plan.cells;
   PeExcess excess;

@@ -148,10 +148,21 @@ Json toJson(const StudyReport& report) {
                             {"max", number(summary.max)},
                             {"max_variant", summary.max_variant},
                             {"min", number(summary.min)},
-                            {"min_variant", summary.min_variant}});
+                            {"min_variant", summary.min_variant},
+                            {"mean", number(summary.mean)},
+                            {"standard_deviation", number(summary.deviation)},
+                            {"percentile_5", number(summary.percentile_5)},
+                            {"median", number(summary.median)},
+                            {"percentile_95", number(summary.percentile_95)}});
   }
-  if (!report.summary.sites.empty())
-    json["sites"] = {{"chosen", report.summary.sites}, {"value", report.summary.sites_value}};
+  if (!report.summary.sites.empty()) {
+    Json chosen = Json::array(), places = Json::array();
+    for (const study::ChosenSite& site : report.summary.sites) {
+      chosen.push_back(site.name);
+      places.push_back({{"latitude_deg", site.latitude_deg}, {"longitude_deg", site.longitude_deg}});
+    }
+    json["sites"] = {{"chosen", chosen}, {"places", places}, {"value", report.summary.sites_value}};
+  }
   return json;
 }
 
@@ -170,7 +181,9 @@ std::string studyText(const StudyReport& report) {
   }
   if (!report.summary.sites.empty()) {
     std::string names;
-    for (const std::string& site : report.summary.sites) names += (names.empty() ? "" : ", ") + site;
+    for (const study::ChosenSite& site : report.summary.sites)
+      names += fmt::format("{}{} ({:.5f}, {:.5f})", names.empty() ? "" : ", ", site.name, site.latitude_deg,
+                           site.longitude_deg);
     const std::string unit = unitOf(spec.measures[spec.sites->measure]);
     out.add("sites: {}: {} {}\n", names, study::figureText(report.summary.sites_value, unit), unit);
   }

@@ -62,7 +62,54 @@ void addFile(Text& out, const TerrainFileInfo& file) {
   for (const std::string& note : file.notes) out.add("  note     {}\n", note);
 }
 
+/// Parts of the area (percent) by class; the classes that are not there are left out.
+struct CoverParts {
+  std::vector<std::pair<const scenario::CoverClass*, double>> classes;
+  double unknown_percent = 100;
+
+  explicit CoverParts(const scenario::LandCover& cover) {
+    double all = static_cast<double>(cover.unknownCells());
+    for (const long long count : cover.cellCounts()) all += static_cast<double>(count);
+    if (!(all > 0)) return;
+    unknown_percent = 100 * static_cast<double>(cover.unknownCells()) / all;
+    for (std::size_t k = 0; k < cover.classes().size(); ++k) {
+      if (cover.cellCounts()[k] > 0)
+        classes.emplace_back(&cover.classes()[k], 100 * static_cast<double>(cover.cellCounts()[k]) / all);
+    }
+    std::stable_sort(classes.begin(), classes.end(),
+                     [](const auto& a, const auto& b) { return a.second > b.second; });
+  }
+};
+
+void addCover(Text& out, const scenario::LandCover& cover) {
+  const CoverParts parts(cover);
+  out.add("Land cover: cells of {:.3g} m; {:.1f} % of the area without a class\n", cover.cell_m(),
+          parts.unknown_percent);
+  for (const auto& [of, percent] : parts.classes) {
+    const std::string use =
+        of->zone == scenario::CoverZone::land
+            ? fmt::format("clutter {:g} m{}{}", of->clutter_height_m, of->kind ? ", echo of " : "",
+                          of->kind ? toString(*of->kind) : "")
+            : std::string(of->zone == scenario::CoverZone::sea ? "sea" : "water, sea where it is low");
+    out.add("  {:5.1f} %  {:3} {}: {}\n", percent, of->code, of->name, use);
+  }
+}
+
 }  // namespace
+
+Json landCoverJson(const scenario::LandCover& cover) {
+  const CoverParts parts(cover);
+  Json classes = Json::array();
+  for (const auto& [of, percent] : parts.classes) {
+    classes.push_back({{"code", of->code},
+                       {"name", of->name},
+                       {"percent", percent},
+                       {"clutter_height_m", of->clutter_height_m},
+                       {"zone", toString(of->zone)},
+                       {"land", of->kind ? Json(toString(*of->kind)) : Json(nullptr)}});
+  }
+  return {{"cell_m", cover.cell_m()}, {"unknown_percent", parts.unknown_percent}, {"classes", classes}};
+}
 
 TerrainReport terrainReport(const scenario::TerrainSpec& spec) {
   TerrainReport report;
@@ -106,14 +153,16 @@ Json toJson(const TerrainReport& report) {
                      {"warnings", file.warnings}});
   }
   const scenario::Terrain& terrain = *report.terrain;
-  return {{"files", files},
-          {"area", boxJson(report.needed)},
-          {"lowest_msl_m", number(terrain.lowest_m())},
-          {"highest_msl_m", number(terrain.highest_m())},
-          {"post_spacing_m", number(terrain.postSpacing_m())},
-          {"void_posts", terrain.voidPosts()},
-          {"uncovered_percent", 100 * terrain.uncoveredFraction()},
-          {"warnings", terrain.warnings()}};
+  Json json{{"files", files},
+            {"area", boxJson(report.needed)},
+            {"lowest_msl_m", number(terrain.lowest_m())},
+            {"highest_msl_m", number(terrain.highest_m())},
+            {"post_spacing_m", number(terrain.postSpacing_m())},
+            {"void_posts", terrain.voidPosts()},
+            {"uncovered_percent", 100 * terrain.uncoveredFraction()},
+            {"warnings", terrain.warnings()}};
+  if (terrain.landCover() != nullptr) json["land_cover"] = landCoverJson(*terrain.landCover());
+  return json;
 }
 
 std::string terrainText(const TerrainReport& report) {
@@ -129,6 +178,7 @@ std::string terrainText(const TerrainReport& report) {
   }
   out.add("Missing: {} void posts; {:.3g} % of the area has no file\n", terrain.voidPosts(),
           100 * terrain.uncoveredFraction());
+  if (terrain.landCover() != nullptr) addCover(out, *terrain.landCover());
   for (const std::string& warning : terrain.warnings()) out.add("Assumed: {}\n", warning);
   return out.take();
 }

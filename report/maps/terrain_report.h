@@ -21,6 +21,8 @@ TerrainReport terrainReport(const scenario::TerrainSpec& files);
 /// @throws Error (bad_input) also if the scenario names no elevation files
 TerrainReport terrainReport(const scenario::Scenario& scenario);
 
+/// Parts of the area by class.
+Json landCoverJson(const scenario::LandCover& cover);
 Json toJson(const TerrainReport& report);
 std::string terrainText(const TerrainReport& report);
 

@@ -25,7 +25,8 @@ Mti parseMti(const Section& section, ParseContext& context) {
 
 std::optional<Clutter> parseClutter(const Section& section, const Emitter& radar, ParseContext& context) {
   Clutter clutter;
-  if (section.has("land"))
+  clutter.land_by_cover = section.has("land");
+  if (clutter.land_by_cover)
     clutter.land_gamma_db = landGammaDb(section.choice<LandKind>("land"), radar.frequency_hz);
   if (section.has("land_gamma_db")) {
     if (section.has("land")) {

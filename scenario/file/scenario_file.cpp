@@ -107,33 +107,43 @@ std::optional<std::uintmax_t> openedSize(const std::string& file, const SourceLo
   return std::nullopt;
 }
 
+/// Files of a list of the terrain's section, with what the list says of them.
+struct TerrainFiles {
+  std::vector<std::string> files;
+  std::vector<SourceLocation> locations;
+  std::vector<TerrainFileKeys> keys;
+};
+
 /// The files are opened, not read; files of an earlier reading are not opened again.
-TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
-  TerrainSpec terrain;
-  std::string digest;
-  const NamedFiles* before = context.before;
-  const bool known = before != nullptr && before->terrain_node &&
-                     document::sameValue(*before->terrain_node, *section.node());
-  if (section.has("vertical_datum")) terrain.vertical_datum = section.choice<VerticalDatum>("vertical_datum");
-  if (section.has("missing")) terrain.missing = section.choice<MissingTerrain>("missing");
-  const std::vector<Section> items = section.sections("files");
-  context.files.terrain_files.resize(items.size());
-  for (std::size_t i = 0; i < items.size(); ++i) {
-    const bool has_keys = items[i].node()->kind == document::NodeKind::map;
-    const std::string name = has_keys ? items[i].text("file") : items[i].node()->text;
+/// @param known   the terrain is that of the earlier reading
+/// @param digest  receives names and sizes
+TerrainFiles parseTerrainFiles(const Section& section, TerrainList list, bool known, std::string& digest,
+                               ParseContext& context) {
+  const std::string key = list == TerrainList::surface ? "surface_files" : "files";
+  const bool with_keys = list != TerrainList::land_cover;
+  TerrainFiles found;
+  const std::vector<Section> items = with_keys ? section.sections(key) : std::vector<Section>{};
+  const std::vector<std::string> names = with_keys ? std::vector<std::string>{} : section.texts(key);
+  const std::size_t count = with_keys ? items.size() : names.size();
+  // One entry per list: of the elevation files, the surface model, the land cover.
+  std::vector<std::vector<std::string>>& stands_for = context.files.terrain_files[list];
+  stands_for.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool has_keys = with_keys && items[i].node()->kind == document::NodeKind::map;
+    const std::string name = !with_keys ? names[i] : has_keys ? items[i].text("file") : items[i].node()->text;
     if (name.empty()) continue;
-    const SourceLocation location = section.locationOf("files", i);
-    std::vector<std::string>& files = context.files.terrain_files[i];
+    const SourceLocation location = section.locationOf(key, i);
+    std::vector<std::string>& files = stands_for[i];
     try {
-      files = known ? before->terrain_files[i] : elevationFilesOf(context.resolve(name));
+      files = known ? context.before->terrain_files.at(list).at(i) : elevationFilesOf(context.resolve(name));
     } catch (const Error& error) {
       context.problems.addError(location, error.message());
       continue;
     }
     for (const std::string& file : files) {
-      terrain.files.push_back(file);
-      terrain.locations.push_back(location);
-      terrain.keys.push_back(has_keys ? parseTerrainKeys(items[i]) : TerrainFileKeys{});
+      found.files.push_back(file);
+      found.locations.push_back(location);
+      found.keys.push_back(has_keys ? parseTerrainKeys(items[i]) : TerrainFileKeys{});
       if (known) continue;
       const std::optional<std::uintmax_t> size = openedSize(file, location, context);
       const bool is_named = files.size() == 1 && file == context.resolve(name);
@@ -142,6 +152,47 @@ TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
             fmt::format("{}:{}", is_named ? name : std::filesystem::path(file).filename().string(), *size);
     }
   }
+  return found;
+}
+
+LandCoverSpec parseLandCover(const Section& section, bool known, std::string& digest, ParseContext& context) {
+  LandCoverSpec cover;
+  TerrainFiles files = parseTerrainFiles(section, TerrainList::land_cover, known, digest, context);
+  cover.files = std::move(files.files);
+  cover.locations = std::move(files.locations);
+  if (!section.has("table")) {
+    cover.classes = section.choice<CoverTable>("classes");
+    return cover;
+  }
+  cover.table = context.resolve(section.text("table"));
+  try {
+    readCoverTable(cover.table);
+    digest += readWholeText(cover.table);
+  } catch (const Error& error) {
+    context.problems.addError(error.location().file.empty() ? section.locationOf("table") : error.location(),
+                              error.message());
+  }
+  return cover;
+}
+
+TerrainSpec parseTerrain(const Section& section, ParseContext& context) {
+  TerrainSpec terrain;
+  std::string digest;
+  const NamedFiles* before = context.before;
+  const bool known = before != nullptr && before->terrain_node &&
+                     document::sameValue(*before->terrain_node, *section.node());
+  if (section.has("vertical_datum")) terrain.vertical_datum = section.choice<VerticalDatum>("vertical_datum");
+  if (section.has("missing")) terrain.missing = section.choice<MissingTerrain>("missing");
+  TerrainFiles ground = parseTerrainFiles(section, TerrainList::ground, known, digest, context);
+  terrain.files = std::move(ground.files);
+  terrain.locations = std::move(ground.locations);
+  terrain.keys = std::move(ground.keys);
+  TerrainFiles surface = parseTerrainFiles(section, TerrainList::surface, known, digest, context);
+  terrain.surface_files = std::move(surface.files);
+  terrain.surface_locations = std::move(surface.locations);
+  terrain.surface_keys = std::move(surface.keys);
+  if (section.has("land_cover"))
+    terrain.land_cover = parseLandCover(section.section("land_cover"), known, digest, context);
   context.files.terrain_node = std::make_shared<const document::DocumentNode>(*section.node());
   context.files.terrain_digest = known ? before->terrain_digest : digest;
   context.hash.add(context.files.terrain_digest);
@@ -318,6 +369,9 @@ void mapPlaces(Scenario& scenario, const document::EditedText& text) {
   }
   if (!scenario.terrain) return;
   for (SourceLocation& location : scenario.terrain->locations) map(location);
+  for (SourceLocation& location : scenario.terrain->surface_locations) map(location);
+  if (!scenario.terrain->land_cover) return;
+  for (SourceLocation& location : scenario.terrain->land_cover->locations) map(location);
 }
 
 /// Reads the scenario from its edited text. @param before  null, or the content of an earlier reading
@@ -450,7 +504,15 @@ std::vector<std::string> filesOf(const Scenario& scenario) {
     for (const auto& [file, digest] : scenario.source->files.digests) files.push_back(file);
   }
   if (scenario.terrain) {
-    files.insert(files.end(), scenario.terrain->files.begin(), scenario.terrain->files.end());
+    const auto add = [&](const std::vector<std::string>& names) {
+      files.insert(files.end(), names.begin(), names.end());
+    };
+    add(scenario.terrain->files);
+    add(scenario.terrain->surface_files);
+    if (scenario.terrain->land_cover) {
+      add(scenario.terrain->land_cover->files);
+      if (!scenario.terrain->land_cover->table.empty()) files.push_back(scenario.terrain->land_cover->table);
+    }
   }
   return files;
 }

@@ -20,6 +20,9 @@ namespace emscape::scenario {
 /// Largest scenario file (bytes).
 constexpr std::size_t kMaxScenarioBytes = std::size_t{4} << 20;
 
+/// Lists of files of the section terrain.
+enum class TerrainList { ground, surface, land_cover };
+
 /// Content of the files that a scenario names, at the time of reading. An edited scenario reuses it: files
 /// are not read again.
 struct NamedFiles {
@@ -29,10 +32,10 @@ struct NamedFiles {
   std::map<std::string, AntennaPtr> antennas;     ///< by the antenna's keys and values, written on one line
   std::map<std::string, RcsTablePtr> rcs_tables;  ///< valid ones, by resolved name
   std::map<std::string, std::shared_ptr<const RefractivityFile>>
-      refractivity;                                     ///< by name and sounding's time
-  document::DocumentNodePtr terrain_node;               ///< null without terrain
-  std::string terrain_digest;                           ///< names and sizes of the elevation files
-  std::vector<std::vector<std::string>> terrain_files;  ///< that each item of terrain.files stands for
+      refractivity;                        ///< by name and sounding's time
+  document::DocumentNodePtr terrain_node;  ///< null without terrain
+  std::string terrain_digest;              ///< names and sizes of the elevation files
+  std::map<TerrainList, std::vector<std::vector<std::string>>> terrain_files;  ///< that each item stands for
 };
 
 /// An applied edit.

@@ -1,5 +1,7 @@
 #include "scenario/map/map_image.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -170,6 +172,27 @@ MapColors readMapColors(const std::string& file, const std::vector<GeodeticPosit
                      static_cast<std::size_t>(column)];
   }
   return colors;
+}
+
+MapColors landCoverColors(const Terrain* terrain, const std::vector<GeodeticPosition>& positions) {
+  const LandCover* const cover = terrain == nullptr ? nullptr : terrain->landCover();
+  if (cover == nullptr)
+    throw Error(ErrorCode::bad_input,
+                fmt::format("'{}' drapes the land cover, but the scenario's terrain has none: "
+                            "'terrain: {{land_cover: ...}}' names it",
+                            kLandCoverDrape));
+  MapColors colors;
+  colors.reserve(positions.size());
+  for (const GeodeticPosition& position : positions) {
+    const int found = cover->classAt(position.latitude_deg, position.longitude_deg);
+    colors.push_back(found < 0 ? 0 : cover->classes()[static_cast<std::size_t>(found)].color);
+  }
+  return colors;
+}
+
+MapColors drapeColors(const std::string& name, const Terrain* terrain,
+                      const std::vector<GeodeticPosition>& positions) {
+  return name == kLandCoverDrape ? landCoverColors(terrain, positions) : readMapColors(name, positions);
 }
 
 }  // namespace emscape::scenario

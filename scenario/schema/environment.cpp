@@ -83,6 +83,22 @@ const ObjectSpec& elevationFileSpec() {
   return spec;
 }
 
+const ObjectSpec& landCoverSpec() {
+  static const ObjectSpec spec{
+      "land cover",
+      "",
+      {
+          required("files", listOf(kFile, 1, kMaxItems),
+                   "rasters of class codes, named as the elevation files; the first has priority"),
+          optional("classes", choiceOf<CoverTable>(),
+                   "meaning of the codes: ESA WorldCover, CORINE Land Cover, NLCD"),
+          optional("table", kFile,
+                   "meaning of the codes: CSV with the columns code,name,clutter_height_m,zone,land,color"),
+      },
+      {{"classes", "table"}}};
+  return spec;
+}
+
 }  // namespace
 
 const ObjectSpec& terrainSpec() {
@@ -101,6 +117,13 @@ const ObjectSpec& terrainSpec() {
           optional("missing", choiceOf<MissingTerrain>(),
                    "treatment of voids and of ground that no file covers: an error, sea (0 m), or no value; "
                    "by default an error for volumes and paths, no value on maps"),
+          optional("land_cover", object(landCoverSpec()),
+                   "classes of the ground: clutter heights and the sea for p1812 and p452, the sea for "
+                   "parabolic_equation, kinds of land for the radars' clutter, colours of pictures"),
+          optional(
+              "surface_files", listOf(kFile.orObject(elevationFileSpec()), 1, kMaxItems),
+              "a surface model, as `files`, which are then the bare earth: its height above the ground is "
+              "the clutter height for p1812 and p452"),
       }};
   return spec;
 }

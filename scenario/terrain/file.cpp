@@ -101,7 +101,8 @@ struct TerrainFile::Impl {
   mutable std::string unpacked_name;
 
   [[noreturn]] void fail(const std::string& problem) const {
-    throw Error(ErrorCode::bad_input, location, "elevation file " + name + ": " + problem);
+    throw Error(ErrorCode::bad_input, location,
+                (keys.has_classes ? "land cover file " : "elevation file ") + name + ": " + problem);
   }
   /// Errors of what a function finds become those of the file.
   template <class Find>
@@ -122,6 +123,7 @@ struct TerrainFile::Impl {
   void checkDatasets(GDALDatasetH dataset, const std::set<fs::path>& sources) const;
   void readHead();
   void readBand(GDALDatasetH dataset);
+  void requireClasses(GDALRasterBandH band_of_codes) const;
   void placePosts(GDALDatasetH dataset);
 };
 
@@ -235,6 +237,10 @@ void TerrainFile::Impl::readBand(GDALDatasetH dataset) {
   GDALRasterBandH of_heights = GDALGetRasterBand(dataset, band);
   if (GDALDataTypeIsComplex(GDALGetRasterDataType(of_heights))) fail("holds complex numbers, not heights");
   const GDALColorInterp colour = GDALGetRasterColorInterpretation(of_heights);
+  if (keys.has_classes) {
+    requireClasses(of_heights);
+    return;
+  }
   if (keys.encoding) {
     if (GDALGetRasterCount(dataset) < band + 2 || GDALGetRasterDataType(of_heights) != GDT_Byte)
       fail(fmt::format(
@@ -257,6 +263,19 @@ void TerrainFile::Impl::readBand(GDALDatasetH dataset) {
     notes.push_back("heights are stored with scale " + std::to_string(scale) + " and offset " +
                     std::to_string(offset));
   }
+}
+
+void TerrainFile::Impl::requireClasses(GDALRasterBandH band_of_codes) const {
+  const GDALColorInterp colour = GDALGetRasterColorInterpretation(band_of_codes);
+  if (colour != GCI_Undefined && colour != GCI_GrayIndex && colour != GCI_PaletteIndex)
+    fail(fmt::format(
+        "is a picture, not codes of land cover: its band {} is '{}'; get the raster of class codes", band,
+        GDALGetColorInterpretationName(colour)));
+  const GDALDataType type = GDALGetRasterDataType(band_of_codes);
+  if (type == GDT_Float32 || type == GDT_Float64)
+    fail(
+        "holds real numbers, not codes of land cover; if they are whole, gdal_translate -ot UInt16 makes a "
+        "raster of codes");
 }
 
 void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
@@ -308,6 +327,7 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
                     has_system ? given : system.get(),
                     keys};
   if (is_tile) facts.driver = "SRTMHGT";
+  if (keys.has_classes) facts.band_unit = "m";
   if (facts.driver == "SRTMHGT" || keys.encoding) facts.band_unit = "m";
   meaning = found([&] { return heightMeaningOf(facts); });
   notes.insert(notes.end(), meaning.notes.begin(), meaning.notes.end());

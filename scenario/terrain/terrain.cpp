@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <memory>
 #include <optional>
 
 #include "base/geodesy/geoid_grid.h"
@@ -206,12 +207,26 @@ class TerrainMosaic : public Terrain {
     // The heights do not move in memory: the rasters' pointers stay valid.
     for (TerrainSheet& sheet : sheets) heights_m_.push_back(std::move(sheet.heights_m));
     if (spec.missing == MissingTerrain::sea) addSea();
+    if (spec.land_cover) {
+      land_cover_ = std::make_unique<const LandCover>(*spec.land_cover, box);
+      for (const std::string& warning : land_cover_->warnings()) warnings_.push_back(warning);
+    }
+    if (!spec.surface_files.empty()) addSurface(spec, box);
   }
 
   double heightMsl_m(double latitude_deg, double longitude_deg) const override {
     return view().heightAt(degToRad(latitude_deg), degToRad(longitude_deg));
   }
-  TerrainView view() const override { return {rasters_.data(), static_cast<int>(rasters_.size())}; }
+  TerrainView view() const override {
+    TerrainView view{rasters_.data(), static_cast<int>(rasters_.size())};
+    if (land_cover_) view.cover = land_cover_->view();
+    if (surface_) {
+      const TerrainView surface = surface_->view();
+      view.surfaces = surface.rasters;
+      view.surface_count = surface.count;
+    }
+    return view;
+  }
   double postSpacing_m() const override { return post_spacing_m_; }
   long long voidPosts() const override { return void_posts_; }
   double uncoveredFraction() const override { return uncovered_fraction_; }
@@ -221,9 +236,11 @@ class TerrainMosaic : public Terrain {
   double highest_m() const override { return highest_m_; }
   std::vector<std::string> warnings() const override { return warnings_; }
   std::string placeText() const override { return place_text_; }
+  const LandCover* landCover() const override { return land_cover_.get(); }
 
  private:
   void addSea();
+  void addSurface(const TerrainSpec& spec, const GeoBox& box);
   void survey(const std::vector<TerrainSheet>& sheets);
   void surveyPosts(const TerrainSheet& sheet);
   bool covered(const std::vector<TerrainSheet>& sheets, double latitude_deg, double longitude_deg) const;
@@ -239,7 +256,27 @@ class TerrainMosaic : public Terrain {
   double highest_m_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::string> warnings_;
   std::string place_text_;
+  std::unique_ptr<const LandCover> land_cover_;
+  TerrainPtr surface_;
 };
+
+void TerrainMosaic::addSurface(const TerrainSpec& spec, const GeoBox& box) {
+  TerrainSpec surface;
+  surface.files = spec.surface_files;
+  surface.locations = spec.surface_locations;
+  surface.keys = spec.surface_keys;
+  surface.vertical_datum = spec.vertical_datum;
+  surface_ = Terrain::load(surface, box);
+  for (const std::string& warning : surface_->warnings()) {
+    if (std::find(warnings_.begin(), warnings_.end(), warning) == warnings_.end())
+      warnings_.push_back(warning);
+  }
+  if (surface_->uncoveredFraction() > 0)
+    warnings_.push_back(fmt::format(
+        "terrain: the surface model ('surface_files') leaves {:.3g} % of the area out: there the height of "
+        "trees and buildings is that of the land cover, or of the models' settings",
+        100 * surface_->uncoveredFraction()));
+}
 
 /// A raster of sea level below all others, over the whole box and beyond.
 void TerrainMosaic::addSea() {

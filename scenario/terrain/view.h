@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 
 #include "base/math/device_math.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
+#include "emscape/scenario/terrain/land_cover.h"
+#include "propagation/terrain_profile.h"
 
 namespace emscape::scenario {
 
@@ -79,19 +82,78 @@ struct TerrainRaster {
   }
 };
 
+/// Values of a class of the land cover.
+struct CoverValues {
+  bool is_known = false;
+  float clutter_height_m = 0;
+  CoverZone zone = CoverZone::land;
+  int kind = -1;  ///< LandKind; -1: none
+};
+
+/// Classes of the land cover, south row first, west cell first.
+struct LandCoverView {
+  static constexpr std::uint8_t kNoClass = 255;
+
+  const std::uint8_t* cells = nullptr;  ///< indices of `classes`, >= class_count: none; null: no land cover
+  int columns = 0, rows = 0;
+  double south_rad = 0, west_rad = 0;  ///< of the outer edges
+  double cells_per_rad_lat = 0, cells_per_rad_lon = 0;
+  const CoverValues* classes = nullptr;
+  int class_count = 0;
+
+  EMSCAPE_HD bool isSet() const { return cells != nullptr; }
+  /// The class of the cell at a point; -1: none is known.
+  EMSCAPE_HD int classAt(double latitude_rad, double longitude_rad) const {
+    const double row = std::floor((latitude_rad - south_rad) * cells_per_rad_lat);
+    double column = (longitude_rad - west_rad) * cells_per_rad_lon;
+    const double turn = 2.0 * kPi * cells_per_rad_lon;
+    column = std::floor(column - turn * std::floor(column / turn));
+    if (!(row >= 0 && row < rows && column >= 0 && column < columns)) return -1;
+    const int found = cells[static_cast<long long>(row) * columns + static_cast<long long>(column)];
+    return found < class_count ? found : -1;
+  }
+  EMSCAPE_HD CoverValues valuesAt(double latitude_rad, double longitude_rad) const {
+    const int found = isSet() ? classAt(latitude_rad, longitude_rad) : -1;
+    return found >= 0 ? classes[found] : CoverValues{};
+  }
+};
+
 /// All rasters of a terrain, the finest first. Valid as long as the Terrain that returned it. For a device,
 /// copy the rasters' heights there and set the pointers in a copy of the array.
 struct TerrainView {
   const TerrainRaster* rasters = nullptr;
   int count = 0;
+  const TerrainRaster* surfaces = nullptr;  ///< of a surface model, whose trees and buildings are clutter
+  int surface_count = 0;
+  LandCoverView cover = {};
 
   /// Height above mean sea level (m): of the finest raster with a height at the position; NaN if there is
   /// none.
   /// @param latitude_rad  -pi/2..pi/2, longitude_rad any
   EMSCAPE_HD float heightAt(double latitude_rad, double longitude_rad) const {
+    return heightAmong(rasters, count, latitude_rad, longitude_rad);
+  }
+
+  /// True if coverAt() may be known.
+  EMSCAPE_HD bool hasCover() const { return cover.isSet() || surface_count > 0; }
+  /// The land cover at a point as an element of TerrainProfile::cover_m.
+  EMSCAPE_HD float coverAt(double latitude_rad, double longitude_rad, float ground_msl_m) const {
+    const CoverValues values = cover.valuesAt(latitude_rad, longitude_rad);
+    const bool is_sea = values.zone == CoverZone::sea ||
+                        (values.zone == CoverZone::water && ground_msl_m <= LandCover::kMaxSea_m);
+    if (is_sea) return propagation::kSeaCover;
+    if (values.zone == CoverZone::water) return 0;
+    const float above_m = heightAmong(surfaces, surface_count, latitude_rad, longitude_rad) - ground_msl_m;
+    if (above_m == above_m) return above_m > 0 ? above_m : 0;
+    return values.is_known ? values.clutter_height_m : NAN;
+  }
+
+ private:
+  EMSCAPE_HD static float heightAmong(const TerrainRaster* among, int number, double latitude_rad,
+                                      double longitude_rad) {
     float height = NAN;
-    for (int k = 0; k < count && !(height == height); ++k) {
-      height = rasters[k].heightAt(latitude_rad, longitude_rad);
+    for (int k = 0; k < number && !(height == height); ++k) {
+      height = among[k].heightAt(latitude_rad, longitude_rad);
     }
     return height;
   }

@@ -105,6 +105,37 @@ std::optional<std::string> inactiveWarning(const std::shared_ptr<const scenario:
       kind, empty_s.size(), times_s.size(), empty_s.front());
 }
 
+/// Warnings for the parts of a map that radars do not display: detection is computed there nevertheless.
+std::vector<std::string> instrumentedRangeWarnings(
+    const std::shared_ptr<const scenario::Scenario>& at_targets, const scenario::TerrainPtr& terrain,
+    Quantity quantity, const MapGrid& grid, double time_s) {
+  std::vector<std::string> warnings;
+  if (!scenario::needsRadar(quantity)) return warnings;
+  const scenario::Snapshot snapshot = scenario::snapshotAt(at_targets, terrain.get(), time_s);
+  for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
+    const scenario::Emitter& radar = at_targets->emitters[e];
+    const bool has_limit = snapshot.emitters[e].active && radar.kind == scenario::EmitterKind::radar &&
+                           radar.waveform && radar.waveform->instrumented_range_m;
+    if (!has_limit) continue;
+    const double limit_m = *radar.waveform->instrumented_range_m;
+    const Vec3d site_m = toEcef(snapshot.emitters[e].position);
+    double all_m2 = 0, beyond_m2 = 0;
+    for (std::size_t p = 0; p < grid.pixels(); ++p) {
+      const auto [latitude_deg, longitude_deg] = grid.positions[p];
+      if (std::isnan(latitude_deg)) continue;
+      const auto area_m2 = static_cast<double>(grid.areas_m2[p]);
+      all_m2 += area_m2;
+      if (length(toEcef({latitude_deg, longitude_deg, 0}) - site_m) > limit_m) beyond_m2 += area_m2;
+    }
+    if (beyond_m2 == 0) continue;
+    warnings.push_back(fmt::format(
+        "{:.1f} of {:.1f} km2 of the map are beyond the instrumented range of '{}', {:g} km: detection by it "
+        "is computed there nevertheless",
+        beyond_m2 / 1e6, all_m2 / 1e6, radar.name, limit_m / 1e3));
+  }
+  return warnings;
+}
+
 /// Warning for heights that only make sense in kilometres.
 std::optional<std::string> heightWarning(const std::vector<CoverageRequest>& requests) {
   constexpr double kLow_m = 1;
@@ -313,6 +344,9 @@ std::vector<std::vector<std::string>> CoverageSolver::compute(
     for (const auto& warning :
          {inactive, scanWarning(*at_targets[s], requests), impl_->scale_warning, heightWarning(requests)})
       if (warning) warnings[s].push_back(*warning);
+    for (std::string& warning : instrumentedRangeWarnings(at_targets[s], terrain, requests.front().quantity,
+                                                          impl_->grid, times_s.front()))
+      warnings[s].push_back(std::move(warning));
     for (Impl::OfReference& of : impl_->references) {
       for (std::size_t r = 0; r < requests.size(); ++r)
         of.maps[r].finish(s, [&](CoverageMap map) { take(s, r, std::move(map)); });

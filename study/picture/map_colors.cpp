@@ -27,6 +27,14 @@ int categoryOf(const Map& map, int value) {
   return value >= 0 && value < static_cast<int>(map.colors.size()) ? map.colors[value] : value;
 }
 
+/// The colour of a category that the map states.
+std::optional<render::Rgb> statedColor(const Map& map, int value) {
+  if (value < 0 || value >= static_cast<int>(map.label_colors.size())) return std::nullopt;
+  const std::uint32_t color = map.label_colors[static_cast<std::size_t>(value)];
+  return render::Rgb{static_cast<float>(color & 255U) / 255, static_cast<float>(color >> 8 & 255U) / 255,
+                     static_cast<float>(color >> 16 & 255U) / 255};
+}
+
 /// The number that has no colour: no category, or the first class.
 int transparentOf(MapKind kind) {
   return kind == MapKind::category ? -1 : 0;
@@ -72,7 +80,7 @@ render::Legend colorsOf(const Map& map) {
     for (int n = first; n <= last; ++n) {
       if (!has_absent && present.count(n) == 0) continue;
       const std::string label = n < static_cast<int>(map.labels.size()) ? map.labels[n] : std::to_string(n);
-      legend.categories.push_back({categoryOf(map, n), label});
+      legend.categories.push_back({categoryOf(map, n), label, statedColor(map, n)});
     }
     if (present.count(transparentOf(map.kind)) != 0) legend.note = "no colour: " + nameOfTransparent(map);
     return legend;
@@ -126,7 +134,8 @@ std::optional<render::Rgb> colorOf(const Map& map, const render::Legend& legend,
   }
   const int index = static_cast<int>(value);
   if (index == transparentOf(map.kind)) return std::nullopt;
-  return render::categoryColor(categoryOf(map, index));
+  const std::optional<render::Rgb> stated = statedColor(map, index);
+  return stated ? *stated : render::categoryColor(categoryOf(map, index));
 }
 
 }  // namespace emscape::study

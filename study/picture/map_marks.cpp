@@ -75,7 +75,8 @@ void MapMarks::addTo(MapPictureOptions& options, const scenario::Snapshot& snaps
   options.lines.insert(options.lines.end(), marks.lines.begin(), marks.lines.end());
 }
 
-scenario::MapColors drapeOf(const MapGrid& squares, const std::string& file) {
+scenario::MapColors drapeOf(const MapGrid& squares, const std::string& name,
+                            const scenario::Terrain* terrain) {
   std::vector<GeodeticPosition> positions;
   std::vector<std::size_t> squares_of;
   for (std::size_t p = 0; p < squares.pixels(); ++p) {
@@ -84,7 +85,7 @@ scenario::MapColors drapeOf(const MapGrid& squares, const std::string& file) {
     positions.push_back({latitude_deg, longitude_deg, 0});
     squares_of.push_back(p);
   }
-  const scenario::MapColors read = scenario::readMapColors(file, positions);
+  const scenario::MapColors read = scenario::drapeColors(name, terrain, positions);
   scenario::MapColors colors(squares.pixels(), 0);
   for (std::size_t n = 0; n < squares_of.size(); ++n) colors[squares_of[n]] = read[n];
   return colors;

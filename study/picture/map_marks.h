@@ -29,7 +29,8 @@ class MapMarks {
 };
 
 /// The colours of a picture on the ground at squares. @throws Error (bad_input) naming the file
-scenario::MapColors drapeOf(const MapGrid& squares, const std::string& file);
+scenario::MapColors drapeOf(const MapGrid& squares, const std::string& name,
+                            const scenario::Terrain* terrain);
 
 /// The description of a map with heights in units.
 std::string descriptionOf(const Map& map, Units units);

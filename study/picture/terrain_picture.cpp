@@ -102,6 +102,27 @@ Map sourcesMap(const std::vector<TerrainFileInfo>& files, const scenario::Terrai
   return map;
 }
 
+/// Categories: the classes of the land cover, of those with the same name the first.
+Map coverMap(const scenario::LandCover& cover, const MapGrid& grid) {
+  Map map;
+  map.name = "land_cover";
+  map.kind = MapKind::category;
+  map.title = "land cover";
+  std::vector<int> categories;
+  for (const scenario::CoverClass& of : cover.classes()) {
+    const auto known = std::find(map.labels.begin(), map.labels.end(), of.name);
+    categories.push_back(static_cast<int>(known - map.labels.begin()));
+    if (known != map.labels.end()) continue;
+    map.labels.push_back(of.name);
+    map.label_colors.push_back(of.color);
+  }
+  for (const emfield::Surface::Position& at : grid.positions) {
+    const int found = std::isnan(at.latitude_deg) ? -1 : cover.classAt(at.latitude_deg, at.longitude_deg);
+    map.values.push_back(found < 0 ? NAN : static_cast<float>(categories[static_cast<std::size_t>(found)]));
+  }
+  return map;
+}
+
 }  // namespace
 
 double postSpacing_m(const TerrainFileInfo& file) {
@@ -111,7 +132,7 @@ double postSpacing_m(const TerrainFileInfo& file) {
 }
 
 render::Image8 drawTerrain(const std::vector<TerrainFileInfo>& files, const scenario::Terrain& terrain,
-                           const GeoBox& box, const std::string& title, int width) {
+                           TerrainContent content, const GeoBox& box, const std::string& title, int width) {
   constexpr double kPixels = 600;  // of the longer side of the area
   constexpr double kMaxExtent_deg = 60;
   if (box.north_deg - box.south_deg > kMaxExtent_deg || box.east_deg - box.west_deg > 3 * kMaxExtent_deg)
@@ -139,6 +160,8 @@ render::Image8 drawTerrain(const std::vector<TerrainFileInfo>& files, const scen
                         terrain.lowest_m(), terrain.highest_m(), terrain.voidPosts(),
                         100 * terrain.uncoveredFraction());
   options.ground_msl_m = groundOf(grid, terrain);
+  if (content == TerrainContent::land_cover && terrain.landCover() != nullptr)
+    return drawMap(grid, coverMap(*terrain.landCover(), grid), options);
   // With several kinds of files the colours tell the source, else the height.
   const std::string kind = commonKindOf(files);
   if (kind.empty()) return drawMap(grid, sourcesMap(files, terrain, grid), options);

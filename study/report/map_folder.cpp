@@ -15,6 +15,7 @@
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "study/files/czml.h"
+#include "study/files/geojson.h"
 #include "study/files/geopackage.h"
 #include "study/files/geotiff.h"
 #include "study/files/kmz.h"
@@ -44,6 +45,8 @@ const std::vector<Format>& formatTable() {
       {{"gpkg",
         "GeoPackage of all maps as bands and contours, with emitters and tracks: QGIS, with its colours"},
        makeGeoPackage},
+      {{"geojson", "GeoJSON of all maps as bands, with emitters, sites and tracks: web maps, GIS programs"},
+       makeGeoJson},
       {{"nc", "netCDF (CF-1.8) of all maps over time and height: xarray, Panoply, QGIS"}, makeNetCdf},
       {{"kmz", "overlays of all maps over time, with emitters and tracks: Google Earth"}, makeKmz},
       {{"czml",
@@ -132,7 +135,7 @@ struct MapFolder::State {
                         grid.height * parts);
     }
     const MapGrid& squares = finer ? *finer : grid;
-    if (has_drape) background.drape = drapeOf(squares, study.view.drape);
+    if (has_drape) background.drape = drapeOf(squares, study.view.drape, study.terrain.get());
     if (study.terrain != nullptr) {
       background.ground_msl_m = groundOf(squares, *study.terrain);
     } else {

@@ -50,7 +50,7 @@ TEST(SameBytes, Videos) {
 
 TEST(SameBytes, SLOW_MapsOfCoverage) {
   expectSameBytes({"coverage", shippedScenario("jamming.yaml"), "-o", "OUT/maps", "--cell", "500", "--times",
-                   "40", "--format", "cog,png,gpkg,nc,kmz,czml"});
+                   "40", "--format", "cog,png,gpkg,geojson,nc,kmz,czml"});
 }
 
 TEST(SameBytes, Studies) {

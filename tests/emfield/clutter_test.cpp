@@ -45,9 +45,26 @@ TEST(Reflectivity, LandEqualsGammaTimesSine) {
   SurfaceEcho surface;
   surface.has_land = true;
   surface.gamma = dbToRatio(scenario::landGammaDb(scenario::LandKind::woods, 10e9));
-  EXPECT_NEAR(surface.reflectivity(false, 0.5), dbToRatio(-15) / 2, 1e-12);
-  EXPECT_EQ(surface.reflectivity(false, -0.1), 0) << "a slope that is turned away";
+  EXPECT_NEAR(surface.reflectivity({false, surface.gamma}, 0.5), dbToRatio(-15) / 2, 1e-12);
+  EXPECT_EQ(surface.reflectivity({false, surface.gamma}, -0.1), 0) << "a slope that is turned away";
   EXPECT_NEAR(scenario::landGammaDb(scenario::LandKind::flatland, 1e9), -25, 1e-12);
+}
+
+TEST(Clutter, OfAClassOfTheLandCoverIsThatOfItsKindAndOfWaterThatOfTheSea) {
+  SurfaceEcho surface;
+  surface.has_land = true;
+  surface.gamma = 0.5;
+  surface.gamma_of_kind[static_cast<int>(scenario::LandKind::urban)] = 2;
+  const scenario::CoverValues city{true, 15, scenario::CoverZone::land,
+                                   static_cast<int>(scenario::LandKind::urban)};
+  const scenario::CoverValues other{true, 0, scenario::CoverZone::land, -1};
+  const scenario::CoverValues lake{true, 0, scenario::CoverZone::water, -1};
+  EXPECT_EQ(surface.faceOn(city).gamma, 0.5) << "a stated gamma stays";
+  surface.by_cover = true;
+  EXPECT_EQ(surface.faceOn(city).gamma, 2);
+  EXPECT_EQ(surface.faceOn(other).gamma, 0.5);
+  EXPECT_EQ(surface.reflectivity(surface.faceOn(lake), 0.1), 0) << "no sea_state: no echo";
+  EXPECT_TRUE(surface.faceOn(lake).is_sea);
 }
 
 TEST(Reflectivity, RainEqualsRayleighFormula) {

@@ -83,6 +83,30 @@ void readColours(const fs::path& file, const std::string&) {
   scenario::Terrain::load(spec, {49, 50, 10, 11});
 }
 
+/// A GeoTIFF of codes of land cover at 52 degrees north, 5 east.
+std::string landCover() {
+  const TemporaryFolder folder;
+  geographicDem(5, 52.1, kStep_deg, kPosts, kPosts, [](double, double) {
+    return 10;
+  }).write(folder / "a.tif");
+  return readFile(wholeNumbers(folder / "a.tif", folder / "codes.tif"));
+}
+
+void readLandCover(const fs::path& file, const std::string&) {
+  scenario::LandCoverSpec spec;
+  spec.files = {file.string()};
+  const scenario::LandCover cover(spec, {51.9, 52.1, 4.9, 5.1});
+  cover.classAt(52.03, 5.03);
+}
+
+void readTable(const fs::path& file, const std::string&) {
+  scenario::readCoverTable(file.string());
+}
+
+std::string table() {
+  return "code,name,clutter_height_m,zone,land,color\n1,palms,7.5,land,woods,#00ff00\n2,lagoon,0,sea,,#0000ff\n";
+}
+
 /// The first columns of a tile of DTED level 0 from 40 to 41 degrees north and 5 to 6 degrees east.
 std::string dtedColumns() {
   constexpr int kTilePosts = 121, kColumns = 12;
@@ -114,6 +138,8 @@ const FuzzTargetsAdded added({
     {"terrain_asc", "input.asc", readElevation,
      [] { return std::vector<std::string>{converted("AAIGrid", "a.asc", "a.asc")}; }},
     {"terrain_colours", "input.tif", readColours, [] { return std::vector<std::string>{colours()}; }},
+    {"land_cover_tif", "input.tif", readLandCover, [] { return std::vector<std::string>{landCover()}; }},
+    {"land_cover_table", "input.csv", readTable, [] { return std::vector<std::string>{table()}; }},
     {"terrain_gz", "N52E005.hgt.gz", readElevation,
      [] { return std::vector<std::string>{packedTile(".gz")}; }},
     {"terrain_img", "input.img", readElevation,

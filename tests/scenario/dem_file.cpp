@@ -158,4 +158,27 @@ void convertDem(const std::string& from, const std::string& driver, const std::s
   if (!copy) throw std::runtime_error("cannot write " + to);
 }
 
+std::string wholeNumbers(const std::string& from, const std::string& to) {
+  GDALAllRegister();
+  const std::unique_ptr<GDALDataset> source(GDALDataset::Open(from.c_str()));
+  const int columns = source->GetRasterXSize(), rows = source->GetRasterYSize();
+  std::vector<std::uint16_t> values(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const std::unique_ptr<GDALDataset> copy(GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
+      to.c_str(), columns, rows, 1, GDT_UInt16, nullptr));
+  std::array<double, 6> transform{};
+  source->GetGeoTransform(transform.data());
+  copy->SetGeoTransform(transform.data());
+  copy->SetSpatialRef(source->GetSpatialRef());
+  GDALColorTable colors;
+  const GDALColorEntry green{0, 100, 0, 255};
+  colors.SetColorEntry(10, &green);
+  copy->GetRasterBand(1)->SetColorTable(&colors);
+  if (source->GetRasterBand(1)->RasterIO(GF_Read, 0, 0, columns, rows, values.data(), columns, rows,
+                                         GDT_UInt16, 0, 0, nullptr) != CE_None ||
+      copy->GetRasterBand(1)->RasterIO(GF_Write, 0, 0, columns, rows, values.data(), columns, rows,
+                                       GDT_UInt16, 0, 0, nullptr) != CE_None)
+    throw std::runtime_error("cannot write " + to);
+  return to;
+}
+
 }  // namespace emscape::test

@@ -49,6 +49,10 @@ void writeHgt(const std::string& file, int posts, const std::function<int(int co
 /// bits
 void writeColours(const std::string& file, const std::function<long(int column, int row)>& value);
 
+/// Writes a copy of a GeoTIFF with whole numbers of 16 bits and colours, as rasters of classes have. @return
+/// `to`
+std::string wholeNumbers(const std::string& from, const std::string& to);
+
 /// Writes a raster in another format. @param driver  GDAL's name of the format
 void convertDem(const std::string& from, const std::string& driver, const std::string& to);
 

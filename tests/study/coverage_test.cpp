@@ -96,6 +96,31 @@ TEST(Coverage, WarnsOfTimesWithoutAnActiveRadar) {
       << "of other emitters";
 }
 
+TEST(Coverage, SaysWhichPartOfTheMapIsBeyondTheInstrumentedRange) {
+  using namespace emfield::testing;
+  scenario::Emitter radar = trackingRadar();
+  radar.propagation.model = propagation::PropagationModel::free_space;
+  const auto scenario = emptyScenario(FrameKind::altitude, 44.5, -71.5, {20e3, 20e3, 4000}, {10, 10, 4});
+  addEmitter(*scenario, {44.5, -71.5, 500}, radar);
+  const MapGrid grid = makeMapGrid(areaOf(scenario->region), 500, "local");
+  const auto warningsFor = [&](double range_m) {
+    const auto limited = std::make_shared<scenario::Scenario>(*scenario);
+    limited->emitters[0].waveform.emplace();
+    limited->emitters[0].waveform->prf_hz = 1000;
+    limited->emitters[0].waveform->pulse_width_s = 1e-6;
+    limited->emitters[0].waveform->instrumented_range_m = range_m;
+    CoverageRequest request;
+    request.heights = {kHigh};
+    request.products = {Product::covered};
+    request.times_s = {0};
+    return computeCoverage(limited, nullptr, grid, request, {}, [](CoverageMap) {});
+  };
+  // A circle of 5 km has 78.5 of about 400 km2.
+  EXPECT_THAT(warningsFor(5e3), Contains(::testing::AllOf(HasSubstr("beyond the instrumented range of"),
+                                                          HasSubstr("km2 of the map"), HasSubstr("5 km"))));
+  EXPECT_THAT(warningsFor(50e3), Not(Contains(HasSubstr("instrumented range"))));
+}
+
 TEST(Coverage, WarningsOfSeveralTimesAreKeptOnceWithoutTheirCounts) {
   std::set<std::string> all{"a"};
   addOnce(all, {"a (3 times)", "b (21 times)", "c (all times)", "d ( times)", "e (2 times) f", "g"});

@@ -189,7 +189,8 @@ TEST(MapShapes, LevelsAreRoundNumbers) {
 class MapFiles : public testing::Test {
  protected:
   void write(const std::string& name) const {
-    MapFolder maps(folder.path() / name, fixture.study(), {"cog", "png", "gpkg", "nc", "kmz", "czml"});
+    MapFolder maps(folder.path() / name, fixture.study(),
+                   {"cog", "png", "gpkg", "geojson", "nc", "kmz", "czml"});
     for (const double time_s : {70.0, 80.0}) {
       for (const Map& map : mapsOf(time_s)) maps.add(map);
     }
@@ -583,7 +584,7 @@ TEST_F(MapFiles, FullDiskOfNetCdfIsOneErrorWithoutGdalOutput) {
 }
 
 TEST_F(MapFiles, AFileThatCannotBeWrittenIsNamedAndRemoved) {
-  for (const char* format : {"cog", "gpkg", "nc", "kmz", "czml"}) {
+  for (const char* format : {"cog", "gpkg", "geojson", "nc", "kmz", "czml"}) {
     const test::TemporaryFolder full;
     const std::string message = test::errorOf([&] {
       MapFolder maps(full.path() / "out", fixture.study(), {format});

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "base/files/json_writing.h"
+#include "base/files/whole_file.h"
 #include "base/text/quantity_text.h"
 #include "document/schema_check.h"
 #include "emscape/study/maps/map.h"
@@ -20,6 +23,14 @@ namespace emscape::study {
 namespace {
 
 constexpr std::size_t kBest = 5, kMaxRows = 500, kMaxPlots = 60;
+
+/// The value below which a part of the values are, linear between them. @param ascending  at least one
+double percentileOf(const std::vector<double>& ascending, double part) {
+  const double at = part * static_cast<double>(ascending.size() - 1);
+  const auto below = static_cast<std::size_t>(at);
+  const std::size_t above = std::min(below + 1, ascending.size() - 1);
+  return ascending[below] + (at - static_cast<double>(below)) * (ascending[above] - ascending[below]);
+}
 
 std::string titleOf(const StudyMeasure& measure) {
   const std::string unit = unitOf(measure);
@@ -41,7 +52,7 @@ class ReportWriter {
 
   StudySummary write(const std::filesystem::path& file) {
     addInputs();
-    if (study_.sites) addSites();
+    if (study_.sites) addSites(file.parent_path() / "sites.geojson");
     for (std::size_t m = 0; m < study_.measures.size(); ++m) addMeasure(m);
     addTable();
     addModels(report_, *study_.base);
@@ -91,7 +102,7 @@ class ReportWriter {
     report_.warnings({results_.warnings.begin(), results_.warnings.end()});
   }
 
-  void addSites() {
+  void addSites(const std::filesystem::path& file) {
     const std::size_t m = study_.sites->measure;
     const MapGrid grid = mapGridOf(study_);
     std::vector<std::vector<std::uint8_t>> pixels;
@@ -122,17 +133,53 @@ class ReportWriter {
       so_far.push_back(site);
       const std::size_t v = computed_[site];
       const VariantFactor& factor = study_.variants.factors().front();
-      summary_.sites.push_back(factor.names[v]);
+      summary_.sites.push_back({factor.names[v], degrees(v, 0), degrees(v, 1)});
       table.rows.push_back({factor.names[v], factor.value(v, 0), factor.value(v, 1), text(v, m),
                             figureText(together(so_far), unitOf(measure))});
     }
     if (!chosen.empty()) summary_.sites_value = together(chosen);
     report_.table(table);
+    writeCandidates(file, m, chosen);
+  }
+
+  /// A coordinate of a candidate.
+  double degrees(std::size_t v, std::size_t coordinate) const {
+    return document::numberOf(study_.variants.factors().front().value(v, coordinate)).value_or(NAN);
+  }
+
+  /// All candidates as points with their measure; `chosen` counts from 1.
+  void writeCandidates(const std::filesystem::path& file, std::size_t m,
+                       const std::vector<std::size_t>& chosen) const {
+    using SitesJson = nlohmann::ordered_json;
+    SitesJson features = SitesJson::array();
+    for (std::size_t site = 0; site < computed_.size(); ++site) {
+      const std::size_t v = computed_[site];
+      const auto rank = std::find(chosen.begin(), chosen.end(), site);
+      const double alone = value(v, m);
+      SitesJson place = SitesJson::array();
+      place.push_back(degrees(v, 1));
+      place.push_back(degrees(v, 0));
+      SitesJson properties;
+      properties["name"] = study_.variants.factors().front().names[v];
+      properties[study_.measures[m].name] = std::isnan(alone) ? SitesJson() : SitesJson(alone);
+      properties["chosen"] = rank == chosen.end() ? SitesJson() : SitesJson(rank - chosen.begin() + 1);
+      features.push_back({{"type", "Feature"},
+                          {"properties", properties},
+                          {"geometry", {{"type", "Point"}, {"coordinates", place}}}});
+    }
+    SitesJson all;
+    all["type"] = "FeatureCollection";
+    all["name"] = study_.name;
+    all["features"] = features;
+    writeWhole(file, [&](std::ostream& out) { out << dumpJson(all) << "\n"; });
   }
 
   void addMeasure(std::size_t m) {
     const StudyMeasure& measure = study_.measures[m];
-    MeasureSummary summary{measure.name, unitOf(measure), NAN, NAN, NAN, 0, 0};
+    MeasureSummary summary;
+    summary.name = measure.name;
+    summary.unit = unitOf(measure);
+    summary.min = summary.max = summary.mean = NAN;
     std::vector<std::size_t> ranked;
     for (const std::size_t v : computed_) {
       if (!std::isnan(value(v, m))) ranked.push_back(v);
@@ -152,10 +199,27 @@ class ReportWriter {
     summary.max = value(ranked.front(), m);
     summary.min_variant = ranked.back();
     summary.min = value(ranked.back(), m);
+    std::vector<double> ascending;
+    double squares = 0;
+    for (auto v = ranked.rbegin(); v != ranked.rend(); ++v) {
+      ascending.push_back(value(*v, m));
+      squares += (ascending.back() - summary.mean) * (ascending.back() - summary.mean);
+    }
+    if (ascending.size() > 1)
+      summary.deviation = std::sqrt(squares / static_cast<double>(ascending.size() - 1));
+    summary.percentile_5 = percentileOf(ascending, 0.05);
+    summary.median = percentileOf(ascending, 0.5);
+    summary.percentile_95 = percentileOf(ascending, 0.95);
     summary_.measures.push_back(summary);
-    report_.paragraph(fmt::format("From {} to {}, mean {}.", figureText(summary.min, summary.unit),
-                                  figureText(summary.max, summary.unit),
-                                  figureText(summary.mean, summary.unit)));
+    const auto figure = [&](double of) { return figureText(of, summary.unit); };
+    std::string spread;
+    if (ascending.size() > 1)
+      spread = fmt::format(
+          "; standard deviation {}; 5 % of the variants are below {}, half below {}, 95 % below {}",
+          figure(summary.deviation), figure(summary.percentile_5), figure(summary.median),
+          figure(summary.percentile_95));
+    report_.paragraph(fmt::format("From {} to {}, mean {}{}.", figure(summary.min), figure(summary.max),
+                                  figure(summary.mean), spread));
     const std::size_t count = std::min(kBest, ranked.size());
     report_.table(
         ranking(m, {ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(count)}, "Largest"));

@@ -5,25 +5,11 @@
 #include <optional>
 
 #include "emscape/base/enum_names.h"
+#include "emscape/scenario/terrain/land_kind.h"
 
 namespace emscape::scenario {
 
 using emscape::toString;
-
-/// Kind of land, by its gamma at 10 GHz.
-/// @see M. W. Long, Radar Reflectivity of Land and Sea, 3rd ed. 2001; F. E. Nathanson, Radar Design
-/// Principles, 2nd ed. 1999; as MATLAB's surfacegamma cites them
-enum class LandKind {
-  flatland,      ///< -20 dB
-  farmland,      ///< -15 dB
-  woods,         ///< -15 dB
-  wooded_hills,  ///< -10 dB
-  mountains,     ///< 0 dB
-  urban          ///< 0 dB
-};
-constexpr auto namesOf(LandKind) {
-  return std::array{"flatland", "farmland", "woods", "wooded_hills", "mountains", "urban"};
-}
 
 /// Gamma (dB) of a kind of land: its value at 10 GHz + 5 log10(f / 10 GHz).
 double landGammaDb(LandKind kind, double frequency_hz);
@@ -54,9 +40,10 @@ struct Mti {
 /// At least one of land, sea and rain.
 struct Clutter {
   std::optional<double> land_gamma_db;  ///< sigma0 of land over the sine of the grazing angle; none: no echo
-  std::optional<int> sea_state;         ///< 0..6; none: no echo
-  bool rain = false;                    ///< echo of the atmosphere's rain
-  double range_cell_m = 0;              ///< length of the resolution cell after pulse compression, > 0
+  bool land_by_cover = false;    ///< land_gamma_db holds where the terrain's land cover names no kind of land
+  std::optional<int> sea_state;  ///< 0..6; none: no echo
+  bool rain = false;             ///< echo of the atmosphere's rain
+  double range_cell_m = 0;       ///< length of the resolution cell after pulse compression, > 0
   std::optional<Mti> mti;
   /// Radial speed of the target in volumes, either sign; none: the mean response of all speeds (canceller),
   /// the middle between two blind speeds (pulse_doppler).

@@ -10,6 +10,7 @@
 #include "emscape/base/enum_names.h"
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/scenario/terrain/land_cover.h"
 
 namespace emscape::scenario {
 
@@ -70,9 +71,10 @@ struct TerrainFileKeys {
   std::optional<VerticalDatum> vertical_datum;
   std::optional<HeightUnit> height_unit;
   std::optional<HeightEncoding> encoding;
-  int band = 0;             ///< that holds the heights, counted from 1; 0: the first
-  std::string crs;          ///< of the posts, for files that state none, such as EPSG:32633
-  bool swap_bytes = false;  ///< heights of 16 bits are in the other byte order
+  bool has_classes = false;  ///< codes of land cover in place of heights
+  int band = 0;              ///< that holds the heights, counted from 1; 0: the first
+  std::string crs;           ///< of the posts, for files that state none, such as EPSG:32633
+  bool swap_bytes = false;   ///< heights of 16 bits are in the other byte order
   ImplausibleHeights implausible = ImplausibleHeights::error;
 };
 
@@ -91,6 +93,11 @@ struct TerrainSpec {
   std::vector<TerrainFileKeys> keys = {};  ///< of each file; if shorter, the others have none
   /// Empty: an error for volumes and paths; maps have no value there.
   std::optional<MissingTerrain> missing = {};
+  /// A surface model, as `files`; empty: none. Its height above the ground is that of the clutter.
+  std::vector<std::string> surface_files = {};
+  std::vector<SourceLocation> surface_locations = {};
+  std::vector<TerrainFileKeys> surface_keys = {};
+  std::optional<LandCoverSpec> land_cover = {};
 };
 
 /// Remedies for an error of missing terrain.
@@ -100,7 +107,8 @@ inline constexpr const char* kMissingTerrainRemedy =
 /// True for the same files, keys and treatment; locations are not compared.
 inline bool operator==(const TerrainSpec& a, const TerrainSpec& b) {
   return a.files == b.files && a.vertical_datum == b.vertical_datum && a.keys == b.keys &&
-         a.missing == b.missing;
+         a.missing == b.missing && a.surface_files == b.surface_files && a.surface_keys == b.surface_keys &&
+         a.land_cover == b.land_cover;
 }
 inline bool operator!=(const TerrainSpec& a, const TerrainSpec& b) {
   return !(a == b);
@@ -181,6 +189,8 @@ class Terrain {
   /// For errors of missing terrain: where the files are, where ground is needed, and the mistake without
   /// which both would meet, in the middle of the box or in one of the needed places.
   virtual std::string placeText() const { return ""; }
+  /// Classes of the ground; null: none.
+  virtual const LandCover* landCover() const { return nullptr; }
 };
 
 using TerrainPtr = std::shared_ptr<const Terrain>;

@@ -48,9 +48,10 @@ struct Map {
   std::optional<MapHeight> height;  ///< none: for all heights
   std::optional<double> time_s;     ///< since the scenario's epoch; none: over all times
   std::vector<std::string> labels;  ///< of classes and categories: names of 0, 1 ...
-  std::vector<int> colors;    ///< of classes: indices of render::categoryColor(); empty: the class itself
-  int area_class = -1;        ///< the class whose area is reported; -1: none
-  std::vector<float> values;  ///< pixels in the grid's order; NaN: no value
+  std::vector<int> colors;  ///< of classes: indices of render::categoryColor(); empty: the class itself
+  std::vector<std::uint32_t> label_colors = {};  ///< of categories, 0xAABBGGRR, in place of `colors`
+  int area_class = -1;                           ///< the class whose area is reported; -1: none
+  std::vector<float> values;                     ///< pixels in the grid's order; NaN: no value
   /// One per pixel; empty: those with a value are exact, why others have none is not known.
   std::vector<PixelAnswer> answers;
   /// Of the pixels without a value whose answer is known: no height reaches the threshold. None: all pixels
