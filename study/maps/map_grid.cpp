@@ -342,8 +342,8 @@ void requireCovered(const MapGrid& grid) {
   if (covered_m2 >= kEnough * asked_m2 - border_m2) return;
   throw Error(
       ErrorCode::usage,
-      fmt::format("crs '{}' holds {:.0f} of the area's {:.0f} km2; EPSG:6933 holds all longitudes from "
-                  "80 degrees south to 80 degrees north",
+      fmt::format("crs '{}' holds {:.0f} of the area's {:.0f} km2; EPSG:3395 holds all longitudes, as a "
+                  "box from -180 to 180, from 80 degrees south to 80 degrees north",
                   grid.crs, covered_m2 / 1e6, asked_m2 / 1e6));
 }
 
