@@ -8,6 +8,8 @@
 #include <fstream>
 #include <string>
 
+#include "base/control_group.h"
+
 namespace emscape {
 namespace {
 
@@ -28,13 +30,6 @@ std::optional<std::size_t> systemBytes() {
   return std::nullopt;
 }
 
-/// Remainder of a control group's limit; its page cache, although it can be dropped, counts as used.
-std::optional<std::size_t> groupBytes() {
-  const auto limit = numberIn("/sys/fs/cgroup/memory.max"), taken = numberIn("/sys/fs/cgroup/memory.current");
-  if (!limit || !taken) return std::nullopt;
-  return *limit > *taken ? *limit - *taken : 0;
-}
-
 /// Remainder of the limit on the address space (ulimit -v).
 std::optional<std::size_t> addressBytes() {
   rlimit limit{};
@@ -48,7 +43,7 @@ std::optional<std::size_t> addressBytes() {
 
 std::optional<std::size_t> availableMemory_bytes() {
   std::optional<std::size_t> least;
-  for (const auto& bytes : {systemBytes(), groupBytes(), addressBytes()}) {
+  for (const auto& bytes : {systemBytes(), ControlGroups().memoryLeft_bytes(), addressBytes()}) {
     if (bytes) least = std::min(least.value_or(*bytes), *bytes);
   }
   return least;

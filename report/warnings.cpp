@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <regex>
+#include <optional>
 #include <unordered_map>
 #include <unordered_set>
 
@@ -12,9 +12,63 @@
 
 namespace emscape::report {
 
+namespace {
+
+/// The parts of "OF: emitter 'NAME': TEXT", of which "OF: " may be missing and has no quotation mark.
+struct WarningOfEmitter {
+  std::string of, emitter, text;
+};
+
+std::optional<WarningOfEmitter> partsOf(const std::string& warning) {
+  static const std::string kEmitter = "emitter '", kEnd = "': ";
+  const std::size_t begin = warning.find(kEmitter);
+  if (begin == std::string::npos || warning.find('\'') < begin) return std::nullopt;
+  const bool follows = begin >= 2 && warning.compare(begin - 2, 2, ": ") == 0;
+  const std::size_t name = begin + kEmitter.size(), end = warning.find('\'', name);
+  if ((begin > 0 && !follows) || end == std::string::npos || warning.compare(end, kEnd.size(), kEnd) != 0)
+    return std::nullopt;
+  return WarningOfEmitter{warning.substr(0, begin), "'" + warning.substr(name, end - name) + "'",
+                          warning.substr(end + kEnd.size())};
+}
+
+bool isDigit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+bool isWordPart(char c) {
+  return isDigit(c) || c == '_' || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+/// A text with '#' for each of its numbers, which are no parts of words.
+/// @param numbers  receives the numbers
+std::string withoutNumbers(const std::string& text, std::vector<std::string>& numbers) {
+  std::string form;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto wordAt = [&](std::size_t at) { return at < text.size() && isWordPart(text[at]); };
+    const bool is_signed = text[i] == '-' && (i == 0 || !isWordPart(text[i - 1]));
+    const std::size_t begin = is_signed ? i + 1 : i;
+    std::size_t end = begin;
+    while (end < text.size() && isDigit(text[end])) ++end;
+    const bool may_begin = is_signed || i == 0 || !isWordPart(text[i - 1]);
+    if (end == begin || !may_begin || wordAt(end)) {
+      form += text[i++];
+      continue;
+    }
+    if (end + 1 < text.size() && text[end] == '.' && isDigit(text[end + 1])) {
+      std::size_t decimals = end + 1;
+      while (decimals < text.size() && isDigit(text[decimals])) ++decimals;
+      if (!wordAt(decimals)) end = decimals;
+    }
+    numbers.push_back(text.substr(i, end - i));
+    form += '#';
+    i = end;
+  }
+  return form;
+}
+
+}  // namespace
+
 std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings) {
-  static const std::regex kOfEmitter("((?:[^']*: )?)emitter '([^']*)': (.*)");
-  static const std::regex kNumber(R"((\B-)?\b\d+(\.\d+)?\b)");
   constexpr std::size_t kMaxNames = 5;
   struct Kind {
     std::string of;                                 // the series in front, such as "the original: "
@@ -27,24 +81,21 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
   std::vector<Kind> kinds;
   std::unordered_map<std::string, std::size_t> kind_of_form;  // of the warnings of emitters
   for (const std::string& warning : warnings) {
-    std::smatch parts;
-    if (!std::regex_match(warning, parts, kOfEmitter)) {
+    const std::optional<WarningOfEmitter> parts = partsOf(warning);
+    if (!parts) {
       kinds.push_back({"", warning, {}, {}, 1, {}});
       continue;
     }
-    const std::string of = parts[1], text = parts[3], emitter = "'" + parts[2].str() + "'";
-    const std::string form = std::regex_replace(text, kNumber, "#");
+    std::vector<std::string> numbers;
+    const std::string &of = parts->of, &emitter = parts->emitter, form = withoutNumbers(parts->text, numbers);
     const auto [known, is_new] = kind_of_form.emplace(of + form, kinds.size());
     if (is_new) kinds.push_back({of, form, {}, {}, 0, {}});
     Kind& kind = kinds[known->second];
     if (kind.emitters.insert(emitter).second && kind.names.size() < kMaxNames) kind.names.push_back(emitter);
     ++kind.count;
-    std::size_t place = 0;
-    for (std::sregex_iterator number(text.begin(), text.end(), kNumber), end; number != end;
-         ++number, ++place) {
-      if (kind.numbers.size() <= place) kind.numbers.emplace_back();
-      kind.numbers[place].push_back(number->str());
-    }
+    if (kind.numbers.size() < numbers.size()) kind.numbers.resize(numbers.size());
+    for (std::size_t place = 0; place < numbers.size(); ++place)
+      kind.numbers[place].push_back(numbers[place]);
   }
   std::vector<std::string> lines;
   for (const Kind& kind : kinds) {

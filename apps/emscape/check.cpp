@@ -11,12 +11,14 @@ namespace emscape::app {
 namespace {
 
 int check(const std::string& dir, const GlobalOptions& global) {
+  const StoppableLoops stoppable;
   const report::CheckReport report = report::checkReport(dir, stopIfInterrupted);
   if (global.json) {
     printJson(report::toJson(report));
   } else {
     printResult(report::checkText(report));
   }
+  if (!report.unreadable.empty()) return static_cast<int>(ErrorCode::bad_input);
   return report.pass() ? 0 : static_cast<int>(ErrorCode::check_failed);
 }
 
@@ -36,7 +38,7 @@ Examples:
   emscape check reference --json     {"datasets": [{"name", "cases", "max_abs_error", "tolerance", "unit", "pass"}], "pass"}
 
 Exit status: 0 if every dataset that was run is within its tolerance, 5 if one is not or none of the datasets has a model, 3 for
-a folder without known datasets and for a file that is malformed.)");
+a folder without known datasets and if a dataset cannot be read; the others are run.)");
   auto dir = std::make_shared<std::string>();
   command->add_option("DIR", *dir, "Folder of datasets, one per folder; or of one family")->required();
   command->callback([dir, &global, &action] { action = [dir, &global] { return check(*dir, global); }; });

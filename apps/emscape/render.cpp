@@ -30,6 +30,7 @@
 #include "playback/view/view_file.h"
 #include "render/patterns/reconstruction.h"
 #include "report/maps/output_files.h"
+#include "report/runs/no_value.h"
 #include "report/runs/real_time_report.h"
 #include "report/warnings.h"
 
@@ -187,6 +188,7 @@ struct Stage {
   std::unique_ptr<FrameSource> source;
   std::unique_ptr<Painter> painter;
   std::optional<playback::ValueRange> range;  ///< of the searched steps of the series
+  std::string empty_quantity;                 ///< if no voxel of these steps is above the floor
   playback::Film film;
 };
 
@@ -223,6 +225,7 @@ Stage openStage(const ViewState& view, const RenderOptions& options, const Globa
         playback::openFrameSource(selectionOf(view, options), target, progressSink(global), &stopFlag()),
         nullptr,
         {},
+        {},
         {}};
     stage.painter = std::make_unique<Painter>(view, *stage.source, target, must_show_isosurface);
     checkFollowed(view, stage.source->scene());
@@ -234,8 +237,21 @@ Stage openStage(const ViewState& view, const RenderOptions& options, const Globa
     stage.painter->setFrame(frame);
     const playback::ValueRange range = render::colorRangeOf(frame.info(), frame.color_range);
     if (range.min < range.max) stage.range = range;
+    if (range.max <= frame.info().floor && !frame.info().categorical)
+      stage.empty_quantity = frame.info().quantity;
     return stage;
   });
+}
+
+/// Warns about a scenario's field without any value.
+void warnOfNoValue(const ViewState& view, const Stage& stage) {
+  const playback::LoadedScenario* scene = stage.source->scene();
+  const bool is_computed = scene != nullptr && std::filesystem::exists(view.input) &&
+                           playback::inputKindOf(view.input) == playback::InputKind::scenario;
+  if (stage.empty_quantity.empty() || !is_computed || !view.compare.empty()) return;
+  std::vector<double> times_s;
+  for (int n = 0; n < stage.source->count(); ++n) times_s.push_back(stage.source->time_s(n));
+  logWarning(report::noValueWarning(stage.empty_quantity, *scene->scenario, times_s));
 }
 
 /// Writes the file of --save-state: the view, with the colours fitted to the first frame.
@@ -275,12 +291,13 @@ int renderPictures(const RenderOptions& options, const GlobalOptions& global) {
   plan.pattern = view.pattern.value_or(render::Pattern::full);
   plan.interpolation = render::parseInterpolation(options.interpolate);
   const Stage stage = openStage(view, options, global);
-  saveState(options, view, stage);
-  if (options.outputs.empty()) return 0;
   const std::unique_ptr<FrameSource>& source = stage.source;
   Painter& painter = *stage.painter;
   const Sinks sinks =
       openSinks(options, view, source->name(), source->count(), options.frames_per_s.value_or(kFilmRate));
+  saveState(options, view, stage);
+  warnOfNoValue(view, stage);
+  if (options.outputs.empty()) return 0;
 
   logInfo(fmt::format("drawing {} picture{} of {}x{} into {}", source->count(),
                       source->count() == 1 ? "" : "s", view.size.width, view.size.height,

@@ -18,6 +18,7 @@
 #include "emscape/playback/series/series_writer.h"
 #include "emscape/scenario/model/quantities.h"
 #include "playback/view/view_settings.h"
+#include "report/runs/no_value.h"
 #include "report/runs/series_report.h"
 #include "report/warnings.h"
 
@@ -131,6 +132,15 @@ int simulate(const SimulateOptions& options, const GlobalOptions& global) {
   });
   const playback::SeriesResult result = playback::writeSeries(*series, series_options, progressSink(global));
   report::logWarnings(series->warnings());
+  for (std::size_t c = 0; c < result.channels.size() && options.range.empty() && options.compare.empty();
+       ++c) {
+    const playback::ValueRange& range = result.ranges[c];
+    // Floors of probabilities and counts are 0, of indices -1.
+    const bool is_floor =
+        range.max <= static_cast<float>(input.scenario->output.floor) || range.max == 0 || range.max == -1;
+    if (range.empty() || (range.min == range.max && is_floor))
+      logWarning(report::noValueWarning(result.channels[c], *input.scenario, times_s));
+  }
 
   const double seconds = watch.lap_ms() / 1000;
   if (global.json) {

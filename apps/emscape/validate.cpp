@@ -24,6 +24,10 @@ namespace {
 using scenario::Problem;
 using scenario::Severity;
 
+bool isError(const Problem& problem) {
+  return problem.severity == Severity::error;
+}
+
 /// Converts an error to a problem; an error without a location is located in the scenario file.
 Problem problemOf(const Error& error, const std::string& scenario_file) {
   const SourceLocation location =
@@ -95,9 +99,10 @@ bool checkSteps(const scenario::Scenario& scenario, const scenario::Terrain* ter
 /// Checks that need the whole scenario: the ground, the quantities, the models, every step.
 /// @param choices  receives the models' automatic choices at the first step
 /// @param work     receives the field's memory, time and disk space, if it can be computed
+/// @param status   receives the exit status of the programs that compute the field, if they refuse it
 void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, bool allow_missing_terrain,
                   std::vector<Problem>& problems, std::vector<emfield::EmitterChoice>& choices,
-                  std::optional<report::WorkEstimate>& work) {
+                  std::optional<report::WorkEstimate>& work, ErrorCode& status) {
   try {
     const scenario::TerrainPtr terrain = scenario::loadTerrain(*scenario);
     if (terrain) {
@@ -125,6 +130,8 @@ void checkMeaning(const std::shared_ptr<const scenario::Scenario>& scenario, boo
         scenario::snapshotAt(scenario, terrain.get(), scenario::timesOf(scenario->clock).front()),
         terrain.get());
   } catch (const Error& error) {
+    const bool is_first = std::none_of(problems.begin(), problems.end(), isError);
+    if (is_first) status = error.code();
     problems.push_back(problemOf(error, scenario->file));
   }
 }
@@ -141,10 +148,10 @@ int validate(const ValidateCommand& command, const GlobalOptions& global) {
   scenario::ParseResult result = scenario::parseScenario(file, command.edits);
   std::vector<emfield::EmitterChoice> choices;
   std::optional<report::WorkEstimate> work;
+  ErrorCode status = ErrorCode::bad_input;
   if (result.scenario)
-    checkMeaning(result.scenario, command.allow_missing_terrain, result.problems, choices, work);
-  const bool ok = std::none_of(result.problems.begin(), result.problems.end(),
-                               [](const Problem& problem) { return problem.severity == Severity::error; });
+    checkMeaning(result.scenario, command.allow_missing_terrain, result.problems, choices, work, status);
+  const bool ok = std::none_of(result.problems.begin(), result.problems.end(), isError);
 
   const std::string air = result.scenario ? report::airSource(*result.scenario) : "";
   if (global.json) {
@@ -173,7 +180,7 @@ int validate(const ValidateCommand& command, const GlobalOptions& global) {
       print("{}: ok\n", file);
     }
   }
-  return ok ? 0 : static_cast<int>(ErrorCode::bad_input);
+  return ok ? 0 : static_cast<int>(status);
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ namespace {
 void makeFolder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
+  if (failed == std::errc::not_a_directory || failed == std::errc::file_exists)
+    throw Error(ErrorCode::usage, {folder.string()}, "is to be a folder, but it or a part of it is a file");
   if (failed) failMaking(folder, failed.message());
 }
 

@@ -68,12 +68,20 @@ bool FolderLock::lock(std::string& holder) {
     if (!is_new) found = openFile(folder_, file_, O_RDWR);
     if (!found.isOpen()) continue;  // removed between the two calls
     const int cause = ::flock(found.number(), is_new ? LOCK_EX : LOCK_EX | LOCK_NB) == 0 ? 0 : errno;
-    if (cause != 0 && cause != EWOULDBLOCK) {
-      if (is_new) remove();
-      failWriting(file_, causeOf(cause));
-    }
     const std::string content = contentOf(found);
-    if (cause != 0) {
+    if (cause != 0 && cause != EWOULDBLOCK) {
+      // Files cannot be locked on this file system: the process that has created the file holds the lock.
+      if (!is_new && content.empty() && attempts_left-- > 0) {
+        found.close();
+        std::this_thread::sleep_for(kBetweenAttempts);
+        continue;
+      }
+      if (!is_new && isLock(content)) {
+        holder = content.substr(kLockWords.size()) + "; files cannot be locked here (" + causeOf(cause) +
+                 "): if that process has ended, remove " + file_.string();
+        return false;
+      }
+    } else if (cause != 0) {
       holder = isLock(content) ? content.substr(kLockWords.size()) : "not known which";
       return false;
     }

@@ -25,6 +25,17 @@ void silenceHdf5() {
 void prepare() {
   static std::once_flag once;
   std::call_once(once, [] {
+    // What is read and written does not depend on the user's environment.
+    for (const auto& [option, value] :
+         {std::pair("GDAL_PAM_ENABLED", "YES"), std::pair("GTIFF_POINT_GEO_IGNORE", "NO"),
+          std::pair("GDAL_TIFF_ENDIANNESS", "NATIVE"), std::pair("GDAL_TIFF_INTERNAL_MASK", "NO"),
+          std::pair("GDAL_NUM_THREADS", "1"),
+          std::pair("GDAL_GEOREF_SOURCES", "PAM,INTERNAL,TABFILE,WORLDFILE"),
+          std::pair("OGR_CT_FORCE_TRADITIONAL_GIS_ORDER", "NO"),
+          std::pair("OGR_ENABLE_PARTIAL_REPROJECTION", "NO"),
+          std::pair("GDAL_DISABLE_READDIR_ON_OPEN", "NO")}) {
+      CPLSetConfigOption(option, value);
+    }
     GDALAllRegister();
     OSRSetPROJEnableNetwork(0);
   });
@@ -44,6 +55,28 @@ std::string faultOfName(const fs::path& file) {
   return "";
 }
 
+namespace {
+
+/// The first layer of a GeoPackage that is a view, which may be a query without end; empty: none.
+std::string viewIn(GDALDatasetH dataset) {
+  if (std::string(GDALGetDriverShortName(GDALGetDatasetDriver(dataset))) != "GPKG") return "";
+  const OGRLayerH views = GDALDatasetExecuteSQL(
+      dataset,
+      "SELECT c.table_name FROM gpkg_contents c JOIN sqlite_master m ON lower(m.name) = lower(c.table_name) "
+      "WHERE m.type = 'view'",
+      nullptr, nullptr);
+  if (views == nullptr) return "";
+  std::string name;
+  if (const OGRFeatureH row = OGR_L_GetNextFeature(views)) {
+    name = OGR_F_GetFieldAsString(row, 0);
+    OGR_F_Destroy(row);
+  }
+  GDALDatasetReleaseResultSet(dataset, views);
+  return name;
+}
+
+}  // namespace
+
 Dataset openFile(const fs::path& file, unsigned flags, const char* const* drivers, const char* const* options,
                  const char* const* siblings) {
   prepare();
@@ -56,7 +89,14 @@ Dataset openFile(const fs::path& file, unsigned flags, const char* const* driver
     return nullptr;
   }
   silenceHdf5();
-  return Dataset(GDALOpenEx(localName(file).c_str(), flags | GDAL_OF_READONLY, drivers, options, siblings));
+  Dataset dataset(GDALOpenEx(localName(file).c_str(), flags | GDAL_OF_READONLY, drivers, options, siblings));
+  if (dataset == nullptr) return dataset;
+  if (const std::string view = viewIn(dataset.get()); !view.empty()) {
+    CPLError(CE_Failure, CPLE_OpenFailed,
+             "layer '%s' is a view (SQL), which is not read; export it as a table", view.c_str());
+    return nullptr;
+  }
+  return dataset;
 }
 
 Dataset openInMemory(const std::string& name, unsigned flags, const char* const* drivers,

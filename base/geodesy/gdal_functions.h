@@ -29,14 +29,14 @@ const LoadedLibrary& library();
   F(CPLCalloc) F(CPLCloseFileInZip) F(CPLCloseZip) F(CPLCreateFileInZip) F(CPLCreateZip) \
   F(CPLDestroyXMLNode) F(CPLError) F(CPLGetConfigOption) F(CPLGetErrorHandlerUserData) \
   F(CPLGetLastErrorMsg) F(CPLGetThreadLocalConfigOption) F(CPLGetXMLValue) F(CPLHTTPPopFetchCallback) F(CPLHTTPPushFetchCallback) \
-  F(CPLParseXMLString) F(CPLPopErrorHandler) F(CPLPushErrorHandlerEx) F(CPLSetThreadLocalConfigOption) \
+  F(CPLParseXMLString) F(CPLPopErrorHandler) F(CPLPushErrorHandlerEx) F(CPLSetConfigOption) F(CPLSetThreadLocalConfigOption) \
   F(CPLStrdup) F(CPLWriteFileInZip) F(CSLDestroy) F(CSLTokenizeString2) F(GDALAddBand) F(GDALAllRegister) \
   F(GDALApproxTransform) F(GDALAttributeRelease) F(GDALAttributeWriteRaw) F(GDALAttributeWriteString) \
   F(GDALClose) F(GDALContourGenerateEx) F(GDALCreate) F(GDALCreateApproxTransformer) \
   F(GDALCreateColorTable) F(GDALCreateCopy) F(GDALCreateMultiDimensional) \
   F(GDALCreateRasterAttributeTable) F(GDALDataTypeIsComplex) F(GDALDatasetCommitTransaction) \
-  F(GDALDatasetCreateLayer) F(GDALDatasetGetLayer) F(GDALDatasetGetLayerCount) F(GDALDatasetGetRootGroup) \
-  F(GDALDatasetRasterIO) F(GDALDatasetStartTransaction) F(GDALDestroyApproxTransformer) \
+  F(GDALDatasetCreateLayer) F(GDALDatasetExecuteSQL) F(GDALDatasetGetLayer) F(GDALDatasetGetLayerCount) F(GDALDatasetGetRootGroup) \
+  F(GDALDatasetRasterIO) F(GDALDatasetReleaseResultSet) F(GDALDatasetStartTransaction) F(GDALDestroyApproxTransformer) \
   F(GDALDestroyColorTable) F(GDALDestroyRasterAttributeTable) F(GDALDimensionGetName) \
   F(GDALDimensionGetSize) F(GDALDimensionRelease) F(GDALExtendedDataTypeCreate) \
   F(GDALExtendedDataTypeCreateString) F(GDALExtendedDataTypeRelease) F(GDALGetBlockSize) F(GDALGetColorEntryAsRGB) F(GDALGetColorEntryCount) \

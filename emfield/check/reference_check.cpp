@@ -98,7 +98,8 @@ ReferenceFolder lookBelow(const fs::path& root, const std::string& only) {
     for (const fs::directory_entry& entry : fs::directory_iterator(root)) {
       const std::string name = entry.path().filename().string();
       // top-level files, such as a README, are not datasets
-      if (entry.is_directory() && known.count(name) == 0) found.unknown.push_back(name);
+      std::error_code ignored;  // as of a link to itself
+      if (entry.is_directory(ignored) && known.count(name) == 0) found.unknown.push_back(name);
     }
   }
   for (const std::string& family : families) {

@@ -9,6 +9,7 @@
 
 #include "base/files/file_reading.h"
 #include "document/csv.h"
+#include "emscape/base/work.h"
 
 namespace emscape::emfield {
 namespace {
@@ -85,6 +86,7 @@ int ReferenceTable::integer(int row, std::string_view column) const {
 }
 
 const std::string& ReferenceTable::text(int row, std::string_view column) const {
+  checkpoint();  // of the loops over rows
   const auto name = std::find(names_.begin(), names_.end(), column);
   if (name == names_.end()) {
     throw Error(ErrorCode::bad_input, {file_, 1, 0}, fmt::format("column '{}' is missing", column));

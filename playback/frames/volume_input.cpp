@@ -69,7 +69,8 @@ std::vector<volume::SeriesStep> meshesOf(const fs::path& path) {
   if (!fs::is_directory(path)) return {{path, std::nullopt}};
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(path)) {
-    if (entry.is_regular_file() && volume::isMeshFile(entry.path())) files.push_back(entry.path());
+    std::error_code ignored;  // as of a link to itself
+    if (entry.is_regular_file(ignored) && volume::isMeshFile(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   std::vector<volume::SeriesStep> steps;

@@ -2,9 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "base/files/folder.h"
 #include "base/files/unfinished_file.h"
 #include "emscape/base/error.h"
+#include "emscape/base/log.h"
 #include "emscape/volume/format/file.h"
 #include "playback/pictures/video.h"
 #include "playback/series/file_names.h"
@@ -37,13 +40,25 @@ class PngFolder : public PictureSink {
     removeAbandonedFiles(folder_);
   }
   void add(int number, const render::Image8& picture, int /*frames*/) override {
-    render::writePng(volume::seriesFile(folder_, name_, number, "png").string(), picture);
+    render::writePng(fileOf(number).string(), picture);
+    last_ = std::max(last_, number);
   }
-  void finish() override {}
+  /// Pictures of an earlier, longer run are the user's: they are named, not removed.
+  void finish() override {
+    int others = 0;
+    while (fs::exists(fileOf(last_ + 1 + others))) ++others;
+    if (others == 0) return;
+    logWarning(fmt::format("{}{} of an earlier run: this one wrote {} picture{}", fileOf(last_ + 1).string(),
+                           others == 1 ? " is" : fmt::format(" and {} more are", others - 1), last_,
+                           last_ == 1 ? "" : "s"));
+  }
 
  private:
+  fs::path fileOf(int number) const { return volume::seriesFile(folder_, name_, number, "png"); }
+
   const fs::path folder_;
   const std::string name_;
+  int last_ = 0;  ///< number of the last picture
 };
 
 class Video : public PictureSink {

@@ -50,7 +50,13 @@ VideoFile::VideoFile(std::filesystem::path path, render::ImageSize size, double 
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, messages_, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&actions, messages_, STDERR_FILENO);
-  const int error = posix_spawnp(&process_, "ffmpeg", &actions, nullptr, argv.data(), environ);
+  // In a process group of its own: a terminal sends Ctrl-C to this program alone, which then ends ffmpeg.
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  posix_spawnattr_setpgroup(&attributes, 0);
+  const int error = posix_spawnp(&process_, "ffmpeg", &actions, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[0]);
   pipe_ = ends[1];

@@ -219,18 +219,42 @@ void SeriesFiles::requireNone(const std::vector<fs::path>& inputs) const {
   }
 }
 
+std::set<std::string> SeriesFiles::ownNames() const {
+  std::set<std::string> names;
+  for (int step = 0; step < static_cast<int>(times_s_.size()); ++step) {
+    for (const std::string& name : namesOf(step)) names.insert(name);
+  }
+  if (hasIndex()) names.insert(name_ + ".pvd");
+  return names;
+}
+
+void SeriesFiles::requireFree() const {
+  const std::set<std::string> own = ownNames();
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+    std::error_code ignored;
+    const bool is_replaced = own.count(entry.path().filename().string()) != 0;
+    // Folders and devices are never replaced; UnfinishedFile names them.
+    const bool counts = is_replaced ? entry.is_symlink(ignored) || entry.is_regular_file(ignored)
+                                    : entry.is_regular_file(ignored) && isReadWithSeries(entry);
+    if (!counts) continue;
+    throw Error(
+        ErrorCode::usage, {entry.path().string()},
+        std::string("is in the folder, which has no description of a series (series.json), and would ") +
+            (is_replaced ? "be replaced" : "be read with the series") + "; move it, or use another folder");
+  }
+}
+
 void SeriesFiles::removeOld() const {
-  std::set<std::string> ours = SeriesJournal(folder_).fileNames(), replaced;
+  std::set<std::string> ours = SeriesJournal(folder_).fileNames();
   const bool had_index = std::any_of(ours.begin(), ours.end(), [](const std::string& name) {
     return fs::path(name).extension() == ".vti" || fs::path(name).extension() == ".vtu";
   });
   if (had_index) ours.insert(nameOfOld(folder_).value_or(name_) + ".pvd");
-  for (int step = 0; step < static_cast<int>(times_s_.size()); ++step) {
-    for (const std::string& name : namesOf(step)) replaced.insert(name);
-  }
+  const std::set<std::string> replaced = ownNames();
   std::vector<fs::path> files{folder_ / "series.json", folder_ / "series.steps"};
   for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-    if (!entry.is_regular_file()) continue;
+    std::error_code ignored;  // as of a link to itself
+    if (!entry.is_regular_file(ignored)) continue;
     const std::string name = entry.path().filename().string();
     if (ours.count(name) != 0) {
       files.push_back(entry);

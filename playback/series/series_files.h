@@ -48,6 +48,10 @@ class SeriesFiles {
   /// present series may have: it would be replaced or removed
   void requireNone(const std::vector<std::filesystem::path>& inputs) const;
 
+  /// For a folder without the description of a series.
+  /// @throws Error (usage) if it has a file that this series would replace, or that is read with the series
+  void requireFree() const;
+
   /// Removes the present series from the folder: its description, and the files that its journal lists. Files
   /// that this series writes may be there: they are replaced.
   /// @throws Error (usage) if a reader of the folder would take another volume as part of this series; then
@@ -57,6 +61,8 @@ class SeriesFiles {
  private:
   /// Of the files of this and of the folder's present series, their description included.
   std::regex names() const;
+  /// Names of the files that this series writes, without its description.
+  std::set<std::string> ownNames() const;
   /// A volume file of a step and the channels in it.
   struct VolumeFile {
     std::string name;

@@ -9,6 +9,7 @@
 #include "base/files/json_reading.h"
 #include "base/files/json_writing.h"
 #include "base/files/whole_file.h"
+#include "base/instruction_set.h"
 #include "emscape/base/error.h"
 
 namespace emscape::playback {
@@ -62,6 +63,7 @@ Json recipeOf(const FieldSeries& series, const SeriesOptions& options) {
       {"scenario hash", scenario.hash},
       {"content of elevation files", elevations},
       {"version of emscape", EMSCAPE_VERSION},
+      {"instruction set", instructionSet()},
       {"format", std::set<std::string>(options.formats.begin(), options.formats.end())},
       {"quantity", channels},
       {"range", options.range ? toJson(*options.range) : Json(nullptr)},
@@ -87,9 +89,13 @@ ValueRange rangeFromJson(const Json& json) {
   return range;
 }
 
+bool hasSeriesState(const std::filesystem::path& folder) {
+  return std::filesystem::exists(folder / kStateFile);
+}
+
 std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / kStateFile;
-  if (!std::filesystem::exists(file)) return std::nullopt;
+  if (!hasSeriesState(folder)) return std::nullopt;
   return readJson<Json>(readWholeText(file), file.string(), fromJson,
                         ": not the state of a series; start the series again");
 }

@@ -35,6 +35,9 @@ Json toJson(const ValueRange& range);
 /// @throws nlohmann::json::exception or Error (bad_input) for an invalid range
 ValueRange rangeFromJson(const Json& json);
 
+/// True if the folder has the description of a series, readable or not.
+bool hasSeriesState(const std::filesystem::path& folder);
+
 /// The state of a folder; none if it holds no series.
 /// @throws Error (bad_input) if series.json is damaged: it names the line of invalid JSON
 std::optional<SeriesState> readSeriesState(const std::filesystem::path& folder);

@@ -73,7 +73,11 @@ class SeriesWriter {
     }
     files_.requireNone(inputsOf(series));
     removeAbandonedFiles(options.folder);
-    if (options.existing == Existing::replace) files_.removeOld();
+    if (!hasSeriesState(options.folder)) {
+      files_.requireFree();
+    } else if (options.existing == Existing::replace) {
+      files_.removeOld();
+    }
   }
 
   SeriesResult run() {

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <vector>
 
+#include "base/memory.h"
 #include "base/text/utf8.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
@@ -28,6 +29,21 @@ Point2 beginOf(const std::string& text, double size_px, Weight weight, Align ali
   return {shift > 0 ? -shift * lineWidth(text, size_px, weight) : 0.0, kBaseline * size_px};
 }
 
+/// @throws Error for a picture beyond Cairo's limit, or with its encoded copies beyond the memory
+cairo_surface_t* imageSurface(ImageSize size) {
+  constexpr int kMaxSide = 32767;
+  constexpr std::size_t kBytesPerPixel = 12;
+  const std::string what =
+      "a picture of " + std::to_string(size.width) + "x" + std::to_string(size.height) + " pixels";
+  if (std::max(size.width, size.height) > kMaxSide) {
+    throw Error(ErrorCode::usage,
+                what + " is larger than the largest, " + std::to_string(kMaxSide) + " pixels along a side");
+  }
+  requireMemory({what, static_cast<std::size_t>(size.count()) * kBytesPerPixel, "a smaller one takes less"},
+                {});
+  return cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size.width, size.height);
+}
+
 cairo_status_t append(void* text, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(text)->append(reinterpret_cast<const char*>(data), length);
   return CAIRO_STATUS_SUCCESS;
@@ -43,8 +59,7 @@ bool overlap(const Rect& a, const Rect& b) {
   return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
 }
 
-Canvas::Canvas(ImageSize size)
-    : Canvas(size, cairo_image_surface_create(CAIRO_FORMAT_ARGB32, size.width, size.height)) {}
+Canvas::Canvas(ImageSize size) : Canvas(size, imageSurface(size)) {}
 
 Canvas::Canvas(ImageSize size, std::uint32_t* pixels)
     : Canvas(size, cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(pixels),

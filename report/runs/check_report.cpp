@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "emscape/base/error.h"
 #include "report/text.h"
 
 namespace emscape::report {
@@ -24,8 +25,9 @@ void addRow(Text& out, const std::string& name, int cases, const FigureCheck& fi
 }  // namespace
 
 bool CheckReport::pass() const {
-  return !checked.empty() && std::all_of(checked.begin(), checked.end(),
-                                         [](const Outcome& outcome) { return outcome.check.pass(); });
+  return !checked.empty() && unreadable.empty() &&
+         std::all_of(checked.begin(), checked.end(),
+                     [](const Outcome& outcome) { return outcome.check.pass(); });
 }
 
 CheckReport checkReport(const std::string& folder, const std::function<void()>& next) {
@@ -37,7 +39,11 @@ CheckReport checkReport(const std::string& folder, const std::function<void()>& 
       report.not_checked.push_back(dataset->name);
       continue;
     }
-    report.checked.push_back({dataset, dataset->check(report.folder.root / dataset->name)});
+    try {
+      report.checked.push_back({dataset, dataset->check(report.folder.root / dataset->name)});
+    } catch (const Error& error) {
+      report.unreadable.push_back({dataset->name, error.what()});
+    }
   }
   return report;
 }
@@ -56,11 +62,12 @@ Json toJson(const CheckReport& report) {
                         {"pass", outcome.check.pass()},
                         {"figures", figures}});
   }
-  return {{"datasets", datasets},
-          {"pass", report.pass()},
-          {"not_checked", report.not_checked},
-          {"absent", report.folder.absent},
-          {"unknown", report.folder.unknown}};
+  Json unreadable = Json::array();
+  for (const auto& [name, fault] : report.unreadable)
+    unreadable.push_back({{"name", name}, {"fault", fault}});
+  return {{"datasets", datasets},           {"unreadable", unreadable},
+          {"pass", report.pass()},          {"not_checked", report.not_checked},
+          {"absent", report.folder.absent}, {"unknown", report.folder.unknown}};
 }
 
 std::string checkText(const CheckReport& report) {
@@ -72,6 +79,7 @@ std::string checkText(const CheckReport& report) {
     addRow(out, outcome.dataset->name, outcome.check.cases, figures.front());
     for (std::size_t i = 1; i < figures.size(); ++i) addRow(out, "", 0, figures[i]);
   }
+  for (const auto& [name, fault] : report.unreadable) out.add("{:<40} cannot be read: {}\n", name, fault);
   for (const std::string& name : report.not_checked)
     out.add("{:<40} not checked: no model answers to it\n", name);
   for (const std::string& name : report.folder.absent) out.add("{:<40} not checked: absent\n", name);

@@ -19,13 +19,17 @@ struct CheckReport {
   emfield::ReferenceFolder folder;
   std::vector<Outcome> checked;
   std::vector<std::string> not_checked;  ///< datasets without a model
+  struct Unreadable {
+    std::string name, fault;
+  };
+  std::vector<Unreadable> unreadable;
 
-  /// True if datasets were run and all are within their tolerances.
+  /// True if datasets were run, all were readable and are within their tolerances.
   bool pass() const;
 };
 
 /// Runs the datasets of a folder. @param next  called before each; an exception that it throws ends the work
-/// @throws Error (bad_input) for a folder without known datasets and for a malformed file
+/// @throws Error (bad_input) for a folder without known datasets
 CheckReport checkReport(const std::string& folder, const std::function<void()>& next);
 Json toJson(const CheckReport& report);
 std::string checkText(const CheckReport& report);

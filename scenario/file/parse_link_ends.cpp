@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "emscape/base/error.h"
 #include "scenario/antenna/shapes.h"
 #include "scenario/file/parse_sections.h"
@@ -36,7 +38,8 @@ PlacedReceiver parsePlacedReceiver(const Section& section, const std::vector<Pla
                                 "'gain_dbi' is the gain in every direction; 'antenna' has its own gain");
     }
   } else {
-    receiver.antenna = makeIsotropic(section.number("gain_dbi"));
+    // A faulty gain is a problem already, with its line.
+    receiver.antenna = makeIsotropic(std::isnan(receiver.gain_dbi) ? 0.0 : receiver.gain_dbi);
   }
   receiver.scan = parseScan(section.section("scan"), receiver.antenna && receiver.antenna->is_array, context);
   parseAntennaNoise(section, receiver.center_frequency_hz, receiver.antenna, receiver.scan, context,

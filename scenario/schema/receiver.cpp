@@ -55,7 +55,7 @@ const ObjectSpec& radarReceiverSpec() {
               "pulses", kInteger.from(1).to(1e6),
               "integrated on a target; by default the hits of one scan, from the waveform, the beamwidth "
               "and the scan's rate; 1 without a waveform or without a scan"),
-          byDefault("pfa", number().above(0).to(0.5), RadarReceiver{}.pfa, "probability of false alarm"),
+          byDefault("pfa", number().from(1e-15).to(0.5), RadarReceiver{}.pfa, "probability of false alarm"),
           byDefault("swerling", kSwerling, double(RadarReceiver{}.swerling), "case of target fluctuation"),
           byDefault("detection", choiceOf<DetectionMethod>(), toString(RadarReceiver{}.detection),
                     "method of detection_probability: exact statistics or a formula; albersheim only with "

@@ -44,6 +44,9 @@ class GdalMessages {
     if (std::strstr(message, "[json.exception") != nullptr) return;
     self->first_failure_ = message;
     self->first_failure_.resize(std::min(self->first_failure_.find('\n'), self->first_failure_.size()));
+    // PROJ repeats the whole query of a database that it cannot read.
+    if (self->first_failure_.find("SQLite error on SELECT") != std::string::npos)
+      self->first_failure_ = "PROJ: its database proj.db cannot be read";
   }
 
   static CPLHTTPResult* refuseFetch(const char*, CSLConstList, GDALProgressFunc, void*, CPLHTTPFetchWriteFunc,

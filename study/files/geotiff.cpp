@@ -34,10 +34,10 @@ gdal::ColorTable colorsOf(const Map& map, int count) {
 
 /// The labels of a band's values, in the forms that programs read: names of categories and an attribute
 /// table.
-void setLabels(GDALRasterBandH band, const std::vector<std::string>& labels) {
+CPLErr setLabels(GDALRasterBandH band, const std::vector<std::string>& labels) {
   const gdal::AttributeTable table(GDALCreateRasterAttributeTable());
-  GDALRATCreateColumn(table.get(), "VALUE", GFT_Integer, GFU_MinMax);
-  GDALRATCreateColumn(table.get(), "LABEL", GFT_String, GFU_Name);
+  CPLErr failed = GDALRATCreateColumn(table.get(), "VALUE", GFT_Integer, GFU_MinMax);
+  failed = std::max(failed, GDALRATCreateColumn(table.get(), "LABEL", GFT_String, GFU_Name));
   std::vector<char*> names;
   for (int n = 0; n < static_cast<int>(labels.size()); ++n) {
     const std::string& label = labels[static_cast<std::size_t>(n)];
@@ -46,8 +46,8 @@ void setLabels(GDALRasterBandH band, const std::vector<std::string>& labels) {
     names.push_back(const_cast<char*>(label.c_str()));
   }
   names.push_back(nullptr);
-  GDALSetDefaultRAT(band, table.get());
-  GDALSetRasterCategoryNames(band, names.data());
+  failed = std::max(failed, GDALSetDefaultRAT(band, table.get()));
+  return std::max(failed, GDALSetRasterCategoryNames(band, names.data()));
 }
 
 }  // namespace
@@ -58,18 +58,19 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
   GDALDriverH cog = driverOf("COG");
   const scenario::GdalMessages messages;
   const gdal::Dataset dataset = memoryRaster(grid, is_index ? GDT_Byte : GDT_Float32, file);
-  GDALSetMetadataItem(dataset.get(), "AREA_OR_POINT", "Point", nullptr);
-  for (const auto& [name, value] : metadata) {
-    GDALSetMetadataItem(dataset.get(), name.c_str(), value.c_str(), nullptr);
-  }
-  for (std::size_t n = 0; is_index && n < map.labels.size(); ++n) {
-    GDALSetMetadataItem(dataset.get(), fmt::format("EMSCAPE_LABEL_{}", n).c_str(), map.labels[n].c_str(),
-                        nullptr);
-  }
+  const auto require = [&](CPLErr result) {
+    if (result != CE_None) failWriting(messages, file);
+  };
+  const auto setItem = [&](const std::string& name, const std::string& value) {
+    require(GDALSetMetadataItem(dataset.get(), name.c_str(), value.c_str(), nullptr));
+  };
+  setItem("AREA_OR_POINT", "Point");
+  for (const auto& [name, value] : metadata) setItem(name, value);
+  for (std::size_t n = 0; is_index && n < map.labels.size(); ++n)
+    setItem(fmt::format("EMSCAPE_LABEL_{}", n), map.labels[n]);
   GDALRasterBandH band = GDALGetRasterBand(dataset.get(), 1);
   GDALSetDescription(band, map.description.c_str());
-  GDALSetRasterUnitType(band, map.unit.c_str());
-  CPLErr written = CE_None;
+  require(GDALSetRasterUnitType(band, map.unit.c_str()));
   if (is_index) {
     std::vector<std::uint8_t> bytes;
     int largest = 1;
@@ -79,18 +80,17 @@ void writeGeoTiff(const std::filesystem::path& file, const MapGrid& grid, const 
       bytes.push_back(static_cast<std::uint8_t>(index));
       if (!is_none) largest = std::max(largest, index);
     }
-    GDALSetRasterNoDataValue(band, kNoIndex);
+    require(GDALSetRasterNoDataValue(band, kNoIndex));
     const int colors = std::max(largest + 1, static_cast<int>(map.labels.size()));
-    GDALSetRasterColorTable(band, colorsOf(map, colors).get());
-    if (!map.labels.empty()) setLabels(band, map.labels);
-    written = GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, bytes.data(), grid.width,
-                           grid.height, GDT_Byte, 0, 0);
+    require(GDALSetRasterColorTable(band, colorsOf(map, colors).get()));
+    if (!map.labels.empty()) require(setLabels(band, map.labels));
+    require(GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, bytes.data(), grid.width, grid.height,
+                         GDT_Byte, 0, 0));
   } else {
-    GDALSetRasterNoDataValue(band, NAN);
-    written = GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height,
-                           const_cast<float*>(map.values.data()), grid.width, grid.height, GDT_Float32, 0, 0);
+    require(GDALSetRasterNoDataValue(band, NAN));
+    require(GDALRasterIO(band, GF_Write, 0, 0, grid.width, grid.height, const_cast<float*>(map.values.data()),
+                         grid.width, grid.height, GDT_Float32, 0, 0));
   }
-  if (written != CE_None) failWriting(messages, file);
 
   UnfinishedFile unfinished(file);
   // The COG driver writes overviews next to the output.

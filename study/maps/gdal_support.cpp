@@ -22,17 +22,20 @@ gdal::Dataset memoryRaster(const MapGrid& grid, GDALDataType type, const std::fi
   gdal::Dataset dataset(GDALCreate(driverOf("MEM"), "", grid.width, grid.height, 1, type, nullptr));
   if (dataset == nullptr) failWriting(messages, file);
   double transform[6] = {grid.left_m, grid.cell_m, 0, grid.top_m, 0, -grid.cell_m};
-  GDALSetGeoTransform(dataset.get(), transform);
-  GDALSetProjection(dataset.get(), grid.wkt.c_str());
+  if (GDALSetGeoTransform(dataset.get(), transform) != CE_None ||
+      GDALSetProjection(dataset.get(), grid.wkt.c_str()) != CE_None)
+    failWriting(messages, file);
   return dataset;
 }
 
 std::string wkt2Of(OGRSpatialReferenceH reference) {
   static const char* const kOptions[] = {"FORMAT=WKT2_2019", nullptr};
   char* text = nullptr;
-  OSRExportToWktEx(reference, &text, kOptions);
+  const OGRErr failed = OSRExportToWktEx(reference, &text, kOptions);
   std::string wkt = text == nullptr ? "" : text;
   CPLFree(text);
+  if (failed != OGRERR_NONE || wkt.empty())
+    throw Error(ErrorCode::other, "PROJ gives no text of a coordinate system");
   return wkt;
 }
 

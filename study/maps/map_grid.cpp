@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "base/geodesy/fast_geodesy.h"
 #include "base/math/simd.h"
@@ -11,6 +12,7 @@
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/units.h"
+#include "emscape/base/work.h"
 #include "scenario/terrain/transformation.h"
 #include "study/maps/gdal_support.h"
 
@@ -85,11 +87,17 @@ class Projection {
       : transform_(scenario::transformationBetween(from, to)) {}
   /// @return false if a point has no image
   bool operator()(std::vector<double>& x, std::vector<double>& y) const {
+    constexpr std::size_t kAtOnce = 1 << 16;
     const scenario::GdalMessages messages;
-    std::vector<int> done(x.size());
-    OCTTransformEx(transform_.get(), static_cast<int>(x.size()), x.data(), y.data(), nullptr, done.data());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      if (done[i] == 0 || !std::isfinite(x[i]) || !std::isfinite(y[i])) return false;
+    std::vector<int> done(std::min(kAtOnce, x.size()));
+    for (std::size_t begin = 0; begin < x.size(); begin += kAtOnce) {
+      checkpoint();
+      const std::size_t count = std::min(kAtOnce, x.size() - begin);
+      OCTTransformEx(transform_.get(), static_cast<int>(count), x.data() + begin, y.data() + begin, nullptr,
+                     done.data());
+      for (std::size_t i = 0; i < count; ++i) {
+        if (done[i] == 0 || !std::isfinite(x[begin + i]) || !std::isfinite(y[begin + i])) return false;
+      }
     }
     return true;
   }
@@ -166,6 +174,7 @@ Lattice latticeOf(const Projection& toEarth, const MapGrid& grid, bool is_polar 
   lattice.patches_y = (grid.height + lattice.side - 1) / lattice.side;
   const int step = lattice.side / 2;
   for (int j = 0; j <= 2 * lattice.patches_y; ++j) {
+    checkpoint();
     for (int i = 0; i <= 2 * lattice.patches_x; ++i) {
       lattice.longitudes_deg.push_back(grid.left_m + (i * step + 0.5) * grid.cell_m);
       lattice.latitudes_deg.push_back(grid.top_m - (j * step + 0.5) * grid.cell_m);
@@ -308,6 +317,36 @@ double radiusOf(const Lattice& lattice, std::size_t node) {
   return kMargin * chord_m;
 }
 
+/// The area's size on the ellipsoid.
+double sizeOf_m2(const MapArea& area) {
+  if (area.circle) {
+    const double half_rad = area.circle->radius_m / kWgs84SemiMajor_m / 2;
+    return 4 * kPi * std::pow(kWgs84SemiMajor_m * std::sin(half_rad), 2);
+  }
+  constexpr int kStrips = 200;
+  const double strip_deg = (area.box.north_deg - area.box.south_deg) / kStrips;
+  double sum = 0;
+  for (int n = 0; n < kStrips; ++n) sum += metres2PerDegree2(area.box.south_deg + (n + 0.5) * strip_deg);
+  return sum * strip_deg * (area.box.east_deg - area.box.west_deg);
+}
+
+/// Refuses a projection that leaves out a part of the area, such as one of a zone for a box around the earth:
+/// its border says nothing of what is between.
+/// @throws Error (usage)
+void requireCovered(const MapGrid& grid) {
+  constexpr double kEnough = 0.9;
+  const double asked_m2 = sizeOf_m2(*grid.area);
+  const double covered_m2 = std::accumulate(grid.areas_m2.begin(), grid.areas_m2.end(), 0.0);
+  // Pixels belong to the area by their centres.
+  const double border_m2 = 4 * std::sqrt(asked_m2) * grid.cell_m;
+  if (covered_m2 >= kEnough * asked_m2 - border_m2) return;
+  throw Error(
+      ErrorCode::usage,
+      fmt::format("crs '{}' holds {:.0f} of the area's {:.0f} km2; EPSG:3395 holds all longitudes, as a "
+                  "box from -180 to 180, from 80 degrees south to 80 degrees north",
+                  grid.crs, covered_m2 / 1e6, asked_m2 / 1e6));
+}
+
 /// Sets the positions and areas of a patch's row of pixels.
 /// @param per_degree2  m2 per square degree, over areas of the patch
 EMSCAPE_SIMD_CLONES void fillRow(const Patch::Row& latitude, const Patch::Row& longitude,
@@ -430,6 +469,7 @@ MapGrid makeMapGrid(const MapArea& area, double cell_m, const std::string& crs) 
   grid.left_m = first_column * cell_m;
   grid.top_m = end_row * cell_m;
   fillPositions(latticeOf(Projection(reference, earth), grid), area, grid);
+  requireCovered(grid);
   return grid;
 }
 

@@ -52,8 +52,9 @@ class MapPicture {
     const double left = 84 * style_.unit, top = 96 * style_.unit;
     const double room =
         options.width - left - std::max(190 * style_.unit, render::legendWidth(style_, legend_));
-    scale_ = room / grid.width;
-    rect_ = {left, top, room, scale_ * grid.height};
+    constexpr double kTallest = 10;  // widths
+    scale_ = std::min(room / grid.width, kTallest * options.width / grid.height);
+    rect_ = {left, top, scale_ * grid.width, scale_ * grid.height};
     size_ = {options.width,
              static_cast<int>(std::max({top + rect_.height + MapFrame::footHeight(style_), 420 * style_.unit,
                                         render::legendHeight(style_, legend_)}))};

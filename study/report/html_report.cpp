@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <regex>
 #include <string_view>
 
 #include "base/files/whole_file.h"
@@ -123,11 +122,17 @@ void HtmlReport::picture(const render::Image8& image, const std::string& text) {
 void HtmlReport::drawing(const std::string& svg, const std::string& caption) {
   // As a picture, because drawings of Cairo use the same names of parts, with a number that counts the
   // drawings of the process.
-  static const std::regex kNumber("\\bid=\"surface[0-9]+\"");
+  static const std::string kName = "id=\"surface";
+  std::string unnumbered = svg;
+  for (std::size_t at = 0; (at = unnumbered.find(kName, at)) != std::string::npos; at += kName.size()) {
+    const std::size_t number = at + kName.size(), end = unnumbered.find_first_not_of("0123456789", number);
+    if (end != std::string::npos && end > number && unnumbered[end] == '"')
+      unnumbered.erase(number, end - number);
+  }
   body_ += fmt::format(
       "<figure><img alt=\"{0}\" "
       "src=\"data:image/svg+xml;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
-      escapedXml(caption), base64(std::regex_replace(svg, kNumber, "id=\"surface\"")));
+      escapedXml(caption), base64(unnumbered));
 }
 
 std::string HtmlReport::html() const {

@@ -68,8 +68,21 @@ TEST(Check, NamesFileAndLineOfMalformedTable) {
   put(folder, "geoid/check_points.csv", "lat_deg,lon_deg_east,N_m\n38,269,-31.6\n39,x,-30\n");
   const ProgramResult result = run({"check", folder.path().string(), "--json"});
   EXPECT_EQ(result.status, 3);
-  EXPECT_THAT(result.err, HasSubstr("check_points.csv:3: lon_deg_east: 'x' is not a finite number"));
-  EXPECT_EQ(result.out, "");
+  const json unreadable = json::parse(result.out)["unreadable"];
+  ASSERT_EQ(unreadable.size(), 1u);
+  EXPECT_EQ(unreadable[0]["name"], "geoid");
+  EXPECT_THAT(unreadable[0]["fault"],
+              HasSubstr("check_points.csv:3: lon_deg_east: 'x' is not a finite number"));
+}
+
+TEST(Check, GoesOnAfterADatasetThatCannotBeRead) {
+  const TemporaryFolder folder;
+  put(folder, "geoid/check_points.csv", kGoodGeoid);
+  put(folder, "pe/knife_edge.csv", "no,such,columns\n1,2,3\n");
+  const ProgramResult result = run({"check", folder.path().string()});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_THAT(result.out, testing::ContainsRegex("geoid .* pass"));
+  EXPECT_THAT(result.out, testing::ContainsRegex("pe/knife_edge.csv *cannot be read: "));
 }
 
 TEST(Check, TakesTheFolderOfOneFamily) {

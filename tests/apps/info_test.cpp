@@ -194,5 +194,30 @@ TEST(InfoOfRefractivity, RefusesAPlotOfOtherFiles) {
   EXPECT_EQ(run({"info", folder.write("air.csv", "height_msl_m,m_units\n0,330\n")}).status, 3);
 }
 
+TEST(Info, RefusesAVolumeThatDoesNotFitBeforeItReadsItsValues) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
+#endif
+  const TemporaryFolder folder;
+  const std::string extent = "\"0 1023 0 1023 0 1023\"";
+  const std::string file = folder.write(
+      "a.vti", "<VTKFile type=\"ImageData\"><ImageData WholeExtent=" + extent +
+                   " Origin=\"0 0 0\" Spacing=\"1 1 1\"><Piece Extent=" + extent +
+                   "><PointData><DataArray type=\"UInt8\" Name=\"a\" format=\"ascii\">1 2 3</DataArray>"
+                   "</PointData></Piece></ImageData></VTKFile>\n");
+  const ProgramResult result = run({"info", file}, "ulimit -v 1000000;");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, testing::HasSubstr("a.vti: array a of 1073741824 values needs up to 5120 MiB"));
+}
+
+TEST(Info, EntriesBesideTheVolumesEndNoReading) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(run({"simulate", quick(), "--times", "0", "-o", folder / "s"}).status, 0);
+  std::filesystem::create_symlink("loop", folder / "s/loop");
+  std::filesystem::create_symlink("nowhere", folder / "s/a.vdb");
+  const ProgramResult result = run({"info", folder / "s"});
+  EXPECT_EQ(result.status, 0) << result.err;
+}
+
 }  // namespace
 }  // namespace emscape::test

@@ -215,5 +215,63 @@ TEST(Inputs, ThatArePipesAreRefused) {
   }
 }
 
+TEST(Results, OfAFieldWithoutAnyValueAreToldWithTheirLikelyCause) {
+  const TemporaryFolder folder;
+  const auto warningsOf = [&](const std::string& edit, const Arguments& more) {
+    Arguments arguments{"simulate", quick(),      "--times", "0:2:1", "--force",
+                        "-o",       folder / "s", "--set",   edit};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult simulated = run(arguments);
+    EXPECT_EQ(simulated.status, 0) << simulated.err;
+    arguments = {"render", quick(), "--times", "0", "--size", "64x48", "-o", folder / "a.png", "--set", edit};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const ProgramResult drawn = run(arguments);
+    EXPECT_THAT(drawn.err, HasSubstr("power_density_dbwm2: no voxel is above the floor at 0 s: "));
+    return simulated.err;
+  };
+  EXPECT_THAT(
+      warningsOf("region.origin={latitude_deg: 5, longitude_deg: 52}", {}),
+      HasSubstr("power_density_dbwm2: no voxel is above the floor at any of the times: the nearest emitter, "
+                "'transmitter', is "));
+  EXPECT_THAT(warningsOf("region.origin={latitude_deg: 5, longitude_deg: 52}", {}),
+              HasSubstr("with the origin's latitude and longitude exchanged it would be inside"));
+  EXPECT_THAT(
+      warningsOf("emitters.transmitter.active_s=[[100, 200]]", {"--set", "emitters.radar.active_s=[[3, 4]]"}),
+      HasSubstr("no emitter transmits then (active_s, enabled)"));
+}
+
+TEST(Results, PicturesOfAnEarlierRunAreNamedAndKept) {
+  const TemporaryFolder folder;
+  const Arguments draw{"render", quick(), "--size", "64x48", "-o", folder / "f", "--times"};
+  const auto with = [&](const std::string& times) {
+    Arguments arguments = draw;
+    arguments.push_back(times);
+    return run(arguments);
+  };
+  EXPECT_THAT(with("0:3:1").err, Not(HasSubstr("earlier run")));
+  const ProgramResult again = with("0:1:1");
+  EXPECT_EQ(again.status, 0);
+  EXPECT_THAT(again.err,
+              HasSubstr("quick_0003.png and 1 more are of an earlier run: this one wrote 2 pictures"));
+  EXPECT_EQ(folder.files().size(), 4u);
+}
+
+TEST(Results, OfTallMapsHaveAPictureThatCanBeDrawn) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run({"coverage", quick(), "-o", folder / "o", "--area", "bbox:3,-85,7,85", "--cell", "100000",
+           "--products", "value", "--times", "0", "--format", "cog"});
+  EXPECT_EQ(result.status, 0) << result.err;
+}
+
+TEST(Results, OfPlotsBeyondTheMemoryAreRefusedBeforeTheWork) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run({"profile", quick(), "--emitter", "radar", "--to", "52.05,5.05,100",
+                                    "--plot", folder / "a.png", "--size", "32767x32767"},
+                                   "ulimit -v 4000000;");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_THAT(result.err, HasSubstr("a picture of 32767x32767 pixels needs up to"));
+}
+
 }  // namespace
 }  // namespace emscape::test

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <filesystem>
+#include <map>
 
 #include "tests/apps/program.h"
 
@@ -66,6 +68,26 @@ measures:
   - {name: covered, height: "agl:300"}
 )");
   expectSameBytes({"study", study, "-o", "OUT/study"});
+}
+
+TEST(SameBytes, DoNotDependOnVariablesOfGdal) {
+  const TemporaryFolder folder;
+  const auto filesWith = [&](const std::string& name, const std::string& variables) {
+    const ProgramResult result = run({"coverage", quick(), "-o", folder / name, "--cell", "1000",
+                                      "--products", "covered,value", "--times", "0", "--format", "cog"},
+                                     variables);
+    EXPECT_EQ(result.status, 0) << result.err;
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / (name + "/maps")))
+      files[entry.path().filename().string()] = readFile(entry.path());
+    return files;
+  };
+  const auto usual = filesWith("usual", "");
+  EXPECT_EQ(usual.size(), 3u) << "with the labels of the index";
+  EXPECT_TRUE(usual ==
+              filesWith("other",
+                        "export GDAL_PAM_ENABLED=NO GTIFF_POINT_GEO_IGNORE=YES GDAL_TIFF_ENDIANNESS=BIG "
+                        "GDAL_NUM_THREADS=ALL_CPUS GDAL_TIFF_INTERNAL_MASK=YES;"));
 }
 
 }  // namespace

@@ -76,16 +76,23 @@ TEST_F(Validate, RefusesAFieldThatDoesNotFitIntoTheMemory) {
   const ProgramResult result =
       run({"validate", shippedScenario("quick.yaml"), "--set", "region.dims=[512, 512, 256]"},
           "ulimit -v 1500000;");
-  EXPECT_EQ(result.status, 3) << result.err;
+  EXPECT_EQ(result.status, 1) << result.err;
   EXPECT_THAT(result.out, testing::HasSubstr("the field of 512 x 512 x 256 voxels"));
   EXPECT_THAT(result.out, testing::HasSubstr("fewer voxels (region.dims) or emitters take less"));
   // 4096 x 4096 columns alone are 2 GiB
   const ProgramResult wide =
       run({"validate", shippedScenario("quick.yaml"), "--set", "region.dims=[4096, 4096, 2]"},
           "ulimit -v 1500000;");
-  EXPECT_EQ(wide.status, 3) << wide.err;
+  EXPECT_EQ(wide.status, 1) << wide.err;
   EXPECT_THAT(wide.out, testing::ContainsRegex(
                             "quick.yaml: error: the field of 4096 x 4096 x 2 voxels, .* needs up to "));
+  const TemporaryFolder folder;
+  EXPECT_EQ(run({"simulate", shippedScenario("quick.yaml"), "--set", "region.dims=[512, 512, 256]", "-o",
+                 folder / "o"},
+                "ulimit -v 1500000;")
+                .status,
+            result.status)
+      << "one cause, one status";
 }
 
 TEST_F(Validate, ReportsLocationAndSeverityOfEveryProblem) {
@@ -214,6 +221,17 @@ emitters:
     EXPECT_EQ(first, result.out.rfind(platform)) << platform;
   }
   EXPECT_THAT(result.out, HasSubstr(" (at 1 of 5 steps)\n"));
+}
+
+TEST_F(Validate, ReportsAFaultyValueOfAPlacedReceiverWithItsLine) {
+  for (const char* gain : {".nan", "1e9", "90", "x"}) {
+    const ProgramResult result = run({"validate", shippedScenario("quick.yaml"), "--set",
+                                      std::string("receivers=[{name: rx, platform: mast, gain_dbi: ") + gain +
+                                          ", center_frequency_hz: 1e9, bandwidth_hz: 1e6}]"});
+    EXPECT_EQ(result.status, 3);
+    EXPECT_THAT(result.out, testing::HasSubstr("'gain_dbi'")) << result.err;
+    EXPECT_EQ(result.err, "");
+  }
 }
 
 }  // namespace

@@ -44,6 +44,8 @@ FAULTS = {
     "ftruncate": ["EIO"],
     "read": ["EIO", "EINTR"],
     "mmap": ["ENOMEM"],
+    "flock": ["ENOLCK"],
+    "pread64": ["EIO"],
 }
 # Of the window, whose threads also speak with the display: calls that are those of its files.
 WINDOW_FAULTS = {call: FAULTS[call] for call in ("write", "fsync", "rename", "openat")}
@@ -131,7 +133,8 @@ def occurrences(log, touched, faults):
         thread, call, rest = match.groups()
         counts[thread, call] = counts.get((thread, call), 0) + 1
         # Calls of the loader of libraries come before; strace counts by thread, so that others share its numbers.
-        touches = any(folder in rest for folder in touched)
+        # PROJ reads its database, from which coordinate systems are written, by pread64.
+        touches = any(folder in rest for folder in touched) or (call == "pread64" and "proj.db" in rest)
         if touches and not loaded:
             loaded = {kind: counts.get((thread, kind), 1) - 1 for kind in ("mmap", "read", "openat")}
             loaded[call] = counts[thread, call] - 1

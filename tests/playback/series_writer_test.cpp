@@ -407,5 +407,28 @@ TEST_F(SeriesWriter, AFolderWithoutASeriesHasNoStatus) {
   EXPECT_FALSE(findSeries(folder_ / "nowhere"));
 }
 
+TEST_F(SeriesWriter, NamesAForeignFileInTheWayAndLeavesIt) {
+  fs::create_directories(folder_.path() / "own");
+  for (const char* name : {"quick_0001.vdb", "quick_0007.vdb", "notes.vdb"}) {
+    const std::string file = *this / ("own/" + std::string(name));
+    ::emscape::test::writeFile(file, "of the user");
+    for (const Existing existing : {Existing::refuse, Existing::replace, Existing::resume}) {
+      const std::string error =
+          ::emscape::test::errorOf([&] { write(2, into("own", {"vdb"}, existing)); }, ErrorCode::usage);
+      EXPECT_THAT(error, AllOf(HasSubstr(name), HasSubstr("move it, or use another folder")));
+      EXPECT_THAT(contents("own"), ElementsAre(testing::Pair(name, "of the user")));
+    }
+    fs::remove(file);
+  }
+  write(2, into("own", {"vdb"}));
+}
+
+TEST_F(SeriesWriter, LinksToThemselvesAreOtherEntries) {
+  write(2, into("own", {"vdb"}));
+  fs::create_symlink("loop", *this / "own/loop");
+  EXPECT_EQ(volume::seriesOf(*this / "own").size(), 2u);
+  write(2, into("own", {"vdb"}, Existing::replace));
+}
+
 }  // namespace
 }  // namespace emscape::playback::test

@@ -32,5 +32,11 @@ TEST(JoinedWarnings, MoreThanFiveEmittersAreCounted) {
               ElementsAre("emitters 'e1', 'e2', 'e3', 'e4', 'e5' and 2 others: reaches 10 to 70 km"));
 }
 
+TEST(JoinedWarnings, TakesNamesAndTextsOfAnyLength) {
+  const std::string name(200000, 'n'), text(200000, '5');
+  const std::string warning = "emitter '" + name + "': " + text + " m";
+  EXPECT_THAT(joinedWarnings({warning, warning}), ElementsAre(warning));
+}
+
 }  // namespace
 }  // namespace emscape::report

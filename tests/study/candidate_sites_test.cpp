@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/geodesy/gdal_file.h"
 #include "tests/support/errors.h"
 #include "tests/support/listener.h"
 #include "tests/support/temporary_folder.h"
@@ -153,6 +154,30 @@ TEST(CandidateSites, AreReadFromFormatsThatNameNoOtherFile) {
   EXPECT_THAT(test::errorOf([&] { readCandidates(vrt); }),
               HasSubstr("not a file of points or polygons that can be read"));
   EXPECT_THAT(test::errorOf([&] { readCandidates(folder.path()); }), HasSubstr("not a regular file"));
+}
+
+TEST(CandidateSites, AViewOfAGeoPackageIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::string file = folder / "a.gpkg";
+  gdal::prepare();
+  {
+    const gdal::Dataset dataset(
+        GDALCreate(GDALGetDriverByName("GPKG"), file.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    ASSERT_NE(dataset, nullptr);
+    for (const char* statement :
+         {"CREATE VIEW endless AS WITH RECURSIVE c(n) AS (SELECT 1 UNION ALL SELECT n + 1 FROM c) SELECT n "
+          "AS "
+          "fid, NULL AS geom FROM c",
+          "INSERT INTO gpkg_contents (table_name, data_type, identifier, srs_id) VALUES ('endless', "
+          "'features', "
+          "'endless', 4326)",
+          "INSERT INTO gpkg_geometry_columns VALUES ('endless', 'geom', 'POINT', 4326, 0, 0)"}) {
+      GDALDatasetReleaseResultSet(dataset.get(),
+                                  GDALDatasetExecuteSQL(dataset.get(), statement, nullptr, nullptr));
+    }
+  }
+  EXPECT_THAT(test::errorOf([&] { readCandidates(file); }),
+              HasSubstr("layer 'endless' is a view (SQL), which is not read; export it as a table"));
 }
 
 }  // namespace

@@ -143,5 +143,34 @@ TEST(MapGrid, RefusesInvalidAreas) {
   EXPECT_THAT(test::errorOf([&] { circularArea({1, 0, 1e7}); }), HasSubstr("2000000"));
 }
 
+TEST(MapGrid, HoldsTheWholeAreaOrIsRefused) {
+  constexpr double kEarth_km2 = 5.1006e8;
+  int covered = 0;
+  for (const double latitude_deg : {40.0, 60.0, 80.0}) {
+    for (const double west_deg : {-180.0, -90.0, 20.0}) {
+      const MapArea area{{-latitude_deg, latitude_deg, west_deg, west_deg + 360}, {}};
+      const double asked_km2 = kEarth_km2 * std::sin(degToRad(latitude_deg));
+      for (const char* crs : {"utm", "local", "EPSG:6933", "EPSG:3395"}) {
+        try {
+          const MapGrid grid = makeMapGrid(area, 100e3, crs);
+          const double found_km2 = std::accumulate(grid.areas_m2.begin(), grid.areas_m2.end(), 0.0) / 1e6;
+          EXPECT_NEAR(found_km2 / asked_km2, 1, 0.1) << crs << " " << latitude_deg << " " << west_deg;
+          ++covered;
+        } catch (const Error& error) {
+          EXPECT_EQ(error.code(), ErrorCode::usage);
+        }
+      }
+    }
+  }
+  EXPECT_GE(covered, 5);
+}
+
+TEST(MapGrid, RemedyForAnAreaThatIsNotHeldHoldsIt) {
+  const MapArea area{{-80, 80, -180, 180}, {}};
+  EXPECT_THAT(test::errorOf([&] { makeMapGrid(area, 100e3, "utm"); }, ErrorCode::usage),
+              HasSubstr("EPSG:3395 holds all longitudes"));
+  EXPECT_GT(makeMapGrid(area, 100e3, "EPSG:3395").pixels(), 40000u);
+}
+
 }  // namespace
 }  // namespace emscape::study

@@ -110,7 +110,9 @@ std::vector<fs::path> filesOfFolder(const fs::path& folder) {
   for (const Format& format : formats()) {
     std::vector<fs::path> files;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      if (entry.is_regular_file() && findFormat(entry.path()) == &format) files.push_back(entry.path());
+      std::error_code ignored;  // as of a link to itself
+      if (entry.is_regular_file(ignored) && findFormat(entry.path()) == &format)
+        files.push_back(entry.path());
     }
     if (!files.empty()) return sorted(std::move(files));
   }

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "base/memory.h"
 #include "emscape/volume/statistics.h"
 #include "volume/description_check.h"
 #include "volume/foreign.h"
@@ -170,6 +171,9 @@ class VtiFile {
       file_.fail("array " + name + " is of type " + array.attribute("type").value() +
                  ", which cannot be read");
     const auto count = static_cast<std::uint64_t>(grid_.dims.count());
+    requireMemory({"array " + name + " of " + std::to_string(count) + " values",
+                   count * (static_cast<std::uint64_t>(bytesOf(*type)) + sizeof(float)), "another file"},
+                  {path_});
     const std::vector<std::uint8_t> bytes =
         file_.arrayBytes(array, count * static_cast<std::uint64_t>(bytesOf(*type)));
     return toFloats(bytes.data(), count, *type, file_.bigEndian());

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/files/file_reading.h"
+#include "emscape/base/work.h"
 
 namespace emscape::volume {
 namespace {
@@ -133,6 +134,7 @@ std::vector<std::uint8_t> VtkXmlFile::inflate(ByteReader& reader, std::uint64_t 
   for (std::uint64_t i = 0; i < blocks; ++i) {
     const std::uint64_t wanted = i + 1 == blocks && last_bytes > 0 ? last_bytes : block_bytes;
     const std::uint64_t done = bytes.size();
+    checkpoint();
     if (wanted > max_bytes - done) reader.fail("compressed blocks hold more than the array");
     bytes.resize(done + wanted);
     uLongf got = static_cast<uLongf>(wanted);

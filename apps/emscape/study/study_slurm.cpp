@@ -35,12 +35,11 @@ std::string submit(const std::string& command) {
   std::array<char, 256> bytes{};
   while (pipe != nullptr && std::fgets(bytes.data(), bytes.size(), pipe.get()) != nullptr)
     answer += bytes.data();
-  static const std::regex kNumber("^([0-9]+)");  // "NUMBER" or "NUMBER;CLUSTER"
-  std::smatch found;
-  if (!std::regex_search(answer, found, kNumber)) {
+  const std::string number = answer.substr(0, answer.find_first_not_of("0123456789"));  // of "NUMBER;CLUSTER"
+  if (number.empty()) {
     throw Error(ErrorCode::other, fmt::format("'{}' gave no job: {}", command, answer));
   }
-  return found[1];
+  return number;
 }
 
 }  // namespace
@@ -52,7 +51,7 @@ std::string mergeScriptOf(const SlurmOptions& options) {
 int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& arguments, int parts,
                    const GlobalOptions& global) {
   static const std::regex kTime("([0-9]+-)?[0-9]{1,2}(:[0-9]{2}){0,2}");
-  if (!std::regex_match(options.time, kTime)) {
+  if (options.time.size() > 20 || !std::regex_match(options.time, kTime)) {
     throw Error(ErrorCode::usage,
                 fmt::format("--time '{}' is not a time limit; write HH:MM:SS or DAYS-HH:MM", options.time));
   }
@@ -65,6 +64,10 @@ int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& 
     }
     command += " " + shellWord(arguments[i]);
   }
+  // A name that begins with '-' would be an option of sbatch.
+  const auto asArgument = [](const fs::path& file) {
+    return shellWord(file.string().rfind('-', 0) == 0 ? "./" + file.string() : file.string());
+  };
   const fs::path script = options.script, merge = mergeScriptOf(options);
   const std::string array = fmt::format("--array=1-{}%{}", parts, kTasksAtOnce);
   const std::string gpus = options.gpus > 0 ? fmt::format("#SBATCH --gpus-per-task={}\n", options.gpus) : "";
@@ -83,9 +86,9 @@ int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& 
                                  "exec {} --merge\n",
                                  options.time, command));
   if (options.submit) {
-    const std::string job = submit("sbatch --parsable " + shellWord(script.string()));
+    const std::string job = submit("sbatch --parsable " + asArgument(script));
     const std::string merging =
-        submit(fmt::format("sbatch --parsable --dependency=afterok:{} {}", job, shellWord(merge.string())));
+        submit(fmt::format("sbatch --parsable --dependency=afterok:{} {}", job, asArgument(merge)));
     if (global.json) {
       printJson({{"script", script.string()}, {"parts", parts}, {"job", job}, {"merge_job", merging}});
     } else {
@@ -100,7 +103,7 @@ int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& 
   print(
       "Wrote {0} and {1}. To submit {2} parts and their merging:\n"
       "  job=$(sbatch --parsable {3})\n  sbatch --dependency=afterok:$job {4}\n",
-      script.string(), merge.string(), parts, shellWord(script.string()), shellWord(merge.string()));
+      script.string(), merge.string(), parts, asArgument(script), asArgument(merge));
   return 0;
 }
 

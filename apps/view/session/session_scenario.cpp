@@ -7,6 +7,7 @@
 #include "apps/view/session/session.h"
 #include "apps/view/values/refusal_text.h"
 #include "apps/view/values/shown_quantity.h"
+#include "base/files/json_writing.h"
 #include "emscape/base/error.h"
 #include "scenario/file/named_items.h"
 #include "scenario/file/new_items.h"
@@ -174,12 +175,13 @@ void Session::showScenario(const std::vector<RenamedItem>& renamed) {
 std::vector<Verb> Session::scenarioVerbs() {
   return {
       {"set",
-       {{"path", kText}, {"value", kText}},
+       {{"path", kText}, {"value", ArgumentType::any}},
        "Changes a value of the scenario, as `--set PATH=VALUE` does; a new name also where others refer to "
        "it",
        [](Session& session, const Command& command) {
-         session.changeScenario(
-             editsWithReferences(session.requireScenario(), {command.text("path"), command.text("value")}));
+         const Json& value = command.arguments["value"];
+         const std::string text = value.is_string() ? value.get<std::string>() : dumpJson(value);
+         session.changeScenario(editsWithReferences(session.requireScenario(), {command.text("path"), text}));
        }},
       {"set_together",
        {{"edits", ArgumentType::texts}},

@@ -2,25 +2,12 @@
 
 #include <fmt/core.h>
 
+#include "base/instruction_set.h"
 #include "emscape/base/error.h"
 #include "playback/frames/open_on_target.h"
 #include "study/sweep/results/part_processes.h"
 
 namespace emscape::study {
-namespace {
-
-const char* instructionSet() {
-#if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f")) return "avx512";
-  if (__builtin_cpu_supports("avx2")) return "avx2";
-  return "x86-64";
-#else
-  return "generic";
-#endif
-}
-
-}  // namespace
-
 LoadedStudy::LoadedStudy(const std::string& file, const std::vector<scenario::Edit>& edits, bool tries_values)
     : spec(loadStudy(file, edits, EMSCAPE_VERSION, tries_values)),
       terrain(loadTerrain(*spec.base, spec.area)),

@@ -12,11 +12,11 @@
 #include <cerrno>
 #include <cstdlib>
 #include <deque>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <system_error>
 
+#include "base/control_group.h"
 #include "emscape/base/error.h"
 #include "emscape/base/log.h"
 #include "emscape/base/parallel.h"
@@ -222,12 +222,8 @@ int allowedProcessors() {
     const int of_task = std::atoi(text);
     if (of_task > 0) allowed = std::min(allowed, of_task);
   }
-  // Control groups, version 2: "QUOTA PERIOD" in microseconds, or "max PERIOD".
-  std::ifstream group("/sys/fs/cgroup/cpu.max");
-  double quota = 0, period = 0;
-  if (group >> quota >> period && quota > 0 && period > 0) {
-    allowed = std::min(allowed, std::max(1, static_cast<int>(quota / period + 0.5)));
-  }
+  if (const std::optional<double> processors = ControlGroups().processors())
+    allowed = std::min(allowed, std::max(1, static_cast<int>(*processors + 0.5)));
   return allowed;
 }
 
