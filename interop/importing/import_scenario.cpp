@@ -24,8 +24,8 @@
 #include "interop/importing/platforms.h"
 #include "interop/importing/scenario_text.h"
 #include "interop/importing/type_text.h"
+#include "recording/common/ticks.h"
 #include "recording/dis/pdu.h"
-#include "scenario/model/track_time.h"
 
 namespace emscape::interop {
 namespace {
@@ -192,7 +192,7 @@ void Importer::placeInTime() {
     for (PoseSample& pose : object.poses) pose.t_s -= origin_s_;
   }
   // To the millisecond before the last position, but for the rounding of a recording's ticks.
-  const double length_s = window_.end_s - origin_s_ + scenario::kTrackRounding_s / 2;
+  const double length_s = window_.end_s - origin_s_ + kTickRounding_s / 2;
   duration_s_ = std::max(std::floor(length_s * 1000) / 1000, 0.0);
 }
 

@@ -7,8 +7,8 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/scenario/model/quantities.h"
+#include "recording/common/ticks.h"
 #include "scenario/file/quantity_needs.h"
-#include "scenario/model/track_time.h"
 #include "scenario/scan/scan_sampling.h"
 
 namespace emscape::scenario {
@@ -204,14 +204,14 @@ void warnOfKilometres(const Scenario& scenario, const Section& root, ParseContex
 
 /// A time of a track to the rounding within which times are equal.
 double roundedTime_s(double t_s) {
-  return std::round(t_s / (2 * kTrackRounding_s)) * (2 * kTrackRounding_s);
+  return std::round(t_s / (2 * interop::kTickRounding_s)) * (2 * interop::kTickRounding_s);
 }
 
 /// "before 100 s and after 160 s"; empty if [begin, end] is within the track's time.
 std::string timesOutside(const std::vector<TrackPoint>& track, const Clock& clock) {
   const double first_s = roundedTime_s(track.front().t_s), last_s = roundedTime_s(track.back().t_s);
   std::string text = first_s > 0 ? fmt::format("before {:.10g} s", first_s) : "";
-  if (last_s < clock.duration_s - kTrackRounding_s)
+  if (last_s < clock.duration_s - interop::kTickRounding_s)
     text += fmt::format("{}after {:.10g} s", text.empty() ? "" : " and ", last_s);
   return text;
 }

@@ -7,7 +7,7 @@
 
 #include "base/math/device_math.h"
 #include "emscape/base/units.h"
-#include "scenario/model/track_time.h"
+#include "recording/common/ticks.h"
 
 namespace emscape::scenario {
 
@@ -88,11 +88,11 @@ std::string spanText(const Platform& platform) {
 
 bool Platform::isPresentAt(double t_s) const {
   if (!moves()) return true;
-  if (t_s < track.front().t_s - kTrackRounding_s || t_s > track.back().t_s + kTrackRounding_s)
+  if (t_s < track.front().t_s - interop::kTickRounding_s || t_s > track.back().t_s + interop::kTickRounding_s)
     return outside_track == OutsideTrack::hold;
   const std::size_t leg = legAt(track, t_s);
-  return !track[leg].gap_after || t_s <= track[leg].t_s + kTrackRounding_s ||
-         t_s >= track[leg + 1].t_s - kTrackRounding_s;
+  return !track[leg].gap_after || t_s <= track[leg].t_s + interop::kTickRounding_s ||
+         t_s >= track[leg + 1].t_s - interop::kTickRounding_s;
 }
 
 std::string absenceText(const Platform& platform, double t_s) {
