@@ -31,14 +31,22 @@ struct RegionRequest {
 /// "36.3,-84.2,80". @throws Error (usage) with the allowed ranges
 RegionRequest parseRegion(const std::string& text);
 
+/// For each object of a recording or stream the platform of a base that it moves, if any: the one of its
+/// name, or one that begins so, as markings of DIS are cut to 11 characters. A platform is moved by one
+/// object, the first.
+/// @param objects  their names
+std::vector<std::optional<std::size_t>> movedPlatforms(const std::vector<std::string>& objects,
+                                                       const scenario::Scenario& base);
+
 struct ImportOptions {
   std::string scenario;  ///< the file to write; the tracks go into STEM_tracks beside it
   std::string emitters;  ///< emitter database; empty: the starter set
   std::string base;      ///< scenario to which the recording is added; empty: none
   std::shared_ptr<const scenario::Scenario> loaded_base;  ///< the same as it was read; null: it is read
-  std::vector<std::string> terrain;                       ///< elevation files
-  std::optional<RegionRequest> region;                    ///< none: around all platforms, or that of the base
-  std::optional<TimeSpan> times;                          ///< part of the recording, in its own seconds
+  bool keeps_name = false;              ///< the scenario has the name of the base; else that of the file
+  std::vector<std::string> terrain;     ///< elevation files
+  std::optional<RegionRequest> region;  ///< none: around all platforms, or that of the base
+  std::optional<TimeSpan> times;        ///< part of the recording, in its own seconds
   std::vector<std::string> only;  ///< patterns of names and types of objects; empty: see importRecording()
   BeamwidthMeaning beamwidth = BeamwidthMeaning::by_size;
   bool replace = false;  ///< files that exist; else they are an error
@@ -46,7 +54,8 @@ struct ImportOptions {
 
 /// Objects of one type.
 struct ImportedType {
-  std::string type;
+  std::string type;  ///< as in the recording
+  std::string text;  ///< the same in words
   Domain domain = Domain::other;
   int objects = 0;
   int emitters = 0;  ///< that they carry in the scenario
@@ -77,8 +86,9 @@ struct ImportResult {
   double duration_s = 0;  ///< of the scenario
   std::vector<ImportedType> types;
   std::vector<ImportedEmitters> emitters;
-  std::vector<ImportedPlatform> platforms;
-  std::map<std::string, int> left_out;  ///< objects, by reason
+  std::vector<ImportedPlatform> platforms;  ///< in the order of the recording
+  std::vector<std::string> moved;           ///< platforms of the base whose place or track is the recording's
+  std::map<std::string, int> left_out;      ///< objects, by reason
   ReadingTally tally;
   std::vector<std::string> notes;  ///< assumptions of the conversion, each with its effect
 };
@@ -86,7 +96,8 @@ struct ImportResult {
 /// Writes a scenario, and CSV tracks for the platforms that move. Without `only`, scenery (reference points,
 /// effects) and weapons without an emission are left out.
 /// Emitters are the recording's beams with what the database has on them; an object without beams has the
-/// emitter of the first row that matches it.
+/// emitter of the first row that matches it. An object with the name of a platform of the base moves that
+/// platform, which gets those emitters only of whose kind it has none.
 /// @throws Error (bad_input): no object or emitter is left, a fault in the database or the base; (usage): a
 /// file exists; (other): a file cannot be written
 ImportResult importRecording(const Recording& recording, const ImportOptions& options,

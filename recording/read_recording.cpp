@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/text/count_text.h"
+#include "base/text/utf8.h"
 #include "emscape/base/error.h"
 #include "recording/acmi/acmi_reader.h"
 #include "recording/common/samples.h"
@@ -23,7 +24,6 @@ namespace {
 enum class Format {
   unknown,
   acmi,
-  seven_zip,
   capture,
   hex_log,
   session,
@@ -35,10 +35,16 @@ enum class Format {
   nmea,
   czml,
   table,
-  utf16
+  utf16,
+  packed,
+  empty
 };
 
-constexpr std::string_view kZipBegin = "PK\x03\x04";
+constexpr std::string_view kZipBegin = "PK\x03\x04", kGzipBegin = "\x1F\x8B";
+constexpr std::string_view kPackedBegins[] = {"7z\xBC\xAF\x27\x1C",
+                                              "\xFD"
+                                              "7zXZ",
+                                              "BZh", "\x28\xB5\x2F\xFD"};  // 7z, xz, bzip2, zstd
 
 bool beginsWith(std::string_view text, std::string_view begin) {
   return text.substr(0, begin.size()) == begin;
@@ -94,7 +100,10 @@ Format formatOf(std::string_view head, const ReadOptions& options) {
   const std::string begin =
       lowerCase(std::string(head.substr(beginsWith(head, kMark) ? kMark.size() : 0, 16)));
   if (beginsWith(begin, kAcmi)) return Format::acmi;
-  if (beginsWith(head, "7z\xBC\xAF\x27\x1C")) return Format::seven_zip;
+  if (head.empty()) return Format::empty;
+  for (const std::string_view begin_of : kPackedBegins) {
+    if (beginsWith(head, begin_of)) return Format::packed;
+  }
   for (const std::string_view magic :
        {"\xA1\xB2\xC3\xD4", "\xD4\xC3\xB2\xA1", "\xA1\xB2\x3C\x4D", "\x4D\x3C\xB2\xA1", "\x0A\x0D\x0D\x0A"}) {
     if (beginsWith(head, magic)) return Format::capture;
@@ -146,12 +155,12 @@ Recording readDis(ByteSource& source, Format format, const std::string& file, co
 
 using Opener = std::function<std::unique_ptr<ByteSource>()>;
 
-/// What a file holds, or the recording in it if it is a zip file.
+/// What a file holds, or the recording in it if it is a zip or gzip file.
 std::unique_ptr<ByteSource> unzipped(const Opener& open, const std::string& file) {
   std::array<char, kZipBegin.size()> begin{};
-  const bool is_zip = open()->read(begin.data(), begin.size()) == begin.size() &&
-                      std::string_view(begin.data(), begin.size()) == kZipBegin;
-  return is_zip ? openZip(open(), file) : open();
+  const std::string_view head(begin.data(), open()->read(begin.data(), begin.size()));
+  if (beginsWith(head, kGzipBegin)) return openGzip(open(), file);
+  return head == kZipBegin ? openZip(open(), file) : open();
 }
 
 /// The begin of a file.
@@ -161,6 +170,29 @@ std::string headOf(ByteSource& source) {
   while (const std::size_t count = source.read(head.data() + size, head.size() - size)) size += count;
   head.resize(size);
   return head;
+}
+
+/// True if the begin of a file is UTF-8, the last character perhaps cut.
+bool isUtf8(std::string_view head) {
+  constexpr std::size_t kLongestSequence = 4;
+  while (!head.empty()) {
+    const std::size_t length = utf8SequenceLength(head);
+    if (length == 0) return head.size() < kLongestSequence;
+    head.remove_prefix(length);
+  }
+  return true;
+}
+
+/// Refuses a text whose letters are not in UTF-8: names of its columns could not be told.
+void refuseOtherTexts(std::string_view head) {
+  const bool is_text = std::none_of(head.begin(), head.end(), [](char c) { return c >= 0 && c < '\t'; });
+  if (!is_text || isUtf8(head)) return;
+  throw Error(
+      ErrorCode::bad_input,
+      "no recording of a known format, and a text that is not in UTF-8 (but Latin-1, perhaps); convert "
+      "it with iconv -f LATIN1 -t UTF-8, or save it so (Excel: CSV UTF-8), and name the columns of a "
+      "table (--columns, or 'columns' of a track: time=NAME,latitude=NAME,longitude=NAME,"
+      "height=NAME:ft)");
 }
 
 Recording readFormat(Format format, const std::unique_ptr<ByteSource>& source, const std::string& file,
@@ -188,9 +220,14 @@ Recording readFormat(Format format, const std::unique_ptr<ByteSource>& source, c
       throw Error(
           ErrorCode::bad_input,
           "a text in UTF-16; save it in UTF-8 (Excel: CSV UTF-8) or convert it: iconv -f UTF-16 -t UTF-8");
-    case Format::seven_zip:
-      throw Error(ErrorCode::bad_input, "a 7z archive; unpack it with 7z x and give the recording in it");
+    case Format::packed:
+      throw Error(ErrorCode::bad_input,
+                  "packed by 7z, xz, bzip2 or zstd, of which none is read; unpack it and give the recording "
+                  "in it, or pack it with gzip or zip");
+    case Format::empty:
+      throw Error(ErrorCode::bad_input, "the file is empty");
     case Format::unknown:
+      refuseOtherTexts(headOf(*source));
       throw Error(
           ErrorCode::bad_input,
           "no recording of a known format: ACMI 2.0 to 2.2 (.acmi, .zip.acmi), DIS as .pcap, .pcapng, "
@@ -264,7 +301,9 @@ Recording readRecordingIn(std::string_view bytes, const std::string& file, const
 }
 
 bool isRecording(std::string_view bytes, const ReadOptions& options) {
-  return beginsWith(bytes, kZipBegin) || formatOf(bytes.substr(0, 16384), options) != Format::unknown;
+  if (beginsWith(bytes, kZipBegin) || beginsWith(bytes, kGzipBegin)) return true;
+  const Format format = formatOf(bytes.substr(0, 16384), options);
+  return format != Format::unknown && format != Format::empty;
 }
 
 Recording merged(std::vector<Recording> recordings) {

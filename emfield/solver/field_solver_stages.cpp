@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/text/count_text.h"
 #include "emfield/channels/categories.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emfield/excess/model_check.h"
@@ -291,8 +292,9 @@ VolumeRequest FieldSolver::Impl::volumeRequest(int c, const scenario::Snapshot& 
     if (!emitters[e].state.active) continue;
     const long long near_voxels = emitters[e].geometry_result.near_voxels;
     if (near_voxels > 0) {
-      near_field += fmt::format("{}{}: {} voxels within {:.0f} m", near_field.empty() ? "" : "; ",
-                                setup.scenario->emitters[e].name, near_voxels, setup.far_field_m[e]);
+      near_field += fmt::format("{}{}: {} within {:.0f} m", near_field.empty() ? "" : "; ",
+                                setup.scenario->emitters[e].name, countText(near_voxels, "voxel", "voxels"),
+                                setup.far_field_m[e]);
     }
   }
   if (!near_field.empty()) out.extra["near_field"] = near_field;

@@ -11,6 +11,7 @@
 #include "emscape/base/error.h"
 #include "interop/exporting/writers.h"
 #include "recording/dis/pdu.h"
+#include "scenario/file/source.h"
 #include "scenario/terrain/gdal_messages.h"
 
 namespace emscape::interop {
@@ -86,7 +87,8 @@ long long writeZip(const ExportJob& job, const fs::path& file, std::vector<Expor
   return records;
 }
 
-/// What the scenario has and the recording cannot carry.
+/// What the scenario has and the recording cannot carry: the sections of its file but those of which it is
+/// made.
 std::string missingText(const scenario::Scenario& scenario, const ExportFormat& format, std::size_t rows) {
   std::vector<std::string> missing;
   if (!format.has_beams) {
@@ -95,11 +97,20 @@ std::string missingText(const scenario::Scenario& scenario, const ExportFormat& 
       missing.emplace_back(
           fmt::format("all emitters of a platform but the first ({})", scenario.emitters.size() - rows));
   }
-  if (scenario.terrain) missing.emplace_back("terrain (import --terrain)");
-  if (!scenario.targets.empty()) missing.emplace_back("targets");
-  if (!scenario.receivers.empty()) missing.emplace_back("receivers");
-  if (missing.empty()) return "";
-  return fmt::format("not in the recording: {}", fmt::join(missing, ", "));
+  for (const document::MapEntry& entry : scenario.source->root->entries) {
+    const auto isOneOf = [&](const auto& keys) {
+      return std::find(std::begin(keys), std::end(keys), entry.key) != std::end(keys);
+    };
+    constexpr std::string_view kCarried[] = {"schema_version", "name",      "epoch",   "duration_s",
+                                             "step_s",         "platforms", "emitters"};
+    if (!isOneOf(kCarried)) missing.push_back(entry.key);
+  }
+  const bool has_symbols =
+      std::any_of(scenario.platforms.begin(), scenario.platforms.end(),
+                  [](const scenario::Platform& platform) { return !platform.sidc.empty(); });
+  if (has_symbols) missing.emplace_back("symbols (sidc)");
+  return fmt::format("not in the recording: {}; emscape import --base {} takes them from the scenario",
+                     fmt::join(missing, ", "), scenario.file);
 }
 
 }  // namespace
@@ -136,7 +147,7 @@ ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& sce
       databaseText(*scenario, rows, fs::absolute(result.emitters).parent_path().string());
   writeWhole(result.emitters, [&](std::ostream& stream) { stream << database; });
   const std::string missing = missingText(*scenario, format, rows.size());
-  if (!missing.empty()) result.notes.push_back(missing);
+  result.notes.push_back(missing);
   const bool needs_epoch = !endsWith(file, ".acmi") && !is_capture && !endsWith(file, ".asi");
   if (needs_epoch && scenario->clock.epoch_utc.empty())
     result.notes.emplace_back("the scenario has no epoch: t = 0 is written as 1970-01-01T00:00:00Z");

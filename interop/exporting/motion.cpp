@@ -116,7 +116,9 @@ Domain domainOf(const scenario::Scenario& scenario, const scenario::Platform& pl
     const double above_m = middle.height_msl_m - (std::isnan(ground_m) ? 0 : ground_m);
     if (speed_mps > 35 || above_m > 300) return Domain::air;
   }
-  return ground_m <= 0 ? Domain::sea : Domain::land;
+  const bool is_sea =
+      terrain == nullptr ? scenario.ground.kind == propagation::GroundKind::sea : ground_m <= 0;
+  return is_sea ? Domain::sea : Domain::land;
 }
 
 BeamState beamStateAt(const scenario::Scenario& scenario, const scenario::Emitter& emitter, double t_s) {

@@ -24,7 +24,7 @@ bool equalSettings(const BeamState& a, const BeamState& b) {
 }
 
 /// Adds a span, joined with the last one if they touch.
-void append(std::vector<PieceSpan>& spans, const PieceSpan& span) {
+void append(std::vector<TimeSpan>& spans, const TimeSpan& span) {
   if (span.end_s <= span.begin_s) return;
   if (!spans.empty() && span.begin_s <= spans.back().end_s) {
     spans.back().end_s = std::max(spans.back().end_s, span.end_s);
@@ -56,8 +56,8 @@ std::vector<Pointing> joined(const std::vector<Pointing>& pointings, double tole
 
 }  // namespace
 
-std::vector<PieceSpan> presenceOf(const RecordedObject& object, PieceSpan window) {
-  std::vector<PieceSpan> spans;
+std::vector<TimeSpan> presenceOf(const RecordedObject& object, TimeSpan window) {
+  std::vector<TimeSpan> spans;
   double begin_s = std::max(window.begin_s, object.poses.front().t_s);
   // A first state that is told a moment after the window's begin holds at the begin, too.
   if (object.poses.front().t_s <= window.begin_s + 1) begin_s = window.begin_s;
@@ -72,15 +72,15 @@ std::vector<PieceSpan> presenceOf(const RecordedObject& object, PieceSpan window
   return spans;
 }
 
-std::vector<BeamPiece> piecesOf(const RecordedBeam& beam, const std::vector<PieceSpan>& presence, bool& cut) {
+std::vector<BeamPiece> piecesOf(const RecordedBeam& beam, const std::vector<TimeSpan>& presence, bool& cut) {
   std::vector<BeamPiece> pieces;
   for (std::size_t i = 0; i < beam.states.size(); ++i) {
     const BeamState& state = beam.states[i];
     if (!state.is_on) continue;
     const double end_s =
         i + 1 < beam.states.size() ? beam.states[i + 1].t_s : std::numeric_limits<double>::infinity();
-    std::vector<PieceSpan> spans;
-    for (const PieceSpan& span : presence)
+    std::vector<TimeSpan> spans;
+    for (const TimeSpan& span : presence)
       append(spans, {std::max(span.begin_s, state.t_s), std::min(span.end_s, end_s)});
     if (spans.empty()) continue;
     auto piece = std::find_if(pieces.begin(), pieces.end(),
@@ -94,7 +94,7 @@ std::vector<BeamPiece> piecesOf(const RecordedBeam& beam, const std::vector<Piec
       piece = pieces.end() - 1;
     }
     const bool points = !std::isnan(state.azimuth_deg) || !std::isnan(state.elevation_deg);
-    for (const PieceSpan& span : spans) {
+    for (const TimeSpan& span : spans) {
       append(piece->active, span);
       if (!points) continue;
       const Pointing next{span.begin_s, span.end_s, orZero(state.azimuth_deg), orZero(state.elevation_deg)};

@@ -9,13 +9,8 @@
 
 namespace emscape::interop {
 
-/// [begin, end) in seconds.
-struct PieceSpan {
-  double begin_s = 0, end_s = 0;
-};
-
-/// The times within a window at which an object is present and has a position.
-std::vector<PieceSpan> presenceOf(const RecordedObject& object, PieceSpan window);
+/// The times within a window at which an object is present and has a position, without their ends.
+std::vector<TimeSpan> presenceOf(const RecordedObject& object, TimeSpan window);
 
 /// Direction of a beam from begin_s to end_s.
 struct Pointing {
@@ -26,7 +21,7 @@ struct Pointing {
 /// The times at which a beam is on with the same settings.
 struct BeamPiece {
   BeamState state;  ///< settings; the direction is that of the first pointing
-  std::vector<PieceSpan> active;
+  std::vector<TimeSpan> active;
   std::vector<Pointing> pointings;  ///< in the order of time, equal neighbours joined; empty if not told
 };
 
@@ -34,7 +29,7 @@ struct BeamPiece {
 /// the sweeps. Of more than kMaxPieces different settings the later ones are left out.
 /// @param cut  set to true if that happened
 constexpr std::size_t kMaxPieces = 32;
-std::vector<BeamPiece> piecesOf(const RecordedBeam& beam, const std::vector<PieceSpan>& presence, bool& cut);
+std::vector<BeamPiece> piecesOf(const RecordedBeam& beam, const std::vector<TimeSpan>& presence, bool& cut);
 
 /// Pointings with neighbours joined that differ by less than a tolerance, which grows from 0.1 degree until
 /// there are at most `count`.

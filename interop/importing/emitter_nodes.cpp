@@ -71,12 +71,25 @@ double gain_dbi(const DocumentNodePtr& antenna, const std::string& database) {
   return made ? made->gain_dbi : 0;
 }
 
+/// Why an emitter is not added to a platform of the base; empty if it is.
+std::string presentFault(const std::vector<const scenario::Emitter*>& present, const DocumentNodePtr& emitter,
+                         const std::string& name) {
+  const std::string told = MapBuilder(emitter).textOf("kind");
+  const std::string kind = told.empty() ? scenario::toString(scenario::EmitterKind::transmitter) : told;
+  for (const scenario::Emitter* has : present) {
+    if (has->name == name || scenario::toString(has->kind) == kind)
+      return fmt::format("its platform has '{}' in the base", has->name);
+  }
+  return "";
+}
+
 }  // namespace
 
 std::string UniqueNames::unique(const std::string& name) {
   const std::string base = printable(name);
   std::string candidate = base;
   for (int i = 2; !used_.insert(candidate).second; ++i) candidate = fmt::format("{} {}", base, i);
+  if (candidate != base) numbered_.push_back(candidate);
   return candidate;
 }
 
@@ -238,7 +251,7 @@ void EmitterMaker::setScan(MapBuilder& emitter, const BeamPiece& piece) {
 }
 
 DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece* piece,
-                                          const std::vector<PieceSpan>& active, const std::string& name,
+                                          const std::vector<TimeSpan>& active, const std::string& name,
                                           const std::string& platform, std::string& fault) {
   MapBuilder source(origin.emitter);
   MapBuilder emitter;
@@ -283,7 +296,7 @@ DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece*
       active.size() == 1 && active[0].begin_s <= window_.begin_s && active[0].end_s >= window_.end_s;
   if (!is_always) {
     std::vector<DocumentNodePtr> spans;
-    for (const PieceSpan& span : active) {
+    for (const TimeSpan& span : active) {
       const bool is_written = span.end_s - std::max(span.begin_s, 0.0) >= kShortestActive_s;
       if (spans.size() < kMaxActive && is_written)
         spans.push_back(listNode({decimalNode(std::max(span.begin_s, 0.0), 3), decimalNode(span.end_s, 3)}));
@@ -298,8 +311,9 @@ DocumentNodePtr EmitterMaker::emitterNode(const Origin& origin, const BeamPiece*
 }
 
 void EmitterMaker::makeOfBeam(const RecordedObject& object, const RecordedBeam& beam,
-                              const std::vector<PieceSpan>& presence, const std::string& platform,
-                              double& height_m, std::vector<DocumentNodePtr>& emitters) {
+                              const std::vector<TimeSpan>& presence, const std::string& platform,
+                              const std::vector<const scenario::Emitter*>& present, double& height_m,
+                              std::vector<DocumentNodePtr>& emitters) {
   bool cut = false;
   const std::vector<BeamPiece> pieces = piecesOf(beam, presence, cut);
   if (pieces.empty()) return count(beam.name, "", "never on within these times");
@@ -309,11 +323,14 @@ void EmitterMaker::makeOfBeam(const RecordedObject& object, const RecordedBeam& 
                  database_.unmatched == Unmatched::ignore ? "not in the database, and unmatched: ignore"
                                                           : "not in the database");
   }
+  const std::string name = joinedName(platform, origin.name);
+  const std::string has = presentFault(present, origin.emitter, name);
+  if (!has.empty()) return count(origin.name, "", has);
   if (cut) ++beams_cut_;
   for (const BeamPiece& piece : pieces) {
     std::string fault;
-    const DocumentNodePtr emitter = emitterNode(
-        origin, &piece, piece.active, names_.unique(joinedName(platform, origin.name)), platform, fault);
+    const DocumentNodePtr emitter =
+        emitterNode(origin, &piece, piece.active, names_.unique(name), platform, fault);
     count(fault.empty() ? origin.name : beam.name, origin.source, fault);
     if (!emitter) continue;
     emitters.push_back(emitter);
@@ -323,18 +340,26 @@ void EmitterMaker::makeOfBeam(const RecordedObject& object, const RecordedBeam& 
 
 std::vector<DocumentNodePtr> EmitterMaker::make(const RecordedObject& object,
                                                 const std::vector<const RecordedBeam*>& beams,
-                                                const std::string& platform, double& height_m) {
+                                                const std::string& platform,
+                                                const std::vector<const scenario::Emitter*>& present,
+                                                double& height_m) {
   std::vector<DocumentNodePtr> emitters;
-  const std::vector<PieceSpan> presence = presenceOf(object, window_);
+  const std::vector<TimeSpan> presence = presenceOf(object, window_);
   if (presence.empty()) return emitters;
-  for (const RecordedBeam* beam : beams) makeOfBeam(object, *beam, presence, platform, height_m, emitters);
+  for (const RecordedBeam* beam : beams)
+    makeOfBeam(object, *beam, presence, platform, present, height_m, emitters);
   if (!beams.empty()) return emitters;
   const EmitterRow* row = findRow(database_, object, nullptr);
   if (row == nullptr) return emitters;
-  std::string fault;
+  const std::string name = joinedName(platform, row->name);
+  std::string fault = presentFault(present, row->emitter, name);
+  if (!fault.empty()) {
+    count(row->name, "", fault);
+    return emitters;
+  }
   const Origin origin{row->emitter, row->name, row->source, row->file, row->antenna_height_m};
   const DocumentNodePtr emitter =
-      emitterNode(origin, nullptr, presence, names_.unique(joinedName(platform, row->name)), platform, fault);
+      emitterNode(origin, nullptr, presence, names_.unique(name), platform, fault);
   count(row->name, row->source, fault);
   if (emitter) {
     emitters.push_back(emitter);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <memory>
 #include <set>
+#include <unordered_map>
 
 #include "base/files/folder.h"
 #include "base/files/whole_file.h"
@@ -22,6 +23,9 @@
 #include "interop/importing/held_beams.h"
 #include "interop/importing/platforms.h"
 #include "interop/importing/scenario_text.h"
+#include "interop/importing/type_text.h"
+#include "recording/common/ticks.h"
+#include "recording/dis/pdu.h"
 
 namespace emscape::interop {
 namespace {
@@ -70,11 +74,21 @@ TimeSpan windowOf(const Recording& recording, const ImportOptions& options) {
   return {options.times->begin_s, std::min(options.times->end_s, recorded.end_s)};
 }
 
+/// The first names of a list and the number of the others.
+std::string firstOf(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 8;
+  const auto end = names.begin() + static_cast<std::ptrdiff_t>(std::min(names.size(), kShown));
+  std::string text = fmt::format("'{}'", fmt::join(names.begin(), end, "', '"));
+  if (names.size() > kShown) text += fmt::format(" and {} more", names.size() - kShown);
+  return text;
+}
+
 /// An object that becomes a platform.
 struct Chosen {
   const RecordedObject* object = nullptr;
   std::vector<const RecordedBeam*> beams;
-  std::string name;  ///< of its platform
+  std::string name;                    ///< of its platform
+  std::optional<std::size_t> moves{};  ///< the platform of the base that it moves
   std::vector<DocumentNodePtr> emitters;
   std::vector<PoseSample> track;
 };
@@ -87,11 +101,7 @@ class Importer {
         progress_(progress),
         window_(windowOf(recording, options)),
         folder_(fs::absolute(options.scenario).parent_path()),
-        stem_(fs::path(options.scenario).stem().string()) {
-    // Without --times t = 0 is a whole second of the recording, so that its times stay readable.
-    origin_s_ = options.times ? window_.begin_s : std::floor(window_.begin_s);
-    duration_s_ = std::max(std::round((window_.end_s - origin_s_) * 1000) / 1000, 0.0);
-  }
+        stem_(fs::path(options.scenario).stem().string()) {}
 
   ImportResult run() {
     choose();
@@ -109,9 +119,11 @@ class Importer {
   }
 
   void choose();
+  void placeInTime();
   void makeEmitters();
   void loadTerrain();
   void makeTracks();
+  void tellNames(const std::vector<std::string>& numbered);
   void tellWhatIsMissing();
   void write();
   std::string headerText() const;
@@ -148,8 +160,6 @@ void Importer::choose() {
     }
     kept_as[i] = shifted_.size();
     shifted_.push_back(object);
-    for (PresenceSample& sample : shifted_.back().presence) sample.t_s -= origin_s_;
-    for (PoseSample& pose : shifted_.back().poses) pose.t_s -= origin_s_;
   }
   if (shifted_.empty())
     throw Error(ErrorCode::bad_input, {recording_.file, 0, 0},
@@ -160,6 +170,7 @@ void Importer::choose() {
         fmt::format("{} objects, more than the {} platforms of a scenario; choose with --only or --times",
                     shifted_.size(), kMaxPlatforms));
   }
+  placeInTime();
   for (const RecordedBeam& beam : recording_.beams) {
     if (kept_as[beam.object] == recording_.objects.size()) continue;
     beams_.push_back(beam);
@@ -167,6 +178,22 @@ void Importer::choose() {
     beams_.back().object = kept_as[beam.object];
     for (BeamState& state : beams_.back().states) state.t_s -= origin_s_;
   }
+}
+
+void Importer::placeInTime() {
+  // Without --times t = 0 is the first position of a chosen object, so that one is there then.
+  origin_s_ = window_.begin_s;
+  if (!options_.times) {
+    origin_s_ = window_.end_s;
+    for (const RecordedObject& object : shifted_) origin_s_ = std::min(origin_s_, object.poses.front().t_s);
+  }
+  for (RecordedObject& object : shifted_) {
+    for (PresenceSample& sample : object.presence) sample.t_s -= origin_s_;
+    for (PoseSample& pose : object.poses) pose.t_s -= origin_s_;
+  }
+  // To the millisecond before the last position, but for the rounding of a recording's ticks.
+  const double length_s = window_.end_s - origin_s_ + kTickRounding_s / 2;
+  duration_s_ = std::max(std::floor(length_s * 1000) / 1000, 0.0);
 }
 
 void Importer::makeEmitters() {
@@ -183,17 +210,33 @@ void Importer::makeEmitters() {
   std::vector<std::vector<const RecordedBeam*>> beams_of(shifted_.size());
   for (const RecordedBeam& beam : beams_) beams_of[beam.object].push_back(&beam);
   std::map<std::string, ImportedType> types;
+  std::vector<std::string> names;
+  for (const RecordedObject& object : shifted_) names.push_back(object.name);
+  const auto moved = base_ ? movedPlatforms(names, *base_)
+                           : std::vector<std::optional<std::size_t>>(shifted_.size(), std::nullopt);
   for (std::size_t i = 0; i < shifted_.size(); ++i) {
     Chosen chosen;
     chosen.object = &shifted_[i];
-    chosen.name = platform_names.unique(shifted_[i].name);
+    chosen.moves = moved[i];
+    std::vector<const scenario::Emitter*> present;
+    if (moved[i]) {
+      chosen.name = base_->platforms[*moved[i]].name;
+      result_.moved.push_back(chosen.name);
+      for (const scenario::Emitter& emitter : base_->emitters) {
+        if (static_cast<std::size_t>(emitter.platform) == *moved[i]) present.push_back(&emitter);
+      }
+    } else {
+      chosen.name = platform_names.unique(shifted_[i].name);
+    }
     chosen.beams = std::move(beams_of[i]);
     double height_m = 0;
-    chosen.emitters = maker.make(*chosen.object, chosen.beams, chosen.name, height_m);
+    chosen.emitters = maker.make(*chosen.object, chosen.beams, chosen.name, present, height_m);
+    if (moved[i]) height_m = 0;  // a platform of the base is where its antennas are
     raise_m_.push_back(height_m);
     result_.platforms.push_back({chosen.object->id, chosen.name, height_m});
     ImportedType& type = types[shifted_[i].type];
     type.type = shifted_[i].type.empty() ? "without a type" : shifted_[i].type;
+    type.text = typeText(shifted_[i]);
     type.domain = shifted_[i].domain;
     ++type.objects;
     type.emitters += static_cast<int>(chosen.emitters.size());
@@ -202,8 +245,9 @@ void Importer::makeEmitters() {
   for (auto& [name, type] : types) result_.types.push_back(type);
   result_.emitters = maker.uses();
   result_.notes = maker.notes();
+  tellNames(platform_names.numbered());
   const auto silent = std::count_if(chosen_.begin(), chosen_.end(), [](const Chosen& chosen) {
-    return chosen.beams.empty() && chosen.emitters.empty();
+    return chosen.beams.empty() && chosen.emitters.empty() && !chosen.moves;
   });
   if (!database.starter_serves_objects && silent > 0) {
     result_.notes.push_back(
@@ -226,6 +270,27 @@ void Importer::makeEmitters() {
           document::flowText(*textNode(fs::path(recording_.file).filename().string()), true),
           shifted_.size() == 1 ? ""
                                : ", object: " + document::flowText(*textNode(shifted_.front().name), true)));
+}
+
+void Importer::tellNames(const std::vector<std::string>& numbered) {
+  if (base_) {
+    int emitters = 0;
+    for (const Chosen& chosen : chosen_) emitters += static_cast<int>(chosen.emitters.size());
+    std::string text;
+    if (!result_.moved.empty()) {
+      text =
+          fmt::format("the recording moves {} of the base, whose emitters, receivers and targets stay: {}; ",
+                      countText(result_.moved.size(), "platform", "platforms"), firstOf(result_.moved));
+    }
+    result_.notes.push_back(
+        text + fmt::format("added to the base: {}, {}",
+                           countText(chosen_.size() - result_.moved.size(), "platform", "platforms"),
+                           countText(emitters, "emitter", "emitters")));
+  }
+  if (numbered.empty()) return;
+  result_.notes.push_back(fmt::format("{} a name that is in use, and a number after it: {}",
+                                      countText(numbered.size(), "object has", "objects have"),
+                                      firstOf(numbered)));
 }
 
 void Importer::loadTerrain() {
@@ -283,12 +348,12 @@ void Importer::makeTracks() {
 
 void Importer::tellWhatIsMissing() {
   if (base_) return;
-  result_.notes.push_back(
-      options_.terrain.empty()
-          ? "recordings have no terrain, targets or receivers: the ground is flat at mean sea level; give "
-            "elevation files (--terrain), or a scenario that has them (--base)"
-          : "recordings have no targets or receivers: add them to the scenario, or give one that has them "
-            "(--base)");
+  result_.notes.push_back(fmt::format(
+      "recordings have no {}ground, atmosphere, targets or receivers: {}average ground and the standard "
+      "atmosphere are assumed; {}a scenario that has them is given by --base",
+      options_.terrain.empty() ? "terrain, " : "",
+      options_.terrain.empty() ? "flat land at mean sea level, " : "",
+      options_.terrain.empty() ? "elevation files are given by --terrain, " : ""));
 }
 
 std::string Importer::headerText() const {
@@ -308,7 +373,7 @@ std::string Importer::headerText() const {
 void Importer::write() {
   ScenarioParts parts;
   parts.header = headerText();
-  parts.name = stem_.empty() ? "imported" : stem_;
+  if (!options_.keeps_name) parts.name = stem_.empty() ? "imported" : stem_;
   if (recording_.epoch_ms) parts.epoch_utc = utcText(*recording_.epoch_ms + std::llround(origin_s_ * 1000));
   parts.duration_s = duration_s_;
   parts.step_s = stepOf(duration_s_);
@@ -334,8 +399,13 @@ void Importer::write() {
       files.push_back(
           {folder_ / track_file, [&chosen](std::ostream& stream) { stream << trackCsv(chosen.track); }});
     }
-    parts.platforms.push_back(
-        platformNode(chosen.name, chosen.object->side, chosen.track.front(), track_file));
+    const DocumentNodePtr platform =
+        platformNode(chosen.name, chosen.object->side, chosen.track.front(), track_file);
+    if (chosen.moves) {
+      parts.moved[*chosen.moves] = platform;
+    } else {
+      parts.platforms.push_back(platform);
+    }
     parts.emitters.insert(parts.emitters.end(), chosen.emitters.begin(), chosen.emitters.end());
     tracks.push_back(chosen.track);
   }
@@ -367,6 +437,31 @@ void Importer::write() {
 }
 
 }  // namespace
+
+std::vector<std::optional<std::size_t>> movedPlatforms(const std::vector<std::string>& objects,
+                                                       const scenario::Scenario& base) {
+  std::vector<std::optional<std::size_t>> moved(objects.size());
+  std::vector<bool> is_moved(base.platforms.size());
+  for (const bool is_exact : {true, false}) {
+    std::unordered_multimap<std::string, std::size_t> platforms;  // of a name as it would be told
+    for (std::size_t p = 0; p < base.platforms.size(); ++p) {
+      const std::string& name = base.platforms[p].name;
+      platforms.emplace(is_exact ? name : name.substr(0, dis::kMarkingBytes), p);
+    }
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+      if (moved[i] || (!is_exact && objects[i].size() != dis::kMarkingBytes)) continue;
+      std::optional<std::size_t> first;
+      const auto [begin, end] = platforms.equal_range(objects[i]);
+      for (auto found = begin; found != end; ++found) {
+        if (!is_moved[found->second] && (!first || found->second < *first)) first = found->second;
+      }
+      if (!first) continue;
+      moved[i] = first;
+      is_moved[*first] = true;
+    }
+  }
+  return moved;
+}
 
 RegionRequest parseRegion(const std::string& text) {
   RegionRequest request;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "document/node_span.h"
@@ -50,6 +51,45 @@ std::string withItems(const std::string& text, const std::string& file, const st
   return before + "\n" + blockText(items, indent) + text.substr(std::min(line_end + 1, text.size()));
 }
 
+/// Replaces the place or track of platforms of the document; a moving one keeps what it says of the times
+/// outside of its track.
+std::string withMoved(const std::string& text, const std::string& file,
+                      const std::map<std::size_t, DocumentNodePtr>& moved) {
+  document::ProblemList problems;
+  const DocumentNodePtr root = document::readDocument(file, text, problems);
+  std::vector<document::Splice> splices;
+  for (const auto& [index, platform] : moved) {
+    const DocumentNodePtr before = document::valueAt(root, {std::string("platforms"), index});
+    const MapBuilder now(platform);
+    const bool moves = now.find("track") != nullptr;
+    const bool is_flow = document::isFlow(text, *before);
+    const DocumentNodePtr attitude = now.find("attitude");
+    bool has_attitude = false;
+    for (const document::MapEntry& entry : before->entries) has_attitude |= entry.key == "attitude";
+    for (const document::MapEntry& entry : before->entries) {
+      if (entry.key == "attitude") {
+        splices.push_back(document::spliceFor(text, root, {std::string("platforms"), index, entry.key},
+                                              moves ? nullptr : attitude));
+      }
+      if (entry.key != "position" && entry.key != "track") continue;
+      MapBuilder place(now.find(moves ? "track" : "position"));
+      if (moves) place.set("outside", MapBuilder(entry.value).find("outside"));
+      std::string written = (moves ? "track: " : "position: ") + document::flowText(*place.node(), false);
+      if (attitude && !has_attitude) {
+        const int indent = std::max(entry.position.column - 1, 0);
+        written += (is_flow ? ", " : "\n" + std::string(static_cast<std::size_t>(indent), ' ')) +
+                   "attitude: " + document::flowText(*attitude, false);
+      }
+      splices.push_back({entry.position.offset, document::valueSpanOf(text, entry).end, written});
+    }
+  }
+  std::sort(splices.begin(), splices.end(), [](const auto& a, const auto& b) { return a.begin > b.begin; });
+  std::string changed = text;
+  for (const document::Splice& splice : splices)
+    changed.replace(splice.begin, splice.end - splice.begin, splice.text);
+  return changed;
+}
+
 }  // namespace
 
 std::string scenarioText(const ScenarioParts& parts, const fs::path& folder) {
@@ -76,6 +116,7 @@ std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioPar
                                const fs::path& folder) {
   scenario::Scenario changed = base;
   std::vector<scenario::Edit> edits;
+  if (!parts.name.empty()) edits.push_back({"name", document::flowText(*textNode(parts.name), false)});
   if (!parts.epoch_utc.empty()) edits.push_back({"epoch", parts.epoch_utc});
   edits.push_back({"duration_s", decimalText(parts.duration_s, 3)});
   if (parts.region) edits.push_back({"region", document::flowText(*parts.region, false)});
@@ -88,11 +129,12 @@ std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioPar
   changed.set(edits);
   std::string text = scenario::scenarioTextIn(changed, folder);
   try {
+    text = withMoved(text, base.file, parts.moved);
     text = withItems(text, base.file, "emitters", parts.emitters);
     text = withItems(text, base.file, "platforms", parts.platforms);
   } catch (const Error& error) {
     throw Error(error.code(), {base.file, 0, 0},
-                "platforms and emitters cannot be added: " + error.message());
+                "platforms and emitters cannot be moved or added: " + error.message());
   }
   return commentOf(parts.header) + text;
 }

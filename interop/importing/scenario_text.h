@@ -1,7 +1,9 @@
 /// The text of an imported scenario.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -12,19 +14,20 @@ namespace emscape::interop {
 
 /// What a scenario is written from.
 struct ScenarioParts {
-  std::string header;  ///< lines of a comment, without #
-  std::string name;
+  std::string header;     ///< lines of a comment, without #
+  std::string name;       ///< empty: that of the base
   std::string epoch_utc;  ///< empty: none
   double duration_s = 0, step_s = 1;
   DocumentNodePtr region;            ///< null: that of the base
   std::vector<std::string> terrain;  ///< elevation files, as named on the command line
   std::vector<DocumentNodePtr> platforms, emitters;
+  std::map<std::size_t, DocumentNodePtr> moved;  ///< by platform of the base: where it is now
 };
 
 std::string scenarioText(const ScenarioParts& parts, const std::filesystem::path& folder);
 
-/// The text of a base scenario with epoch, duration and, where they are given, region and terrain replaced,
-/// and platforms and emitters added.
+/// The text of a base scenario with name, epoch, duration and, where they are given, region and terrain
+/// replaced, platforms moved, and platforms and emitters added.
 /// @throws Error (bad_input) naming the base
 std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioParts& parts,
                                const std::filesystem::path& folder);

@@ -11,6 +11,8 @@
 namespace emscape::interop {
 namespace {
 
+/// An event so much (s) before its last one is not late: the sender's clock has been set back.
+constexpr double kLatest_s = 30;
 constexpr double kLongestLife_s = 86400;  ///< of an event, whatever it says
 
 bool isPosition(const PoseSample& pose) {
@@ -75,7 +77,8 @@ void LiveCot::keep(CotEvent event, double arrival_s) {
     recent_.push_front(event.uid);
     kept.recent = recent_.begin();
   } else {
-    if (event.time_s < kept.event.time_s) {
+    const double before_s = kept.event.time_s - event.time_s;
+    if (before_s > 0 && before_s <= kLatest_s) {
       ++counts_.late;
       return;
     }

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -177,6 +178,11 @@ Connection Connection::to(const Address& address, const StopFlag* stop) {
     if (getsockopt(socket.number(), SOL_SOCKET, SO_ERROR, &cause, &size) != 0 || cause != 0)
       fail("connect to", address, cause);
   }
+  // A host that is gone without a word ends the connection, too.
+  setOption(socket, SOL_SOCKET, SO_KEEPALIVE, 1);
+  setOption(socket, IPPROTO_TCP, TCP_KEEPIDLE, 10);
+  setOption(socket, IPPROTO_TCP, TCP_KEEPINTVL, 5);
+  setOption(socket, IPPROTO_TCP, TCP_KEEPCNT, 3);
   return Connection(std::move(socket));
 }
 

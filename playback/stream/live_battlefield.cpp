@@ -184,8 +184,10 @@ struct LiveBattlefield::Impl {
   /// Takes what has arrived.
   void take(const std::uint8_t* data, std::size_t size) {
     const std::lock_guard<std::mutex> lock(state_mutex);
-    last_s = steadyTime_s();
-    state->take(data, size, *last_s);
+    const double now_s = steadyTime_s();
+    const long long before = state->counts().records;
+    state->take(data, size, now_s);
+    if (state->counts().records != before) last_s = now_s;
     received.bytes += static_cast<long long>(size);
     if (recorder) recorder->write(data, size, unixTime_s());
     is_due = true;

@@ -15,7 +15,6 @@
 #include "emscape/base/error.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "interop/emitters/emitter_database.h"
-#include "recording/dis/pdu.h"
 #include "scenario/model/posed_platform.h"
 
 namespace emscape::playback {
@@ -26,14 +25,14 @@ namespace fs = std::filesystem;
 /// Height (m) above the ground to which positions below it are raised, as by `import`.
 constexpr double kAboveGround_m = 2;
 
-/// A folder for files of the running program, in memory if there is one: each is flushed when it is written.
+/// A folder for files of the running program: that of the user's session, which is in memory, or that for
+/// temporary files.
 fs::path runtimeFolder() {
   std::error_code ignored;
-  const char* const named = std::getenv("XDG_RUNTIME_DIR");
-  for (const char* const folder : {named == nullptr ? "" : named, "/dev/shm"}) {
-    if (*folder == '/' && access(folder, W_OK) == 0 && fs::is_directory(folder, ignored)) return folder;
-  }
-  return fs::temp_directory_path();
+  const char* const folder = std::getenv("XDG_RUNTIME_DIR");
+  const bool is_usable =
+      folder != nullptr && *folder == '/' && access(folder, W_OK) == 0 && fs::is_directory(folder, ignored);
+  return is_usable ? fs::path(folder) : fs::temp_directory_path();
 }
 
 std::string makeTemporaryFolder() {
@@ -41,12 +40,6 @@ std::string makeTemporaryFolder() {
   if (mkdtemp(name.data()) == nullptr)
     throw Error(ErrorCode::other, {name, 0, 0}, "the temporary folder cannot be made");
   return name;
-}
-
-/// True if an object of the stream is a platform: markings of DIS are cut.
-bool isNamed(const std::string& object, const std::string& platform) {
-  return object == platform ||
-         (object.size() == interop::dis::kMarkingBytes && platform.compare(0, object.size(), object) == 0);
 }
 
 /// Lets an object move a platform.
@@ -90,14 +83,13 @@ std::shared_ptr<const LiveScenario> LiveScenarioMaker::make(interop::LiveRecordi
   for (std::size_t i = 0; i < recording.objects.size(); ++i)
     poses.push_back({live.keys[i], recording.objects[i].poses.front()});
   // Platforms of the base that the stream moves.
+  std::vector<std::string> names;
+  for (const interop::RecordedObject& object : recording.objects) names.push_back(object.name);
+  const auto moved = interop::movedPlatforms(names, *base_.scenario);
   std::vector<bool> is_of_base(recording.objects.size());
-  for (std::size_t i = 0; i < recording.objects.size(); ++i) {
-    const auto& platforms = base_.scenario->platforms;
-    for (std::size_t p = 0; p < platforms.size() && !is_of_base[i]; ++p) {
-      if (!isNamed(recording.objects[i].name, platforms[p].name)) continue;
-      is_of_base[i] = true;
-      addObject(*made, live.keys[i], platforms[p].name, 0);
-    }
+  for (std::size_t i = 0; i < moved.size(); ++i) {
+    is_of_base[i] = moved[i].has_value();
+    if (moved[i]) addObject(*made, live.keys[i], base_.scenario->platforms[*moved[i]].name, 0);
   }
   auto& beams = recording.beams;
   beams.erase(std::remove_if(beams.begin(), beams.end(),
@@ -136,6 +128,7 @@ std::shared_ptr<const LiveScenario> LiveScenarioMaker::make(interop::LiveRecordi
   options.emitters = request_.emitters;
   options.beamwidth = request_.beamwidth;
   options.replace = true;
+  options.keeps_name = true;
   const interop::ImportResult result = interop::importRecording(recording, options);
   scenario::ParseResult parsed = scenario::parseScenario(file_);
   if (!parsed.scenario) scenario::loadScenario(file_);  // throws

@@ -94,6 +94,10 @@ std::string readAll(ByteSource& source, const std::string& name, std::size_t mos
 bool LineReader::fill() {
   begin_ = 0;
   end_ = source_.read(buffer_.data(), buffer_.size());
+  if (end_sign_ == '\0') {
+    const std::string_view piece(buffer_.data(), end_);
+    end_sign_ = piece.find('\n') == piece.npos && piece.find('\r') != piece.npos ? '\r' : '\n';
+  }
   return end_ > 0;
 }
 
@@ -109,7 +113,7 @@ bool LineReader::next(std::string_view& line) {
       break;
     }
     const char* const from = buffer_.data() + begin_;
-    const auto* const found = static_cast<const char*>(std::memchr(from, '\n', end_ - begin_));
+    const auto* const found = static_cast<const char*>(std::memchr(from, end_sign_, end_ - begin_));
     const std::size_t count = found == nullptr ? end_ - begin_ : static_cast<std::size_t>(found - from);
     begin_ += count + (found == nullptr ? 0 : 1);
     if (found != nullptr && !is_joined) {

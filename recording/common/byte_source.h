@@ -30,6 +30,8 @@ std::unique_ptr<ByteSource> openFile(const std::string& file);
 /// The directory at the end of the zip file is not needed, so that one that was cut is read to the cut.
 /// @throws Error (bad_input)
 std::unique_ptr<ByteSource> openZip(std::unique_ptr<ByteSource> zip, const std::string& name);
+/// What a file holds that gzip packed. @param name  of the file, for messages
+std::unique_ptr<ByteSource> openGzip(std::unique_ptr<ByteSource> packed, const std::string& name);
 /// A text in memory, which must outlive the source.
 std::unique_ptr<ByteSource> openText(std::string_view text);
 
@@ -37,7 +39,7 @@ std::unique_ptr<ByteSource> openText(std::string_view text);
 /// @param name  of the file, for messages  @throws Error (bad_input) if there are more than `most`
 std::string readAll(ByteSource& source, const std::string& name, std::size_t most);
 
-/// Reads lines. They end in LF or CRLF.
+/// Reads lines. They end in LF or CRLF; in CR where the first 64 KiB have no LF.
 class LineReader {
  public:
   /// @param source  must outlive the reader
@@ -62,6 +64,7 @@ class LineReader {
   std::size_t begin_ = 0, end_ = 0;
   std::string joined_;  ///< a line that continues in the next piece
   bool is_terminated_ = true, is_cut_ = false;
+  char end_sign_ = '\0';  ///< of a line; '\0' before the first piece
   long long line_ = 0;
 };
 

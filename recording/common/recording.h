@@ -128,6 +128,7 @@ struct Recording {
   std::string format;                    ///< "ACMI 2.2"
   std::optional<std::int64_t> epoch_ms;  ///< t = 0, since 1970-01-01T00:00:00Z
   double origin_s = 0;                   ///< without an epoch: t = 0 in the times of the file
+  bool has_times_of_day = false;         ///< those times are UTC since the begin of a day that is not told
   std::vector<RecordedObject> objects;
   std::vector<RecordedBeam> beams;
   ReadingTally tally;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 
 #include "emscape/base/error.h"
 #include "recording/common/byte_source.h"
@@ -33,19 +34,101 @@ bool endsWith(const std::string& name, std::string_view end) {
   return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
 }
 
+/// Unpacks what deflate packed.
+class Inflater {
+ public:
+  /// @param file  must outlive the object  @param window_bits  of zlib's inflateInit2()
+  Inflater(ByteSource& file, int window_bits) : file_(file) {
+    if (inflateInit2(&stream_, window_bits) != Z_OK)
+      throw Error(ErrorCode::other, "cannot unpack: out of memory");
+  }
+  ~Inflater() { inflateEnd(&stream_); }
+  Inflater(const Inflater&) = delete;
+  Inflater& operator=(const Inflater&) = delete;
+
+  std::size_t read(char* bytes, std::size_t size) {
+    stream_.next_out = reinterpret_cast<Bytef*>(bytes);
+    stream_.avail_out = static_cast<uInt>(std::min<std::size_t>(size, 1u << 30));
+    const uInt room = stream_.avail_out;
+    while (stream_.avail_out == room && !is_at_end_) {
+      if (stream_.avail_in == 0) fill();
+      if (stream_.avail_in == 0) end("is cut");
+      const int result = inflate(&stream_, Z_NO_FLUSH);
+      if (result == Z_STREAM_END) {
+        is_at_end_ = true;
+      } else if (result != Z_OK && result != Z_BUF_ERROR) {
+        end("is damaged");
+      }
+    }
+    done_ += room - stream_.avail_out;
+    if (done_ > kMaxUnzipped) end("unpacks to more than 16 GiB");
+    return room - stream_.avail_out;
+  }
+  bool isAtEnd() const { return is_at_end_; }
+  /// Goes on with what follows. @return false at the end of the file
+  bool goesOn() {
+    if (stream_.avail_in == 0) fill();
+    if (stream_.avail_in == 0) return false;
+    is_at_end_ = false;
+    return inflateReset(&stream_) == Z_OK;
+  }
+  const std::string& failure() const { return failure_; }
+
+ private:
+  void fill() {
+    stream_.next_in = reinterpret_cast<Bytef*>(packed_.data());
+    stream_.avail_in = static_cast<uInt>(file_.read(packed_.data(), packed_.size()));
+  }
+  void end(const char* failure) {
+    is_at_end_ = true;
+    failure_ = failure;
+  }
+
+  ByteSource& file_;
+  z_stream stream_{};
+  std::vector<char> packed_ = std::vector<char>(std::size_t{1} << 16);
+  std::uint64_t done_ = 0;
+  bool is_at_end_ = false;
+  std::string failure_;
+};
+
+/// One or several files in the format of gzip. @see RFC 1952
+class GzipSource : public ByteSource {
+ public:
+  GzipSource(std::unique_ptr<ByteSource> packed, std::string name)
+      : file_(std::move(packed)), name_(std::move(name)), inflater_(*file_, kGzipBits) {}
+
+  std::size_t read(char* bytes, std::size_t size) override {
+    if (size == 0) return 0;
+    for (;;) {
+      const std::size_t count = inflater_.read(bytes, size);
+      done_ += count;
+      if (!inflater_.failure().empty() && done_ == 0) {
+        throw Error(ErrorCode::bad_input, {name_, 0, 0}, "cannot read: the gzip file " + inflater_.failure());
+      }
+      if (count > 0 || !inflater_.failure().empty() || !inflater_.goesOn()) return count;
+    }
+  }
+  double fraction() const override { return file_->fraction(); }
+  std::string failure() const override {
+    return inflater_.failure().empty() ? "" : "the gzip file " + inflater_.failure();
+  }
+
+ private:
+  static constexpr int kGzipBits = MAX_WBITS + 16;
+  std::unique_ptr<ByteSource> file_;
+  std::string name_;
+  Inflater inflater_;
+  std::uint64_t done_ = 0;
+};
+
 class ZipSource : public ByteSource {
  public:
   ZipSource(std::unique_ptr<ByteSource> zip, const std::string& name)
       : name_(name), file_(std::move(zip)), reader_(*file_) {
     chooseEntry();
-    if (entry_.method == kDeflated && inflateInit2(&stream_, -MAX_WBITS) != Z_OK) fail("out of memory");
-    is_initialised_ = entry_.method == kDeflated;
+    if (entry_.method == kDeflated) inflater_.emplace(*file_, -MAX_WBITS);
   }
-  ~ZipSource() override {
-    if (is_initialised_) inflateEnd(&stream_);
-  }
-  ZipSource(const ZipSource&) = delete;
-  ZipSource& operator=(const ZipSource&) = delete;
 
   std::size_t read(char* bytes, std::size_t size) override {
     if (is_at_end_ || size == 0) return 0;
@@ -112,32 +195,18 @@ class ZipSource : public ByteSource {
   }
 
   std::size_t inflateInto(char* bytes, std::size_t size) {
-    stream_.next_out = reinterpret_cast<Bytef*>(bytes);
-    stream_.avail_out = static_cast<uInt>(std::min<std::size_t>(size, 1u << 30));
-    const uInt room = stream_.avail_out;
-    while (stream_.avail_out == room && !is_at_end_) {
-      if (stream_.avail_in == 0) {
-        stream_.next_in = reinterpret_cast<Bytef*>(packed_.data());
-        stream_.avail_in = static_cast<uInt>(file_->read(packed_.data(), packed_.size()));
-        if (stream_.avail_in == 0) end("the zip file is cut");
-      }
-      const int result = inflate(&stream_, Z_NO_FLUSH);
-      if (result == Z_STREAM_END) {
-        is_at_end_ = true;
-      } else if (result != Z_OK && result != Z_BUF_ERROR) {
-        end("the zip file is damaged");
-      }
-    }
-    return room - stream_.avail_out;
+    const std::size_t count = inflater_->read(bytes, size);
+    is_at_end_ = inflater_->isAtEnd();
+    if (!inflater_->failure().empty()) failure_ = "the zip file " + inflater_->failure();
+    return count;
   }
 
   std::string name_;
   std::unique_ptr<ByteSource> file_;
   RecordReader reader_;
   ZipEntry entry_;
-  z_stream stream_{};
-  bool is_initialised_ = false, is_at_end_ = false;
-  std::vector<char> packed_ = std::vector<char>(std::size_t{1} << 16);
+  std::optional<Inflater> inflater_;
+  bool is_at_end_ = false;
   std::uint64_t left_ = 0, done_ = 0;
   uLong crc_ = 0;
   std::string failure_;
@@ -147,6 +216,10 @@ class ZipSource : public ByteSource {
 
 std::unique_ptr<ByteSource> openZip(std::unique_ptr<ByteSource> zip, const std::string& name) {
   return std::make_unique<ZipSource>(std::move(zip), name);
+}
+
+std::unique_ptr<ByteSource> openGzip(std::unique_ptr<ByteSource> packed, const std::string& name) {
+  return std::make_unique<GzipSource>(std::move(packed), name);
 }
 
 }  // namespace emscape::interop

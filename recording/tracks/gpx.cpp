@@ -1,55 +1,58 @@
-#include <fmt/format.h>
-
-#include <filesystem>
-
 #include "recording/common/dates.h"
 #include "recording/common/tally.h"
-#include "recording/common/text.h"
-#include "recording/common/track_recorder.h"
-#include "recording/common/xml.h"
 #include "recording/tracks/track_formats.h"
+#include "recording/tracks/xml_tracks.h"
 
 namespace emscape::interop {
 namespace {
 
-class GpxReader {
+class GpxReader : XmlTracks {
  public:
-  GpxReader(const std::string& name, const ReadOptions& options)
-      : stem_(std::filesystem::path(name).stem().string()), recorder_("GPX", options) {
-    recorder_.hasUtc();
-  }
+  GpxReader(const std::string& name, const ReadOptions& options) : XmlTracks("GPX", name, options) {}
 
   Recording read(const pugi::xml_node& gpx) {
     for (const pugi::xml_node& node : gpx.children()) {
       if (nameOf(node) == "trk") takeTrack(node);
-      if (nameOf(node) == "wpt") takePoint(node, objectOf(node, "waypoint"), true);
-      if (nameOf(node) == "rte") countIgnored(recorder_.tally(), "route without times");
+      if (nameOf(node) == "wpt") {
+        const std::string told = nameIn(node);
+        takePoint(node, objectOf(node, told.empty() ? "waypoint" : told), true);
+      }
+      if (nameOf(node) == "rte") takeRoute(node);
     }
     return recorder_.finish();
   }
 
  private:
-  std::size_t objectOf(const pugi::xml_node& node, const std::string& otherwise) {
-    // Objects may have the same name.
-    const std::size_t object = recorder_.objectOf(fmt::format("{}", ++objects_));
-    const std::string told = printableText(textOf(node, "name"));
-    recorder_.object(object).name = told.empty() ? otherwise : told;
+  std::size_t objectOf(const pugi::xml_node& node, const std::string& name) {
+    const std::size_t object = newObject(name);
     recorder_.object(object).type = printableText(textOf(node, "type"));
     return object;
   }
 
   void takeTrack(const pugi::xml_node& track) {
-    const std::size_t object = objectOf(track, stem_);
+    const std::size_t object = objectOf(track, nameIn(track));
     for (const pugi::xml_node& segment : track.children()) {
-      if (nameOf(segment) != "trkseg") continue;
-      for (const pugi::xml_node& point : segment.children()) {
-        if (nameOf(point) == "trkpt") takePoint(point, object, false);
-      }
+      if (nameOf(segment) == "trkseg") takePoints(segment, "trkpt", object);
+    }
+  }
+
+  /// Routes are planned, but some receivers write what was travelled as one.
+  void takeRoute(const pugi::xml_node& route) {
+    for (const pugi::xml_node& point : route.children()) {
+      if (nameOf(point) == "rtept" && childOf(point, "time"))
+        return takePoints(route, "rtept", objectOf(route, nameIn(route)));
+    }
+    countIgnored(recorder_.tally(), "route without times");
+  }
+
+  void takePoints(const pugi::xml_node& parent, std::string_view name, std::size_t object) {
+    for (const pugi::xml_node& point : parent.children()) {
+      if (nameOf(point) == name) takePoint(point, object, false);
     }
   }
 
   void takePoint(const pugi::xml_node& point, std::size_t object, bool is_fixed) {
-    const std::string location = fmt::format("point {}", ++recorder_.tally().records);
+    const std::string location = nextLocation("point");
     const auto latitude = numberIn(point.attribute("lat").value()),
                longitude = numberIn(point.attribute("lon").value());
     if (!latitude || !longitude)
@@ -67,20 +70,12 @@ class GpxReader {
     pose.heading_deg = numberIn(textOf(point, "course")).value_or(kUnknown);  // of GPX 1.0
     recorder_.add(object, pose, location);
   }
-
-  std::string stem_;
-  TrackRecorder recorder_;
-  int objects_ = 0;
 };
 
 }  // namespace
 
 Recording readGpx(ByteSource& source, const std::string& name, const ReadOptions& options) {
-  pugi::xml_document document;
-  const std::string torn = loadXml(source, name, document);
-  Recording recording = GpxReader(name, options).read(childOf(document, "gpx"));
-  recording.tally.torn = torn;
-  return recording;
+  return readXmlTracks<GpxReader>(source, name, options, "gpx");
 }
 
 }  // namespace emscape::interop

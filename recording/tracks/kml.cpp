@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
-#include <filesystem>
+#include <map>
+#include <set>
 
 #include "recording/common/dates.h"
 #include "recording/common/tally.h"
 #include "recording/common/text.h"
-#include "recording/common/track_recorder.h"
-#include "recording/common/xml.h"
 #include "recording/tracks/track_formats.h"
+#include "recording/tracks/xml_tracks.h"
 
 namespace emscape::interop {
 namespace {
@@ -30,12 +30,9 @@ std::vector<double> numbersOf(std::string_view text) {
   }
 }
 
-class KmlReader {
+class KmlReader : XmlTracks {
  public:
-  KmlReader(const std::string& name, const ReadOptions& options)
-      : stem_(std::filesystem::path(name).stem().string()), recorder_("KML", options) {
-    recorder_.hasUtc();
-  }
+  KmlReader(const std::string& name, const ReadOptions& options) : XmlTracks("KML", name, options) {}
 
   Recording read(const pugi::xml_node& kml) {
     takeFolder(kml, 0);
@@ -43,39 +40,61 @@ class KmlReader {
   }
 
  private:
+  /// A point with a time of its own.
+  struct Stamped {
+    std::string name, location;
+    PoseSample pose;
+  };
+
   void takeFolder(const pugi::xml_node& folder, int depth) {
+    std::vector<Stamped> stamped;
     for (const pugi::xml_node& node : folder.children()) {
-      if (nameOf(node) == "Placemark") takePlacemark(node);
+      if (nameOf(node) == "Placemark") takeGeometries(node, node, nameIn(node), stamped, 0);
       if (nameOf(node) == "Tour") countIgnored(recorder_.tally(), "tour of the camera");
       const bool is_folder = nameOf(node) == "Document" || nameOf(node) == "Folder";
       if (is_folder && depth < kMaxDepth) takeFolder(node, depth + 1);
     }
+    takeStamped(stamped, nameIn(folder));
   }
 
-  std::size_t objectOf(const std::string& id, const std::string& name) {
-    const std::size_t object = recorder_.objectOf(id);
-    recorder_.object(object).name = name;
-    return object;
-  }
-
-  void takePlacemark(const pugi::xml_node& placemark) {
-    const std::string told = printableText(textOf(placemark, "name"));
-    takeGeometries(placemark, placemark, told.empty() ? stem_ : told, 0);
+  /// Points of one name are one object; so are those of a folder in the order of time that each have a name
+  /// of their own, as trackers of flights write them: the time, for instance.
+  void takeStamped(const std::vector<Stamped>& stamped, const std::string& folder) {
+    constexpr std::size_t kFewest = 3;
+    std::set<std::string> names;
+    bool is_ordered = true;
+    for (std::size_t i = 0; i < stamped.size(); ++i) {
+      names.insert(stamped[i].name);
+      is_ordered = is_ordered && (i == 0 || stamped[i].pose.t_s > stamped[i - 1].pose.t_s);
+    }
+    if (stamped.size() >= kFewest && is_ordered && names.size() == stamped.size()) {
+      const std::size_t object = newObject(folder);
+      recorder_.tally().notes.push_back(fmt::format(
+          "{} points in the order of their times, each with a name of its own, are taken as one object, '{}'",
+          stamped.size(), recorder_.object(object).name));
+      for (const Stamped& point : stamped) recorder_.add(object, point.pose, point.location);
+      return;
+    }
+    for (const Stamped& point : stamped) {
+      const auto [found, is_new] = stamped_.try_emplace(point.name, 0);
+      if (is_new) found->second = newObject(point.name);
+      recorder_.add(found->second, point.pose, point.location);
+    }
   }
 
   void takeGeometries(const pugi::xml_node& placemark, const pugi::xml_node& parent, const std::string& name,
-                      int depth) {
+                      std::vector<Stamped>& stamped, int depth) {
     for (const pugi::xml_node& node : parent.children()) {
       if (nameOf(node) == "MultiGeometry" && depth < kMaxDepth)
-        takeGeometries(placemark, node, name, depth + 1);
-      if (nameOf(node) == "Track") takeTrack(node, objectOf(fmt::format("track {}", ++tracks_), name));
+        takeGeometries(placemark, node, name, stamped, depth + 1);
+      if (nameOf(node) == "Track") takeTrack(node, newObject(name));
       if (nameOf(node) == "MultiTrack") {
-        const std::size_t object = objectOf(fmt::format("track {}", ++tracks_), name);
+        const std::size_t object = newObject(name);
         for (const pugi::xml_node& track : node.children()) {
           if (nameOf(track) == "Track") takeTrack(track, object);
         }
       }
-      if (nameOf(node) == "Point") takePoint(placemark, node, name);
+      if (nameOf(node) == "Point") takePoint(placemark, node, name, stamped);
       if (nameOf(node) == "LineString") countIgnored(recorder_.tally(), "line without times");
     }
   }
@@ -93,8 +112,9 @@ class KmlReader {
     return 0;
   }
 
-  void takePoint(const pugi::xml_node& placemark, const pugi::xml_node& point, const std::string& name) {
-    const std::string location = fmt::format("position {}", ++recorder_.tally().records);
+  void takePoint(const pugi::xml_node& placemark, const pugi::xml_node& point, const std::string& name,
+                 std::vector<Stamped>& stamped) {
+    const std::string location = nextLocation("position");
     const std::vector<double> at = numbersOf(textOf(point, "coordinates"));
     if (at.size() < 2) {
       return countBad(recorder_.tally(), location,
@@ -106,12 +126,11 @@ class KmlReader {
     pose.height_msl_m = heightOf(point, at.size() > 2 ? at[2] : 0);
     std::string when = textOf(childOf(placemark, "TimeStamp"), "when");
     if (when.empty()) when = textOf(childOf(placemark, "TimeSpan"), "begin");
-    if (when.empty())
-      return recorder_.addFixed(objectOf(fmt::format("point {}", ++points_), name), pose, location);
+    if (when.empty()) return recorder_.addFixed(newObject(name), pose, location);
     const auto time_s = utcSeconds(when);
     if (!time_s) return countBad(recorder_.tally(), location, "its time is not ISO 8601");
     pose.t_s = *time_s;
-    recorder_.add(objectOf("stamped " + name, name), pose, location);
+    stamped.push_back({name, location, pose});
   }
 
   void takeTrack(const pugi::xml_node& track, std::size_t object) {
@@ -126,7 +145,7 @@ class KmlReader {
                       fmt::format("a track of {} times and {} positions", times.size(), places.size()));
     }
     for (std::size_t i = 0; i < times.size(); ++i) {
-      const std::string location = fmt::format("position {}", ++recorder_.tally().records);
+      const std::string location = nextLocation("position");
       if (trimmed(places[i]).empty()) continue;  // the standard's way to leave a time out
       const auto time_s = utcSeconds(times[i]);
       const std::vector<double> at = numbersOf(places[i]);
@@ -149,19 +168,13 @@ class KmlReader {
     }
   }
 
-  std::string stem_;
-  TrackRecorder recorder_;
-  int tracks_ = 0, points_ = 0;
+  std::map<std::string, std::size_t> stamped_;  ///< objects of stamped points, by name
 };
 
 }  // namespace
 
 Recording readKml(ByteSource& source, const std::string& name, const ReadOptions& options) {
-  pugi::xml_document document;
-  const std::string torn = loadXml(source, name, document);
-  Recording recording = KmlReader(name, options).read(childOf(document, "kml"));
-  recording.tally.torn = torn;
-  return recording;
+  return readXmlTracks<KmlReader>(source, name, options, "kml");
 }
 
 }  // namespace emscape::interop

@@ -81,7 +81,9 @@ class NmeaReader {
     }
     flush();
     if (has_date_) recorder_.hasUtc(first_date_s_);
-    return recorder_.finish();
+    Recording recording = recorder_.finish();
+    recording.has_times_of_day = !has_date_;
+    return recording;
   }
 
  private:

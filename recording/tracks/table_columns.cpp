@@ -25,7 +25,7 @@ const std::vector<ColumnNames>& columnNames() {
       {Column::time,
        "time",
        {"timestamp", "datetime", "basedatetime", "utc", "utctime", "timeutc", "gpstime", "unixtime",
-        "updatetime", "time", "t", "seconds"}},
+        "updatetime", "time", "t", "seconds", "flytime"}},
       {Column::date, "date", {"date", "utcdate", "dateutc"}},
       {Column::latitude, "latitude", {"latitude", "lat"}},
       {Column::longitude, "longitude", {"longitude", "lon", "lng", "long"}},
@@ -76,6 +76,14 @@ std::optional<double> factorOf(const std::string& unit) {
                                                      {"days", kSecondsPerDay},
                                                      {"us", 1e-6},
                                                      {"ms", 1e-3},
+                                                     {"milliseconds", 1e-3},
+                                                     {"us", 1e-6},
+                                                     {"\xC2\xB5s", 1e-6},
+                                                     {"microsecond", 1e-6},
+                                                     {"microseconds", 1e-6},
+                                                     {"ns", 1e-9},
+                                                     {"nanosecond", 1e-9},
+                                                     {"nanoseconds", 1e-9},
                                                      {"millisecond", 1e-3}};
   const auto found = factors.find(unit);
   return found == factors.end() ? std::nullopt : std::optional(found->second);
@@ -91,7 +99,7 @@ std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
     name.resize(at);
   }
   name.erase(0, name.rfind('.') + 1);
-  for (const char* end : {"ft", "m", "deg", "rad", "s", "km", "ms", "us", "utc"}) {
+  for (const char* end : {"ft", "m", "deg", "rad", "s", "km", "ms", "us", "ns", "utc"}) {
     const std::string ending = std::string("_") + end;
     if (name.size() > ending.size() &&
         name.compare(name.size() - ending.size(), ending.size(), ending) == 0) {
@@ -103,6 +111,7 @@ std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
   name.erase(
       std::remove_if(name.begin(), name.end(), [](char c) { return c == ' ' || c == '_' || c == '#'; }),
       name.end());
+  if (name == "timeus" && unit.empty()) return {"time", "us"};  // of ArduPilot
   return {name, unit};
 }
 
@@ -209,7 +218,7 @@ Columns columnsByMap(const std::vector<std::string>& header, const std::string& 
       throw Error(
           ErrorCode::usage,
           fmt::format(
-              "columns: '{}' is no unit; allowed are m, km, ft, deg, rad, s, ms, us, h, days, of dates "
+              "columns: '{}' is no unit; allowed are m, km, ft, deg, rad, s, ms, us, ns, h, days, of dates "
               "dmy and mdy, and of numbered days excel, mjd and jd",
               printableText(unit)));
     }

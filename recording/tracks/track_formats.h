@@ -14,12 +14,14 @@ namespace emscape::interop {
 /// @param name  of the file, for messages and for objects without a name
 /// @throws Error (bad_input) that names the file: another format, or no position with a time
 
-/// GPX 1.0 and 1.1: each <trk> is an object, each <wpt> a fixed one, <ele> the height above mean sea level.
+/// GPX 1.0 and 1.1: each <trk>, and each <rte> with times, is an object, each <wpt> a fixed one, <ele> the
+/// height above mean sea level.
 /// @see https://www.topografix.com/GPX/1/1/
 Recording readGpx(ByteSource& source, const std::string& name, const ReadOptions& options);
 
-/// KML 2.2 and 2.3: gx:Track and gx:MultiTrack, placemarks with a point and a time stamp (those of one name
-/// are an object), and points without a time, which are fixed objects.
+/// KML 2.2 and 2.3: gx:Track and gx:MultiTrack, placemarks with a point and a time stamp, and points without
+/// a time, which are fixed objects. Stamped points of one name are an object; those of a folder that all have
+/// names and times of their own are one object, too.
 /// @see OGC 12-007r2 and 14-068r2
 Recording readKml(ByteSource& source, const std::string& name, const ReadOptions& options);
 

@@ -17,7 +17,19 @@
 namespace emscape::interop {
 namespace {
 
-constexpr double kUnixTime_s = 1e8, kUnixTime_ms = 1e11;
+/// Above the first of these numbers a time is since 1970; the others tell in which unit.
+constexpr double kUnixTime_s = 1e8, kUnixTime_ms = 1e11, kUnixTime_us = 1e14, kUnixTime_ns = 1e17;
+
+/// A time since 1970 in seconds.
+double secondsOf(double time) {
+  return time > kUnixTime_ns   ? time / 1e9
+         : time > kUnixTime_us ? time / 1e6
+         : time > kUnixTime_ms ? time / 1000
+                               : time;
+}
+
+/// Coordinates from here on are integers, as flight controllers log them.
+constexpr double kScaledFrom = 1e6;
 
 /// A line without the byte order mark.
 std::string_view lineOf(std::string_view line) {
@@ -150,7 +162,7 @@ class TableReader {
         }
         recorder_.mayBeDays(!column.has_unit);
         if (time > kUnixTime_s) is_utc_ = true;
-        return time > kUnixTime_ms ? time / 1000 : time;
+        return secondsOf(time);
       }
     }
     const std::string text = date == nullptr ? *told : *date + " " + *told;
@@ -175,7 +187,12 @@ class TableReader {
   std::optional<std::pair<double, double>> placeOf(const std::vector<std::string>& cells) {
     const auto latitude_deg = valueOf(cells, Column::latitude),
                longitude_deg = valueOf(cells, Column::longitude);
-    if (latitude_deg && longitude_deg) return std::pair(*latitude_deg, *longitude_deg);
+    if (latitude_deg && longitude_deg) {
+      const bool is_scaled = std::abs(*latitude_deg) > kScaledFrom || std::abs(*longitude_deg) > kScaledFrom;
+      if (is_scaled) recorder_.assume("coordinates beyond a million: taken as 1e-7 degrees");
+      const double unit = is_scaled ? 1e-7 : 1;
+      return std::pair(*latitude_deg * unit, *longitude_deg * unit);
+    }
     const std::string *const north = cellOf(cells, Column::latitude),
                              *const east = cellOf(cells, Column::longitude),
                              *const both = cellOf(cells, Column::position);
@@ -279,7 +296,7 @@ bool isTrackTable(std::string_view head, const ReadOptions& options) {
   constexpr std::size_t kLongestHeader = 4096;
   std::string_view rest = head;
   for (;;) {
-    const std::size_t end = rest.find('\n');
+    const std::size_t end = rest.find_first_of("\r\n");
     if (end == std::string_view::npos || end > kLongestHeader) return false;
     const std::string_view line = lineOf(rest.substr(0, end));
     rest.remove_prefix(end + 1);

@@ -34,6 +34,7 @@ Json importJson(const interop::ImportResult& result) {
   Json types = Json::array(), emitters = Json::array(), ignored = Json::object(), left_out = Json::object();
   for (const interop::ImportedType& type : result.types) {
     types.push_back({{"type", type.type},
+                     {"text", type.text},
                      {"domain", interop::toString(type.domain)},
                      {"objects", type.objects},
                      {"emitters", type.emitters}});
@@ -57,6 +58,7 @@ Json importJson(const interop::ImportResult& result) {
           {"duration_s", result.duration_s},
           {"types", types},
           {"emitters", emitters},
+          {"moved", result.moved},
           {"left_out", left_out},
           {"records", result.tally.records},
           {"bad", result.tally.bad},
@@ -73,7 +75,7 @@ Json importJson(const interop::ImportResult& result) {
 std::string importText(const interop::ImportResult& result) {
   std::string text = fmt::format("{:<40} {:>8} {:>9}\n", "objects", "number", "emitters");
   for (const interop::ImportedType& type : result.types)
-    text += fmt::format("{:<40} {:>8} {:>9}\n", type.type, type.objects, type.emitters);
+    text += fmt::format("{:<40} {:>8} {:>9}\n", type.text, type.objects, type.emitters);
   for (const auto& [reason, count] : result.left_out)
     text += fmt::format("{:<40} {:>8}\n", "left out: " + reason, count);
   text += fmt::format("\n{:<40} {:>8}\n", "emitters", "number");

@@ -23,8 +23,8 @@ struct FieldSpec {
   std::size_t first, last;
 };
 constexpr FieldSpec kYearField{"YEAR", 14, 17}, kMonthField{"MONTH", 19, 20}, kDayField{"DAY", 22, 23},
-    kHourField{"HOUR", 25, 26}, kLevelsField{"NUMLEV", 33, 36}, kLatitudeField{"LAT", 56, 62},
-    kLongitudeField{"LON", 64, 71};
+    kHourField{"HOUR", 25, 26}, kReleaseField{"RELTIME", 28, 31}, kLevelsField{"NUMLEV", 33, 36},
+    kLatitudeField{"LAT", 56, 62}, kLongitudeField{"LON", 64, 71};
 constexpr FieldSpec kPressureField{"PRESS", 10, 15}, kHeightField{"GPH", 17, 21},
     kTemperatureField{"TEMP", 23, 27}, kHumidityField{"RH", 29, 33}, kDepressionField{"DPDP", 35, 39};
 
@@ -35,8 +35,21 @@ class Igra : public SoundingArchive {
 
   std::vector<SoundingRecord> records() const override {
     std::vector<SoundingRecord> records;
-    for (std::size_t i = 0; i < lines_.size(); i = records.back().first + records.back().levels)
-      records.push_back(recordAt(i));
+    std::size_t without_time = 0;
+    for (std::size_t i = 0; i < lines_.size();) {
+      const SoundingRecord record = recordAt(i);
+      i = record.first + record.levels;
+      if (record.time_utc.empty()) {
+        ++without_time;
+      } else {
+        records.push_back(record);
+      }
+    }
+    if (records.empty() && without_time > 0) {
+      fail(0, kHourField.first,
+           fmt::format("HOUR is 99 and RELTIME 9999 in all soundings, {}: their times are not known",
+                       without_time));
+    }
     return records;
   }
 
@@ -85,6 +98,8 @@ class Igra : public SoundingArchive {
     return *value == -9999 || *value == -8888 ? kMissing : *value;
   }
 
+  static constexpr int kUnknown = 99;  ///< an hour, or minutes
+
   /// @throws Error (bad_input) for a value that is missing, not whole, or outside [lowest, highest]
   int wholeNumber(std::size_t index, const FieldSpec& field, int lowest, int highest) const {
     const double value = number(index, field);
@@ -96,6 +111,7 @@ class Igra : public SoundingArchive {
     return static_cast<int>(value);
   }
 
+  /// Without a time if neither the hour nor the time of release is known.
   SoundingRecord recordAt(std::size_t index) const {
     const std::string_view line = lines_[index];
     if (line.empty() || line.front() != '#') {
@@ -111,11 +127,19 @@ class Igra : public SoundingArchive {
           index, kLevelsField.first,
           fmt::format("NUMLEV is {}, but only {} lines follow", record.levels, lines_.size() - record.first));
     }
-    const int hour = wholeNumber(index, kHourField, 0, 99);  // 99: missing
     record.station = line.substr(1, 11);
-    record.time_utc = fmt::format("{:04}-{:02}-{:02}T{:02}:00:00Z", wholeNumber(index, kYearField, 0, 9999),
-                                  wholeNumber(index, kMonthField, 0, 99),
-                                  wholeNumber(index, kDayField, 0, 99), hour == 99 ? 0 : hour);
+    // Where the nominal hour is missing, 99, the time of release stands for it: 9999 if it is missing, too,
+    // HH99 without minutes.
+    int hour = wholeNumber(index, kHourField, 0, 99), minute = 0;
+    if (hour == kUnknown) {
+      const int release = wholeNumber(index, kReleaseField, 0, 9999);
+      hour = release / 100;
+      minute = release % 100 == kUnknown ? 0 : release % 100;
+    }
+    if (hour == kUnknown) return record;
+    record.time_utc = fmt::format(
+        "{:04}-{:02}-{:02}T{:02}:{:02}:00Z", wholeNumber(index, kYearField, 0, 9999),
+        wholeNumber(index, kMonthField, 0, 99), wholeNumber(index, kDayField, 0, 99), hour, minute);
     const std::optional<std::int64_t> time_ms = parseUtc_ms(record.time_utc);
     if (!time_ms) fail(index, kYearField.first, fmt::format("{} is not a time", record.time_utc));
     record.time_ms = *time_ms;

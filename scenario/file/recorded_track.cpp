@@ -76,6 +76,25 @@ const RecordedObject& chosenObject(const Recording& recording, const std::string
 /// Seconds from the recording's t = 0 to the scenario's.
 double shiftOf(const Recording& recording, std::optional<std::int64_t> epoch_ms,
                std::vector<std::string>& warnings) {
+  constexpr std::int64_t kDay_ms = 86400000;
+  if (recording.has_times_of_day) {
+    if (!epoch_ms) {
+      warnings.emplace_back(
+          "its times are those of a day, and the scenario has no 'epoch': t = 0 is taken where the file "
+          "begins");
+      return 0;
+    }
+    const std::int64_t day_ms = *epoch_ms - ((*epoch_ms % kDay_ms) + kDay_ms) % kDay_ms;
+    double shift_s = recording.origin_s + static_cast<double>(day_ms - *epoch_ms) / 1000;
+    const bool is_next_day = interop::spanOf(recording).end_s + shift_s < 0;
+    if (is_next_day) shift_s += static_cast<double>(kDay_ms) / 1000;
+    warnings.push_back(
+        fmt::format("its times have no date: they are taken as those of {}, the day of the "
+                    "scenario's 'epoch'{}",
+                    utcText(is_next_day ? day_ms + kDay_ms : day_ms).substr(0, 10),
+                    is_next_day ? " or the next one" : ""));
+    return shift_s;
+  }
   if (!recording.epoch_ms) return recording.origin_s;
   if (epoch_ms) return static_cast<double>(*recording.epoch_ms - *epoch_ms) / 1000;
   warnings.push_back(fmt::format(

@@ -32,7 +32,8 @@ struct TrackFile {
 bool isRecordedTrack(std::string_view bytes, const TrackChoice& choice);
 
 /// The track of one object. t = 0 is the scenario's epoch; without one it is the recording's first second, or
-/// t = 0 of its own times if these are no dates.
+/// t = 0 of its own times if these are no dates. Times of a day are those of the epoch's day, or of the next
+/// one if all would be before the epoch.
 /// @param epoch_ms  of the scenario, since 1970-01-01T00:00:00Z
 /// @throws Error (bad_input), without a location: no such object, several of them, one that does not move, or
 /// times that are too far from the epoch

@@ -7,6 +7,7 @@
 
 #include "emscape/base/geodesy/geo_frame.h"
 #include "emscape/scenario/model/quantities.h"
+#include "recording/common/ticks.h"
 #include "scenario/file/far_outside.h"
 #include "scenario/file/quantity_needs.h"
 #include "scenario/scan/scan_sampling.h"
@@ -285,11 +286,17 @@ void warnOfKilometres(const Scenario& scenario, const Section& root, ParseContex
   warning.addTo(context.problems);
 }
 
+/// A time of a track to the rounding within which times are equal.
+double roundedTime_s(double t_s) {
+  return std::round(t_s / (2 * interop::kTickRounding_s)) * (2 * interop::kTickRounding_s);
+}
+
 /// "before 100 s and after 160 s"; empty if [begin, end] is within the track's time.
 std::string timesOutside(const std::vector<TrackPoint>& track, const Clock& clock) {
-  const double first_s = track.front().t_s, last_s = track.back().t_s;
-  std::string text = first_s > 0 ? fmt::format("before {:g} s", first_s) : "";
-  if (last_s < clock.duration_s) text += fmt::format("{}after {:g} s", text.empty() ? "" : " and ", last_s);
+  const double first_s = roundedTime_s(track.front().t_s), last_s = roundedTime_s(track.back().t_s);
+  std::string text = first_s > 0 ? fmt::format("before {:.10g} s", first_s) : "";
+  if (last_s < clock.duration_s - interop::kTickRounding_s)
+    text += fmt::format("{}after {:.10g} s", text.empty() ? "" : " and ", last_s);
   return text;
 }
 
@@ -306,10 +313,12 @@ void warnOfTimesOutsideTracks(const Scenario& scenario, const Section& root, Par
     const bool is_never_there = first_s > end_s || last_s < 0;
     warning.add(
         sections[i].locationOf("track"), platform.name,
-        fmt::format("the track of '{}' runs from {:g} to {:g} s, the scenario from 0 to {:g} s: {} the "
-                    "platform is absent, with all that it carries; 'outside: hold' in 'track' keeps "
-                    "it at the track's ends",
-                    platform.name, first_s, last_s, end_s, is_never_there ? "always" : outside));
+        fmt::format(
+            "the track of '{}' runs from {:.10g} to {:.10g} s, the scenario from 0 to {:.10g} s: {} the "
+            "platform is absent, with all that it carries; 'outside: hold' in 'track' keeps "
+            "it at the track's ends",
+            platform.name, roundedTime_s(first_s), roundedTime_s(last_s), end_s,
+            is_never_there ? "always" : outside));
   }
   warning.addTo(context.problems);
 }

@@ -7,6 +7,7 @@
 
 #include "base/math/device_math.h"
 #include "emscape/base/units.h"
+#include "recording/common/ticks.h"
 
 namespace emscape::scenario {
 
@@ -86,13 +87,12 @@ std::string spanText(const Platform& platform) {
 }  // namespace
 
 bool Platform::isPresentAt(double t_s) const {
-  constexpr double kRounding_s = 1e-6;
   if (!moves()) return true;
-  if (t_s < track.front().t_s - kRounding_s || t_s > track.back().t_s + kRounding_s)
+  if (t_s < track.front().t_s - interop::kTickRounding_s || t_s > track.back().t_s + interop::kTickRounding_s)
     return outside_track == OutsideTrack::hold;
   const std::size_t leg = legAt(track, t_s);
-  return !track[leg].gap_after || t_s <= track[leg].t_s + kRounding_s ||
-         t_s >= track[leg + 1].t_s - kRounding_s;
+  return !track[leg].gap_after || t_s <= track[leg].t_s + interop::kTickRounding_s ||
+         t_s >= track[leg + 1].t_s - interop::kTickRounding_s;
 }
 
 std::string absenceText(const Platform& platform, double t_s) {

@@ -105,7 +105,7 @@ std::optional<std::string> inactiveWarning(const std::shared_ptr<const scenario:
       kind, empty_s.size(), times_s.size(), empty_s.front());
 }
 
-/// Warnings for the parts of a map that radars do not display: detection is computed there nevertheless.
+/// Warnings for the parts of a map beyond the ranges in which radars look.
 std::vector<std::string> instrumentedRangeWarnings(
     const std::shared_ptr<const scenario::Scenario>& at_targets, const scenario::TerrainPtr& terrain,
     Quantity quantity, const MapGrid& grid, double time_s) {
@@ -118,6 +118,7 @@ std::vector<std::string> instrumentedRangeWarnings(
                            radar.waveform && radar.waveform->instrumented_range_m;
     if (!has_limit) continue;
     const double limit_m = *radar.waveform->instrumented_range_m;
+    const bool ends_there = radar.waveform->limits_detection && quantity == Quantity::detection_probability;
     const Vec3d site_m = toEcef(snapshot.emitters[e].position);
     double all_m2 = 0, beyond_m2 = 0;
     for (std::size_t p = 0; p < grid.pixels(); ++p) {
@@ -128,10 +129,10 @@ std::vector<std::string> instrumentedRangeWarnings(
       if (length(toEcef({latitude_deg, longitude_deg, 0}) - site_m) > limit_m) beyond_m2 += area_m2;
     }
     if (beyond_m2 == 0) continue;
-    warnings.push_back(fmt::format(
-        "{:.1f} of {:.1f} km2 of the map are beyond the instrumented range of '{}', {:g} km: detection by it "
-        "is computed there nevertheless",
-        beyond_m2 / 1e6, all_m2 / 1e6, radar.name, limit_m / 1e3));
+    warnings.push_back(
+        fmt::format("{:.1f} of {:.1f} km2 of the map are beyond the instrumented range of '{}', {:g} km: {}",
+                    beyond_m2 / 1e6, all_m2 / 1e6, radar.name, limit_m / 1e3,
+                    ends_there ? "it detects nothing there" : "its echoes are computed there nevertheless"));
   }
   return warnings;
 }

@@ -102,7 +102,8 @@ TEST_P(RoundTrip, SidesAndDurationOfFixedSitesStayAndTheRestIsTold) {
   const bool is_dis = std::string(GetParam()) == ".pcap";
   const bool needs_epoch = std::string(GetParam()) == ".cot";
   ASSERT_EQ(exported.notes.size(), is_dis || needs_epoch ? 2u : 1u);
-  EXPECT_EQ(exported.notes[0], "not in the recording: targets");
+  EXPECT_EQ(exported.notes[0], "not in the recording: region, targets, output; emscape import --base " +
+                                   before->file + " takes them from the scenario");
   if (is_dis) {
     EXPECT_THAT(exported.notes[1], HasSubstr("not ASCII: 2"));
   }

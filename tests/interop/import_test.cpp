@@ -164,8 +164,12 @@ TEST_F(Import, DatabaseThatMatchesDescribesTheWholeRecording) {
 
 TEST_F(Import, TellsWhatRecordingsDoNotHave) {
   import(smallRecording());
-  EXPECT_THAT(result_.notes,
-              testing::Contains(HasSubstr("recordings have no terrain, targets or receivers")));
+  EXPECT_THAT(
+      result_.notes,
+      testing::Contains("recordings have no terrain, ground, atmosphere, targets or receivers: flat "
+                        "land at mean sea level, average ground and the standard atmosphere are "
+                        "assumed; elevation files are given by --terrain, a scenario that has them is "
+                        "given by --base"));
 }
 
 TEST(JoinedName, HasEachPartOnce) {
@@ -282,6 +286,96 @@ output: {quantities: [field_strength_dbuvm]}
   EXPECT_EQ(scenario_->output.quantities, std::vector<std::string>{"field_strength_dbuvm"});
   EXPECT_EQ(scenario_->clock.duration_s, 100);
   EXPECT_THAT(emscape::test::readFile(folder_ / "out.yaml"), HasSubstr("# of the mast"));
+}
+
+TEST_F(Import, ObjectsWithTheNamesOfPlatformsOfTheBaseMoveThoseAndDoubleNoEmitter) {
+  const std::string head = R"(schema_version: 1
+name: site
+duration_s: 10
+region: {origin: {latitude_deg: 52, longitude_deg: 5}, size_m: [20000, 20000, 5000], dims: [10, 10, 5]}
+)";
+  const std::string tail = R"(emitters:
+  - {name: N019, platform: MiG-29, kind: radar, frequency_hz: 9.0e9, power_w: 1000, antenna: {pattern: gaussian, beamwidth_az_deg: 3, beamwidth_el_deg: 3}, receiver: {noise_figure_db: 5, bandwidth_hz: 1.0e6}}
+targets:
+  - {name: bandit, platform: MiG-29, rcs_m2: 3}
+)";
+  Recording recording = smallRecording();
+  recording.objects.push_back(recording.objects[1]);
+  recording.objects.back().id = "second";
+  for (const std::string platforms :
+       {"platforms:\n"
+        "  - name: MiG-29  # ours\n"
+        "    position:\n"
+        "      {latitude_deg: 52, longitude_deg: 5, height_agl_m: 40}\n"
+        "    attitude: {heading_deg: 3}\n"
+        "    side: hostile\n"
+        "  - name: ship\n"
+        "    track: {points: [{t_s: 0, latitude_deg: 52, longitude_deg: 5, height_msl_m: 9}, {t_s: 9, "
+        "latitude_deg: 52, longitude_deg: 5.1, height_msl_m: 9}], outside: hold}\n",
+        "platforms: [{name: MiG-29, attitude: {heading_deg: 3}, position: {latitude_deg: 52, longitude_deg: "
+        "5, "
+        "height_agl_m: 40}, side: hostile}, {name: ship, position: {latitude_deg: 52, longitude_deg: 5, "
+        "height_agl_m: 40}}]\n"}) {
+    ImportOptions options;
+    options.base = folder_.write("base/base.yaml", head + platforms + tail);
+    import(recording, options);
+    ASSERT_EQ(scenario_->platforms.size(), 3u) << platforms;
+    EXPECT_EQ(scenario_->name, "out") << "as the file, not as the base";
+    EXPECT_EQ(scenario_->platforms[0].track.size(), 11u);
+    EXPECT_EQ(scenario_->platforms[0].side, Side::hostile);
+    EXPECT_EQ(scenario_->platforms[1].track.size(), 1u) << "the ship of the recording rests";
+    EXPECT_EQ(scenario_->platforms[1].attitude.heading_deg, 90);
+    EXPECT_EQ(scenario_->platforms[2].name, "MiG-29 2") << "a platform is moved by one object";
+    ASSERT_EQ(scenario_->emitters.size(), 3u) << "the ship of the base has none";
+    EXPECT_EQ(scenario_->emitters[0].name, "N019");
+    EXPECT_EQ(scenario_->emitters[1].name, "ship navigation radar");
+    EXPECT_EQ(scenario_->targets.at(0).platform, 0);
+    EXPECT_THAT(result_.moved, testing::ElementsAre("ship", "MiG-29"));
+    EXPECT_THAT(
+        result_.notes,
+        testing::IsSupersetOf(
+            {"the recording moves 2 platforms of the base, whose emitters, receivers and targets stay: "
+             "'ship', 'MiG-29'; added to the base: 1 platform, 2 emitters",
+             "1 object has a name that is in use, and a number after it: 'MiG-29 2'"}));
+    EXPECT_EQ(result_.emitters.back().fault, "");
+    EXPECT_THAT(result_.emitters, testing::Contains(testing::Field(&ImportedEmitters::fault,
+                                                                   "its platform has 'N019' in the base")));
+  }
+}
+
+TEST_F(Import, MovedPlatformsOfMarkingsThatAreCutAreThoseThatBeginSo) {
+  scenario::Scenario base;
+  for (const char* name : {"ridge site north", "ridge site east", "mast", "ridge site "})
+    base.platforms.emplace_back().name = name;
+  using testing::ElementsAre;
+  using testing::Optional;
+  EXPECT_THAT(movedPlatforms({"mast", "ridge site ", "ridge site ", "ridge site", "mast"}, base),
+              ElementsAre(Optional(2), Optional(3), Optional(0), std::nullopt, std::nullopt));
+}
+
+TEST_F(Import, ScenarioBeginsAtTheFirstPositionAndEndsAtTheLast) {
+  Recording recording = smallRecording();
+  for (RecordedObject& object : recording.objects) {
+    for (PoseSample& pose : object.poses) pose.t_s += 0.0139999;  // a tick before the millisecond
+  }
+  recording.epoch_ms = 0;
+  import(recording);
+  EXPECT_EQ(scenario_->clock.epoch_utc, "1970-01-01T00:00:00.014Z");
+  EXPECT_EQ(scenario_->clock.duration_s, 100);
+  EXPECT_TRUE(scenario_->platforms[1].isPresentAt(0));
+  EXPECT_TRUE(scenario_->platforms[1].isPresentAt(100));
+}
+
+TEST_F(Import, TypesAreToldInWords) {
+  Recording recording = smallRecording();
+  recording.objects[0].keys.cot_type = recording.objects[0].type = "a-u-S";
+  recording.objects[0].domain = Domain::sea;
+  recording.objects[1].keys.dis_entity_type = {1, 2, 225, 1, 0, 0, 0};
+  recording.objects[1].type = "1.2.225.1.0.0.0";
+  import(recording);
+  ASSERT_EQ(result_.types.size(), 2u);
+  EXPECT_EQ(result_.types[0].text, "air platform (1.2.225.1.0.0.0)");
+  EXPECT_EQ(result_.types[1].text, "sea, unknown side (a-u-S)");
 }
 
 TEST_F(Import, OnlyTheNamedObjectsAreTaken) {

@@ -13,6 +13,7 @@
 #include "recording/acmi/acmi_handshake.h"
 #include "recording/common/dates.h"
 #include "recording/dis/dead_reckoning.h"
+#include "tests/recording/dis_pdus.h"
 
 namespace emscape::interop {
 namespace {
@@ -34,21 +35,7 @@ dis::EntityState stateOf(int entity, double longitude_deg = 5) {
 }
 
 dis::Emission emissionOf(int entity, const std::vector<int>& beams) {
-  dis::Emission emission;
-  emission.entity = {1, 1, static_cast<std::uint16_t>(entity)};
-  dis::EmissionSystem system;
-  system.name = 28665;
-  system.number = 1;
-  for (const int number : beams) {
-    dis::EmissionBeam beam;
-    beam.number = static_cast<std::uint8_t>(number);
-    beam.frequency_hz = 3e9;
-    beam.erp_dbm = 90;
-    beam.function = 1;
-    system.beams.push_back(beam);
-  }
-  emission.systems.push_back(system);
-  return emission;
+  return test::radarOf({1, 1, static_cast<std::uint16_t>(entity)}, beams);
 }
 
 /// A state that takes PDUs.
@@ -58,10 +45,7 @@ struct Stream {
 
   template <class Pdu>
   void send(double time_s, const Pdu& pdu) {
-    Header header;
-    header.version = static_cast<std::uint8_t>(version);
-    header.timestamp = static_cast<std::uint32_t>(time_s / 3600 * dis::kTimestampsPerHour) << 1;
-    const auto bytes = dis::encode(header, pdu);
+    const auto bytes = test::pduAt(version, time_s, pdu);
     live.take(bytes.data(), bytes.size(), time_s);
   }
 };
@@ -318,6 +302,13 @@ TEST(LiveCot, ObjectsAreWhereTheyWereToldLastUntilTheyAreStaleByTheirOwnClock) {
   EXPECT_THAT(live.recording(0).recording.beams, IsEmpty());
   feed(live, cotOf("x", "t-x-d-d", 1020, 20, "<link uid='b' relation='none'/>"));
   EXPECT_EQ(live.objectCount(), 0u);
+}
+
+TEST(LiveCot, AClockThatIsSetBackIsFollowed) {
+  LiveCot live(true);
+  feed(live, cotOf("b", "a-f-G", 10000, 300, "", 5) + cotOf("b", "a-f-G", 2800, 300, "", 5.1));
+  EXPECT_NEAR(live.poses(0).at(0).pose.longitude_deg, 5.1, 1e-6);
+  EXPECT_EQ(live.counts().late, 0);
 }
 
 TEST(LiveCot, AHostileStreamIsCountedAndItsMemoryIsBounded) {

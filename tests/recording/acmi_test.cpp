@@ -180,7 +180,7 @@ TEST(Acmi, OtherFormatsAndVersionsAreRefusedWithARemedy) {
   const test::TemporaryFolder folder;
   const std::string archive = folder.write("a.acmi", "7z\xBC\xAF\x27\x1C....");
   EXPECT_THAT(test::errorOf([&] { readRecording(archive); }, ErrorCode::bad_input),
-              HasSubstr("a 7z archive; unpack it with 7z x"));
+              HasSubstr("packed by 7z, xz, bzip2 or zstd, of which none is read; unpack it"));
   const std::string other = folder.write("b.acmi", "hello");
   EXPECT_THAT(test::errorOf([&] { readRecording(other); }, ErrorCode::bad_input),
               HasSubstr("no recording of a known format: ACMI 2.0 to 2.2"));

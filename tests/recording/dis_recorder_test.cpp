@@ -9,6 +9,7 @@
 #include "recording/dis/dead_reckoning.h"
 #include "recording/dis/orientation.h"
 #include "recording/read_recording.h"
+#include "tests/recording/dis_pdus.h"
 #include "tests/support/errors.h"
 #include "tests/support/reference_data.h"
 
@@ -29,10 +30,7 @@ class Stream {
   /// @param sent_s  the sender's time
   template <class Pdu>
   void sendAt(double arrival_s, double sent_s, const Pdu& pdu) {
-    Header header;
-    header.version = static_cast<std::uint8_t>(version_);
-    header.timestamp = static_cast<std::uint32_t>(std::fmod(sent_s, 3600) / 3600 * kTimestampsPerHour) << 1;
-    const auto bytes = encode(header, pdu);
+    const auto bytes = test::pduAt(version_, sent_s, pdu);
     recorder_.take({arrival_s, bytes.data(), bytes.size()});
   }
   Recording finish() { return recorder_.finish(); }
@@ -55,22 +53,7 @@ EntityState stateAt(double latitude_deg, double longitude_deg, double height_ell
 }
 
 Emission emissionOf(const std::vector<int>& beams) {
-  Emission emission;
-  emission.entity = {1, 1, 7};
-  EmissionSystem system;
-  system.name = 4711;
-  system.function = 3;
-  system.number = 1;
-  for (const int number : beams) {
-    EmissionBeam beam;
-    beam.number = static_cast<std::uint8_t>(number);
-    beam.frequency_hz = 3e9;
-    beam.erp_dbm = 90;
-    beam.function = 1;
-    system.beams.push_back(beam);
-  }
-  emission.systems.push_back(system);
-  return emission;
+  return test::radarOf({1, 1, 7}, beams);
 }
 
 std::vector<bool> switches(const RecordedBeam& beam) {

@@ -134,10 +134,10 @@ TEST(KmlOfOthers, PointsHaveSpansAndStandInGroupsAndTracksHaveCommas) {
                              "<gx:coord>5.1,52.1,100</gx:coord><gx:coord>5.2  52.1 "
                              "100</gx:coord></gx:Track></Placemark></Document></kml>");
   ASSERT_THAT(r.objects, SizeIs(2));
-  EXPECT_THAT(r.objects[0].poses, SizeIs(2));
-  EXPECT_EQ(r.objects[0].poses[1].height_msl_m, 10);
+  ASSERT_THAT(r.objects[0].poses, SizeIs(2));
+  EXPECT_EQ(r.objects[0].poses[1].t_s, 6 * 3600 + 10);
   ASSERT_THAT(r.objects[1].poses, SizeIs(2));
-  EXPECT_EQ(r.objects[1].poses[1].t_s, 6 * 3600 + 10);
+  EXPECT_EQ(r.objects[1].poses[1].height_msl_m, 10);
   EXPECT_THAT(
       errorOf("a.kml", "<kml xmlns:gx='g'><Document><gx:Tour><name>a</name></gx:Tour></Document></kml>"),
       HasSubstr("tour of the camera: not used"));

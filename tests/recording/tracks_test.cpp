@@ -1,6 +1,7 @@
 // Readers of tracks: GPX, KML, CZML, STK, NMEA and tables.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <cmath>
 
@@ -48,6 +49,81 @@ TEST(Gpx, TracksAreObjectsAndWaypointsFixedOnes) {
   EXPECT_THAT(r.tally.first_bad, HasSubstr("point 5: it has no time"));
 }
 
+TEST(Gpx, RoutesWithTimesAreObjects) {
+  const Recording r = readAs("a.gpx",
+                             "<gpx><rte><name>tour</name><rtept lat='52' lon='5'><ele>9</ele>"
+                             "<time>2026-06-01T06:00:00Z</time></rtept><rtept lat='52.1' lon='5'>"
+                             "<time>2026-06-01T06:00:09Z</time></rtept></rte>"
+                             "<rte><rtept lat='52' lon='5'/></rte></gpx>");
+  ASSERT_EQ(r.objects.size(), 1u);
+  EXPECT_EQ(r.objects[0].name, "tour");
+  EXPECT_EQ(r.objects[0].poses.size(), 2u);
+  EXPECT_EQ(r.tally.ignored.at("route without times"), 1);
+}
+
+TEST(Recordings, PackedByGzipAreReadAndWhatIsNotReadIsNamed) {
+  const test::TemporaryFolder folder;
+  const auto packed = [](const std::string& text) {
+    z_stream stream{};
+    deflateInit2(&stream, 6, Z_DEFLATED, MAX_WBITS + 16, 8, Z_DEFAULT_STRATEGY);
+    std::string bytes(deflateBound(&stream, text.size()), '\0');
+    stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(text.data()));
+    stream.avail_in = static_cast<uInt>(text.size());
+    stream.next_out = reinterpret_cast<Bytef*>(bytes.data());
+    stream.avail_out = static_cast<uInt>(bytes.size());
+    deflate(&stream, Z_FINISH);
+    bytes.resize(stream.total_out);
+    deflateEnd(&stream);
+    return bytes;
+  };
+  const std::string first = "time,lat,lon\n2026-06-01T06:00:00Z,52,5\n",
+                    second = "2026-06-01T06:00:09Z,52.1,5\n";
+  const std::string bytes = packed(first) + packed(second);
+  const Recording r = readRecording(folder.write("a.csv.gz", bytes));
+  ASSERT_EQ(r.objects.size(), 1u);
+  EXPECT_EQ(r.objects[0].poses.size(), 2u) << "both parts";
+  EXPECT_THAT(
+      readRecording(folder.write("b.csv.gz", packed(first) + packed(second).substr(0, 20))).tally.torn,
+      testing::AnyOf(HasSubstr("the gzip file is cut"), ""));
+  const auto errorOf = [&](const std::string& text) {
+    return test::errorOf([&] { readRecording(folder.write("x", text)); }, ErrorCode::bad_input);
+  };
+  EXPECT_THAT(errorOf("\x1F\x8B damaged"), HasSubstr("x: cannot read: the gzip file is damaged"));
+  EXPECT_THAT(errorOf(""), HasSubstr("x: the file is empty"));
+  EXPECT_THAT(errorOf("\xFD"
+                      "7zXZ"),
+              HasSubstr("packed by 7z, xz, bzip2 or zstd"));
+  EXPECT_THAT(errorOf("Zeit;Breite;L\xE4nge\n1;52;5\n"),
+              HasSubstr("a text that is not in UTF-8 (but Latin-1, perhaps); convert it with iconv"));
+  EXPECT_THAT(errorOf("Zeit;Breite;L\xC3\xA4nge\n1;52;5\n"), HasSubstr("Name the columns of a table"));
+}
+
+TEST(Recordings, LinesMayEndAsOnOldMacintoshes) {
+  const Recording r = readAs("a.csv", "time,lat,lon\r2026-06-01T06:00:00Z,52,5\r2026-06-01T06:00:09Z,52.1,5");
+  ASSERT_EQ(r.objects.size(), 1u);
+  EXPECT_EQ(r.objects[0].poses.size(), 2u);
+}
+
+TEST(TrackTable, TimesOfFlightControllersAreKnown) {
+  for (const char* const text :
+       {"timestamp_us,lat,lon\n1780293600000000,52,5\n1780293609000000,52.1,5\n",
+        "timestamp,lat,lon\n1780293600000000,52,5\n1780293609000000,52.1,5\n",
+        "time(ns),lat,lon\n1780293600000000000,52,5\n1780293609000000000,52.1,5\n"}) {
+    const Recording r = readAs("a.csv", text);
+    EXPECT_EQ(r.epoch_ms, kSix_ms) << text;
+    EXPECT_NEAR(r.objects.at(0).poses.at(1).t_s, 9, 1e-6) << text;
+  }
+  const Recording ardupilot =
+      readAs("a.csv", "TimeUS,Lat,Lng,Alt\n5000000,520000000,50000000,9\n14000000,521000000,50000000,9\n");
+  EXPECT_NEAR(ardupilot.objects.at(0).poses.at(1).t_s, 9, 1e-9);
+  EXPECT_NEAR(ardupilot.objects[0].poses[1].latitude_deg, 52.1, 1e-12);
+  EXPECT_THAT(ardupilot.tally.notes, testing::Contains(HasSubstr("taken as 1e-7 degrees")));
+  const Recording dji = readAs(
+      "a.csv",
+      "OSD.flyTime [s],CUSTOM.date [local],OSD.latitude,OSD.longitude\n0.5,6/1/2026,52,5\n9.5,,52,5.1\n");
+  EXPECT_EQ(dji.objects.at(0).poses.at(1).t_s - dji.objects[0].poses[0].t_s, 9);
+}
+
 TEST(Kml, TracksHaveAnglesAndStampedPointsOfOneNameAreOneObject) {
   const Recording r = readAs(
       "a.kml",
@@ -71,9 +147,30 @@ TEST(Kml, TracksHaveAnglesAndStampedPointsOfOneNameAreOneObject) {
   EXPECT_EQ(r.objects[0].poses[0].heading_deg, 90);
   EXPECT_EQ(r.objects[0].poses[0].pitch_deg, 3);
   EXPECT_EQ(r.objects[0].poses[0].roll_deg, -2);
-  EXPECT_EQ(r.objects[1].poses.size(), 2u);
-  EXPECT_EQ(r.objects[1].poses[1].t_s, 9);
-  EXPECT_EQ(r.objects[2].poses.at(0).height_msl_m, 30);
+  EXPECT_EQ(r.objects[1].poses.at(0).height_msl_m, 30);
+  ASSERT_EQ(r.objects[2].poses.size(), 2u) << "stamped points come after the others of their folder";
+  EXPECT_EQ(r.objects[2].poses[1].t_s, 9);
+}
+
+TEST(Kml, StampedPointsOfAFolderWithNamesOfTheirOwnInTheOrderOfTimeAreOneObject) {
+  const auto pointAt = [](int second) {
+    return "<Placemark><name>06:00:0" + std::to_string(second) +
+           "</name><TimeStamp><when>2026-06-01T06:00:0" + std::to_string(second) +
+           "Z</when></TimeStamp><Point><altitudeMode>absolute</altitudeMode><coordinates>5,52.0" +
+           std::to_string(second) + ",3000</coordinates></Point></Placemark>";
+  };
+  const Recording r =
+      readAs("a.kml", "<kml><Document><name>all</name><Folder><name>flight 1</name>" + pointAt(1) +
+                          pointAt(2) + pointAt(3) + "</Folder></Document></kml>");
+  ASSERT_EQ(r.objects.size(), 1u);
+  EXPECT_EQ(r.objects[0].name, "flight 1");
+  EXPECT_EQ(r.objects[0].poses.size(), 3u);
+  EXPECT_THAT(r.tally.notes, testing::Contains(HasSubstr("are taken as one object, 'flight 1'")));
+  const Recording without = readAs("a.kml", "<kml>" + pointAt(1) + pointAt(2) + pointAt(3) + "</kml>");
+  ASSERT_EQ(without.objects.size(), 1u);
+  EXPECT_EQ(without.objects[0].name, "a");
+  const Recording places = readAs("a.kml", "<kml>" + pointAt(3) + pointAt(1) + pointAt(2) + "</kml>");
+  EXPECT_EQ(places.objects.size(), 3u) << "out of order: several objects";
 }
 
 TEST(Kml, TrackWithoutATimeForEachPositionIsCounted) {

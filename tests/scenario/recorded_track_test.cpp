@@ -69,6 +69,32 @@ TEST_F(RecordedTrack, WithoutAnEpochTheFileBeginsAtZeroWhichIsTold) {
   EXPECT_THAT(problems_, testing::Contains(HasSubstr("'epoch: \"2026-06-01T06:00:10.000Z\"' says so")));
 }
 
+TEST_F(RecordedTrack, TimesOfADayAreThoseOfTheDayOfTheEpoch) {
+  const auto nmea = [](const std::string& first, const std::string& second) {
+    return "$GPGGA," + first + ",5200.000,N,00500.000,E,1,8,1.0,12,M,46,M,,\n$GPGGA," + second +
+           ",5200.600,N,00500.000,E,1,8,1.0,12,M,46,M,,\n";
+  };
+  folder_.write("a.nmea", nmea("060010", "060050"));
+  auto points = pointsOf("file: a.nmea");
+  ASSERT_THAT(points, SizeIs(2));
+  EXPECT_EQ(points[0].t_s, 10);
+  EXPECT_THAT(problems_, testing::Contains(HasSubstr("taken as those of 2026-06-01, the day")));
+  folder_.write("b.nmea", nmea("000010", "000020"));
+  points = pointsOf("file: b.nmea", "epoch: \"2026-06-01T23:59:50Z\"\n");
+  ASSERT_THAT(points, SizeIs(2));
+  EXPECT_EQ(points[0].t_s, 20) << "after midnight";
+  EXPECT_EQ(pointsOf("file: a.nmea", "").at(0).t_s, 0) << "without an epoch the file begins there";
+}
+
+TEST_F(RecordedTrack, AnEndWithinATickOfTheScenariosEndIsNoAbsence) {
+  folder_.write("t.csv", "time,lat,lon\n2026-06-01T06:00:00Z,52,5\n2026-06-01T06:00:59.999998Z,52.1,5\n");
+  const ParseResult result = read("file: t.csv");
+  ASSERT_TRUE(result.scenario);
+  EXPECT_TRUE(result.scenario->platforms[0].isPresentAt(60));
+  for (const Problem& problem : result.problems)
+    EXPECT_THAT(problem.message, testing::Not(HasSubstr("absent"))) << problem.message;
+}
+
 TEST_F(RecordedTrack, AnObjectIsChosenByNameOrIdAndTheOthersAreNamed) {
   folder_.write(
       "fight.acmi",

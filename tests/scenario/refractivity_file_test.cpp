@@ -189,7 +189,7 @@ TEST_F(Soundings, ComputeMissingHeights) {
 TEST_F(Soundings, LeaveOutLevelsWithoutTemperatureOrHumidityAndAreDryAboveTheHighest) {
   // Made by the format's text.
   const std::string text =
-      "#XXM00000001 2020 01 01 99 9999    5                    448497  -935647\n"
+      "#XXM00000001 2020 01 01 99 1130    5                    448497  -935647\n"
       "21     0 100000B    0   150B  800 -9999 -9999 -9999 \n"
       "20     4  95000 -9999 -9999 -9999 -9999 -9999 -9999 \n"
       "20     8  90000 -9999    80B-9999 -9999 -9999 -9999 \n"
@@ -197,6 +197,13 @@ TEST_F(Soundings, LeaveOutLevelsWithoutTemperatureOrHumidityAndAreDryAboveTheHig
       "20    10  70000 -9999   -40B-9999 -9999 -9999 -9999 \n";
   const RefractivityFile file = sounding(text);
   EXPECT_THAT(file.description, HasSubstr("3 of 5 levels"));
+  EXPECT_EQ(file.sounding->time_utc, "2020-01-01T11:30:00Z") << "of the release, as the hour is missing";
+  std::string timeless = text;
+  timeless.replace(timeless.find("1130"), 4, "9999");
+  EXPECT_THAT(
+      soundingError(timeless),
+      HasSubstr("station.txt:1:25: HOUR is 99 and RELTIME 9999 in all soundings, 1: their times are not "
+                "known"));
   const propagation::RefractivityLevel& top = file.field.profiles.at(0).levels.back();
   EXPECT_NEAR(top.m_units - 0.15696 * top.height_msl_m, 77.6 * 700 / 269.15, 0.05);
   EXPECT_NEAR(top.height_msl_m, 2950, 60);
