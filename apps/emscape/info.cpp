@@ -148,9 +148,8 @@ Description describeScenario(const std::string& file) {
             {"size_m", toJson(region.size_m)},
             {"dims", toJson(region.dims)},
             {"terrain_files", scenario->terrain ? Json(scenario->terrain->files) : Json::array()},
-            {"land_cover_files", scenario->terrain && scenario->terrain->land_cover
-                                     ? Json(scenario->terrain->land_cover->files)
-                                     : Json::array()},
+            {"land_cover_files",
+             scenario->terrain ? Json(scenario->terrain->land_cover.files) : Json::array()},
             {"platforms", platforms},
             {"emitters", emitters},
             {"receivers", receivers},

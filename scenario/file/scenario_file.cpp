@@ -370,8 +370,7 @@ void mapPlaces(Scenario& scenario, const document::EditedText& text) {
   if (!scenario.terrain) return;
   for (SourceLocation& location : scenario.terrain->locations) map(location);
   for (SourceLocation& location : scenario.terrain->surface_locations) map(location);
-  if (!scenario.terrain->land_cover) return;
-  for (SourceLocation& location : scenario.terrain->land_cover->locations) map(location);
+  for (SourceLocation& location : scenario.terrain->land_cover.locations) map(location);
 }
 
 /// Reads the scenario from its edited text. @param before  null, or the content of an earlier reading
@@ -509,10 +508,8 @@ std::vector<std::string> filesOf(const Scenario& scenario) {
     };
     add(scenario.terrain->files);
     add(scenario.terrain->surface_files);
-    if (scenario.terrain->land_cover) {
-      add(scenario.terrain->land_cover->files);
-      if (!scenario.terrain->land_cover->table.empty()) files.push_back(scenario.terrain->land_cover->table);
-    }
+    add(scenario.terrain->land_cover.files);
+    if (!scenario.terrain->land_cover.table.empty()) files.push_back(scenario.terrain->land_cover.table);
   }
   return files;
 }

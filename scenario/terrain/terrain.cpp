@@ -207,8 +207,8 @@ class TerrainMosaic : public Terrain {
     // The heights do not move in memory: the rasters' pointers stay valid.
     for (TerrainSheet& sheet : sheets) heights_m_.push_back(std::move(sheet.heights_m));
     if (spec.missing == MissingTerrain::sea) addSea();
-    if (spec.land_cover) {
-      land_cover_ = std::make_unique<const LandCover>(*spec.land_cover, box);
+    if (spec.land_cover.isGiven()) {
+      land_cover_ = std::make_unique<const LandCover>(spec.land_cover, box);
       for (const std::string& warning : land_cover_->warnings()) warnings_.push_back(warning);
     }
     if (!spec.surface_files.empty()) addSurface(spec, box);

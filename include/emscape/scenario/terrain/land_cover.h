@@ -40,12 +40,14 @@ struct CoverClass {
   std::uint32_t color = 0;       ///< 0xAABBGGRR
 };
 
-/// What a scenario says of the land cover.
+/// What a scenario says of the land cover; without files: nothing.
 struct LandCoverSpec {
   std::vector<std::string> files;  ///< as TerrainSpec::files; the first has priority
   std::vector<SourceLocation> locations;
   CoverTable classes = CoverTable::worldcover;
   std::string table;  ///< a CSV file in place of `classes`; empty: none
+
+  bool isGiven() const { return !files.empty(); }
 };
 
 inline bool operator==(const LandCoverSpec& a, const LandCoverSpec& b) {

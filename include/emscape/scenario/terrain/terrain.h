@@ -97,7 +97,7 @@ struct TerrainSpec {
   std::vector<std::string> surface_files = {};
   std::vector<SourceLocation> surface_locations = {};
   std::vector<TerrainFileKeys> surface_keys = {};
-  std::optional<LandCoverSpec> land_cover = {};
+  LandCoverSpec land_cover = {};
 };
 
 /// Remedies for an error of missing terrain.
