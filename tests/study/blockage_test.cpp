@@ -91,7 +91,7 @@ TEST_F(BeamBlockage, OfAWallIsThatOfItsHeightAboveTheAxisAndStaysBehindIt) {
   const double range_m = 10.25e3;
   const double axis_m =
       kAntenna_m + range_m * std::sin(degToRad(0.5)) + range_m * range_m / (2 * 4.0 / 3 * 6371e3);
-  const double expected = partOfBeamBelow(kWall_m - axis_m, range_m * degToRad(1));
+  const double expected = partOfBeamBelow(kWall_m - axis_m, range_m * degToRad(1.0));
   EXPECT_NEAR(blockage.partial[east + 20], expected, 0.01);
   EXPECT_GT(expected, 0.3);
   EXPECT_EQ(blockage.partial[east + 30], 0);
