@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <unordered_map>
 #include <unordered_set>
@@ -66,6 +67,11 @@ std::string withoutNumbers(const std::string& text, std::vector<std::string>& nu
   return form;
 }
 
+/// Numbers of any length: beyond a double's range they are infinite.
+double numberIn(const std::string& text) {
+  return std::strtod(text.c_str(), nullptr);
+}
+
 }  // namespace
 
 std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings) {
@@ -116,7 +122,7 @@ std::vector<std::string> joinedWarnings(const std::vector<std::string>& warnings
       const std::vector<std::string>& numbers = kind.numbers[place++];
       const auto [min, max] =
           std::minmax_element(numbers.begin(), numbers.end(),
-                              [](const auto& a, const auto& b) { return std::stod(a) < std::stod(b); });
+                              [](const auto& a, const auto& b) { return numberIn(a) < numberIn(b); });
       const bool is_one_each = kind.count == kind.names.size();
       line += *min == *max  ? *min
               : is_one_each ? fmt::format("{}", fmt::join(numbers, ", "))

@@ -284,7 +284,7 @@ TEST(Simulate, ASecondProcessIsRefusedWhileOneWritesTheFolder) {
 TEST(Simulate, AFolderThatIsAFileIsAnError) {
   const TemporaryFolder folder;
   writeFile(folder / "file", "");
-  EXPECT_EQ(run({"simulate", quick(), "-o", folder / "file"}).status, 1);
+  EXPECT_EQ(run({"simulate", quick(), "-o", folder / "file"}).status, 2);
 }
 
 TEST(Render, DrawsAScenarioAsOnePicture) {

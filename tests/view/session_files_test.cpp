@@ -475,7 +475,7 @@ TEST_F(Opener, ErrorsOfRecordingAreReported) {
   shown_.perform(fmt::format(R"({{"do":"record","file":"{}"}})", folder_ / "file/frames"));
   ASSERT_TRUE(waitUntilRecorded(shown_));
   EXPECT_TRUE(shown_->notice().is_error);
-  EXPECT_THAT(shown_->notice().text, HasSubstr("cannot make the folder"));
+  EXPECT_THAT(shown_->notice().text, HasSubstr("is to be a folder, but it or a part of it is a file"));
   shown_.perform(fmt::format(R"({{"do":"record","file":"{}"}})", folder_ / "one.png"));
   ASSERT_TRUE(waitUntilRecorded(shown_));
   EXPECT_THAT(shown_->notice().text, HasSubstr("one .png for 5 pictures"));
