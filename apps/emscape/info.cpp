@@ -137,25 +137,25 @@ Description describeScenario(const std::string& file) {
   }
   Json channels = Json::array();
   for (const emfield::Channel& channel : emfield::channelsOf(*scenario, {})) channels.push_back(channel.name);
-  Json json{{"kind", "scenario"},
-            {"file", file},
-            {"name", scenario->name},
-            {"hash", scenario->hash},
-            {"epoch_utc", scenario->clock.epoch_utc},
-            {"duration_s", scenario->clock.duration_s},
-            {"step_s", scenario->clock.step_s},
-            {"frame", toJson(region.origin)},
-            {"size_m", toJson(region.size_m)},
-            {"dims", toJson(region.dims)},
-            {"terrain_files", scenario->terrain ? Json(scenario->terrain->files) : Json::array()},
-            {"land_cover_files",
-             scenario->terrain ? Json(scenario->terrain->land_cover.files) : Json::array()},
-            {"platforms", platforms},
-            {"emitters", emitters},
-            {"receivers", receivers},
-            {"targets", targets},
-            {"channels", channels},
-            {"choices", choicesOf(scenario)}};
+  Json json{
+      {"kind", "scenario"},
+      {"file", file},
+      {"name", scenario->name},
+      {"hash", scenario->hash},
+      {"epoch_utc", scenario->clock.epoch_utc},
+      {"duration_s", scenario->clock.duration_s},
+      {"step_s", scenario->clock.step_s},
+      {"frame", toJson(region.origin)},
+      {"size_m", toJson(region.size_m)},
+      {"dims", toJson(region.dims)},
+      {"terrain_files", scenario->terrain ? Json(scenario->terrain->files) : Json::array()},
+      {"land_cover_files", scenario->terrain ? Json(scenario->terrain->land_cover.files) : Json::array()},
+      {"platforms", platforms},
+      {"emitters", emitters},
+      {"receivers", receivers},
+      {"targets", targets},
+      {"channels", channels},
+      {"choices", choicesOf(scenario)}};
   addWork(scenario, json);
   const auto& refractivity = scenario->atmosphere.refractivity;
   if (refractivity) json["refractivity"] = report::refractivityJson(*refractivity, frequenciesOf(*scenario));

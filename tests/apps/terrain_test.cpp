@@ -48,12 +48,14 @@ receivers:
   }
   /// A grid of one height over the place of the shipped tile, without a datum and a unit.
   std::string plainGrid() const {
-    folder_.write("plain.prj",
-                  "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],"
-                  "PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]");
-    return folder_.write("plain.asc",
-                         "ncols 3\nnrows 3\nxllcenter -84.4\nyllcenter 36.1\ncellsize 0.16\n500 501 502\n503 504 "
-                         "505\n506 507 508\n");
+    folder_.write(
+        "plain.prj",
+        "GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],"
+        "PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]]");
+    return folder_.write(
+        "plain.asc",
+        "ncols 3\nnrows 3\nxllcenter -84.4\nyllcenter 36.1\ncellsize 0.16\n500 501 502\n503 504 "
+        "505\n506 507 508\n");
   }
   /// Status of each subcommand on a scenario.
   std::vector<int> statuses(const std::string& file) {
@@ -101,8 +103,9 @@ TEST_F(TerrainProgram, DescribesAndDrawsFilesAndScenarios) {
   EXPECT_THAT(assumed.at("files").at(0).at("warnings").at(0),
               HasSubstr("if they are above the ellipsoid, the ground is 3"));
   EXPECT_EQ(assumed.at("warnings").size(), 1);
-  EXPECT_THAT(run({"terrain", tile}).out,
-              AllOf(HasSubstr("datum    EGM96 (stated by the file: EGM96 height); unit m"), HasSubstr("Ground: ")));
+  EXPECT_THAT(
+      run({"terrain", tile}).out,
+      AllOf(HasSubstr("datum    EGM96 (stated by the file: EGM96 height); unit m"), HasSubstr("Ground: ")));
   EXPECT_EQ(run({"terrain", tile, "-o", folder_ / "a.jpg"}).status, 2);
   EXPECT_EQ(run({"terrain", folder_ / "none.tif"}).status, 3);
 }

@@ -52,7 +52,8 @@ const FuzzTargetsAdded added({
            "profile\na.yaml\n--emitter\nradar\n--to\n52,5,100",
            "link\na.yaml\n--times\n0:4",
            "coverage\na.yaml\n-o\nout\n--heights\nagl:30,150;msl:500\n--products\ncovered,margin\n--cell\n200"
-           "\n--area\nbbox:5,52,6,53\n--crs\nutm\n--format\ncog,png,gpkg,geojson,nc,kmz,czml\n--threshold\n0.5",
+           "\n--area\nbbox:5,52,6,53\n--crs\nutm\n--format\ncog,png,gpkg,geojson,nc,kmz,czml\n--threshold\n0."
+           "5",
            "vertical\na.yaml\n--emitter\nradar\n--azimuth\n10\n-o\na.png",
            "exposure\na.yaml\n--platform\nhelicopter",
            "compare\na\nb\n-o\nout",

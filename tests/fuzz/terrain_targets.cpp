@@ -104,7 +104,8 @@ void readTable(const fs::path& file, const std::string&) {
 }
 
 std::string table() {
-  return "code,name,clutter_height_m,zone,land,color\n1,palms,7.5,land,woods,#00ff00\n2,lagoon,0,sea,,#0000ff\n";
+  return "code,name,clutter_height_m,zone,land,color\n1,palms,7.5,land,woods,#00ff00\n2,lagoon,0,sea,,#"
+         "0000ff\n";
 }
 
 /// The first columns of a tile of DTED level 0 from 40 to 41 degrees north and 5 to 6 degrees east.

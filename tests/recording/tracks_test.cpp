@@ -412,8 +412,9 @@ TEST(TrackTable, DaysOfSpreadsheetsAreRecognisedByTheSpeedAndTold) {
   EXPECT_EQ(stated.epoch_ms, kSix_ms);
   EXPECT_THAT(stated.tally.notes, testing::IsEmpty());
   options.columns = "time=time:mjd,latitude=lat,longitude=lon,height=altitude_ft:ft";
-  EXPECT_EQ(readAs("s.csv", "time,lat,lon,altitude_ft\n61192.25,52,5,1\n61192.26,52,5.1,1\n", options).epoch_ms,
-            kSix_ms);
+  EXPECT_EQ(
+      readAs("s.csv", "time,lat,lon,altitude_ft\n61192.25,52,5,1\n61192.26,52,5.1,1\n", options).epoch_ms,
+      kSix_ms);
   // The same numbers as seconds of the day, at a speed that is one.
   const Recording seconds =
       readAs("s.csv", "time,lat,lon,altitude_ft\n46174.25,52.000,5,9842\n46175.25,52.001,5,9845\n");
@@ -424,18 +425,20 @@ TEST(TrackTable, DaysOfSpreadsheetsAreRecognisedByTheSpeedAndTold) {
 TEST(TrackTable, TimesThatMakeAnObjectFasterThanAnyAreRefusedWithTheUnitThatHelps) {
   const std::string rows = "time,lat,lon,height_m\n0,52,5,1000\n0.001,52.001,5,1000\n0.002,52.002,5,1000\n";
   const auto problem = test::errorOf([&] { readAs("s.csv", rows); }, ErrorCode::bad_input);
-  EXPECT_THAT(problem, testing::AllOf(HasSubstr("'s' would move at 111.3 km/s"), HasSubstr("between times 0 and 0.001"),
-                                      HasSubstr("time=NAME:UNIT")));
+  EXPECT_THAT(problem, testing::AllOf(HasSubstr("'s' would move at 111.3 km/s"),
+                                      HasSubstr("between times 0 and 0.001"), HasSubstr("time=NAME:UNIT")));
   ReadOptions options;
   options.columns = "time=time:days,latitude=lat,longitude=lon,height=height_m";
   EXPECT_NEAR(readAs("s.csv", rows, options).objects.at(0).poses.at(1).t_s, 86.4, 1e-6);
   // One wrong position among others is no wrong unit.
-  EXPECT_NO_THROW(readAs("s.csv", "time,lat,lon,height_m\n0,52,5,1\n1,59,5,1\n2,52.0002,5,1\n3,52.0003,5,1\n"
-                                  "4,52.0004,5,1\n5,52.0005,5,1\n"));
+  EXPECT_NO_THROW(readAs("s.csv",
+                         "time,lat,lon,height_m\n0,52,5,1\n1,59,5,1\n2,52.0002,5,1\n3,52.0003,5,1\n"
+                         "4,52.0004,5,1\n5,52.0005,5,1\n"));
 }
 
 TEST(TrackTable, HeightWithoutAUnitIsToldWithTheColumnsThatStateFeet) {
-  const std::string rows = "timestamp,lat,lon,altitude\n2026-06-01T06:00:00Z,52,5,10000\n2026-06-01T06:00:10Z,52.01,5,10000\n";
+  const std::string rows =
+      "timestamp,lat,lon,altitude\n2026-06-01T06:00:00Z,52,5,10000\n2026-06-01T06:00:10Z,52.01,5,10000\n";
   const Recording r = readAs("s.csv", rows);
   ASSERT_EQ(r.tally.notes.size(), 1u);
   const std::string& note = r.tally.notes.front();
@@ -446,8 +449,9 @@ TEST(TrackTable, HeightWithoutAUnitIsToldWithTheColumnsThatStateFeet) {
   options.columns = note.substr(begin, note.find(" (2 times)") - begin);
   EXPECT_EQ(options.columns, "time=timestamp,latitude=lat,longitude=lon,height=altitude:ft");
   EXPECT_NEAR(readAs("s.csv", rows, options).objects.at(0).poses.at(0).height_msl_m, 3048, 1e-6);
-  EXPECT_THAT(readAs("s.csv", "time,lat,lon,geoaltitude\n1780293600,52,5,1\n1780293610,52.01,5,1\n").tally.notes,
-              testing::IsEmpty());
+  EXPECT_THAT(
+      readAs("s.csv", "time,lat,lon,geoaltitude\n1780293600,52,5,1\n1780293610,52.01,5,1\n").tally.notes,
+      testing::IsEmpty());
 }
 
 }  // namespace

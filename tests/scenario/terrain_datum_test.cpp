@@ -81,7 +81,8 @@ TEST_F(TerrainDatum, OfASystemOfACountryIsMeanSeaLevelWithAWarning) {
 
 TEST_F(TerrainDatum, NotStatedIsAssumedWithItsEffect) {
   const std::string expected = fmt::format(
-      "states no vertical datum and no unit: its heights are taken as metres above EGM96; if they are above the ellipsoid, the "
+      "states no vertical datum and no unit: its heights are taken as metres above EGM96; if they are above "
+      "the ellipsoid, the "
       "ground is "
       "{:.1f} m too high there. `vertical_datum: egm96`",
       kUndulation_m);
