@@ -265,6 +265,9 @@ TEST(Results, OfTallMapsHaveAPictureThatCanBeDrawn) {
 }
 
 TEST(Results, OfPlotsBeyondTheMemoryAreRefusedBeforeTheWork) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the sanitizers reserve more address space than the limit";
+#endif
   const TemporaryFolder folder;
   const ProgramResult result = run({"profile", quick(), "--emitter", "radar", "--to", "52.05,5.05,100",
                                     "--plot", folder / "a.png", "--size", "32767x32767"},
