@@ -97,10 +97,13 @@ TEST_F(RealInput, ARefusedNumberStaysInEachFieldUntilItIsMended) {
   EXPECT_TRUE(reports("rate", 2));
 }
 
-TEST_F(RealInput, EnterInAListOfADialogDoesNotEndIt) {
-  constexpr Place kCamera{364, 325};
+TEST_F(RealInput, EnterInAListOrARefusedFieldOfADialogDoesNotEndIt) {
+  constexpr Place kCamera{364, 325}, kBegin{294, 378};  // below the line about bookmarks
   open(quick());
   ASSERT_TRUE(xdotool("key ctrl+m sleep 0.6" + click(kCamera) + " sleep 0.4 key Down Return sleep 0.6"));
+  EXPECT_TRUE(commandsBecome("record camera_path")) << commands();
+  ASSERT_TRUE(
+      xdotool(click(kBegin) + " key ctrl+a" + type("1,x") + " key Return sleep 0.6 key Return sleep 0.6"));
   EXPECT_TRUE(commandsBecome("record camera_path")) << commands();
 }
 
