@@ -185,7 +185,7 @@ bool isUtf8(std::string_view head) {
 
 /// Refuses a text whose letters are not in UTF-8: names of its columns could not be told.
 void refuseOtherTexts(std::string_view head) {
-  const bool is_text = std::none_of(head.begin(), head.end(), [](char c) { return c >= 0 && c < '\t'; });
+  const bool is_text = std::none_of(head.begin(), head.end(), [](unsigned char c) { return c < 0x09; });
   if (!is_text || isUtf8(head)) return;
   throw Error(
       ErrorCode::bad_input,
