@@ -54,6 +54,11 @@ INSIDE = re.compile(r"std::|terminate called|what\(\)|\.cpp\b|_ZN|pthread|SQLite
 TIME_LIMIT_S = 60
 
 
+def is_unfinished_record(path):
+    """True for the record by which a series is continued with --resume."""
+    return path.name == "series.json" and '"complete": false' in path.read_text()
+
+
 def options_of(emscape, subcommand):
     text = subprocess.run([emscape, subcommand, "--help"], capture_output=True, text=True, check=True).stdout
     return sorted({(name, kind.strip()) for name, kind in OPTION.findall(text) if name not in LEFT_OUT})
@@ -77,7 +82,11 @@ def faults_of(done, folder):
         yield f"{len(errors)} messages of an error"
     if (found := INSIDE.search(done.stderr)) is not None:
         yield f"'{found[0]}' in a message"
-    left = [str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()]
+    left = [
+        str(path.relative_to(folder))
+        for path in folder.rglob("*")
+        if path.is_file() and not is_unfinished_record(path)
+    ]
     if done.returncode in (1, 2, 3, 4) and left and "finished files are kept" not in done.stderr:
         yield f"left {', '.join(left[:3])}"
 
