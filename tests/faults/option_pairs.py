@@ -11,6 +11,7 @@ usage: option_pairs.py EMSCAPE SCENARIO_FOLDER [--pairs N] [--seed N] [SUBCOMMAN
 import argparse
 import random
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -102,8 +103,10 @@ def main():
     failed = 0
     with tempfile.TemporaryDirectory() as work:
         work = Path(work)
-        names = {"q": given.scenarios.resolve() / "quick.yaml", "l": given.scenarios.resolve() / "links.yaml", "v": work / "volumes",
-                 "t": given.scenarios.resolve() / "data" / "jacksboro.tif", "o": "{o}"}
+        scenarios = work / "scenarios"  # a copy: -o may name a scenario, which is then replaced as any file that is named
+        shutil.copytree(given.scenarios, scenarios)
+        names = {"q": scenarios / "quick.yaml", "l": scenarios / "links.yaml", "v": work / "volumes",
+                 "t": scenarios / "data" / "jacksboro.tif", "o": "{o}"}
         subprocess.run([given.emscape, "-q", *BASE["simulate"].format(**{**names, "o": work}).split()], check=True)
         (work / "s").rename(work / "volumes")
         for subcommand in given.subcommands or BASE:
@@ -131,6 +134,8 @@ def main():
                     failed += 1
                     print(f"{fault}: {' '.join(word if len(word) < 200 else word[:20] + '...' for word in command[1:])}", flush=True)
                 subprocess.run(["rm", "-rf", str(out)], check=True)
+                for name in ("quick.yaml", "links.yaml"):
+                    shutil.copyfile(given.scenarios / name, scenarios / name)
             print(f"{subcommand}: {given.pairs} pairs of {len(options)} options; statuses {dict(sorted(statuses.items()))}", flush=True)
     sys.exit(1 if failed else 0)
 
