@@ -142,7 +142,7 @@ Exit status: 0; 2 for an unknown emitter or an antenna without a beam; 3 without
   auto options = std::make_shared<BlockageCommand>();
   command->add_option("SCENARIO", options->scenario, "Scenario (YAML or JSON)")->required();
   addSetOption(*command, options->edits);
-  command->add_option("--emitter", options->emitter, "Name of the emitter")->required();
+  command->add_option("--emitter", options->emitter, "Name of the emitter; required");
   command->add_option("--time", options->time, "Seconds since the scenario's epoch, or UTC");
   command
       ->add_option("--elevation", options->elevation_deg,
