@@ -11,6 +11,7 @@
 #include "emscape/base/units.h"
 #include "propagation/parabolic_equation/air/path_air.h"
 #include "propagation/registry/model_info.h"
+#include "scenario/scan/swept_antenna.h"
 
 namespace emscape::emfield {
 namespace {
@@ -45,7 +46,7 @@ const SourceLocation& locationOf(InputOrigin origin, const Scenario& scenario, c
 std::vector<std::string> coarseIntervals(const Scenario& scenario, const Emitter& emitter) {
   using scenario::IntervalKind;
   using scenario::ScanKind;
-  constexpr double kStep_deg = 0.125, kWorthSaying_db = 0.1;
+  constexpr double kStep_deg = 360.0 / scenario::kMaxSweptAzimuths, kWorthSaying_db = 0.1;
   const scenario::IntervalSpec& interval = scenario.output.interval;
   const ScanKind scan = emitter.scan.kind;
   const bool has_table = interval.kind == IntervalKind::max_hold || interval.kind == IntervalKind::mean;

@@ -213,8 +213,8 @@ AntennaPtr roundAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPat
 
 AntennaPtr gridAntenna(const Antenna& antenna, const ScanSweep& sweep, SweptPattern pattern) {
   const Sampled sampled(antenna, pattern);
-  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 16, 2880);
-  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 16, 1440);
+  const int azimuths = intervalsFor(360, antenna.beamwidth_az_deg, 16, kMaxSweptAzimuths);
+  const int elevations = intervalsFor(180, antenna.beamwidth_el_deg, 16, kMaxSweptAzimuths / 2);
   const Tilts tilts(sweep);
   const std::vector<Steering> dwells = steeringsOf(sweep);
   std::vector<float> amplitudes((static_cast<std::size_t>(azimuths) + 1) *

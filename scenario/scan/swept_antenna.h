@@ -6,6 +6,10 @@
 
 namespace emscape::scenario {
 
+/// Largest number of intervals of an interval's table in azimuth, half of it in elevation: narrow beams are
+/// sampled no more finely.
+constexpr int kMaxSweptAzimuths = 2880;
+
 enum class SweptPattern {
   largest,  ///< the largest amplitude of the interval
   mean      ///< the root of the mean power of the interval
