@@ -80,7 +80,7 @@ std::string blockageText(const Blockage& blockage, const BlockageAreas& areas) {
       "'{}' at {:.1f} m: beam of {:.3g} deg at {:.3g} deg elevation, to {:.4g} km\n"
       "cut by 10 % or more: {}\ncut by half or more:  {}{}\n",
       blockage.emitter, blockage.station_msl_m, blockage.beamwidth_deg, blockage.elevation_deg,
-      blockage.ranges * blockage.request.step_m / 1000, share(areas.cut_m2), share(areas.half_cut_m2),
+      blockage.range_m() / 1000, share(areas.cut_m2), share(areas.half_cut_m2),
       areas.unknown_m2 > 0 ? fmt::format("; {:.1f} km2 unknown", areas.unknown_m2 / 1e6) : "");
 }
 
@@ -135,7 +135,7 @@ each gate (Bech et al. 2003), and the largest part up to there. Rays are straigh
 k_factor; diffraction is left out. In the picture and the GeoTIFF the part up to there; both in the CSV.
 
 Examples:
-  emscape blockage scenarios/jacksboro.yaml --emitter "search radar" --range 15000 -o blockage.png -o blockage.csv
+  emscape blockage scenarios/jacksboro.yaml --emitter "search radar" -o blockage.png -o blockage.csv
   emscape blockage scenarios/jacksboro.yaml --emitter "search radar" --range 15000 --elevation 0.5 --beamwidth 1 -o blockage.tif --force
 
 Exit status: 0; 2 for an unknown emitter or an antenna without a beam; 3 without terrain.)");
@@ -155,7 +155,10 @@ Exit status: 0; 2 for an unknown emitter or an antenna without a beam; 3 without
           "Width of the beam between its half-power points (deg); default: the antenna's in elevation")
       ->default_str("")
       ->check(CLI::Range(0.01, 90.0));
-  command->add_option("--range", options->request.range_m, "Of the last gate, along the beam (m)")
+  command
+      ->add_option("--range", options->request.range_m,
+                   "Of the last gate, along the beam (m); default: up to 100 km, as far as ground is known")
+      ->default_str("")
       ->check(CLI::Range(BlockageRequest::kMinRange_m, BlockageRequest::kMaxRange_m));
   command->add_option("--step", options->request.step_m, "Length of a gate (m)")
       ->check(CLI::Range(1.0, 100e3));

@@ -55,6 +55,23 @@ void fillAzimuth(const emfield::Station& station, const scenario::Terrain& terra
   }
 }
 
+/// Drops the gates behind the last one whose blockage is known in any direction.
+void endWithKnownGround(Blockage& blockage) {
+  const int before = blockage.ranges;
+  int known = 0;
+  for (int azimuth = 0; azimuth < blockage.request.azimuths; ++azimuth)
+    for (int n = known; n < before; ++n)
+      if (!std::isnan(blockage.cumulative[static_cast<std::size_t>(azimuth) * before + n])) known = n + 1;
+  if (known == 0 || known == before) return;
+  blockage.ranges = known;
+  for (std::vector<float>* values : {&blockage.edge_msl_m, &blockage.partial, &blockage.cumulative}) {
+    for (int azimuth = 0; azimuth < blockage.request.azimuths; ++azimuth)
+      std::copy_n(values->begin() + static_cast<std::ptrdiff_t>(azimuth) * before, known,
+                  values->begin() + static_cast<std::ptrdiff_t>(azimuth) * known);
+    values->resize(static_cast<std::size_t>(blockage.request.azimuths) * known);
+  }
+}
+
 }  // namespace
 
 double partOfBeamBelow(double edge_m, double radius_m) {
@@ -103,12 +120,13 @@ Blockage computeBlockage(const std::shared_ptr<const scenario::Scenario>& scenar
     throw Error(ErrorCode::usage,
                 fmt::format("the antenna of '{}' has no beam: give --beamwidth, its width in elevation (deg)",
                             emitter.name));
-  blockage.ranges = static_cast<int>(std::ceil(request.range_m / request.step_m - 1e-9));
+  const double range_m = request.range_m.value_or(BlockageRequest::kUsualRange_m);
+  blockage.ranges = static_cast<int>(std::ceil(range_m / request.step_m - 1e-9));
   if (blockage.ranges > BlockageRequest::kMaxRanges)
     throw Error(ErrorCode::usage, fmt::format("{} gates of {:g} m are more than {}: make --step larger",
                                               blockage.ranges, request.step_m, BlockageRequest::kMaxRanges));
   const scenario::TerrainPtr terrain = loadTerrain(
-      *scenario, circularArea({state.position.latitude_deg, state.position.longitude_deg, request.range_m}));
+      *scenario, circularArea({state.position.latitude_deg, state.position.longitude_deg, range_m}));
   if (std::isnan(terrain->lowest_m()))
     throw Error(ErrorCode::bad_input, {scenario->file, 0, 0},
                 "no ground is known around the emitter; " + terrain->placeText());
@@ -119,13 +137,14 @@ Blockage computeBlockage(const std::shared_ptr<const scenario::Scenario>& scenar
   parallelFor(request.azimuths, 1, [&](int begin, int end) {
     for (int azimuth = begin; azimuth < end; ++azimuth) fillAzimuth(station, *terrain, azimuth, blockage);
   });
+  if (!request.range_m) endWithKnownGround(blockage);
   return blockage;
 }
 
 BlockageMap mapOf(const Blockage& blockage) {
-  const MapArea area = circularArea({blockage.position.latitude_deg, blockage.position.longitude_deg,
-                                     std::max(blockage.request.range_m, 10.0)});
-  BlockageMap made{makeMapGrid(area, std::ceil(blockage.request.range_m / kPixelsOfRadius), "local"), {}};
+  const MapArea area =
+      circularArea({blockage.position.latitude_deg, blockage.position.longitude_deg, blockage.range_m()});
+  BlockageMap made{makeMapGrid(area, std::ceil(blockage.range_m() / kPixelsOfRadius), "local"), {}};
   const MapGrid& grid = made.grid;
   Map& map = made.map;
   map.name = "beam_blockage";

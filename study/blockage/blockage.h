@@ -13,7 +13,7 @@
 namespace emscape::study {
 
 struct BlockageRequest {
-  static constexpr double kMinRange_m = 100, kMaxRange_m = 1e6;
+  static constexpr double kMinRange_m = 100, kUsualRange_m = 100e3, kMaxRange_m = 1e6;
   static constexpr int kMinAzimuths = 4, kMaxAzimuths = 3600, kMaxRanges = 10000;
 
   int emitter = 0;  ///< index into Scenario::emitters
@@ -21,7 +21,8 @@ struct BlockageRequest {
   std::optional<double>
       elevation_deg;  ///< of the beam's axis, -10..89; none: of the emitter's beam at the time
   std::optional<double> beamwidth_deg;  ///< between its half-power points; none: the antenna's in elevation
-  double range_m = 100e3;               ///< of the last gate, along the beam
+  std::optional<double> range_m;        ///< of the last gate, along the beam; none: up to kUsualRange_m, but
+                                        ///< not beyond the last gate whose blockage is known
   double step_m = 500;                  ///< of the gates
   int azimuths = 360;                   ///< beams, from north clockwise
 };
@@ -50,6 +51,7 @@ struct Blockage {
   std::vector<std::string> warnings;
 
   double azimuth_deg(int index) const { return 360.0 * index / request.azimuths; }
+  double range_m() const { return ranges * request.step_m; }                 ///< end of the last gate
   double gate_m(int index) const { return (index + 0.5) * request.step_m; }  ///< middle, along the beam
   /// Height of the beam's axis at a distance along it, on the effective earth.
   double axis_msl_m(double slant_m) const;

@@ -122,6 +122,20 @@ TEST_F(BeamBlockage, IsUnknownBehindMissingTerrain) {
   EXPECT_THAT(test::readFile(folder_ / "a.csv"), HasSubstr("270,89750,"));
 }
 
+TEST_F(BeamBlockage, EndsByDefaultWithTheLastGateOverKnownGround) {
+  BlockageRequest request;
+  request.azimuths = 4;
+  const Blockage whole = computeBlockage(scenario_, request);
+  EXPECT_LT(whole.range_m(), BlockageRequest::kUsualRange_m);
+  bool known = false;
+  for (int azimuth = 0; azimuth < 4; ++azimuth)
+    known |= !std::isnan(whole.cumulative[static_cast<std::size_t>(azimuth + 1) * whole.ranges - 1]);
+  EXPECT_TRUE(known);
+  request.range_m = whole.range_m();
+  EXPECT_THAT(whole.cumulative, ::testing::Pointwise(::testing::NanSensitiveFloatEq(),
+                                                     computeBlockage(scenario_, request).cumulative));
+}
+
 TEST_F(BeamBlockage, MapHasTheGateAboveEachPixel) {
   BlockageRequest request;
   request.range_m = 20e3;
