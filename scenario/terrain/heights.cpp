@@ -168,7 +168,6 @@ void setDatum(const HeightFacts& facts, const Stated& stated, HeightMeaning& mea
           "states another system (EPSG:4326+5773: latitudes, longitudes and EGM96; EPSG:4979: "
           "heights above the ellipsoid)",
           toString(*key), textOf(meaning.datum), stated.name));
-    meaning.notes.push_back("states that its heights are of '" + stated.name + "'");
   } else if (key) {
     meaning.datum = *key;
     meaning.origin = DatumOrigin::key;

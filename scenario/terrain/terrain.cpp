@@ -7,7 +7,9 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <set>
 
 #include "base/geodesy/geoid_grid.h"
 #include "base/geodesy/position_mistakes.h"
@@ -169,9 +171,18 @@ std::string placeTextOf(const std::vector<GeoBox>& boxes, const GeoBox& needed,
   return text;
 }
 
+/// A program reads the files of a scenario more than once, for several boxes.
+void logOnce(const std::vector<std::string>& notes) {
+  static std::mutex mutex;
+  static std::set<std::string> told;
+  const std::lock_guard lock(mutex);
+  for (const std::string& note : notes)
+    if (told.insert(note).second) logInfo(note);
+}
+
 /// Sheets of longitudes and latitudes, the finest first, with closed seams.
 std::vector<TerrainSheet> sheetsWithin(FilesWithin& files, const GeoBox& box) {
-  for (const std::string& note : files.notes.texts()) logInfo(note);
+  logOnce(files.notes.texts());
   std::vector<TerrainSheet> sheets;
   for (TerrainSheet& sheet : readSheets(files.tiles)) {
     for (const TerrainSheet::Fill& fill : sheet.fills)

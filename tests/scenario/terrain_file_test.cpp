@@ -318,7 +318,7 @@ TEST_F(TerrainFileTest, DescribeRepeatsTheVerticalDatumOfTheFile) {
   DemFile file = geographicDem(10, 50, 0.1, 10, 10, flat);
   file.crs = "EPSG:4326+5773";
   const TerrainFileInfo info = Terrain::describe(write("a.tif", file));
-  EXPECT_THAT(info.notes, Contains(HasSubstr("'EGM96 height'")));
+  EXPECT_THAT(info.vertical_datum, HasSubstr("(stated by the file: EGM96 height)"));
   EXPECT_EQ(load({info.file}, {49, 50, 10, 11})->heightMsl_m(49.5, 10.5), 100);
 }
 

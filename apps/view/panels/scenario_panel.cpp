@@ -53,7 +53,9 @@ struct PanelState {
 
   void take(const playback::ScenarioPtr& next) {
     if (next == scenario) return;
-    const bool is_edited_further = scenario && scenario->file == next->file;
+    // A stream brings and renames items, too, but these are not the user's.
+    const bool is_edited_further =
+        scenario && scenario->file == next->file && scenario->edits() != next->edits();
     const std::vector<RenamedItem> renamed =
         is_edited_further ? renamedItems(*scenario, *next) : std::vector<RenamedItem>();
     rename(renamed);
@@ -90,11 +92,14 @@ struct PanelState {
             "Scenario",
             {},
             {{"Air", "atmosphere"}, {"Ground", "ground"}, {"Output", "output"}, {"Region", "region"}}}};
+    std::unordered_set<std::string> still_open;
     for (const SectionGroup& group : section_groups) {
       for (const Section& section : group.sections) {
         if (is_edited_further && before.count(section.path) == 0) show(section.path);
+        if (open.count(section.path) > 0) still_open.insert(section.path);
       }
     }
+    open = std::move(still_open);
     if (std::exchange(is_new, false) && !emitters.sections.empty())
       open.insert(emitters.sections.front().path);
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string_view>
+#include <unordered_set>
 
 namespace emscape::view {
 namespace {
@@ -74,13 +76,15 @@ std::vector<RenamedItem> renamedItems(const scenario::Scenario& before, const sc
   std::vector<RenamedItem> renamed;
   const auto compare = [&](const std::string& list, const auto& old_items, const auto& items) {
     if (old_items.size() != items.size()) return;
-    const auto has = [](const auto& list_of_items, const std::string& name) {
-      return std::any_of(list_of_items.begin(), list_of_items.end(),
-                         [&name](const auto& item) { return item.name == name; });
+    const auto namesOf = [](const auto& some) {
+      std::unordered_set<std::string_view> names;
+      for (const auto& item : some) names.insert(item.name);
+      return names;
     };
+    const auto old_names = namesOf(old_items), names = namesOf(items);
     for (std::size_t i = 0; i < items.size(); ++i) {
       const std::string &old_name = old_items[i].name, &name = items[i].name;
-      if (old_name == name || has(items, old_name) || has(old_items, name)) continue;
+      if (old_name == name || names.count(old_name) > 0 || old_names.count(name) > 0) continue;
       renamed.push_back({list, old_name, name, list + "." + scenario::pathStep(old_name),
                          list + "." + scenario::pathStep(name)});
     }
