@@ -149,15 +149,22 @@ struct LiveBattlefield::Impl {
       datagrams.emplace(request.address, request.interface);
     }
     restart();
-    receiver = std::thread([this] { request.connects ? receiveText() : receiveDatagrams(); });
-    builder = std::thread([this] { build(); });
+    try {
+      receiver = std::thread([this] { request.connects ? receiveText() : receiveDatagrams(); });
+      builder = std::thread([this] { build(); });
+    } catch (...) {
+      finish();
+      throw;
+    }
   }
 
-  ~Impl() {
+  ~Impl() { finish(); }
+
+  void finish() {
     stops = true;
     rebuild.set();
-    receiver.join();
-    builder.join();
+    for (std::thread* thread : {&receiver, &builder})
+      if (thread->joinable()) thread->join();
   }
 
   void restart() {

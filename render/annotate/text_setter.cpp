@@ -4,9 +4,12 @@
 
 #include <memory>
 #include <mutex>
+#include <set>
 #include <unordered_map>
+#include <utility>
 
 #include "base/text/utf8.h"
+#include "base/threads.h"
 
 namespace emscape::render {
 namespace {
@@ -18,6 +21,8 @@ constexpr const char* kFamilies =
 /// A language of which Pango knows nothing has every script; others send it to the locale for some scripts.
 constexpr const char* kLanguage = "xx";
 constexpr std::size_t kMaxLines = 4096;
+/// Pango starts so many threads for the first text of each font, and ends the program where one is refused.
+constexpr int kThreadsOfPango = 3;
 
 /// A line in a font. Fonts and lines of Pango are for one thread at a time: `mutex` is held while one is
 /// used.
@@ -35,6 +40,7 @@ class TextSetter {
     const auto known = lines_.find(key);
     if (known != lines_.end()) return pango_layout_get_line_readonly(known->second.get(), 0);
     if (lines_.size() >= kMaxLines) lines_.clear();
+    if (fonts_used_.count({size_px, weight}) == 0) requireThreads(kThreadsOfPango);
     const std::string characters = xmlCharacters(text);
     LayoutPtr layout(pango_layout_new(context_.get()), g_object_unref);
     pango_layout_set_single_paragraph_mode(layout.get(), TRUE);
@@ -44,14 +50,17 @@ class TextSetter {
     pango_layout_set_font_description(layout.get(), font_.get());
     pango_layout_set_text(layout.get(), characters.data(), static_cast<int>(characters.size()));
     const auto added = lines_.emplace(std::move(key), std::move(layout)).first;
-    return pango_layout_get_line_readonly(added->second.get(), 0);
+    PangoLayoutLine* const line = pango_layout_get_line_readonly(added->second.get(), 0);
+    fonts_used_.emplace(size_px, weight);
+    return line;
   }
 
  private:
   using LayoutPtr = std::unique_ptr<PangoLayout, void (*)(void*)>;
 
   TextSetter()
-      : fonts_(pango_cairo_font_map_new_for_font_type(CAIRO_FONT_TYPE_FT), g_object_unref),
+      : fonts_((requireThreads(kThreadsOfPango), pango_cairo_font_map_new_for_font_type(CAIRO_FONT_TYPE_FT)),
+               g_object_unref),
         context_(pango_font_map_create_context(fonts_.get()), g_object_unref),
         font_(pango_font_description_from_string(kFamilies), pango_font_description_free) {
     // Glyphs are not aligned to whole pixels, for uniform spacing at small sizes.
@@ -69,6 +78,7 @@ class TextSetter {
   std::unique_ptr<PangoContext, void (*)(void*)> context_;
   std::unique_ptr<PangoFontDescription, void (*)(PangoFontDescription*)> font_;
   std::unordered_map<std::string, LayoutPtr> lines_;  ///< by text, size and weight
+  std::set<std::pair<double, Weight>> fonts_used_;
 };
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "tests/apps/program.h"
@@ -274,6 +276,23 @@ TEST(Results, OfPlotsBeyondTheMemoryAreRefusedBeforeTheWork) {
                                    "ulimit -v 4000000;");
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.err, HasSubstr("a picture of 32767x32767 pixels needs up to"));
+}
+
+// Pango ends a program of which it cannot start a thread.
+TEST(Limits, APictureWithoutThreadsIsAnErrorThatNamesTheLimit) {
+  const TemporaryFolder folder;
+  fs::permissions(folder.path(), fs::perms::all);
+  const std::string as_another = "setpriv --reuid 65534 --regid 65534 --clear-groups prlimit --nproc=3 ",
+                    program = besideThisProgram("emscape");
+  if (std::system((as_another + "test -x " + program + " -a -r " + quick() + " 2>/dev/null").c_str()) != 0)
+    GTEST_SKIP() << "needs setpriv, prlimit, the rights of root, and a program that each user may run";
+  const std::string command = as_another + program + " render " + quick() + " --times 0 -o " +
+                              (folder / "a.png") + " 2>" + (folder / "err");
+  const int status = std::system(command.c_str());
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), kOther);
+  EXPECT_THAT(readFile(folder / "err"), HasSubstr("ulimit -u"));
+  EXPECT_FALSE(fs::exists(folder / "a.png"));
 }
 
 }  // namespace
