@@ -146,11 +146,9 @@ class Resolver {
     const std::vector<DocumentNodePtr> none;
     const std::vector<DocumentNodePtr>& items = node_ ? node_->items : none;
     std::size_t best = items.size(), best_length = 0;
-    std::vector<std::string> names;
     for (std::size_t i = 0; i < items.size(); ++i) {
       const std::string* name = nameOf(*items[i]);
       if (name == nullptr) continue;
-      names.push_back(*name);
       const bool begins = written.compare(0, name->size(), *name) == 0;
       const bool fits =
           begins && (written.size() == name->size() || (!in_quotes && written[name->size()] == '.'));
@@ -158,7 +156,13 @@ class Resolver {
       best = i;
       best_length = name->size();
     }
-    if (best == items.size()) return newItem(in_quotes ? written : word(), spec, names);
+    if (best == items.size()) {
+      std::vector<std::string> names;
+      for (const DocumentNodePtr& item : items) {
+        if (const std::string* name = nameOf(*item)) names.push_back(*name);
+      }
+      return newItem(in_quotes ? written : word(), spec, names);
+    }
     const std::string name = *nameOf(*items[best]);
     result_.name = fmt::format("the {} '{}'", spec.name, name);
     append(quotedIfNeeded(name));

@@ -2,11 +2,17 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <thread>
+#include <utility>
 
 #include "apps/common/console.h"
 #include "apps/common/interrupt.h"
@@ -29,6 +35,12 @@ struct LiveArguments {
   std::string folder;
   double duration_s = 0;
   bool computes = true;
+};
+
+struct LiveFieldStatus {
+  long long fields = 0;
+  double field_ms = 0, latency_ms = 0;  ///< of the last one
+  std::string trouble;                  ///< why there is none
 };
 
 /// Computes the field whenever the battlefield has changed.
@@ -65,9 +77,11 @@ class LiveField {
     }
     scenario_ = now.scenario;
     poses_ = now.poses;
-    ++fields_;
-    field_ms_ = (playback::steadyTime_s() - begin_s) * 1000;
-    if (now.arrival_s > arrival_s_) latency_ms_ = (playback::steadyTime_s() - now.arrival_s) * 1000;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    ++told_.fields;
+    told_.field_ms = (playback::steadyTime_s() - begin_s) * 1000;
+    if (now.arrival_s > arrival_s_) told_.latency_ms = (playback::steadyTime_s() - now.arrival_s) * 1000;
+    told_.trouble = trouble_;
     arrival_s_ = now.arrival_s;
     return true;
   }
@@ -84,10 +98,11 @@ class LiveField {
     volume::writeVolumes(folder / "live.vdb", volumes);
   }
 
-  long long fields() const { return fields_; }
-  double field_ms() const { return field_ms_; }
-  double latency_ms() const { return latency_ms_; }
-  const std::string& trouble() const { return trouble_; }
+  /// Of the fields so far; any thread may ask.
+  LiveFieldStatus status() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return told_;
+  }
 
  private:
   playback::LiveBattlefield& battlefield_;
@@ -97,12 +112,54 @@ class LiveField {
   playback::PlatformIndices indices_;
   playback::NamedPosesPtr poses_;
   bool is_new_ = false;
-  long long fields_ = 0;
-  double field_ms_ = 0, latency_ms_ = 0, arrival_s_ = 0;
+  double arrival_s_ = 0;
   std::string trouble_;
+  mutable std::mutex mutex_;
+  LiveFieldStatus told_;
 };
 
-Json jsonOf(const playback::StreamStatus& status, const LiveField& field, double t_s) {
+/// Calls a function each second on a thread of its own, until it ends or the function throws.
+class EachSecond {
+ public:
+  explicit EachSecond(std::function<void()> call)
+      : thread_([this, call = std::move(call)] {
+          auto next = std::chrono::steady_clock::now();
+          while (!ends_) {
+            next += std::chrono::seconds(1);
+            while (!ends_ && std::chrono::steady_clock::now() < next) end_.waitUntil(next);
+            try {
+              if (!ends_) call();
+            } catch (...) {
+              failure_ = std::current_exception();
+              ends_ = true;
+            }
+          }
+        }) {}
+  ~EachSecond() { finish(); }
+  EachSecond(const EachSecond&) = delete;
+  EachSecond& operator=(const EachSecond&) = delete;
+
+  bool hasFailed() const { return ends_; }
+  /// @throws what the function has thrown
+  void end() {
+    finish();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void finish() {
+    ends_ = true;
+    end_.set();
+    if (thread_.joinable()) thread_.join();
+  }
+
+  std::atomic<bool> ends_{false};
+  std::exception_ptr failure_;
+  Event end_;
+  std::thread thread_;  ///< the last: it uses the others
+};
+
+Json jsonOf(const playback::StreamStatus& status, const LiveFieldStatus& field, double t_s) {
   const auto rounded = [](double value) { return std::round(value * 1000) / 1000; };
   Json line{{"t_s", rounded(t_s)},
             {status.kind == playback::StreamKind::dis ? "pdus" : playback::formatOf(status.kind).plural,
@@ -118,12 +175,12 @@ Json jsonOf(const playback::StreamStatus& status, const LiveField& field, double
             {"entities", status.entities},
             {"emitters", status.emitters},
             {"unmatched", status.unmatched},
-            {"fields", field.fields()},
-            {"field_ms", rounded(field.field_ms())},
-            {"latency_ms", rounded(field.latency_ms())}};
+            {"fields", field.fields},
+            {"field_ms", rounded(field.field_ms)},
+            {"latency_ms", rounded(field.latency_ms)}};
   line["age_s"] = status.age_s ? Json(rounded(*status.age_s)) : Json();
   line["trouble"] =
-      status.trouble + (status.trouble.empty() || field.trouble().empty() ? "" : "; ") + field.trouble();
+      status.trouble + (status.trouble.empty() || field.trouble.empty() ? "" : "; ") + field.trouble;
   return line;
 }
 
@@ -139,32 +196,40 @@ int live(const LiveArguments& arguments, const GlobalOptions& global) {
   playback::LiveBattlefield battlefield(request, [&changed] { changed.set(); });
   LiveField field(battlefield);
   const double begin_s = playback::steadyTime_s();
-  double told_s = begin_s;
   const auto tell = [&] {
     const playback::StreamStatus status = battlefield.status();
+    const LiveFieldStatus of_field = field.status();
     const double t_s = playback::steadyTime_s() - begin_s;
     if (global.json) {
-      print("{}\n", jsonOf(status, field, t_s).dump());
+      print("{}\n", jsonOf(status, of_field, t_s).dump());
     } else if (!global.quiet) {
       print("{:6.0f} s  {}; {} emitters, {} unmatched; field {:.0f} ms, latency {:.0f} ms{}\n", t_s,
-            status.text(), status.emitters, status.unmatched, field.field_ms(), field.latency_ms(),
-            field.trouble().empty() ? "" : "; " + field.trouble());
+            status.text(), status.emitters, status.unmatched, of_field.field_ms, of_field.latency_ms,
+            of_field.trouble.empty() ? "" : "; " + of_field.trouble);
     }
     finishResult();
-    if (!arguments.folder.empty()) field.write(arguments.folder);
-    told_s = playback::steadyTime_s();
   };
-  try {
-    while (!stopFlag() &&
+  EachSecond teller(tell);  // also while a field takes longer
+  const auto compute = [&] {
+    double written_s = begin_s;
+    const auto write = [&] {
+      if (!arguments.folder.empty()) field.write(arguments.folder);
+      written_s = playback::steadyTime_s();
+    };
+    while (!stopFlag() && !teller.hasFailed() &&
            (arguments.duration_s == 0 || playback::steadyTime_s() - begin_s < arguments.duration_s)) {
       const bool is_computed = arguments.computes && field.update();
-      if (playback::steadyTime_s() - told_s >= 1) tell();
+      if (playback::steadyTime_s() - written_s >= 1) write();
       if (!is_computed) changed.waitUntil(std::chrono::steady_clock::now() + std::chrono::milliseconds(20));
     }
-    tell();
+    write();
+  };
+  try {
+    compute();
   } catch (const Stopped&) {  // in the midst of a field
-    tell();
   }
+  teller.end();
+  tell();
   battlefield.finishRecording();
   return 0;
 }

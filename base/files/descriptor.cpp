@@ -21,6 +21,10 @@ void failWriting(const fs::path& file, const std::string& cause) {
   throw Error(ErrorCode::other, {file.string()}, "cannot write: " + cause);
 }
 
+void failExisting(const fs::path& file) {
+  throw Error(ErrorCode::usage, file.string() + " exists; --force replaces it, another --output keeps it");
+}
+
 Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
   close();
   number_ = other.release();

@@ -130,29 +130,39 @@ void UnfinishedFile::write(const std::function<void(std::ostream&)>& fill) {
   }
 }
 
-int UnfinishedFile::rename(const std::string& name) const {
+int UnfinishedFile::rename(const std::string& name, bool replaces) const {
   const Descriptor opened(
       ::openat(own_folder_.number(), name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
-  const bool is_renamed = opened.isOpen() && ::fsync(opened.number()) == 0 &&
-                          ::renameat(own_folder_.number(), name.c_str(), folder_.number(), name.c_str()) == 0;
-  return is_renamed ? 0 : errno;
+  if (!opened.isOpen() || ::fsync(opened.number()) != 0) return errno;
+  const auto renamed = [&](unsigned flags) {
+    return ::renameat2(own_folder_.number(), name.c_str(), folder_.number(), name.c_str(), flags) == 0;
+  };
+  if (renamed(replaces ? 0 : RENAME_NOREPLACE)) return 0;
+  if (replaces || (errno != EINVAL && errno != ENOSYS)) return errno;
+  // The file system knows no renaming without replacement; a link never replaces.
+  return ::linkat(own_folder_.number(), name.c_str(), folder_.number(), name.c_str(), 0) == 0 ? 0 : errno;
 }
 
-void UnfinishedFile::publish(const std::string& beside) {
+void UnfinishedFile::publish(const std::string& beside, bool replaces) {
   const std::string name = file_.filename();
   if (!beside.empty()) {
-    const int cause = rename(name + beside);
+    const int cause = rename(name + beside, true);
     if (cause == ENOENT) {
       ::unlinkat(folder_.number(), (name + beside).c_str(), 0);
     } else if (cause != 0) {
       failWriting(file_.string() + beside, causeOf(cause));
     }
   }
-  const int cause = rename(name);
+  const int cause = rename(name, replaces);
+  if (cause == EEXIST && !replaces) failExisting(file_);
   if (cause != 0) failWriting(file_, causeOf(cause));
   removeOwnFolder();
   // A rename is on the disk after this. Some file systems cannot sync a folder; the file is complete anyway.
   static_cast<void>(::fsync(folder_.number()) == 0);
+}
+
+void UnfinishedFile::withdraw() {
+  ::unlinkat(folder_.number(), file_.filename().c_str(), 0);
 }
 
 int removeAbandonedFiles(const fs::path& folder) {

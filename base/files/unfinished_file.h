@@ -32,18 +32,21 @@ class UnfinishedFile {
   /// @throws Error (other) that names the file and the cause; exceptions that `fill` throws for reasons of
   /// its own pass through
   void write(const std::function<void(std::ostream&)>& fill);
-  /// Flushes the file to the disk and renames it; a file of its name is replaced.
+  /// Flushes the file to the disk and renames it.
   /// @param beside  ending of a file that belongs to it, as GDAL's .aux.xml: renamed before it if there is
   /// one,
   ///                else that of an earlier file is removed; empty: none
-  /// @throws Error (other) that names the file and the cause
-  void publish(const std::string& beside = "");
+  /// @param replaces  false: a file that has the name by now stays
+  /// @throws Error (other) that names the file and the cause; (usage) if a file stays
+  void publish(const std::string& beside = "", bool replaces = true);
+  /// Removes the published file again.
+  void withdraw();
 
  private:
   void makeOwnFolder();
   void removeOwnFolder();
   /// @return errno, 0 if all went well
-  int rename(const std::string& name) const;
+  int rename(const std::string& name, bool replaces) const;
 
   std::filesystem::path file_, temporary_;
   Descriptor folder_;

@@ -9,17 +9,24 @@
 
 namespace emscape {
 
-void writeWhole(const std::vector<OutputFile>& files) {
+void writeWhole(const std::vector<OutputFile>& files, bool replaces) {
   std::vector<std::unique_ptr<UnfinishedFile>> unfinished;
   for (const OutputFile& file : files) {
     unfinished.push_back(std::make_unique<UnfinishedFile>(file.path));
     unfinished.back()->write(file.write);
   }
-  for (const auto& file : unfinished) file->publish();
+  std::size_t published = 0;
+  try {
+    for (; published < unfinished.size(); ++published) unfinished[published]->publish("", replaces);
+  } catch (...) {
+    while (!replaces && published-- > 0) unfinished[published]->withdraw();
+    throw;
+  }
 }
 
-void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write) {
-  writeWhole({{path, write}});
+void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write,
+                bool replaces) {
+  writeWhole({{path, write}}, replaces);
 }
 
 void requireNew(const std::vector<std::filesystem::path>& files) {
@@ -28,8 +35,7 @@ void requireNew(const std::vector<std::filesystem::path>& files) {
     const auto type = std::filesystem::symlink_status(file, ignored).type();
     // Folders and devices are never replaced; UnfinishedFile names them.
     if (type == std::filesystem::file_type::regular || type == std::filesystem::file_type::symlink) {
-      throw Error(ErrorCode::usage,
-                  fmt::format("{} exists; --force replaces it, another --output keeps it", file.string()));
+      failExisting(file);
     }
   }
 }

@@ -15,13 +15,14 @@ struct OutputFile {
 };
 
 /// Writes files that belong together: each as an UnfinishedFile, flushed to the disk. When all are complete
-/// they are renamed, in the order given. Files of the same name are replaced. On any failure no final name is
-/// written and nothing is left; only a killed process leaves something, which removeAbandonedFiles()
-/// recognises.
+/// they are renamed, in the order given. On any failure no final name is written and nothing is left; only a
+/// killed process leaves something, which removeAbandonedFiles() recognises.
+/// @param replaces  false: files of the same name stay, also those that another process writes meanwhile
 /// @throws Error (other) that names the path and the cause: missing folder, no permission, no space;
-/// exceptions that `write` throws for reasons of its own pass through
-void writeWhole(const std::vector<OutputFile>& files);
-void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+/// exceptions that `write` throws for reasons of its own pass through; (usage) as requireNew()
+void writeWhole(const std::vector<OutputFile>& files, bool replaces = true);
+void writeWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write,
+                bool replaces = true);
 
 /// Protects what a user may have written or edited under the names of outputs.
 /// @throws Error (usage) that names the first file that exists, and the options --force and --output

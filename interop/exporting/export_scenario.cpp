@@ -54,7 +54,8 @@ const ExportFormat& formatOf(const std::string& file) {
 }
 
 /// Writes an ACMI text into a zip file.
-long long writeZip(const ExportJob& job, const fs::path& file, std::vector<ExportedRow>& rows) {
+long long writeZip(const ExportJob& job, const fs::path& file, bool replaces,
+                   std::vector<ExportedRow>& rows) {
   UnfinishedFile unfinished(file);
   const scenario::GdalMessages messages;
   void* const zip = CPLCreateZip(unfinished.temporary().c_str(), nullptr);
@@ -83,7 +84,7 @@ long long writeZip(const ExportJob& job, const fs::path& file, std::vector<Expor
   flush();
   is_sound = CPLCloseFileInZip(zip) == CE_None && is_sound;
   if (CPLCloseZip(zip) != CE_None || !is_sound || messages.hasFailure()) failZip(messages, file);
-  unfinished.publish();
+  unfinished.publish("", replaces);
   return records;
 }
 
@@ -135,17 +136,21 @@ ExportResult exportScenario(const std::shared_ptr<const scenario::Scenario>& sce
   if (!options.replace) requireNew({file, result.emitters});
   std::vector<ExportedRow> rows;
   if (format.is_zip) {
-    result.records = writeZip(job, file, rows);
+    result.records = writeZip(job, file, options.replace, rows);
   } else {
-    writeWhole(file, [&](std::ostream& stream) {
-      result.records = is_capture ? writeCapture(job, stream, rows)
-                                  : format.write(
-                                        job, [&](const std::string& piece) { stream << piece; }, rows);
-    });
+    writeWhole(
+        file,
+        [&](std::ostream& stream) {
+          result.records = is_capture ? writeCapture(job, stream, rows)
+                                      : format.write(
+                                            job, [&](const std::string& piece) { stream << piece; }, rows);
+        },
+        options.replace);
   }
   const std::string database =
       databaseText(*scenario, rows, fs::absolute(result.emitters).parent_path().string());
-  writeWhole(result.emitters, [&](std::ostream& stream) { stream << database; });
+  writeWhole(
+      result.emitters, [&](std::ostream& stream) { stream << database; }, options.replace);
   const std::string missing = missingText(*scenario, format, rows.size());
   result.notes.push_back(missing);
   const bool needs_epoch = !endsWith(file, ".acmi") && !is_capture && !endsWith(file, ".asi");

@@ -427,7 +427,13 @@ void Importer::write() {
     makeFolderIn(folder_, tracks_name);
     result_.tracks = (fs::path(options_.scenario).parent_path() / tracks_name).string();
   }
-  writeWhole(files);
+  try {
+    writeWhole(files, options_.replace);
+  } catch (...) {
+    std::error_code ignored;
+    if (result_.track_files > 0) fs::remove(fs::path(folder_) / tracks_name, ignored);  // if it is empty
+    throw;
+  }
   result_.scenario = options_.scenario;
   result_.format = recording_.format;
   result_.epoch_utc = parts.epoch_utc;

@@ -56,19 +56,24 @@ void LiveAcmi::take(const std::uint8_t* bytes, std::size_t size, double) {
       takeLine();
     } else if (line_.size() < LineReader::kLongest) {
       line_ += c;
-    } else {
-      is_cut_ = true;
+    } else if (!std::exchange(is_cut_, true)) {
+      countTooLong();  // its end may never come
     }
   }
+}
+
+void LiveAcmi::countTooLong() {
+  ++counts_.records;
+  countBad(kTooLongAcmiLine);
 }
 
 void LiveAcmi::takeLine() {
   if (!line_.empty() && line_.back() == '\r') line_.pop_back();
   const long long too_long = lines_.tooLong();
-  const auto logical = lines_.take(line_, std::exchange(is_cut_, false));
+  const bool was_cut = std::exchange(is_cut_, false);
+  const auto logical = lines_.take(line_, was_cut);
   if (lines_.tooLong() != too_long) {
-    ++counts_.records;
-    countBad(kTooLongAcmiLine);
+    if (!was_cut) countTooLong();
   } else if (logical) {
     ++counts_.records;
     is_noted_ = false;

@@ -22,6 +22,7 @@ class LiveAcmi : public LiveState {
 
  private:
   void takeLine();
+  void countTooLong();
   void note();
 
   AcmiReader reader_;

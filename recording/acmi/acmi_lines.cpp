@@ -13,11 +13,11 @@ std::optional<std::string_view> AcmiLines::take(std::string_view line, bool is_c
     is_too_long_ = false;
   }
   goes_on_ = !is_cut && !line.empty() && line.back() == '\\';
-  is_too_long_ = is_too_long_ || is_cut || joined_.size() + line.size() > LineReader::kLongest;
-  if (is_too_long_) {
-    if (!goes_on_) ++too_long_;
-    return std::nullopt;
+  if (!is_too_long_ && (is_cut || joined_.size() + line.size() > LineReader::kLongest)) {
+    is_too_long_ = true;
+    ++too_long_;
   }
+  if (is_too_long_) return std::nullopt;
   if (!is_joined && !goes_on_) return line;
   if (goes_on_) line.remove_suffix(1);
   joined_ += line;

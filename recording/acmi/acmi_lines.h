@@ -22,7 +22,7 @@ class AcmiLines {
 
   /// Number of the first physical line of the last logical one, from 1.
   long long line() const { return begin_; }
-  /// Logical lines that were left out.
+  /// Logical lines that were left out, each counted as soon as it is too long.
   long long tooLong() const { return too_long_; }
 
  private:

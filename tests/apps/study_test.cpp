@@ -329,6 +329,9 @@ TEST(Study, DoesNotReplaceFilesOfTheStudy) {
     EXPECT_THAT(refused({"study", file, "-o", folder / "out", "--slurm", script}),
                 AllOf(HasSubstr("--slurm: "), HasSubstr("is ")));
   }
+  EXPECT_THAT(refused({"study", file, "-o", folder / "new", "--slurm", folder / "job.sh", "--time", "nan"}),
+              HasSubstr("'nan' is not a time limit"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "new"));
   folder.write("out/report.html", "<html>another program's</html>");
   EXPECT_THAT(refused({"study", file, "-o", folder / "out"}), HasSubstr("is no report of emscape"));
   EXPECT_EQ(readFile(folder / "results.csv"), sites);

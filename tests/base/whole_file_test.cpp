@@ -72,6 +72,24 @@ TEST_F(WholeFile, FilesThatBelongTogetherAppearTogetherOrNotAtAll) {
   EXPECT_EQ(filesInFolder(), 2);
 }
 
+TEST_F(WholeFile, AFileThatAnotherProcessWritesMeanwhileStaysUnlessItIsToBeReplaced) {
+  const auto good = [](std::ostream& stream) { stream << "good"; };
+  const auto slow = [&](std::ostream& stream) {
+    stream << "slow";
+    writeWhole(folder_ / "b", [](std::ostream& other) { other << "other"; });
+  };
+  const std::string error = test::errorOf(
+      [&] {
+        writeWhole({{folder_ / "a", good}, {folder_ / "b", slow}}, false);
+      },
+      ErrorCode::usage);
+  EXPECT_THAT(error, HasSubstr(folder_ / "b" + " exists; --force replaces it"));
+  EXPECT_EQ(textOf(folder_ / "b"), "other");
+  EXPECT_EQ(filesInFolder(), 1) << "what belongs to it is taken back";
+  writeWhole(folder_ / "b", slow);
+  EXPECT_EQ(textOf(folder_ / "b"), "slow");
+}
+
 TEST_F(WholeFile, NamesAMissingFolder) {
   EXPECT_THAT(
       test::errorOf([&] { writeWhole(folder_ / "none/a", [](std::ostream&) {}); }, ErrorCode::other),

@@ -219,6 +219,19 @@ TEST(LiveAcmi, AStreamThatLiesIsCountedAndItsMemoryIsBounded) {
   EXPECT_EQ(live.counts().bad, 3) << "a line that is too long, a place, an id";
 }
 
+TEST(LiveAcmi, ALineWithoutEndIsCountedOnceAndBeforeItsEnd) {
+  LiveAcmi live;
+  feed(live, kAcmiHeader);
+  feed(live, std::string(2 << 20, 'x'), 1 << 16);
+  EXPECT_EQ(live.counts().bad, 1);
+  feed(live, "\n");
+  EXPECT_EQ(live.counts().bad, 1);
+  std::string joined;
+  for (int i = 0; i < 300; ++i) joined += std::string(6000, 'y') + "\\\n";
+  feed(live, joined, 1 << 16);
+  EXPECT_EQ(live.counts().bad, 2);
+}
+
 TEST(LiveAcmi, WhatIsTakenIsThereAtOnceAndMeasuredAgainAFifthOfASecondLater) {
   LiveAcmi live;
   feed(live, std::string(kAcmiHeader) + "a,T=5|52|0,Type=Sea,Name=Boat\n");

@@ -255,6 +255,7 @@ Examples:
       ->check(CLI::Range(1, study::kMaxParts))
       ->default_str("");
   command->add_option("--time", options->slurm.time, "With --slurm: time limit of a part, HH:MM:SS")
+      ->check(faultOfSlurmTime)
       ->needs(slurm);
   command->add_option("--gpus", options->slurm.gpus, "With --slurm: number of GPUs of a part")
       ->check(CLI::Range(0, 64))

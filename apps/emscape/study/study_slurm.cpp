@@ -11,6 +11,7 @@
 
 #include "apps/common/console.h"
 #include "base/files/whole_file.h"
+#include "base/text/readable_text.h"
 #include "base/text/shell_word.h"
 #include "emscape/base/error.h"
 
@@ -44,17 +45,18 @@ std::string submit(const std::string& command) {
 
 }  // namespace
 
+std::string faultOfSlurmTime(const std::string& time) {
+  static const std::regex kTime("([0-9]+-)?[0-9]{1,2}(:[0-9]{2}){0,2}");
+  if (time.size() <= 20 && std::regex_match(time, kTime)) return "";
+  return fmt::format("'{}' is not a time limit; write HH:MM:SS or DAYS-HH:MM", readableText(time));
+}
+
 std::string mergeScriptOf(const SlurmOptions& options) {
   return options.script + ".merge.sh";
 }
 
 int writeSlurmJobs(const SlurmOptions& options, const std::vector<std::string>& arguments, int parts,
                    const GlobalOptions& global) {
-  static const std::regex kTime("([0-9]+-)?[0-9]{1,2}(:[0-9]{2}){0,2}");
-  if (options.time.size() > 20 || !std::regex_match(options.time, kTime)) {
-    throw Error(ErrorCode::usage,
-                fmt::format("--time '{}' is not a time limit; write HH:MM:SS or DAYS-HH:MM", options.time));
-  }
   std::string command = "emscape";
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (arguments[i] == "--worker") continue;

@@ -16,6 +16,9 @@ struct SlurmOptions {
   bool submit = false;
 };
 
+/// @return why a text is not a time limit of Slurm; empty if it is one
+std::string faultOfSlurmTime(const std::string& time);
+
 /// The script that merges the parts: NAME.merge.sh.
 std::string mergeScriptOf(const SlurmOptions& options);
 

@@ -31,8 +31,13 @@ namespace {
 constexpr int kMaxDeaths = 5;
 constexpr int kPoll_ms = 200;
 
-[[noreturn]] void failSystem(const std::string& what) {
-  throw Error(ErrorCode::other, what + ": " + std::generic_category().message(errno));
+[[noreturn]] void failStarting(int cause) {
+  throw Error(ErrorCode::other,
+              "a process for a part cannot be started: " + std::generic_category().message(cause) +
+                  (cause == EAGAIN                      ? " (ulimit -u, or a limit of a container)"
+                   : cause == EMFILE || cause == ENFILE ? " (ulimit -n)"
+                                                        : "") +
+                  "; fewer --jobs need less");
 }
 
 /// A process that computes parts one after another.
@@ -40,8 +45,8 @@ class Worker {
  public:
   explicit Worker(const std::vector<std::string>& command) {
     int to_child[2], from_child[2];
-    if (pipe2(to_child, O_CLOEXEC) != 0) failSystem("pipe");
-    if (pipe2(from_child, O_CLOEXEC) != 0) failSystem("pipe");
+    if (pipe2(to_child, O_CLOEXEC) != 0) failStarting(errno);
+    if (pipe2(from_child, O_CLOEXEC) != 0) failStarting(errno);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
     posix_spawn_file_actions_adddup2(&actions, to_child[0], STDIN_FILENO);
@@ -55,10 +60,7 @@ class Worker {
     close(from_child[1]);
     to_ = to_child[1];
     from_ = from_child[0];
-    if (failure != 0) {
-      errno = failure;
-      failSystem("a process cannot be started");
-    }
+    if (failure != 0) failStarting(failure);
   }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
