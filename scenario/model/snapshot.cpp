@@ -37,11 +37,10 @@ PlatformState stateAt(const Scenario& scenario, const Terrain* terrain, const Pl
   state.present = platform.isPresentAt(t_s);
   if (at.height_agl_m) {
     if (std::isnan(ground_m)) {
-      throw Error(
-          ErrorCode::bad_input, platform.location,
-          fmt::format("{}: its height is given above ground, but {}", whereAndWhen(platform, at, t_s),
-                      terrain == nullptr ? "the terrain was not loaded"
-                                         : "the terrain is missing there (a void, or outside the files)"));
+      throw Error(ErrorCode::bad_input, platform.location,
+                  fmt::format("{}: its height is given above ground, but {}", whereAndWhen(platform, at, t_s),
+                              terrain == nullptr ? "the terrain was not loaded"
+                                                 : "the terrain is missing there; " + terrain->placeText()));
     }
     state.height_msl_m = ground_m + *at.height_agl_m;
   } else {

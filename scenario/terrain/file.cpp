@@ -16,6 +16,7 @@
 
 #include "base/files/file_reading.h"
 #include "base/geodesy/gdal_file.h"
+#include "base/text/shell_word.h"
 #include "emscape/base/units.h"
 #include "emscape/base/work.h"
 #include "scenario/terrain/file_remedies.h"
@@ -96,7 +97,9 @@ struct TerrainFile::Impl {
   HeightMeaning meaning;
   std::optional<Georeference> georeference;
   bool is_16_bits = false;
-  bool is_tile = false;  ///< an HGT that GDAL does not read by itself
+  bool is_ellipsoidal = false;  ///< as its netCDF variable states
+  std::string depth_name;       ///< long name of a netCDF variable that speaks of depth
+  bool is_tile = false;         ///< an HGT that GDAL does not read by itself
   mutable std::unique_ptr<MemoryFiles> unpacked;
   mutable std::string unpacked_name;
 
@@ -123,6 +126,7 @@ struct TerrainFile::Impl {
   void checkDatasets(GDALDatasetH dataset, const std::set<fs::path>& sources) const;
   void readHead();
   void readBand(GDALDatasetH dataset);
+  void readMeaningOfNetcdf(GDALRasterBandH of_heights);
   void requireClasses(GDALRasterBandH band_of_codes) const;
   void placePosts(GDALDatasetH dataset);
 };
@@ -137,6 +141,9 @@ std::string TerrainFile::Impl::tileInMemory(MemoryFiles& files, std::string byte
   const std::optional<TileCorner> corner = cornerInName(source.ownName());
   const int posts = tilePosts(bytes.size());
   if (posts == 0) {
+    if (bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF") < bytes.size() &&
+        bytes[bytes.find_first_not_of(" \t\r\n\xEF\xBB\xBF")] == '<')
+      fail("is a web page, such as that of a login, not an HGT tile; get it again");
     fail(fmt::format(
         "has {} bytes, which is no square of posts of 2 bytes as an HGT tile has (1201, 3601, 7201 or "
         "10801 posts a side); it may be cut off or of another format",
@@ -252,17 +259,43 @@ void TerrainFile::Impl::readBand(GDALDatasetH dataset) {
   } else if (colour != GCI_Undefined && colour != GCI_GrayIndex) {
     fail(remedyForPicture(band, GDALGetColorInterpretationName(colour), GDALGetRasterCount(dataset)));
   }
+  if (!keys.encoding && GDALGetRasterDataType(of_heights) == GDT_Byte && !keys.height_unit)
+    fail(
+        "has 8 bits for a post, as pictures, masks and classes have, but no heights. If it has heights, "
+        "`height_unit: m` of the file in the scenario states it");
   is_16_bits =
       GDALGetRasterDataType(of_heights) == GDT_Int16 || GDALGetRasterDataType(of_heights) == GDT_UInt16;
   if (keys.swap_bytes && !is_16_bits)
     fail(fmt::format("'swap_bytes' of the scenario needs heights of 16 bits; the file has {}",
                      GDALGetDataTypeName(GDALGetRasterDataType(of_heights))));
   scale = GDALGetRasterScale(of_heights, nullptr);
+  if (scale > 0) readMeaningOfNetcdf(of_heights);
   offset = GDALGetRasterOffset(of_heights, nullptr);
   if (scale != 1.0 || offset != 0.0) {
     notes.push_back("heights are stored with scale " + std::to_string(scale) + " and offset " +
                     std::to_string(offset));
   }
+}
+
+/// What the CF conventions state of a variable, also in copies of it; a scale below 0 makes heights of
+/// depths.
+void TerrainFile::Impl::readMeaningOfNetcdf(GDALRasterBandH of_heights) {
+  const auto attribute = [&](const char* key) {
+    const char* const text = GDALGetMetadataItem(of_heights, key, nullptr);
+    return std::string(text == nullptr ? "" : text);
+  };
+  const std::string standard_name = attribute("standard_name"), long_name = attribute("long_name");
+  const bool is_depth = standard_name.find("depth") != std::string::npos;
+  if (is_depth || EQUAL(attribute("positive").c_str(), "down")) {
+    fail(fmt::format(
+        "states depths, downwards ({}); gdal_translate -ot Float32 -a_scale -1 -a_offset 0 {} HEIGHTS.tif "
+        "makes "
+        "a copy of heights",
+        is_depth ? "standard_name: " + standard_name : "positive: down", shellWord(source.ownName())));
+  }
+  is_ellipsoidal = standard_name == "height_above_reference_ellipsoid";
+  if (long_name.find("depth") != std::string::npos || long_name.find("Depth") != std::string::npos)
+    depth_name = long_name;
 }
 
 void TerrainFile::Impl::requireClasses(GDALRasterBandH band_of_codes) const {
@@ -325,12 +358,19 @@ void TerrainFile::Impl::placePosts(GDALDatasetH dataset) {
                     GDALGetRasterUnitType(GDALGetRasterBand(dataset, band)),
                     scale,
                     has_system ? given : system.get(),
-                    keys};
+                    keys,
+                    is_ellipsoidal};
   if (is_tile) facts.driver = "SRTMHGT";
   if (keys.has_classes) facts.band_unit = "m";
   if (facts.driver == "SRTMHGT" || keys.encoding) facts.band_unit = "m";
   meaning = found([&] { return heightMeaningOf(facts); });
   notes.insert(notes.end(), meaning.notes.begin(), meaning.notes.end());
+  if (!depth_name.empty())
+    meaning.warnings.push_back(
+        fmt::format("its variable is named '{}': if it has depths, downwards, ground is above the sea; "
+                    "gdal_translate -ot "
+                    "Float32 -a_scale -1 -a_offset 0 {} HEIGHTS.tif makes a copy of heights",
+                    depth_name, shellWord(source.ownName())));
   if (is_tile && !isKnownTile(columns))
     meaning.warnings.push_back(fmt::format(
         "has {} bytes, {} posts a side, {} in a degree: HGT tiles have 1201, 3601, 7201 or 10801 a side. If "

@@ -41,13 +41,27 @@ bool isRasterName(const std::string& name) {
   return kEndings.count(lowerEnding(name)) != 0;
 }
 
-/// Masks and counts of sources that products have beside their heights: ASTER, SRTM, Copernicus, ALOS, GEBCO.
+/// What products have beside their heights, or programs derive from them: ASTER, SRTM, Copernicus, ALOS,
+/// GEBCO, TanDEM-X, ArcticDEM and REMA; gdaldem.
 bool isMaskName(const std::string& name) {
-  static const std::set<std::string> kMasks{"num", "swb", "wbm", "edm", "flm", "hem",
-                                            "msk", "stk", "att", "qai", "tid"};
+  static const std::set<std::string> kMasks{
+      "num",    "swb",      "wbm",     "edm",      "flm",       "hem",      "msk", "stk",
+      "att",    "qai",      "tid",     "am2",      "amp",       "cov",      "lsm", "wam",
+      "browse", "count",    "mad",     "mindate",  "maxdate",   "tri",      "tpi", "aspect",
+      "slope",  "datamask", "bitmask", "matchtag", "hillshade", "roughness"};
   const std::string stem = lower(fs::path(name).stem().string());
-  const std::size_t bar = stem.rfind('_');
-  return bar != std::string::npos && kMasks.count(stem.substr(bar + 1)) != 0;
+  const std::size_t bar = stem.find_last_of("_-");
+  return kMasks.count(bar == std::string::npos ? stem : stem.substr(bar + 1)) != 0;
+}
+
+/// What macOS adds to archives and foreign disks for the properties of files.
+bool isOfMacOs(const std::string& name) {
+  return fs::path(name).filename().string().rfind("._", 0) == 0 ||
+         name.find("__MACOSX/") != std::string::npos;
+}
+
+bool isHeightsName(const std::string& name) {
+  return isRasterName(name) && !isMaskName(name) && !isOfMacOs(name);
 }
 
 /// A VRT in a folder is a mosaic of the files beside it.
@@ -60,10 +74,13 @@ void dropMosaics(std::vector<std::string>& files) {
 std::vector<std::string> filesOfFolder(const std::string& folder) {
   std::vector<std::string> files;
   std::error_code failed;
+  bool has_folders = false;
   for (fs::directory_iterator at(folder, failed), end; !failed && at != end; at.increment(failed)) {
     const std::string name = at->path().string();
     std::error_code ignored;
-    if (isElevationName(name) && !isMaskName(name) && at->is_regular_file(ignored)) files.push_back(name);
+    has_folders = has_folders || at->is_directory(ignored);
+    if (isElevationName(name) && !isMaskName(name) && !isOfMacOs(name) && at->is_regular_file(ignored))
+      files.push_back(name);
     if (files.size() > kMaxFiles)
       throw Error(ErrorCode::bad_input,
                   fmt::format("elevation files: folder {} has more than {} of them; name a "
@@ -76,8 +93,11 @@ std::vector<std::string> filesOfFolder(const std::string& folder) {
   if (files.empty())
     throw Error(ErrorCode::bad_input,
                 "elevation files: folder " + folder +
-                    " has none (by their endings: .tif .hgt .dt0 .dt1 .dt2 .asc .bil .dem "
-                    ".flt .img .nc .xyz .gpkg .vrt .zip .gz)");
+                    " has none (by their endings, and no masks: .tif .hgt .dt0 .dt1 .dt2 .asc .bil .dem "
+                    ".flt .img .nc .xyz .gpkg .vrt .zip .gz)" +
+                    (has_folders ? "; those of its folders are named by a pattern, such as " + folder +
+                                       "/*/*.tif, or " + folder + "/*/*/*.png for tiles with `encoding`"
+                                 : ""));
   std::sort(files.begin(), files.end());
   dropMosaics(files);
   return files;
@@ -186,14 +206,14 @@ std::vector<ElevationSource> sourcesIn(const std::string& file) {
   std::vector<ElevationSource> sources;
   const std::vector<std::string> members = membersOfZip(file);
   for (const std::string& member : members) {
-    if (isRasterName(member) && !isMaskName(member)) sources.push_back({file, member});
+    if (isHeightsName(member)) sources.push_back({file, member});
   }
   if (sources.empty())
     throw Error(ErrorCode::bad_input,
                 members.empty()
                     ? messages.explain(file + ": cannot be read as a ZIP archive")
                     : fmt::format("{}: none of its {} members is an elevation file by its ending, "
-                                  "such as {}",
+                                  "such as {}; an archive within it must be unpacked",
                                   file, members.size(), members.front()));
   return sources;
 }
@@ -201,9 +221,15 @@ std::vector<ElevationSource> sourcesIn(const std::string& file) {
 std::vector<ElevationSource> sourcesOf(const TerrainSpec& spec, std::size_t item) {
   std::vector<ElevationSource> all;
   try {
-    for (const std::string& file : elevationFilesOf(spec.files[item])) {
-      for (ElevationSource& source : sourcesIn(file)) all.push_back(std::move(source));
+    const std::vector<std::string> files = elevationFilesOf(spec.files[item]);
+    for (const std::string& file : files) {
+      try {
+        for (ElevationSource& source : sourcesIn(file)) all.push_back(std::move(source));
+      } catch (const Error&) {
+        if (files.size() == 1) throw;  // beside others, an archive may be anything
+      }
     }
+    if (all.empty() && !files.empty()) sourcesIn(files.front());
   } catch (const Error& error) {
     throw Error(error.code(), item < spec.locations.size() ? spec.locations[item] : SourceLocation{},
                 error.message());

@@ -281,7 +281,12 @@ std::string textOf(VerticalDatum datum) {
 
 HeightMeaning heightMeaningOf(const HeightFacts& facts) {
   HeightMeaning meaning;
-  const Stated stated = statedIn(facts.system);
+  Stated stated = statedIn(facts.system);
+  if (facts.is_ellipsoidal && !stated.any) {
+    stated.any = true;
+    stated.datum = VerticalDatum::ellipsoid;
+    stated.name = "height above the reference ellipsoid";
+  }
   setUnit(facts, stated, meaning);
   setDatum(facts, stated, meaning);
   return meaning;

@@ -22,6 +22,7 @@ struct HeightFacts {
   double scale = 1;             ///< of the band
   OGRSpatialReferenceH system;  ///< of the file, with its vertical part
   TerrainFileKeys keys;
+  bool is_ellipsoidal = false;  ///< stated beside the system
 };
 
 /// The meaning of a file's numbers.

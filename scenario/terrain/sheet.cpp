@@ -1,5 +1,7 @@
 #include "scenario/terrain/sheet.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -118,6 +120,30 @@ void measureSpacing(TerrainSheet& sheet) {
   sheet.finest_m = std::max(std::min(across_m, along_m), 0.5 * std::max(across_m, along_m));
 }
 
+/// Counts the posts of a file that files named before it have, too.
+struct CommonPosts {
+  long long posts = 0;
+  double difference_sum_m = 0;
+
+  void add(float used_m, float other_m) {
+    ++posts;
+    difference_sum_m += static_cast<double>(std::abs(used_m - other_m));
+  }
+  /// What is said of it; empty: the heights agree, or only edges are common.
+  std::string text(long long posts_of_file) const {
+    constexpr double kMinShare = 0.05, kMinDifference_m = 30;
+    const auto count = static_cast<double>(posts);
+    if (count < kMinShare * static_cast<double>(posts_of_file) || difference_sum_m < kMinDifference_m * count)
+      return "";
+    return fmt::format(
+        "its heights differ by {:.0f} m on average from those of files named before it, which are used at "
+        "its "
+        "{} posts that they have, too. One of them may be no heights: a pattern, such as FOLDER/*_dem.tif, "
+        "leaves files out",
+        difference_sum_m / count, posts);
+  }
+};
+
 TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
   PostLattice own = lattice;
   own.x0 = lattice.x(static_cast<double>(patch.column_begin - 1));
@@ -130,11 +156,15 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
     const int first_column = static_cast<int>(placed.column_begin - patch.column_begin) + 1;
     const int first_row = static_cast<int>(placed.row_begin - patch.row_begin) + 1;
     FillValues fills(placed.tile->window.columns, file.meaning().unit_m);
+    CommonPosts overlap;
     const HeightTally tally = file.read(placed.tile->window, [&](long long row, const float* heights_m) {
       fills.add(heights_m);
       std::size_t post = sheet.index(first_column, first_row + static_cast<int>(row));
       for (long long column = 0; column < placed.tile->window.columns; ++column, ++post) {
-        if (sheet.kinds[post] == PostKind::known) continue;
+        if (sheet.kinds[post] == PostKind::known) {
+          if (!std::isnan(heights_m[column])) overlap.add(sheet.heights_m[post], heights_m[column]);
+          continue;
+        }
         sheet.kinds[post] = std::isnan(heights_m[column]) ? PostKind::empty : PostKind::known;
         sheet.heights_m[post] = heights_m[column];
       }
@@ -147,6 +177,10 @@ TerrainSheet readPatch(const Patch& patch, const PostLattice& lattice) {
                     "elevation file " + file.name() + ": " + remark.text);
       sheet.remarks.push_back({placed.tile->file, remark.text});
     }
+    if (const std::string text =
+            overlap.text(static_cast<long long>(placed.tile->window.columns) * placed.tile->window.rows);
+        !text.empty())
+      sheet.remarks.push_back({placed.tile->file, text});
     if (found.is_partial) sheet.partly_searched.push_back(placed.tile->file);
     for (const FillValues::Found& fill : found.fills) {
       sheet.fills.push_back({placed.tile->file, fill});

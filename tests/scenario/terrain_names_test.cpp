@@ -102,12 +102,39 @@ TEST_F(TerrainNames, HgtWithoutAPositionIsReadAfterItIsRenamed) {
 
 TEST_F(TerrainNames, FolderStandsForItsFilesWithoutMasks) {
   const std::string a = tile("N49E010.hgt"), b = raster("b.tif");
-  raster("N49E010_num.tif");
+  for (const char* name : {"N49E010_num.tif", "b_hillshade.tif", "slope.tif", "._b.tif"}) raster(name);
   std::ofstream(folder_ / "readme.txt") << "text";
-  EXPECT_THAT(elevationFilesOf(folder_.path().string()), ElementsAre(a, b));
+  test::writeZip(folder_ / "manual.zip", {{"readme.txt", folder_ / "readme.txt"}});
+  EXPECT_THAT(elevationFilesOf(folder_.path().string()), ElementsAre(a, b, folder_ / "manual.zip"));
   EXPECT_EQ(load({folder_.path().string()})->uncoveredFraction(), 0);
-  fs::create_directory(folder_ / "empty");
-  EXPECT_THAT(problemOf(folder_ / "empty"), HasSubstr("empty has none (by their endings: .tif"));
+  fs::create_directories(folder_ / "empty/inner");
+  EXPECT_THAT(problemOf(folder_ / "empty"),
+              AllOf(HasSubstr("empty has none (by their endings, and no masks: .tif"),
+                    HasSubstr("named by a pattern, such as " + folder_ / "empty/*/*.tif")));
+}
+
+TEST_F(TerrainNames, FilesOfMacOsInAnArchiveAreLeftOut) {
+  tile("N49E010.hgt");
+  std::ofstream(folder_ / "properties") << "Mac OS X";
+  test::writeZip(folder_ / "a.zip", {{"N49E010.hgt", folder_ / "N49E010.hgt"},
+                                     {"__MACOSX/._N49E010.hgt", folder_ / "properties"}});
+  expectTile(folder_ / "a.zip", 121);
+}
+
+TEST_F(TerrainNames, OfFilesThatDisagreeTheOneThatIsUsedIsTold) {
+  const auto write = [&](const std::string& name, double height_m) {
+    test::geographicDem(10, 50, 0.1, 10, 10, [=](double, double) { return height_m; }).write(folder_ / name);
+    return folder_ / name;
+  };
+  const std::string a = write("a.tif", 150), b = write("b.tif", 400), c = write("c.tif", 160);
+  EXPECT_THAT(load({a, b})->warnings(),
+              testing::Contains(AllOf(HasSubstr("b.tif"), HasSubstr("differ by 250 m on average"))));
+  EXPECT_THAT(load({a, c})->warnings(), testing::Not(testing::Contains(HasSubstr("on average"))));
+}
+
+TEST_F(TerrainNames, AWebPageIsNoTile) {
+  std::ofstream(folder_ / "N49E010.hgt") << "\n<!DOCTYPE html><html>Please log in</html>";
+  EXPECT_THAT(problemOf(folder_ / "N49E010.hgt"), HasSubstr("is a web page"));
 }
 
 TEST_F(TerrainNames, PatternStandsForTheFilesThatMatch) {
@@ -192,6 +219,34 @@ TEST_F(TerrainNames, OtherFormatsNameThemselvesAndTheCommandThatWorks) {
                     HasSubstr("gdal_translate " + folder_ / "a.rst" + " HEIGHTS.tif")));
   if (!run("gdal_translate a.rst HEIGHTS.tif")) GTEST_SKIP() << "gdal_translate is not installed";
   EXPECT_NEAR(load({folder_ / "HEIGHTS.tif"})->heightMsl_m(49.5, 10.5), 1050, 1e-3);
+}
+
+TEST_F(TerrainNames, BytesAreNoHeightsUnlessTheirUnitIsStated) {
+  raster("a.tif");
+  if (!run("gdal_translate -ot Byte -scale 0 5000 0 250 a.tif bytes.tif"))
+    GTEST_SKIP() << "gdal_translate is not installed";
+  EXPECT_THAT(problemOf(folder_ / "bytes.tif"), HasSubstr("`height_unit: m` of the file in the scenario"));
+  TerrainFileKeys keys;
+  keys.height_unit = HeightUnit::m;
+  EXPECT_NEAR(load({folder_ / "bytes.tif"}, keys)->heightMsl_m(49.5, 10.5), 1050 / 20.0, 1);
+}
+
+TEST_F(TerrainNames, WhatANetcdfVariableStatesIsUsed) {
+  raster("a.tif");
+  if (!run("true")) GTEST_SKIP() << "gdal_translate is not installed";
+  const auto write = [&](const std::string& name, const std::string& attribute, const std::string& value) {
+    run("gdal_translate -of VRT a.tif a.vrt && sed -i 's|<VRTRasterBand[^>]*>|&<Metadata><MDI key=\"" +
+        attribute + "\">" + value + "</MDI></Metadata>|' a.vrt && gdal_translate -of netCDF a.vrt " + name);
+  };
+  write("down.nc", "positive", "down");
+  EXPECT_THAT(problemOf(folder_ / "down.nc"), HasSubstr("states depths, downwards (positive: down)"));
+  run("gdal_translate -ot Float32 -a_scale -1 -a_offset 0 down.nc HEIGHTS.tif");
+  EXPECT_NEAR(load({folder_ / "HEIGHTS.tif"})->heightMsl_m(49.5, 10.5), -1050, 1e-3);
+  write("hae.nc", "standard_name", "height_above_reference_ellipsoid");
+  EXPECT_THAT(Terrain::describe(folder_ / "hae.nc").vertical_datum, HasSubstr("the ellipsoid (stated by"));
+  write("named.nc", "long_name", "depth below sea level");
+  EXPECT_THAT(load({folder_ / "named.nc"})->warnings(),
+              testing::Contains(HasSubstr("'depth below sea level': if it has depths")));
 }
 
 TEST_F(TerrainNames, CommandsOfMessagesMakeFilesThatAreRead) {
