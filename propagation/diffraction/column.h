@@ -1,4 +1,5 @@
-/// Delta-Bullington for one column of receivers at the end of one terrain profile, on CPU and GPU.
+/// Delta-Bullington for one column of receivers at the end of one terrain profile, by one thread of a GPU. On
+/// the CPU: excess.cpp.
 ///
 /// Computes the losses of deltaBullington (diffraction.h) in a fraction of its time: - Posts are visited in
 /// blocks. The maxima of a block, computed beforehand, bound every slope and nu in it;

@@ -20,38 +20,18 @@ class ProfilePosts {
   EMSCAPE_HD ProfilePosts(const TerrainProfile& profile, double half_curvature, float* highest_msl_m,
                           float* lowered_msl_m)
       : profile_(profile), maxima_{highest_msl_m, lowered_msl_m} {
-#ifdef __CUDA_ARCH__
     before_last_ = summarize(profile, count(), float(half_curvature), maxima_);
-#else
-    before_last_ = summarizeCpu(profile, count(), float(half_curvature), maxima_);
-#endif
   }
 
-  EMSCAPE_HD int count() const {
-    return profile_.count - 1;
-  }
-  EMSCAPE_HD double range_m(int i) const {
-    return profile_.range_m[i];
-  }
-  EMSCAPE_HD float height_msl_m(int i) const {
-    return profile_.height_msl_m[i];
-  }
-  EMSCAPE_HD float highest_msl_m(int block) const {
-    return maxima_.highest_msl_m[block];
-  }
-  EMSCAPE_HD float lowered_msl_m(int block) const {
-    return maxima_.lowered_msl_m[block];
-  }
+  EMSCAPE_HD int count() const { return profile_.count - 1; }
+  EMSCAPE_HD double range_m(int i) const { return profile_.range_m[i]; }
+  EMSCAPE_HD float height_msl_m(int i) const { return profile_.height_msl_m[i]; }
+  EMSCAPE_HD float highest_msl_m(int block) const { return maxima_.highest_msl_m[block]; }
+  EMSCAPE_HD float lowered_msl_m(int block) const { return maxima_.lowered_msl_m[block]; }
   /// Sums before the last block, the only ones that DiffractionColumn reads.
-  EMSCAPE_HD TerrainSums sumsBefore(int) const {
-    return before_last_;
-  }
-  EMSCAPE_HD double distance_m() const {
-    return profile_.range_m[count()];
-  }
-  EMSCAPE_HD float ground_msl_m() const {
-    return profile_.height_msl_m[count()];
-  }
+  EMSCAPE_HD TerrainSums sumsBefore(int) const { return before_last_; }
+  EMSCAPE_HD double distance_m() const { return profile_.range_m[count()]; }
+  EMSCAPE_HD float ground_msl_m() const { return profile_.height_msl_m[count()]; }
   EMSCAPE_HD double sea_m() const {
     return lengthOverSea_m(
         profile_.count, [this](int i) { return profile_.range_m[i]; },

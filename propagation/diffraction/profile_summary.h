@@ -19,7 +19,6 @@ struct BlockMaxima {
 
 /// Fills the maxima of the first `count` posts.
 /// @return sums over the intervals that end before the last block; see TerrainSums
-/// @{
 EMSCAPE_HD inline TerrainSums summarize(const TerrainProfile& profile, int count, float half_curvature,
                                         const BlockMaxima& maxima) {
   TerrainSums sums;
@@ -40,9 +39,5 @@ EMSCAPE_HD inline TerrainSums summarize(const TerrainProfile& profile, int count
   for (int i = 1; i < last_block * kDiffractionBlock; ++i) sums.add(profile, i);
   return sums;
 }
-/// The same by vector instructions, on the CPU.
-TerrainSums summarizeCpu(const TerrainProfile& profile, int count, float half_curvature,
-                         const BlockMaxima& maxima);
-/// @}
 
 }  // namespace emscape::propagation
