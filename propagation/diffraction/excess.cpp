@@ -1,16 +1,17 @@
 // Delta-Bullington for a column of receivers by vector instructions: lanes hold posts.
 //
-// One pass over the posts gives the steepest slope from the transmitter, and the slope of the line of sight
-// above which every post is clear: nu of a post falls linearly with the receiver's height. Only receivers
-// below that, or not clear of the smooth earth, are computed, some at each further pass; the others have no
-// loss. Of many receivers below the steepest ray some are computed first: the post that one sees highest is
-// not farther from the transmitter than that of a lower one, so that those between need only the posts
-// between.
+// The first pass over the posts gives the steepest slope from the transmitter, and the slope of the line of
+// sight above which every post is clear: nu of a post falls linearly with the receiver's height. Only
+// receivers below that, or not clear of the smooth earth, are computed; the others have no loss. A single
+// receiver takes one pass. Of many below the steepest ray some are computed first: the post that one sees
+// highest is not farther from the transmitter than that of a lower one, so that those between need only the
+// posts between.
 
 #include "propagation/diffraction/excess.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 
 #include "base/math/fast_math.h"
@@ -22,12 +23,17 @@ namespace emscape::propagation {
 namespace {
 
 constexpr int kLanes = 16;
+static_assert(ExcessScratch::kMinPosts >= kLanes);
 using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+using LaneBits = std::uint32_t __attribute__((vector_size(kLanes * sizeof(float))));
 
 // Lanes are parameters by reference: as values they have no calling convention on all processors.
 
 void load(const float* numbers, Lanes& lanes) {
   std::memcpy(&lanes, numbers, sizeof lanes);
+}
+void store(const Lanes& lanes, float* numbers) {
+  std::memcpy(numbers, &lanes, sizeof lanes);
 }
 void setAll(float number, Lanes& lanes) {
   lanes = Lanes{} + number;
@@ -37,52 +43,27 @@ void takeLarger(const Lanes& other, Lanes& largest) {
 }
 float largestOf(const Lanes& lanes) {
   float numbers[kLanes];
-  std::memcpy(numbers, &lanes, sizeof lanes);
+  store(lanes, numbers);
   float largest = numbers[0];
 #pragma omp simd reduction(max : largest)
   for (int i = 0; i < kLanes; ++i) largest = numbers[i] > largest ? numbers[i] : largest;
   return largest;
 }
 
-/// 1 / sqrt(x) for a normal x > 0. @accuracy 2e-7 of itself
-float inverseRoot(float x) {
-  float root = fast_math_detail::floatOf(0x5f375a86u - (fast_math_detail::bitsOf(x) >> 1));
-  const float half = 0.5f * x;
-  for (int i = 0; i < 3; ++i) root = root * (1.5f - half * root * root);
-  return root;
+/// 1 / sqrt(x) for normal x > 0. @accuracy 2e-7 of itself
+void inverseRoot(const Lanes& x, Lanes& root) {
+  LaneBits bits;
+  std::memcpy(&bits, &x, sizeof bits);
+  bits = 0x5f375a86u - (bits >> 1);
+  std::memcpy(&root, &bits, sizeof root);
+  const Lanes half = 0.5f * x;
+  for (int i = 0; i < 3; ++i) root *= 1.5f - half * root * root;
 }
 
-/// Posts between the transmitter and the receivers; heights above the first post of the profile.
-struct Obstacles {
-  Lanes range_m;
-  Lanes inverse_root;  ///< 1 / sqrt(d1 d2)
-  Lanes height_m;
-  Lanes bulge_m;  ///< of the effective earth
-  Lanes index;    ///< of the posts in the profile
-};
-
-/// Measures of an obstacle's height above a line of sight, linear in the slope of the line.
-enum class Relative {
-  rx_slope,        ///< slope from the receiver
-  nearest,         ///< over sqrt(d1 d2)
-  plain_rx_slope,  ///< rx_slope without the earth's bulge
-  plain_height
-};
-
-/// Some receivers: heights above the first post, slopes of the lines of sight.
-template <int kReceivers>
-struct SomeReceivers {
-  float rx_m[kReceivers], slope[kReceivers];
-  int count;  ///< that count; the others are repetitions
-};
-
-/// The posts of a profile, and the receivers over its end.
-/// @tparam kReceivers  that are computed at once
-template <int kReceivers>
+/// The posts of a profile between the transmitter and the receivers over its end. Heights are above the first
+/// post unless stated otherwise; "plain" values leave out the earth's bulge.
 class LaneColumn {
  public:
-  using Receivers = SomeReceivers<kReceivers>;
-
   LaneColumn(const DiffractionExcess& excess, const ExcessColumn& column, const ExcessScratch& scratch)
       : model_(excess.model),
         column_(column),
@@ -91,11 +72,11 @@ class LaneColumn {
         distance_m_(static_cast<float>(column.profile.range_m[count_ + 1])),
         ground_m_(column.profile.height_msl_m[count_ + 1] - base_msl_m_),
         tx_m_(model_.raised_m(excess.tx_msl_m - base_msl_m_, 0)),
-        edge_scale_(std::sqrt(2 * distance_m_ / model_.earth.wavelength_m)) {
-    const bool is_short = count_ < kLanes;
-    range_m_ = is_short ? few_[0] : scratch.even_ground_msl_m;
-    inverse_root_ = is_short ? few_[1] : scratch.post_numbers;
-    height_m_ = is_short ? few_[2] : scratch.post_numbers + scratch.posts;
+        edge_scale_(std::sqrt(2 * distance_m_ / model_.earth.wavelength_m)),
+        range_m_(scratch.even_ground_msl_m),
+        above_tx_m_(scratch.post_numbers),
+        rx_height_(above_tx_m_ + scratch.posts),
+        rx_range_(rx_height_ + scratch.posts) {
     setPosts();
   }
 
@@ -104,219 +85,253 @@ class LaneColumn {
 
   /// Sets the losses (dB) of the first receivers. @return their number; the others have none
   int fill(float* loss_db) {
-    findCommon();
+    if (column_.count == 1) {
+      fillOne(*loss_db);
+      return 1;
+    }
+    const float no_receiver = 0;
+    visitFirst<false>(no_receiver);
     const int lossy = firstOf(column_.count, [this](int k) {
       const float rx_m = heightOf(k);
       return slopeTo(rx_m) >= clear_slope_ && isClearOfEarth(rx_m);
     });
+    if (lossy == 0) return 0;
+    // Receivers at or below the ground are one and the same.
+    const float ground_m = heightOf(0);
+    const int lowest = std::max(firstOf(lossy, [&](int k) { return heightOf(k) > ground_m; }) - 1, 0);
     const int blocked = firstOf(lossy, [this](int k) { return slopeTo(heightOf(k)) > tx_slope_; });
-    int k = 0;
-    const auto fillTo = [&](int end) {
-      for (; k < end; k += kReceivers) {
-        const Receivers to = receivers(k, 1, std::min(kReceivers, lossy - k));
-        setLosses(to, 1, count_, loss_db + k, 1);
-      }
-    };
-    fillTo(firstOf(blocked, [this](int at) { return isClearOfEarth(heightOf(at)); }));
-    if constexpr (kReceivers > 2) {
-      constexpr int kGaps = kReceivers - 1;
-      const int step = (blocked - 1 - k) / kGaps;
-      if (step > 2) {
-        int highest[kReceivers];
-        const Receivers some = receivers(k, step, kReceivers);
-        setLosses(some, findHighest(some, highest), loss_db + k, step);
-        for (int gap = 0; gap < kGaps; ++gap) {
-          const int first = k + gap * step, end = first + step;
-          const int nearer = std::min(highest[gap], highest[gap + 1]);
-          const int farther = std::max(highest[gap], highest[gap + 1]);
-          for (int at = first + 1; at < end; at += kReceivers) {
-            const Receivers between = receivers(at, 1, std::min(kReceivers, end - at));
-            setLosses(between, nearer, farther, loss_db + at, 1);
-          }
-        }
-        k += kGaps * step + 1;
-      }
-    }
-    fillTo(lossy);
+    const int clear = firstOf(lossy, [this](int k) { return slopeTo(heightOf(k)) >= clear_slope_; });
+    findRxSlopes(lowest, blocked, loss_db);
+    eachGroup<4, Relative::nearest>(std::max(lowest, blocked), clear, 1, count_, loss_db);
+    std::fill(loss_db + std::max(clear, lowest), loss_db + lossy, -HUGE_VALF);
+    setLosses(lowest, lossy, loss_db);
+    const int in_earth = firstOf(lossy, [this](int k) { return isClearOfEarth(heightOf(k)); });
+    addEarth(lowest, in_earth, loss_db);
+    std::fill(loss_db, loss_db + lowest, loss_db[lowest]);
     return lossy;
   }
 
  private:
-  struct Numbers {
-    float of[kReceivers];
+  /// Measures of an obstacle's height above a line of sight, linear in the slope of the line.
+  enum class Relative {
+    rx_slope,        ///< slope from the receiver
+    nearest,         ///< over sqrt(d1 d2)
+    plain_rx_slope,  ///< rx_slope without the earth's bulge
+    plain_height
+  };
+  /// Maxima of a receiver.
+  struct Maxima {
+    float rx_slope = -HUGE_VALF, nearest = -HUGE_VALF;
+    float plain_rx_slope = -HUGE_VALF, plain_height_m = -HUGE_VALF;
   };
 
+  /// The first number for which `is` holds, and with it for those above; count: for none.
   template <class Is>
   static int firstOf(int count, const Is& is) {
-    int k = 0;
-    while (k < count && !is(k)) ++k;
-    return k;
+    int begin = 0;
+    while (begin < count) {
+      const int middle = (begin + count) / 2;
+      if (is(middle)) {
+        count = middle;
+      } else {
+        begin = middle + 1;
+      }
+    }
+    return begin;
   }
   float heightOf(int k) const { return model_.raised_m(column_.height_msl_m[k] - base_msl_m_, ground_m_); }
   float slopeTo(float rx_m) const { return (rx_m - tx_m_) / distance_m_; }
-  Receivers receivers(int first, int step, int count) const {
-    Receivers to;
-    to.count = count;
-    for (int j = 0; j < kReceivers; ++j) {
-      to.rx_m[j] = heightOf(first + step * std::min(j, count - 1));
-      to.slope[j] = slopeTo(to.rx_m[j]);
-    }
-    return to;
-  }
 
   void setPosts() {
     const double* const ranges_m = column_.profile.range_m + 1;
     const float* const heights_msl_m = column_.profile.height_msl_m + 1;
-    float *const range_m = range_m_, *const inverse_root = inverse_root_, *const height_m = height_m_;
-    const float base_msl_m = base_msl_m_, distance_m = distance_m_;
-    const float farthest_m = distance_m * (1 - 2.4e-7f);  // a post may be at the receivers in float
+    float *const range_m = range_m_, *const above_tx_m = above_tx_m_;
+    const float base_msl_m = base_msl_m_, tx_m = tx_m_;
+    const float farthest_m = distance_m_ * (1 - 2.4e-7f);  // a post may be at the receivers in float
     const int count = count_;
     float unknown = base_msl_m - base_msl_m + (heights_msl_m[count] - heights_msl_m[count]);
 #pragma omp simd reduction(+ : unknown)
     for (int i = 0; i < count; ++i) {
       const auto exact = static_cast<float>(ranges_m[i]);
-      const float range = exact < farthest_m ? exact : farthest_m;
-      range_m[i] = range;
-      inverse_root[i] = inverseRoot(range * (distance_m - range));
-      height_m[i] = heights_msl_m[i] - base_msl_m;
-      unknown += height_m[i] - height_m[i];
+      range_m[i] = exact < farthest_m ? exact : farthest_m;
+      above_tx_m[i] = heights_msl_m[i] - base_msl_m - tx_m;
+      unknown += above_tx_m[i] - above_tx_m[i];
     }
     for (int i = count; count > 0 && i < kLanes; ++i) {
-      for (float* const of : {range_m, inverse_root, height_m}) of[i] = of[count - 1];
+      range_m[i] = range_m[count - 1];
+      above_tx_m[i] = above_tx_m[count - 1];
     }
     is_known_ = !std::isnan(unknown);
   }
-  /// Calls visitOne(Obstacles) for the posts first..last, and perhaps for others.
+  /// Calls visitOne(index) for the first of each kLanes posts among first..last, counted from 1; and perhaps
+  /// for others.
   template <class Visit>
   void visit(int first, int last, const Visit& visitOne) const {
     const int farthest = std::max(count_ - kLanes, 0);
-    float lane[kLanes];
-    for (int i = 0; i < kLanes; ++i) lane[i] = static_cast<float>(i + 1);
-    Obstacles posts;
-    Lanes of_lane;
-    load(lane, of_lane);
-    for (int i = first - 1; i < last; i += kLanes) {
-      const int begin = std::min(i, farthest);
-      load(range_m_ + begin, posts.range_m);
-      load(inverse_root_ + begin, posts.inverse_root);
-      load(height_m_ + begin, posts.height_m);
-      posts.bulge_m = model_.half_curvature * (posts.range_m * (distance_m_ - posts.range_m));
-      posts.index = of_lane + static_cast<float>(begin);
-      visitOne(posts);
-    }
+    for (int i = first - 1; i < last; i += kLanes) visitOne(std::min(i, farthest));
   }
 
-  /// The first pass: maxima that are the same for all receivers.
-  void findCommon() {
+  /// The first pass: maxima that are the same for all receivers, and those of one receiver, or what further
+  /// passes read.
+  /// @param slope  of the one receiver's line of sight
+  template <bool kOne>
+  Maxima visitFirst(float slope) {
     const float clearance = -kKnifeEdgeClear<float> / edge_scale_;
-    Lanes slope, clear, plain;
-    setAll(-HUGE_VALF, slope);
-    clear = plain = slope;
-    visit(1, count_, [&](const Obstacles& posts) {
-      const Lanes per_range = (distance_m_ - posts.range_m) * posts.inverse_root;
-      const Lanes above = posts.height_m - tx_m_, here = (above + posts.bulge_m) * posts.inverse_root;
-      takeLarger(per_range * here, slope);
-      takeLarger(per_range * (here + clearance), clear);
-      takeLarger(per_range * (above * posts.inverse_root), plain);
+    Lanes tx, clear, plain_tx, rx, nearest, plain_rx, plain;
+    setAll(-HUGE_VALF, tx);
+    clear = plain_tx = rx = nearest = plain_rx = plain = tx;
+    visit(1, count_, [&](int i) {
+      Lanes range, above, root;
+      load(range_m_ + i, range);
+      load(above_tx_m_ + i, above);
+      const Lanes beyond = distance_m_ - range, product = range * beyond;
+      inverseRoot(product, root);
+      const Lanes bulged = above + model_.half_curvature * product;
+      const Lanes per_range = beyond * root, per_beyond = root * root * range;
+      takeLarger(per_range * (bulged * root), tx);
+      takeLarger(per_range * (above * root), plain_tx);
+      if constexpr (kOne) {
+        const Lanes line = slope * range, height = bulged - line;
+        takeLarger(height * per_beyond, rx);
+        takeLarger(height * root, nearest);
+        takeLarger((above - line) * per_beyond, plain_rx);
+        takeLarger(above - line, plain);
+      } else {
+        takeLarger(per_range * (bulged * root + clearance), clear);
+        store(bulged * per_beyond, rx_height_ + i);
+        store(range * per_beyond, rx_range_ + i);
+      }
     });
-    tx_slope_ = largestOf(slope);
+    tx_slope_ = largestOf(tx);
     clear_slope_ = largestOf(clear);
-    plain_tx_slope_ = largestOf(plain);
+    plain_tx_slope_ = largestOf(plain_tx);
+    return {largestOf(rx), largestOf(nearest), largestOf(plain_rx), largestOf(plain)};
   }
 
-  template <Relative kRelative>
-  void measure(const Obstacles& posts, Lanes& height, Lanes& range) const {
-    constexpr bool is_plain = kRelative == Relative::plain_rx_slope || kRelative == Relative::plain_height;
-    height = posts.height_m - tx_m_;
-    range = posts.range_m;
-    if constexpr (!is_plain) height += posts.bulge_m;
-    if constexpr (kRelative == Relative::nearest) {
-      height *= posts.inverse_root;
-      range *= posts.inverse_root;
-    } else if constexpr (kRelative != Relative::plain_height) {
-      const Lanes per_beyond = posts.inverse_root * posts.inverse_root * posts.range_m;
-      height *= per_beyond;
-      range *= per_beyond;
+  void fillOne(float& loss_db) {
+    const float rx_m = heightOf(0), slope = slopeTo(rx_m);
+    const Maxima maxima = visitFirst<true>(slope);
+    loss_db = slope <= tx_slope_ ? maxima.rx_slope : maxima.nearest;
+    setLosses(0, 1, &loss_db);
+    if (!isClearOfEarth(rx_m)) {
+      loss_db += earthCorrectionDb(rx_m, maxima.plain_rx_slope, maxima.plain_height_m);
     }
   }
-  /// Maxima over the posts first..last.
+
+  /// The terms of a measure for kLanes posts: height - slope * range.
   template <Relative kRelative>
-  Numbers largest(const Receivers& to, int first, int last) const {
-    Lanes most[kReceivers];
-    for (Lanes& lanes : most) setAll(-HUGE_VALF, lanes);
-    visit(first, last, [&](const Obstacles& posts) {
-      Lanes height, range;
-      measure<kRelative>(posts, height, range);
-      for (int j = 0; j < kReceivers; ++j) takeLarger(height - to.slope[j] * range, most[j]);
-    });
-    Numbers largest;
-    for (int j = 0; j < kReceivers; ++j) largest.of[j] = largestOf(most[j]);
-    return largest;
+  void findTerms(int i, Lanes& height, Lanes& range) const {
+    constexpr bool is_rx = kRelative == Relative::rx_slope || kRelative == Relative::plain_rx_slope;
+    load((is_rx ? rx_height_ : above_tx_m_) + i, height);
+    load((is_rx ? rx_range_ : range_m_) + i, range);
+    if constexpr (kRelative == Relative::plain_rx_slope) {
+      Lanes range_m;
+      load(range_m_ + i, range_m);
+      height -= model_.half_curvature * range_m;
+    } else if constexpr (kRelative == Relative::nearest) {
+      const Lanes product = range * (distance_m_ - range);
+      Lanes root;
+      inverseRoot(product, root);
+      height = (height + model_.half_curvature * product) * root;
+      range *= root;
+    }
   }
-  /// rx_slope over all posts. @param at  receives the posts where it is largest
-  Numbers findHighest(const Receivers& to, int (&at)[kReceivers]) const {
-    Lanes most[kReceivers], at_lanes[kReceivers];
+  /// Maxima over the posts first..last of receivers begin..end - 1, some at a time.
+  template <int kReceivers, Relative kRelative>
+  void eachGroup(int begin, int end, int first, int last, float* largest) const {
+    for (int k = begin; k < end; k += kReceivers) {
+      float slope[kReceivers];
+      Lanes most[kReceivers];
+      for (int j = 0; j < kReceivers; ++j) {
+        slope[j] = slopeTo(heightOf(std::min(k + j, end - 1)));
+        setAll(-HUGE_VALF, most[j]);
+      }
+      visit(first, last, [&](int i) {
+        Lanes height, range;
+        findTerms<kRelative>(i, height, range);
+        for (int j = 0; j < kReceivers; ++j) takeLarger(height - slope[j] * range, most[j]);
+      });
+      for (int j = 0; j < kReceivers && k + j < end; ++j) largest[k + j] = largestOf(most[j]);
+    }
+  }
+
+  /// Sets the largest slopes from receivers begin..end - 1, which are below the steepest ray.
+  void findRxSlopes(int begin, int end, float* rx_slope) const {
+    constexpr int kFirst = 8, kGaps = kFirst - 1;
+    const int step = (end - 1 - begin) / kGaps;
+    if (step < 2) return eachGroup<4, Relative::rx_slope>(begin, end, 1, count_, rx_slope);
+    int highest[kFirst];
+    findHighest<kFirst>(begin, step, rx_slope, highest);
+    for (int gap = 0; gap < kGaps; ++gap) {
+      const int at = begin + gap * step;
+      eachGroup<4, Relative::rx_slope>(at + 1, at + step, std::min(highest[gap], highest[gap + 1]),
+                                       std::max(highest[gap], highest[gap + 1]), rx_slope);
+    }
+    eachGroup<4, Relative::rx_slope>(begin + kGaps * step + 1, end, 1, highest[kGaps], rx_slope);
+  }
+  /// The same for receivers begin, begin + step and so on. @param at  receives the posts seen highest
+  template <int kReceivers>
+  void findHighest(int begin, int step, float* rx_slope, int (&at)[kReceivers]) const {
+    float slope[kReceivers], lane[kLanes];
+    Lanes most[kReceivers], at_lanes[kReceivers], of_lane;
+    for (int i = 0; i < kLanes; ++i) lane[i] = static_cast<float>(i + 1);
+    load(lane, of_lane);
     for (int j = 0; j < kReceivers; ++j) {
+      slope[j] = slopeTo(heightOf(begin + j * step));
       setAll(-HUGE_VALF, most[j]);
       setAll(0, at_lanes[j]);
     }
-    visit(1, count_, [&](const Obstacles& posts) {
+    visit(1, count_, [&](int i) {
       Lanes height, range;
-      measure<Relative::rx_slope>(posts, height, range);
+      findTerms<Relative::rx_slope>(i, height, range);
+      const Lanes index = of_lane + static_cast<float>(i);
       for (int j = 0; j < kReceivers; ++j) {
-        const Lanes here = height - to.slope[j] * range;
-        at_lanes[j] = here > most[j] ? posts.index : at_lanes[j];
+        const Lanes here = height - slope[j] * range;
+        at_lanes[j] = here > most[j] ? index : at_lanes[j];
         takeLarger(here, most[j]);
       }
     });
-    Numbers largest;
     for (int j = 0; j < kReceivers; ++j) {
-      float values[kLanes], numbers[kLanes];
-      std::memcpy(values, &most[j], sizeof values);
-      std::memcpy(numbers, &at_lanes[j], sizeof numbers);
-      largest.of[j] = largestOf(most[j]);
-      float number = 0;
-      for (int i = 0; i < kLanes; ++i) number = values[i] == largest.of[j] ? numbers[i] : number;
-      at[j] = std::clamp(static_cast<int>(number), 1, count_);
+      const float largest = largestOf(most[j]);
+      Lanes number = at_lanes[j];
+      number = most[j] == largest ? number : Lanes{};
+      at[j] = std::clamp(static_cast<int>(largestOf(number)), 1, count_);
+      rx_slope[begin + j * step] = largest;
     }
-    return largest;
   }
 
-  /// @param first, last  for blocked receivers: the posts among which is the one that each sees highest
-  void setLosses(const Receivers& to, int first, int last, float* loss_db, int step) {
-    Numbers rx_slope{};
-    if (to.slope[0] <= tx_slope_) rx_slope = largest<Relative::rx_slope>(to, first, last);
-    setLosses(to, rx_slope, loss_db, step);
-  }
-  /// @param rx_slope  of blocked receivers
-  void setLosses(const Receivers& to, const Numbers& rx_slope, float* loss_db, int step) {
-    Numbers nearest, plain_rx_slope, highest_m;
-    if (to.slope[0] < clear_slope_ && to.slope[kReceivers - 1] > tx_slope_) {
-      nearest = largest<Relative::nearest>(to, 1, count_);
-    } else {
-      std::fill_n(nearest.of, kReceivers, -HUGE_VALF);
-    }
-    const bool has_earth = !isClearOfEarth(to.rx_m[0]);
-    if (has_earth && to.slope[0] < plain_tx_slope_) {
-      plain_rx_slope = largest<Relative::plain_rx_slope>(to, 1, count_);
-      highest_m = largest<Relative::plain_height>(to, 1, count_);
-    } else {
-      std::fill_n(plain_rx_slope.of, kReceivers, -HUGE_VALF);
-      std::fill_n(highest_m.of, kReceivers, -HUGE_VALF);
-    }
-    float found_db[kReceivers];
+  /// Replaces maxima of receivers begin..end - 1 by Bullington's losses (dB): rx_slope of those below the
+  /// steepest ray, nearest of the others.
+  void setLosses(int begin, int end, float* loss_db) const {
+    const float* const height_msl_m = column_.height_msl_m;
+    const float lowest_m = model_.raised_m(-HUGE_VALF, ground_m_);
+    const float tx_slope = tx_slope_, tx_m = tx_m_, base_msl_m = base_msl_m_, distance_m = distance_m_;
+    const float edge_scale = edge_scale_;
 #pragma omp simd
-    for (int j = 0; j < kReceivers; ++j) {
-      const float tx_slope = tx_slope_ - to.slope[j];
-      const float product = tx_slope * rx_slope.of[j];
-      const float relative = tx_slope >= 0 ? std::sqrt(product > 0 ? product : 0.0f) : nearest.of[j];
-      found_db[j] = bullingtonLossInLoopDb(edge_scale_ * relative, distance_m_);
+    for (int k = begin; k < end; ++k) {
+      const float height_m = height_msl_m[k] - base_msl_m;
+      const float rx_m = height_m > lowest_m ? height_m : lowest_m;
+      const float above = tx_slope - (rx_m - tx_m) / distance_m, largest = loss_db[k];
+      const float product = above * largest;
+      const float relative = above >= 0 ? std::sqrt(product > 0 ? product : 0.0f) : largest;
+      loss_db[k] = bullingtonLossInLoopDb(edge_scale * relative, distance_m);
     }
-    for (int j = 0; j < to.count; ++j) {
-      if (has_earth) {
-        found_db[j] += earthCorrectionDb(to.rx_m[j], to.slope[j], plain_rx_slope.of[j], highest_m.of[j]);
+  }
+  /// Adds the smooth-earth correction of receivers begin..end - 1.
+  void addEarth(int begin, int end, float* loss_db) {
+    constexpr int kReceivers = 4;
+    for (int first = begin; first < end; first += kReceivers) {
+      const int count = std::min(kReceivers, end - first);
+      float plain_rx_slope[kReceivers], height_m[kReceivers];
+      std::fill_n(plain_rx_slope, kReceivers, -HUGE_VALF);
+      std::fill_n(height_m, kReceivers, -HUGE_VALF);
+      if (slopeTo(heightOf(first)) < plain_tx_slope_) {
+        eachGroup<4, Relative::plain_rx_slope>(first, first + count, 1, count_, plain_rx_slope - first);
+        eachGroup<4, Relative::plain_height>(first, first + count, 1, count_, height_m - first);
       }
-      loss_db[j * step] = found_db[j];
+      for (int j = 0; j < count; ++j) {
+        loss_db[first + j] += earthCorrectionDb(heightOf(first + j), plain_rx_slope[j], height_m[j]);
+      }
     }
   }
 
@@ -327,25 +342,27 @@ class LaneColumn {
     const double* const range_m = column_.profile.range_m;
     const float* const height_msl_m = column_.profile.height_msl_m;
     const auto base = static_cast<double>(base_msl_m_);
-    double v1 = 0, v2 = 0;
+    const int last = count_ + 1;
+    const double last_m = static_cast<double>(ground_m_) * (range_m[last] - range_m[last - 1]);
+    double v1 = last_m, v2 = last_m * (2 * range_m[last] + range_m[last - 1]);
+    // TerrainSums, post by post: each is in two intervals.
 #pragma omp simd reduction(+ : v1, v2)
-    for (int i = 1; i <= count_ + 1; ++i) {
-      const double before = range_m[i - 1], here = range_m[i];
-      const double h_before = static_cast<double>(height_msl_m[i - 1]) - base;
-      const double h = static_cast<double>(height_msl_m[i]) - base;
-      v1 += (here - before) * (h + h_before);
-      v2 += (here - before) * (h * (2 * here + before) + h_before * (here + 2 * before));
+    for (int i = 1; i < last; ++i) {
+      const double before = range_m[i - 1], beyond = range_m[i + 1];
+      const double area = (static_cast<double>(height_msl_m[i]) - base) * (beyond - before);
+      v1 += area;
+      v2 += area * (before + range_m[i] + beyond);
     }
     const TerrainSums sums{v1, v2};
-    trend_.start_msl_m = static_cast<float>(sums.start_m(range_m[count_ + 1]));
-    trend_.end_msl_m = static_cast<float>(sums.end_m(range_m[count_ + 1]));
+    trend_.start_msl_m = static_cast<float>(sums.start_m(range_m[last]));
+    trend_.end_msl_m = static_cast<float>(sums.end_m(range_m[last]));
     trend_.tx_ground_msl_m = 0;
     trend_.rx_ground_msl_m = ground_m_;
     trend_.highest_m = -HUGE_VALF;
     if (model_.sea_by_height) {
       const double sea_m = lengthOverSea_m(
           count_ + 2, [=](int i) { return range_m[i]; }, [=](int i) { return height_msl_m[i]; });
-      model_.earth.sea_fraction = static_cast<float>(sea_m / range_m[count_ + 1]);
+      model_.earth.sea_fraction = static_cast<float>(sea_m / range_m[last]);
     }
   }
 
@@ -365,10 +382,10 @@ class LaneColumn {
   /// Smooth-earth correction (dB): the spherical earth's loss minus Bullington's, at least 0.
   /// @param plain_rx_slope, highest_m  the receiver's largest plain_rx_slope and plain_height
   /// @see P.526-15 eq. (68)
-  float earthCorrectionDb(float rx_m, float slope, float plain_rx_slope, float highest_m) const {
+  float earthCorrectionDb(float rx_m, float plain_rx_slope, float highest_m) const {
     TerrainTrend<float> trend = trend_;
     trend.highest_m = highest_m;
-    trend.tx_angle = plain_tx_slope_ - slope;
+    trend.tx_angle = plain_tx_slope_ - slopeTo(rx_m);
     trend.rx_angle = plain_rx_slope;
     const EffectiveHeights<float> heights = effectiveHeights(trend, tx_m_, rx_m);
     const float spherical_db = sphericalEarthLossDb(model_.earth, distance_m_, heights.tx_m, heights.rx_m);
@@ -390,8 +407,10 @@ class LaneColumn {
   float base_msl_m_, distance_m_, ground_m_, tx_m_;
   float edge_scale_;  ///< from heights over sqrt(d1 d2) to nu
   bool is_known_ = true;
-  float *range_m_, *inverse_root_, *height_m_;  ///< of the obstacles, at least kLanes
-  float few_[3][kLanes];
+  // Of the obstacles, at least kLanes:
+  float *range_m_, *above_tx_m_;
+  float* inverse_root_;                ///< 1 / sqrt(d1 d2)
+  float *rx_height_, *rx_range_;       ///< terms of rx_slope
   float tx_slope_ = -HUGE_VALF;        ///< largest slope from the transmitter to an obstacle
   float clear_slope_ = -HUGE_VALF;     ///< of the lowest line of sight that all obstacles are clear of
   float plain_tx_slope_ = -HUGE_VALF;  ///< tx_slope without the earth's bulge
@@ -403,16 +422,10 @@ EMSCAPE_SIMD_CLONES unsigned fillInLanes(const DiffractionExcess& excess, const 
                                          const ExcessScratch& scratch, float* excess_db) {
   int lossy = 0;
   bool is_known = true;
-  const auto fill = [&](auto&& receivers) {
+  if (column.profile.count > 1) {
+    LaneColumn receivers(excess, column, scratch);
     is_known = receivers.isKnown();
     if (is_known) lossy = receivers.fill(excess_db);
-  };
-  if (column.profile.count > 1) {
-    if (column.count == 1) {
-      fill(LaneColumn<1>(excess, column, scratch));
-    } else {
-      fill(LaneColumn<8>(excess, column, scratch));
-    }
   }
   std::fill(excess_db + lossy, excess_db + column.count, is_known ? 0.0f : NAN);
   return is_known ? 0 : kMissingTerrain;
