@@ -36,6 +36,16 @@ struct SectorBounds {
   std::vector<float> group_lowered_m, group_tx_slope;
 };
 
+/// The line fitted to the terrain in the middle of a sector, for paths that are not clear of the smooth earth
+/// above their own ground; made when first needed.
+struct SectorTrend {
+  /// Per block: sums of the intervals that end at or before its first post.
+  std::vector<propagation::TerrainSums> before;
+  /// Per block: integral over twice the range of the differences of a path's heights from the middle's, from
+  /// the emitter to beyond the block; at most.
+  std::vector<float> differences_m2;
+};
+
 /// Values common to all paths.
 struct Posts {
   DiffractionModel<float> model;
@@ -58,6 +68,7 @@ struct PathMemory {
       nu_block;  ///< per height: the blocks that determined the loss of the previous path
   int tx_block = 0;
   bool is_unknown = false;  ///< a void was read
+  SectorTrend trend;
   /// Paths of the sector that were searched, and of their receivers, path by path: nu and distance of the
   /// edge, and the loss.
   std::vector<const SectorPath*> searched;
@@ -323,6 +334,64 @@ EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terr
   }
 }
 
+/// Height in the middle of the sector, relative to the base.
+inline double middleHeight_m(const SectorTerrain& terrain, const SectorBounds& bounds, int post) {
+  return static_cast<double>(terrain.height_msl_m()[post == 0 ? 0 : SectorPosts::inGroups(post)] -
+                             bounds.base_msl_m);
+}
+
+void setTrend(const Posts& posts, const SectorTerrain& terrain, const SectorBounds& bounds,
+              SectorTrend& trend) {
+  propagation::TerrainSums sums;
+  double before_m = 0, height_before_m = 0, differences_m2 = 0;
+  for (int post = 0; post < terrain.posts(); ++post) {
+    const double range_m = posts.exact_range_m[post];
+    const double height_m = post == 0 ? 0 : middleHeight_m(terrain, bounds, post);
+    sums.add(before_m, height_before_m, range_m, height_m);
+    before_m = range_m;
+    height_before_m = height_m;
+    if (post % kBlock != 0) continue;
+    const int beyond = std::min(post + kBlock, posts.count - 1);
+    const double length_m = posts.exact_range_m[beyond] - posts.exact_range_m[std::max(post - 1, 0)];
+    differences_m2 += 2 * length_m * static_cast<double>(terrain.slack_m()[post / kBlock]);
+    trend.before.push_back(sums);
+    trend.differences_m2.push_back(static_cast<float>(differences_m2));
+  }
+}
+
+/// True if the smooth earth has no loss for a receiver and those above: see LaneColumn::isClearOfEarth().
+inline bool isClearOfEarth(const Posts& posts, const SectorTerrain& terrain, const SectorBounds& bounds,
+                           const SectorPath& to, const Path& path, float rx_m, SectorTrend& trend) {
+  const DiffractionModel<float>& model = posts.model;
+  const float ground_m = to.ground_msl_m - bounds.base_msl_m;
+  const auto isClear = [&](float tx, float rx) {
+    return isClearThroughout(model.earth, path.distance_m, sightLine(model.earth, path.distance_m, tx, rx));
+  };
+  if (isClear(bounds.tx_m, rx_m - ground_m)) return true;
+  if (trend.before.empty()) setTrend(posts, terrain, bounds, trend);
+  const int block = path.before / kBlock;
+  propagation::TerrainSums sums = trend.before[block];
+  double before_m = posts.exact_range_m[block * kBlock];
+  double height_before_m = middleHeight_m(terrain, bounds, block * kBlock);
+  const auto add = [&](double range_m, double height_m) {
+    sums.add(before_m, height_before_m, range_m, height_m);
+    before_m = range_m;
+    height_before_m = height_m;
+  };
+  for (int post = block * kBlock + 1; post <= path.before; ++post) {
+    add(posts.exact_range_m[post], middleHeight_m(terrain, bounds, post));
+  }
+  add(to.distance_m, static_cast<double>(ground_m));
+  // The weight of a height in either end of the line is at most twice that in the mean height.
+  const float most_m = 2 * trend.differences_m2[block] / path.distance_m;
+  propagation::TerrainTrend<float> highest{};
+  highest.start_msl_m = static_cast<float>(sums.start_m(to.distance_m)) + most_m;
+  highest.end_msl_m = static_cast<float>(sums.end_m(to.distance_m)) + most_m;
+  highest.rx_ground_msl_m = ground_m;
+  const auto least = effectiveHeights(highest, bounds.tx_m, rx_m);
+  return isClear(least.tx_m, least.rx_m);
+}
+
 /// The paths of one sector.
 struct SectorTask {
   const ExcessTask<propagation::DiffractionExcess>& task;
@@ -380,6 +449,8 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
   const auto layers = static_cast<std::size_t>(grid.layers);
   const std::size_t receivers = static_cast<std::size_t>(sector.end - sector.begin) * layers;
   memory.searched.clear();
+  memory.trend.before.clear();
+  memory.trend.differences_m2.clear();
   for (std::vector<float>* const array : {&memory.nu, &memory.distance_m, &memory.loss_db}) {
     if (array->size() < receivers) array->resize(receivers);
   }
@@ -397,12 +468,7 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
       const float here_m = sector.task.modelHeight_m(to->distance_m, height_msl_m);
       memory.rx_m[n] = model.raised_m(here_m - bounds.base_msl_m, ground_m);
     }
-    // The antennas are at least as high above the smooth earth as above their ground.
-    const float rx_agl_m = memory.rx_m[0] - ground_m;
-    if (!isClearThroughout(model.earth, path.distance_m,
-                           sightLine(model.earth, path.distance_m, bounds.tx_m, rx_agl_m))) {
-      continue;
-    }
+    if (!isClearOfEarth(posts, terrain, bounds, *to, path, memory.rx_m[0], memory.trend)) continue;
     memory.is_unknown = false;
     const std::size_t first = memory.searched.size() * layers;
     findEdges(posts, bounds, path, Search(posts, terrain, bounds, memory, path), memory.rx_m.data(),

@@ -7,9 +7,8 @@
 #pragma once
 
 #include <cmath>
-#include <cstdint>
 
-#include "base/math/fast_math.h"
+#include "base/math/float_pair.h"
 #include "emfield/columns/station.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
@@ -78,28 +77,13 @@ EMSCAPE_HD inline ChordInRaster chordInRaster(const scenario::TerrainRaster& ras
   return in;
 }
 
-/// Two neighbouring posts of a row. Vector loops on the CPU gather both at once.
-struct PostPair {
-  float west_m, east_m;
-};
-EMSCAPE_HD inline PostPair postPair(const float* west_msl_m) {
-#ifdef __CUDA_ARCH__
-  return {west_msl_m[0], west_msl_m[1]};
-#else
-  using Pair [[gnu::may_alias, gnu::aligned(4)]] = std::uint64_t;
-  const std::uint64_t pair = *reinterpret_cast<const Pair*>(west_msl_m);
-  return {fast_math_detail::floatOf(static_cast<std::uint32_t>(pair)),
-          fast_math_detail::floatOf(static_cast<std::uint32_t>(pair >> 32))};
-#endif
-}
-
 /// Bilinear height (m) at column x and row y of a raster, from a corner of it; NaN beside a void.
 EMSCAPE_HD inline float bilinearHeight(const float* corner_msl_m, int row_posts, float x, float y) {
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const int at = j * row_posts + i;
-  const PostPair south = postPair(corner_msl_m + at), north = postPair(corner_msl_m + row_posts + at);
+  const FloatPair south = floatPair(corner_msl_m + at), north = floatPair(corner_msl_m + row_posts + at);
   const float to_east = x - static_cast<float>(i), to_north = y - static_cast<float>(j);
-  return lerp(lerp(south.west_m, south.east_m, to_east), lerp(north.west_m, north.east_m, to_east), to_north);
+  return lerp(lerp(south.first, south.second, to_east), lerp(north.first, north.second, to_east), to_north);
 }
 
 /// Longest chord (m) whose deviation from the ground track is within the accuracy above.
