@@ -52,7 +52,6 @@ struct Posts {
   const double* exact_range_m;
   const float *range_m, *part;
   int count;
-  double last_step_m;                         ///< between the farthest posts
   const float *first_m, *last_m;              ///< per block: range of its first and last obstacle
   const float *group_first_m, *group_last_m;  ///< per group
   /// Of the obstacles in groups (SectorPosts): the earth's bulge r^2 / (2 a), and 1 / r.
@@ -428,16 +427,6 @@ inline void setLosses(const SectorTask& sector, PathMemory& memory) {
   }
 }
 
-/// Last post nearer than a range. Most posts are equally far apart.
-inline int lastBefore(const Posts& posts, double distance_m) {
-  const double from_last_m = posts.exact_range_m[posts.count - 1] - distance_m;
-  int post = posts.count - 1 - static_cast<int>(std::max(from_last_m / posts.last_step_m, 0.0));
-  post = std::max(post, 0);
-  while (post + 1 < posts.count && posts.exact_range_m[post + 1] < distance_m) ++post;
-  while (post > 0 && posts.exact_range_m[post] >= distance_m) --post;
-  return post;
-}
-
 EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_posts,
                                     const SectorTerrain& terrain, const SectorBounds& bounds,
                                     PathMemory& memory) {
@@ -457,7 +446,7 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
   Path path{};
   for (const SectorPath* to = sector.begin; to < sector.end; ++to) {
     path.distance_m = static_cast<float>(to->distance_m);
-    path.before = lastBefore(posts, to->distance_m);
+    path.before = sector.task.ground.lastBefore(to->distance_m);
     path.blocks = path.before / kBlock + 1;
     path.aside = to->aside_rad * per_rad;
     ++path.number;
@@ -522,19 +511,10 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
     per_range.push_back(1 / range_m);
   }
   const int count = task.ground.range_count;
-  const double last_step_m = task.ground.ranges_m[count - 1] - task.ground.ranges_m[count - 2];
-  const Posts posts{task.model.model,
-                    task.ground.ranges_m,
-                    sector_posts.range_m(),
-                    sector_posts.part(),
-                    count,
-                    last_step_m,
-                    first_m.data(),
-                    last_m.data(),
-                    group_first_m.data(),
-                    group_last_m.data(),
-                    lowering_m.data(),
-                    per_range.data()};
+  const Posts posts{
+      task.model.model, task.ground.ranges_m, sector_posts.range_m(), sector_posts.part(), count,
+      first_m.data(),   last_m.data(),        group_first_m.data(),   group_last_m.data(), lowering_m.data(),
+      per_range.data()};
   parallelFor(sectors.count(), 16, [&](int begin, int end) {
     SectorTerrain terrain(task.station, task.ground, bounds, sector_posts);
     SectorBounds of_sector;
