@@ -335,8 +335,8 @@ EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terr
 
 /// Height in the middle of the sector, relative to the base.
 inline double middleHeight_m(const SectorTerrain& terrain, const SectorBounds& bounds, int post) {
-  return static_cast<double>(terrain.height_msl_m()[post == 0 ? 0 : SectorPosts::inGroups(post)] -
-                             bounds.base_msl_m);
+  if (post == 0) return 0;
+  return static_cast<double>(terrain.height_msl_m()[SectorPosts::inGroups(post)] - bounds.base_msl_m);
 }
 
 void setTrend(const Posts& posts, const SectorTerrain& terrain, const SectorBounds& bounds,
@@ -345,7 +345,7 @@ void setTrend(const Posts& posts, const SectorTerrain& terrain, const SectorBoun
   double before_m = 0, height_before_m = 0, differences_m2 = 0;
   for (int post = 0; post < terrain.posts(); ++post) {
     const double range_m = posts.exact_range_m[post];
-    const double height_m = post == 0 ? 0 : middleHeight_m(terrain, bounds, post);
+    const double height_m = middleHeight_m(terrain, bounds, post);
     sums.add(before_m, height_before_m, range_m, height_m);
     before_m = range_m;
     height_before_m = height_m;

@@ -89,8 +89,7 @@ class LaneColumn {
       fillOne(*loss_db);
       return 1;
     }
-    const float no_receiver = 0;
-    visitFirst<false>(no_receiver);
+    visitFirst<false>(0);
     const int lossy = firstOf(column_.count, [this](int k) {
       const float rx_m = heightOf(k);
       return slopeTo(rx_m) >= clear_slope_ && isClearOfEarth(rx_m);
@@ -409,7 +408,6 @@ class LaneColumn {
   bool is_known_ = true;
   // Of the obstacles, at least kLanes:
   float *range_m_, *above_tx_m_;
-  float* inverse_root_;                ///< 1 / sqrt(d1 d2)
   float *rx_height_, *rx_range_;       ///< terms of rx_slope
   float tx_slope_ = -HUGE_VALF;        ///< largest slope from the transmitter to an obstacle
   float clear_slope_ = -HUGE_VALF;     ///< of the lowest line of sight that all obstacles are clear of
