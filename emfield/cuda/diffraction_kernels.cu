@@ -52,7 +52,8 @@ class ColumnPosts {
   /// Reads the profile.
   __device__ ColumnPosts(const DiffractionTask& task, const FastInverse& path, float ground_msl_m,
                          const ProfileMemory& memory, int thread)
-      : ranges_m_(task.ground.ranges_m),
+      : ground_(task.ground),
+        ranges_m_(task.ground.ranges_m),
         before_(task.ground.lastBefore(path.distance_m)),
         thread_(thread),
         distance_m_(path.distance_m),
@@ -94,18 +95,10 @@ class ColumnPosts {
         count() + 1, [this](int i) { return i <= before_ ? ranges_m_[i] : distance_m_; },
         [this](int i) { return i <= before_ ? height_msl_m(i) : ground_msl_m_; });
   }
-  /// Ranges are equally spaced except for the first ones: an estimate from the end, then a few steps.
-  __device__ int lastBefore(double range_m) const {
-    if (before_ == 0) return 0;
-    const double even_m = ranges_m_[before_] - ranges_m_[before_ - 1];
-    const int guess = before_ - static_cast<int>((ranges_m_[before_] - range_m) / even_m);
-    int post = guess < 0 ? 0 : guess > before_ ? before_ : guess;
-    while (post > 0 && ranges_m_[post] >= range_m) --post;
-    while (post < before_ && ranges_m_[post + 1] < range_m) ++post;
-    return post;
-  }
+  __device__ int lastBefore(double range_m) const { return min(ground_.lastBefore(range_m), before_); }
 
  private:
+  const GroundPosts& ground_;
   const double* ranges_m_;
   int before_;
   int thread_;

@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "base/math/simd.h"
 #include "emfield/excess/surface_diffraction.h"
 #include "emfield/ground/read_posts.h"
 #include "emscape/base/parallel.h"
@@ -18,6 +19,15 @@ using propagation::kMissingTerrain;
 
 /// Neighbouring columns, so that results are written in runs.
 constexpr int kBlock = 16;
+
+/// Sets the codes of some columns in all layers. @param excess_db  kBlock values per layer
+EMSCAPE_SIMD_CLONES void setCodes(const float* excess_db, int layers, int count, std::size_t column_count,
+                                  ExcessCode* codes) {
+  for (int k = 0; k < layers; ++k, excess_db += kBlock, codes += column_count) {
+#pragma omp simd
+    for (int i = 0; i < count; ++i) codes[i] = excessCode(excess_db[i]);
+  }
+}
 
 /// Fills the columns whose paths need not be read whole, where there is a search for that.
 /// @return for each column whether it is left; empty: all are
@@ -65,11 +75,15 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
           excess_db[static_cast<std::size_t>(k) * kBlock + i] = scratch.excess_db[k];
         }
       }
-      for (int k = 0; k < grid.layers; ++k) {
-        const std::size_t row = static_cast<std::size_t>(k) * grid.column_count + first;
-        for (int i = 0; i < count; ++i) {
-          if (!isLeft(static_cast<std::size_t>(first + i))) continue;
-          out.excess.set(row + i, excess_db[static_cast<std::size_t>(k) * kBlock + i]);
+      if (is_left.empty() && out.excess.codes != nullptr) {
+        setCodes(excess_db.data(), grid.layers, count, grid.column_count, out.excess.codes + first);
+      } else {
+        for (int k = 0; k < grid.layers; ++k) {
+          const std::size_t row = static_cast<std::size_t>(k) * grid.column_count + first;
+          for (int i = 0; i < count; ++i) {
+            if (!isLeft(static_cast<std::size_t>(first + i))) continue;
+            out.excess.set(row + i, excess_db[static_cast<std::size_t>(k) * kBlock + i]);
+          }
         }
       }
       reportDone(static_cast<double>(filled_columns += count) / columns);
@@ -80,6 +94,31 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
 }
 
 }  // namespace
+
+EMSCAPE_SIMD_CLONES void heightsMslCpu(const GridColumn& column, const float* t_m, int count,
+                                       float* height_msl_m) {
+  const GridColumn of = column;
+#pragma omp simd
+  for (int k = 0; k < count; ++k) {
+    height_msl_m[k] = static_cast<float>(heightMsl_m(of, static_cast<double>(t_m[k])));
+  }
+}
+
+EMSCAPE_SIMD_CLONES void addAirCpu(const AirLoss& air, float range_m, const GridColumn& column,
+                                   const float* t_m, int count, float* excess_db) {
+  const AirLoss of_air = air;
+  const GridColumn of = column;
+  const propagation::AirColumn above(of_air, range_m);
+  const auto heightOf = [&](int k) {
+    return static_cast<float>(heightMsl_m(of, static_cast<double>(t_m[k])));
+  };
+  if (of_air.level_rain > 0) {
+    for (int k = 0; k < count; ++k) excess_db[k] += above.lossDb(heightOf(k));
+    return;
+  }
+#pragma omp simd
+  for (int k = 0; k < count; ++k) excess_db[k] += above.gasesDb(heightOf(k));
+}
 
 ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terrain) {
   ExcessGrid grid;

@@ -69,6 +69,12 @@ struct ExcessGrid {
 /// @param terrain  null: none
 ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terrain);
 
+/// Heights (m above mean sea level) of a column's points at some t. By vector instructions.
+void heightsMslCpu(const GridColumn& column, const float* t_m, int count, float* height_msl_m);
+/// Adds the atmospheric attenuation at these heights. By vector instructions.
+void addAirCpu(const AirLoss& air, float range_m, const GridColumn& column, const float* t_m, int count,
+               float* excess_db);
+
 /// One emitter. A model is a plain struct: see excess_model.h.
 template <class Model>
 struct ExcessTask {
@@ -100,10 +106,19 @@ struct ExcessTask {
           grid.ground_msl_m != nullptr ? grid.ground_msl_m[c] : groundAt(station, ground, point);
       part.profile = readProfile(station, ground, point, part.ground_msl_m, scratch, read);
     }
+    const GridColumn column = grid.columns[c];
+    float* const height_msl_m = scratch.height_msl_m + first;
+#ifdef __CUDA_ARCH__
     for (int k = 0; k < part.count; ++k) {
-      const auto t_m = static_cast<double>(grid.t_m[first + k]);
-      scratch.height_msl_m[first + k] =
-          modelHeight_m(part.range_m, static_cast<float>(heightMsl_m(grid.columns[c], t_m)));
+      height_msl_m[k] = static_cast<float>(heightMsl_m(column, static_cast<double>(grid.t_m[first + k])));
+    }
+#else
+    heightsMslCpu(column, grid.t_m + first, part.count, height_msl_m);
+#endif
+    if (propagation::OnEffectiveEarth<Model>::value && station.refraction.exponential) {
+      for (int k = 0; k < part.count; ++k) {
+        height_msl_m[k] = modelHeight_m(part.range_m, height_msl_m[k]);
+      }
     }
     return part;
   }
@@ -123,12 +138,17 @@ struct ExcessTask {
   EMSCAPE_HD void addAir(std::size_t c, int segment, const ExcessColumn& part, int begin, int end,
                          float* excess_db) const {
     if (air.isClear()) return;
-    const propagation::AirColumn above(air, static_cast<float>(part.range_m));
+    const auto range_m = static_cast<float>(part.range_m);
     const float* const t_m = grid.t_m + grid.firstLayer(segment);
+#ifdef __CUDA_ARCH__
+    const propagation::AirColumn above(air, range_m);
     for (int k = begin; k < end; ++k) {
       excess_db[k] +=
           above.lossDb(static_cast<float>(heightMsl_m(grid.columns[c], static_cast<double>(t_m[k]))));
     }
+#else
+    addAirCpu(air, range_m, grid.columns[c], t_m + begin, end - begin, excess_db + begin);
+#endif
   }
 
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.

@@ -36,13 +36,22 @@ struct SectorBounds {
   std::vector<float> group_lowered_m, group_tx_slope;
 };
 
+/// The line fitted to the terrain in the middle of a sector, for paths that are not clear of the smooth earth
+/// above their own ground; made when first needed.
+struct SectorTrend {
+  /// Per block: sums of the intervals that end at or before its first post.
+  std::vector<propagation::TerrainSums> before;
+  /// Per block: integral over twice the range of the differences of a path's heights from the middle's, from
+  /// the emitter to beyond the block; at most.
+  std::vector<float> differences_m2;
+};
+
 /// Values common to all paths.
 struct Posts {
   DiffractionModel<float> model;
   const double* exact_range_m;
   const float *range_m, *part;
   int count;
-  double last_step_m;                         ///< between the farthest posts
   const float *first_m, *last_m;              ///< per block: range of its first and last obstacle
   const float *group_first_m, *group_last_m;  ///< per group
   /// Of the obstacles in groups (SectorPosts): the earth's bulge r^2 / (2 a), and 1 / r.
@@ -58,6 +67,7 @@ struct PathMemory {
       nu_block;  ///< per height: the blocks that determined the loss of the previous path
   int tx_block = 0;
   bool is_unknown = false;  ///< a void was read
+  SectorTrend trend;
   /// Paths of the sector that were searched, and of their receivers, path by path: nu and distance of the
   /// edge, and the loss.
   std::vector<const SectorPath*> searched;
@@ -323,6 +333,64 @@ EMSCAPE_SIMD_CLONES void setBounds(const Posts& posts, const SectorTerrain& terr
   }
 }
 
+/// Height in the middle of the sector, relative to the base.
+inline double middleHeight_m(const SectorTerrain& terrain, const SectorBounds& bounds, int post) {
+  if (post == 0) return 0;
+  return static_cast<double>(terrain.height_msl_m()[SectorPosts::inGroups(post)] - bounds.base_msl_m);
+}
+
+void setTrend(const Posts& posts, const SectorTerrain& terrain, const SectorBounds& bounds,
+              SectorTrend& trend) {
+  propagation::TerrainSums sums;
+  double before_m = 0, height_before_m = 0, differences_m2 = 0;
+  for (int post = 0; post < terrain.posts(); ++post) {
+    const double range_m = posts.exact_range_m[post];
+    const double height_m = middleHeight_m(terrain, bounds, post);
+    sums.add(before_m, height_before_m, range_m, height_m);
+    before_m = range_m;
+    height_before_m = height_m;
+    if (post % kBlock != 0) continue;
+    const int beyond = std::min(post + kBlock, posts.count - 1);
+    const double length_m = posts.exact_range_m[beyond] - posts.exact_range_m[std::max(post - 1, 0)];
+    differences_m2 += 2 * length_m * static_cast<double>(terrain.slack_m()[post / kBlock]);
+    trend.before.push_back(sums);
+    trend.differences_m2.push_back(static_cast<float>(differences_m2));
+  }
+}
+
+/// True if the smooth earth has no loss for a receiver and those above: see LaneColumn::isClearOfEarth().
+inline bool isClearOfEarth(const Posts& posts, const SectorTerrain& terrain, const SectorBounds& bounds,
+                           const SectorPath& to, const Path& path, float rx_m, SectorTrend& trend) {
+  const DiffractionModel<float>& model = posts.model;
+  const float ground_m = to.ground_msl_m - bounds.base_msl_m;
+  const auto isClear = [&](float tx, float rx) {
+    return isClearThroughout(model.earth, path.distance_m, sightLine(model.earth, path.distance_m, tx, rx));
+  };
+  if (isClear(bounds.tx_m, rx_m - ground_m)) return true;
+  if (trend.before.empty()) setTrend(posts, terrain, bounds, trend);
+  const int block = path.before / kBlock;
+  propagation::TerrainSums sums = trend.before[block];
+  double before_m = posts.exact_range_m[block * kBlock];
+  double height_before_m = middleHeight_m(terrain, bounds, block * kBlock);
+  const auto add = [&](double range_m, double height_m) {
+    sums.add(before_m, height_before_m, range_m, height_m);
+    before_m = range_m;
+    height_before_m = height_m;
+  };
+  for (int post = block * kBlock + 1; post <= path.before; ++post) {
+    add(posts.exact_range_m[post], middleHeight_m(terrain, bounds, post));
+  }
+  add(to.distance_m, static_cast<double>(ground_m));
+  // The weight of a height in either end of the line is at most twice that in the mean height.
+  const float most_m = 2 * trend.differences_m2[block] / path.distance_m;
+  propagation::TerrainTrend<float> highest{};
+  highest.start_msl_m = static_cast<float>(sums.start_m(to.distance_m)) + most_m;
+  highest.end_msl_m = static_cast<float>(sums.end_m(to.distance_m)) + most_m;
+  highest.rx_ground_msl_m = ground_m;
+  const auto least = effectiveHeights(highest, bounds.tx_m, rx_m);
+  return isClear(least.tx_m, least.rx_m);
+}
+
 /// The paths of one sector.
 struct SectorTask {
   const ExcessTask<propagation::DiffractionExcess>& task;
@@ -359,16 +427,6 @@ inline void setLosses(const SectorTask& sector, PathMemory& memory) {
   }
 }
 
-/// Last post nearer than a range. Most posts are equally far apart.
-inline int lastBefore(const Posts& posts, double distance_m) {
-  const double from_last_m = posts.exact_range_m[posts.count - 1] - distance_m;
-  int post = posts.count - 1 - static_cast<int>(std::max(from_last_m / posts.last_step_m, 0.0));
-  post = std::max(post, 0);
-  while (post + 1 < posts.count && posts.exact_range_m[post + 1] < distance_m) ++post;
-  while (post > 0 && posts.exact_range_m[post] >= distance_m) --post;
-  return post;
-}
-
 EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_posts,
                                     const SectorTerrain& terrain, const SectorBounds& bounds,
                                     PathMemory& memory) {
@@ -380,13 +438,15 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
   const auto layers = static_cast<std::size_t>(grid.layers);
   const std::size_t receivers = static_cast<std::size_t>(sector.end - sector.begin) * layers;
   memory.searched.clear();
+  memory.trend.before.clear();
+  memory.trend.differences_m2.clear();
   for (std::vector<float>* const array : {&memory.nu, &memory.distance_m, &memory.loss_db}) {
     if (array->size() < receivers) array->resize(receivers);
   }
   Path path{};
   for (const SectorPath* to = sector.begin; to < sector.end; ++to) {
     path.distance_m = static_cast<float>(to->distance_m);
-    path.before = lastBefore(posts, to->distance_m);
+    path.before = sector.task.ground.lastBefore(to->distance_m);
     path.blocks = path.before / kBlock + 1;
     path.aside = to->aside_rad * per_rad;
     ++path.number;
@@ -397,12 +457,7 @@ EMSCAPE_SIMD_CLONES void fillSector(const SectorTask& sector, const Posts& all_p
       const float here_m = sector.task.modelHeight_m(to->distance_m, height_msl_m);
       memory.rx_m[n] = model.raised_m(here_m - bounds.base_msl_m, ground_m);
     }
-    // The antennas are at least as high above the smooth earth as above their ground.
-    const float rx_agl_m = memory.rx_m[0] - ground_m;
-    if (!isClearThroughout(model.earth, path.distance_m,
-                           sightLine(model.earth, path.distance_m, bounds.tx_m, rx_agl_m))) {
-      continue;
-    }
+    if (!isClearOfEarth(posts, terrain, bounds, *to, path, memory.rx_m[0], memory.trend)) continue;
     memory.is_unknown = false;
     const std::size_t first = memory.searched.size() * layers;
     findEdges(posts, bounds, path, Search(posts, terrain, bounds, memory, path), memory.rx_m.data(),
@@ -456,19 +511,10 @@ std::vector<char> fillSurfaceDiffraction(const ExcessTask<propagation::Diffracti
     per_range.push_back(1 / range_m);
   }
   const int count = task.ground.range_count;
-  const double last_step_m = task.ground.ranges_m[count - 1] - task.ground.ranges_m[count - 2];
-  const Posts posts{task.model.model,
-                    task.ground.ranges_m,
-                    sector_posts.range_m(),
-                    sector_posts.part(),
-                    count,
-                    last_step_m,
-                    first_m.data(),
-                    last_m.data(),
-                    group_first_m.data(),
-                    group_last_m.data(),
-                    lowering_m.data(),
-                    per_range.data()};
+  const Posts posts{
+      task.model.model, task.ground.ranges_m, sector_posts.range_m(), sector_posts.part(), count,
+      first_m.data(),   last_m.data(),        group_first_m.data(),   group_last_m.data(), lowering_m.data(),
+      per_range.data()};
   parallelFor(sectors.count(), 16, [&](int begin, int end) {
     SectorTerrain terrain(task.station, task.ground, bounds, sector_posts);
     SectorBounds of_sector;

@@ -32,18 +32,16 @@ struct GroundPosts {
   const double* ranges_m = nullptr;
   int range_count = 0;
 
-  /// Index of the last post nearer than a range; 0 if there is none.
+  /// Index of the last post nearer than a range; 0 if there is none. Most posts are equally far apart: an
+  /// estimate from the last one, then a few steps.
   EMSCAPE_HD int lastBefore(double range_m) const {
-    int begin = 0, end = range_count;  // the first that is not nearer
-    while (begin < end) {
-      const int middle = (begin + end) / 2;
-      if (ranges_m[middle] < range_m) {
-        begin = middle + 1;
-      } else {
-        end = middle;
-      }
-    }
-    return begin > 0 ? begin - 1 : 0;
+    if (range_count < 2 || !(range_m > ranges_m[1])) return 0;
+    const int last = range_count - 1;
+    const double steps = (ranges_m[last] - range_m) / (ranges_m[last] - ranges_m[last - 1]);
+    int post = steps > 0 ? (steps < last ? last - static_cast<int>(steps) : 0) : last;
+    while (post < last && ranges_m[post + 1] < range_m) ++post;
+    while (ranges_m[post] >= range_m) --post;
+    return post;
   }
 };
 

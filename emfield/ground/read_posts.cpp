@@ -34,9 +34,8 @@ void readPostsCpu(const Station& station, const GroundPosts& ground, const FastI
   const double* const ranges_m = ground.ranges_m;
   for (int begin = 0; begin < count;) {
     const TerrainChord& chord = walk.chordAt(ranges_m[begin]);
-    const double* const beyond =
-        std::lower_bound(ranges_m + begin, ranges_m + count, walk.endOfChord_m(ranges_m[begin]));
-    const int end = std::max(begin + 1, static_cast<int>(beyond - ranges_m));
+    const int beyond = ground.lastBefore(walk.endOfChord_m(ranges_m[begin])) + 1;
+    const int end = std::clamp(beyond, begin + 1, count);
     if (chord.in_raster.corner_msl_m == nullptr ||
         !readInRaster(chord.in_raster, ranges_m + begin, end - begin, height_msl_m + begin)) {
       for (int i = begin; i < end; ++i) height_msl_m[i] = chord.heightAt(ground.terrain, ranges_m[i]);

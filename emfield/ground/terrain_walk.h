@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+#include "base/math/float_pair.h"
 #include "emfield/columns/station.h"
 #include "emscape/base/host_device.h"
 #include "emscape/base/units.h"
@@ -80,10 +81,9 @@ EMSCAPE_HD inline ChordInRaster chordInRaster(const scenario::TerrainRaster& ras
 EMSCAPE_HD inline float bilinearHeight(const float* corner_msl_m, int row_posts, float x, float y) {
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const int at = j * row_posts + i;
-  const float* const south = corner_msl_m;
-  const float* const north = corner_msl_m + row_posts;
+  const FloatPair south = floatPair(corner_msl_m + at), north = floatPair(corner_msl_m + row_posts + at);
   const float to_east = x - static_cast<float>(i), to_north = y - static_cast<float>(j);
-  return lerp(lerp(south[at], south[at + 1], to_east), lerp(north[at], north[at + 1], to_east), to_north);
+  return lerp(lerp(south.first, south.second, to_east), lerp(north.first, north.second, to_east), to_north);
 }
 
 /// Longest chord (m) whose deviation from the ground track is within the accuracy above.

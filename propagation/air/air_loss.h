@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "base/math/float_pair.h"
 #include "emscape/base/host_device.h"
 #include "propagation/inputs.h"
 
@@ -73,16 +74,20 @@ class AirColumn {
   }
 
   EMSCAPE_HD float lossDb(float height_msl_m) const {
-    const float length_m = slantRange_m(height_msl_m);
-    float loss_db = 0;
-    if (air_.gases != nullptr) loss_db += length_m * meanGases(height_msl_m);
+    float loss_db = air_.gases != nullptr ? gasesDb(height_msl_m) : 0;
     if (air_.level_rain > 0) {
+      const float length_m = slantRange_m(height_msl_m);
       const float rise = (height_msl_m - air_.station_msl_m) / (length_m > 1 ? length_m : 1.0f);
       const float upright = rise * rise < 1 ? rise * rise : 1.0f;
       loss_db += length_m * air_.partBelowRainTop(range_m_, height_msl_m) *
                  (air_.level_rain + upright * (air_.upright_rain - air_.level_rain));
     }
     return loss_db;
+  }
+
+  /// Of gases alone, where there is a table of them.
+  EMSCAPE_HD float gasesDb(float height_msl_m) const {
+    return slantRange_m(height_msl_m) * meanGases(height_msl_m);
   }
 
   /// Straight distance (m).
@@ -103,10 +108,10 @@ class AirColumn {
     int h = 0;
     const float in_height =
         place((height_msl_m - air_.lowest_msl_m) * air_.heights_per_m, air_.height_count, h);
-    const float* const near = near_row_ + h;
-    const float* const far = near + air_.height_count;
-    const float near_value = near[0] + in_height * (near[1] - near[0]);
-    const float far_value = far[0] + in_height * (far[1] - far[0]);
+    // Indices instead of pointers per lane, so that the look-ups become gathers.
+    const FloatPair near = floatPair(near_row_ + h), far = floatPair(near_row_ + air_.height_count + h);
+    const float near_value = near.first + in_height * (near.second - near.first);
+    const float far_value = far.first + in_height * (far.second - far.first);
     return near_value + in_range_ * (far_value - near_value);
   }
 

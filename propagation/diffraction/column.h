@@ -1,23 +1,26 @@
-/// Delta-Bullington for one column of receivers at the end of one terrain profile, on CPU and GPU.
+/// Delta-Bullington for one column of receivers at the end of one terrain profile, by one thread of a GPU. On
+/// the CPU: excess.cpp.
 ///
-/// Computes the losses of deltaBullington (diffraction.h) in a fraction of its time: - Posts are visited in
-/// blocks. The maxima of a block, computed beforehand, bound every slope and nu in it;
+/// Computes the losses of deltaBullington (diffraction.h) in a fraction of its time:
+/// - Posts are visited in blocks. The maxima of a block, computed beforehand, bound every slope and nu in it;
 ///   most blocks cannot exceed the values of a few peaks and are skipped.
-/// - Several receivers share each visit, which vectorises on a CPU. - With increasing height of the receiver,
-/// the post of the largest slope or nu only moves toward the transmitter: the posts beyond it are not visited
-/// again. - If a receiver has no loss with the largest margin, those above it have none. Memory per column:
-/// two numbers per block.
+/// - Several receivers share each visit.
+/// - With increasing height of the receiver, the post of the largest slope or nu only moves toward the
+///   transmitter: the posts beyond it are not visited again.
+/// - If a receiver has no loss with the largest margin, those above it have none.
+/// Memory per column: two numbers per block.
 #pragma once
 
 #include <cmath>
 
 #include "emscape/base/host_device.h"
 #include "propagation/diffraction/diffraction.h"
-#include "propagation/diffraction/profile_summary.h"
 #include "propagation/diffraction/smooth_earth.h"
 
 namespace emscape::propagation {
 
+/// Posts per block.
+constexpr int kDiffractionBlock = 16;
 /// Number of receivers that are processed together at each post.
 constexpr int kDiffractionReceivers = 8;
 

@@ -20,6 +20,19 @@ struct DiffractionExcess {
   /// @accuracy within 0.002 dB of deltaBullington in double over the same profile
   EMSCAPE_HD unsigned operator()(const ExcessColumn& column, const ExcessScratch& scratch,
                                  float* excess_db) const {
+#ifdef __CUDA_ARCH__
+    return fillInBlocks(column, scratch, excess_db);
+#else
+    return fillCpu(column, scratch, excess_db);
+#endif
+  }
+
+ private:
+  /// By vector instructions.
+  unsigned fillCpu(const ExcessColumn& column, const ExcessScratch& scratch, float* excess_db) const;
+#ifdef __CUDACC__
+  EMSCAPE_HD unsigned fillInBlocks(const ExcessColumn& column, const ExcessScratch& scratch,
+                                   float* excess_db) const {
     constexpr int kReceivers = kDiffractionReceivers;
     int k = 0;
     if (column.profile.count > 1) {
@@ -42,6 +55,7 @@ struct DiffractionExcess {
     for (; k < column.count; ++k) excess_db[k] = 0;
     return 0;
   }
+#endif
 };
 
 }  // namespace emscape::propagation

@@ -3,7 +3,7 @@
 
 #include "emscape/base/host_device.h"
 #include "propagation/diffraction/column.h"
-#include "propagation/diffraction/profile_summary.h"
+#include "propagation/terrain_profile.h"
 
 namespace emscape::propagation {
 
@@ -19,39 +19,32 @@ class ProfilePosts {
   /// @param highest_msl_m, lowered_msl_m  blockCount(profile) elements each; overwritten
   EMSCAPE_HD ProfilePosts(const TerrainProfile& profile, double half_curvature, float* highest_msl_m,
                           float* lowered_msl_m)
-      : profile_(profile), maxima_{highest_msl_m, lowered_msl_m} {
-#ifdef __CUDA_ARCH__
-    before_last_ = summarize(profile, count(), float(half_curvature), maxima_);
-#else
-    before_last_ = summarizeCpu(profile, count(), float(half_curvature), maxima_);
-#endif
+      : profile_(profile), highest_msl_m_(highest_msl_m), lowered_msl_m_(lowered_msl_m) {
+    const int last_block = (count() - 1) / kDiffractionBlock;
+    const float curvature = float(half_curvature);
+    for (int b = 0; b <= last_block; ++b) {
+      float highest = -HUGE_VALF, lowered = -HUGE_VALF;
+      for (int i = b * kDiffractionBlock; i < (b + 1) * kDiffractionBlock && i < count(); ++i) {
+        const float height = profile.height_msl_m[i], range = float(profile.range_m[i]);
+        const float here = height - curvature * range * range;
+        highest = height > highest ? height : highest;
+        lowered = here > lowered ? here : lowered;
+      }
+      highest_msl_m[b] = highest;
+      lowered_msl_m[b] = lowered;
+    }
+    for (int i = 1; i < last_block * kDiffractionBlock; ++i) before_last_.add(profile, i);
   }
 
-  EMSCAPE_HD int count() const {
-    return profile_.count - 1;
-  }
-  EMSCAPE_HD double range_m(int i) const {
-    return profile_.range_m[i];
-  }
-  EMSCAPE_HD float height_msl_m(int i) const {
-    return profile_.height_msl_m[i];
-  }
-  EMSCAPE_HD float highest_msl_m(int block) const {
-    return maxima_.highest_msl_m[block];
-  }
-  EMSCAPE_HD float lowered_msl_m(int block) const {
-    return maxima_.lowered_msl_m[block];
-  }
+  EMSCAPE_HD int count() const { return profile_.count - 1; }
+  EMSCAPE_HD double range_m(int i) const { return profile_.range_m[i]; }
+  EMSCAPE_HD float height_msl_m(int i) const { return profile_.height_msl_m[i]; }
+  EMSCAPE_HD float highest_msl_m(int block) const { return highest_msl_m_[block]; }
+  EMSCAPE_HD float lowered_msl_m(int block) const { return lowered_msl_m_[block]; }
   /// Sums before the last block, the only ones that DiffractionColumn reads.
-  EMSCAPE_HD TerrainSums sumsBefore(int) const {
-    return before_last_;
-  }
-  EMSCAPE_HD double distance_m() const {
-    return profile_.range_m[count()];
-  }
-  EMSCAPE_HD float ground_msl_m() const {
-    return profile_.height_msl_m[count()];
-  }
+  EMSCAPE_HD TerrainSums sumsBefore(int) const { return before_last_; }
+  EMSCAPE_HD double distance_m() const { return profile_.range_m[count()]; }
+  EMSCAPE_HD float ground_msl_m() const { return profile_.height_msl_m[count()]; }
   EMSCAPE_HD double sea_m() const {
     return lengthOverSea_m(
         profile_.count, [this](int i) { return profile_.range_m[i]; },
@@ -72,7 +65,7 @@ class ProfilePosts {
 
  private:
   TerrainProfile profile_;
-  BlockMaxima maxima_;
+  const float *highest_msl_m_, *lowered_msl_m_;  ///< per block
   TerrainSums before_last_;
 };
 

@@ -32,6 +32,22 @@ TEST(GroundPosts, LongerListOfRangesBeginsWithShorterOne) {
   EXPECT_LE(shorter.back(), 5e3 + 45);
 }
 
+TEST(GroundPosts, LastBeforeARangeIsTheFarthestNearerPost) {
+  const std::vector<double> all_m = postRanges(30e3, 90);
+  for (const std::size_t count : {std::size_t{1}, std::size_t{2}, std::size_t{7}, all_m.size()}) {
+    const GroundPosts ground{{}, false, all_m.data(), static_cast<int>(count)};
+    std::vector<double> ranges_m{-1, 0, 1e-9, 1e5, HUGE_VAL, NAN};
+    for (const double post_m : all_m) {
+      for (const double away_m : {-1e-9, 0.0, 1e-9, 3.0}) ranges_m.push_back(post_m + away_m);
+    }
+    for (const double range_m : ranges_m) {
+      int expected = 0;
+      while (expected + 1 < ground.range_count && all_m[expected + 1] < range_m) ++expected;
+      ASSERT_EQ(ground.lastBefore(range_m), expected) << count << " posts, " << range_m << " m";
+    }
+  }
+}
+
 TEST(GroundPosts, ChordsFollowTheGeodesic) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> part(0, 1);

@@ -130,7 +130,7 @@ TEST_P(SurfaceField, SLOW_EqualsPathsAtManyPositions) {
   EXPECT_EQ(expectTheBudgets(scenario, surface, "power_density_dbwm2", 0.01, 60), 4000);
   scenario->output.quantities = {"detection_probability"};
   scenario->output.radar_look = scenario::RadarAim::target;
-  expectTheBudgets(scenario, surface, "detection_probability", 1e-4, 60);
+  expectTheBudgets(scenario, surface, "detection_probability", 2e-4, 60);  // 0.001 dB where it is steep
   // An emitter in a valley, whose near slopes hide most positions, and rays bent by an exponential
   // atmosphere.
   scenario->platforms[0].track[0].position.latitude_deg = 36.33;

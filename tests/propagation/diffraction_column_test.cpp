@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "propagation/diffraction/excess.h"
 #include "propagation/diffraction/obstacle_maxima.h"
 #include "propagation/diffraction/profile_posts.h"
 #include "tests/emfield/random_profile.h"
@@ -77,6 +78,22 @@ std::vector<Real> lossesOf(const Posts& posts, const DiffractionModel<Real>& mod
   return losses;
 }
 
+/// The same by the vector loops of the CPU; NaN over missing terrain.
+std::vector<float> excessOf(const TerrainProfile& profile, const DiffractionModel<float>& model,
+                            float tx_msl_m, const std::vector<float>& heights) {
+  const int count = int(heights.size());
+  std::vector<double> memory(ExcessScratch::bytes(profile.count, count) / sizeof(double) + 1);
+  ExcessColumn column;
+  column.profile = profile;
+  column.height_msl_m = heights.data();
+  column.count = count;
+  std::vector<float> losses(heights.size());
+  const unsigned warnings = DiffractionExcess{model, tx_msl_m}(
+      column, ExcessScratch::in(memory.data(), profile.count, count), losses.data());
+  for (const float loss_db : losses) EXPECT_EQ(warnings == kMissingTerrain, std::isnan(loss_db));
+  return losses;
+}
+
 /// Largest difference (dB) of columns in float from paths in double, over 96 receivers above each of some
 /// posts.
 double largestDifferenceDb(const ProfileData& data, const DiffractionParameters& parameters,
@@ -92,9 +109,13 @@ double largestDifferenceDb(const ProfileData& data, const DiffractionParameters&
     std::vector<float> heights;
     for (int j = 0; j < 96; ++j) heights.push_back(float(lowest + (top_msl_m - lowest) * j / 95));
     const std::vector<float> losses = lossesOf(posts, single, float(tx), heights);
+    const std::vector<float> lanes = excessOf(posts.profile(), single, float(tx), heights);
     for (std::size_t j = 0; j < heights.size(); ++j) {
       const double truth = deltaBullington(model, posts.profile(), tx, double(heights[j])).loss_db;
-      largest = std::max(largest, std::abs(double(losses[j]) - truth));
+      largest = std::max({largest, std::abs(double(losses[j]) - truth), std::abs(double(lanes[j]) - truth)});
+      if (j % 16 != 0) continue;
+      const float alone_db = excessOf(posts.profile(), single, float(tx), {heights[j]})[0];
+      largest = std::max(largest, std::abs(double(alone_db) - truth));
     }
   }
   return largest;
@@ -180,6 +201,9 @@ TEST(DiffractionColumn, MissingTerrainIsUnknown) {
   const Posts beyond(profile.view().upTo(30), double(model.half_curvature));
   EXPECT_FALSE((DiffractionColumn<float, ProfilePosts>(model, before.posts(), 500.0f).isUnknown()));
   EXPECT_TRUE((DiffractionColumn<float, ProfilePosts>(model, beyond.posts(), 500.0f).isUnknown()));
+  EXPECT_FALSE(std::isnan(excessOf(before.profile(), model, 500, {900})[0]));
+  EXPECT_TRUE(std::isnan(excessOf(beyond.profile(), model, 500, {900})[0]));
+  EXPECT_TRUE(std::isnan(excessOf(profile.view().upTo(20), model, 500, {900})[0])) << "below the receivers";
 }
 
 TEST(DiffractionColumn, HasNoJumpsOverRealTerrain) {
@@ -212,9 +236,11 @@ TEST(DiffractionColumn, IsFiniteNextToTheAntenna) {
   for (int post = 1; post < 4; ++post) {
     const Posts posts(profile.view().upTo(post), double(model.half_curvature));
     const std::vector<float> losses = lossesOf(posts, model, 310.0f, heights);
+    const std::vector<float> lanes = excessOf(posts.profile(), model, 310.0f, heights);
     for (std::size_t j = 0; j < heights.size(); ++j) {
-      EXPECT_NEAR(losses[j], deltaBullington(model, posts.profile(), 310.f, heights[j]).loss_db, 1e-3)
-          << post << ", " << heights[j];
+      const float expected_db = deltaBullington(model, posts.profile(), 310.f, heights[j]).loss_db;
+      EXPECT_NEAR(losses[j], expected_db, 1e-3) << post << ", " << heights[j];
+      EXPECT_NEAR(lanes[j], expected_db, 1e-3) << post << ", " << heights[j];
     }
   }
 }
@@ -237,6 +263,20 @@ TEST(DiffractionColumn, TakesSeaFromThePostsAtMeanSeaLevel) {
   EXPECT_NEAR(found[0], reference_db, 1e-9);
   for (std::size_t k = 0; k < heights.size(); ++k) EXPECT_NEAR(found[k], expected[k], 1e-6);
   EXPECT_GT(land[0], found[0] + 5) << "the sea carries a vertically polarised wave of 60 MHz better";
+}
+
+TEST(DiffractionColumn, LastPostMayBeAtTheReceivers) {
+  ProfileData profile;
+  for (int i = 0; i <= 40; ++i) profile.range_m.push_back(250.0 * i);
+  profile.range_m.push_back(10e3 + 1e-5);  // the same in float
+  profile.height_msl_m.assign(profile.range_m.size(), 100);
+  const auto model = diffractionModel<float>(parametersAt(3e9));
+  const std::vector<float> heights = {150, 300, 1000, 1100, 1200, 1300, 1400, 1500, 1600, 1700};
+  const std::vector<float> losses = excessOf(profile.view(), model, 400, heights);
+  for (std::size_t j = 0; j < heights.size(); ++j) {
+    EXPECT_NEAR(losses[j], deltaBullington(model, profile.view(), 400.f, heights[j]).loss_db, 1e-3)
+        << heights[j];
+  }
 }
 
 }  // namespace
