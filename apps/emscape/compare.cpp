@@ -17,6 +17,7 @@
 #include "apps/emscape/common/study_options.h"
 #include "apps/emscape/subcommands.h"
 #include "base/text/quantity_text.h"
+#include "emfield/excess/clutter_text.h"
 #include "emscape/base/log.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/scenario/model/snapshot.h"
@@ -67,6 +68,11 @@ void printHeading(const std::string& a, const std::string& b, const study::MapGr
         grid.cell_m, grid.crs, info.name, quantityText(threshold, info.unit));
 }
 
+/// @param a, b  clutter in the losses of each
+void printClutter(const std::string& a, const std::string& b) {
+  print(a == b ? fmt::format("clutter: {}\n", a) : fmt::format("clutter: A: {}; B: {}\n", a, b));
+}
+
 void printOutcome(const std::string& report_json, const study::Comparison& comparison,
                   const std::string& quantity, const GlobalOptions& global) {
   if (global.json) {
@@ -100,6 +106,7 @@ int compareScenarios(const CompareCommand& command, const GlobalOptions& global)
                                  command.b.empty() ? "its change" : b->name);
   const study::CoverageRequest& of = run.request();
   if (!global.json) printHeading(a->name, nameOfB(command, *b), run.grid(), of.quantity, of.threshold);
+  if (!global.json) printClutter(emfield::clutterText(*a), emfield::clutterText(*b));
   const study::Comparison comparison = openOnTarget(global, "float", [&](const ComputeTarget& target) {
     study::Comparison result = run.compute(target.fieldOptions(), stoppingProgress(global));
     if (!command.volume.empty())
@@ -157,6 +164,7 @@ int compareFolders(const CompareCommand& command, const GlobalOptions& global) {
                            command.maps.view},
                           command.maps.formats);
   if (!global.json) printHeading(command.a, command.b, *a.grid, a.quantity, a.threshold);
+  if (!global.json) printClutter(emfield::clutterText(*a.scenario), emfield::clutterText(*b.scenario));
   const study::Comparison comparison = study::compareFolders(
       a, b, pairs, command.areas, [&](const study::Map& map) { folder.add(map); }, stoppingProgress(global));
   const std::string json = report::finishComparison(folder, comparison, {a.scenario, a.terrain},

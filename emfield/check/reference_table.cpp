@@ -22,7 +22,7 @@ struct Line {
 /// The lines of a file that are neither blank nor comments, cut at commas.
 std::vector<Line> readLines(const std::filesystem::path& file) {
   const std::string text = readWholeText(file);
-  document::CsvReader reader(text);
+  document::CsvReader reader(text, document::separatorOf(text));
   std::vector<Line> lines;
   for (document::CsvRow row; reader.next(row);) {
     lines.push_back({row.line, {}});

@@ -1,4 +1,4 @@
-/// Tables of reference figures: comma-separated text with a line of column names.
+/// Tables of reference figures: text separated by commas, semicolons or tabs, with a line of column names.
 #pragma once
 
 #include <filesystem>
@@ -19,6 +19,8 @@ class ReferenceTable {
   ReferenceTable(const std::filesystem::path& file, const std::vector<std::string_view>& columns);
 
   bool hasColumn(std::string_view column) const;
+  /// Names of the columns, in the file's order.
+  const std::vector<std::string>& columns() const { return names_; }
   int rows() const { return static_cast<int>(rows_.size()); }
   /// @param row     0..rows() - 1
   /// @param column  one of the names in the first line

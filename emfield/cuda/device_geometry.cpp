@@ -23,8 +23,10 @@ using emscape::cuda::uploadStaged;
 /// Measured to ten heights.
 constexpr int kMostClearHeights = 32;
 
-bool isDiffraction(const propagation::ExcessModel& model) {
-  return std::holds_alternative<DiffractionExcess>(model);
+/// True if the losses are those of the kernels of `diffraction`: over bare ground, without terminal clutter.
+bool isDiffraction(const EmitterExcess& excess, const scenario::Terrain* terrain) {
+  const bool is_raised = excess.is_raised && terrain != nullptr && terrain->view().hasCover();
+  return std::holds_alternative<DiffractionExcess>(excess.model) && !is_raised && !excess.terminal.isSet();
 }
 
 /// Work of the march on the GPU; 0: nothing.
@@ -265,7 +267,7 @@ void DeviceGeometry::computeUnmarched(const std::vector<GeometryRequest>& reques
   findShadows(works, stream);
   fillDiffractions(requests, works, stream);
   for (const Work& work : works) {
-    if (work.is_equation || !work.model || isDiffraction(work.model->model)) continue;
+    if (work.is_equation || !work.model || isDiffraction(*work.model, setup_.terrain)) continue;
     fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
   }
   for (std::size_t r = 0; r < requests.size(); ++r) {
@@ -304,7 +306,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
       tasks.push_back(
           {besideEquation(requests[r], work), AirLoss{}, work.task.station, work.ground, work.excess});
       tasks.back().station.refraction.exponential = false;  // no refraction: not on the effective earth
-    } else if (!work.is_equation && work.model && isDiffraction(work.model->model)) {
+    } else if (!work.is_equation && work.model && isDiffraction(*work.model, setup_.terrain)) {
       tasks.push_back({std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station,
                        work.ground, work.excess});
     } else {

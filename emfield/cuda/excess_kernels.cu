@@ -122,12 +122,13 @@ __global__ void __launch_bounds__(kColumnThreads)
   const unsigned warnings = task.model.fill(begun.column, scratch, part, excess_db);
   note(to, run.first + n, warnings);
   task.addAir(c, run.segment, begun.column, begin, end, excess_db);
+  task.addTerminal(c, run.segment, begun.column, begin, end, excess_db);
   for (int k = begin; k < end; ++k) to.out.excess.set(voxel(k), excess_db[k]);
 }
 
+/// `diffraction` has its own kernel over bare ground without terminal clutter.
 template <class Model>
-constexpr bool hasOwnKernel =
-    std::is_same_v<Model, DiffractionExcess> || std::is_same_v<Model, propagation::PeExcess>;
+constexpr bool hasOwnKernel = std::is_same_v<Model, propagation::PeExcess>;
 
 template <class Model>
 void launchExcess(const ExcessTask<Model>& task, const ExcessOutputs& to, const ColumnMemory& memory,
@@ -164,7 +165,8 @@ void fillExcess(const EmitterExcess& excess, const Station& station, const Exces
       [&](const auto& m) {
         using Model = std::decay_t<decltype(m)>;
         if constexpr (!hasOwnKernel<Model>) {
-          const ExcessTask<Model> task{m, excess.air, station, grid, ground};
+          ExcessTask<Model> task{m, excess.air, station, grid, ground, excess.terminal};
+          task.ground.is_raised = excess.is_raised && ground.terrain.hasCover();
           launchExcess(task, to, ColumnMemory(scratch, task.posts(), grid.layers), stream);
         }
       },

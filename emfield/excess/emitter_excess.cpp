@@ -13,6 +13,7 @@
 #include "emfield/ground/ground_posts.h"
 #include "emscape/base/error.h"
 #include "emscape/base/parallel.h"
+#include "propagation/normal_deviate.h"
 #include "propagation/registry/model_info.h"
 
 namespace emscape::emfield {
@@ -79,8 +80,27 @@ EmitterExcess EmitterExcess::withTablesAt(const float* model_tables_copy,
 }
 
 propagation::EmitterInputs emitterInputs(const Scenario& scenario, const Emitter& emitter) {
-  return {emitter.frequency_hz, emitter.polarization, emitter.propagation, scenario.ground,
-          scenario.atmosphere};
+  propagation::EmitterInputs inputs{emitter.frequency_hz, emitter.polarization, emitter.propagation,
+                                    scenario.ground, scenario.atmosphere};
+  if (scenario::hasClutterMap(scenario))
+    inputs.ground.terminal_clutter = propagation::TerminalClutterModel::none;
+  return inputs;
+}
+
+propagation::TerminalClutter terminalClutter(const Scenario& scenario, const Emitter& emitter,
+                                             const Station& station, const scenario::Terrain* terrain) {
+  const propagation::EmitterInputs inputs = emitterInputs(scenario, emitter);
+  if (!propagation::hasTerminalClutter(inputs)) return {};
+  const propagation::Ground& ground = inputs.ground;
+  propagation::TerminalClutter clutter;
+  clutter.frequency_ghz = static_cast<float>(emitter.frequency_hz / 1e9);
+  clutter.deviate = static_cast<float>(-propagation::normalDeviate(ground.terminal_clutter_percent / 100));
+  clutter.below_m = static_cast<float>(ground.terminal_clutter_below_m);
+  const double ground_msl_m =
+      terrain == nullptr ? 0 : terrain->heightMsl_m(station.latitude_deg, station.longitude_deg);
+  clutter.at_transmitter = ground.terminal_clutter_ends == propagation::ClutterEnds::both &&
+                           station.height_msl_m - ground_msl_m <= ground.terminal_clutter_below_m;
+  return clutter;
 }
 
 PathInputs pathInputs(const Scenario& scenario, const Emitter& emitter, const scenario::BeamPose& beam,
@@ -159,16 +179,19 @@ EmitterExcess planExcess(const PathInputs& inputs, const propagation::RadialInpu
 EmitterExcess planExcess(const Scenario& scenario, const Emitter& emitter, const scenario::BeamPose& beam,
                          const Station& station, const scenario::Terrain* terrain,
                          const GridColumns& columns) {
+  EmitterExcess excess;
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   const bool needs_extent = propagation::needsExtent(emitterInputs(scenario, emitter));
   if (model.radial == nullptr) {
     std::optional<propagation::PathPoints> points;
     if (columns.every_height && model.excess_at != nullptr) points = pathPoints(station, columns);
-    return planExcess(pathInputs(scenario, emitter, beam, station, terrain,
-                                 needs_extent ? pathExtent(station, columns) : PathExtent{}),
-                      nullptr, points ? &*points : nullptr);
+    excess = planExcess(pathInputs(scenario, emitter, beam, station, terrain,
+                                   needs_extent ? pathExtent(station, columns) : PathExtent{}),
+                        nullptr, points ? &*points : nullptr);
+    excess.terminal = terminalClutter(scenario, emitter, station, terrain);
+    excess.is_raised = propagation::isRaisedByClutter(emitter.propagation);
+    return excess;
   }
-  EmitterExcess excess;
   inModel(emitter, [&] {
     const PathExtent extent = pathExtent(station, columns);
     const propagation::RadialInputs radials = radialInputs(station, columns, terrain, extent);

@@ -12,6 +12,7 @@
 #include "emscape/scenario/model/snapshot.h"
 #include "propagation/air/air_loss.h"
 #include "propagation/inputs.h"
+#include "propagation/p2108/p2108.h"
 #include "propagation/radial.h"
 #include "propagation/registry/excess_model.h"
 
@@ -25,6 +26,8 @@ namespace emscape::emfield {
 struct EmitterExcess {
   propagation::ExcessModel model;
   propagation::AirLoss air;
+  propagation::TerminalClutter terminal;
+  bool is_raised = false;  ///< see propagation::isRaisedByClutter
   /// The pending march for the model's tables; null if they are complete, or if there are none.
   std::shared_ptr<propagation::FieldMarch> march;
 
@@ -46,6 +49,12 @@ propagation::EmitterInputs emitterInputs(const scenario::Scenario& scenario,
 propagation::PathInputs pathInputs(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
                                    const scenario::BeamPose& beam, const Station& station,
                                    const scenario::Terrain* terrain, const propagation::PathExtent& extent);
+
+/// Loss of an emitter's paths at their ends; none where a map of the clutter is given.
+/// @param terrain  null: a smooth earth at mean sea level
+propagation::TerminalClutter terminalClutter(const scenario::Scenario& scenario,
+                                             const scenario::Emitter& emitter, const Station& station,
+                                             const scenario::Terrain* terrain);
 
 /// Calls a function and adds to its Errors the names of emitter and model and the line of the model's
 /// settings.

@@ -144,7 +144,11 @@ unsigned fillExcessCpu(const EmitterExcess& excess, const Station& station, cons
                        const GroundPosts& ground, const TerrainBounds* bounds, const ExcessOutput& out) {
   return std::visit(
       [&](const auto& m) {
-        return fill(ExcessTask<std::decay_t<decltype(m)>>{m, excess.air, station, grid, ground}, bounds, out);
+        using Model = std::decay_t<decltype(m)>;
+        ExcessTask<Model> task{m, excess.air, station, grid, ground, excess.terminal};
+        task.ground.is_raised = excess.is_raised && ground.terrain.hasCover();
+        // The bounds are those of bare ground.
+        return fill(task, task.ground.is_raised ? nullptr : bounds, out);
       },
       excess.model);
 }

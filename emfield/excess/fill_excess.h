@@ -83,6 +83,7 @@ struct ExcessTask {
   Station station;
   ExcessGrid grid;
   GroundPosts ground;  ///< for models that need terrain
+  propagation::TerminalClutter terminal = {};
 
   /// Posts of the longest profile.
   int posts() const { return ground.range_count + 1; }
@@ -151,6 +152,23 @@ struct ExcessTask {
 #endif
   }
 
+  /// Adds the loss by clutter at the ends of the paths to some heights of a segment.
+  EMSCAPE_HD void addTerminal(std::size_t c, int segment, const ExcessColumn& part, int begin, int end,
+                              float* excess_db) const {
+    if (!terminal.isSet()) return;
+    float ground_msl_m = part.ground_msl_m;
+    if constexpr (!Model::kNeedsTerrain) {
+      ground_msl_m = grid.ground_msl_m != nullptr
+                         ? grid.ground_msl_m[c]
+                         : groundAt(station, ground, grid.coordinatesOf(station, c, segment));
+    }
+    const float* const t_m = grid.t_m + grid.firstLayer(segment);
+    for (int k = begin; k < end; ++k) {
+      const auto height_msl_m = static_cast<float>(heightMsl_m(grid.columns[c], static_cast<double>(t_m[k])));
+      excess_db[k] += terminal.lossDb(static_cast<float>(part.range_m), height_msl_m - ground_msl_m);
+    }
+  }
+
   /// Fills scratch.excess_db with the excess of a column's voxels, lowest first.
   /// @param reflected   dense order; receives the column's reflected rays if the model has any
   /// @param mechanisms  dense order; receives its mechanisms if the model has several; null: not needed
@@ -182,6 +200,7 @@ struct ExcessTask {
         warnings |= model(part, scratch, excess_db);
       }
       addAir(c, segment, part, 0, part.count, excess_db);
+      addTerminal(c, segment, part, 0, part.count, excess_db);
     }
     return warnings;
   }

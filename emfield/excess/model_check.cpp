@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "emfield/excess/clutter_text.h"
 #include "emfield/excess/elevation_cut.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emscape/base/error.h"
@@ -68,6 +69,7 @@ std::vector<std::string> checkModel(const Scenario& scenario, const Emitter& emi
   const ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   checkElevationCut(scenario, emitter);
   std::vector<std::string> warnings = coarseIntervals(scenario, emitter);
+  for (std::string& warning : clutterWarnings(scenario, emitter)) warnings.push_back(std::move(warning));
   for (const propagation::InputFault& fault : model.check(emitterInputs(scenario, emitter))) {
     const std::string message = inModel(emitter, model.name, fault.message);
     if (fault.is_refused) {

@@ -419,6 +419,13 @@ inline void setLosses(const SectorTask& sector, PathMemory& memory) {
         of_path_db[n] += above.lossDb(static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n])));
       }
     }
+    if (sector.task.terminal.isSet()) {
+      for (int n = 0; n < grid.layers; ++n) {
+        const auto height_msl_m = static_cast<float>(to->base_msl_m + static_cast<double>(grid.t_m[n]));
+        of_path_db[n] +=
+            sector.task.terminal.lossDb(static_cast<float>(to->distance_m), height_msl_m - to->ground_msl_m);
+      }
+    }
     for (int n = 0; n < grid.layers; ++n) {
       sector.out.excess.set(n * grid.column_count + column, of_path_db[n]);
     }

@@ -31,6 +31,7 @@ struct GroundPosts {
   bool is_smooth = true;  ///< a smooth earth at mean sea level; there is no terrain
   const double* ranges_m = nullptr;
   int range_count = 0;
+  bool is_raised = false;  ///< profiles are raised by the clutter of the land cover; see raiseByClutter()
 
   /// Index of the last post nearer than a range; 0 if there is none. Most posts are equally far apart: an
   /// estimate from the last one, then a few steps.
@@ -116,6 +117,20 @@ EMSCAPE_HD inline void readCover(const Station& station, const GroundPosts& grou
   }
 }
 
+/// Distance (m) from the ends of a path within which its profile is that of the bare ground: the clutter
+/// around the antennas is not an edge on the path. @see P.452-18, section 4.2, which has the same
+constexpr double kClutterFree_m = 50;
+
+/// Adds the clutter's height to the posts of a profile, except near its ends.
+/// @param cover_m  see TerrainProfile
+EMSCAPE_HD inline void raiseByClutter(const double* range_m, const float* cover_m, int count,
+                                      float* ground_msl_m) {
+  const double last_m = range_m[count - 1] - kClutterFree_m;
+  for (int i = 0; i < count; ++i) {
+    if (range_m[i] > kClutterFree_m && range_m[i] < last_m && cover_m[i] > 0) ground_msl_m[i] += cover_m[i];
+  }
+}
+
 /// The height (m) of the ground at a point.
 EMSCAPE_HD inline float groundAt(const Station& station, const GroundPosts& ground,
                                  const FastInverse& point) {
@@ -143,6 +158,7 @@ EMSCAPE_HD TerrainProfile readProfile(const Station& station, const GroundPosts&
   if (!ground.is_smooth && ground.terrain.hasCover()) {
     readCover(station, ground, point, scratch.range_m, scratch.ground_msl_m, last + 1, scratch.cover_m);
     profile.cover_m = scratch.cover_m;
+    if (ground.is_raised) raiseByClutter(scratch.range_m, scratch.cover_m, last + 1, scratch.ground_msl_m);
   }
   return profile;
 }

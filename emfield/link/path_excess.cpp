@@ -1,9 +1,13 @@
 #include "emscape/emfield/link/path_excess.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "emfield/columns/station.h"
+#include "emfield/excess/clutter_text.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emfield/excess/model_check.h"
 #include "emfield/ground/ground_posts.h"
@@ -53,11 +57,54 @@ PathExcess pathExcess(const scenario::Scenario& scenario, const scenario::Emitte
     readCover(station, ground, along, posts.range_m, posts.height_msl_m, posts.count, cover_m.data());
     posts.cover_m = cover_m.data();
   }
+  const bool is_raised = propagation::isRaisedByClutter(emitter.propagation);
   propagation::PathColumn path(posts, profile.range_m, end_msl_m, profile.azimuth_rad);
-  inModel(emitter, [&] { static_cast<propagation::Explanation&>(excess) = model.explain(inputs, path); });
+  inModel(emitter, [&] {
+    const auto bare = [&](std::vector<float>& bare_m) {
+      for (float& height_m : bare_m) height_m = height_m > 0 ? 0 : height_m;
+    };
+    const bool has_heights =
+        std::any_of(cover_m.begin(), cover_m.end(), [](float height_m) { return height_m > 0; });
+    if (!has_heights || !usesClutterMap(emitter.propagation)) {
+      static_cast<propagation::Explanation&>(excess) = model.explain(inputs, path);
+      return;
+    }
+    // The parts of the path over bare ground, and what the clutter adds to their sum.
+    std::vector<float> bare_m = cover_m, raised_msl_m = profile.ground_msl_m;
+    bare(bare_m);
+    propagation::TerrainProfile without = posts, with = posts;
+    without.cover_m = bare_m.data();
+    if (is_raised) raiseByClutter(posts.range_m, posts.cover_m, posts.count, raised_msl_m.data());
+    with.height_msl_m = raised_msl_m.data();
+    propagation::PathColumn over_ground(without, profile.range_m, end_msl_m, profile.azimuth_rad);
+    propagation::PathColumn over_clutter(with, profile.range_m, end_msl_m, profile.azimuth_rad);
+    static_cast<propagation::Explanation&>(excess) = model.explain(inputs, over_ground);
+    const propagation::Explanation all = model.explain(inputs, over_clutter);
+    path.addWarnings(over_clutter.warnings());
+    excess.clutter_db = all.loss_db - excess.loss_db;
+    excess.add("clutter", "trees and buildings along the path", excess.clutter_db);
+    excess.why = all.why;
+  });
   if (propagation::hasAirLoss(inputs.emitter)) {
     std::vector<float> tables;
     addAir(propagation::airLoss(inputs, propagation::hasGases(inputs.emitter), tables), profile, excess);
+  }
+  const propagation::TerminalClutter terminal = terminalClutter(scenario, emitter, station, terrain);
+  const auto end_agl_m = static_cast<float>(profile.end.height_msl_m) - profile.ground_msl_m.back();
+  if (const int ends = terminal.ends(static_cast<float>(profile.range_m), end_agl_m); ends > 0) {
+    const auto loss_db = static_cast<double>(terminal.lossDb(static_cast<float>(profile.range_m), end_agl_m));
+    excess.add("terminal_clutter",
+               fmt::format("clutter around {} (P.2108-1, {:g} % of locations)",
+                           ends > 1 ? "both ends" : "one end", scenario.ground.terminal_clutter_percent),
+               loss_db);
+    excess.clutter_db += loss_db;
+  }
+  if (model.on_smooth_surface && profile.end.height_msl_m < inputs.surface_msl_m) {
+    excess.warnings.push_back(fmt::format(
+        "emitter '{}': the point is {:.0f} m below the smooth surface of '{}' ({:.0f} m above "
+        "mean sea level), where the model has no field of its own; 'ground: {{surface_msl_m: "
+        "...}}' sets the surface",
+        emitter.name, inputs.surface_msl_m - profile.end.height_msl_m, model.name, inputs.surface_msl_m));
   }
   for (std::string& warning : pathWarnings(emitter, inputs, path.warnings()))
     excess.warnings.push_back(std::move(warning));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "emscape/base/units.h"
+#include "emscape/emfield/link/path_cause.h"
 
 namespace emscape::emfield {
 namespace {
@@ -80,6 +81,13 @@ std::string pointingText(const PathBudget& budget) {
                      radToDeg(pointing.off_axis_rad), -pattern_db);
 }
 
+/// What trees and buildings cost, if that is worth saying.
+std::string clutterCostText(const PathBudget& budget) {
+  constexpr double kWorthSaying_db = 1;
+  if (budget.excess.clutter_db < kWorthSaying_db) return "";
+  return fmt::format(", {:.1f} dB of it by trees and buildings", budget.excess.clutter_db);
+}
+
 /// The jammers: "'helicopter' and 2 more".
 std::string jammersText(const PathJamming& jamming) {
   return "'" + jamming.strongest + "'" +
@@ -130,7 +138,9 @@ std::string verdictOf(const PathBudget& budget) {
   std::string path = pathText(budget);
   const std::string jammed = jammedText(budget);
   if (!jammed.empty()) path[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(path[0])));
-  return jammed + path + pointingText(budget) + detectionText(budget) + ".";
+  const std::string decision = decisionText(budget);
+  return jammed + path + clutterCostText(budget) + pointingText(budget) + detectionText(budget) + "." +
+         (decision.empty() ? "" : " " + decision);
 }
 
 }  // namespace emscape::emfield

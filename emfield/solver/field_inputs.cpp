@@ -20,8 +20,9 @@ auto membersOf(const GeodeticPosition& position) {
 }
 auto membersOf(const propagation::Ground& ground) {
   const auto& [kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, sea_by_height,
-               place] = ground;
-  return std::tie(kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, sea_by_height);
+               terminal_clutter, percent, below_m, ends, place] = ground;
+  return std::tie(kind, relative_permittivity, conductivity_s_m, roughness_m, surface_msl_m, sea_by_height,
+                  terminal_clutter, percent, below_m, ends);
 }
 auto membersOf(const propagation::Atmosphere& atmosphere) {
   const auto& [k_factor, pressure_hpa, temperature_k, vapour_g_m3, rain_mm_h, rain_height_m, gases,

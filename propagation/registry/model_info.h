@@ -104,7 +104,12 @@ bool settingsEnter(const ModelInfo& settings_of, const ModelInfo& chosen);
 bool hasGases(const EmitterInputs& inputs);
 /// True if attenuation by gases or rain is added.
 bool hasAirLoss(const EmitterInputs& inputs);
-/// True if the paths have an excess loss, from the model or the atmosphere.
+/// True if ends of paths may have the loss of TerminalClutter.
+bool hasTerminalClutter(const EmitterInputs& inputs);
+/// True for models whose profiles are raised by the clutter of the land cover: their terrain is the surface
+/// that waves meet. p1812 and p452 read the clutter themselves.
+bool isRaisedByClutter(const ModelSettings& settings);
+/// True if the paths have an excess loss, from the model, the atmosphere or clutter.
 bool hasExcess(const EmitterInputs& inputs);
 /// True if PathInputs::extent is read.
 bool needsExtent(const EmitterInputs& inputs);

@@ -6,6 +6,7 @@
 #include "propagation/horizon/model.h"
 #include "propagation/itm/model.h"
 #include "propagation/p1812/model.h"
+#include "propagation/p2108/p2108.h"
 #include "propagation/p452/model.h"
 #include "propagation/p528/model.h"
 #include "propagation/p528/p528.h"
@@ -251,9 +252,20 @@ bool hasAirLoss(const EmitterInputs& inputs) {
   return inputs.atmosphere.rain_mm_h > 0 || hasGases(inputs);
 }
 
+bool hasTerminalClutter(const EmitterInputs& inputs) {
+  const PropagationModel model = inputs.settings.model;
+  return inputs.ground.terminal_clutter == TerminalClutterModel::p2108 && model != PropagationModel::p528 &&
+         model != PropagationModel::parabolic_equation && kP2108Frequency.holds(inputs.frequency_hz);
+}
+
+bool isRaisedByClutter(const ModelSettings& settings) {
+  return settings.model == PropagationModel::diffraction ||
+         (settings.model == PropagationModel::itm && settings.itm.form == ItmForm::point_to_point);
+}
+
 bool hasExcess(const EmitterInputs& inputs) {
   const ModelInfo& row = modelInfo(inputs.settings.model);
-  return row.excess != nullptr || row.radial != nullptr || hasAirLoss(inputs);
+  return row.excess != nullptr || row.radial != nullptr || hasAirLoss(inputs) || hasTerminalClutter(inputs);
 }
 
 bool needsExtent(const EmitterInputs& inputs) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/files/json_writing.h"
+#include "emfield/excess/clutter_text.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/study/maps/area.h"
 #include "report/json.h"
@@ -109,7 +110,10 @@ Json comparisonJson(const study::Comparison& comparison, const study::ComparedSc
   const auto nameOf = [](const scenario::Scenario& scenario) {
     Json edits = Json::array();
     for (const scenario::Edit& edit : scenario.edits()) edits.push_back(edit.path + "=" + edit.value);
-    return Json{{"scenario", scenario.name}, {"scenario_hash", scenario.hash}, {"set", edits}};
+    return Json{{"scenario", scenario.name},
+                {"scenario_hash", scenario.hash},
+                {"set", edits},
+                {"clutter", emfield::clutterText(scenario)}};
   };
   Json json{{"a", nameOf(*a.scenario)}, {"b", nameOf(*b.scenario)}};
   json["comparison"] = Json::array();

@@ -43,6 +43,7 @@ Json exposureJson(const Exposure& exposure) {
             {"threshold", request.threshold},
             {"radar_look", toString(request.look)},
             {"cross_section", exposure.cross_section},
+            {"clutter", exposure.clutter},
             {"emitters", exposure.names},
             {"together", summaryJson(exposure.together, false)}};
   json["each"] = Json::array();
@@ -77,6 +78,7 @@ std::string exposureText(const Exposure& exposure) {
             request.look == scenario::RadarAim::target ? "at the platform" : "as their scan points",
             exposure.cross_section);
   }
+  out.add("clutter: {}\n", exposure.clutter);
   out.add("  {:<22} {:>9} {:>8} {:>8} {:>9} {:>9} {:>14} {:>8} {:>14}\n", "emitter", "max", "at s", "first s",
           "reached", "unknown", "longest gap s", "best", "in any look");
   const auto row = [&](const ExposureSummary& summary, const std::string& best) {

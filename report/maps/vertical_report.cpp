@@ -61,6 +61,7 @@ Json verticalJson(const VerticalDiagram& diagram, bool with_grid) {
   Json json{{"scenario", diagram.scenario},
             {"emitter", diagram.emitter},
             {"model", diagram.model},
+            {"clutter", diagram.clutter},
             {"time_s", request.time_s},
             {"quantity", scenario::info(request.quantity).name},
             {"unit", diagram.unit},
@@ -113,6 +114,7 @@ std::string verticalText(const VerticalDiagram& diagram) {
     out.add("Smooth earth of {:.4g} times its radius; the antenna is {:.1f} m above it\n", diagram.k_factor,
             diagram.station_msl_m);
   }
+  out.add("clutter: {}\n", diagram.clutter);
   out.add("  {:>11} {:>12} {:>14} {:>9}   {}\n", "azimuth deg", "farthest km", "from height m", "covered",
           "contours");
   bool has_edge = false;

@@ -5,6 +5,7 @@
 
 #include "base/files/whole_file.h"
 #include "base/text/csv_cell.h"
+#include "emfield/excess/clutter_text.h"
 #include "emfield/link/path_verdict.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
@@ -276,6 +277,7 @@ Json toJson(const NamedLinks& links) {
                           {"rows", rowsJson(detection.rows)}});
   }
   return {{"scenario", links.file},
+          {"clutter", emfield::clutterText(*links.scenario)},
           {"links", of_receivers},
           {"detections", of_targets},
           {"warnings", links.report.warnings}};
@@ -287,6 +289,7 @@ std::string linksText(const NamedLinks& links) {
   addDetectionSummary(out, links);
   for (const Link& link : links.report.links) addLink(out, links, link);
   for (const Detection& detection : links.report.detections) addDetection(out, links, detection);
+  out.add("\nclutter: {}\n", emfield::clutterText(*links.scenario));
   return out.take();
 }
 

@@ -6,10 +6,12 @@
 #include <cmath>
 
 #include "base/text/quantity_text.h"
+#include "emfield/excess/clutter_text.h"
 #include "emfield/link/path_report.h"
 #include "emfield/link/path_section.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
+#include "emscape/emfield/link/path_cause.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "propagation/registry/model_info.h"
 #include "report/paths/profile_plot.h"
@@ -224,12 +226,14 @@ Json toJson(const ProfileReport& report) {
           {"model", toString(budget.model)},
           {"model_why", budget.excess.why},
           {"air", airSource(*report.snapshot.scenario)},
+          {"clutter", emfield::clutterText(*report.snapshot.scenario, emitterOf(report))},
           {"excess_db", number(budget.excess.loss_db)},
           {"excess_parts_db", excess_parts},
           {"budget", terms},
           {"compared", compared},
           {"warnings", budget.warnings},
           {"verdict", budget.verdict},
+          {"decides", emfield::decisionText(budget)},
           {"profile",
            {{"range_m", budget.profile.ranges_m},
             {"ground_msl_m", budget.profile.ground_msl_m},
@@ -249,6 +253,7 @@ std::string profileText(const ProfileReport& report) {
   addCompared(out, report.compared, budget);
   const std::string air = airSource(*report.snapshot.scenario);
   if (!air.empty()) out.add("\nAir: {}\n", air);
+  out.add("\nclutter: {}\n", emfield::clutterText(*report.snapshot.scenario, emitterOf(report)));
   if (!budget.warnings.empty()) out.add("\n");
   for (const std::string& warning : budget.warnings) out.add("Warning: {}\n", warning);
   out.add("\n{}\n", budget.verdict);

@@ -224,6 +224,10 @@ propagation::Ground parseGround(const Section& section) {
   ground.roughness_m = section.number("roughness_m");
   ground.surface_msl_m = section.optionalNumber("surface_msl_m");
   ground.sea_by_height = section.optionalBoolean("sea_by_height").value_or(false);
+  ground.terminal_clutter = section.choice<propagation::TerminalClutterModel>("terminal_clutter");
+  ground.terminal_clutter_percent = section.number("terminal_clutter_percent");
+  ground.terminal_clutter_below_m = section.number("terminal_clutter_below_m");
+  ground.terminal_clutter_ends = section.choice<propagation::ClutterEnds>("terminal_clutter_ends");
   ground.location = section.location();
   return ground;
 }

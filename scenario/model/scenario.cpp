@@ -128,6 +128,11 @@ TerrainPtr loadTerrain(const Scenario& scenario) {
                           : nullptr;
 }
 
+bool hasClutterMap(const Scenario& scenario) {
+  return scenario.terrain &&
+         (scenario.terrain->land_cover.isGiven() || !scenario.terrain->surface_files.empty());
+}
+
 bool mayLackTerrain(const Scenario& scenario, bool otherwise) {
   if (!scenario.terrain || !scenario.terrain->missing) return otherwise;
   return *scenario.terrain->missing != MissingTerrain::error;

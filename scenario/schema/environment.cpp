@@ -1,6 +1,7 @@
 // Sections of the environment: region, terrain, atmosphere, ground.
 #include "emscape/scenario/model/scenario.h"
 #include "propagation/air/rain.h"
+#include "propagation/p2108/p2108.h"
 #include "scenario/schema/sections.h"
 #include "scenario/schema/values.h"
 
@@ -183,6 +184,23 @@ const ObjectSpec& groundSpec() {
               "sea_by_height", simple(ValueType::boolean),
               "true: sea where the terrain is at or below mean sea level; diffraction weighs the losses over "
               "sea and over this ground by their parts of the path; p1812 and p452 have their own, `zone`"),
+          byDefault("terminal_clutter", choiceOf<propagation::TerminalClutterModel>(),
+                    toString(Ground{}.terminal_clutter),
+                    "p2108: loss by trees and buildings around low ends of paths, a statistic of towns and "
+                    "suburbs (ITU-R P.2108-1, 3.2; 0.5 to 67 GHz, from 250 m on); not used where "
+                    "`land_cover` or `surface_files` of the terrain tell what stands there, nor by p528 and "
+                    "parabolic_equation"),
+          byDefault(
+              "terminal_clutter_percent",
+              number("percent").from(propagation::kP2108Location.min).to(propagation::kP2108Location.max),
+              Ground{}.terminal_clutter_percent, "of locations in which that loss is not exceeded"),
+          byDefault("terminal_clutter_below_m", number("m").from(0).to(100),
+                    Ground{}.terminal_clutter_below_m,
+                    "ends up to this height above the ground are within the clutter"),
+          byDefault(
+              "terminal_clutter_ends", choiceOf<propagation::ClutterEnds>(),
+              toString(Ground{}.terminal_clutter_ends),
+              "receiver: the far ends of paths (receivers, targets, voxels); both: the emitters' as well"),
       }};
   return spec;
 }

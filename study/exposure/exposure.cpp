@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "emfield/excess/clutter_text.h"
 #include "emfield/link/target_view.h"
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/snapshot.h"
@@ -295,6 +296,7 @@ Exposure computeExposure(const std::shared_ptr<const scenario::Scenario>& scenar
   exposure.scenario = scenario->name;
   exposure.platform = scenario->platforms[request.platform].name;
   exposure.unit = scenario::info(request.quantity).unit;
+  exposure.clutter = emfield::clutterText(*scenario);
   if (scenario::needsRadar(request.quantity)) {
     exposure.cross_section = request.target ? fmt::format("that of target '{}' from each radar",
                                                           scenario->targets[*request.target].name)

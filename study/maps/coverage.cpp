@@ -10,6 +10,7 @@
 #include "emscape/base/error.h"
 #include "emscape/scenario/model/snapshot.h"
 #include "scenario/scan/scan_sampling.h"
+#include "study/maps/causes.h"
 #include "study/maps/least_heights.h"
 #include "study/maps/surface_maps.h"
 #include "study/maps/warnings.h"
@@ -212,6 +213,9 @@ void checkRequest(const CoverageRequest& request, const scenario::Scenario& scen
     }
     if (isOfJamming(product) && !scenario::needsJammer(request.quantity)) {
       refuse(fmt::format("needs a quantity that jamming affects, not '{}'", quantity.name));
+    }
+    if (product == Product::cause && !hasCauses(request.quantity)) {
+      refuse(fmt::format("needs a quantity of the budget of a path, not '{}'", quantity.name));
     }
     if (product != Product::value && quantity.categorical) {
       refuse(fmt::format("needs a level; quantity '{}' is an index", quantity.name));

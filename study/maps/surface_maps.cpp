@@ -9,6 +9,7 @@
 #include "emfield/channels/categories.h"
 #include "emscape/base/parallel.h"
 #include "emscape/scenario/model/snapshot.h"
+#include "study/maps/causes.h"
 
 namespace emscape::study {
 namespace {
@@ -34,6 +35,7 @@ std::vector<int> classColors(Product product) {
   if (product == Product::covered) return {kGreen, kGreen};
   if (product == Product::jam_loss) return {kVermilion, kVermilion};
   if (product == Product::burn_through) return {kVermilion, kVermilion, kGreen};
+  if (product == Product::cause) return {2, 7, 0, 5, 3, 4, 6, 1};
   return {};
 }
 
@@ -151,6 +153,7 @@ SurfaceValues SurfaceField::at(const std::shared_ptr<const scenario::Scenario>& 
   solver_->update(snapshot, terrain);
   const std::vector<volume::Volume>& volumes = solver_->volumes();
   SurfaceValues values;
+  values.terrain = terrain;
   values.all = volumes.front().host();
   values.partly_unknown = solver_->partlyUnknown(0);
   if (options_.surface->reference == HeightReference::mean_sea_level)
@@ -211,7 +214,11 @@ void SurfaceMaps::addTime(std::size_t index, const std::shared_ptr<const scenari
       std::vector<PixelAnswer> of_product = answers;
       if (needsAllEmitters(product))
         std::replace(of_product.begin(), of_product.end(), PixelAnswer::bound, PixelAnswer::unknown);
-      std::vector<float> shown = valuesOf(product, values, k, of_product);
+      std::vector<float> shown =
+          product == Product::cause
+              ? causesOf(grid_, request_, scenario, values.terrain.get(), layers_[n].height, time_s,
+                         of_product, [&](std::size_t p) { return isCovered(valueAt(*values.all, k, p)); })
+              : valuesOf(product, values, k, of_product);
       setAnswers(map, std::move(of_product), shown);
       setValues(map, grid_, std::move(shown));
       take(std::move(map));

@@ -43,6 +43,7 @@ struct SurfaceValues {
   std::vector<float> ground_msl_m;                      ///< for heights above the sea; empty: none is known
   std::vector<OfOne> each;                              ///< if a product needs them
   std::shared_ptr<const volume::DenseVolume> unjammed;  ///< if a product needs it
+  scenario::TerrainPtr terrain;
 };
 
 /// The field of one reference of height, which is kept between times and scenarios.

@@ -10,6 +10,7 @@
 #include "base/files/unfinished_file.h"
 #include "base/files/whole_file.h"
 #include "base/text/quantity_text.h"
+#include "emfield/excess/clutter_text.h"
 #include "emscape/base/error.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/scenario/model/clock.h"
@@ -199,6 +200,7 @@ struct MapFolder::State {
     if (study.scenarios.size() == 1) {
       for (const std::string& sentence : coverageSummary(study, records)) report.summary(sentence);
     }
+    report.summary("clutter: " + emfield::clutterText(*study.scenarios.front()));
     report.warnings(warnings);
     report.section("Areas and ranges");
     report.table(tableOf(records));

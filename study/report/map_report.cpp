@@ -11,6 +11,7 @@
 #include "base/files/json_writing.h"
 #include "base/geodesy/fast_geodesy.h"
 #include "base/text/quantity_text.h"
+#include "emfield/excess/clutter_text.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/scenario/model/clock.h"
 #include "emscape/scenario/model/snapshot.h"
@@ -148,6 +149,7 @@ std::string reportJsonOf(const MapStudy& study, const std::vector<MapRecord>& re
               {"cell_m", grid.cell_m},
               {"pixels", {grid.width, grid.height}},
               {"area_weights", "ellipsoid"},
+              {"clutter", emfield::clutterText(scenario)},
               {"emitters", emitterNames(scenario)}};
   if (!more.empty()) report.update(Json::parse(more));
   report["files"] = files;

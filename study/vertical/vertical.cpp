@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "emfield/columns/station.h"
+#include "emfield/excess/clutter_text.h"
 #include "emscape/base/error.h"
 #include "emscape/base/units.h"
 #include "emscape/scenario/model/snapshot.h"
@@ -313,6 +314,7 @@ VerticalDiagram computeVertical(const std::shared_ptr<const scenario::Scenario>&
   diagram.scenario = own->name;
   diagram.emitter = own->emitters[e].name;
   diagram.model = toString(own->emitters[e].propagation.model);
+  diagram.clutter = emfield::clutterText(*own, own->emitters[e]);
   diagram.unit = scenario::info(request.quantity).unit;
   diagram.latitude_deg = state.position.latitude_deg;
   diagram.longitude_deg = state.position.longitude_deg;

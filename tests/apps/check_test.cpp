@@ -100,6 +100,46 @@ TEST(Check, TakesTheFolderOfOneFamily) {
   EXPECT_THAT(report["absent"], testing::Not(testing::Contains("geoid")));
 }
 
+TEST(Check, ComparesATableOfMeasuredPaths) {
+  const TemporaryFolder folder;
+  put(folder, "losses.csv", "lat;lon;pl;site\n36.30;-84.25;130;a\n36.31;-84.25;125;a\n36.32;-84.25;125;b\n");
+  const std::string table = (folder.path() / "losses.csv").string();
+  const std::vector<std::string> arguments{
+      "check",
+      table,
+      "--scenario",
+      sourceFile("scenarios/jacksboro.yaml"),
+      "--columns",
+      "transmitter_latitude_deg=36.27,transmitter_longitude_deg=-84.24167,transmitter_height_agl_m=20",
+      "--columns",
+      "receiver_latitude_deg=lat,receiver_longitude_deg=lon,receiver_height_agl_m=2,frequency_mhz=868,loss_"
+      "db=pl",
+      "--where",
+      "site=a"};
+  const auto with = [&](std::vector<std::string> more) {
+    std::vector<std::string> all = arguments;
+    all.insert(all.end(), more.begin(), more.end());
+    return run(all);
+  };
+  const ProgramResult text = with({});
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("losses.csv: 2 of 3 rows, 2 paths of 3.4"));
+  EXPECT_THAT(text.out, HasSubstr("clutter: none"));
+  EXPECT_THAT(text.out, testing::ContainsRegex("diffraction +2 +[-+][0-9.]+ +[0-9.]+ +[0-9.]+"));
+  const ProgramResult result = with({"--json", "--model", "free_space,itm"});
+  const json report = json::parse(result.out);
+  EXPECT_EQ(report["rows_selected"], 2);
+  ASSERT_EQ(report["models"].size(), 2u);
+  EXPECT_EQ(report["models"][1]["model"], "itm");
+  EXPECT_EQ(report["models"][1]["all"]["paths"], 2);
+  EXPECT_EQ(report["paths"][0]["measured_db"], 130);
+  EXPECT_EQ(report["paths"][1]["line"], 3);
+  EXPECT_EQ(with({"--where", "lat>80"}).status, 3);
+  const ProgramResult of_folder = run({"check", folder.path().string(), "--model", "itm"});
+  EXPECT_EQ(of_folder.status, 2);
+  EXPECT_THAT(of_folder.err, HasSubstr("options of measured paths are given"));
+}
+
 TEST(Check, RefusesAFolderWithoutDatasets) {
   const TemporaryFolder folder;
   const ProgramResult result = run({"check", folder.path().string()});

@@ -14,6 +14,7 @@
 #include "propagation/air/gases.h"
 #include "propagation/air/rain.h"
 #include "propagation/limits.h"
+#include "propagation/p2108/p2108.h"
 #include "propagation/registry/model_info.h"
 #include "tests/support/errors.h"
 #include "tests/support/files.h"
@@ -190,6 +191,7 @@ TEST(ModelLimits, AppearInDocumentation) {
   }
   EXPECT_THAT(text, HasSubstr(limitsTable(kGasesLimits)));
   EXPECT_THAT(text, HasSubstr(limitsTable(kRainLimits)));
+  EXPECT_THAT(text, HasSubstr(limitsTable(kP2108Limits)));
 }
 
 }  // namespace

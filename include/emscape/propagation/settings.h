@@ -180,7 +180,18 @@ constexpr auto namesOf(GroundKind) {
   return std::array{"sea", "fresh_water", "wet_ground", "average_ground", "dry_ground", "concrete"};
 }
 
-/// The electrical properties of the ground.
+/// Loss by trees and buildings around the ends of paths, where no map of them is given.
+enum class TerminalClutterModel { none, p2108 };
+constexpr auto namesOf(TerminalClutterModel) {
+  return std::array{"none", "p2108"};
+}
+/// Ends of paths that may be within clutter.
+enum class ClutterEnds { receiver, both };
+constexpr auto namesOf(ClutterEnds) {
+  return std::array{"receiver", "both"};
+}
+
+/// The ground: its electrical properties, and what stands on it.
 struct Ground {
   GroundKind kind = GroundKind::average_ground;
   std::optional<double> relative_permittivity;  ///< none: that of the kind
@@ -190,6 +201,10 @@ struct Ground {
   std::optional<double> surface_msl_m;
   /// True: the earth of `diffraction` is sea where the terrain is at or below mean sea level.
   bool sea_by_height = false;
+  TerminalClutterModel terminal_clutter = TerminalClutterModel::none;
+  double terminal_clutter_percent = 50;  ///< of locations in which the loss is not exceeded
+  double terminal_clutter_below_m = 10;  ///< ends up to this height above the ground are within the clutter
+  ClutterEnds terminal_clutter_ends = ClutterEnds::receiver;
   SourceLocation location;
 };
 

@@ -114,6 +114,8 @@ std::vector<NeededPlace> neededPlaces(const Scenario& scenario);
 /// The terrain that a scenario names, within terrainBox(); null if it names none.
 /// @throws Error (bad_input) naming the file
 TerrainPtr loadTerrain(const Scenario& scenario);
+/// True if the terrain has a map of what stands on it: land cover or a surface model.
+bool hasClutterMap(const Scenario& scenario);
 
 /// True if results may be without values where terrain is missing, as the scenario says.
 /// @param otherwise  if it says nothing

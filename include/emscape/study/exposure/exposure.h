@@ -75,6 +75,7 @@ struct Exposure {
   std::vector<std::string> names;     ///< of these
   std::vector<ExposureRow> rows;      ///< one per time
   std::vector<ExposureSummary> each;  ///< one per emitter
+  std::string clutter;                ///< trees and buildings in the losses, in words
   ExposureSummary together;
   std::vector<std::string> warnings;
 };

@@ -35,6 +35,7 @@ enum class Product {
   min_height,       ///< minimum height (m) above ground at which it is covered
   jam_loss,         ///< 1 if the position would be covered without jammers, but is not
   burn_through,     ///< 0 not covered even without jammers, 1 lost to jamming, 2 covered despite jamming
+  cause,            ///< what decides that the position is not covered: emfield::PathCause
   first_detection,  ///< time (s) at which the position is first covered
   fraction,         ///< fraction of the times at which it is covered
   gaps,             ///< number of gaps in coverage

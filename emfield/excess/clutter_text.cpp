@@ -1,0 +1,86 @@
+#include "emfield/excess/clutter_text.h"
+
+#include <fmt/format.h>
+
+#include "emfield/excess/emitter_excess.h"
+#include "propagation/registry/model_info.h"
+
+namespace emscape::emfield {
+namespace {
+
+using propagation::PropagationModel;
+
+/// Height of clutter along all of a path (m), of p1812 and p452; 0 of others.
+double constantClutter_m(const propagation::ModelSettings& settings) {
+  switch (settings.model) {
+    case PropagationModel::p1812:
+      return settings.p1812.clutter_height_m;
+    case PropagationModel::p452:
+      return settings.p452.clutter_height_m;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+bool usesClutterMap(const propagation::ModelSettings& settings) {
+  return propagation::isRaisedByClutter(settings) || settings.model == PropagationModel::p1812 ||
+         settings.model == PropagationModel::p452;
+}
+
+std::string clutterText(const scenario::Scenario& scenario, const scenario::Emitter& emitter) {
+  const propagation::ModelSettings& settings = emitter.propagation;
+  const propagation::Ground& ground = scenario.ground;
+  if (scenario::hasClutterMap(scenario)) {
+    if (!usesClutterMap(settings))
+      return fmt::format("none ('{}' does not use the map of clutter)", toString(settings.model));
+    return scenario.terrain->surface_files.empty() ? "heights of the land cover along the path"
+                                                   : "heights of the surface model along the path";
+  }
+  std::string text;
+  if (const double height_m = constantClutter_m(settings); height_m > 0)
+    text = fmt::format("{:g} m high along the path", height_m);
+  if (propagation::hasTerminalClutter(emitterInputs(scenario, emitter)))
+    text += fmt::format(
+        "{}ITU-R P.2108-1 (3.2) at {} up to {:g} m above the ground, {:g} % of locations",
+        text.empty() ? "" : "; ",
+        ground.terminal_clutter_ends == propagation::ClutterEnds::both ? "both ends" : "receivers",
+        ground.terminal_clutter_below_m, ground.terminal_clutter_percent);
+  return text.empty() ? "none" : text;
+}
+
+std::string clutterText(const scenario::Scenario& scenario) {
+  std::string text, first;
+  bool is_same = true;
+  for (const scenario::Emitter& emitter : scenario.emitters) {
+    const std::string of_emitter = clutterText(scenario, emitter);
+    if (text.empty()) first = of_emitter;
+    is_same = is_same && of_emitter == first;
+    text += fmt::format("{}'{}': {}", text.empty() ? "" : "; ", emitter.name, of_emitter);
+  }
+  return text.empty() ? "none" : is_same ? first : text;
+}
+
+std::vector<std::string> clutterWarnings(const scenario::Scenario& scenario,
+                                         const scenario::Emitter& emitter) {
+  std::vector<std::string> warnings;
+  const PropagationModel model = emitter.propagation.model;
+  const auto warn = [&](const std::string& message) {
+    warnings.push_back(fmt::format("emitter '{}': {}", emitter.name, message));
+  };
+  if (model == PropagationModel::two_ray && scenario.terrain)
+    warn("'two_ray' is for water and other smooth ground: the terrain has no part in its losses");
+  if (scenario.ground.terminal_clutter == propagation::TerminalClutterModel::none) return warnings;
+  if (scenario::hasClutterMap(scenario)) {
+    warn("'terminal_clutter' of 'ground' is not used: the terrain has a map of clutter");
+  } else if (model == PropagationModel::p528 || model == PropagationModel::parabolic_equation) {
+    warn(fmt::format("'terminal_clutter' of 'ground' is not used by '{}'", toString(model)));
+  } else if (!propagation::kP2108Frequency.holds(emitter.frequency_hz)) {
+    warn(fmt::format("'terminal_clutter' of 'ground': {}",
+                     propagation::outsideMessage(propagation::kP2108Frequency, emitter.frequency_hz)));
+  }
+  return warnings;
+}
+
+}  // namespace emscape::emfield

@@ -1,0 +1,23 @@
+/// Trees and buildings in an emitter's losses: what is included, in words and as warnings.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emscape/scenario/model/scenario.h"
+
+namespace emscape::emfield {
+
+/// True for models that read clutter heights along their paths: raised profiles, or their own clutter.
+bool usesClutterMap(const propagation::ModelSettings& settings);
+
+/// For the line "clutter: ..." of reports; "none" without any.
+std::string clutterText(const scenario::Scenario& scenario, const scenario::Emitter& emitter);
+/// The same for all emitters of a scenario, by name where they differ.
+std::string clutterText(const scenario::Scenario& scenario);
+
+/// Warnings of keys of clutter that have no effect on an emitter, and of models that ignore the terrain.
+std::vector<std::string> clutterWarnings(const scenario::Scenario& scenario,
+                                         const scenario::Emitter& emitter);
+
+}  // namespace emscape::emfield

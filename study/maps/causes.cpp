@@ -1,0 +1,100 @@
+#include "study/maps/causes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "emscape/base/error.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/base/parallel.h"
+#include "emscape/base/work.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "emscape/emfield/link/path_cause.h"
+#include "emscape/scenario/model/snapshot.h"
+
+namespace emscape::study {
+namespace {
+
+using emfield::PathBudget;
+using emfield::PathCause;
+
+/// The budget with the largest value of a quantity; that of a silent emitter only if all are silent.
+class BestPath {
+ public:
+  explicit BestPath(scenario::Quantity quantity) : name_(scenario::info(quantity).name) {}
+
+  void add(PathBudget budget) {
+    const emfield::BudgetTerm* const term = budget.find(name_);
+    const double value = term == nullptr || !budget.active ? -HUGE_VAL : term->value;
+    const bool is_better = !best_ || value > value_ || (value == value_ && budget.active && !best_->active);
+    if (!is_better) return;
+    value_ = value;
+    best_ = std::move(budget);
+  }
+  const std::optional<PathBudget>& best() const { return best_; }
+
+ private:
+  const char* name_;
+  double value_ = -HUGE_VAL;
+  std::optional<PathBudget> best_;
+};
+
+}  // namespace
+
+bool hasCauses(scenario::Quantity quantity) {
+  using scenario::Quantity;
+  switch (quantity) {
+    case Quantity::power_density_dbwm2:
+    case Quantity::field_strength_dbuvm:
+    case Quantity::mean_power_density_dbwm2:
+    case Quantity::received_power_dbm:
+    case Quantity::intercept_margin_db:
+    case Quantity::snr_db:
+    case Quantity::sclnr_db:
+    case Quantity::detection_probability:
+      return true;
+    default:
+      return false;
+  }
+}
+
+std::vector<float> causesOf(const MapGrid& grid, const CoverageRequest& request,
+                            const std::shared_ptr<const scenario::Scenario>& scenario,
+                            const scenario::Terrain* terrain, const MapHeight& height, double time_s,
+                            const std::vector<PixelAnswer>& answers,
+                            const std::function<bool(std::size_t)>& isCovered) {
+  const scenario::Snapshot snapshot = scenario::snapshotAt(scenario, terrain, time_s);
+  const auto causeAt = [&](std::size_t p) {
+    if (answers[p] != PixelAnswer::exact && answers[p] != PixelAnswer::bound) return NAN;
+    if (isCovered(p)) return static_cast<float>(PathCause::covered);
+    const auto [latitude_deg, longitude_deg] = grid.positions[p];
+    double height_msl_m = height.metres;
+    if (height.reference == emfield::HeightReference::ground && terrain != nullptr)
+      height_msl_m += terrain->heightMsl_m(latitude_deg, longitude_deg);
+    const emfield::PathEnd end{
+        {latitude_deg, longitude_deg, height_msl_m + geoidUndulation_m(latitude_deg, longitude_deg)},
+        height_msl_m};
+    BestPath best(request.quantity);
+    for (std::size_t e = 0; e < scenario->emitters.size(); ++e) {
+      const scenario::Emitter& emitter = scenario->emitters[e];
+      if (scenario::needsRadar(request.quantity) && emitter.kind != scenario::EmitterKind::radar) continue;
+      try {
+        best.add(emfield::pathBudget(snapshot, static_cast<int>(e), end, emitter.propagation.model, terrain));
+      } catch (const Error&) {  // its ends have no path, or an end is absent
+      }
+    }
+    return best.best()
+               ? static_cast<float>(emfield::causeOf(*best.best(), request.quantity, request.threshold))
+               : NAN;
+  };
+  std::vector<float> causes(grid.pixels());
+  parallelFor(static_cast<int>(grid.pixels()), 16, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) {
+      checkpoint();
+      causes[p] = causeAt(static_cast<std::size_t>(p));
+    }
+  });
+  return causes;
+}
+
+}  // namespace emscape::study

@@ -1,0 +1,215 @@
+// Losses by trees and buildings: the statistic of P.2108 at the ends of paths, and heights along them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "emfield/excess/clutter_text.h"
+#include "emfield/excess/emitter_excess.h"
+#include "emfield/ground/ground_posts.h"
+#include "emscape/base/geodesy/geoid.h"
+#include "emscape/emfield/columns/surface.h"
+#include "emscape/emfield/link/path_budget.h"
+#include "propagation/normal_deviate.h"
+#include "propagation/p2108/p2108.h"
+#include "tests/emfield/made_terrain.h"
+#include "tests/emfield/test_scenario.h"
+
+namespace emscape::emfield {
+namespace {
+
+using namespace emscape::emfield::testing;
+using propagation::PropagationModel;
+using propagation::TerminalClutterModel;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+double lossOf(double frequency_ghz, double distance_m, double percent) {
+  return propagation::p2108LossDb(frequency_ghz, distance_m, -propagation::normalDeviate(percent / 100));
+}
+
+TEST(TerminalClutter, MeetsTheRecommendationsOwnFigures) {
+  // Of the spreadsheet of ITU-R Study Group 3 for P.2108, section 3.2, at 0.65 km; rounded to 0.1 dB.
+  const double percents[] = {5, 50, 95, 99.9};
+  const struct {
+    double frequency_ghz, loss_db[4];
+  } rows[] = {{2, {19.2, 27.1, 34.6, 40.4}},  {3, {20.0, 28.3, 36.3, 42.1}},  {5, {20.8, 29.6, 38.3, 44.2}},
+              {10, {21.7, 30.6, 39.5, 45.3}}, {30, {23.1, 31.5, 39.6, 45.4}}, {66, {23.9, 31.9, 39.6, 45.4}}};
+  for (const auto& row : rows) {
+    for (int i = 0; i < 4; ++i)
+      EXPECT_NEAR(lossOf(row.frequency_ghz, 650, percents[i]), row.loss_db[i], 0.0501)
+          << row.frequency_ghz << " GHz, " << percents[i] << " %";
+  }
+}
+
+TEST(TerminalClutter, GrowsUpToTwoKilometresAndWithThePercentageOfLocations) {
+  EXPECT_LT(lossOf(1, 300, 50), lossOf(1, 1000, 50));
+  EXPECT_EQ(lossOf(1, 2000, 50), lossOf(1, 50e3, 50));
+  EXPECT_LT(lossOf(1, 5e3, 10), lossOf(1, 5e3, 90));
+  EXPECT_NEAR(double(propagation::p2108LossDb(0.868f, 9e3f, 0.0f)), lossOf(0.868, 9e3, 50), 1e-4);
+}
+
+TEST(TerminalClutter, IsAtLowEndsWithinTheDistancesOfTheRecommendation) {
+  propagation::TerminalClutter clutter;
+  EXPECT_EQ(clutter.lossDb(5000, 1), 0) << "none";
+  clutter.frequency_ghz = 1;
+  clutter.below_m = 10;
+  EXPECT_EQ(clutter.ends(249, 1), 0);
+  EXPECT_EQ(clutter.ends(251, 1), 1);
+  EXPECT_EQ(clutter.ends(5000, 10.5f), 0) << "above the clutter";
+  clutter.at_transmitter = true;
+  EXPECT_EQ(clutter.ends(999, 1), 1) << "one end below 1 km";
+  EXPECT_EQ(clutter.ends(1000, 1), 2);
+  EXPECT_EQ(clutter.ends(1000, 100), 1);
+  EXPECT_FLOAT_EQ(clutter.lossDb(5000, 1), 2 * clutter.lossDb(5000, 100));
+}
+
+/// Flat ground with a wood 15 m high from 2 km to 3 km north of the emitter, or all over it.
+class GroundWithTrees : public MadeTerrain {
+ public:
+  explicit GroundWithTrees(bool is_everywhere)
+      : MadeTerrain(45, 5, 0.2, [](double, double) { return 100.0; }),
+        with_trees_(45, 5, 0.2, [=](double, double north_deg) {
+          const double north_m = (north_deg - 0.1) * 111.1e3;
+          return is_everywhere || (north_m > 2000 && north_m < 3000) ? 115.0 : 100.0;
+        }) {}
+  scenario::TerrainView view() const override {
+    scenario::TerrainView view = MadeTerrain::view();
+    surface_ = with_trees_.view().rasters;
+    view.surfaces = surface_;
+    view.surface_count = 1;
+    return view;
+  }
+
+ private:
+  MadeTerrain with_trees_;
+  mutable const scenario::TerrainRaster* surface_ = nullptr;
+};
+
+std::shared_ptr<scenario::Scenario> mastOf(PropagationModel model, double height_agl_m) {
+  auto scenario = emptyScenario(FrameKind::altitude, 45, 5, {15e3, 15e3, 1e3}, {8, 8, 16});
+  scenario->terrain = scenario::TerrainSpec{};
+  scenario::Emitter emitter = plainEmitter("mast", 0);
+  emitter.propagation.model = model;
+  addEmitter(*scenario, {45, 5, 0}, emitter);
+  scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
+  scenario->platforms[0].track[0].position.height_agl_m = height_agl_m;
+  return scenario;
+}
+
+PathBudget budgetTo(const std::shared_ptr<scenario::Scenario>& scenario, const scenario::Terrain& terrain,
+                    double latitude_deg, double height_msl_m) {
+  return pathBudget(scenario::snapshotAt(scenario, &terrain, 0), 0,
+                    {{latitude_deg, 5, height_msl_m + geoidUndulation_m(latitude_deg, 5)}, height_msl_m},
+                    scenario->emitters[0].propagation.model, &terrain);
+}
+
+TEST(ClutterHeights, OfAWoodOnThePathCostDiffractionAndAreATermOfTheBudget) {
+  const GroundWithTrees wood(false);
+  const MadeTerrain bare(45, 5, 0.2, [](double, double) { return 100.0; });
+  for (const PropagationModel model : {PropagationModel::diffraction, PropagationModel::itm,
+                                       PropagationModel::p1812, PropagationModel::p452}) {
+    const auto scenario = mastOf(model, 10);
+    const PathBudget over_trees = budgetTo(scenario, wood, 45.045, 102);
+    const PathBudget over_ground = budgetTo(scenario, bare, 45.045, 102);
+    ASSERT_NE(over_trees.find("clutter_db"), nullptr) << toString(model);
+    EXPECT_LT(over_trees.find("clutter_db")->value, -3) << toString(model);
+    EXPECT_EQ(over_ground.find("clutter_db"), nullptr) << toString(model);
+    EXPECT_GT(over_trees.excess.loss_db, over_ground.excess.loss_db + 3) << toString(model);
+    EXPECT_NEAR(over_trees.excess.clutter_db, -over_trees.find("clutter_db")->value, 1e-9);
+    EXPECT_THAT(over_trees.verdict, HasSubstr("dB of it by trees and buildings")) << toString(model);
+  }
+}
+
+TEST(ClutterHeights, AreNotAddedWithinFiftyMetresOfTheEnds) {
+  const double range_m[] = {0, 20, 49, 51, 500, 949, 951, 1000};
+  const float cover_m[] = {15, 15, 15, 15, NAN, 15, 15, 15};
+  float ground_m[] = {1, 1, 1, 1, 1, 1, 1, 1};
+  raiseByClutter(range_m, cover_m, 8, ground_m);
+  EXPECT_THAT(ground_m, ::testing::ElementsAre(1, 1, 1, 16, 1, 16, 1, 1));
+}
+
+/// The excess of a surface at a height above ground along the meridian of the mast.
+std::vector<float> excessOfSurface(const std::shared_ptr<scenario::Scenario>& scenario,
+                                   const scenario::TerrainPtr& terrain, const std::vector<double>& latitudes,
+                                   double height_agl_m) {
+  FieldOptions options;
+  auto surface = std::make_shared<Surface>();
+  surface->width = static_cast<int>(latitudes.size());
+  surface->height = 1;
+  for (const double latitude_deg : latitudes) surface->positions.push_back({latitude_deg, 5});
+  surface->reference = HeightReference::ground;
+  surface->heights_m = {height_agl_m};
+  options.surface = surface;
+  FieldSolver solver(scenario, terrain, options);
+  solver.update(scenario::snapshotAt(scenario, terrain.get(), 0), terrain);
+  const auto values = solver.volumes().front().host();
+  return {values->values.begin(), values->values.end()};
+}
+
+TEST(ClutterHeights, AndTerminalClutterAreTheSameInFieldsAndOnPaths) {
+  const std::vector<double> latitudes{45.003, 45.02, 45.03, 45.06};
+  for (const bool is_everywhere : {false, true}) {
+    const auto wood = std::make_shared<GroundWithTrees>(is_everywhere);
+    for (const PropagationModel model :
+         {PropagationModel::free_space, PropagationModel::horizon, PropagationModel::diffraction,
+          PropagationModel::two_ray, PropagationModel::itm, PropagationModel::p1812}) {
+      for (const bool with_terminal : {false, true}) {
+        const auto scenario = mastOf(model, 30);
+        scenario->ground.terminal_clutter =
+            with_terminal ? TerminalClutterModel::p2108 : TerminalClutterModel::none;
+        const std::vector<float> field = excessOfSurface(scenario, wood, latitudes, 3);
+        for (std::size_t i = 0; i < latitudes.size(); ++i) {
+          const PathBudget budget = budgetTo(scenario, *wood, latitudes[i], 103);
+          EXPECT_NEAR(double(field[i]), budget.find("power_density_dbwm2")->value, 0.1)
+              << toString(model) << " at " << latitudes[i] << (with_terminal ? ", terminal" : "");
+          EXPECT_EQ(budget.find("terminal_clutter_db") != nullptr, with_terminal);
+        }
+      }
+    }
+  }
+}
+
+TEST(ClutterText, NamesWhatTheLossesInclude) {
+  auto scenario = mastOf(PropagationModel::diffraction, 10);
+  scenario::Emitter& emitter = scenario->emitters[0];
+  EXPECT_EQ(clutterText(*scenario), "none");
+  scenario->ground.terminal_clutter = TerminalClutterModel::p2108;
+  EXPECT_THAT(clutterText(*scenario),
+              HasSubstr("P.2108-1 (3.2) at receivers up to 10 m above the ground, 50 %"));
+  EXPECT_THAT(clutterWarnings(*scenario, emitter), IsEmpty());
+  emitter.frequency_hz = 100e6;
+  EXPECT_EQ(clutterText(*scenario), "none");
+  EXPECT_THAT(clutterWarnings(*scenario, emitter),
+              Contains(HasSubstr("frequency 0.1 GHz is outside 0.5..67")));
+  emitter.frequency_hz = 1e9;
+  scenario->terrain->surface_files = {"dsm.tif"};
+  EXPECT_EQ(clutterText(*scenario), "heights of the surface model along the path");
+  EXPECT_THAT(clutterWarnings(*scenario, emitter), Contains(HasSubstr("the terrain has a map of clutter")));
+  emitter.propagation.model = PropagationModel::free_space;
+  EXPECT_THAT(clutterText(*scenario), HasSubstr("none ('free_space' does not use"));
+  scenario->terrain->surface_files.clear();
+  scenario->ground.terminal_clutter = TerminalClutterModel::none;
+  emitter.propagation.model = PropagationModel::p1812;
+  emitter.propagation.p1812.clutter_height_m = 12;
+  EXPECT_EQ(clutterText(*scenario), "12 m high along the path");
+  scenario->emitters.push_back(emitter);
+  scenario->emitters[1].name = "other";
+  scenario->emitters[1].propagation.model = PropagationModel::free_space;
+  EXPECT_EQ(clutterText(*scenario), "'mast': 12 m high along the path; 'other': none");
+}
+
+TEST(SmoothSurface, WarnsOfPointsBelowItAndOfTerrainThatTwoRayIgnores) {
+  const MadeTerrain hill(45, 5, 0.2,
+                         [](double, double north_deg) { return north_deg < 0.11 ? 300.0 : 100.0; });
+  const PathBudget budget = budgetTo(mastOf(PropagationModel::two_ray, 10), hill, 45.05, 105);
+  EXPECT_THAT(budget.warnings,
+              Contains(HasSubstr("the point is 195 m below the smooth surface of 'two_ray'")));
+  EXPECT_THAT(budget.warnings, Contains(HasSubstr("is for water and other smooth ground")));
+  const PathBudget by_p528 = budgetTo(mastOf(PropagationModel::p528, 10), hill, 45.05, 105);
+  EXPECT_THAT(by_p528.warnings, Contains(HasSubstr("below the smooth surface of 'p528'")));
+}
+
+}  // namespace
+}  // namespace emscape::emfield
