@@ -267,7 +267,7 @@ void DeviceGeometry::computeUnmarched(const std::vector<GeometryRequest>& reques
   findShadows(works, stream);
   fillDiffractions(requests, works, stream);
   for (const Work& work : works) {
-    if (work.is_equation || !work.model || isDiffraction(*work.model, setup_.terrain)) continue;
+    if (work.is_equation || !work.model || isDiffraction(*work.model, setup_.terrain.get())) continue;
     fillExcess(*work.model, work.task.station, excess_grid_, work.ground, work.excess, scratch(), stream);
   }
   for (std::size_t r = 0; r < requests.size(); ++r) {
@@ -306,7 +306,7 @@ void DeviceGeometry::fillDiffractions(const std::vector<GeometryRequest>& reques
       tasks.push_back(
           {besideEquation(requests[r], work), AirLoss{}, work.task.station, work.ground, work.excess});
       tasks.back().station.refraction.exponential = false;  // no refraction: not on the effective earth
-    } else if (!work.is_equation && work.model && isDiffraction(*work.model, setup_.terrain)) {
+    } else if (!work.is_equation && work.model && isDiffraction(*work.model, setup_.terrain.get())) {
       tasks.push_back({std::get<DiffractionExcess>(work.model->model), work.model->air, work.task.station,
                        work.ground, work.excess});
     } else {
