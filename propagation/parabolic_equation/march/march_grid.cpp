@@ -15,9 +15,6 @@ constexpr double kMinRangeStep_m = 50;
 constexpr double kTrappingStep_m = 200;  ///< at kTrappingFrequency_hz
 constexpr double kTrappingFrequency_hz = 1e10;
 constexpr double kPlainStep_m = 500;
-/// Over terrain the band contains the flat source spectrum, the slopes, and an absorbed last tenth:
-/// bandEdgeRate().
-constexpr double kSlopePart = 0.9 - kPeEvenBand;
 
 void require(const ModelLimit& limit, double value) {
   if (!limit.holds(value)) {
@@ -127,8 +124,9 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
   found.choices.push_back(
       {"range step", fmt::format("{:.4g} m: {}", grid.range_step_m,
                                  tightest.step_m < kMinRangeStep_m ? "the least step" : tightest.reason)});
-  if (needs.post_spacing_m > 0) grid.slope_part = kSlopePart;
-  grid.halving = true;
+  if (needs.post_spacing_m > 0) grid.slope_part = kPeSlopePart;
+  // Deep shadows behind ridges are filled by steep rays of less power than halving neglects.
+  grid.halving = needs.post_spacing_m <= 0;
   return found;
 }
 
