@@ -228,22 +228,10 @@ struct OtherColumn {
   }
 };
 
-/// Number of range steps to a column.
-int stepsOf(const ExcessColumn& column, const MarchGrid& grid) {
-  return int(std::ceil(column.range_m / grid.range_step_m - 1e-9));
-}
-
-/// staircasePart() of a march to a column.
-double staircasePartOf(const ExcessColumn& column, const MarchGrid& grid) {
-  const int steps = stepsOf(column, grid);
-  const double step_m = column.range_m / steps;
-  return staircasePart(evenGround(column.profile, step_m, steps).data(), steps, step_m, grid.maxSine(),
-                       grid.slope_part);
-}
-
 /// A march along one path.
 struct PathMarch {
   double factor_db = 0;
+  double staircase_part = 0;
   std::string text;
 };
 
@@ -263,7 +251,7 @@ void addGroundNeeds(const PathInputs& inputs, const ExcessColumn& column, double
 
 PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const RefractivityAlongPath& air,
                     MarchGrid grid, bool has_terrain) {
-  const int steps = stepsOf(column, grid);
+  const int steps = int(std::ceil(column.range_m / grid.range_step_m - 1e-9));
   grid.range_step_m = column.range_m / steps;
   const TerrainProfile& profile = column.profile;
   PathMarch found;
@@ -278,6 +266,8 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
     if (has_terrain) {
       std::vector<float> ground_msl_m = evenGround(profile, grid.range_step_m, steps);
       path.ground_msl_m.assign(ground_msl_m.begin(), ground_msl_m.end());
+      found.staircase_part =
+          staircasePart(ground_msl_m.data(), steps, grid.range_step_m, grid.maxSine(), grid.slope_part);
       const std::vector<float> cover_m = evenCover(profile, grid.range_step_m, steps);
       if (!cover_m.empty()) separateSea(ground_msl_m, cover_m.data());
       path.air = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), grid.range_step_m);
@@ -463,9 +453,8 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       const PathMarch march = marchPath(inputs, column, member, automatic.grid, has_terrain);
       losses_db.push_back(static_cast<float>(-march.factor_db));
       march_text = march.text;
+      path.addWarnings(partWarning(march.staircase_part, kPeStaircaseShift));
     }
-    if (has_terrain)
-      path.addWarnings(partWarning(staircasePartOf(column, automatic.grid), kPeStaircaseShift));
     if (airs.size() > 1) march_text += fmt::format(", {} members of the air", airs.size());
     const auto& refractivity = inputs.emitter.atmosphere.refractivity;
     others.setEquation(ofMembers_db(losses_db, refractivity ? refractivity->quantile : std::nullopt),

@@ -265,6 +265,7 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
   march.max_angle_rad = max_angle_rad;
   march.post_spacing_m = needs.post_spacing_m;
   march.traps = air.traps();
+  if (trappingTop_m(air) > 0) march.trapping_top_m = trappingTop_m(air);
   AutomaticGrid found = automaticGrid(march);
   if (settings.max_angle_deg <= 0 && !needs.is_single && needs.post_spacing_m > 0) {
     const double fewer = found.grid.intervals / 2 / found.wanted_intervals;

@@ -215,7 +215,7 @@ TEST(RadialMarch, ConvergesWithTheSquareOfTheHeightStep) {
   }
   EXPECT_LT(worst, 0.2);
   EXPECT_GT(first / second, 3.5);
-  EXPECT_LT(first / second, 4.5);
+  EXPECT_LT(first / second, 5);
 }
 
 }  // namespace

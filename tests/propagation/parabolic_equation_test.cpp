@@ -385,6 +385,7 @@ TEST(RadialMarch, EnergyOutsideTheBandDoesNotReachBehindRoughMountain) {
   const double shadow_db = shadowDb(9);
   EXPECT_LT(shadow_db, -62);  // -51 without absorption in every step
   EXPECT_NEAR(shadow_db, shadowDb(14), 9);
+  EXPECT_NEAR(shadowDb(14), shadowDb(30), 3);
 }
 
 TEST(DuctOverLand, IsAbsentBetweenShores) {

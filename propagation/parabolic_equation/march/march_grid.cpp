@@ -14,6 +14,7 @@ namespace {
 constexpr double kMinRangeStep_m = 50;
 constexpr double kTrappingStep_m = 200;  ///< at kTrappingFrequency_hz
 constexpr double kTrappingFrequency_hz = 1e10;
+constexpr double kThickDuct_m = 80;  ///< lower ducts have steeper gradients, and proportionally shorter steps
 constexpr double kPlainStep_m = 500;
 
 void require(const ModelLimit& limit, double value) {
@@ -114,7 +115,8 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
   std::vector<Bound> bounds = {{kPlainStep_m, "error of the splitting in air that does not trap"},
                                {absorberStep_m(grid), "a quarter of the absorber's length"}};
   if (needs.traps) {
-    bounds.push_back({kTrappingStep_m * std::sqrt(kTrappingFrequency_hz / needs.frequency_hz),
+    bounds.push_back({kTrappingStep_m * std::sqrt(kTrappingFrequency_hz / needs.frequency_hz) *
+                          std::min(1.0, needs.trapping_top_m / kThickDuct_m),
                       "error of the splitting where a layer traps"});
   }
   if (needs.post_spacing_m > 0) bounds.push_back({needs.post_spacing_m, "the terrain's posts"});

@@ -1,6 +1,7 @@
 /// Steps and domain of a march, and their automatic choice.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "emscape/base/units.h"
@@ -70,6 +71,7 @@ struct MarchNeeds {
   double max_angle_rad = degToRad(3.0);  ///< from the horizontal, up to which the field is wanted
   double post_spacing_m = 0;             ///< of the terrain; 0: smooth surface
   bool traps = false;                    ///< the air has a layer that traps
+  double trapping_top_m = HUGE_VAL;      ///< of the highest layer that traps
 };
 
 struct AutomaticGrid {
