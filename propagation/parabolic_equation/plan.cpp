@@ -280,9 +280,11 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
       }
     }
   }
-  const double slope_part = std::sin(needs.slope_rad) / found.grid.maxSine() * (1 + 1e-9);
-  if (needs.post_spacing_m > 0 && slope_part > kPeSlopePart && slope_part <= kPeMaxSlopePart * (1 + 1e-6))
-    found.grid.slope_part = slope_part;
+  // where most of the slopes fit, all of the band is used for them
+  constexpr double kFittingPart = 0.55;
+  const double slope_part = std::sin(needs.slope_rad) / found.grid.maxSine();
+  if (needs.post_spacing_m > 0 && slope_part <= kFittingPart)
+    found.grid.slope_part = std::clamp(slope_part * (1 + 1e-6), kPeSlopePart, kPeMaxSlopePart);
   found.choices.insert(
       found.choices.begin(),
       {"largest angle", fmt::format("{:.3g} degrees: {}", radToDeg(max_angle_rad), angle_why)});
