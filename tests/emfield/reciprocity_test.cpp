@@ -57,7 +57,8 @@ class Reciprocity : public ::testing::TestWithParam<PropagationModel> {
     emitter.propagation.model = GetParam();
     addEmitter(*scenario, from, emitter);
     scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
-    scenario->platforms[0].track[0].position.height_agl_m = from_agl_m;
+    scenario->platforms[0].track[0].position.height_msl_m =
+        terrain->heightMsl_m(from.latitude_deg, from.longitude_deg) + from_agl_m;
     const double height_msl_m = terrain->heightMsl_m(to.latitude_deg, to.longitude_deg) + to_agl_m;
     const PathEnd end{{to.latitude_deg, to.longitude_deg,
                        height_msl_m + geoidUndulation_m(to.latitude_deg, to.longitude_deg)},
