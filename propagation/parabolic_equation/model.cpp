@@ -238,7 +238,8 @@ struct PathMarch {
 /// Needs of the ground along a path, seen from both ends.
 void addGroundNeeds(const PathInputs& inputs, const ExcessColumn& column, double curvature_per_m,
                     DomainNeeds& needs) {
-  const int steps = std::max(1, int(column.range_m / std::max(inputs.post_spacing_m, 50.0)));
+  // closer than the march's, whose steps may lie otherwise
+  const int steps = std::max(1, int(4 * column.range_m / std::max(inputs.post_spacing_m, 50.0)));
   const double step_m = column.range_m / steps;
   std::vector<float> ground_msl_m = evenGround(column.profile, step_m, steps);
   GroundNeeds ground;

@@ -1,5 +1,5 @@
-// The loss of a path is the same with its ends exchanged, over mountains, with the automatic settings of
-// every model.
+// The loss of a path is the same with its ends exchanged, over mountains (models of smooth ground: a smooth
+// earth), with the automatic settings of every model.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,6 +21,7 @@ namespace {
 using namespace emscape::emfield::testing;
 using propagation::PropagationModel;
 
+constexpr int kPaths = 20;
 constexpr double kMast_m = 30, kVehicle_m = 2;
 
 struct Ends {
@@ -46,6 +47,10 @@ std::vector<Ends> pathsInTile(int count) {
   return paths;
 }
 
+double ground_m(const scenario::TerrainPtr& terrain, const GeodeticPosition& at) {
+  return terrain ? terrain->heightMsl_m(at.latitude_deg, at.longitude_deg) : 0;
+}
+
 class Reciprocity : public ::testing::TestWithParam<PropagationModel> {
  protected:
   /// Excess loss (dB) from an emitter to a point.
@@ -57,9 +62,8 @@ class Reciprocity : public ::testing::TestWithParam<PropagationModel> {
     emitter.propagation.model = GetParam();
     addEmitter(*scenario, from, emitter);
     scenario->platforms[0].track[0].position.height_ellipsoid_m.reset();
-    scenario->platforms[0].track[0].position.height_msl_m =
-        terrain->heightMsl_m(from.latitude_deg, from.longitude_deg) + from_agl_m;
-    const double height_msl_m = terrain->heightMsl_m(to.latitude_deg, to.longitude_deg) + to_agl_m;
+    scenario->platforms[0].track[0].position.height_msl_m = ground_m(terrain, from) + from_agl_m;
+    const double height_msl_m = ground_m(terrain, to) + to_agl_m;
     const PathEnd end{{to.latitude_deg, to.longitude_deg,
                        height_msl_m + geoidUndulation_m(to.latitude_deg, to.longitude_deg)},
                       height_msl_m};
@@ -75,17 +79,18 @@ TEST_P(Reciprocity, ExchangedEndsHaveTheSameLoss) {
   spec.files = {*file};
   spec.locations = {{*file}};
   const auto scenario = emptyScenario(FrameKind::altitude, 44.5, -71.5, {90e3, 90e3, 4000}, {10, 10, 10});
-  const auto terrain = scenario::Terrain::load(spec, scenario::terrainBox(*scenario));
+  const bool is_smooth = GetParam() == PropagationModel::two_ray || GetParam() == PropagationModel::p528;
+  const auto terrain = is_smooth ? nullptr : scenario::Terrain::load(spec, scenario::terrainBox(*scenario));
   std::vector<double> differences_db;
-  for (const Ends& path : pathsInTile(10)) {
+  for (const Ends& path : pathsInTile(kPaths)) {
     const double there_db = excess_db(terrain, path.first, kMast_m, path.second, kVehicle_m);
     const double back_db = excess_db(terrain, path.second, kVehicle_m, path.first, kMast_m);
     // `horizon` has no field behind it
     differences_db.push_back(there_db == back_db ? 0 : std::abs(there_db - back_db));
   }
   std::sort(differences_db.begin(), differences_db.end());
-  EXPECT_LE(differences_db[8], 1);
-  EXPECT_LE(differences_db[9], 3);
+  EXPECT_LE(differences_db[kPaths * 9 / 10 - 1], 1);
+  EXPECT_LE(differences_db[kPaths - 1], 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(
