@@ -351,10 +351,10 @@ void DeviceGeometry::startMarch(Work& work, Marcher& marcher) {
   placed_.holdBack(marcher.stream);
   marcher.read.holdBack(marcher.stream);
   EmitterExcess& model = *work.model;
-  const float* const tables = model.march == nullptr
-                                  ? marcher.model_tables.send(*model.model_tables, marcher.stream)
-                                  : marcher.march.start(*model.march, std::move(work.march_inputs),
-                                                        &work.task.counts->warnings, marcher.stream);
+  const float* const tables =
+      model.march == nullptr
+          ? marcher.model_tables.send(*model.model_tables, marcher.stream)
+          : marcher.march.start(*model.march, std::move(work.march_inputs), marcher.stream);
   model = model.withTablesAt(tables, marcher.air_tables.send(*model.air_tables, marcher.stream));
   marcher.marched.record(marcher.stream);
 }

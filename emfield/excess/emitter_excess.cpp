@@ -204,7 +204,7 @@ void marchTables(const Emitter& emitter, EmitterExcess& excess) {
   if (excess.march == nullptr) return;
   const auto tables = std::make_shared<std::vector<float>>(excess.march->cellCount());
   auto& model = std::get<propagation::PeExcess>(excess.model);
-  inModel(emitter, [&] { model.warnings |= propagation::marchField(*excess.march, tables->data()); });
+  inModel(emitter, [&] { propagation::marchField(*excess.march, tables->data()); });
   model.tables = tables->data();
   excess.model_tables = tables;
   excess.march.reset();

@@ -93,8 +93,7 @@ std::vector<BlockInput> FieldMarchCuda::inputs(FieldMarch& field) {
   return inputs;
 }
 
-const float* FieldMarchCuda::start(FieldMarch& field, std::vector<BlockInput> inputs, unsigned* warnings,
-                                   cudaStream_t stream) {
+const float* FieldMarchCuda::start(FieldMarch& field, std::vector<BlockInput> inputs, cudaStream_t stream) {
   auto input = inputs.begin();
   const std::size_t count = field.cellCount(), members = field.members.size();
   const bool has_two = field.surfaces.size() > 1;
@@ -115,7 +114,6 @@ const float* FieldMarchCuda::start(FieldMarch& field, std::vector<BlockInput> in
                                                             count);
     checkLaunch("finishMember");
   }
-  march_.addWarnings(warnings);
   float* const result_db = members > 1 ? last_db : losses_db_.data();
   if (members > 1) {
     const int rank = field.quantile ? rankOfQuantile(*field.quantile, int(members)) : -1;

@@ -20,11 +20,9 @@ class FieldMarchCuda {
   /// marchAzimuths().
   /// @param field   isForGpu(); may change after the call
   /// @param inputs  of the field
-  /// @param warnings  device memory; the bits that marchField() returns are added at the end
   /// @return field.cellCount() losses in device memory, until the next start()
   /// @throws Error as marchAzimuthsOnGpu()
-  const float* start(FieldMarch& field, std::vector<BlockInput> inputs, unsigned* warnings,
-                     cudaStream_t stream);
+  const float* start(FieldMarch& field, std::vector<BlockInput> inputs, cudaStream_t stream);
   std::size_t bytes() const;
 
  private:

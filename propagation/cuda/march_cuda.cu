@@ -66,18 +66,6 @@ __global__ void planKernel(const __grid_constant__ MarchBlockTask task, int inte
   if (azimuth < task.azimuths) planSteps(task, intervals, planned, azimuth);
 }
 
-/// Run by one block of kTableThreads threads.
-__global__ void addStaircases(const MarchState* states, int azimuths, unsigned* warnings) {
-  __shared__ int staircases;
-  if (threadIdx.x == 0) staircases = 0;
-  __syncthreads();
-  int own = 0;
-  for (int a = int(threadIdx.x); a < azimuths; a += kTableThreads) own += states[a].staircases;
-  atomicAdd(&staircases, own);
-  __syncthreads();
-  if (threadIdx.x == 0) atomicOr(warnings, staircaseWarning(staircases));
-}
-
 __global__ void copyStart(const StoredComplex* start, StoredComplex* fields, int count, std::size_t pitch) {
   const int j = int(blockIdx.x * blockDim.x + threadIdx.x);
   if (j < count) fields[blockIdx.y * pitch + j] = start[j];
@@ -192,20 +180,6 @@ void AzimuthMarchCuda::start(const AzimuthMarch& march, BlockInput input, float*
   }
 }
 
-MarchNotes AzimuthMarchCuda::notes() {
-  std::vector<MarchState> states(static_cast<std::size_t>(azimuths_));
-  states_.download(states.data(), states.size(), stream_);
-  MarchNotes notes;
-  for (const MarchState& state : states) notes.staircases += state.staircases;
-  notes.pointwise_air = input_.pointwise_air;
-  return notes;
-}
-
-void AzimuthMarchCuda::addWarnings(unsigned* warnings) {
-  addStaircases<<<1, kTableThreads, 0, stream_>>>(states_.data(), azimuths_, warnings);
-  checkLaunch("addStaircases");
-}
-
 std::size_t AzimuthMarchCuda::bytes() const {
   const auto bytesOf = [](const auto&... buffers) {
     return (std::size_t(0) + ... + (buffers.size() * sizeof(*buffers.data())));
@@ -233,14 +207,12 @@ std::vector<FieldColumn> AzimuthMarchCuda::columns() {
   return columns;
 }
 
-MarchNotes marchAzimuthsOnGpu(const AzimuthMarch& march, float* excess_db) {
+void marchAzimuthsOnGpu(const AzimuthMarch& march, float* excess_db) {
   AzimuthMarchCuda cuda_march;
   cuda::Stream stream;
   cuda::Buffer<float> plane(march.cellCount());
   cuda_march.start(march, plane.data(), stream);
-  const MarchNotes notes = cuda_march.notes();
   plane.download(excess_db, stream);
-  return notes;
 }
 
 std::vector<FieldColumn> columnsOnGpu(const AzimuthMarch& march, const std::vector<int>& steps) {

@@ -23,10 +23,6 @@ class AzimuthMarchCuda {
   /// @param input  blockInput() of the march and the columns
   void start(const AzimuthMarch& march, BlockInput input, float* excess_db, cudaStream_t stream,
              const std::vector<int>& columns_at = {});
-  /// Waits for the march.
-  MarchNotes notes();
-  /// Adds staircaseWarning() of the march to bits in device memory, after the march on its stream.
-  void addWarnings(unsigned* warnings);
   std::vector<FieldColumn> columns();
   std::size_t bytes() const;
 

@@ -10,21 +10,15 @@
 
 namespace emscape::propagation {
 
-/// Warning bits. The bits from kPeStaircaseShift to 30 hold the number of steps of the staircase.
+/// Warning bits, followed by fractions in thousandths (kPePartBits each).
 enum PeWarning : unsigned {
   kPePointwiseAir = 1,
-  kPeDuctOverLand = 2,      ///< the path has land, over which the evaporation duct is left out
-  kPeProfileEnds = 4,       ///< the air was measured up to less than the antenna's or the field's height
-  kPeBehindSteepGround = 8  ///< most of the field is behind ground above the largest angle
+  kPeDuctOverLand = 2,  ///< the path has land, over which the evaporation duct is left out
+  kPeProfileEnds = 4    ///< the air was measured up to less than the antenna's or the field's height
 };
-constexpr int kPeStaircaseShift = 4;
-
-/// Warning bits that encode the number of terrain segments replaced by steps of a staircase.
-EMSCAPE_HD inline unsigned staircaseWarning(int staircases) {
-  constexpr int kMaxStaircases = (1 << (31 - kPeStaircaseShift)) - 1;
-  return static_cast<unsigned>(staircases < kMaxStaircases ? staircases : kMaxStaircases)
-         << kPeStaircaseShift;
-}
+constexpr int kPePartBits = 10;
+constexpr int kPeStaircaseShift = 4;                             ///< staircasePart()
+constexpr int kPeBehindShift = kPeStaircaseShift + kPePartBits;  ///< of the marches behind too steep ground
 
 /// Interpolates in dB between azimuths, ranges (cubic) and heights; outside the equation's limits other
 /// models are used.
@@ -100,7 +94,8 @@ struct PeExcess {
   template <class Other>
   EMSCAPE_HD PeLoss lossAt(const ExcessColumn& column, const Neighbours& beside, const PeSight& sight,
                            float height_msl_m, const Other& other_db) const {
-    PeLoss loss = equationAt(column, beside, height_msl_m, sight.horizon_rad);
+    const float ridge_rad = others.ridgeAngle(static_cast<float>(column.range_m), sight, height_msl_m);
+    PeLoss loss = equationAt(column, beside, height_msl_m, ridge_rad);
     if (loss.equation_part < 1) loss.other_db = other_db();
     others.addScatter(static_cast<float>(column.range_m), sight, height_msl_m, loss);
     return loss;

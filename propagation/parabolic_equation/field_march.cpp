@@ -15,37 +15,32 @@ float meanPower_db(float a_db, float b_db) {
 }
 
 /// Losses of a member, of the mean power of the polarisations.
-/// @return pieces of ground taken as steps
-int marchMember(FieldMarch& field, const std::vector<RefractivityAlongPath>& member, float* cells_db) {
+void marchMember(FieldMarch& field, const std::vector<RefractivityAlongPath>& member, float* cells_db) {
   const bool has_other = field.surfaces.size() > 1;
-  int staircases = 0;
   {
     const WorkPart part("", 0, has_other ? 0.5 : 1);
-    staircases = marchAzimuths(field.set(member, field.surfaces.front()), cells_db).staircases;
+    marchAzimuths(field.set(member, field.surfaces.front()), cells_db);
   }
   const std::size_t count = field.cellCount();
   if (has_other) {
     const WorkPart part("", 0.5, 1);
     std::vector<float> other_db(count);
-    staircases = marchAzimuths(field.set(member, field.surfaces.back()), other_db.data()).staircases;
+    marchAzimuths(field.set(member, field.surfaces.back()), other_db.data());
     for (std::size_t i = 0; i < count; ++i) cells_db[i] = meanPower_db(cells_db[i], other_db[i]);
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (cells_db[i] > kPeNoField_db) cells_db[i] = kPeNoField_db;
   }
-  return staircases;
 }
 
-/// @return pieces of ground taken as steps
-int marchEnsemble(FieldMarch& field, float* excess_db) {
-  int staircases = 0;
+void marchEnsemble(FieldMarch& field, float* excess_db) {
   std::vector<std::vector<float>> members;
   const auto count = static_cast<double>(field.members.size());
   for (const auto& member : field.members) {
     const auto done = static_cast<double>(members.size());
     const WorkPart part("", done / count, (done + 1) / count);
     members.emplace_back(field.cellCount());
-    staircases = marchMember(field, member, members.back().data());
+    marchMember(field, member, members.back().data());
   }
   std::vector<float> losses_db(members.size());
   for (std::size_t i = 0; i < field.cellCount(); ++i) {
@@ -53,21 +48,22 @@ int marchEnsemble(FieldMarch& field, float* excess_db) {
     const float first_db = losses_db.front();  // NaN for all members or none: they have the same ground
     excess_db[i] = std::isnan(first_db) ? NAN : ofMembers_db(losses_db, field.quantile);
   }
-  return staircases;
 }
 
 }  // namespace
 
-unsigned marchField(FieldMarch& field, float* excess_db) {
-  const int staircases = field.members.size() > 1 ? marchEnsemble(field, excess_db)
-                                                  : marchMember(field, field.members.front(), excess_db);
+void marchField(FieldMarch& field, float* excess_db) {
+  if (field.members.size() > 1) {
+    marchEnsemble(field, excess_db);
+  } else {
+    marchMember(field, field.members.front(), excess_db);
+  }
   const RadialCells& cells = field.march.cells;
   for (std::size_t a = 0; a < field.known_ranges.size(); ++a) {
     float* const azimuth = excess_db + a * std::size_t(cells.ranges) * std::size_t(cells.heights);
     std::fill(azimuth + std::size_t(field.known_ranges[a]) * std::size_t(cells.heights),
               azimuth + std::size_t(cells.ranges) * std::size_t(cells.heights), NAN);
   }
-  return staircaseWarning(staircases);
 }
 
 float ofMembers_db(std::vector<float>& losses_db, const std::optional<double>& quantile) {

@@ -39,9 +39,8 @@ constexpr float kPeNoField_db = 200;
 /// @param excess_db  field.cellCount() elements: losses over free space (dB) as of marchAzimuths(), of the
 /// mean power of the polarisations and of the mean or the `quantile` of the members' powers; NaN in unknown
 /// cells
-/// @return warning bits (PeWarning)
 /// @throws Error as marchAzimuths()
-unsigned marchField(FieldMarch& field, float* excess_db);
+void marchField(FieldMarch& field, float* excess_db);
 
 /// The loss of an ensemble.
 /// @param losses_db  of the members, none NaN; reordered

@@ -13,6 +13,7 @@
 #include "propagation/parabolic_equation/air/ducts.h"
 #include "propagation/parabolic_equation/air/path_air.h"
 #include "propagation/parabolic_equation/air/refractivity_field.h"
+#include "propagation/parabolic_equation/march/march_step.h"
 #include "propagation/parabolic_equation/plan.h"
 #include "propagation/two_ray/model.h"
 
@@ -45,6 +46,27 @@ PeOthers othersOf(const PathInputs& inputs, const RefractivityAlongPath& air, bo
   others.scatter.sea_level_refractivity =
       static_cast<float>(inputs.emitter.atmosphere.sea_level_refractivity);
   return others;
+}
+
+/// Warning bits of a fraction in thousandths.
+unsigned partWarning(double part, int shift) {
+  return unsigned(std::lround(1000 * std::clamp(part, 0.0, 1.0))) << shift;
+}
+double percentOf(unsigned warnings, int shift) {
+  return (warnings >> shift & ((1u << kPePartBits) - 1)) / 10.0;
+}
+
+/// Fraction of the steps of all azimuths that are marched whose ground is taken as steps of a staircase.
+double staircasePartOf(const PePlan& plan, const AzimuthMarch& march) {
+  double part = 0, whole = 0;
+  for (int a = 0; a < plan.azimuths; ++a) {
+    const double length_m = march.rangesOf(a) * plan.cells.range_step_m;
+    const int steps = std::min(int(length_m / plan.grid.range_step_m), int(march.ground_steps) - 1);
+    part += steps * staircasePart(march.ground_msl_m.data() + std::size_t(a) * march.ground_steps, steps,
+                                  plan.grid.range_step_m, plan.grid.maxSine(), plan.grid.slope_part);
+    whole += steps;
+  }
+  return whole > 0 ? part / whole : 0;
 }
 
 /// True if the air has an evaporation duct somewhere.
@@ -209,8 +231,24 @@ struct OtherColumn {
 /// A march along one path.
 struct PathMarch {
   double factor_db = 0;
+  double staircase_part = 0;
   std::string text;
 };
+
+/// Needs of the ground along a path, seen from both ends.
+void addGroundNeeds(const PathInputs& inputs, const ExcessColumn& column, double curvature_per_m,
+                    DomainNeeds& needs) {
+  // closer than the march's, whose steps may lie otherwise
+  const int steps = std::max(1, int(4 * column.range_m / std::max(inputs.post_spacing_m, 50.0)));
+  const double step_m = column.range_m / steps;
+  std::vector<float> ground_msl_m = evenGround(column.profile, step_m, steps);
+  GroundNeeds ground;
+  ground.add(ground_msl_m.data(), steps + 1, step_m, inputs.site.height_msl_m, curvature_per_m);
+  std::reverse(ground_msl_m.begin(), ground_msl_m.end());
+  ground.add(ground_msl_m.data(), steps + 1, step_m, double(column.height_msl_m[0]), curvature_per_m);
+  needs.slope_rad = ground.slope_rad(1);
+  needs.ridge_rad = ground.ridge_rad;
+}
 
 PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const RefractivityAlongPath& air,
                     MarchGrid grid, bool has_terrain) {
@@ -220,7 +258,7 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
   PathMarch found;
   double power = 0;
   const std::vector<PeSurface> surfaces = planSurfaces(inputs.emitter, air);
-  int staircases = 0, halvings = 0;
+  int halvings = 0;
   for (const PeSurface& surface : surfaces) {
     RadialPath path;
     path.surface = surface;
@@ -229,6 +267,8 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
     if (has_terrain) {
       std::vector<float> ground_msl_m = evenGround(profile, grid.range_step_m, steps);
       path.ground_msl_m.assign(ground_msl_m.begin(), ground_msl_m.end());
+      found.staircase_part =
+          staircasePart(ground_msl_m.data(), steps, grid.range_step_m, grid.maxSine(), grid.slope_part);
       const std::vector<float> cover_m = evenCover(profile, grid.range_step_m, steps);
       if (!cover_m.empty()) separateSea(ground_msl_m, cover_m.data());
       path.air = withoutDuctOverLand(air, ground_msl_m.data(), ground_msl_m.size(), grid.range_step_m);
@@ -237,15 +277,12 @@ PathMarch marchPath(const PathInputs& inputs, const ExcessColumn& column, const 
     for (int i = 0; i < steps; ++i) march.advance();
     const double above_m = double(column.height_msl_m[0]) - march.ground_m(0);
     power += std::pow(10.0, march.factorDb(0, std::max(above_m, 0.0)) / 10) / double(surfaces.size());
-    staircases = march.staircases();
     halvings = int(std::lround(std::log2(double(grid.intervals) / march.intervals())));
   }
   found.factor_db = 10 * std::log10(power);
   found.text = fmt::format("{} steps of {:.4g} m in range, {} heights of {:.3g} m", steps, grid.range_step_m,
                            grid.intervals, grid.heightStep_m());
   if (halvings > 0) found.text += fmt::format(", halved {} times", halvings);
-  if (staircases > 0)
-    found.text += fmt::format("; {} pieces of the ground taken as steps of a staircase", staircases);
   return found;
 }
 
@@ -301,18 +338,20 @@ std::vector<std::string> peWarningMessages(unsigned warnings) {
         "the profile of the air ends below the antenna or the top of the field: above it the air is "
         "standard");
   }
-  if (warnings & kPeBehindSteepGround) {
-    messages.emplace_back(
-        "ground above the equation's largest angle ends more than half of its marches' length; behind it "
-        "'diffraction' applies; a larger 'max_angle_deg' reaches further");
+  const double behind_percent = percentOf(warnings, kPeBehindShift);
+  if (behind_percent >= 10) {
+    messages.push_back(fmt::format(
+        "ground above the equation's largest angle ends {:.0f} % of its marches' length; behind it "
+        "'diffraction' applies; a larger 'max_angle_deg' reaches further",
+        behind_percent));
   }
-  const unsigned staircases = (warnings & ~kMissingTerrain) >> kPeStaircaseShift;
-  if (staircases > 0) {
+  const double staircase_percent = percentOf(warnings, kPeStaircaseShift);
+  if (staircase_percent > 0) {
     messages.push_back(
-        fmt::format("{} pieces of the ground, steeper or more sharply bent than the equation allows, are "
-                    "taken as steps of "
-                    "a staircase",
-                    staircases));
+        fmt::format("{:.1f} % of the ground is steeper or more sharply bent than the band of the equation "
+                    "holds, and taken as steps of a staircase; a 'max_angle_deg' of 1.5 times the slopes, at "
+                    "most {:.3g}, holds them",
+                    staircase_percent, kPeAngle.max));
   }
   return messages;
 }
@@ -341,8 +380,10 @@ PeField peField(const PathInputs& inputs, const RadialInputs& radials) {
   PeExcess excess;
   excess.others = othersOf(inputs, plan.air.front().front(), radials.has_terrain, radials.site_ground_msl_m,
                            plan.max_angle_rad);
-  if (radials.has_terrain && endBehindSteepGround(excess.others, plan, field) < 0.5)
-    excess.warnings |= kPeBehindSteepGround;
+  if (radials.has_terrain) {
+    excess.warnings |= partWarning(1 - endBehindSteepGround(excess.others, plan, field), kPeBehindShift);
+    excess.warnings |= partWarning(staircasePartOf(plan, march), kPeStaircaseShift);
+  }
   excess.others.min_range_m = static_cast<float>(plan.min_range_m);
   if (!cells.are_points) {
     excess.others.cell_range_m = static_cast<float>(cells.meanRange_m());
@@ -389,6 +430,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
   needs.post_spacing_m = has_terrain ? inputs.post_spacing_m : 0;
   needs.farthest_m = column.range_m;
   needs.is_single = true;
+  if (has_terrain) addGroundNeeds(inputs, column, 1e-6 * air.at(0).top_gradient_m, needs);
   double max_angle_rad = 0;
   const AutomaticGrid automatic = planGrid(inputs.emitter, air, needs, max_angle_rad);
 
@@ -400,8 +442,9 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
   const auto posts = static_cast<std::size_t>(profile.count);
   std::vector<float> ranges_m(posts), grounds_m(posts);
   const PeSight sight = others.sightOf(column, {ranges_m.data(), grounds_m.data()});
+  const float ridge_rad = others.ridgeAngle(static_cast<float>(column.range_m), sight, end_msl_m);
   loss.equation_part = others.equationPart(static_cast<float>(column.range_m), end_msl_m,
-                                           profile.height_msl_m[profile.count - 1], sight.horizon_rad);
+                                           profile.height_msl_m[profile.count - 1], ridge_rad);
   if (loss.equation_part < 1) loss.other_db = static_cast<float>(path.excess_db(OtherColumn{others}));
   Explanation explanation;
   std::string march_text = "no march";
@@ -411,6 +454,7 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       const PathMarch march = marchPath(inputs, column, member, automatic.grid, has_terrain);
       losses_db.push_back(static_cast<float>(-march.factor_db));
       march_text = march.text;
+      path.addWarnings(partWarning(march.staircase_part, kPeStaircaseShift));
     }
     if (airs.size() > 1) march_text += fmt::format(", {} members of the air", airs.size());
     const auto& refractivity = inputs.emitter.atmosphere.refractivity;
@@ -440,8 +484,8 @@ Explanation explainPe(const PathInputs& inputs, PathColumn& path) {
       : loss.equation_part <= 0 ? other_name
                                 : fmt::format("the parabolic equation by {:.0f} %, {} for the rest,",
                                               double(100 * loss.equation_part), other_name),
-      radToDeg(double(
-          std::max(sight.horizon_rad, others.launchAngle(static_cast<float>(column.range_m), end_msl_m)))),
+      radToDeg(
+          double(std::max(ridge_rad, others.launchAngle(static_cast<float>(column.range_m), end_msl_m)))),
       radToDeg(double(others.maxAngle(static_cast<float>(column.range_m)))), march_text);
   return explanation;
 }

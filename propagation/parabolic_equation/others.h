@@ -96,8 +96,26 @@ struct PeOthers {
     return angle_rad > 0 ? angle_rad : 0;
   }
 
+  /// Largest angle (rad) above the horizontal at which the field passes a ridge, seen from either end, at
+  /// least 0; 0 over a smooth earth.
+  EMSCAPE_HD float ridgeAngle(float range_m, const PeSight& sight, float height_msl_m) const {
+    if (!over_terrain) return 0;
+    float angle_rad = sight.horizon_rad;
+    float before_rad = -HUGE_VALF;
+    for (int n = sight.count - 1; n >= 0; --n) {
+      const SightPost post = sight.posts.get(n);
+      const float left_m = range_m - post.range_m;
+      if (left_m < PeSight::kNearGround_m) continue;
+      const float seen_rad = (post.ground_m - height_msl_m) / left_m - curvature_per_m * left_m / 2;
+      if (seen_rad < before_rad) break;  // behind the horizon the angles fall
+      before_rad = seen_rad;
+      angle_rad = seen_rad > angle_rad ? seen_rad : angle_rad;
+    }
+    return angle_rad;
+  }
+
   /// Weight of the equation.
-  /// @param horizon_rad  PeSight: angle at which the field passes a ridge
+  /// @param horizon_rad  ridgeAngle()
   EMSCAPE_HD float equationPart(float range_m, float height_msl_m, float ground_msl_m,
                                 float horizon_rad) const {
     if (!(range_m > min_range_m)) return 0;

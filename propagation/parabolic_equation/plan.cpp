@@ -20,6 +20,7 @@ namespace {
 constexpr double kAngle_rad = 3 * kPi / 180, kSmallestAngle_rad = kPi / 180;
 constexpr int kPlainIntervals = 4096, kTerrainIntervals = 2048;  // limit the domain's height
 constexpr int kDearIntervals = 8192;                             // limit for a larger angle
+constexpr int kSlopeIntervals = 4096;                            // limit for an angle that holds slopes
 /// Over terrain: min fraction of the largest angle that is kept in order to halve the height steps.
 constexpr double kWorthwhileAngle = 0.75;
 /// Up to the first number of azimuths, which a GPU marches concurrently (three on each of its 132
@@ -45,17 +46,40 @@ double affordableAngle_rad(const EmitterInputs& emitter, double angle_rad, doubl
   return part >= 1 ? angle_rad : std::asin(std::sin(angle_rad) * part);
 }
 
-double planAngle_rad(const EmitterInputs& emitter, double height_m, std::string& why) {
+/// Largest angle (rad) for which the band holds the slopes, and the equation applies behind the ridges.
+double groundAngle_rad(const DomainNeeds& needs) {
+  constexpr double kFresnel_rad = 0.5 * kPi / 180;  // about bandEdgeWidth_rad() at the ridges
+  const double sine = std::sin(needs.slope_rad) * kPeEvenBand / kPeMaxSlopePart;
+  const double for_slopes_rad = std::asin(std::min(sine, 1.0));
+  const double for_ridges_rad =
+      needs.ridge_rad > 0 ? (needs.ridge_rad + kFresnel_rad) / (1 - double(kPeBlendPart)) : 0;
+  const double whole_deg = std::ceil(radToDeg(std::max(for_slopes_rad, for_ridges_rad)));
+  return std::min(degToRad(whole_deg), kPeAngle.max * kPeAngle.si_per_unit);
+}
+
+double planAngle_rad(const EmitterInputs& emitter, const DomainNeeds& needs, double height_m,
+                     std::string& why) {
   const double given_deg = emitter.settings.parabolic_equation.max_angle_deg;
   why = "given";
   if (given_deg > 0) return degToRad(given_deg);
   why = "for two rays between antennas near the ground";
   double angle_rad = affordableAngle_rad(emitter, kAngle_rad, height_m, kDearIntervals);
-  if (angle_rad == kAngle_rad) return angle_rad;
-  angle_rad = std::max(angle_rad, kSmallestAngle_rad);
-  angle_rad = affordableAngle_rad(emitter, angle_rad, height_m, kPeMaxIntervals);
-  why = fmt::format("what the height steps afford up to {:.4g} m above the lowest ground", height_m);
-  return angle_rad;
+  if (angle_rad < kAngle_rad) {
+    angle_rad = std::max(angle_rad, kSmallestAngle_rad);
+    angle_rad = affordableAngle_rad(emitter, angle_rad, height_m, kPeMaxIntervals);
+    why = fmt::format("what the height steps afford up to {:.4g} m above the lowest ground", height_m);
+  }
+  const double wanted_rad = groundAngle_rad(needs);
+  if (wanted_rad <= angle_rad) return angle_rad;
+  const int intervals = needs.is_single ? kPeMaxIntervals : kSlopeIntervals;
+  const double affordable_rad = affordableAngle_rad(emitter, wanted_rad, height_m, intervals) * (1 - 1e-9);
+  const std::string ground = fmt::format("slopes of {:.3g} degrees and ridges seen at {:.3g}",
+                                         radToDeg(needs.slope_rad), radToDeg(needs.ridge_rad));
+  why = affordable_rad > angle_rad && affordable_rad >= wanted_rad * (1 - 1e-6)
+            ? "for " + ground
+            : fmt::format("what {} height steps afford; {} need {:.3g}", intervals, ground,
+                          radToDeg(wanted_rad));
+  return std::max(angle_rad, affordable_rad);
 }
 
 /// Time (s) on one core per azimuth, step and height, rounded up (docs/parabolic-equation.md, Speed).
@@ -160,7 +184,46 @@ void planRanges(const RadialInputs& radials, PePlan& plan) {
   }
 }
 
+/// The ground along some of the azimuths.
+void addGroundNeeds(const PathInputs& inputs, const RadialInputs& radials, double curvature_per_m,
+                    DomainNeeds& needs) {
+  constexpr int kAzimuths = 32;
+  constexpr double kHeldPart = 0.98;  // of the steps
+  if (!radials.has_terrain) return;
+  const double step_m = std::max(inputs.post_spacing_m, kFinestStep_m);
+  const int count = int(radials.farthest_m / step_m) + 1;
+  std::vector<float> ground_msl_m(static_cast<std::size_t>(count));
+  GroundNeeds ground;
+  for (int i = 0; i < kAzimuths; ++i) {
+    const double part = radials.isAround() ? double(i) / kAzimuths : (i + 0.5) / kAzimuths;
+    radials.ground(radials.first_azimuth_rad + part * radials.azimuth_span_rad, step_m * (count - 1), step_m,
+                   count, ground_msl_m.data());
+    ground.add(ground_msl_m.data(), count, step_m, inputs.site.height_msl_m, curvature_per_m);
+  }
+  needs.slope_rad = ground.slope_rad(kHeldPart);
+  needs.ridge_rad = ground.ridge_rad;
+}
+
 }  // namespace
+
+void GroundNeeds::add(const float* ground_msl_m, int count, double step_m, double eye_msl_m,
+                      double curvature_per_m) {
+  for (int i = 1; i < count; ++i) {
+    if (std::isnan(ground_msl_m[i])) break;
+    const double range_m = i * step_m, height_msl_m = double(ground_msl_m[i]);
+    const double rise_m = height_msl_m - double(ground_msl_m[i - 1]);
+    slopes_rad.push_back(static_cast<float>(std::atan(std::fabs(rise_m) / step_m)));
+    if (range_m < double(PeSight::kNearGround_m)) continue;
+    ridge_rad = std::max(ridge_rad, (height_msl_m - eye_msl_m) / range_m - curvature_per_m * range_m / 2);
+  }
+}
+
+double GroundNeeds::slope_rad(double fraction) {
+  if (slopes_rad.empty()) return 0;
+  const auto at = slopes_rad.begin() + std::ptrdiff_t(fraction * double(slopes_rad.size() - 1));
+  std::nth_element(slopes_rad.begin(), at, slopes_rad.end());
+  return std::min(double(*at), kPeSlope.max* kPeSlope.si_per_unit);
+}
 
 double trappingTop_m(const RefractivityAlongPath& air) {
   double top_m = 0;
@@ -184,7 +247,7 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
   double height_m = std::max(needs.required_m, 1.5 * trappingTop_m(air));
   if (needs.is_single) height_m = std::max(height_m, needs.wanted_m);
   if (settings.top_m > 0) height_m = needs.is_single ? std::max(settings.top_m, height_m) : settings.top_m;
-  max_angle_rad = planAngle_rad(emitter, height_m, angle_why);
+  max_angle_rad = planAngle_rad(emitter, needs, height_m, angle_why);
   if (!needs.is_single && settings.top_m <= 0) {
     const int intervals = needs.post_spacing_m > 0 ? kTerrainIntervals : kPlainIntervals;
     height_m = std::max(height_m, std::min(needs.wanted_m, affordable_m(emitter, max_angle_rad, intervals)));
@@ -202,11 +265,12 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
   march.max_angle_rad = max_angle_rad;
   march.post_spacing_m = needs.post_spacing_m;
   march.traps = air.traps();
+  if (trappingTop_m(air) > 0) march.trapping_top_m = trappingTop_m(air);
   AutomaticGrid found = automaticGrid(march);
   if (settings.max_angle_deg <= 0 && !needs.is_single && needs.post_spacing_m > 0) {
     const double fewer = found.grid.intervals / 2 / found.wanted_intervals;
     const double smaller_rad = std::asin(std::sin(max_angle_rad) * fewer) * (1 - 1e-9);
-    if (fewer < 1 && smaller_rad >= kWorthwhileAngle * max_angle_rad) {
+    if (fewer < 1 && smaller_rad >= std::max(kWorthwhileAngle * max_angle_rad, groundAngle_rad(needs))) {
       march.max_angle_rad = smaller_rad;
       AutomaticGrid cheaper = automaticGrid(march);
       if (cheaper.grid.intervals < found.grid.intervals) {
@@ -216,6 +280,11 @@ AutomaticGrid planGrid(const EmitterInputs& emitter, const RefractivityAlongPath
       }
     }
   }
+  // where most of the slopes fit, all of the band is used for them
+  constexpr double kFittingPart = 0.55;
+  const double slope_part = std::sin(needs.slope_rad) / found.grid.maxSine();
+  if (needs.post_spacing_m > 0 && slope_part <= kFittingPart)
+    found.grid.slope_part = std::clamp(slope_part * (1 + 1e-6), kPeSlopePart, kPeMaxSlopePart);
   found.choices.insert(
       found.choices.begin(),
       {"largest angle", fmt::format("{:.3g} degrees: {}", radToDeg(max_angle_rad), angle_why)});
@@ -291,6 +360,7 @@ PePlan planMarch(const PathInputs& inputs, const RadialInputs& given) {
   PePlan plan;
   const RefractivityAlongPath air =
       highestDuct(pathAirs(inputs.emitter.atmosphere, inputs.site, radials.first_azimuth_rad));
+  addGroundNeeds(inputs, radials, 1e-6 * air.at(0).top_gradient_m, needs);
   AutomaticGrid automatic = planGrid(inputs.emitter, air, needs, plan.max_angle_rad);
   plan.grid = automatic.grid;
   plan.choices = std::move(automatic.choices);

@@ -32,8 +32,8 @@ constexpr ModelLimit kPeCells{"cells that are kept", "10^6", 1e6, 0, 1000, Beyon
 constexpr ModelLimit kPeSlope{"slope of the ground",
                               "degrees",
                               kPi / 180,
-                              -15,
-                              15,
+                              -30,
+                              30,
                               Beyond::warned,
                               "steeper pieces are taken as steps of a staircase, and counted"};
 constexpr ModelLimit kPeRoughness{"roughness (rms)",
@@ -55,6 +55,19 @@ struct DomainNeeds {
   double farthest_m = 0;
   double spacing_m = 0;  ///< of the positions along the ground, resolved by the range steps; 0: one position
   bool is_single = false;  ///< one azimuth: the domain contains wanted_m at any cost
+  double slope_rad = 0;    ///< slopes of the ground that the band should hold
+  double ridge_rad = 0;    ///< largest angle at which the field passes a ridge
+};
+
+/// The needs of ground at even steps, for an automatic largest angle.
+struct GroundNeeds {
+  std::vector<float> slopes_rad;
+  double ridge_rad = 0;
+
+  /// Adds a path. Ridges are seen from a height at its begin, from PeSight::kNearGround_m on.
+  void add(const float* ground_msl_m, int count, double step_m, double eye_msl_m, double curvature_per_m);
+  /// Slope (rad) of a fraction of the steps, at most that of kPeSlope.
+  double slope_rad(double fraction);
 };
 
 /// Grid from the emitter's settings; missing settings are chosen.

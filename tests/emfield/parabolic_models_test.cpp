@@ -243,6 +243,7 @@ TEST(ParabolicField, DiffractionUsedBehindSteepRidge) {
   scenario->emitters[0].propagation.model = PropagationModel::diffraction;
   const auto diffraction = solve(scenario, terrain);
   scenario->emitters[0].propagation.model = PropagationModel::parabolic_equation;
+  scenario->emitters[0].propagation.parabolic_equation.max_angle_deg = 3;
   const auto volume = solve(scenario, terrain);
   for (int i = 66; i < 80; ++i) {  // from 8 km to 12 km, in the shadow
     for (int j = 0; j < 8; ++j)
@@ -262,6 +263,7 @@ TEST(ParabolicField, MarchEndsAtSteepRidge) {
         return std::max(0.0, 450 - std::abs((east - 0.5) * kMetresPerDegree - 6000) * 0.18);
       });
   const auto scenario = around(3e8, 30, {24e3, 4e3, 500}, {80, 8, 10});
+  scenario->emitters[0].propagation.parabolic_equation.max_angle_deg = 3;
   const Made made(*scenario, terrain.get());
   const propagation::PeField field = peField(made.inputs, made.radials);
   const propagation::AzimuthMarch& march = field.march.march;

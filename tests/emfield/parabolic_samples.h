@@ -101,7 +101,7 @@ struct Marched {
     propagation::PeField field = peField(made.inputs, made.radials);
     tables.resize(field.march.cellCount());
     excess = field.excess;
-    excess.warnings |= marchField(field.march, tables.data());
+    marchField(field.march, tables.data());
     excess.tables = tables.data();
   }
 };

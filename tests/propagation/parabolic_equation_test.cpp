@@ -13,6 +13,7 @@
 #include "propagation/parabolic_equation/march/march_azimuths.h"
 #include "propagation/parabolic_equation/march/march_cells.h"
 #include "propagation/parabolic_equation/march/march_grid.h"
+#include "propagation/parabolic_equation/march/march_step.h"
 #include "propagation/parabolic_equation/march/sine_transform.h"
 #include "tests/support/errors.h"
 
@@ -174,8 +175,8 @@ TEST(AutomaticGrid, RefusesExcessiveHeightsAndAngles) {
   needs.frequency_hz = 10e6;
   EXPECT_THAT(refused(needs), HasSubstr("frequency 10 MHz is outside 30..40000 MHz"));
   needs.frequency_hz = 1e9;
-  needs.max_angle_rad = degToRad(20.0);
-  EXPECT_THAT(refused(needs), HasSubstr("largest angle 20 degrees is outside"));
+  needs.max_angle_rad = degToRad(40.0);
+  EXPECT_THAT(refused(needs), HasSubstr("largest angle 40 degrees is outside"));
   MarchGrid grid = gridOf(1e9, 1, 1000, 100);
   EXPECT_THAT(test::errorOf([&] { checkGrid(grid); }),
               HasSubstr("1000 height steps; expected a power of two"));
@@ -299,7 +300,7 @@ TEST(RadialMarch, TakesACliffAsAStepAndCountsIt) {
   EXPECT_EQ(march.ground_m(0), 60);
   EXPECT_EQ(march.amplitude(0, 0), 0);
   marchTo(march, 9e3);
-  EXPECT_EQ(march.staircases(), 2);
+  EXPECT_DOUBLE_EQ(staircasePart(path.ground_msl_m.data(), 99, 100.0, march.grid().maxSine(), 1), 2.0 / 99);
   EXPECT_EQ(march.ground_m(0), 0);
   EXPECT_LT(march.factorDb(0, 5), -15);  // in the shadow
   EXPECT_GT(march.factorDb(0, 150), -6);
@@ -384,6 +385,7 @@ TEST(RadialMarch, EnergyOutsideTheBandDoesNotReachBehindRoughMountain) {
   const double shadow_db = shadowDb(9);
   EXPECT_LT(shadow_db, -62);  // -51 without absorption in every step
   EXPECT_NEAR(shadow_db, shadowDb(14), 9);
+  EXPECT_NEAR(shadowDb(14), shadowDb(30), 3);
 }
 
 TEST(DuctOverLand, IsAbsentBetweenShores) {
@@ -535,7 +537,7 @@ TEST(MarchAzimuths, EqualSingleMarches) {
     }
   }
   std::vector<float> excess_db(all.cellCount());
-  EXPECT_EQ(marchAzimuths(all, excess_db.data()).staircases, 0);
+  marchAzimuths(all, excess_db.data());
   for (const int a : {0, 7, 10}) {
     RadialPath path = pathOf(20);
     path.air = standardRefractivity();

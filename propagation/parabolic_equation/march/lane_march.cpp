@@ -66,11 +66,11 @@ LaneMarchPlan laneMarchPlan(const AzimuthMarch& march) {
 
 LaneMarch::LaneMarch(const LaneMarchPlan& plan, int first, int count)
     : plan_(plan), first_(first), count_(count), transform_(plan.input.intervals.front()) {
+  int end_step = 0;
   for (int l = 0; l < kStepLanes; ++l) {
     states_[std::size_t(l)] = plan.input.states[std::size_t(first + std::min(l, count - 1))];
-    own_end_[std::size_t(l)] = states_[std::size_t(l)].end_step;
+    end_step = std::max(end_step, states_[std::size_t(l)].end_step);
   }
-  const int end_step = *std::max_element(own_end_.begin(), own_end_.end());
   for (MarchState& state : states_) state.end_step = end_step;
   for (const StoredComplex& u : plan.input.start) {
     StepLanes& lanes = field_.emplace_back();
@@ -192,7 +192,6 @@ void LaneMarch::advance() {
     const PlannedStep& step = planned(l);
     state.ground_m = step.ground_m;
     state.sine = step.sine;
-    if (step_ < own_end_[std::size_t(l)]) state.staircases += step.staircases;
     if (step.shift != 0) shift(l, step.shift);
   }
   ++step_;
@@ -257,12 +256,6 @@ double LaneMarch::meanSquaredFactor(int l, double z1_m, double z2_m) {
     here = next;
   }
   return sum / (z2 - z1);
-}
-
-int LaneMarch::staircases() const {
-  int sum = 0;
-  for (int l = 0; l < count_; ++l) sum += states_[std::size_t(l)].staircases;
-  return sum;
 }
 
 }  // namespace emscape::propagation

@@ -44,8 +44,6 @@ class LaneMarch {
   int intervals() const { return transform_.intervals(); }
   /// RadialMarch::meanSquaredFactor().
   double meanSquaredFactor(int lane, double z1_m, double z2_m);
-  /// Over the given azimuths, without those that pad the lanes.
-  int staircases() const;
 
  private:
   const LaneMarchTables& tables() const { return plan_.tables[level_]; }
@@ -62,7 +60,6 @@ class LaneMarch {
   std::size_t level_ = 0;  ///< of plan_.tables
   LaneTransform transform_;
   std::array<MarchState, kStepLanes> states_;  ///< all end at the last one's end
-  std::array<int, kStepLanes> own_end_;        ///< steps
   std::vector<PlannedStep> planned_;
   struct Air {
     std::vector<float> level_m, units, gradient;

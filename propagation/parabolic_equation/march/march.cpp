@@ -102,7 +102,6 @@ double RadialMarch<Real, kLanes>::bend(int l) {
   const double rise_m = groundAt(lane.path, steps_ + 1) - lane.ground_m;
   const GroundStep step =
       groundStep(rise_m, grid_.range_step_m, lane.sine, steps_ == 0, maxSine(), grid_.slope_part);
-  if (step.is_steep) ++staircases_;
   if (step.sine == lane.sine) return step.stair_m;
   const double phase = grid_.wavenumber() * heightStep_m() * step.turn;
   for (int j = 0; j < intervals(); ++j) {

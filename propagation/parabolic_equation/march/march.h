@@ -56,7 +56,9 @@ class RadialMarch {
   double heightStep_m() const { return grid_.top_m / intervals(); }
   /// |u| at a height above the ground, 0 .. top; linear between the heights.
   double amplitude(int lane, double height_agl_m) const;
-  /// 20 log10 of the propagation factor: the field over that in free space at the slant range. Range > 0.
+  /// 20 log10 of the propagation factor: the field over that in free space at the slant range. Range > 0. A
+  /// receiver has the band and the obliquity of the source, so that the factor is the same with exchanged
+  /// ends.
   double factorDb(int lane, double height_agl_m) const;
   /// Mean of the squared factor over heights above the ground, z1 < z2, both within 0 .. top.
   double meanSquaredFactor(int lane, double z1_m, double z2_m) const;
@@ -68,11 +70,6 @@ class RadialMarch {
   void setField(int lane, const std::vector<std::complex<double>>& values);
   /// Sum of |u|^2 over the heights of a lane, times the height step.
   double energy(int lane) const;
-
-  /// Number of terrain segments, over all lanes, too steep or too sharply bent, replaced by steps.
-  int staircases() const { return staircases_; }
-  /// Neighbouring profiles of the air have different levels (RefractivityAlongPath::pointwise()).
-  bool pointwiseAir() const;
 
  private:
   using Value = LaneComplex<Real, kLanes>;
@@ -105,7 +102,6 @@ class RadialMarch {
   std::vector<Lane> lanes_;
   SineTransform<Real, kLanes> sines_;
   int steps_ = 0;
-  int staircases_ = 0;
   std::vector<Value> field_, spectrum_, scratch_;
   std::vector<Value> half_screen_;  ///< air of half a step, absorber included
   std::vector<Value> propagator_;   ///< of a step, with the transforms' 2 / N

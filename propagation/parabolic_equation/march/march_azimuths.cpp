@@ -40,13 +40,10 @@ void checkMarch(const AzimuthMarch& march) {
   }
 }
 
-MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db) {
+void marchAzimuths(const AzimuthMarch& march, float* excess_db) {
   checkMarch(march);
-  MarchNotes notes;
-  notes.pointwise_air =
-      std::any_of(march.air.begin(), march.air.end(), [](const auto& air) { return air.pointwise(); });
   const std::size_t of_azimuth = std::size_t(march.cells.ranges) * std::size_t(march.cells.heights);
-  std::mutex of_notes;
+  std::mutex of_progress;
   int marched_azimuths = 0;
   const LaneMarchPlan plan = laneMarchPlan(march);
   parallelFor((march.azimuths + kStepLanes - 1) / kStepLanes, 1, [&](int begin, int end) {
@@ -60,13 +57,11 @@ MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db) {
         const auto own = std::ptrdiff_t(march.rangesOf(first + l)) * marched.heights;
         std::copy_n(cells[l].begin(), own, excess_db + std::size_t(first + l) * of_azimuth);
       }
-      const std::lock_guard lock(of_notes);
-      notes.staircases += of_group.staircases();
+      const std::lock_guard lock(of_progress);
       marched_azimuths += count;
       reportDone(static_cast<double>(marched_azimuths) / march.azimuths);
     }
   });
-  return notes;
 }
 
 }  // namespace emscape::propagation

@@ -41,18 +41,12 @@ struct AzimuthMarch {
 /// sizes that do not fit
 void checkMarch(const AzimuthMarch& march);
 
-/// Events during the march, over all azimuths.
-struct MarchNotes {
-  int staircases = 0;          ///< RadialMarch::staircases()
-  bool pointwise_air = false;  ///< RadialMarch::pointwiseAir()
-};
-
 /// Marches all azimuths in float, in parallel.
 /// @param excess_db  cellCount() elements: losses over free space (dB) as of marchCells(), azimuth slowest,
 /// then range, then height; those beyond rangesOf() an azimuth are not written
 /// @throws Error (bad_input) as RadialMarch() and marchCells(), for N below kMinBlockIntervals, or if the
 /// sizes do not fit
-MarchNotes marchAzimuths(const AzimuthMarch& march, float* excess_db);
+void marchAzimuths(const AzimuthMarch& march, float* excess_db);
 
 /// Limits of N on the GPU; the smaller one also on the CPU. automaticGrid() gives at least 256.
 constexpr int kMinBlockIntervals = 128, kMaxBlockIntervals = 8192;
@@ -60,7 +54,7 @@ constexpr int kMinBlockIntervals = 128, kMaxBlockIntervals = 8192;
 /// marchAzimuths() on the GPU, without halving within 0.05 dB of it where F > -60 dB.
 /// @throws Error (device) without CUDA or a GPU; (bad_input) also for N outside 128 .. 8192, and for the
 /// narrow form over terrain
-MarchNotes marchAzimuthsOnGpu(const AzimuthMarch& march, float* excess_db);
+void marchAzimuthsOnGpu(const AzimuthMarch& march, float* excess_db);
 
 /// |u| of an azimuth after a step, at heights above the ground 0, 1, ... height steps.
 struct FieldColumn {

@@ -93,7 +93,6 @@ struct PlannedStep {
   float cube = 0, square = 0;  ///< 1 / cos^3 - 1, 1 / cos^2 - 1 of the slope
   StoredComplex wave;          ///< factor of the surface wave
   int shift = 0;               ///< height steps that the ground rises at the end
-  int staircases = 0;          ///< 1: the segment is replaced by a step of a staircase
 };
 
 /// Levels of the air between two ranges; all levels change linearly with range.
@@ -111,7 +110,6 @@ struct MarchState {
   int intervals = 0;  ///< N; less after halving
   int step = 0, cell = 0;
   int end_step = 0;  ///< at which it ends
-  int staircases = 0;
   double ground_m = 0, sine = 0;
 };
 

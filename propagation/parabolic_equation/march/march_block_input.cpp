@@ -54,7 +54,6 @@ void addAir(BlockInput& input, const RefractivityAlongPath& air) {
   }
   if (profiles.size() > 1)
     addSegment(input, ranges_m.back(), 0, profiles.back(), profiles.back(), reference_units);
-  input.pointwise_air = input.pointwise_air || air.pointwise();
 }
 
 /// Steps at the end of each range of cells, as marchCells() counts them.

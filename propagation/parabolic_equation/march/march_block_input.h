@@ -14,7 +14,6 @@ struct BlockInput {
   std::vector<MarchBlockTask> tasks;  ///< of each, without pointers
   bool flat = false;                  ///< no terrain
   bool steady_air = false;            ///< one profile for all azimuths and ranges
-  bool pointwise_air = false;
   BlockKind kind = BlockKind::tables;
   std::vector<AirSegment> segments;
   std::vector<AirLevel> levels;

@@ -45,7 +45,6 @@ class BlockMarch {
       ++state_.step;
       state_.ground_m = step_.ground_m;
       state_.sine = step_.sine;
-      state_.staircases += step_.staircases;
       if (step_.shift != 0) shift();
       if (state_.cell < task_.cell_ranges) addToCells();
       if (column < task_.columns && task_.column_steps[column] == state_.step) keepColumn(column++);

@@ -132,7 +132,6 @@ EMSCAPE_HD inline void planSteps(const MarchBlockTask& task, int intervals, Plan
     plan.square = float(tangent * tangent);
     plan.cube = float(square / step.cosine - 1);
     if (task.mixed) plan.wave = surfaceWave(task, step.cosine);
-    plan.staircases = step.is_steep ? 1 : 0;
     plan.shift = int(std::lround(step.stair_m / task.height_step_m));
     here_m += task.range_step_m * tangent + plan.shift * task.height_step_m;
     plan.ground_m = here_m;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "propagation/parabolic_equation/march/march.h"
+#include "propagation/parabolic_equation/march/march_start.h"
 
 namespace emscape::propagation {
 
@@ -31,9 +32,16 @@ template <class Real, int kLanes>
 double RadialMarch<Real, kLanes>::factorDb(int l, double height_agl_m) const {
   const Lane& lane = lanes_[l];
   const double source_m = groundAt(lane.path, 0) + lane.path.source.height_agl_m;
-  const double spreading =
-      wavelength_m(grid_.frequency_hz) * range_m() * slantSquared(lane.ground_m + height_agl_m - source_m);
-  return 20 * std::log10(amplitude(l, height_agl_m)) + 10 * std::log10(spreading);
+  MarchGrid now = grid_;
+  now.intervals = intervals();
+  const double height_m = std::min(height_agl_m, grid_.top_m - heightStep_m());
+  const std::vector<std::complex<double>> receiver = startField(now, {height_m, {}}, lane.ratio);
+  std::complex<double> received = 0;
+  for (int j = 0; j < intervals(); ++j)
+    received += receiver[j] * std::complex<double>(double(field_[j].re[l]), double(field_[j].im[l]));
+  const double slant_m = range_m() * std::sqrt(slantSquared(lane.ground_m + height_agl_m - source_m));
+  return 20 * std::log10(std::abs(received) * heightStep_m()) +
+         10 * std::log10(wavelength_m(grid_.frequency_hz) * slant_m);
 }
 
 template <class Real, int kLanes>
@@ -71,12 +79,6 @@ double RadialMarch<Real, kLanes>::energy(int l) const {
   double sum = 0;
   for (const Value& u : field_) sum += double(u.re[l]) * u.re[l] + double(u.im[l]) * u.im[l];
   return sum * heightStep_m();
-}
-
-template <class Real, int kLanes>
-bool RadialMarch<Real, kLanes>::pointwiseAir() const {
-  return std::any_of(lanes_.begin(), lanes_.end(),
-                     [](const Lane& lane) { return lane.path.air.pointwise(); });
 }
 
 template class RadialMarch<double, 1>;

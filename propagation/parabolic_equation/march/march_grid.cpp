@@ -14,10 +14,8 @@ namespace {
 constexpr double kMinRangeStep_m = 50;
 constexpr double kTrappingStep_m = 200;  ///< at kTrappingFrequency_hz
 constexpr double kTrappingFrequency_hz = 1e10;
+constexpr double kThickDuct_m = 80;  ///< lower ducts have steeper gradients, and proportionally shorter steps
 constexpr double kPlainStep_m = 500;
-/// Over terrain the band contains the flat source spectrum, the slopes, and an absorbed last tenth:
-/// bandEdgeRate().
-constexpr double kSlopePart = 0.9 - kPeEvenBand;
 
 void require(const ModelLimit& limit, double value) {
   if (!limit.holds(value)) {
@@ -117,7 +115,8 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
   std::vector<Bound> bounds = {{kPlainStep_m, "error of the splitting in air that does not trap"},
                                {absorberStep_m(grid), "a quarter of the absorber's length"}};
   if (needs.traps) {
-    bounds.push_back({kTrappingStep_m * std::sqrt(kTrappingFrequency_hz / needs.frequency_hz),
+    bounds.push_back({kTrappingStep_m * std::sqrt(kTrappingFrequency_hz / needs.frequency_hz) *
+                          std::min(1.0, needs.trapping_top_m / kThickDuct_m),
                       "error of the splitting where a layer traps"});
   }
   if (needs.post_spacing_m > 0) bounds.push_back({needs.post_spacing_m, "the terrain's posts"});
@@ -127,8 +126,9 @@ AutomaticGrid automaticGrid(const MarchNeeds& needs) {
   found.choices.push_back(
       {"range step", fmt::format("{:.4g} m: {}", grid.range_step_m,
                                  tightest.step_m < kMinRangeStep_m ? "the least step" : tightest.reason)});
-  if (needs.post_spacing_m > 0) grid.slope_part = kSlopePart;
-  grid.halving = true;
+  if (needs.post_spacing_m > 0) grid.slope_part = kPeSlopePart;
+  // Deep shadows behind ridges are filled by steep rays of less power than halving neglects.
+  grid.halving = needs.post_spacing_m <= 0;
   return found;
 }
 

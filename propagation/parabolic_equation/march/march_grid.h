@@ -1,6 +1,7 @@
 /// Steps and domain of a march, and their automatic choice.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "emscape/base/units.h"
@@ -12,9 +13,13 @@ namespace emscape::propagation {
 constexpr ModelLimit kPeFrequency{
     "frequency", "MHz", 1e6, 30, 40000, Beyond::refused, "heights and steps get too small"};
 constexpr ModelLimit kPeAngle{
-    "largest angle", "degrees", kPi / 180, 0.1, 15, Beyond::refused, "other models serve at larger angles"};
+    "largest angle", "degrees", kPi / 180, 0.1, 35, Beyond::refused, "other models serve at larger angles"};
 constexpr int kPeMaxIntervals = 32768;
-constexpr double kPeEvenBand = 0.6;        ///< fraction of the band with a flat source spectrum (source.h)
+constexpr double kPeEvenBand = 0.6;  ///< fraction of the band with a flat source spectrum (source.h)
+/// Fractions of the band by which slopes may turn the rays in automatic grids over terrain: with the flat
+/// part of the source and the absorbed last tenth they fill the band; and, where that holds all slopes, with
+/// a part of the absorbed tenth.
+constexpr double kPeSlopePart = 0.9 - kPeEvenBand, kPeMaxSlopePart = 1 - kPeEvenBand;
 constexpr double kPeUsable = 0.8;          ///< fraction of the height below the absorber
 constexpr double kPeAbsorberPart = 0.125;  ///< of the domain
 
@@ -66,6 +71,7 @@ struct MarchNeeds {
   double max_angle_rad = degToRad(3.0);  ///< from the horizontal, up to which the field is wanted
   double post_spacing_m = 0;             ///< of the terrain; 0: smooth surface
   bool traps = false;                    ///< the air has a layer that traps
+  double trapping_top_m = HUGE_VAL;      ///< of the highest layer that traps
 };
 
 struct AutomaticGrid {

@@ -10,10 +10,11 @@
 
 namespace emscape::propagation {
 
-/// Sines of the slope (15 degrees) and of the break of slope (20 degrees, or the band's largest angle) above
-/// which a terrain segment is replaced by a step of a staircase.
-constexpr double kMaxSlopeSine = 0.25881904510252076;
-constexpr double kMaxBreakSine = 0.34202014332566873;
+/// Sines of the slopes (15 degrees; 30 if the band holds them wholly) and of the break of slope (45 degrees,
+/// or the band's largest angle) above which a terrain segment is replaced by a step of a staircase. A steep
+/// slope that is held in part fills the shadow behind it with a false field.
+constexpr double kMaxSlopeSine = 0.25881904510252076, kMaxHeldSlopeSine = 0.5;
+constexpr double kMaxBreakSine = 0.70710678118654752;
 
 /// exp(a).
 EMSCAPE_HD inline Complex<double> exponential(Complex<double> a) {
@@ -50,8 +51,6 @@ struct GroundStep {
   /// Sine of the previous slope minus that of this one: the break multiplies the field by exp(i k z turn).
   double turn = 0;
   double stair_m = 0;  ///< rise of the step of a staircase at the end: the rest of the rise
-  /// Steeper or more sharply bent than the equation allows: the staircase has the whole rise.
-  bool is_steep = false;
 };
 
 /// @param rise_m       over the step
@@ -67,17 +66,34 @@ EMSCAPE_HD inline GroundStep groundStep(double rise_m, double range_step_m, doub
   step.cosine = range_step_m / length_m;
   const double turn = first ? 0 : sine_before - step.sine;
   const double largest = max_sine < kMaxBreakSine ? max_sine : kMaxBreakSine;
-  if (std::fabs(step.sine) > kMaxSlopeSine || std::fabs(turn) > largest) {
-    return {0, 1, first ? 0 : sine_before, rise_m, true};
+  const double held = slope_part * max_sine, slope = std::fabs(step.sine);
+  if ((slope > kMaxSlopeSine && slope > held) || slope > kMaxHeldSlopeSine || std::fabs(turn) > largest) {
+    return {0, 1, first ? 0 : sine_before, rise_m};
   }
-  const double held = slope_part * max_sine;
-  if (std::fabs(step.sine) > held) {
+  if (slope > held) {
     step.sine = step.sine > 0 ? held : -held;
     step.cosine = std::sqrt(1 - held * held);
     step.stair_m = rise_m - range_step_m * step.sine / step.cosine;
   }
   step.turn = first ? 0 : sine_before - step.sine;
   return step;
+}
+
+/// Fraction of the range steps with ground that the band does not hold: all or the rest of their rise is a
+/// step of a staircase.
+/// @param ground_m  heights at the range steps 0 .. steps
+template <class Height>
+double staircasePart(const Height* ground_m, int steps, double range_step_m, double max_sine,
+                     double slope_part) {
+  double sine = 0;
+  int staircases = 0;
+  for (int i = 0; i < steps; ++i) {
+    const double rise_m = double(ground_m[i + 1]) - double(ground_m[i]);
+    const GroundStep step = groundStep(rise_m, range_step_m, sine, i == 0, max_sine, slope_part);
+    if (step.stair_m != 0) ++staircases;
+    sine = step.sine;
+  }
+  return steps > 0 ? double(staircases) / steps : 0;
 }
 
 }  // namespace emscape::propagation

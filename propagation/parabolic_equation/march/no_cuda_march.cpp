@@ -11,7 +11,7 @@ namespace {
 
 }  // namespace
 
-MarchNotes marchAzimuthsOnGpu(const AzimuthMarch&, float*) {
+void marchAzimuthsOnGpu(const AzimuthMarch&, float*) {
   refuse();
 }
 std::vector<FieldColumn> columnsOnGpu(const AzimuthMarch&, const std::vector<int>&) {
