@@ -34,7 +34,9 @@ template <class Model>
 unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const ExcessOutput& out) {
   const ExcessGrid& grid = task.grid;
   const std::vector<char> is_left = fillBySearch(task, bounds, out);
-  const auto isLeft = [&](std::size_t column) { return is_left.empty() || is_left[column] != 0; };
+  const auto isLeft = [&](std::size_t column) {
+    return (is_left.empty() || is_left[column] != 0) && grid.part.contains(grid.dims, column);
+  };
   const int columns = static_cast<int>(grid.column_count);
   std::atomic<unsigned> all_warnings{0};
   std::atomic<int> filled_columns{0};
@@ -87,6 +89,7 @@ ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terra
   grid.column_count = columns.count();
   grid.t_m = columns.t_m.data();
   grid.layers = static_cast<int>(columns.t_m.size());
+  grid.dims = columns.dims;
   grid.tilted = columns.tilted;
   grid.every_height = columns.every_height;
   if (!columns.first_valid_k.empty()) grid.first_valid_k = columns.first_valid_k.data();
