@@ -47,9 +47,13 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
     unsigned warnings = 0;
     for (int block = begin; block < end; ++block) {
       const int first = block * kBlock, count = std::min(kBlock, columns - first);
+      int left[kBlock], left_count = 0;
       for (int i = 0; i < count; ++i) {
+        if (isLeft(static_cast<std::size_t>(first + i))) left[left_count++] = i;
+      }
+      for (int n = 0; n < left_count; ++n) {
+        const int i = left[n];
         const auto column = static_cast<std::size_t>(first + i);
-        if (!isLeft(column)) continue;
         checkpoint();
         const auto setAll = [&](float db) { std::fill_n(scratch.excess_db, grid.layers, db); };
         unsigned of_column = 0;
@@ -67,11 +71,10 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
           excess_db[static_cast<std::size_t>(k) * kBlock + i] = scratch.excess_db[k];
         }
       }
-      for (int k = 0; k < grid.layers; ++k) {
+      for (int k = 0; left_count > 0 && k < grid.layers; ++k) {
         const std::size_t row = static_cast<std::size_t>(k) * grid.column_count + first;
-        for (int i = 0; i < count; ++i) {
-          if (!isLeft(static_cast<std::size_t>(first + i))) continue;
-          out.excess.set(row + i, excess_db[static_cast<std::size_t>(k) * kBlock + i]);
+        for (int n = 0; n < left_count; ++n) {
+          out.excess.set(row + left[n], excess_db[static_cast<std::size_t>(k) * kBlock + left[n]]);
         }
       }
       reportDone(static_cast<double>(filled_columns += count) / columns);

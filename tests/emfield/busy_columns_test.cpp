@@ -190,6 +190,7 @@ std::shared_ptr<scenario::Scenario> jacksboro(propagation::PropagationModel mode
   const auto scenario = std::make_shared<scenario::Scenario>(
       *scenario::loadScenario(emscape::test::shippedScenario("jacksboro.yaml")));
   for (scenario::Emitter& emitter : scenario->emitters) emitter.propagation.model = model;
+  scenario->region.dims.z = 20;  // errors depend on the distance of the columns
   return scenario;
 }
 
@@ -197,7 +198,7 @@ std::shared_ptr<scenario::Scenario> jacksboro(propagation::PropagationModel mode
 TEST(InterpolatedColumns, ErrByTheStatedDecibels) {
   const auto scenario = jacksboro(propagation::PropagationModel::diffraction);
   const auto radars = std::make_shared<scenario::Scenario>(*scenario);
-  radars->region.dims = {100, 100, 50};
+  radars->region.dims = {100, 100, 20};
   radars->emitters.assign(16, scenario->emitters.front());
   for (int n = 0; n < 16; ++n) {
     scenario::Platform site = radars->platforms[radars->emitters[n].platform];
@@ -213,25 +214,34 @@ TEST(InterpolatedColumns, ErrByTheStatedDecibels) {
     const char* name;
     std::shared_ptr<scenario::Scenario> scenario;
     int step;
-    float median_db, most_db;
+    double all_db, behind_median_db, behind_db;  ///< all and behind terrain: 95 % are below
   };
   for (const Bound& bound :
-       {Bound{"jacksboro", scenario, 2, 0.1F, 5}, Bound{"jacksboro", scenario, 4, 0.2F, 8},
-        Bound{"sixteen radars", radars, 2, 0.2F, 6}, Bound{"sixteen radars", radars, 4, 0.4F, 10}}) {
-    std::vector<float> errors_db;
+       {Bound{"jacksboro", scenario, 2, 1, 1, 5}, Bound{"jacksboro", scenario, 4, 2, 2, 10},
+        Bound{"sixteen radars", radars, 2, 1, 1, 5}, Bound{"sixteen radars", radars, 4, 2.5, 2, 10}}) {
+    std::vector<float> errors_db, behind_db;
     visitInterpolated(bound.scenario, *terrain, bound.step,
                       [&](const ColumnGeometryView& whole, const ColumnGeometryView& parts,
                           const GridColumns& columns, std::size_t c, int k) {
                         const std::size_t voxel = k * columns.count() + c;
-                        errors_db.push_back(std::abs(excessDb(whole.excess.codes[voxel]) -
-                                                     excessDb(parts.excess.codes[voxel])));
+                        const float exact_db = excessDb(whole.excess.codes[voxel]);
+                        errors_db.push_back(std::abs(exact_db - excessDb(parts.excess.codes[voxel])));
+                        if (exact_db > 1) behind_db.push_back(errors_db.back());
                       });
     std::sort(errors_db.begin(), errors_db.end());
-    const float median_db = errors_db[errors_db.size() / 2], most_db = errors_db[errors_db.size() * 95 / 100];
-    std::printf("%s, every %d columns: median %.2f dB, 95 %% %.2f dB, largest %.1f dB\n", bound.name,
-                bound.step, double(median_db), double(most_db), double(errors_db.back()));
-    EXPECT_LE(median_db, bound.median_db) << bound.name << bound.step;
-    EXPECT_LE(most_db, bound.most_db) << bound.name << bound.step;
+    std::sort(behind_db.begin(), behind_db.end());
+    const auto of = [](const std::vector<float>& errors, std::size_t percent) {
+      return double{errors[errors.size() * percent / 100]};
+    };
+    std::printf(
+        "%s, every %d columns: all median %.2f, 95 %% %.2f dB; behind terrain (%.0f %%) median %.2f, "
+        "95 %% %.2f, largest %.1f dB\n",
+        bound.name, bound.step, of(errors_db, 50), of(errors_db, 95),
+        100.0 * static_cast<double>(behind_db.size()) / static_cast<double>(errors_db.size()),
+        of(behind_db, 50), of(behind_db, 95), double{behind_db.back()});
+    EXPECT_LE(of(errors_db, 95), bound.all_db) << bound.name << bound.step;
+    EXPECT_LE(of(behind_db, 50), bound.behind_median_db) << bound.name << bound.step;
+    EXPECT_LE(of(behind_db, 95), bound.behind_db) << bound.name << bound.step;
   }
 }
 
