@@ -25,6 +25,7 @@
 #include "emscape/playback/frames/inputs.h"
 #include "emscape/scenario/file/scenario_file.h"
 #include "emscape/volume/format/file.h"
+#include "playback/frames/busy_field.h"
 #include "playback/stream/steady_time.h"
 
 namespace emscape::app {
@@ -40,18 +41,23 @@ struct LiveArguments {
 struct LiveFieldStatus {
   long long fields = 0;
   double field_ms = 0, latency_ms = 0;  ///< of the last one
+  int column_step = 1;                  ///< of the last one: 1 is the whole field
   std::string trouble;                  ///< why there is none
 };
 
 /// Computes the field whenever the battlefield has changed.
 class LiveField {
  public:
-  explicit LiveField(playback::LiveBattlefield& battlefield) : battlefield_(battlefield) {}
+  /// @param writes  the fields are written: all columns of each are computed
+  LiveField(playback::LiveBattlefield& battlefield, bool writes)
+      : battlefield_(battlefield), writes_(writes) {}
 
   /// @return true if a field was computed
   bool update() {
     const playback::BattlefieldNow now = battlefield_.now();
-    if (now.scenario == scenario_ && now.poses == poses_) return false;
+    const bool rests = now.scenario == scenario_ && now.poses == poses_;
+    const bool is_quiet = playback::steadyTime_s() - computed_s_ > playback::BusyField::kQuiet_ms / 1000;
+    if (rests && (column_step_ == 1 || !is_quiet)) return false;
     if (now.scenario != scenario_) indices_ = playback::platformIndices(*now.scenario);
     const double begin_s = playback::steadyTime_s();
     Work work(&stopFlag());
@@ -68,19 +74,24 @@ class LiveField {
         options.move_tolerance_m = 0;
         solver_ = std::make_unique<emfield::FieldSolver>(loaded_.scenario, loaded_.terrain, options);
       }
+      solver_->setTimeGoal(rests || writes_ ? 0 : playback::BusyField::kGoal_ms);
       const bool is_other = solver_->update(snapshot, loaded_.terrain).any;
       is_new_ = is_new_ || is_other;
+      column_step_ = solver_->columnStep();
       trouble_.clear();
     } catch (const Error& error) {
+      column_step_ = 1;
       trouble_ = error.what();
       trouble_ = trouble_.substr(0, trouble_.find('\n'));
     }
     scenario_ = now.scenario;
     poses_ = now.poses;
     const std::lock_guard<std::mutex> lock(mutex_);
+    computed_s_ = playback::steadyTime_s();
     ++told_.fields;
-    told_.field_ms = (playback::steadyTime_s() - begin_s) * 1000;
-    if (now.arrival_s > arrival_s_) told_.latency_ms = (playback::steadyTime_s() - now.arrival_s) * 1000;
+    told_.field_ms = (computed_s_ - begin_s) * 1000;
+    if (now.arrival_s > arrival_s_) told_.latency_ms = (computed_s_ - now.arrival_s) * 1000;
+    told_.column_step = column_step_;
     told_.trouble = trouble_;
     arrival_s_ = now.arrival_s;
     return true;
@@ -106,13 +117,15 @@ class LiveField {
 
  private:
   playback::LiveBattlefield& battlefield_;
+  const bool writes_;
   playback::LoadedScenario loaded_;
   std::unique_ptr<emfield::FieldSolver> solver_;
   std::shared_ptr<const scenario::Scenario> scenario_;
   playback::PlatformIndices indices_;
   playback::NamedPosesPtr poses_;
   bool is_new_ = false;
-  double arrival_s_ = 0;
+  int column_step_ = 1;
+  double computed_s_ = 0, arrival_s_ = 0;
   std::string trouble_;
   mutable std::mutex mutex_;
   LiveFieldStatus told_;
@@ -177,7 +190,8 @@ Json jsonOf(const playback::StreamStatus& status, const LiveFieldStatus& field, 
             {"unmatched", status.unmatched},
             {"fields", field.fields},
             {"field_ms", rounded(field.field_ms)},
-            {"latency_ms", rounded(field.latency_ms)}};
+            {"latency_ms", rounded(field.latency_ms)},
+            {"column_step", field.column_step}};
   line["age_s"] = status.age_s ? Json(rounded(*status.age_s)) : Json();
   line["trouble"] =
       status.trouble + (status.trouble.empty() || field.trouble.empty() ? "" : "; ") + field.trouble;
@@ -194,7 +208,7 @@ int live(const LiveArguments& arguments, const GlobalOptions& global) {
   request.folder = arguments.folder;
   Event changed;
   playback::LiveBattlefield battlefield(request, [&changed] { changed.set(); });
-  LiveField field(battlefield);
+  LiveField field(battlefield, !arguments.folder.empty());
   const double begin_s = playback::steadyTime_s();
   const auto tell = [&] {
     const playback::StreamStatus status = battlefield.status();

@@ -82,7 +82,7 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     EmitterGeometry::Times spent;
     geometry.compute(request.state, *setup_.scenario, setup_.scenario->emitters[request.emitter],
                      setup_.columns, setup_.terrain.get(), spent, bounds_ ? &*bounds_ : nullptr,
-                     setup_.needs[request.emitter]);
+                     setup_.needs[request.emitter], request.part);
     times_.columns_ms += spent.columns_ms;
     times_.march_ms += spent.march_ms;
     times_.excess_ms += spent.excess_ms;
@@ -91,6 +91,10 @@ std::vector<GeometryResult> CpuEngine::computeGeometry(const std::vector<Geometr
     GeometryResult found;
     found.unknown_columns = geometry.unknownColumns();
     found.warnings = geometry.warnings();
+    found.column_step = geometry.columnStep();
+    if (EmitterGeometry::interpolates(*setup_.scenario, setup_.scenario->emitters[request.emitter],
+                                      setup_.columns, setup_.needs[request.emitter]))
+      found.every_column_ms = spent.of_part_ms / request.part.fraction(setup_.grid.dims);
     if (found.unknown_columns > 0) {
       found.unknown.resize(setup_.columns.count());
       for (std::size_t c = 0; c < found.unknown.size(); ++c) found.unknown[c] = geometry.isUnknown(c) ? 1 : 0;
@@ -176,7 +180,8 @@ void CpuEngine::combine(const CombinePass& pass) {
       for (const RadarShare& share : pass.members[m].radars) {
         float* const accumulator = task.accumulators[share.channel].value;
         if (accumulator == nullptr) continue;
-        const LookWeights weights = kept_looks_.choose(static_cast<std::size_t>(slot), antenna, share);
+        const LookWeights weights = kept_looks_.choose(static_cast<std::size_t>(slot), antenna, share,
+                                                       pass.members[m].radars.size() > 1);
         radarCpu(radarPass(share, beam, slots_[slot].clutterMap(), task, accumulator), weights);
       }
       for (const OccupancyShare& share : pass.members[m].occupancies) {

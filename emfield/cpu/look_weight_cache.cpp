@@ -21,19 +21,19 @@ LookWeightCache::LookWeightCache(std::size_t slots, std::size_t voxels, std::siz
       slots_(slots) {}
 
 LookWeights LookWeightCache::choose(std::size_t slot, const scenario::AntennaPtr& antenna,
-                                    const RadarShare& share) {
+                                    const RadarShare& share, bool has_more) {
   LookWeights weights;
   if (slot >= slots_.size() || !share.arcs.directions.empty()) return weights;
   ++pass_;
-  weights.echo = choose(slots_[slot], antenna, share, nullptr);
+  weights.echo = choose(slots_[slot], antenna, share, nullptr, has_more);
   for (const JammerAtRadar& jammer : share.jammers) {
-    weights.jammers.push_back(choose(slots_[slot], antenna, share, &jammer));
+    weights.jammers.push_back(choose(slots_[slot], antenna, share, &jammer, has_more));
   }
   return weights;
 }
 
 WeightArray LookWeightCache::choose(std::vector<Entry>& entries, const scenario::AntennaPtr& antenna,
-                                    const RadarShare& share, const JammerAtRadar* jammer) {
+                                    const RadarShare& share, const JammerAtRadar* jammer, bool has_more) {
   const auto entry = std::find_if(entries.begin(), entries.end(), [&](const Entry& known) {
     const bool is_jammer = known.jammer.has_value();
     return is_jammer == (jammer != nullptr) && (!is_jammer || sameRays(*known.jammer, *jammer)) &&
@@ -52,17 +52,19 @@ WeightArray LookWeightCache::choose(std::vector<Entry>& entries, const scenario:
   fresh.share.jammers.clear();
   if (jammer != nullptr) fresh.jammer = *jammer;
   fresh.last_pass = pass_;
+  Entry* place = nullptr;
   if (entries.size() < kMaxEntries) {
-    entries.push_back(std::move(fresh));
-    return {};
+    place = &entries.emplace_back();
+  } else {
+    place = &*std::min_element(entries.begin(), entries.end(),
+                               [](const Entry& a, const Entry& b) { return a.last_pass < b.last_pass; });
+    if (place->last_pass == pass_) return {};  // its array is used in this pass
+    release(*place);
   }
-  const auto oldest = std::min_element(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-    return a.last_pass < b.last_pass;
-  });
-  if (oldest->last_pass == pass_) return {};  // its array is used in this pass
-  release(*oldest);
-  *oldest = std::move(fresh);
-  return {};
+  *place = std::move(fresh);
+  if (!has_more || !take(*place)) return {};
+  place->is_known = true;
+  return {place->values.data(), false};
 }
 
 void LookWeightCache::forget(std::size_t slot) {

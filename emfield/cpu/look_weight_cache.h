@@ -9,8 +9,8 @@
 
 namespace emscape::emfield {
 
-/// A look that is unchanged in a second pass is computed once more and stored; afterwards it is read. Results
-/// are bit-identical with and without the cache.
+/// A look that is unchanged in a second pass is computed once more and stored, or stored in its first pass if
+/// others are expected; afterwards it is read. Results are bit-identical with and without the cache.
 class LookWeightCache {
  public:
   /// @param slots            emitters with their own geometry
@@ -22,7 +22,9 @@ class LookWeightCache {
   /// @param slot     of the radar; slots other than those of the constructor have no arrays
   /// @param antenna  of the radar
   /// @param share    none of its arrays are kept if its look has arcs
-  LookWeights choose(std::size_t slot, const scenario::AntennaPtr& antenna, const RadarShare& share);
+  /// @param has_more the radar enters other channels, too, which probably have the same look
+  LookWeights choose(std::size_t slot, const scenario::AntennaPtr& antenna, const RadarShare& share,
+                     bool has_more = false);
   /// The geometry of a slot has changed.
   void forget(std::size_t slot);
   std::size_t bytes() const { return taken_ * voxels_ * sizeof(float); }
@@ -39,7 +41,7 @@ class LookWeightCache {
   };
 
   WeightArray choose(std::vector<Entry>& entries, const scenario::AntennaPtr& antenna,
-                     const RadarShare& share, const JammerAtRadar* jammer);
+                     const RadarShare& share, const JammerAtRadar* jammer, bool has_more);
   void release(Entry& entry);
   bool take(Entry& entry);
 

@@ -44,7 +44,9 @@ template <class Model>
 unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const ExcessOutput& out) {
   const ExcessGrid& grid = task.grid;
   const std::vector<char> is_left = fillBySearch(task, bounds, out);
-  const auto isLeft = [&](std::size_t column) { return is_left.empty() || is_left[column] != 0; };
+  const auto isLeft = [&](std::size_t column) {
+    return (is_left.empty() || is_left[column] != 0) && grid.part.contains(grid.dims, column);
+  };
   const int columns = static_cast<int>(grid.column_count);
   std::atomic<unsigned> all_warnings{0};
   std::atomic<int> filled_columns{0};
@@ -55,9 +57,13 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
     unsigned warnings = 0;
     for (int block = begin; block < end; ++block) {
       const int first = block * kBlock, count = std::min(kBlock, columns - first);
+      int left[kBlock], left_count = 0;
       for (int i = 0; i < count; ++i) {
+        if (isLeft(static_cast<std::size_t>(first + i))) left[left_count++] = i;
+      }
+      for (int n = 0; n < left_count; ++n) {
+        const int i = left[n];
         const auto column = static_cast<std::size_t>(first + i);
-        if (!isLeft(column)) continue;
         checkpoint();
         const auto setAll = [&](float db) { std::fill_n(scratch.excess_db, grid.layers, db); };
         unsigned of_column = 0;
@@ -75,15 +81,13 @@ unsigned fill(const ExcessTask<Model>& task, const TerrainBounds* bounds, const 
           excess_db[static_cast<std::size_t>(k) * kBlock + i] = scratch.excess_db[k];
         }
       }
-      if (is_left.empty() && out.excess.codes != nullptr) {
+      if (left_count == count && out.excess.codes != nullptr) {
         setCodes(excess_db.data(), grid.layers, count, grid.column_count, out.excess.codes + first);
       } else {
-        for (int k = 0; k < grid.layers; ++k) {
+        for (int k = 0; left_count > 0 && k < grid.layers; ++k) {
           const std::size_t row = static_cast<std::size_t>(k) * grid.column_count + first;
-          for (int i = 0; i < count; ++i) {
-            if (!isLeft(static_cast<std::size_t>(first + i))) continue;
-            out.excess.set(row + i, excess_db[static_cast<std::size_t>(k) * kBlock + i]);
-          }
+          for (int n = 0; n < left_count; ++n)
+            out.excess.set(row + left[n], excess_db[static_cast<std::size_t>(k) * kBlock + left[n]]);
         }
       }
       reportDone(static_cast<double>(filled_columns += count) / columns);
@@ -126,6 +130,7 @@ ExcessGrid excessGrid(const GridColumns& columns, const scenario::Terrain* terra
   grid.column_count = columns.count();
   grid.t_m = columns.t_m.data();
   grid.layers = static_cast<int>(columns.t_m.size());
+  grid.dims = columns.dims;
   grid.tilted = columns.tilted;
   grid.every_height = columns.every_height;
   if (!columns.first_valid_k.empty()) grid.first_valid_k = columns.first_valid_k.data();

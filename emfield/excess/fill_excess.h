@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "emfield/columns/column_part.h"
 #include "emfield/columns/excess_code.h"
 #include "emfield/columns/foot_inverse.h"
 #include "emfield/columns/grid_columns.h"
@@ -36,6 +37,8 @@ struct ExcessGrid {
   const std::uint16_t* first_valid_k = nullptr;
   /// Number of segments of a tilted column, each above one point of the ground; 1 for vertical columns.
   int segments = 1;
+  Dims dims;        ///< of the grid
+  ColumnPart part;  ///< columns that are filled; on the CPU
 
   EMSCAPE_HD int firstLayer(int segment) const {
     return static_cast<int>(static_cast<long long>(layers) * segment / segments);

@@ -21,8 +21,9 @@ void findShadowEdgesCpu(const Station& station, const GroundPosts& ground, const
       return grazingSlopeCpu(task.geometry(), heights_m.data() + 1, terms.data() + 1, count - 1);
     };
     for (int c = begin; c < end; ++c) {
-      if (grid.isLeftOut(static_cast<std::size_t>(c))) continue;
-      edges_m[c] = task.edge_m(grid, static_cast<std::size_t>(c), slopeTo);
+      const auto column = static_cast<std::size_t>(c);
+      if (grid.isLeftOut(column) || !grid.part.contains(grid.dims, column)) continue;
+      edges_m[c] = task.edge_m(grid, column, slopeTo);
     }
   });
 }

@@ -8,6 +8,7 @@
 #include "emfield/columns/column_geometry.h"
 #include "emfield/excess/emitter_excess.h"
 #include "emfield/excess/fill_excess.h"
+#include "emfield/excess/interpolate_columns.h"
 #include "emfield/excess/shadow.h"
 #include "emscape/base/parallel.h"
 #include "emscape/base/work.h"
@@ -39,28 +40,47 @@ void allocate(Array& array, std::size_t size) {
 void EmitterGeometry::compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                               const scenario::Emitter& emitter, const GridColumns& columns,
                               const scenario::Terrain* terrain, Times& times, const TerrainBounds* bounds,
-                              const GeometryNeeds& needs) {
+                              const GeometryNeeds& needs, ColumnPart part) {
   Stopwatch watch;
+  if (!interpolates(scenario, emitter, columns, needs)) part = {};
+  const bool continues = part.known > 0;
   const Station station = makeStation(state.position, state.height_msl_m, scenario.atmosphere);
   const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
   const bool needs_paths = !columns.tilted && (model.casts_shadow || hasExcess(scenario, emitter));
   UnsetVector<FastInverse> paths(needs_paths ? columns.count() : 0);
   locateColumns(station, columns, needs_paths ? paths.data() : nullptr);
-  shadow_edge_m_.assign(column_count_, -std::numeric_limits<float>::infinity());
-  excess_.clear();
-  excess_db_.clear();
-  reflected_.clear();
-  mechanisms_.clear();
-  unknown_columns_ = 0;
-  warnings_ = 0;
+  constexpr float kNoShadow_m = -std::numeric_limits<float>::infinity();
+  if (continues) {
+    for (std::size_t c = 0; c < column_count_; ++c) {
+      if (part.contains(columns.dims, c)) shadow_edge_m_[c] = kNoShadow_m;
+    }
+  } else {
+    shadow_edge_m_.assign(column_count_, kNoShadow_m);
+    excess_.clear();
+    excess_db_.clear();
+    reflected_.clear();
+    mechanisms_.clear();
+    clutter_.clear();
+    warnings_ = 0;
+  }
+  column_step_ = part.step;
   times.columns_ms += watch.lap_ms();
 
   ExcessGrid grid = excessGrid(columns, terrain);
+  grid.part = part;
   if (needs_paths) grid.paths = paths.data();
   const propagation::PathExtent extent = pathExtent(station, columns);
   const std::vector<double> ranges_m = postRanges(extent.farthest_m, postSpacing_m(terrain));
   const GroundPosts ground = groundPosts(terrain, ranges_m);
+  times.excess_ms += watch.lap_ms();
+  const auto endPart = [&] {
+    const double ms = watch.lap_ms();
+    times.excess_ms += ms;
+    times.of_part_ms += ms;
+  };
   if (model.casts_shadow) findShadowEdgesCpu(station, ground, grid, shadow_edge_m_.data());
+  endPart();
+  ExcessStore store;
   if (hasExcess(scenario, emitter)) {
     EmitterExcess excess = planExcess(scenario, emitter, state.beam, station, terrain, columns);
     times.excess_ms += watch.lap_ms();
@@ -72,17 +92,25 @@ void EmitterGeometry::compute(const scenario::EmitterState& state, const scenari
     excess_db_.resize(columns.every_height ? voxels : 0);
     if (model.has_reflected_ray) allocate(reflected_, voxels);
     if (needs.mechanisms && hasMechanisms(model)) allocate(mechanisms_, voxels);
-    const ExcessStore store{excess_.empty() ? nullptr : excess_.data(),
-                            excess_db_.empty() ? nullptr : excess_db_.data()};
-    warnings_ = fillExcessCpu(excess, station, grid, ground, bounds,
-                              {store, reflected_.data(), mechanisms_.empty() ? nullptr : mechanisms_.data(),
-                               shadow_edge_m_.data()});
+    store = {excess_.empty() ? nullptr : excess_.data(), excess_db_.empty() ? nullptr : excess_db_.data()};
+    times.excess_ms += watch.lap_ms();
+    warnings_ |= fillExcessCpu(excess, station, grid, ground, bounds,
+                               {store, reflected_.data(), mechanisms_.empty() ? nullptr : mechanisms_.data(),
+                                shadow_edge_m_.data()});
+    endPart();
   }
+  if (part.step > 1) interpolateColumnsCpu(grid, {store, nullptr, nullptr, shadow_edge_m_.data()});
   unknown_columns_ = std::count_if(shadow_edge_m_.begin(), shadow_edge_m_.end(),
                                    [](float edge) { return std::isnan(edge); });
-  clutter_.clear();
-  if (needs.clutter_map) mapClutter(scenario, emitter, station, extent, terrain);
+  if (needs.clutter_map && !continues) mapClutter(scenario, emitter, station, extent, terrain);
   times.excess_ms += watch.lap_ms();
+}
+
+bool EmitterGeometry::interpolates(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                                   const GridColumns& columns, const GeometryNeeds& needs) {
+  const propagation::ModelInfo& model = propagation::modelInfo(emitter.propagation.model);
+  return !columns.every_height && (model.casts_shadow || hasExcess(scenario, emitter)) &&
+         model.radial == nullptr && !model.has_reflected_ray && !(needs.mechanisms && hasMechanisms(model));
 }
 
 void EmitterGeometry::mapClutter(const scenario::Scenario& scenario, const scenario::Emitter& emitter,

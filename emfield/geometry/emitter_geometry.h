@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "emfield/columns/column_geometry.h"
+#include "emfield/columns/column_part.h"
 #include "emfield/geometry/clutter_map.h"
 #include "emfield/ground/terrain_bounds.h"
 #include "emscape/base/unset_vector.h"
@@ -29,14 +30,23 @@ class EmitterGeometry {
   struct Times {
     double columns_ms = 0, march_ms = 0, excess_ms = 0;
     double marched_heights = 0;
+    double of_part_ms = 0;  ///< of excess_ms, the part that is proportional to the number of columns
   };
 
   /// @param emitter  of the scenario
   /// @param terrain  null: smooth earth
   /// @param bounds   of the terrain, for surfaces; null: none
+  /// @param part     the columns to compute; the others are interpolated, or known from the call before,
+  /// which
+  ///                 had the same arguments and the step part.known. All where interpolates() is false
   void compute(const scenario::EmitterState& state, const scenario::Scenario& scenario,
                const scenario::Emitter& emitter, const GridColumns& columns, const scenario::Terrain* terrain,
-               Times& times, const TerrainBounds* bounds = nullptr, const GeometryNeeds& needs = {});
+               Times& times, const TerrainBounds* bounds = nullptr, const GeometryNeeds& needs = {},
+               ColumnPart part = {});
+  /// True if columns of an emitter can be interpolated: it has a loss or shadow, made column by column,
+  /// without lobes.
+  static bool interpolates(const scenario::Scenario& scenario, const scenario::Emitter& emitter,
+                           const GridColumns& columns, const GeometryNeeds& needs);
 
   ColumnGeometryView view() const;
   /// Of a radar with surface clutter, if it was requested; else without cells.
@@ -46,6 +56,8 @@ class EmitterGeometry {
   /// Columns whose path crosses missing terrain.
   long long unknownColumns() const { return unknown_columns_; }
   bool isUnknown(std::size_t column) const;
+  /// Every step-th column in each direction is computed, and the others interpolated; 1: all are.
+  int columnStep() const { return column_step_; }
   /// Warning bits of the model on the paths: see warningMessages().
   unsigned warnings() const { return warnings_; }
 
@@ -83,6 +95,7 @@ class EmitterGeometry {
   std::vector<ClutterCell> clutter_;  ///< empty: no surface clutter
   long long unknown_columns_ = 0;
   unsigned warnings_ = 0;
+  int column_step_ = 1;
 };
 
 }  // namespace emscape::emfield

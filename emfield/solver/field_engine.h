@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "emfield/channels/products.h"
+#include "emfield/columns/column_part.h"
 #include "emfield/columns/grid_columns.h"
 #include "emfield/combine/combine.h"
 #include "emfield/combine/occupancy.h"
@@ -31,6 +32,9 @@ struct GeometryRequest {
   int emitter = 0;
   int slot = 0;
   scenario::EmitterState state;
+  /// The columns to compute; those that are known are in the slot, from the same inputs. An engine may
+  /// compute all of them.
+  ColumnPart part = {};
 };
 
 /// Findings of stages 1 and 2 for one emitter.
@@ -39,6 +43,8 @@ struct GeometryResult {
   std::vector<std::uint8_t> unknown;  ///< one per column, 0 or 1; empty: none is unknown
   unsigned warnings = 0;              ///< of the excess model: see warningMessages()
   long long near_voxels = 0;          ///< voxels nearer than the emitter's far field
+  int column_step = 1;  ///< every step-th column in each direction is computed, others are interpolated
+  double every_column_ms = 0;  ///< time that every column would take, of the part that can be left out
 };
 
 /// One pass of stage 3.

@@ -220,6 +220,11 @@ FieldChanged FieldSolver::Impl::updateFrom(Impl& former, const scenario::Snapsho
   for (std::size_t f = 0; f < former.emitters.size(); ++f)
     by_name[former.setup.scenario->emitters[f].name] = static_cast<int>(f);
   std::vector<std::pair<int, int>> taken;
+  pace = former.pace;
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    const auto found = by_name.find(setup.scenario->emitters[e].name);
+    if (found != by_name.end()) emitters[e].every_column_ms = former.emitters[found->second].every_column_ms;
+  }
   if (backend == former.backend) {
     for (int e = 0; e < static_cast<int>(emitters.size()); ++e) {
       const auto found = by_name.find(setup.scenario->emitters[e].name);
@@ -292,6 +297,7 @@ FieldChanged FieldSolver::update(const scenario::Snapshot& snapshot, scenario::T
   const bool knows_columns = has_same_grid && impl_->options.surface == nullptr;
   auto fresh = std::make_unique<Impl>(snapshot.scenario, std::move(terrain), impl_->options,
                                       knows_columns ? impl_->setup.columns : GridColumns());
+  fresh->pace.goal_ms = impl_->pace.goal_ms;
   const FieldChanged changed =
       has_same_grid ? fresh->updateFrom(*impl_, snapshot) : fresh->update(snapshot, std::nullopt);
   impl_ = std::move(fresh);
@@ -320,6 +326,20 @@ FieldChanged FieldSolver::update(double time_s, const std::vector<scenario::Plat
     impl_->options.move_tolerance_m = tolerance_m;
     throw;
   }
+}
+
+void FieldSolver::setTimeGoal(double goal_ms) {
+  impl_->pace.goal_ms = goal_ms;
+}
+
+int FieldSolver::columnStep() const {
+  int step = 1;
+  for (std::size_t e = 0; e < impl_->emitters.size(); ++e) {
+    const EmitterCache& cache = impl_->emitters[e];
+    if (cache.state.active && impl_->setup.needs[e].any)
+      step = std::max(step, cache.geometry_result.column_step);
+  }
+  return step;
 }
 
 MemoryUse FieldSolver::memoryUse() const {

@@ -9,6 +9,7 @@
 
 #include "emfield/link/jammers.h"
 #include "emfield/solver/beam_positions.h"
+#include "emfield/solver/column_step.h"
 #include "emfield/solver/field_engine.h"
 #include "emfield/solver/field_inputs.h"
 #include "emfield/solver/interval_beam.h"
@@ -27,6 +28,7 @@ struct EmitterCache {
   std::optional<IntervalBeam> interval;         ///< none: not active, or the output is of an instant
   bool is_cached = true;                        ///< false: its geometry is discarded after each use
   GeometryResult geometry_result;
+  double every_column_ms = 0;       ///< the last known one of GeometryResult
   bool mount_changed = true;        ///< since the previous update: moved, switched or turned as a whole
   std::vector<JammerPath> jammers;  ///< of radars, for quantities with jamming
   WarningCounts warnings, jamming_warnings;
@@ -49,6 +51,8 @@ struct FieldSolver::Impl {
   std::vector<ChannelMask> masks;  ///< one per channel
   std::vector<volume::Volume> volumes;
   PatternReaches reaches;
+  ColumnPace pace;
+  double geometry_ms = 0;  ///< of this update
 
   /// Number of emitters, counted from the first, whose sum is in the engine's static accumulators.
   int static_count = 0;
@@ -97,6 +101,8 @@ struct FieldSolver::Impl {
   void findJamming(const scenario::Snapshot& snapshot, const Changes& changes);
   void findCombined(const scenario::Snapshot& snapshot, Changes& changes);
   void findProducts(Changes& changes);
+  void chooseStep(const std::vector<int>& moved);
+  ColumnPart partOf(int e, bool into_scratch) const;
   void computeGeometry(const std::vector<int>& chosen, bool into_scratch);
   void takeGeometry(int e, GeometryResult found);
   void noteWarnings(int e);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "base/stopwatch.h"
 #include "base/text/count_text.h"
 #include "emfield/channels/categories.h"
 #include "emfield/excess/emitter_excess.h"
@@ -29,9 +30,31 @@ double eirpOf_w(const Emitter& emitter) {
 
 }  // namespace
 
+/// Emitters that are not measured yet count as the mean of the others.
+void FieldSolver::Impl::chooseStep(const std::vector<int>& moved) {
+  if (moved.empty()) return;
+  double known_ms = 0;
+  int known = 0;
+  for (int e : moved) {
+    known_ms += emitters[e].every_column_ms;
+    known += emitters[e].every_column_ms > 0 ? 1 : 0;
+  }
+  pace.choose(known == 0 ? 0 : known_ms * static_cast<double>(moved.size()) / known);
+}
+
+/// The columns of an emitter that are computed now.
+ColumnPart FieldSolver::Impl::partOf(int e, bool into_scratch) const {
+  const EmitterCache& cache = emitters[e];
+  const bool continues = !into_scratch && pace.step == 1 && cache.geometry &&
+                         cache.geometry_result.column_step > 1 &&
+                         areSame(*cache.geometry, geometryInputs(setup, e, cache.state));
+  return {pace.step, continues ? cache.geometry_result.column_step : 0};
+}
+
 /// Computes the geometry of some emitters, into their own slots or the slot of uncached emitters.
 void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool into_scratch) {
   if (chosen.empty()) return;
+  Stopwatch watch;
   const auto compute = [&](std::size_t begin, std::size_t end) {
     const auto count = static_cast<double>(chosen.size());
     const Emitter& emitter = setup.scenario->emitters[chosen[begin]];
@@ -42,20 +65,27 @@ void FieldSolver::Impl::computeGeometry(const std::vector<int>& chosen, bool int
     std::vector<GeometryRequest> requests;
     for (std::size_t i = begin; i < end; ++i) {
       const int e = chosen[i];
+      const ColumnPart columns = partOf(e, into_scratch);
       if (!into_scratch) emitters[e].geometry.reset();  // the slot may be left unfinished
-      requests.push_back({e, into_scratch ? static_cast<int>(emitters.size()) : e, emitters[e].state});
+      requests.push_back(
+          {e, into_scratch ? static_cast<int>(emitters.size()) : e, emitters[e].state, columns});
     }
     std::vector<GeometryResult> found = engine->computeGeometry(requests);
     for (std::size_t i = begin; i < end; ++i) takeGeometry(chosen[i], std::move(found[i - begin]));
   };
-  if (backend == Backend::cuda) return compute(0, chosen.size());  // at the same time
-  for (std::size_t i = 0; i < chosen.size(); ++i) compute(i, i + 1);
+  if (backend == Backend::cuda) {
+    compute(0, chosen.size());  // at the same time
+  } else {
+    for (std::size_t i = 0; i < chosen.size(); ++i) compute(i, i + 1);
+  }
+  geometry_ms += watch.lap_ms();
 }
 
 void FieldSolver::Impl::takeGeometry(int e, GeometryResult found) {
   const Emitter& emitter = setup.scenario->emitters[e];
   EmitterCache& cache = emitters[e];
   cache.geometry = geometryInputs(setup, e, cache.state);
+  if (found.every_column_ms > 0) cache.every_column_ms = found.every_column_ms;
   cache.geometry_result = std::move(found);
   const GeometryResult& geometry_result = cache.geometry_result;
   if (geometry_result.unknown_columns > 0 && !mayLackTerrain()) {

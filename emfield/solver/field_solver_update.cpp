@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/stopwatch.h"
 #include "emfield/solver/field_solver_impl.h"
 #include "emscape/base/work.h"
 
@@ -36,6 +37,8 @@ bool isAny(const std::vector<bool>& flags) {
 /// @param edited  plan of an edited scenario that the engine can use; null: only the time changed
 FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::optional<FieldPlan> edited) {
   engine->resetTimes();
+  Stopwatch watch;
+  geometry_ms = 0;
   Changes changes;
   changes.is_edited = edited.has_value();
   changes.all = is_first || is_stale;
@@ -67,6 +70,7 @@ FieldChanged FieldSolver::Impl::update(const scenario::Snapshot& snapshot, std::
     volume.setInfo(std::move(info));
   }
   is_first = is_stale = has_other_quantities = false;
+  if (!changes.report.moved.empty()) pace.rest_ms = watch.lap_ms() - geometry_ms;
   return changes.report;
 }
 
@@ -84,6 +88,7 @@ void FieldSolver::Impl::discardResults(bool keeps_geometry) {
   for (EmitterCache& cache : emitters) {
     EmitterCache kept;
     kept.is_cached = cache.is_cached;
+    kept.every_column_ms = cache.every_column_ms;
     if (keeps_geometry && cache.is_cached && cache.geometry) {
       kept.geometry = std::move(cache.geometry);
       kept.geometry_result = std::move(cache.geometry_result);
@@ -106,6 +111,7 @@ void FieldSolver::Impl::compute(const scenario::Snapshot& snapshot, Changes& cha
                !report.volumes.empty();
   if (!report.any && !changes.is_edited) return;
 
+  chooseStep(report.moved);
   std::vector<int> recomputed;
   for (int e : report.moved) {
     if (emitters[e].is_cached) recomputed.push_back(e);
@@ -143,9 +149,10 @@ void FieldSolver::Impl::findMoved(const scenario::Snapshot& snapshot, Changes& c
       noteWarnings(static_cast<int>(e));
     }
     const bool has_geometry = setup.needs[e].any;
-    const bool has_moved =
-        now.active && has_geometry &&
-        (!cache.geometry || distance_m(now.position, cache.geometry->position) > options.move_tolerance_m);
+    const bool is_completed = pace.goal_ms == 0 && cache.geometry_result.column_step > 1;
+    const bool has_moved = now.active && has_geometry &&
+                           (!cache.geometry || is_completed ||
+                            distance_m(now.position, cache.geometry->position) > options.move_tolerance_m);
     const bool is_elsewhere =
         now.active && !has_geometry && distance_m(now.position, cache.state.position) > 0;
     if (has_moved) {

@@ -46,6 +46,7 @@ class DifferenceSource : public FrameSource {
   void setPoses(PosesPtr poses) override { source_->setPoses(std::move(poses)); }
   void setQuantity(const std::string& quantity) override;
   void setComparison(Comparison comparison) override { comparison_ = comparison; }
+  void setTimeGoal(double goal_ms) override { source_->setTimeGoal(goal_ms); }
   std::optional<Frame> withoutField(double time_s) override { return source_->withoutField(time_s); }
   std::size_t cachedBytes() const override { return difference_.cachedBytes(); }
 

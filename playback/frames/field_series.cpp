@@ -71,6 +71,11 @@ void FieldSeries::compareWith(const LoadedScenario& reference, const std::string
   difference_channels_ = std::move(channels);
 }
 
+void FieldSeries::setTimeGoal(double goal_ms) {
+  goal_ms_ = goal_ms;
+  solver_.setTimeGoal(goal_ms);
+}
+
 void FieldSeries::rehearse() {
   update(time_s(0));
   if (difference_) difference_->reference(time_s(0));
@@ -85,7 +90,7 @@ std::vector<std::string> FieldSeries::warnings() const {
 
 void FieldSeries::update(double time_s) {
   throwIfStopped(stop_);
-  if (time_s == updated_s_) return;
+  if (time_s == updated_s_ && (goal_ms_ > 0 || columnStep() == 1)) return;
   updated_s_.reset();
   Work stoppable(stop_);
   const WorkScope scope(currentWork() != nullptr ? currentWork() : &stoppable);

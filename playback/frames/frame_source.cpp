@@ -147,6 +147,7 @@ class ComputedFrames : public FrameSource {
     series_->setQuantities(quantities);
     selection_.quantity = quantity;
   }
+  void setTimeGoal(double goal_ms) override { series_->setTimeGoal(goal_ms); }
 
  protected:
   Frame makeFrame(int index) override { return makeFrameAt(series_->time_s(index)); }
@@ -154,6 +155,7 @@ class ComputedFrames : public FrameSource {
     const std::vector<volume::Volume> volumes = series_->computeAt(time_s);
     const std::size_t channel = channelOf(series_->channels(), selection_.quantity);
     Frame frame{mesh_.shown(volumes[channel]), {}, {}, series_->changed(), true, {}};
+    frame.column_step = series_->columnStep();
     setObjects(frame, time_s);
     return frame;
   }

@@ -130,6 +130,7 @@ void LiveCaster::takeMail() {
     applyView(view->value);
   }
   prepare_ms_ += watch.lap_ms();
+  if (field) progress_.column_step = field->value.frame.column_step;
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (field) status_.field_revision = progress_.field_revision = field->value.revision;
@@ -360,6 +361,7 @@ void LiveCaster::publish() {
   if (painter_.cellPicture()) status.cells = painter_.cellPicture()->text();
   status.labels_ms = labels_ms;
   status.shown_s = picture.info().time_s;
+  status.column_step = field_->frame.column_step;
   if (shown_input_) {
     status.input_to_picture_ms = between_ms(*shown_input_, SteadyClock::now());
     status.input_to_frame_ms = input_to_frame_ms_;

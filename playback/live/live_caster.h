@@ -41,6 +41,7 @@ struct PictureProgress {
   long long scene = 0;           ///< that it shows
   bool complete = false;         ///< all of its pixels are cast
   long long field_revision = 0;  ///< of the request for its field
+  int column_step = 1;           ///< of its field: Frame::column_step
 };
 
 /// Draws the last request: the state machine of render::FrameController on a separate thread.

@@ -9,6 +9,7 @@
 
 #include "base/stopwatch.h"
 #include "emscape/base/parallel.h"
+#include "playback/frames/busy_field.h"
 #include "playback/live/first_line.h"
 #include "playback/live/nearest_time.h"
 
@@ -31,8 +32,6 @@ std::vector<double> timesOf(const FrameSource& source) {
   return times_s;
 }
 
-/// Delay after a request before unrequested work starts.
-constexpr double kQuiet_ms = 150;
 /// A field that takes longer leaves a core free even if it is not needed yet.
 constexpr double kLongField_ms = 200;
 /// Time for which a request without patience delays other work.
@@ -100,7 +99,13 @@ bool LiveFields::isHurried() const {
 
 /// Stops the field in progress if a request is pending. The mutex is locked.
 void LiveFields::applyPatience() {
-  if (!begun_ || std::isinf(pending_patience_ms_)) return;
+  if (!begun_) return;
+  if (yields_ && !box_.isEmpty()) {
+    stop_at_ = SteadyClock::now();
+    work_.stopAt(*stop_at_);
+    return;
+  }
+  if (std::isinf(pending_patience_ms_)) return;
   const bool has_more_time = is_patient_ && pending_patience_ms_ > 0;
   const Time at = std::max(*begun_ + milliseconds(has_more_time ? kLongPatience_ms : pending_patience_ms_),
                            SteadyClock::now());
@@ -118,10 +123,12 @@ void LiveFields::run() {
       continue;
     }
     const std::optional<int> step = idleStep();
-    if (!step) {
+    if (!is_incomplete_ && !step) {
       wait();
     } else if (SteadyClock::now() < quiet_from_) {
       waitUntil(quiet_from_);
+    } else if (is_incomplete_) {
+      completeField();
     } else {
       doIdleWork(*step);
     }
@@ -168,7 +175,7 @@ void LiveFields::accept() {
   asked_ = is_due_ ? std::min(asked_, letter->since) : letter->since;
   wanted_ = std::move(letter->value);
   is_due_ = true;
-  quiet_from_ = SteadyClock::now() + milliseconds(kQuiet_ms);
+  quiet_from_ = SteadyClock::now() + milliseconds(BusyField::kQuiet_ms);
   if (wanted_.search != search_) beginSearch();
 }
 
@@ -197,17 +204,32 @@ void LiveFields::serve() {
     const int nearest = nearestTime(content_->times_s, time_s);
     if (nearest != index_) is_playing_ = !content_->is_continuous && nearest == index_ + 1;
     index_ = nearest;
-    deliver(content_, compute(time_s));
+    deliver(content_, compute(time_s, wanted_.patience_ms > Patience::kNone));
   } catch (const Stopped&) {
     const std::lock_guard<std::mutex> lock(patience_mutex_);
-    is_patient_ = true;
     begun_.reset();
+    if (std::exchange(yields_, false)) return;
+    is_patient_ = true;
     const std::lock_guard<std::mutex> status_lock(mutex_);
     ++status_.fields_abandoned;
     if (stop_at_) status_.abandon_ms = std::max(status_.abandon_ms, since_ms(*stop_at_));
   } catch (const std::exception& error) {
     fail(failureLine(error), codeOf(error));
   }
+}
+
+/// Computes the missing columns of the last field: its request without patience. Any request abandons this.
+void LiveFields::completeField() {
+  wanted_.patience_ms = Patience::kNone;
+  asked_ = SteadyClock::now();
+  is_due_ = true;
+  {
+    const std::lock_guard<std::mutex> lock(patience_mutex_);
+    yields_ = true;
+  }
+  serve();
+  const std::lock_guard<std::mutex> lock(patience_mutex_);
+  yields_ = false;
 }
 
 /// Delivers a field that is in memory: the last one, or a cached step. The source need not show it: it stays
@@ -219,7 +241,8 @@ bool LiveFields::serveFromMemory(const Shown& wanted) {
     status_.times_s = content.times_s;
     status_.is_continuous = content.is_continuous;
   };
-  if (last_ && last_->shown == wanted && last_frame_.info().time_s == last_->timeOf(asked_s)) {
+  if (last_ && last_->shown == wanted && last_frame_.info().time_s == last_->timeOf(asked_s) &&
+      (last_frame_.column_step == 1 || wanted_.patience_ms > Patience::kNone)) {
     publishTimes(*last_);
     deliver(last_, last_frame_);
     return true;
@@ -301,8 +324,9 @@ void LiveFields::begin(const std::string& what) {
   applyPatience();  // of requests since accept()
 }
 
-Frame LiveFields::compute(double time_s) {
+Frame LiveFields::compute(double time_s, bool is_busy) {
   Stopwatch watch;
+  source_->setTimeGoal(is_busy ? BusyField::kGoal_ms : 0);
   field_begin_ = SteadyClock::now();
   const FieldsStatus before = status();
   const bool shares = (events_.is_shared && events_.is_shared()) || before.field_ms > kLongField_ms;
@@ -323,7 +347,7 @@ Frame LiveFields::compute(double time_s) {
   cached_ = content_;
   const std::size_t of_source = std::min(source_->cachedBytes(), options_.cache_bytes);
   cache_.setLimit(options_.cache_bytes - of_source);
-  if (step >= 0) cache_.keep(step, frame, distance());
+  if (step >= 0 && frame.column_step == 1) cache_.keep(step, frame, distance());
   auto warnings = std::make_shared<const std::vector<std::string>>(source_->warnings());
   const std::lock_guard<std::mutex> lock(mutex_);
   status_.warnings = std::move(warnings);
@@ -342,6 +366,8 @@ void LiveFields::deliver(const ContentPtr& content, const Frame& frame) {
   }
   last_ = content;
   last_frame_ = frame;
+  is_incomplete_ = frame.column_step > 1;
+  if (is_incomplete_) quiet_from_ = SteadyClock::now() + milliseconds(BusyField::kQuiet_ms);
   FieldDelivery delivery{wanted_.revision, content->title, content->scene, content->shown.quantity, frame};
   {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -357,7 +383,7 @@ bool LiveFields::deliverWithoutField(long long revision) {
   const std::optional<Frame> frame = source_->withoutField(content_->timeOf(askedTime_s()));
   if (!frame) return false;
   if (revision > 0) {
-    is_due_ = false;
+    is_due_ = is_incomplete_ = false;
     const std::lock_guard<std::mutex> lock(patience_mutex_);
     begun_.reset();
   }
@@ -367,7 +393,7 @@ bool LiveFields::deliverWithoutField(long long revision) {
 }
 
 void LiveFields::fail(const std::string& line, ErrorCode code) {
-  is_due_ = false;
+  is_due_ = is_incomplete_ = false;
   range_search_ = RangeSearch();
   {
     const std::lock_guard<std::mutex> lock(patience_mutex_);
@@ -411,7 +437,7 @@ void LiveFields::doIdleWork(int index) {
     begin("range of the series");
     if (!(wanted == content_->shown)) change(wanted);  // after an abandoned field
     const Frame* cached = cached_ == content_ ? cache_.find(index) : nullptr;
-    const Frame frame = cached ? *cached : compute(source_->time_s(index));
+    const Frame frame = cached ? *cached : compute(source_->time_s(index), false);
     if (range_search_.next() == index) {
       range_search_.add(frame.info());
       if (!range_search_.next()) endSearch(range_search_.range());

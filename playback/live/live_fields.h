@@ -70,8 +70,9 @@ struct FieldsStatus {
 };
 
 /// Serves the latest request; a new one replaces a pending one, and the field in progress is abandoned
-/// (Patience). After a moment without requests it computes the next steps of a playing series, and searches
-/// its range.
+/// (Patience). Fields of requests that have patience may have a part of their columns (BusyField). After a
+/// moment without requests such a field is completed; then the next steps of a playing series are computed,
+/// and its range is searched.
 class LiveFields {
  public:
   struct Options {
@@ -150,7 +151,9 @@ class LiveFields {
   Shown shownOf(const FieldRequest& request) const;
   void change(const Shown& wanted);
   void noteContent();
-  Frame compute(double time_s);
+  /// @param is_busy  a part of the columns may be interpolated (BusyField)
+  Frame compute(double time_s, bool is_busy);
+  void completeField();
   void begin(const std::string& what);
   void applyPatience();
   void deliver(const ContentPtr& content, const Frame& frame);
@@ -174,11 +177,12 @@ class LiveFields {
   Work work_{&stop_};
 
   std::atomic<Time::rep> hurried_until_{0};
-  std::mutex patience_mutex_;                        // of the next four
+  std::mutex patience_mutex_;                        // of the next five
   double pending_patience_ms_ = Patience::kEndless;  // smallest of the requests in the box
   std::optional<Time> begun_;                        // a field that may be abandoned is being computed
   std::optional<Time> stop_at_;                      // of that field
   bool is_patient_ = false;                          // the field before was abandoned
+  bool yields_ = false;                              // any request abandons that field
 
   // Of the thread
   std::unique_ptr<FrameSource> source_;
@@ -193,6 +197,7 @@ class LiveFields {
   StepCache<Frame> cache_;
   ContentPtr last_;  // of the last delivered field
   Frame last_frame_;
+  bool is_incomplete_ = false;       // columns of that field are to be completed
   int index_ = 0;                    // of the step nearest to the last request
   bool is_playing_ = false;          // steps are requested one after another
   std::optional<Time> field_begin_;  // of the last field

@@ -149,8 +149,8 @@ struct LiveView::Impl {
     status.reason = cast.reason;
     status.computing = !is_field_shown && !has_failed;
     status.failed = !is_field_shown && has_failed;
-    status.exact = progress.complete && progress.scene == cast.scene && cast.view_revision == view.revision &&
-                   !status.computing;
+    status.exact = progress.complete && progress.column_step == 1 && progress.scene == cast.scene &&
+                   cast.view_revision == view.revision && !status.computing;
     status.asked_s = fieldTime_s(solve, field.view.time_s);
     status.is_continuous = solve.is_continuous;
     status.progress = std::move(solve.progress);

@@ -61,8 +61,11 @@ struct LiveStatus {
   /// Time from the oldest input that this picture is the first to show; 0: it shows no new input.
   double input_to_picture_ms = 0;
   double input_to_frame_ms = 0;  ///< from the same input to the beginning of its frame
-  /// The picture shows the last request, and each of its pixels is cast. After a failure: the last valid
-  /// request.
+  /// Of the picture's field: every column_step-th column in each direction is computed, and the others are
+  /// interpolated (BusyField); 1: all are computed.
+  int column_step = 1;
+  /// The picture shows the last request, each of its pixels is cast, and all columns are computed. After a
+  /// failure: the last valid request.
   bool exact = false;
   double asked_s = 0;          ///< time of the last requested field
   double shown_s = 0;          ///< time of the picture's field

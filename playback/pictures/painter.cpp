@@ -11,6 +11,7 @@
 #include "emscape/base/log.h"
 #include "emscape/playback/frames/scene.h"
 #include "emscape/volume/statistics.h"
+#include "playback/frames/busy_field.h"
 #include "playback/frames/difference_series.h"
 #include "playback/frames/platform_tracks.h"
 #include "playback/pictures/followed_camera.h"
@@ -388,6 +389,7 @@ std::string Painter::note(render::Pattern pattern) const {
   }
   std::string text =
       fmt::format("{}, {}", mode, pattern == render::Pattern::full ? "every pixel computed" : "preview");
+  if (frame_ && frame_->column_step > 1) text += ", " + columnsText(frame_->column_step);
   if (view_.settings.step_voxels != render::RenderSettings().step_voxels)
     text += fmt::format(", a sample every {:g} voxels", view_.settings.step_voxels);
   return text;

@@ -50,6 +50,24 @@ TEST(FrameSource, ComputesAScenariosStepsWithOneRange) {
   EXPECT_FALSE(source->frame(3).changed);
 }
 
+TEST(FrameSource, AFieldWithATimeGoalIsCompletedWithoutIt) {
+  FrameSelection selection;
+  selection.input = emscape::test::shippedScenario("jacksboro.yaml");
+  selection.edits = {{"region.dims", "[50, 50, 25]"}, {"emitters.jammer.propagation", "diffraction"}};
+  selection.independent = true;
+  const auto source = openFrameSource(selection, {}), fresh = openFrameSource(selection, {});
+  const auto valuesOf = [](const Frame& frame) { return frame.volume.host()->values; };
+  constexpr double kUnreachable_ms = 1e-3;
+  source->setTimeGoal(kUnreachable_ms);
+  EXPECT_EQ(source->frameAt(2).column_step, 1) << "the first field has all columns";
+  EXPECT_GT(source->frameAt(60).column_step, 1);
+  source->setTimeGoal(0);
+  const Frame complete = source->frameAt(60);
+  EXPECT_EQ(complete.column_step, 1);
+  EXPECT_TRUE(complete.changed);
+  EXPECT_EQ(valuesOf(complete), valuesOf(fresh->frameAt(60)));
+}
+
 TEST(FrameSource, MarkersAreEmittersAndPlatformsWithASide) {
   const TemporaryFolder folder;
   FrameSelection selection;

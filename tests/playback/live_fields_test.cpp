@@ -20,7 +20,17 @@ class EditableFrames : public MadeFrames {
     if (scenario->name == "without ground") throw Error(ErrorCode::bad_input, "no ground\nat all");
     ++edits;
   }
+  void setTimeGoal(double goal_ms) override { has_goal_ = goal_ms > 0; }
+  Frame makeFrame(int index) override {
+    Frame frame = MadeFrames::makeFrame(index);
+    frame.column_step = is_slow && has_goal_ ? 2 : 1;
+    return frame;
+  }
   std::atomic<int> edits{0};
+  std::atomic<bool> is_slow{false};  ///< with a time goal a part of the columns is computed
+
+ private:
+  bool has_goal_ = false;
 };
 
 std::shared_ptr<const scenario::Scenario> scenarioNamed(const std::string& name) {
@@ -78,6 +88,10 @@ class Fields {
   std::size_t deliveries() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return delivered_.size();
+  }
+  int columnStep() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return delivered_.back().frame.column_step;
   }
   double shown_s() {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -273,6 +287,56 @@ TEST(LiveFields, AStreamOfSeeksShowsFieldsThatTakeLongerThanThePauses) {
   live.wait();
   EXPECT_EQ(live.shown_s(), 100);
   EXPECT_GT(live.deliveries(), 3U) << "the picture follows";
+}
+
+TEST(LiveFields, AFieldWithAPartOfItsColumnsIsCompletedWhenItRests) {
+  Fields live(10);
+  live.wait();
+  live.source->is_slow = true;
+  const auto play = [&](int step) {
+    live.ask([step](FieldRequest& request) {
+      request.view.time_s = step;
+      request.patience_ms = Patience::kEndless;
+    });
+    live.wait();
+  };
+  play(3);
+  EXPECT_EQ(live.columnStep(), 2);
+  EXPECT_THAT(live.fields->status().cached_steps, testing::Not(Contains(3))) << "only complete ones are kept";
+  live.waitFor([&] { return live.fields->status().fields_computed == 3; });
+  live.wait();
+  EXPECT_EQ(live.columnStep(), 1);
+  EXPECT_EQ(live.shown_s(), 3);
+  EXPECT_THAT(live.source->asked(), ElementsAre(0, 3, 3));
+  EXPECT_THAT(live.fields->status().cached_steps, Contains(3));
+  play(4);
+  live.ask([](FieldRequest& request) { request.patience_ms = Patience::kNone; });
+  live.wait();
+  EXPECT_EQ(live.columnStep(), 1) << "a single change has all columns at once";
+}
+
+TEST(LiveFields, ARequestAbandonsTheCompletionOfAField) {
+  std::atomic<int> at_three{0};
+  Fields live(10, Fields::defaults(), [&](int step) {
+    if (step != 3 || ++at_three < 2) return;
+    for (int n = 0; n < 20000; ++n) {
+      checkpoint();
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  live.wait();
+  live.source->is_slow = true;
+  for (const int step : {3, 4}) {
+    live.ask([step](FieldRequest& request) {
+      request.view.time_s = step;
+      request.patience_ms = Patience::kEndless;
+    });
+    live.wait();
+    EXPECT_EQ(live.shown_s(), step);
+    while (step == 3 && at_three < 2) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  live.waitFor([&] { return live.fields->status().fields_computed == 4; });
+  EXPECT_EQ(live.fields->status().fields_abandoned, 0) << "no requested field was";
 }
 
 TEST(LiveFields, CachedStepsStayWithinTheLimit) {

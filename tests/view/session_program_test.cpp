@@ -36,6 +36,19 @@ TEST(ProgramState, SaysWhatIsComputedAndHowFarItIs) {
   EXPECT_TRUE(state.can_cancel);
 }
 
+TEST(ProgramState, IsBusyWhileColumnsOfTheFieldAreInterpolated) {
+  playback::LiveStatus status = settledStatus();
+  status.exact = false;
+  status.column_step = 2;
+  EXPECT_EQ(programState(shownFacts(), status).badge, "BUSY");
+  EXPECT_EQ(programState(shownFacts(), status).picture, "approximate, field in every second column");
+  status.computing = true;
+  EXPECT_EQ(programState(shownFacts(), status).badge, "BUSY") << "the next one moves, too";
+  ProgramFacts edited = shownFacts();
+  edited.has_pending_edits = true;
+  EXPECT_EQ(programState(edited, status).badge, "COMPUTING");
+}
+
 TEST(ProgramState, IsNeverIdleWithWorkLeft) {
   const ProgramFacts shown = shownFacts();
   ProgramFacts pending = shown, plays = shown, opens = shown, first = shown;

@@ -7,6 +7,7 @@
 #include "emscape/base/enum_names.h"
 #include "emscape/render/annotate/legend.h"
 #include "emscape/scenario/model/quantities.h"
+#include "playback/frames/busy_field.h"
 
 namespace emscape::view {
 namespace {
@@ -19,6 +20,8 @@ Activity activityOf(const ProgramFacts& facts, const playback::LiveStatus& statu
   if (facts.opening || begins) return Activity::opening;
   if (!facts.has_picture) return Activity::empty;
   if (facts.is_playing) return Activity::playing;
+  const bool moves = status.column_step > 1 && !facts.has_pending_edits;
+  if (moves) return Activity::busy;
   if (status.computing || status.searching || facts.has_pending_edits) return Activity::computing;
   switch (status.state) {
     case render::ControllerState::busy:
@@ -47,6 +50,7 @@ std::string pictureText(const playback::LiveStatus& status, bool is_computing) {
   if (is_computing) return "the picture shows the field before";
   const char* const exactness = status.exact ? "exact" : "approximate";
   if (!status.cells.empty()) return fmt::format("{}, {}", exactness, status.cells);
+  if (status.column_step > 1) return "approximate, " + playback::columnsText(status.column_step);
   if (status.exact) return fmt::format("exact, {} rays", render::toString(render::Pattern::full));
   // Complete, but a change of the view, or of what labels stand for, is not drawn yet.
   if (status.pattern == render::Pattern::full) return "the picture shows the view before";
@@ -74,6 +78,7 @@ ProgramState programState(const ProgramFacts& facts, const playback::LiveStatus&
     case Activity::playing:
       state.what = fmt::format("× {:g}", facts.rate);
       if (status.fields_per_s > 0) state.what += fmt::format(", {:.1f} fields/s", status.fields_per_s);
+      if (status.column_step > 1) state.what += ", " + playback::columnsText(status.column_step);
       if (status.computing && is_long && status.fields_per_s < 1) {
         state.what += ", " + textOf(status.progress);
         state.fraction = status.progress.fraction;

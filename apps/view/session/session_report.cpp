@@ -42,6 +42,7 @@ Json Session::report() const {
               {"asked_s", timeline_.asked_s()},
               {"shown_s", status_.shown_s},
               {"exact", exact()},
+              {"column_step", status_.column_step},
               {"settled", settled()},
               {"computing", status_.computing},
               {"cached_steps", status_.cached_steps.size()},

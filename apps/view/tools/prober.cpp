@@ -70,6 +70,10 @@ class Prober::Reader {
             playback::probe(*position_m, volume, detail_ == Detail::explained ? result.scenario : nullptr,
                             picture.terrain.get());
         if (!picture.has_field) result.reading->text = "no field yet";
+        if (picture.status.column_step > 1) {  // interpolated columns state no values
+          result.reading->sample.kind = playback::VolumeSample::Kind::masked;
+          result.reading->text = "computed when the field rests";
+        }
         result.contributions = contributionsOf(*result.reading, result.quantity);
       }
     } catch (const std::exception& error) {

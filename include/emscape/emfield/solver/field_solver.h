@@ -70,7 +70,8 @@ struct FieldChanged {
   bool any = false;
   bool grid = false;      ///< all volumes are new: the first update, or another region, terrain, emitter list
   bool channels = false;  ///< channels() may have changed
-  std::vector<int> moved;    ///< emitters whose geometry (columns and excess losses) was recomputed
+  std::vector<int>
+      moved;  ///< emitters whose geometry (columns and excess losses) was recomputed or completed
   std::vector<int> turned;   ///< emitters of which only inputs of the combine stage changed: beam, power,
                              ///< activity, ...; also emitters in no channel that moved
   std::vector<int> volumes;  ///< channels whose volume was recomputed
@@ -104,8 +105,8 @@ struct MemoryEstimate {
 
 /// Computes the field of a scenario step by step; only what time or an edit of the scenario has invalidated
 /// is computed. The volumes of an update equal, bit for bit, those of a new solver of the same snapshot,
-/// except for the tolerance move_tolerance_m. One thread calls it; it uses all threads that base/parallel.h
-/// allows.
+/// except for the tolerance move_tolerance_m and while columns are interpolated (setTimeGoal()). One thread
+/// calls it; it uses all threads that base/parallel.h allows.
 class FieldSolver {
  public:
   /// @param terrain  null: no terrain in the scenario (smooth earth at mean sea level for `horizon`)
@@ -149,6 +150,16 @@ class FieldSolver {
   /// field is that of a scenario with fixed sites there.
   /// @throws as the others, and as scenario::snapshotAt()
   FieldChanged update(double time_s, const std::vector<scenario::PlatformPose>& poses);
+
+  /// Time (ms) that an update should take while emitters move; 0, the default: every column is computed.
+  /// If the columns of the emitters that moved take longer, by their last times, only every second or fourth
+  /// column in each direction is computed, and the losses of the others are interpolated (columnStep()). The
+  /// first update of an emitter computes all of them, as does a GPU, and so do models that march outwards or
+  /// have a reflected ray, and surfaces. An update with 0 completes what is interpolated.
+  void setTimeGoal(double goal_ms);
+  /// Of the last update: every step-th column in each direction is computed for all emitters; 1: every
+  /// column.
+  int columnStep() const;
 
   /// The channels' volumes after the last update, in the order of channels(), in the memory where they were
   /// computed: host or GPU. Later updates do not change them: a caller may keep one while the next is

@@ -66,6 +66,11 @@ class FieldSeries : public VolumeSeries {
   /// Computes the first step, so that its errors are thrown here. @throws Error, Stopped
   void rehearse();
 
+  /// FieldSolver::setTimeGoal() of the next computed fields; the reference has all columns.
+  void setTimeGoal(double goal_ms);
+  /// FieldSolver::columnStep() of the last field.
+  int columnStep() const { return solver_.columnStep(); }
+
   /// The channels' volumes at a step, or their differences. The last computed step is not recomputed.
   std::vector<volume::Volume> compute(int step) override { return computeAt(time_s(step)); }
   bool isContinuous() const override { return true; }
@@ -86,7 +91,8 @@ class FieldSeries : public VolumeSeries {
   std::optional<LoadedScenario> reference_;
   std::unique_ptr<DifferenceSeries> difference_;
   std::vector<emfield::Channel> difference_channels_;
-  std::optional<double> updated_s_;   // time of the solver's field
+  std::optional<double> updated_s_;  // time of the solver's field
+  double goal_ms_ = 0;
   bool changed_since_given_ = false;  // by an update since the last compute()
   bool changed_ = true;
 };

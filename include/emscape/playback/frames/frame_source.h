@@ -36,6 +36,7 @@ struct Frame : ShownField {
   bool has_field = true;              ///< false: FrameSource::withoutField()
   render::ColorRange color_range;     ///< of the series; none: that of the field's values
   std::optional<FieldBeside> beside = std::nullopt;
+  int column_step = 1;  ///< FieldSolver::columnStep(): above 1 columns between others are interpolated
 };
 
 /// What frames show of a field and its reference.
@@ -145,6 +146,9 @@ class FrameSource : public VolumeSeries {
   /// frames. As setScenario(); frame() throws if the two cannot be compared. @throws Error (usage) if there
   /// is no reference
   virtual void setComparison(Comparison comparison);
+
+  /// Of the next frames of a computed field: FieldSolver::setTimeGoal(). As setScenario().
+  virtual void setTimeGoal(double /*goal_ms*/) {}
 
   /// Memory of cached volumes (bytes).
   virtual std::size_t cachedBytes() const { return 0; }
