@@ -188,18 +188,16 @@ void TrackRecorder::tellSameTimes() {
                      [](const PoseSample& a, const PoseSample& b) { return a.t_s < b.t_s; });
     const SameTimes same = sameTimesOf(poses);
     if (same.dropped == 0) continue;
-    const std::string text =
-        fmt::format("{} the time of a later one, up to {:.4g} m away (the first: {} at {:.10g} s)",
-                    countText(same.dropped, "position has", "positions have"), same.farthest_m, object.name,
-                    same.first_t_s);
     const bool is_one_time = poses.front().t_s == poses.back().t_s;
     const bool are_several = static_cast<double>(same.far) > kFarPart * static_cast<double>(poses.size());
     if (!objects_remedy_.empty() && (is_one_time || are_several)) {
       throw Error(
           ErrorCode::bad_input,
-          fmt::format("{} of the {} {}: they are of several objects, or their times have lost digits. {}",
-                      is_one_time ? "all times are equal:" : "an object would be at two places at once:",
-                      poses.size(), text, objects_remedy_));
+          fmt::format("'{}' would be at two places at once: {} of {} positions have the time of a later one, "
+                      "up to {:.4g} m away, the first at {:.10g} s{}. They are of several objects, or their "
+                      "times have lost digits. {}",
+                      object.name, same.dropped, poses.size(), same.farthest_m, same.first_t_s,
+                      is_one_time ? ", as all times are equal" : "", objects_remedy_));
     }
     if (first.empty()) first = fmt::format("{} at {:.10g} s", object.name, same.first_t_s);
     all.dropped += same.dropped;

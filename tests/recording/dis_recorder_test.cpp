@@ -256,9 +256,8 @@ TEST(DisRecorder, OfSeveralExercisesTheFirstOrTheChosenOneIsReadAndTheOthersAreT
   const auto read = [](const ReadOptions& options) {
     DisRecorder recorder(options);
     for (int i = 0; i < 10; ++i) {
-      Header header;
-      header.exercise = static_cast<std::uint8_t>(1 + i % 2);
-      const auto bytes = encode(header, stateAt(36 + 0.02 * (i % 2) + 1e-4 * i, -84));
+      auto bytes = test::pduAt(7, 0.5 * i, stateAt(36 + 0.02 * (i % 2) + 1e-4 * i, -84));
+      bytes[1] = static_cast<std::uint8_t>(1 + i % 2);  // the exercise
       recorder.take({0.5 * i, bytes.data(), bytes.size()});
     }
     return recorder.finish();
