@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <memory>
 
 #include "base/text/count_text.h"
@@ -88,10 +87,13 @@ Format markupOf(std::string_view head) {
   const std::size_t begin = head.find_first_not_of("\xEF\xBB\xBF \t\r\n");
   if (begin == std::string_view::npos) return Format::unknown;
   const auto has = [head](std::string_view text) { return head.find(text) != std::string_view::npos; };
+  const auto hasElement = [&has](const std::string& name) {
+    return has("<" + name) || has(":" + name + " ");  // with the prefix of a namespace
+  };
   if (head[begin] == '[' && has("\"id\"")) return Format::czml;
   if (head[begin] != '<') return Format::unknown;
-  if (has("<gpx")) return Format::gpx;
-  if (has("<kml")) return Format::kml;
+  if (hasElement("gpx")) return Format::gpx;
+  if (hasElement("kml")) return Format::kml;
   return isCot(head) ? Format::cot : Format::unknown;
 }
 
@@ -153,14 +155,14 @@ Recording readDis(ByteSource& source, Format format, const std::string& file, co
   return recorder.finish();
 }
 
-using Opener = std::function<std::unique_ptr<ByteSource>()>;
-
 /// What a file holds, or the recording in it if it is a zip or gzip file.
 std::unique_ptr<ByteSource> unzipped(const Opener& open, const std::string& file) {
   std::array<char, kZipBegin.size()> begin{};
   const std::string_view head(begin.data(), open()->read(begin.data(), begin.size()));
   if (beginsWith(head, kGzipBegin)) return openGzip(open(), file);
-  return head == kZipBegin ? openZip(open(), file) : open();
+  std::vector<std::string> endings = recordingEndings();
+  endings.emplace_back(".csv");
+  return head == kZipBegin ? openZip(open, file, endings) : open();
 }
 
 /// The begin of a file.

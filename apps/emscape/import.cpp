@@ -119,6 +119,10 @@ Exit status: 0; 2 for wrong options; 3 for a recording, database or base that ca
       ->add_option("--timeout", arguments->read.emission_timeout_s,
                    "Seconds without update after which an emission of DIS ends")
       ->check(CLI::Range(0.1, 1e6));
+  command
+      ->add_option("--exercise", arguments->read.exercise,
+                   "Exercise of DIS that is read; by default that of the first PDU")
+      ->check(CLI::Range(0, 255));
   command->add_option(
       "--names", arguments->names,
       "SISO-REF-010.xml: names of the emitters of DIS in messages and tables, else their numbers");

@@ -287,6 +287,8 @@ void Importer::tellNames(const std::vector<std::string>& numbered) {
                            countText(chosen_.size() - result_.moved.size(), "platform", "platforms"),
                            countText(emitters, "emitter", "emitters")));
   }
+  if (const std::string text = base_ ? farEpochText(recording_.epoch_ms, *base_) : ""; !text.empty())
+    result_.notes.push_back(text);
   if (numbered.empty()) return;
   result_.notes.push_back(fmt::format("{} a name that is in use, and a number after it: {}",
                                       countText(numbered.size(), "object has", "objects have"),

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <sstream>
 
+#include "base/text/utc.h"
 #include "document/node_span.h"
 #include "document/text_edit.h"
 #include "scenario/file/save_scenario.h"
@@ -137,6 +139,20 @@ std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioPar
                 "platforms and emitters cannot be moved or added: " + error.message());
   }
   return commentOf(parts.header) + text;
+}
+
+std::string farEpochText(std::optional<std::int64_t> epoch_ms, const scenario::Scenario& base) {
+  constexpr double kYear_ms = 365.25 * 86400e3;
+  const auto base_ms = parseUtc_ms(base.clock.epoch_utc);
+  if (!epoch_ms || !base_ms) return "";
+  const double years = static_cast<double>(*epoch_ms - *base_ms) / kYear_ms;
+  if (std::abs(years) < 1) return "";
+  return fmt::format(
+      "the recording begins {}, {:.1f} years {} the base's epoch, {}. Is it in GPS time, which counts from "
+      "1980 (10.0 "
+      "years; for a table --columns time=NAME:gps), or has a receiver's week number begun again (19.6 "
+      "years)?",
+      utcText(*epoch_ms), std::abs(years), years < 0 ? "before" : "after", base.clock.epoch_utc);
 }
 
 }  // namespace emscape::interop

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,5 +33,10 @@ std::string scenarioText(const ScenarioParts& parts, const std::filesystem::path
 /// @throws Error (bad_input) naming the base
 std::string scenarioTextOnBase(const scenario::Scenario& base, const ScenarioParts& parts,
                                const std::filesystem::path& folder);
+
+/// Tells that an epoch is years from that of the base: clocks of receivers may count from another year. Empty
+/// if it is not, or one of them is not known.
+/// @param epoch_ms  of a recording, since 1970
+std::string farEpochText(std::optional<std::int64_t> epoch_ms, const scenario::Scenario& base);
 
 }  // namespace emscape::interop

@@ -92,6 +92,10 @@ void LiveCot::keep(CotEvent event, double arrival_s) {
     return of.has_sensor ? of.sensorCarrier() : std::string();
   };
   const std::string before = carrierOf(kept.event), now = carrierOf(event);
+  if (!is_new && !event.has_height && kept.event.has_height) {
+    event.pose.height_msl_m = kept.event.pose.height_msl_m;
+    event.has_height = true;
+  }
   if (before != now) {
     if (!before.empty() && --carriers_[before] == 0) carriers_.erase(before);
     if (!now.empty()) ++carriers_[now];

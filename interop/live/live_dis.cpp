@@ -72,6 +72,14 @@ void LiveDis::take(const std::uint8_t* bytes, std::size_t size, double arrival_s
 
 void LiveDis::takePdu(const dis::Header& header, const std::uint8_t* bytes, double arrival_s) {
   std::string fault;
+  const bool is_other = header.exercise != exercise_.value_or(header.exercise);
+  const bool is_over = !options_.exercise && arrival_s - exercise_heard_s_ > options_.entity_timeout_s;
+  if (is_other && !is_over) {
+    return countBad(fmt::format("a PDU of exercise {}; only those of exercise {} are taken", header.exercise,
+                                *exercise_));
+  }
+  exercise_ = header.exercise;
+  exercise_heard_s_ = arrival_s;
   switch (static_cast<dis::PduType>(header.type)) {
     case dis::PduType::entity_state:
       if (auto state = dis::decodeEntityState(bytes, header.length, fault)) {

@@ -3,6 +3,7 @@
 
 #include <list>
 #include <map>
+#include <optional>
 #include <unordered_map>
 
 #include "interop/live/live_state.h"
@@ -59,6 +60,8 @@ class LiveDis : public LiveState {
   std::list<std::uint64_t> recent_;  ///< keys, the last heard of first
   std::size_t known_ = 0, beams_ = 0;
   double held_beams_changed_s_ = -1e18;
+  std::optional<int> exercise_ = options_.exercise;  ///< until nothing of it is heard for a time
+  double exercise_heard_s_ = 0;
 };
 
 }  // namespace emscape::interop

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,12 +25,16 @@ class ByteSource {
 
 /// Opens a regular file. @throws Error (bad_input) that names it and the cause
 std::unique_ptr<ByteSource> openFile(const std::string& file);
-/// Opens the recording in a zip file: the first file in it whose name ends in .acmi or .kml, else the first
-/// one whose size does not stand before it.
+/// Opens a file from its begin; may be called several times.
+using Opener = std::function<std::unique_ptr<ByteSource>()>;
+/// Opens the recording in a zip file: the first file in it whose name ends in .acmi or .kml, else the only
+/// one, else the only one with an ending of recordings. Folders and hidden files do not count.
 /// @param name  of the zip file, for messages
+/// @param endings  of recordings, in lower case
 /// The directory at the end of the zip file is not needed, so that one that was cut is read to the cut.
 /// @throws Error (bad_input)
-std::unique_ptr<ByteSource> openZip(std::unique_ptr<ByteSource> zip, const std::string& name);
+std::unique_ptr<ByteSource> openZip(const Opener& open, const std::string& name,
+                                    const std::vector<std::string>& endings);
 /// What a file holds that gzip packed. @param name  of the file, for messages
 std::unique_ptr<ByteSource> openGzip(std::unique_ptr<ByteSource> packed, const std::string& name);
 /// A text in memory, which must outlive the source.

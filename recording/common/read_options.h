@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 
 namespace emscape::interop {
@@ -12,6 +13,8 @@ struct ReadOptions {
   double emission_timeout_s = 24;
   /// The same of an entity. Its heartbeat is 5 s.
   double entity_timeout_s = 12;
+  /// The exercise of DIS that is read; none: that of the first PDU.
+  std::optional<int> exercise;
   /// A track (GPX, KML, CZML, STK, NMEA, CSV) without a position for longer than this time (s) has ended, and
   /// begins again with the next one; 0: the gap is bridged.
   double gap_s = 0;

@@ -26,9 +26,38 @@ constexpr double kShortestStep_s = 1e-3;
 constexpr double kFastest_mps = 10e3;          ///< of any object; a satellite makes 8 km/s
 constexpr double kLastSpreadsheetDay = 73050;  ///< of the year 2099
 
-/// A place in ECEF; heights above the sea stand for those above the ellipsoid.
+/// Positions of one time that are farther apart (m) are those of several objects, if they are more than this
+/// part of all.
+constexpr double kFarApart_m = 1000, kFarPart = 0.05;
+
+/// A place in ECEF; heights above the sea stand for those above the ellipsoid, and 0 for an unknown one.
 Vec3d roughEcef(const PoseSample& pose) {
-  return toEcef({pose.latitude_deg, pose.longitude_deg, pose.height_msl_m});
+  return toEcef(
+      {pose.latitude_deg, pose.longitude_deg, std::isnan(pose.height_msl_m) ? 0 : pose.height_msl_m});
+}
+
+/// Positions of an object in the order of time, of which the last one of each time counts.
+struct SameTimes {
+  long long dropped = 0;  ///< at another place than that one
+  long long far = 0;      ///< of these farther than kFarApart_m
+  double farthest_m = 0;
+  double first_t_s = 0;  ///< of the first one
+};
+
+SameTimes sameTimesOf(const std::vector<PoseSample>& poses) {
+  SameTimes found;
+  for (std::size_t begin = 0, end = 0; begin < poses.size(); begin = end) {
+    while (end < poses.size() && poses[end].t_s == poses[begin].t_s) ++end;
+    const Vec3d kept = roughEcef(poses[end - 1]);
+    for (std::size_t i = begin; i + 1 < end; ++i) {
+      const double distance_m = length(roughEcef(poses[i]) - kept);
+      if (!(distance_m > 0)) continue;
+      if (found.dropped++ == 0) found.first_t_s = poses[i].t_s;
+      if (distance_m > kFarApart_m) ++found.far;
+      found.farthest_m = std::max(found.farthest_m, distance_m);
+    }
+  }
+  return found;
 }
 
 /// A speed that most of an object's legs exceed.
@@ -110,8 +139,8 @@ void TrackRecorder::countSample() {
 bool TrackRecorder::isPosition(PoseSample& pose, const std::string& location) {
   const bool is_sound = std::abs(pose.latitude_deg) <= PositionLimits::kLatitude_deg &&
                         std::abs(pose.longitude_deg) <= 720 &&
-                        pose.height_msl_m >= PositionLimits::kLowest_m &&
-                        pose.height_msl_m <= PositionLimits::kHighest_m && std::abs(pose.t_s) <= kMaxTime_s;
+                        !(pose.height_msl_m < PositionLimits::kLowest_m) &&
+                        !(pose.height_msl_m > PositionLimits::kHighest_m) && std::abs(pose.t_s) <= kMaxTime_s;
   if (!is_sound) {
     countBad(
         recording_.tally, location,
@@ -147,6 +176,62 @@ void TrackRecorder::endAtGaps(RecordedObject& object, double gap_s) {
     if (end_s - begin_s <= gap_s) continue;
     object.presence.push_back({begin_s, false});
     object.presence.push_back({end_s, true});
+  }
+}
+
+void TrackRecorder::tellSameTimes() {
+  SameTimes all;
+  std::string first;
+  for (RecordedObject& object : recording_.objects) {
+    auto& poses = object.poses;
+    std::stable_sort(poses.begin(), poses.end(),
+                     [](const PoseSample& a, const PoseSample& b) { return a.t_s < b.t_s; });
+    const SameTimes same = sameTimesOf(poses);
+    if (same.dropped == 0) continue;
+    const bool is_one_time = poses.front().t_s == poses.back().t_s;
+    const bool are_several = static_cast<double>(same.far) > kFarPart * static_cast<double>(poses.size());
+    if (!objects_remedy_.empty() && (is_one_time || are_several)) {
+      throw Error(
+          ErrorCode::bad_input,
+          fmt::format("'{}' would be at two places at once: {} of {} positions have the time of a later one, "
+                      "up to {:.4g} m away, the first at {:.10g} s{}. They are of several objects, or their "
+                      "times have lost digits. {}",
+                      object.name, same.dropped, poses.size(), same.farthest_m, same.first_t_s,
+                      is_one_time ? ", as all times are equal" : "", objects_remedy_));
+    }
+    if (first.empty()) first = fmt::format("{} at {:.10g} s", object.name, same.first_t_s);
+    all.dropped += same.dropped;
+    all.farthest_m = std::max(all.farthest_m, same.farthest_m);
+  }
+  if (all.dropped == 0) return;
+  recording_.tally.notes.push_back(fmt::format(
+      "{} the time of a later one of the same object, up to {:.4g} m away, and {} not used; the first: {}",
+      countText(all.dropped, "position has", "positions have"), all.farthest_m,
+      all.dropped == 1 ? "is" : "are", first));
+}
+
+/// Interpolates the heights that are not known in time; before and after the known ones the nearest is taken.
+void TrackRecorder::fillHeights(RecordedObject& object) {
+  auto& poses = object.poses;
+  const auto isKnown = [](const PoseSample& pose) { return !std::isnan(pose.height_msl_m); };
+  auto before = poses.end();
+  for (auto here = poses.begin(); here != poses.end();) {
+    if (isKnown(*here)) {
+      before = here++;
+      continue;
+    }
+    const auto after = std::find_if(here, poses.end(), isKnown);
+    const bool has_before = before != poses.end(), has_after = after != poses.end();
+    for (; here != after; ++here) {
+      const double part =
+          has_before && has_after ? (here->t_s - before->t_s) / (after->t_s - before->t_s) : 0;
+      const double from_m = has_before ? before->height_msl_m : has_after ? after->height_msl_m : 0;
+      here->height_msl_m = from_m + (has_before && has_after ? part * (after->height_msl_m - from_m) : 0);
+      assume(
+          has_before || has_after
+              ? "height of a position without one: interpolated in time between the known ones of its object"
+              : "height of a position of an object without any: 0 m is taken");
+    }
   }
 }
 
@@ -208,15 +293,20 @@ void TrackRecorder::checkSpeeds() {
             "'{}' would move at {:.4g} km/s, faster than any object (10 km/s): from latitude {:.5f}, "
             "longitude {:.5f} to {:.5f}, {:.5f} deg between times {:.10g} and {:.10g}. Another unit or "
             "column is the time; of a table, --columns (or 'columns' of a track) states it: "
-            "time=NAME:UNIT, with ms, s, h, days, or excel for days since 1900; where rows are of several "
-            "objects, id=NAME",
+            "time=NAME:UNIT, with ms, s, h, days, or excel for days since 1900. {}",
             object.name, speed->mps / 1000, from.latitude_deg, from.longitude_deg, to.latitude_deg,
-            to.longitude_deg, from.t_s, to.t_s));
+            to.longitude_deg, from.t_s, to.t_s,
+            objects_remedy_.empty() ? "Where rows are of several objects, id=NAME tells them apart"
+                                    : objects_remedy_));
   }
 }
 
 Recording TrackRecorder::finish() {
-  for (RecordedObject& object : recording_.objects) sortByTime(object);
+  tellSameTimes();
+  for (RecordedObject& object : recording_.objects) {
+    sortByTime(object);
+    fillHeights(object);
+  }
   checkSpeeds();
   for (RecordedBeam& beam : recording_.beams) sortByTime(beam);
   const TimeSpan span = spanOf(recording_);
@@ -233,6 +323,7 @@ Recording TrackRecorder::finish() {
     if (!poses.empty()) continue;
     poses.push_back(pose);
     poses.back().t_s = span.begin_s;
+    fillHeights(recording_.objects[index]);
   }
   for (RecordedObject& object : recording_.objects) {
     if (options_.gap_s > 0) endAtGaps(object, options_.gap_s);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <unordered_map>
+#include <utility>
 
 #include "emscape/base/vec.h"
 #include "recording/common/read_options.h"
@@ -28,8 +29,9 @@ class TrackRecorder {
   RecordedBeam& beam(std::size_t index) { return recording_.beams[index]; }
 
   /// Adds a pose. With a heading unknown angles are 0; one that is no position is counted as bad; of two at
-  /// one time the later one is kept.
-  /// @param pose  t_s counts from any begin, or from that of hasUtc()
+  /// one time the later one is kept, and the others are told.
+  /// @param pose  t_s counts from any begin, or from that of hasUtc(); an unknown height is interpolated in
+  /// time, and told
   /// @param location  in the file, for messages
   void add(std::size_t object, PoseSample pose, const std::string& location);
   /// Adds the place of an object that does not move.
@@ -40,6 +42,10 @@ class TrackRecorder {
   /// Times without a unit: if they make an object faster than any, they are days since 1900 as spreadsheets
   /// write them, as far as these do not. False: times have a unit.
   void mayBeDays(bool are_numbers) { may_be_days_ = are_numbers; }
+
+  /// How the rows of several objects are told apart. With it positions of one object that are far apart at
+  /// one time are refused, else told.
+  void tellObjectsApartBy(std::string remedy) { objects_remedy_ = std::move(remedy); }
 
   ReadingTally& tally() { return recording_.tally; }
   /// Counts a position that needs an assumption, which becomes a note.
@@ -53,6 +59,8 @@ class TrackRecorder {
  private:
   bool isPosition(PoseSample& pose, const std::string& location);
   void endAtGaps(RecordedObject& object, double gap_s);
+  void tellSameTimes();
+  void fillHeights(RecordedObject& object);
   void tellOutliers();
   void checkSpeeds();
   void takeTimesAsDays();
@@ -64,6 +72,7 @@ class TrackRecorder {
   std::map<std::string, long long> assumptions_;
   std::size_t samples_ = 0;
   bool may_be_days_ = false;
+  std::string objects_remedy_;
   std::optional<double> utc_begin_s_;
 };
 

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -6,6 +7,7 @@
 
 #include "emscape/base/error.h"
 #include "recording/common/byte_source.h"
+#include "recording/common/text.h"
 
 namespace emscape::interop {
 namespace {
@@ -31,8 +33,29 @@ std::uint32_t little(const std::vector<std::uint8_t>& bytes, std::size_t at, std
 }
 
 bool endsWith(const std::string& name, std::string_view end) {
-  return name.size() > end.size() && name.compare(name.size() - end.size(), end.size(), end) == 0;
+  return name.size() > end.size() && lowerCase(name.substr(name.size() - end.size())) == end;
 }
+
+/// A source to which bytes can be given back.
+class ReturnSource : public ByteSource {
+ public:
+  explicit ReturnSource(std::unique_ptr<ByteSource> source) : source_(std::move(source)) {}
+
+  std::size_t read(char* bytes, std::size_t size) override {
+    if (returned_.empty()) return source_->read(bytes, size);
+    const std::size_t count = std::min(size, returned_.size());
+    std::copy_n(returned_.begin(), count, bytes);
+    returned_.erase(0, count);
+    return count;
+  }
+  /// The last bytes that were read are the next ones again.
+  void giveBack(std::string_view bytes) { returned_.insert(0, bytes); }
+  double fraction() const override { return source_->fraction(); }
+
+ private:
+  std::unique_ptr<ByteSource> source_;
+  std::string returned_;
+};
 
 /// Unpacks what deflate packed.
 class Inflater {
@@ -73,6 +96,8 @@ class Inflater {
     return inflateReset(&stream_) == Z_OK;
   }
   const std::string& failure() const { return failure_; }
+  /// What was read of the file behind the packed bytes.
+  std::string_view rest() const { return {reinterpret_cast<const char*>(stream_.next_in), stream_.avail_in}; }
 
  private:
   void fill() {
@@ -122,12 +147,107 @@ class GzipSource : public ByteSource {
   std::uint64_t done_ = 0;
 };
 
+/// The files in a zip file, one after another.
+class ZipFiles {
+ public:
+  explicit ZipFiles(std::unique_ptr<ByteSource> zip) : file_(std::move(zip)) {}
+
+  /// Goes to the next file. @return false if there is none
+  bool next() {
+    if (has_entry_ && !skip()) return false;
+    std::vector<std::uint8_t> head, name;
+    if (!reader_.read(30, head) || std::memcmp(head.data(), "PK\x03\x04", 4) != 0) return false;
+    const std::uint32_t flags = little(head, 6, 2);
+    entry_.is_encrypted = (flags & 1) != 0;
+    entry_.method = static_cast<int>(little(head, 8, 2));
+    entry_.crc = little(head, 14, 4);
+    entry_.packed_size = little(head, 18, 4);
+    entry_.is_size_known = (flags & 8) == 0 && entry_.packed_size != 0xFFFFFFFF;
+    if (!reader_.read(little(head, 26, 2), name) || !reader_.skip(little(head, 28, 2))) return false;
+    entry_.name.assign(name.begin(), name.end());
+    return has_entry_ = true;
+  }
+  const ZipEntry& entry() const { return entry_; }
+  ByteSource& source() { return file_; }
+
+ private:
+  bool skip() {
+    if (entry_.is_size_known) return reader_.skip(entry_.packed_size);
+    if (entry_.method != kDeflated || entry_.is_encrypted) return false;
+    Inflater inflater(file_, -MAX_WBITS);
+    std::vector<char> unpacked(std::size_t{1} << 16);
+    while (!inflater.isAtEnd()) inflater.read(unpacked.data(), unpacked.size());
+    if (!inflater.failure().empty()) return false;
+    file_.giveBack(inflater.rest());
+    // Checksum and sizes follow in one of four forms.
+    std::string bytes;
+    constexpr std::size_t kLongest = 28;
+    constexpr std::string_view kNext = "PK\x03\x04";
+    for (char byte = 0; bytes.size() < kLongest && file_.read(&byte, 1) == 1;) {
+      bytes += byte;
+      if (bytes.size() < 4 || bytes.compare(bytes.size() - 4, 4, kNext) != 0) continue;
+      file_.giveBack(kNext);
+      return true;
+    }
+    return false;
+  }
+
+  ReturnSource file_;
+  RecordReader reader_{file_};
+  ZipEntry entry_;
+  bool has_entry_ = false;
+};
+
+/// The number of the recording among the files in a zip file.
+std::size_t recordingIn(const Opener& open, const std::string& zip, const std::vector<std::string>& endings) {
+  const auto fail = [&zip](const std::string& cause) {
+    throw Error(ErrorCode::bad_input, {zip, 0, 0}, "cannot read: " + cause);
+  };
+  struct Candidate {
+    std::size_t number;
+    std::string name;
+  };
+  std::vector<Candidate> all, recordings;
+  bool is_document = false;
+  ZipFiles files(open());
+  for (std::size_t number = 0; files.next(); ++number) {
+    const std::string& name = files.entry().name;
+    const std::string base = name.substr(name.rfind('/') + 1);
+    is_document = is_document || name == "[Content_Types].xml";
+    if (base.empty() || base.front() == '.') continue;
+    if (endsWith(name, ".acmi") || endsWith(name, ".kml")) return number;
+    all.push_back({number, printableText(name)});
+    if (std::any_of(endings.begin(), endings.end(), [&](const auto& end) { return endsWith(name, end); }))
+      recordings.push_back(all.back());
+  }
+  if (is_document) fail("it is a document of a spreadsheet; save its table as CSV in UTF-8, and give that");
+  if (all.size() == 1) return all.front().number;
+  if (recordings.size() == 1) return recordings.front().number;
+  if (all.empty()) fail("the zip file is damaged, or has no file in it");
+  std::string names;
+  const std::vector<Candidate>& told = recordings.empty() ? all : recordings;
+  for (std::size_t i = 0; i < std::min<std::size_t>(told.size(), 5); ++i)
+    names += (i == 0 ? "" : ", ") + told[i].name;
+  fail(fmt::format(
+      "the zip file has {} files that may be the recording ({}{}); unpack it, and give one of them",
+      told.size(), names, told.size() > 5 ? ", ..." : ""));
+  return 0;
+}
+
 class ZipSource : public ByteSource {
  public:
-  ZipSource(std::unique_ptr<ByteSource> zip, const std::string& name)
-      : name_(name), file_(std::move(zip)), reader_(*file_) {
-    chooseEntry();
-    if (entry_.method == kDeflated) inflater_.emplace(*file_, -MAX_WBITS);
+  ZipSource(std::unique_ptr<ByteSource> zip, const std::string& name, std::size_t number)
+      : name_(name), files_(std::move(zip)) {
+    for (std::size_t i = 0; i <= number; ++i) {
+      if (!files_.next()) fail("the zip file is damaged");
+    }
+    if (entry_.is_encrypted) fail("the zip file is encrypted; unpack it, and give the recording in it");
+    if (entry_.method != kDeflated && !(entry_.method == kStored && entry_.is_size_known)) {
+      fail("the zip file is packed by method " + std::to_string(entry_.method) +
+           "; only deflated and stored files are read: unpack it, and give the recording in it");
+    }
+    left_ = entry_.packed_size;
+    if (entry_.method == kDeflated) inflater_.emplace(file_, -MAX_WBITS);
   }
 
   std::size_t read(char* bytes, std::size_t size) override {
@@ -140,7 +260,7 @@ class ZipSource : public ByteSource {
       failure_ = "the zip file is damaged: its checksum is wrong";
     return count;
   }
-  double fraction() const override { return file_->fraction(); }
+  double fraction() const override { return file_.fraction(); }
   std::string failure() const override { return failure_; }
 
  private:
@@ -152,42 +272,9 @@ class ZipSource : public ByteSource {
     failure_ = failure;
   }
 
-  bool readEntry() {
-    std::vector<std::uint8_t> head, name;
-    if (!reader_.read(30, head) || std::memcmp(head.data(), "PK\x03\x04", 4) != 0) return false;
-    const std::uint32_t flags = little(head, 6, 2);
-    entry_.is_encrypted = (flags & 1) != 0;
-    entry_.is_size_known = (flags & 8) == 0;
-    entry_.method = static_cast<int>(little(head, 8, 2));
-    entry_.crc = little(head, 14, 4);
-    entry_.packed_size = little(head, 18, 4);
-    if (!reader_.read(little(head, 26, 2), name) || !reader_.skip(little(head, 28, 2))) return false;
-    entry_.name.assign(name.begin(), name.end());
-    return true;
-  }
-
-  void chooseEntry() {
-    for (;;) {
-      if (!readEntry()) fail("the zip file is damaged, or has no recording in it");
-      const bool is_folder = !entry_.name.empty() && entry_.name.back() == '/';
-      const bool is_recording = endsWith(entry_.name, ".acmi") || endsWith(entry_.name, ".kml");
-      const bool can_be_skipped = entry_.is_size_known && entry_.packed_size != 0xFFFFFFFF;
-      if (is_recording || (!is_folder && !can_be_skipped)) break;
-      if (!can_be_skipped || !reader_.skip(entry_.packed_size))
-        fail("the zip file has no file that ends in .acmi or .kml");
-    }
-    if (entry_.is_encrypted) fail("the zip file is encrypted; unpack it, and give the recording in it");
-    const bool is_size_told = entry_.is_size_known && entry_.packed_size != 0xFFFFFFFF;
-    if (entry_.method != kDeflated && !(entry_.method == kStored && is_size_told)) {
-      fail("the zip file is packed by method " + std::to_string(entry_.method) +
-           "; only deflated and stored files are read: unpack it, and give the recording in it");
-    }
-    left_ = entry_.packed_size;
-  }
-
   std::size_t copyInto(char* bytes, std::size_t size) {
     const std::size_t wanted = std::min<std::uint64_t>(size, left_);
-    const std::size_t count = file_->read(bytes, wanted);
+    const std::size_t count = file_.read(bytes, wanted);
     left_ -= count;
     if (left_ == 0) is_at_end_ = true;
     if (count == 0 && left_ > 0) end("the zip file is cut");
@@ -202,9 +289,9 @@ class ZipSource : public ByteSource {
   }
 
   std::string name_;
-  std::unique_ptr<ByteSource> file_;
-  RecordReader reader_;
-  ZipEntry entry_;
+  ZipFiles files_;
+  ByteSource& file_ = files_.source();
+  const ZipEntry& entry_ = files_.entry();
   std::optional<Inflater> inflater_;
   bool is_at_end_ = false;
   std::uint64_t left_ = 0, done_ = 0;
@@ -214,8 +301,9 @@ class ZipSource : public ByteSource {
 
 }  // namespace
 
-std::unique_ptr<ByteSource> openZip(std::unique_ptr<ByteSource> zip, const std::string& name) {
-  return std::make_unique<ZipSource>(std::move(zip), name);
+std::unique_ptr<ByteSource> openZip(const Opener& open, const std::string& name,
+                                    const std::vector<std::string>& endings) {
+  return std::make_unique<ZipSource>(open(), name, recordingIn(open, name, endings));
 }
 
 std::unique_ptr<ByteSource> openGzip(std::unique_ptr<ByteSource> packed, const std::string& name) {

@@ -79,7 +79,6 @@ void CotReader::take(const CotEvent& event, const std::string& location) {
   if (!event.removed.empty()) return remove(event.removed, event.time_s);
   if (!event.isUsed())
     return countIgnored(tally(), "event of type " + printableText(event.type.substr(0, 40)));
-  if (!event.has_height) ++without_height_;
   if (event.hasPlace()) takeObject(event, location);
   if (event.has_sensor) takeSensor(event);
 }
@@ -95,7 +94,9 @@ void CotReader::takeObject(const CotEvent& event, const std::string& location) {
   addPresence(record.presence, event.time_s, true);
   object.is_present = true;
   object.stale_s = event.stale_s;
-  recorder_.add(object.index, event.pose, location);
+  PoseSample pose = event.pose;
+  if (!event.has_height) pose.height_msl_m = kUnknown;
+  recorder_.add(object.index, pose, location);
 }
 
 void CotReader::takeSensor(const CotEvent& event) {
@@ -143,10 +144,6 @@ Recording CotReader::finish() {
   }
   for (const auto& [uid, sensor] : sensors_) {
     if (sensor.stale_s < last_s_) switchOff(sensor, sensor.stale_s);
-  }
-  if (without_height_ > 0) {
-    tally().notes.push_back(fmt::format("{} no height (hae 9999999); 0 m above mean sea level is taken",
-                                        countText(without_height_, "event has", "events have")));
   }
   Recording recording = recorder_.finish();
   turnIntoCarriers(recording, std::vector<bool>(recording.beams.size(), true));

@@ -48,7 +48,6 @@ class CotReader {
   std::unordered_map<std::string, Object> objects_;
   std::unordered_map<std::string, Sensor> sensors_;
   double last_s_ = 0;
-  long long without_height_ = 0;
 };
 
 /// Reads a file of events.

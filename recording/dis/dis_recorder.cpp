@@ -138,6 +138,12 @@ void DisRecorder::takePdu(const Header& header, const std::uint8_t* bytes, doubl
   const bool is_used =
       type == PduType::entity_state || type == PduType::emission || type == PduType::transmitter;
   if (!is_used) return countIgnored(tally, nameOf(header.type) + " PDU");
+  // Entities of another exercise have the same numbers.
+  if (header.exercise != exercise_.value_or(header.exercise)) {
+    ++other_exercises_[header.exercise];
+    return countIgnored(tally, fmt::format("PDU of exercise {}", header.exercise));
+  }
+  exercise_ = header.exercise;
   if (!(std::abs(arrival_s - origin_s_) <= kMaxTime_s)) {
     return countBad(tally, fmt::format("PDU {}", tally.records),
                     fmt::format("it arrived {:.6g} s after the first one, more than {:.6g} s",
@@ -379,6 +385,11 @@ Recording DisRecorder::finish() {
     notes.push_back(
         fmt::format("the timestamps of {} PDUs do not agree with their arrivals, which are used instead",
                     clocks_.untrusted()));
+  }
+  for (const auto& [exercise, count] : other_exercises_) {
+    notes.push_back(
+        fmt::format("{} of exercise {} are not used, only those of exercise {}: --exercise {} reads them",
+                    countText(count, "PDU", "PDUs"), exercise, *exercise_, exercise));
   }
   const int low = lowest_version_, high = highest_version_;
   recording_.format =

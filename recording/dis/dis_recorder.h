@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -71,6 +72,8 @@ class DisRecorder {
   int lowest_version_ = 255, highest_version_ = 0;
   std::size_t samples_ = 0, beams_ = 0;
   long long late_ = 0, watts_ = 0, no_power_ = 0;
+  std::optional<int> exercise_ = options_.exercise;
+  std::map<int, long long> other_exercises_;  ///< PDUs of them
 };
 
 }  // namespace emscape::interop::dis

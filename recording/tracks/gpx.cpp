@@ -60,9 +60,7 @@ class GpxReader : XmlTracks {
     PoseSample pose;
     pose.latitude_deg = *latitude;
     pose.longitude_deg = *longitude;
-    const std::string height = textOf(point, "ele");
-    pose.height_msl_m = numberIn(height).value_or(0);
-    if (height.empty()) recorder_.assume("height of a point without ele: 0 m is taken");
+    pose.height_msl_m = numberIn(textOf(point, "ele")).value_or(kUnknown);
     if (is_fixed) return recorder_.addFixed(object, pose, location);
     const auto time_s = utcSeconds(textOf(point, "time"));
     if (!time_s) return countBad(recorder_.tally(), location, "it has no time (ISO 8601)");

@@ -166,10 +166,7 @@ class NmeaReader {
     pose.t_s = day_s_ + fix->time_s;
     pose.latitude_deg = *fix->latitude_deg;
     pose.longitude_deg = *fix->longitude_deg;
-    // A fix without a height has that of the one before.
-    if (fix->height_msl_m) height_msl_m_ = fix->height_msl_m;
-    if (!height_msl_m_) recorder_.assume("height of a fix before the first one with a height: 0 m is taken");
-    pose.height_msl_m = height_msl_m_.value_or(0);
+    pose.height_msl_m = fix->height_msl_m.value_or(kUnknown);
     recorder_.add(object_, pose, fix->location);
   }
 
@@ -179,7 +176,6 @@ class NmeaReader {
   std::optional<Fix> fix_;
   std::optional<double> last_s_;
   double day_s_ = 0, first_date_s_ = 0;
-  std::optional<double> height_msl_m_;
   bool has_date_ = false;
 };
 

@@ -30,14 +30,9 @@ const std::vector<ColumnNames>& columnNames() {
       {Column::latitude, "latitude", {"latitude", "lat"}},
       {Column::longitude, "longitude", {"longitude", "lon", "lng", "long"}},
       {Column::position, "position", {"position", "latlon", "latlng", "coordinates"}},
-      {Column::height_msl,
-       "height",
-       {"heightmsl", "altitudemsl", "altmsl", "altitudeabovesealevel", "altitude", "alt", "height",
-        "elevation", "ele"}},
-      {Column::height_ellipsoid,
-       "height_ellipsoid",
-       {"heightellipsoid", "ellipsoidheight", "geoaltitude", "altgeom", "hae"}},
-      {Column::height_pressure, "height_pressure", {"baroaltitude", "altbaro"}},
+      {Column::height_msl, "height", {}},  // by heightNameOf()
+      {Column::height_ellipsoid, "height_ellipsoid", {}},
+      {Column::height_pressure, "height_pressure", {}},
       {Column::heading,
        "heading",
        {"heading", "trueheading", "hdg", "yaw", "course", "cog", "track", "truetrack", "direction"}},
@@ -48,16 +43,56 @@ const std::vector<ColumnNames>& columnNames() {
   return names;
 }
 
+bool endsWith(const std::string& text, std::string_view end) {
+  return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
+}
+
+/// What a name says of a height: a word for it, and one for its reference at most. Another word (above
+/// ground, of the geoid, of a cloud) makes it the height of something else.
+struct HeightName {
+  Column column;
+  bool has_reference;
+};
+std::optional<HeightName> heightNameOf(std::string name) {
+  if (name == "hae" || name == "geoaltitude") return HeightName{Column::height_ellipsoid, true};
+  constexpr std::array<std::string_view, 7> kHeights{"altitude", "height", "elevation", "elev",
+                                                     "alt",      "hgt",    "ele"};
+  const auto word = std::find_if(kHeights.begin(), kHeights.end(), [&](std::string_view of_height) {
+    return name.find(of_height) != std::string::npos;
+  });
+  if (word == kHeights.end()) return std::nullopt;
+  name.erase(name.find(*word), word->size());
+  static const std::map<std::string, Column> references{{"", Column::height_msl},
+                                                        {"msl", Column::height_msl},
+                                                        {"amsl", Column::height_msl},
+                                                        {"asl", Column::height_msl},
+                                                        {"abovesealevel", Column::height_msl},
+                                                        {"abovemeansealevel", Column::height_msl},
+                                                        {"ellipsoid", Column::height_ellipsoid},
+                                                        {"aboveellipsoid", Column::height_ellipsoid},
+                                                        {"wgs84", Column::height_ellipsoid},
+                                                        {"geom", Column::height_ellipsoid},
+                                                        {"hae", Column::height_ellipsoid},
+                                                        {"baro", Column::height_pressure},
+                                                        {"barometric", Column::height_pressure},
+                                                        {"pressure", Column::height_pressure}};
+  const auto found = references.find(name);
+  return found == references.end() ? std::nullopt : std::optional(HeightName{found->second, !name.empty()});
+}
+
+bool isHeight(Column column) {
+  return column == Column::height_msl || column == Column::height_ellipsoid ||
+         column == Column::height_pressure;
+}
+
 /// Factor to metres, degrees or seconds.
-std::optional<double> factorOf(const std::string& unit) {
+std::optional<double> factorOf(std::string unit) {
   static const std::map<std::string, double> factors{{"", 1},
                                                      {"m", 1},
                                                      {"metres", 1},
                                                      {"meters", 1},
                                                      {"metre", 1},
                                                      {"meter", 1},
-                                                     {"m amsl", 1},
-                                                     {"m msl", 1},
                                                      {"deg", 1},
                                                      {"degrees", 1},
                                                      {"degree", 1},
@@ -68,13 +103,15 @@ std::optional<double> factorOf(const std::string& unit) {
                                                      {"utc", 1},
                                                      {"ft", kMetresPerFoot},
                                                      {"feet", kMetresPerFoot},
-                                                     {"ft amsl", kMetresPerFoot},
+                                                     {"fl", 100 * kMetresPerFoot},
                                                      {"km", 1000},
+                                                     {"cm", 0.01},
+                                                     {"mm", 0.001},
                                                      {"rad", 180 / 3.14159265358979323846},
+                                                     {"min", 60},
                                                      {"h", 3600},
                                                      {"d", kSecondsPerDay},
                                                      {"days", kSecondsPerDay},
-                                                     {"us", 1e-6},
                                                      {"ms", 1e-3},
                                                      {"milliseconds", 1e-3},
                                                      {"us", 1e-6},
@@ -85,6 +122,9 @@ std::optional<double> factorOf(const std::string& unit) {
                                                      {"nanosecond", 1e-9},
                                                      {"nanoseconds", 1e-9},
                                                      {"millisecond", 1e-3}};
+  for (const std::string_view reference : {" msl", " amsl", " asl"}) {
+    if (endsWith(unit, reference)) unit.resize(unit.size() - reference.size());
+  }
   const auto found = factors.find(unit);
   return found == factors.end() ? std::nullopt : std::optional(found->second);
 }
@@ -101,8 +141,7 @@ std::pair<std::string, std::string> nameAndUnit(const std::string& told) {
   name.erase(0, name.rfind('.') + 1);
   for (const char* end : {"ft", "m", "deg", "rad", "s", "km", "ms", "us", "ns", "utc"}) {
     const std::string ending = std::string("_") + end;
-    if (name.size() > ending.size() &&
-        name.compare(name.size() - ending.size(), ending.size(), ending) == 0) {
+    if (name.size() > ending.size() && endsWith(name, ending)) {
       unit = end;
       name.resize(name.size() - ending.size());
       break;
@@ -173,13 +212,42 @@ Columns columnsByName(const std::vector<std::string>& header) {
     for (const std::string& name : known.names) {
       for (std::size_t i = 0; i < told.size() && columns.count(known.column) == 0; ++i) {
         const auto factor = factorOf(told[i].second);
-        if (told[i].first == name && factor)
-          columns[known.column] = {i, *factor, !told[i].second.empty(), DateOrder::unknown, 0};
+        if (told[i].first == name && factor) columns[known.column] = {i, *factor, !told[i].second.empty()};
       }
+    }
+  }
+  // Of several heights of a kind one that names its reference comes first.
+  for (const bool has_reference : {true, false}) {
+    for (std::size_t i = 0; i < told.size(); ++i) {
+      const auto height = heightNameOf(told[i].first);
+      const auto factor = factorOf(told[i].second);
+      if (height && factor && height->has_reference == has_reference)
+        columns.try_emplace(height->column, TableColumn{i, *factor, !told[i].second.empty()});
     }
   }
   return columns;
 }
+
+namespace {
+
+/// Adds what a map that does not tell time and position leaves to the common names.
+void completeByName(const std::vector<std::string>& header, Columns& columns) {
+  const Columns mapped = columns;
+  const auto has = [&mapped](Column column) { return mapped.count(column) != 0; };
+  const bool has_place = has(Column::latitude) || has(Column::longitude) || has(Column::position);
+  const bool has_height =
+      std::any_of(mapped.begin(), mapped.end(), [](const auto& of) { return isHeight(of.first); });
+  for (const auto& [column, told] : columnsByName(header)) {
+    const bool is_place_known = column == Column::position && has_place;
+    const bool is_told = is_place_known || (column == Column::date && has(Column::time)) ||
+                         (isHeight(column) && has_height) ||
+                         std::any_of(mapped.begin(), mapped.end(),
+                                     [i = told.index](const auto& of) { return of.second.index == i; });
+    if (!is_told) columns.try_emplace(column, told);
+  }
+}
+
+}  // namespace
 
 Columns columnsByMap(const std::vector<std::string>& header, const std::string& map) {
   Columns columns;
@@ -205,6 +273,8 @@ Columns columnsByMap(const std::vector<std::string>& header, const std::string& 
     TableColumn& column = columns[known->column];
     column.index = static_cast<std::size_t>(found - header.begin());
     column.has_unit = !unit.empty();
+    column.is_degrees_minutes = unit == "dm";
+    if (column.is_degrees_minutes) continue;
     if (unit == "dmy" || unit == "mdy") {
       column.order = unit == "dmy" ? DateOrder::day_first : DateOrder::month_first;
       continue;
@@ -213,30 +283,27 @@ Columns columnsByMap(const std::vector<std::string>& header, const std::string& 
       column.day_of_1970 = *day;
       continue;
     }
+    if (unit == "gps" && known->column == Column::time) {
+      column.begin_s = kGpsBegin_s;
+      continue;
+    }
     const auto factor = factorOf(unit);
     if (!factor) {
       throw Error(
           ErrorCode::usage,
           fmt::format(
-              "columns: '{}' is no unit; allowed are m, km, ft, deg, rad, s, ms, us, ns, h, days, of dates "
-              "dmy and mdy, and of numbered days excel, mjd and jd",
+              "columns: '{}' is no unit; allowed are m, km, ft, cm, mm, fl (flight levels), deg, rad, dm "
+              "(DDMM.mmmm), s, ms, us, ns, min, h, days, gps (seconds since 1980), of dates dmy and mdy, and "
+              "of "
+              "numbered days excel, mjd and jd",
               printableText(unit)));
     }
     column.factor = *factor;
   }
+  const bool has_place = columns.count(Column::position) != 0 ||
+                         (columns.count(Column::latitude) != 0 && columns.count(Column::longitude) != 0);
+  if (columns.count(Column::time) == 0 || !has_place) completeByName(header, columns);
   return columns;
-}
-
-std::string mapWithHeightsInFeet(const Columns& columns, const std::vector<std::string>& header) {
-  std::string map;
-  for (const auto& [column, told] : columns) {
-    const bool is_height = column == Column::height_msl || column == Column::height_ellipsoid ||
-                           column == Column::height_pressure;
-    const std::string unit = is_height && !told.has_unit ? "ft" : nameAndUnit(header[told.index]).second;
-    map += fmt::format("{}{}={}{}{}", map.empty() ? "" : ",", roleOf(column), header[told.index],
-                       unit.empty() ? "" : ":", unit);
-  }
-  return map;
 }
 
 bool isBaseStation(std::string_view line) {
@@ -245,9 +312,7 @@ bool isBaseStation(std::string_view line) {
 
 /// @see http://woodair.net/sbs/article/barebones42_socket_data.htm
 Columns columnsOfBaseStation() {
-  const auto at = [](std::size_t index, double factor = 1) {
-    return TableColumn{index, factor, true, DateOrder::unknown, 0};
-  };
+  const auto at = [](std::size_t index, double factor = 1) { return TableColumn{index, factor, true}; };
   return {{Column::id, at(4)},        {Column::date, at(6)},
           {Column::time, at(7)},      {Column::height_pressure, at(11, kMetresPerFoot)},
           {Column::heading, at(13)},  {Column::latitude, at(14)},

@@ -12,6 +12,8 @@
 namespace emscape::interop {
 
 constexpr double kMetresPerFoot = 0.3048;
+/// Begin of GPS time since 1970 (s), less the 18 leap seconds since 2017.
+constexpr double kGpsBegin_s = 315964800 - 18;
 
 enum class Column {
   time,
@@ -37,6 +39,8 @@ struct TableColumn {
   bool has_unit = false;
   DateOrder order = DateOrder::unknown;  ///< of dates
   double day_of_1970 = 0;                ///< number of that day, for a column of numbered days; 0: of none
+  double begin_s = 0;                    ///< of a column of seconds, since 1970; 0: that of the numbers
+  bool is_degrees_minutes = false;       ///< of coordinates: DDMM.mmmm
 };
 using Columns = std::map<Column, TableColumn>;
 
@@ -47,11 +51,10 @@ char separatorOf(std::string_view line);
 /// The columns of a header by common names, among them those of the OpenSky network, Flightradar24, of AIS
 /// archives and of logs of drones.
 Columns columnsByName(const std::vector<std::string>& header);
-/// @param map  "latitude=Breite,height=Hoehe:ft,time=Zeit:dmy"  @throws Error (usage)
+/// @param map  "latitude=Breite,height=Hoehe:ft,time=Zeit:dmy". What a map without a time or a position does
+/// not tell is known by common names.
+/// @throws Error (usage)
 Columns columnsByMap(const std::vector<std::string>& header, const std::string& map);
-
-/// The entries of a map that say the same of a header's columns; heights in feet.
-std::string mapWithHeightsInFeet(const Columns& columns, const std::vector<std::string>& header);
 
 /// True for a line of the BaseStation format, which has no header: MSG,3,...
 bool isBaseStation(std::string_view line);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <set>
+#include <utility>
 
 #include "base/geodesy/position_text.h"
 #include "emscape/base/error.h"
@@ -27,6 +29,53 @@ double secondsOf(double time) {
          : time > kUnixTime_ms ? time / 1000
                                : time;
 }
+
+/// A date and time in digits alone, YYYYMMDDhhmmss. As a number it would be one of the 26th century.
+bool isCompactDate(std::string_view text) {
+  constexpr std::size_t kDigits = 14;
+  return text.size() >= kDigits && (text.substr(0, 2) == "19" || text.substr(0, 2) == "20") &&
+         text.find_first_not_of("0123456789") >= kDigits && (text.size() == kDigits || text[kDigits] == '.');
+}
+
+/// DDMM.mmmm in degrees.
+double degreesOf(double degrees_minutes) {
+  const double minutes = std::fmod(degrees_minutes, 100);
+  return (degrees_minutes - minutes) / 100 + minutes / 60;
+}
+
+/// True for a number that stands for none: nines, as -9999 or 9999999, and -32768.
+bool isFill(double number) {
+  constexpr double kLongestNines = 1e9, kHighest_m = 1e5;
+  for (double nines = 9999; nines < kLongestNines; nines = 10 * nines + 9) {
+    if (number == -nines || (number == nines && nines >= kHighest_m - 1)) return true;
+  }
+  return number == -32768;
+}
+
+/// A column without a role, as its rows show it.
+struct UnusedColumn {
+  std::size_t index = 0;
+  std::string last;             ///< cell of the row before
+  std::set<std::string> texts;  ///< the first kMaxTexts
+  long long rows = 0;
+  long long turns = 0;  ///< rows whose cell is another one than that before
+  bool has_text = false;
+
+  static constexpr std::size_t kMaxTexts = 1000;
+
+  void take(const std::string& cell) {
+    ++rows;
+    if (cell == last) return;
+    ++turns;
+    last = cell;
+    has_text = has_text || (!cell.empty() && !numberIn(cell));
+    if (texts.size() < kMaxTexts) texts.insert(cell);
+  }
+  /// True if cells repeat as the names of several objects do.
+  bool mayBeNames() const {
+    return texts.size() > 1 && texts.size() < kMaxTexts && 2 * static_cast<long long>(texts.size()) <= rows;
+  }
+};
 
 /// Coordinates from here on are integers, as flight controllers log them.
 constexpr double kScaledFrom = 1e6;
@@ -53,8 +102,10 @@ std::vector<std::string> headerOf(std::string_view line) {
   return cellsOf(line, separatorOf(line));
 }
 
-/// True for an empty line, and for a comment that does not name the columns.
+/// True for an empty line, for the separator that spreadsheets write, and for a comment that does not name
+/// the columns.
 bool isComment(std::string_view line, const ReadOptions& options) {
+  if (lowerCase(std::string(line.substr(0, 4))) == "sep=") return true;
   if (line.empty() || line.front() != '#') return line.empty();
   try {
     return !hasPosition(columnsOf(headerOf(line), options));
@@ -100,7 +151,11 @@ class TableReader {
       takeRow(cellsOf(line, separator_));
     }
     if (is_utc_) recorder_.hasUtc();
-    return recorder_.finish();
+    recorder_.tellObjectsApartBy(objectsRemedy());
+    Recording recording = recorder_.finish();
+    recording.has_times_of_day = has_times_of_day_;
+    tellUnused(recording.tally);
+    return recording;
   }
 
  private:
@@ -114,19 +169,105 @@ class TableReader {
       if (is_in_position || columns_.count(needed) != 0) continue;
       throw Error(ErrorCode::bad_input, {name_, static_cast<int>(number), 1},
                   fmt::format("no column for the {}; name it (--columns, or 'columns' of a track): "
-                              "time=NAME,latitude=NAME,longitude=NAME,height=NAME:ft. The table has {}",
+                              "time=NAME,latitude=NAME,longitude=NAME,height=NAME:ft; where several columns "
+                              "make it (year, month, ...), join them in one first. The table has {}",
                               roleOf(needed), printableText(fmt::format("{}", fmt::join(header, ", ")))));
+    }
+    for (std::size_t i = 0; i < header.size(); ++i) {
+      const bool is_used = std::any_of(columns_.begin(), columns_.end(),
+                                       [i](const auto& column) { return column.second.index == i; });
+      if (!is_used && !header[i].empty()) unused_.push_back({i, {}, {}, 0, 0, false});
     }
   }
 
-  /// In tables separated by semicolons or tabs the comma may be decimal, with dots between thousands.
-  std::optional<double> numberOf(std::string text) const {
-    const std::size_t comma = text.rfind(',');
-    if (separator_ != ',' && comma != std::string::npos) {
-      if (text.find('.') < comma) text.erase(std::remove(text.begin(), text.end(), '.'), text.end());
-      std::replace(text.begin(), text.end(), ',', '.');
+  std::string nameOf(const UnusedColumn& column) const { return printableText(header_[column.index]); }
+
+  /// What tells the objects of rows apart: of the columns without a role those of texts that repeat, or of
+  /// numbers if there are none.
+  std::string objectsRemedy() const {
+    std::string names;
+    for (const bool has_text : {true, false}) {
+      for (const UnusedColumn& column : unused_) {
+        if (column.mayBeNames() && column.has_text == has_text)
+          names += (names.empty() ? "id=" : " or id=") + nameOf(column);
+      }
+      if (!names.empty()) break;
     }
+    return fmt::format("--columns (or 'columns' of a track) names the column that tells objects apart: {}",
+                       names.empty() ? "id=NAME" : names);
+  }
+
+  void tellUnused(ReadingTally& tally) const {
+    if (unused_.empty()) return;
+    std::string names, example;
+    for (const UnusedColumn& column : unused_) {
+      names += fmt::format("{}'{}'", names.empty() ? "" : ", ", nameOf(column));
+      if (column.has_text && column.mayBeNames() && 2 * column.turns > column.rows && example.empty()) {
+        example = "id=" + nameOf(column);
+        tally.notes.push_back(fmt::format(
+            "the texts of column '{}' take turns, as the names of several objects do: {} makes an "
+            "object of each",
+            nameOf(column), example));
+      }
+    }
+    tally.notes.push_back(
+        fmt::format("not used: {} {}; --columns (or 'columns' of a track) tells what a column is, such as "
+                    "id=NAME or height=NAME:ft",
+                    unused_.size() == 1 ? "column" : "columns", names));
+  }
+
+  /// Finds the columns of N or S and of E or W, which give coordinates their signs, by the first row.
+  void findHemispheres(const std::vector<std::string>& cells) {
+    const auto columnOf = [&](char positive, char negative) {
+      return std::find_if(unused_.begin(), unused_.end(), [&](const UnusedColumn& column) {
+        if (column.index >= cells.size() || cells[column.index].size() != 1) return false;
+        const char letter = cells[column.index][0] & ~0x20;
+        return letter == positive || letter == negative;
+      });
+    };
+    has_looked_for_hemispheres_ = true;
+    const auto north = columnOf('N', 'S'), east = columnOf('E', 'W');
+    if (north == unused_.end() || east == unused_.end()) return;
+    hemispheres_ = std::pair(north->index, east->index);
+    const auto is_one = [&](const UnusedColumn& column) {
+      return column.index == hemispheres_->first || column.index == hemispheres_->second;
+    };
+    unused_.erase(std::remove_if(unused_.begin(), unused_.end(), is_one), unused_.end());
+  }
+
+  /// A coordinate with the sign of its hemisphere. @param letters  positive and negative
+  std::optional<double> inHemisphere(double value_deg, const std::vector<std::string>& cells,
+                                     std::size_t index, std::string_view letters) {
+    const std::string cell = index < cells.size() ? cells[index] : "";
+    const std::size_t found = cell.size() == 1 ? letters.find(cell[0] & ~0x20) : std::string_view::npos;
+    if (found == std::string_view::npos || (found == 0 && value_deg < 0))
+      return bad(fmt::format("its hemisphere '{}' with {:.7g} degrees cannot be read", printableText(cell),
+                             value_deg));
+    return found == 0 ? value_deg : -std::abs(value_deg);
+  }
+
+  /// In tables separated by semicolons or tabs the comma may be decimal, with dots between thousands. In
+  /// tables separated by commas a quoted one of a coordinate is decimal, others stand between thousands if
+  /// three digits follow each.
+  std::optional<double> numberOf(std::string text, bool is_coordinate = false) const {
+    const std::size_t comma = text.rfind(',');
+    if (comma == std::string::npos) return numberIn(text);
+    if (separator_ != ',') {
+      if (text.find('.') < comma) text.erase(std::remove(text.begin(), text.end(), '.'), text.end());
+    } else if (!is_coordinate && haveThreeDigits(text)) {
+      text.erase(std::remove(text.begin(), text.end(), ','), text.end());
+    }
+    std::replace(text.begin(), text.end(), ',', '.');
     return numberIn(text);
+  }
+
+  /// True if each comma has three digits after it, and then no further one.
+  static bool haveThreeDigits(const std::string& text) {
+    for (std::size_t at = text.find(','); at != std::string::npos; at = text.find(',', at + 1)) {
+      const std::size_t end = text.find_first_not_of("0123456789", at + 1);
+      if (std::min(end, text.size()) - at != 4) return false;
+    }
+    return true;
   }
 
   /// The cell of a column; null if the row has none, or nothing in it.
@@ -139,8 +280,11 @@ class TableReader {
 
   std::optional<double> valueOf(const std::vector<std::string>& cells, Column column) const {
     const std::string* const cell = cellOf(cells, column);
-    const auto number = cell == nullptr ? std::nullopt : numberOf(*cell);
-    return number ? std::optional(*number * columns_.at(column).factor) : std::nullopt;
+    const bool is_coordinate = column == Column::latitude || column == Column::longitude;
+    const auto number = cell == nullptr ? std::nullopt : numberOf(*cell, is_coordinate);
+    if (!number) return std::nullopt;
+    const TableColumn& told = columns_.at(column);
+    return told.is_degrees_minutes ? degreesOf(*number) : *number * told.factor;
   }
 
   std::nullopt_t bad(const std::string& reason) {
@@ -153,19 +297,26 @@ class TableReader {
     if (told == nullptr) return bad("it has no time");
     const TableColumn& column = columns_.at(Column::time);
     const std::string* const date = cellOf(cells, Column::date);
-    if (date == nullptr) {
+    const bool is_compact = date == nullptr && !column.has_unit && isCompactDate(*told);
+    if (date == nullptr && !is_compact) {
       if (const auto number = numberOf(*told)) {
         const double time = *number * column.factor;
-        if (column.day_of_1970 > 0) {
+        if (column.day_of_1970 > 0 || column.begin_s > 0) {
           is_utc_ = true;
-          return (*number - column.day_of_1970) * kSecondsPerDay;
+          return column.begin_s > 0 ? *number + column.begin_s
+                                    : (*number - column.day_of_1970) * kSecondsPerDay;
         }
         recorder_.mayBeDays(!column.has_unit);
-        if (time > kUnixTime_s) is_utc_ = true;
+        if (time > kUnixTime_s) {
+          is_utc_ = true;
+          tellGpsName(column);
+        }
         return secondsOf(time);
       }
     }
-    const std::string text = date == nullptr ? *told : *date + " " + *told;
+    const std::string text = is_compact        ? told->substr(0, 8) + "T" + told->substr(8)
+                             : date == nullptr ? *told
+                                               : *date + " " + *told;
     const DateOrder order = date == nullptr ? column.order : columns_.at(Column::date).order;
     if (const auto time_s = utcSeconds(text, order)) {
       is_utc_ = true;
@@ -176,11 +327,35 @@ class TableReader {
           ErrorCode::bad_input, {name_, 0, 0},
           fmt::format(
               "{}: the date '{}' may begin with its day or its month; tell it with columns: {}=NAME:dmy "
-              "or {}=NAME:mdy, beside latitude=NAME,longitude=NAME",
+              "or {}=NAME:mdy",
               location_, printableText(text), roleOf(date == nullptr ? Column::time : Column::date),
               roleOf(date == nullptr ? Column::time : Column::date)));
     }
-    return bad(fmt::format("its time '{}' cannot be read", printableText(text)));
+    if (const auto time_s = date == nullptr ? timeOfDay(text) : std::nullopt) return time_s;
+    return bad(
+        fmt::format("its time '{}' cannot be read; it is one as 2026-06-01T06:00:00Z or "
+                    "2026-06-01 08:00:00+02:00, in seconds since 1970 or of the scenario, or hh:mm:ss",
+                    printableText(text)));
+  }
+
+  /// hh:mm:ss without a date, as times of a day that is not told, and of the next ones where they fall.
+  std::optional<double> timeOfDay(const std::string& text) {
+    if (is_utc_ || std::count(text.begin(), text.end(), ':') != 2) return std::nullopt;
+    const auto time_s = utcSeconds("1970-01-01 " + text);
+    if (!time_s) return std::nullopt;
+    has_times_of_day_ = true;
+    if (*time_s + day_s_ < last_of_day_s_ - kSecondsPerDay / 2) day_s_ += kSecondsPerDay;
+    last_of_day_s_ = *time_s + day_s_;
+    return last_of_day_s_;
+  }
+
+  void tellGpsName(const TableColumn& column) {
+    const std::string& name = header_.empty() ? stem_ : header_[column.index];
+    if (header_.empty() || lowerCase(name).find("gps") == std::string::npos) return;
+    recorder_.assume(
+        fmt::format("time of column '{0}' taken as since 1970; if it is GPS time, since 1980, columns tell "
+                    "it: time={0}:gps",
+                    printableText(name)));
   }
 
   /// Latitude and longitude: numbers, or with minutes, seconds and the letters of the directions.
@@ -191,7 +366,12 @@ class TableReader {
       const bool is_scaled = std::abs(*latitude_deg) > kScaledFrom || std::abs(*longitude_deg) > kScaledFrom;
       if (is_scaled) recorder_.assume("coordinates beyond a million: taken as 1e-7 degrees");
       const double unit = is_scaled ? 1e-7 : 1;
-      return std::pair(*latitude_deg * unit, *longitude_deg * unit);
+      if (!has_looked_for_hemispheres_) findHemispheres(cells);
+      if (!hemispheres_) return std::pair(*latitude_deg * unit, *longitude_deg * unit);
+      const auto north_deg = inHemisphere(*latitude_deg * unit, cells, hemispheres_->first, "NS");
+      const auto east_deg =
+          north_deg ? inHemisphere(*longitude_deg * unit, cells, hemispheres_->second, "EW") : std::nullopt;
+      return east_deg ? std::optional(std::pair(*north_deg, *east_deg)) : std::nullopt;
     }
     const std::string *const north = cellOf(cells, Column::latitude),
                              *const east = cellOf(cells, Column::longitude),
@@ -221,7 +401,7 @@ class TableReader {
            name == "baro_altitude";
   }
 
-  /// Height above mean sea level (m); none: counted as bad.
+  /// Height above mean sea level (m), NaN if the row has none; no value: counted as bad.
   std::optional<double> heightOf_m(const std::vector<std::string>& cells, double latitude_deg,
                                    double longitude_deg) {
     for (const Column column : {Column::height_msl, Column::height_ellipsoid, Column::height_pressure}) {
@@ -232,19 +412,20 @@ class TableReader {
         recorder_.assume("height of an object on the ground: 0 m is taken");
         return 0;
       }
+      const bool is_unknown = height_m ? isFill(*numberOf(*cell))  // "n/a", "null", "-"
+                                       : cell->find_first_of("0123456789") == std::string::npos;
+      if (is_unknown) continue;
       if (!height_m) return bad(fmt::format("its height '{}' is no number", printableText(*cell)));
       // As Flightradar24 writes it, which has both coordinates in one column.
       if (columns_.count(Column::position) != 0 && !columns_.at(column).has_unit) {
         recorder_.assume("height without a unit in a table of Flightradar24: taken as feet");
         *height_m *= kMetresPerFoot;
-      } else if (!columns_.at(column).has_unit && options_.columns.empty() && !isOfOpenSky(column)) {
-        if (height_note_.empty())
-          height_note_ = fmt::format(
-              "height without a unit in column '{}': taken as metres; if it is in feet, give the columns as "
-              "{}",
-              printableText(header_[columns_.at(column).index]),
-              printableText(mapWithHeightsInFeet(columns_, header_)));
-        recorder_.assume(height_note_);
+      } else if (!columns_.at(column).has_unit && options_.columns.find("height") == std::string::npos &&
+                 !isOfOpenSky(column)) {
+        recorder_.assume(fmt::format(
+            "height without a unit in column '{0}': taken as metres; if it is in feet, columns tell it: "
+            "{1}={0}:ft",
+            printableText(header_[columns_.at(column).index]), roleOf(column)));
       }
       if (column == Column::height_ellipsoid && std::abs(latitude_deg) <= 90 &&
           std::abs(longitude_deg) <= 720)
@@ -253,12 +434,12 @@ class TableReader {
         recorder_.assume("weather: a height by pressure is taken as above mean sea level");
       return height_m;
     }
-    recorder_.assume("height of a row without one: 0 m is taken");
-    return 0;
+    return kUnknown;
   }
 
   void takeRow(const std::vector<std::string>& cells) {
     const auto place = placeOf(cells);
+    for (UnusedColumn& column : unused_) column.take(column.index < cells.size() ? cells[column.index] : "");
     const auto time_s = place ? timeOf(cells) : std::nullopt;
     if (!time_s) return;
     PoseSample pose;
@@ -281,13 +462,17 @@ class TableReader {
     recorder_.add(recorder_.objectOf(id == nullptr ? stem_ : printableText(*id)), pose, location_);
   }
 
-  std::string name_, stem_, location_, height_note_;
+  std::string name_, stem_, location_;
   const ReadOptions& options_;
   TrackRecorder recorder_;
   std::vector<std::string> header_;
   Columns columns_;
   char separator_ = ',';
-  bool is_utc_ = false, is_base_station_ = false;
+  std::vector<UnusedColumn> unused_;
+  std::optional<std::pair<std::size_t, std::size_t>> hemispheres_;  ///< columns of N or S, and of E or W
+  double day_s_ = 0, last_of_day_s_ = 0;
+  bool is_utc_ = false, has_times_of_day_ = false, is_base_station_ = false,
+       has_looked_for_hemispheres_ = false;
 };
 
 }  // namespace

@@ -49,6 +49,9 @@ constexpr std::array<ColumnLimits, kColumns> kLimits{{
     {"relative_humidity_percent", 0, 100, "", ""},
 }};
 
+/// A file whose humidities (percent) are all as low probably has them as fractions of 1.
+constexpr double kLikelyFraction = 1.5;
+
 /// True if M falls over the last 500 m of a profile of more than 1 km, as N does.
 bool looksLikeN(const RefractivityProfile& profile) {
   const double top_m = profile.levels.back().height_msl_m;
@@ -85,6 +88,11 @@ class CsvProfiles {
     if (has(m) && std::any_of(field.profiles.begin(), field.profiles.end(), looksLikeN)) {
       result.warnings.push_back(fmt::format(
           "{}: m_units falls with height at the top: these look like N-units (column n_units)", file_));
+    }
+    if (has(humidity) && highest_humidity_ > 0 && highest_humidity_ <= kLikelyFraction) {
+      result.warnings.push_back(
+          fmt::format("{}: {} is {:g} at most: is it a fraction? It is taken as percent", file_,
+                      kLimits[humidity].name, highest_humidity_));
     }
     if (std::any_of(field.profiles.begin(), field.profiles.end(), [&](const RefractivityProfile& profile) {
           return profile.levels.size() != field.profiles.front().levels.size();
@@ -142,8 +150,12 @@ class CsvProfiles {
     const std::optional<double> value = numberIn(cell(column).text);
     if (!value) fail(cell(column), fmt::format("{} is '{}', not a number", limits.name, cell(column).text));
     if (*value >= limits.lowest && *value <= limits.highest) return *value;
-    fail(cell(column), fmt::format("{} is {}; allowed are {} to {}{}", limits.name, *value, limits.lowest,
-                                   limits.highest, *value < limits.lowest ? limits.below : limits.above));
+    constexpr double kFill = -999;  // and lower
+    fail(cell(column),
+         fmt::format("{} is {}; allowed are {} to {}{}", limits.name, *value, limits.lowest, limits.highest,
+                     *value <= kFill          ? "; is it a missing value? Leave its row out"
+                     : *value < limits.lowest ? limits.below
+                                              : limits.above));
   }
 
   void readRow() {
@@ -162,10 +174,11 @@ class CsvProfiles {
     }
   }
 
-  double nOfWeather() const {
-    const double temperature_k = number(temperature);
+  double nOfWeather() {
+    const double temperature_k = number(temperature), humidity_percent = number(humidity);
+    highest_humidity_ = std::max(highest_humidity_, humidity_percent);
     return refractivity_n(number(pressure), temperature_k,
-                          number(humidity) / 100 * saturationPressure_hpa(temperature_k));
+                          humidity_percent / 100 * saturationPressure_hpa(temperature_k));
   }
 
   /// Begins a profile if range or position of the row differ from those of the previous row.
@@ -199,6 +212,7 @@ class CsvProfiles {
   document::CsvReader reader_;
   CsvRow row_;
   std::size_t columns_ = 0;
+  double highest_humidity_ = 0;
   std::array<std::optional<std::size_t>, kColumns> position_;
   std::vector<double> ranges_m_;
   std::vector<Position> positions_;

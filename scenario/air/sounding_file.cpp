@@ -82,6 +82,8 @@ class Sounding {
  public:
   Sounding(const SoundingArchive& archive, SoundingRecord record, const std::string& file)
       : record_(std::move(record)), levels_(archive.levelsOf(record_)), file_(file) {
+    const bool is_downwards = !levels_.empty() && levels_.front().pressure_hpa < levels_.back().pressure_hpa;
+    if (is_downwards) std::reverse(levels_.begin(), levels_.end());
     completeHumidity(levels_);
     if (levels_.empty()) {
       obstacle_ = "the sounding has no level with pressure, temperature and humidity";

@@ -220,7 +220,7 @@ PatternFile readMsiPattern(const std::string& file) {
         file, *content.tilt_deg, peakAngle_deg(vertical)));
   }
   noteIgnored(pattern, "lines", content.ignored);
-  fillFromCuts(horizontal, vertical, pattern);
+  fillFromCuts(file, horizontal, vertical, pattern);
   return pattern;
 }
 

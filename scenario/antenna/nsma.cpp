@@ -194,7 +194,7 @@ class NsmaPattern {
                                {file_, 0, 0}, "elevation cut");
     checkTilt(vertical);
     noteIgnored(pattern_, "lines and cuts", content_.ignored);
-    fillFromCuts(horizontal, vertical, pattern_);
+    fillFromCuts(file_, horizontal, vertical, pattern_);
     return std::move(pattern_);
   }
 

@@ -68,6 +68,34 @@ PatternFile readPatternFile(const std::string& file) {
   return readMsiPattern(file);
 }
 
+namespace {
+
+/// The azimuth of the horizontal cut that is ahead in the vertical one: 0, or that of its maximum where they
+/// contradict each other.
+double azimuthAhead(const std::string& file, const MeasuredCut& horizontal, const MeasuredCut& vertical,
+                    PatternFile& pattern) {
+  constexpr double kTolerance_db = 3, kLargestTilt_deg = 45;
+  const double horizontal_db = horizontal.attenuationAt_db(0), vertical_db = vertical.attenuationAt_db(0);
+  const double peak_deg = peakAngle_deg(vertical);
+  const bool is_turned = horizontal_db > vertical_db + kTolerance_db;
+  const bool is_raised = vertical_db > horizontal_db + kTolerance_db && std::abs(peak_deg) > kLargestTilt_deg;
+  if (!is_turned && !is_raised) return 0;
+  const double ahead_deg = is_turned ? peakAngle_deg(horizontal) : 0;
+  pattern.warnings.push_back(fmt::format(
+      "{}: the cuts contradict each other ahead, at azimuth 0 on the horizon: {:.1f} dB below the "
+      "maximum in the horizontal cut, {:.1f} dB in the vertical one. {}",
+      file, horizontal_db, vertical_db,
+      is_turned ? fmt::format("The vertical cut is taken as that at azimuth {:g} deg, the maximum of "
+                              "the horizontal one",
+                              ahead_deg)
+                : fmt::format("The maximum of the vertical cut is {:g} deg below the horizon: does it "
+                              "count from the zenith?",
+                              peak_deg)));
+  return ahead_deg;
+}
+
+}  // namespace
+
 AntennaPtr antennaOf(const std::string& file, const PatternFile& pattern, double gain_dbi,
                      std::vector<std::string>& warnings) {
   if (std::isnan(gain_dbi)) {
@@ -93,18 +121,20 @@ AntennaPtr readAntenna(const std::string& file, double gain_dbi) {
   return antenna;
 }
 
-void fillFromCuts(const MeasuredCut& horizontal, const MeasuredCut& vertical, PatternFile& pattern) {
+void fillFromCuts(const std::string& file, const MeasuredCut& horizontal, const MeasuredCut& vertical,
+                  PatternFile& pattern) {
+  const double middle_deg = azimuthAhead(file, horizontal, vertical, pattern);
   pattern.nodes = gridNodes(horizontal.angles_deg(), vertical.angles_deg());
   std::vector<double> horizontal_db;
   for (const double azimuth_deg : pattern.nodes.azimuths_deg)
     horizontal_db.push_back(horizontal.attenuationAt_db(azimuth_deg));
-  const double ahead_db = horizontal.attenuationAt_db(0);
-  const double behind_db = horizontal.attenuationAt_db(180);
+  const double ahead_db = horizontal.attenuationAt_db(middle_deg);
+  const double behind_db = horizontal.attenuationAt_db(middle_deg + 180);
   for (const double elevation_deg : pattern.nodes.elevations_deg) {
     const double front_db = vertical.attenuationAt_db(-elevation_deg) - ahead_db;
     const double back_db = vertical.attenuationAt_db(180 + elevation_deg) - behind_db;
     for (std::size_t i = 0; i < horizontal_db.size(); ++i) {
-      const double w = std::abs(pattern.nodes.azimuths_deg[i]) / 180;
+      const double w = std::abs(std::remainder(pattern.nodes.azimuths_deg[i] - middle_deg, 360.0)) / 180;
       const double attenuation_db = horizontal_db[i] + (1 - w) * front_db + w * back_db;
       pattern.amplitudes.push_back(static_cast<float>(amplitudeOfAttenuation(std::max(attenuation_db, 0.0))));
     }

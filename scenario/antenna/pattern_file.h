@@ -57,9 +57,17 @@ PatternFile readSplat(const std::string& azimuth_file, const std::string& elevat
 /// particularly to the sides and behind, it is an estimate with errors of about 10 dB; at the zenith and the
 /// nadir it depends on azimuth.
 ///
+/// Both cuts contain the direction ahead. Where the horizontal one is weaker there than the vertical one by
+/// more than 3 dB, its azimuths count from another direction: az in w, H(0) and H(180) then count from its
+/// maximum. This is a warning, as is a vertical cut that is weaker ahead with its maximum more than 45
+/// degrees from the horizon; with less the horizontal cut is one through the maximum of a tilted beam.
+///
+/// @param file  names the cuts in warnings
+///
 /// @see F. Gil, A. R. Claro, J. M. Ferreira, C. Pardelinha, L. M. Correia, "A 3D interpolation method for
 /// base-station-antenna radiation patterns", IEEE Antennas and Propagation Magazine 43(2), 2001
-void fillFromCuts(const MeasuredCut& horizontal, const MeasuredCut& vertical, PatternFile& pattern);
+void fillFromCuts(const std::string& file, const MeasuredCut& horizontal, const MeasuredCut& vertical,
+                  PatternFile& pattern);
 
 /// Angle (deg) of a cut's maximum.
 double peakAngle_deg(const MeasuredCut& cut);

@@ -59,7 +59,8 @@ struct PointColumns {
 
 }  // namespace
 
-std::optional<std::vector<NamedPoint>> readPointTable(const std::string& file) {
+std::optional<std::vector<NamedPoint>> readPointTable(const std::string& file,
+                                                      std::vector<std::string>* others) {
   if (!isTableName(file)) return std::nullopt;
   const std::string text =
       document::checkedUtf8(file, readWholeText(file, kMaxTableBytes), "a table of points");
@@ -92,7 +93,9 @@ std::optional<std::vector<NamedPoint>> readPointTable(const std::string& file) {
     if (columns.name != std::string::npos) point.name = std::string(row.cells[columns.name].text);
     points.push_back(std::move(point));
   }
-  if (!columns.others.empty()) {
+  if (others != nullptr) {
+    *others = columns.others;
+  } else if (!columns.others.empty()) {
     logInfo(fmt::format("{}: {} other column{} ignored: {}", file, columns.others.size(),
                         columns.others.size() == 1 ? " is" : "s are", fmt::join(columns.others, ", ")));
   }

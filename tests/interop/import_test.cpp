@@ -9,6 +9,7 @@
 #include "interop/export_scenario.h"
 #include "interop/import_scenario.h"
 #include "interop/importing/beam_pieces.h"
+#include "interop/importing/scenario_text.h"
 #include "recording/read_recording.h"
 #include "tests/interop/there_and_back.h"
 #include "tests/support/errors.h"
@@ -256,6 +257,16 @@ TEST_F(Import, PartOfTheTimesBeginsAtZero) {
   EXPECT_EQ(scenario_->clock.duration_s, 30);
   const scenario::TrackPoint point = scenario::pointAt(scenario_->platforms[1], 0);
   EXPECT_NEAR(point.position.latitude_deg, 52.12, 1e-9);
+}
+
+TEST_F(Import, EpochYearsFromThatOfTheBaseIsToldWithItsLikelyCause) {
+  scenario::Scenario base;
+  base.clock.epoch_utc = "2026-06-01T06:00:00Z";
+  EXPECT_EQ(farEpochText(1780293600000 + 86400000, base), "");
+  EXPECT_EQ(farEpochText(std::nullopt, base), "");
+  EXPECT_THAT(farEpochText(1464328818000, base),
+              testing::AllOf(HasSubstr("begins 2016-05-27T06:00:18"), HasSubstr("10.0 years before"),
+                             HasSubstr("GPS time")));
 }
 
 TEST_F(Import, RecordingIsAddedToABase) {

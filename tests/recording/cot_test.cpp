@@ -45,7 +45,7 @@ TEST(Cot, EventsAreObjectsWithTheirCallsignsAndSides) {
   EXPECT_NEAR(r.objects[0].poses[0].height_msl_m, 50 - geoidUndulation_m(52, 5), 1e-9);
   EXPECT_EQ(r.objects[1].side, Side::neutral);
   EXPECT_EQ(r.objects[1].poses[0].height_msl_m, 0);
-  EXPECT_THAT(r.tally.notes, testing::Contains(HasSubstr("1 event has no height")));
+  EXPECT_THAT(r.tally.notes, testing::Contains(HasSubstr("0 m is taken (1 time)")));
   EXPECT_EQ(r.epoch_ms, 1780293600000);
 }
 

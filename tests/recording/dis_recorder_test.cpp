@@ -252,6 +252,28 @@ TEST(DisRecorder, SeveralPdusOfADatagramAreTakenAndBadOnesCounted) {
   EXPECT_EQ(r.tally.ignored.at("datagrams other than DIS"), 1);
 }
 
+TEST(DisRecorder, OfSeveralExercisesTheFirstOrTheChosenOneIsReadAndTheOthersAreTold) {
+  const auto read = [](const ReadOptions& options) {
+    DisRecorder recorder(options);
+    for (int i = 0; i < 10; ++i) {
+      auto bytes = test::pduAt(7, 0.5 * i, stateAt(36 + 0.02 * (i % 2) + 1e-4 * i, -84));
+      bytes[1] = static_cast<std::uint8_t>(1 + i % 2);  // the exercise
+      recorder.take({0.5 * i, bytes.data(), bytes.size()});
+    }
+    return recorder.finish();
+  };
+  const Recording first = read({});
+  ASSERT_EQ(first.objects.size(), 1u);
+  EXPECT_EQ(first.objects[0].poses.size(), 5u);
+  EXPECT_LT(first.objects[0].poses.back().latitude_deg, 36.01);
+  EXPECT_THAT(first.tally.notes,
+              testing::Contains(
+                  HasSubstr("5 PDUs of exercise 2 are not used, only those of exercise 1: --exercise 2")));
+  ReadOptions options;
+  options.exercise = 2;
+  EXPECT_GT(read(options).objects.at(0).poses.front().latitude_deg, 36.01);
+}
+
 TEST(DisRecordings, PublicLogsHaveTheirEntities) {
   if (!test::referenceFile("interop/dis/kdis_log1.log")) GTEST_SKIP() << test::notInRepository("interop/dis");
   const auto read = [](const std::string& name) {

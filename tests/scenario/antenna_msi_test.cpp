@@ -239,6 +239,34 @@ TEST(MsiAntenna, NameHasOnlyPrintableCharacters) {
             "B?se ?,");
 }
 
+TEST(MsiAntenna, CutsThatContradictEachOtherAheadAreToldAndJoinedAtTheHorizontalMaximum) {
+  const auto turned = [](int azimuth, int elevation) {
+    static int turn, tilt;
+    turn = azimuth, tilt = elevation;
+    const TemporaryFile file(
+        "antenna.msi",
+        "NAME x\nGAIN 10 dBi\n" +
+            cut(
+                "HORIZONTAL", [](int i, int) { return horizontalLoss_db(i - turn); }, 0, "\n") +
+            cut(
+                "VERTICAL", [](int i, int) { return verticalLoss_db(i, tilt); }, 0, "\n"));
+    return readPatternFile(file.path());
+  };
+  const PatternFile pattern = turned(120, 0);
+  ASSERT_EQ(pattern.warnings.size(), 1u);
+  EXPECT_NE(
+      pattern.warnings[0].find("25.0 dB below the maximum in the horizontal cut, 0.0 dB in the vertical one"),
+      std::string::npos)
+      << pattern.warnings[0];
+  const AntennaPtr antenna = makeGridAntenna(pattern.nodes, pattern.amplitudes, 10, "x");
+  EXPECT_NEAR(lossAt_db(antenna, 120, 0), 0, 0.1);
+  EXPECT_NEAR(lossAt_db(antenna, 75, 0), 3, 0.1);
+  EXPECT_NEAR(lossAt_db(antenna, 0, 0), 25, 0.1);
+  EXPECT_NEAR(lossAt_db(antenna, 120, 10), 3, 0.1);
+  EXPECT_EQ(turned(0, 93).warnings.size(), 1u) << "a vertical cut from the zenith";
+  EXPECT_EQ(turned(0, 15).warnings.size(), 0u) << "a horizontal cut through a tilted maximum";
+}
+
 TEST(MsiAntenna, SurvivesDamageToEveryByte) {
   const TemporaryFile file("antenna.msi", kSmall);
   surviveDamage(file, kSmall, [&] { readAntenna(file.path()); });

@@ -52,6 +52,11 @@ TEST_F(RefractivityFiles, HoldProfilesByRange) {
 TEST_F(RefractivityFiles, WarnOfUnitsAndOfUnequalProfiles) {
   EXPECT_THAT(read("height_msl_m,m_units\n0,330\n2000,260\n").warnings,
               testing::ElementsAre(HasSubstr("look like N-units")));
+  EXPECT_THAT(
+      read("height_msl_m,pressure_hpa,temperature_k,relative_humidity_percent\n0,1013,288,0.78\n"
+           "1000,900,282,0.4\n")
+          .warnings,
+      testing::ElementsAre(HasSubstr("relative_humidity_percent is 0.78 at most: is it a fraction?")));
   EXPECT_THAT(read("range_m,height_msl_m,m_units\n0,0,330\n0,10,331\n1000,0,330\n1000,30,320\n1000,60,325\n")
                   .warnings,
               testing::ElementsAre(HasSubstr("differ in their numbers of levels")));

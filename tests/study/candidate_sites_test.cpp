@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/geodesy/gdal_file.h"
+#include "emscape/base/log.h"
 #include "tests/support/errors.h"
 #include "tests/support/listener.h"
 #include "tests/support/temporary_folder.h"
@@ -90,6 +91,18 @@ TEST(CandidateSites, TablesOfLatitudesAndLongitudesNeedNoWkt) {
   const auto unnamed = readCandidates(folder.write("b.csv", "latitude_deg,longitude_deg\n52,5\n52,6\n"));
   ASSERT_EQ(unnamed.size(), 2u);
   EXPECT_EQ(unnamed[1].name, "site 2");
+}
+
+TEST(CandidateSites, ColumnsOfATableThatAreNotUsedAreNamedInAWarning) {
+  const test::TemporaryFolder folder;
+  std::string warnings;
+  setLogSink([&](LogLevel level, const std::string& message) {
+    if (level == LogLevel::warning) warnings += message;
+  });
+  readCandidates(folder.write("a.csv", "name,lat,lon,height_agl_m\nhill,52,5,60\n"));
+  setLogSink({});
+  EXPECT_THAT(warnings,
+              HasSubstr("not used: column 'height_agl_m'; each site has the height of its platform"));
 }
 
 TEST(CandidateSites, UnreadableCellOfATableIsNamedByItsPlace) {

@@ -1,12 +1,14 @@
 #include "study/sweep/definition/candidate_sites.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <set>
 
 #include "emscape/base/error.h"
 #include "emscape/base/geodesy/geo_frame.h"
+#include "emscape/base/log.h"
 #include "emscape/base/units.h"
 #include "scenario/map/point_table.h"
 #include "scenario/map/vector_file.h"
@@ -70,7 +72,8 @@ void addLayer(const scenario::VectorFile& points, OGRLayerH layer, const std::st
 
 std::vector<CandidateSite> readCandidates(const std::string& file) {
   std::vector<CandidateSite> sites;
-  if (const auto table = scenario::readPointTable(file)) {
+  std::vector<std::string> others;
+  if (const auto table = scenario::readPointTable(file, &others)) {
     for (const scenario::NamedPoint& point : *table) {
       sites.push_back(
           {point.name.empty() ? numberedName(sites) : point.name, point.latitude_deg, point.longitude_deg});
@@ -96,6 +99,10 @@ std::vector<CandidateSite> readCandidates(const std::string& file) {
     if (!names.insert(site.name).second) {
       throw Error(ErrorCode::bad_input, {file, 0, 0}, fmt::format("two points are named '{}'", site.name));
     }
+  }
+  if (!others.empty()) {
+    logWarning(fmt::format("{}: not used: {} '{}'; each site has the height of its platform in the scenario",
+                           file, others.size() == 1 ? "column" : "columns", fmt::join(others, "', '")));
   }
   return sites;
 }
