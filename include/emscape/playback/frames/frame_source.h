@@ -17,7 +17,12 @@
 
 namespace emscape::playback {
 
-using PosesPtr = std::shared_ptr<const std::vector<scenario::PlatformPose>>;
+/// Where a stream has the platforms.
+struct StreamedPoses {
+  std::vector<scenario::PlatformPose> platforms;
+  std::string told;  ///< "live, 2026-06-01T06:00:22Z": when the last record came
+};
+using PosesPtr = std::shared_ptr<const StreamedPoses>;
 
 struct Frame;
 
@@ -36,6 +41,7 @@ struct Frame : ShownField {
   bool has_field = true;              ///< false: FrameSource::withoutField()
   render::ColorRange color_range;     ///< of the series; none: that of the field's values
   std::optional<FieldBeside> beside = std::nullopt;
+  std::string live = {};  ///< StreamedPoses::told; empty: no stream moves its platforms
 };
 
 /// What frames show of a field and its reference.
