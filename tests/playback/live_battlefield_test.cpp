@@ -161,21 +161,6 @@ TEST(LiveBattlefield, APlatformThatTheStreamNoLongerTellsOfStaysAtItsLastPlaceAn
   EXPECT_TRUE(waitFor([&] { return !is_active(); })) << "destroyed";
 }
 
-TEST(LiveBattlefield, APlatformWhoseAcmiObjectIsRemovedIsSilentUntilAnotherOneOfItsNameComes) {
-  const std::uint16_t port = freePort();
-  Host host(port, {"1,T=5|52|3000,Type=Air,Name=mast"});
-  LiveBattlefield battlefield(requestAt(port, StreamKind::acmi), {});
-  const auto is_active = [&] { return snapshotOf(battlefield).emitters.front().active; };
-  ASSERT_TRUE(waitFor([&] { return !battlefield.now().poses->empty(); }));
-  EXPECT_TRUE(is_active());
-  host.send("#5");
-  host.send("-1");
-  ASSERT_TRUE(waitFor([&] { return !is_active(); }));
-  host.send("#6");
-  host.send("2,T=5.02|52|3000,Type=Air,Name=mast");
-  EXPECT_TRUE(waitFor([&] { return is_active(); }));
-}
-
 TEST(LiveBattlefield, WhatArrivesIsRecordedAndReadAgain) {
   const emscape::test::TemporaryFolder folder;
   StreamRequest request = requestAt(freePort());
@@ -343,6 +328,21 @@ std::string namesOf(const LiveBattlefield& battlefield) {
 bool hasPlatform(const LiveBattlefield& battlefield, const std::string& name) {
   const auto scenario = battlefield.now().scenario;
   return platformIndices(*scenario).count(name) == 1;
+}
+
+TEST(LiveBattlefield, APlatformWhoseAcmiObjectIsRemovedIsSilentUntilAnotherOneOfItsNameComes) {
+  const std::uint16_t port = freePort();
+  Host host(port, {"1,T=5|52|3000,Type=Air,Name=mast"});
+  LiveBattlefield battlefield(requestAt(port, StreamKind::acmi), {});
+  const auto is_active = [&] { return snapshotOf(battlefield).emitters.back().active; };
+  ASSERT_TRUE(waitFor([&] { return !battlefield.now().poses->empty(); }));
+  EXPECT_TRUE(is_active());
+  host.send("#5");
+  host.send("-1");
+  ASSERT_TRUE(waitFor([&] { return !is_active(); }));
+  host.send("#6");
+  host.send("2,T=5.02|52|3000,Type=Air,Name=mast");
+  EXPECT_TRUE(waitFor([&] { return is_active(); }));
 }
 
 TEST(LiveBattlefield, AfterAnotherConnectionTheObjectsAreThoseOfTheNewHost) {
