@@ -66,8 +66,9 @@ class LiveField {
       loaded_ = loaded_.scenario
                     ? playback::withScenario(loaded_, now.scenario)
                     : playback::LoadedScenario{now.scenario, scenario::loadTerrain(*now.scenario)};
-      const auto snapshot = scenario::snapshotAt(loaded_.scenario, loaded_.terrain.get(), 0,
-                                                 *playback::posesOf(indices_, *now.poses));
+      const auto snapshot =
+          scenario::snapshotAt(loaded_.scenario, loaded_.terrain.get(), 0,
+                               playback::posesOf(indices_, *now.poses, now.arrival_s)->platforms);
       if (!solver_) {
         emfield::FieldOptions options;
         options.allow_missing_terrain = true;
@@ -192,6 +193,8 @@ Json jsonOf(const playback::StreamStatus& status, const LiveFieldStatus& field, 
             {"field_ms", rounded(field.field_ms)},
             {"latency_ms", rounded(field.latency_ms)},
             {"column_step", field.column_step}};
+  line["silent"] = status.silent;
+  line["untold"] = status.untold;
   line["age_s"] = status.age_s ? Json(rounded(*status.age_s)) : Json();
   line["trouble"] =
       status.trouble + (status.trouble.empty() || field.trouble.empty() ? "" : "; ") + field.trouble;

@@ -38,7 +38,7 @@ constexpr render::ImageSize kUsualSize{1200, 900};
 
 /// With an asterisk for edits or colours that are not saved.
 std::string titleOf(const ViewOptions& options, bool is_unsaved) {
-  const std::filesystem::path path = std::filesystem::path(options.view.input).lexically_normal();
+  const std::filesystem::path path = std::filesystem::path(options.namesake()).lexically_normal();
   if (path.empty()) return "emscape";
   const std::filesystem::path named = path.has_filename() ? path : path.parent_path();
   return (is_unsaved ? "* " : "") + named.filename().string() + " — emscape";

@@ -59,13 +59,11 @@ void MouseControl::handle(const std::vector<InputEvent>& events, const Area& pic
       session.cameraMoved();
     }
   }
-  if (drag_ == Drag::none) {
-    const bool is_over = !panels_want_mouse && isInside(picture, x_, y_);
-    const auto under =
-        is_over ? std::optional(render::Projected{x_ - picture.x, y_ - picture.y}) : std::nullopt;
-    session.prober().hover(under);
-    session.cursor().hover(under);
-  }
+  const bool is_over = !panels_want_mouse && isInside(picture, x_, y_);
+  const auto under =
+      is_over ? std::optional(render::Projected{x_ - picture.x, y_ - picture.y}) : std::nullopt;
+  session.prober().hover(under);
+  session.cursor().hover(under);
   showCursor(picture, panels_want_mouse, session);
 }
 
@@ -193,7 +191,6 @@ void MouseControl::movePlatform(const Area& picture, Session& session) {
   }
   const auto edits = platform_->moveTo(*session.picture(), x_ - picture.x, y_ - picture.y);
   if (!edits) return;
-  platform_text_ = platform_->platform() + "\n" + (*edits)[0].value + "°, " + (*edits)[1].value + "°";
   session.drag(*edits);
 }
 
@@ -206,7 +203,7 @@ void MouseControl::showCursor(const Area& picture, bool panels_want_mouse, const
     ImGui::GetBackgroundDrawList()->AddCircle(cursor, 0.7F * ImGui::GetFontSize(),
                                               ImGui::ColorConvertFloat4ToU32(accentColor(session.theme())), 0,
                                               2);
-    ImGui::SetTooltip("%s", platform_text_.c_str());
+    ImGui::SetTooltip("%s", tooltipOf(platform_->object(), session.view()).c_str());
     return;
   }
   if (drag_ == Drag::split) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);

@@ -46,8 +46,7 @@ class MouseControl {
   ContextMenu menu_;
   std::optional<PlaneDrag> plane_;
   std::optional<PlatformDrag> platform_;
-  std::string refusal_;        // reason for a missing platform_
-  std::string platform_text_;  // name and position
+  std::string refusal_;  // reason for a missing platform_
 };
 
 }  // namespace emscape::view

@@ -55,10 +55,10 @@ fs::path autosaveFileOf(const std::string& input, int number) {
 Autosaves::Autosaves() = default;
 Autosaves::~Autosaves() = default;
 
-bool Autosaves::claim(const std::string& input, const fs::path& file) {
+bool Autosaves::claim(Claims& claims, const std::string& input, const fs::path& file) {
   auto lock = FolderLock::tryLock(file.parent_path(), file.filename().string() + ".lock");
   if (lock == nullptr) return false;
-  claims_[autosaveFileOf(input)] = {file, std::move(lock)};
+  claims[autosaveFileOf(input)] = {file, std::move(lock)};
   return true;
 }
 
@@ -66,47 +66,74 @@ void Autosaves::keep(const std::string& input, const ViewState& state) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const fs::path first = autosaveFileOf(input);
   makeFolder(first.parent_path());
-  for (int number = 1; claims_.count(first) == 0; ++number) {
+  for (int number = 1; stored_.count(first) == 0; ++number) {
     if (number > kMaxFiles) {
       throw Error(ErrorCode::other, {first.string(), 0, 0},
                   "the view cannot be stored: all autosave files are in use");
     }
     const fs::path file = autosaveFileOf(input, number);
-    if (!writtenAt_ms(file)) claim(input, file);
+    if (!writtenAt_ms(file)) claim(stored_, input, file);
   }
-  writeViewState(claims_[first].file.string(), state);
+  writeViewState(stored_[first].file.string(), state);
 }
 
 std::optional<AutosavedView> Autosaves::find(const std::string& input) {
   const std::lock_guard<std::mutex> lock(mutex_);
   const fs::path first = autosaveFileOf(input);
-  if (claims_.count(first) == 0) {
-    std::vector<std::pair<std::int64_t, fs::path>> files;
-    for (int number = 1; number <= kMaxFiles; ++number) {
-      const fs::path file = autosaveFileOf(input, number);
-      if (const auto written_ms = writtenAt_ms(file)) files.emplace_back(*written_ms, file);
-    }
-    std::sort(files.rbegin(), files.rend());
-    for (const auto& [written_ms, file] : files) {
-      if (claim(input, file)) break;
+  const auto own = stored_.find(first);
+  if (own != stored_.end()) {  // of an earlier session of this program; what that one found stays
+    found_[first] = std::move(own->second);
+    stored_.erase(own);
+  }
+  std::vector<std::pair<std::int64_t, fs::path>> files;
+  for (int number = 1; number <= kMaxFiles; ++number) {
+    const fs::path file = autosaveFileOf(input, number);
+    if (const auto written_ms = writtenAt_ms(file)) files.emplace_back(*written_ms, file);
+  }
+  std::sort(files.rbegin(), files.rend());
+  int others = 0;
+  for (const auto& [written_ms, file] : files) {
+    const auto claimed = found_.find(first);
+    if (claimed == found_.end()) {
+      claim(found_, input, file);
+    } else if (claimed->second.file != file) {
+      others += FolderLock::tryLock(file.parent_path(), file.filename().string() + ".lock") ? 1 : 0;
     }
   }
-  const auto found = claims_.find(first);
-  if (found == claims_.end()) return std::nullopt;
+  const auto found = found_.find(first);
+  if (found == found_.end()) return std::nullopt;
   const fs::path& file = found->second.file;
   const std::optional<std::int64_t> written_ms = writtenAt_ms(file);
   if (!written_ms) return std::nullopt;
-  return AutosavedView{file, utcText(*written_ms), writtenAt_ms(input).value_or(0) > *written_ms,
+  return AutosavedView{file, utcText(*written_ms), writtenAt_ms(input).value_or(0) > *written_ms, others,
                        readViewState(file.string())};
+}
+
+void Autosaves::adopt(const std::string& input) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const fs::path first = autosaveFileOf(input);
+  const auto found = found_.find(first);
+  if (found == found_.end()) return;
+  stored_[first] = std::move(found->second);
+  found_.erase(found);
+}
+
+void Autosaves::discard(const std::string& input) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  removeFrom(found_, input);
 }
 
 void Autosaves::remove(const std::string& input) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  const auto claimed = claims_.find(autosaveFileOf(input));
-  if (claimed == claims_.end()) return;
+  removeFrom(stored_, input);
+}
+
+void Autosaves::removeFrom(Claims& claims, const std::string& input) {
+  const auto claimed = claims.find(autosaveFileOf(input));
+  if (claimed == claims.end()) return;
   std::error_code ignored;
   fs::remove(claimed->second.file, ignored);
-  claims_.erase(claimed);
+  claims.erase(claimed);
 }
 
 }  // namespace emscape::playback

@@ -29,6 +29,7 @@ struct AutosavedView {
   std::filesystem::path file;
   std::string written_utc;     ///< ISO 8601
   bool input_changed = false;  ///< the input was modified later
+  int others = 0;              ///< further stored views of the input, of programs that have ended
   ViewState state;
 };
 
@@ -42,13 +43,19 @@ class Autosaves {
   Autosaves(const Autosaves&) = delete;
   Autosaves& operator=(const Autosaves&) = delete;
 
-  /// Stores a view with its edits; it replaces the one that was stored or found before. Creates the folder if
-  /// necessary. @throws Error (bad_input, other) as writeViewState(), or if no file is free
+  /// Stores a view with its edits; it replaces the one that was stored before or adopted, and none that was
+  /// found. Creates the folder if necessary. @throws Error (bad_input, other) as writeViewState(), or if no
+  /// file is free
   void keep(const std::string& input, const ViewState& state);
-  /// This program's stored view of an input; else the newest view of a program that has ended, which this
-  /// program takes over. Empty if there is neither. @throws Error (bad_input) if it cannot be read
+  /// The newest view of an input that this program stored, or that a program that has ended left, which this
+  /// program takes over. It stays until it is adopted or discarded. Empty if there is none.
+  /// @throws Error (bad_input) if it cannot be read
   std::optional<AutosavedView> find(const std::string& input);
-  /// Removes the view that was stored or found.
+  /// The view that was found is the one that keep() replaces.
+  void adopt(const std::string& input);
+  /// Removes the view that was found.
+  void discard(const std::string& input);
+  /// Removes the view that was stored or adopted.
   void remove(const std::string& input);
 
  private:
@@ -56,11 +63,15 @@ class Autosaves {
     std::filesystem::path file;
     std::unique_ptr<FolderLock> lock;
   };
+  /// By the first file of an input.
+  using Claims = std::map<std::filesystem::path, Claim>;
+
   /// Takes over a file. @return true if it could be locked
-  bool claim(const std::string& input, const std::filesystem::path& file);
+  static bool claim(Claims& claims, const std::string& input, const std::filesystem::path& file);
+  static void removeFrom(Claims& claims, const std::string& input);
 
   std::mutex mutex_;
-  std::map<std::filesystem::path, Claim> claims_;  // by the first file of an input
+  Claims stored_, found_;
 };
 
 }  // namespace emscape::playback

@@ -137,8 +137,9 @@ class ComputedFrames : public FrameSource {
   }
   void setPoses(PosesPtr poses) override {
     LoadedScenario moved = unposed_;
-    if (poses) moved.scenario = scenario::withPoses(*unposed_.scenario, *poses);
+    if (poses) moved.scenario = scenario::withPoses(*unposed_.scenario, poses->platforms);
     series_->setScenario(std::move(moved), series_->times_s());
+    live_ = poses ? poses->told : "";
   }
   void setQuantity(const std::string& quantity) override {
     const scenario::Scenario& scenario = *series_->input().scenario;
@@ -165,11 +166,13 @@ class ComputedFrames : public FrameSource {
     const LoadedScenario& input = series_->input();
     frame.markers = markersOf(series_->snapshotAt(time_s), input.terrain, frame.grid());
     frame.tracks = tracks_.at(time_s, input, frame.grid());
+    frame.live = live_;
   }
 
   FrameSelection selection_;
   ComputedMesh mesh_;
   LoadedScenario unposed_;  ///< without the poses of setPoses()
+  std::string live_;        ///< of the poses
   std::unique_ptr<FieldSeries> series_;
   PlatformTracks tracks_;
 };

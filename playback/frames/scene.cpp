@@ -74,12 +74,14 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
     if (!std::isnan(ground_m)) marker.ground_m = ground_m;
     return marker;
   };
+  // Outside of its track; one that is absent from a fixed place is drawn there, hollow.
+  const auto isHidden = [&](std::size_t p) { return !snapshot.platforms[p].present && platforms[p].moves(); };
   for (std::size_t e = 0; e < snapshot.emitters.size(); ++e) {
     const scenario::Emitter& emitter = snapshot.scenario->emitters[e];
     const scenario::EmitterState& state = snapshot.emitters[e];
     const auto platform = static_cast<std::size_t>(emitter.platform);
     has_emitter[platform] = true;
-    if (!snapshot.platforms[platform].present) continue;
+    if (isHidden(platform)) continue;
     render::Marker& marker = add(platform, state.position);
     marker.label = emitter.name;
     marker.kind = markerKindOf(emitter.kind);
@@ -90,9 +92,11 @@ std::vector<render::Marker> markersOf(const scenario::Snapshot& snapshot, const 
   }
   for (std::size_t p = 0; p < platforms.size(); ++p) {
     if (has_emitter[p] || !platforms[p].side) continue;
+    if (isHidden(p)) continue;
     const scenario::PlatformState& state = snapshot.platforms[p];
-    if (!state.present) continue;
-    setHeight(add(p, state.position), platforms[p], state.height_msl_m);
+    render::Marker& marker = add(p, state.position);
+    setHeight(marker, platforms[p], state.height_msl_m);
+    marker.active = state.present;
   }
   return markers;
 }

@@ -117,6 +117,10 @@ void Painter::setFrame(const Frame& frame) {
   annotations_.time = info.has_time ? "t = " + timeText(info.time_s, span_s) : "";
   if (speed_ && info.has_time) annotations_.time += fmt::format("   ×{:.3g}", *speed_);
   annotations_.time_utc = info.time_utc;
+  if (!frame.live.empty()) {  // the scenario's clock moves only its scans
+    annotations_.time_utc = "time line: " + annotations_.time;
+    annotations_.time = frame.live;
+  }
   annotations_.subtitle = subtitleOf(info);
   annotations_.georeferenced = frame.grid().georeferenced;
   setMarkers();

@@ -42,10 +42,6 @@ constexpr double kHostGreets_s = 4;  ///< in which a host must greet
 /// Smallest movements that are shown.
 constexpr double kMoved_deg = 1e-8, kMoved_m = 1e-3, kTurned_deg = 1e-3;
 
-double unixTime_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 bool hasMoved(const std::vector<NamedPose>& a, const std::vector<NamedPose>& b) {
   return !std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const NamedPose& p, const NamedPose& q) {
     const auto near = [](double x, double y, double limit) { return std::abs(x - y) <= limit; };
@@ -54,7 +50,8 @@ bool hasMoved(const std::vector<NamedPose>& a, const std::vector<NamedPose>& b) 
            near(p.position.height_msl_m.value_or(0), q.position.height_msl_m.value_or(0), kMoved_m) &&
            near(p.attitude.heading_deg, q.attitude.heading_deg, kTurned_deg) &&
            near(p.attitude.pitch_deg, q.attitude.pitch_deg, kTurned_deg) &&
-           near(p.attitude.roll_deg, q.attitude.roll_deg, kTurned_deg) && p.platform == q.platform;
+           near(p.attitude.roll_deg, q.attitude.roll_deg, kTurned_deg) && p.platform == q.platform &&
+           p.is_present == q.is_present;
   });
 }
 
@@ -95,6 +92,15 @@ std::string StreamStatus::text() const {
     text += fmt::format("{:.0f} {}/s, {}, last {:.{}f} s ago", records_per_s, format.plural,
                         countText(entities, format.object, format.objects), *age_s, *age_s < 10 ? 1 : 0);
   }
+  const auto add = [&text](const char* what, const std::vector<std::string>& platforms) {
+    if (platforms.empty()) return;
+    text += "; ";
+    text += what;
+    text += platforms.size() > 2 ? countText(platforms.size(), "platform", "platforms")
+                                 : fmt::format("{}", fmt::join(platforms, ", "));
+  };
+  add("silent at the last known place: ", silent);
+  if (age_s) add("not told of, as in the scenario: ", untold);
   return trouble.empty() ? text : text + "; " + trouble;
 }
 
@@ -361,8 +367,9 @@ struct LiveBattlefield::Impl {
       std::shared_ptr<const LiveScenario> made;
       std::vector<NamedPose> moved;
       std::string trouble;
+      const NamedPosesPtr before = now().poses;
       try {
-        made = maker.make(std::move(recording));
+        made = maker.make(std::move(recording), *before);
         std::vector<interop::LivePose> live;
         {
           const std::lock_guard<std::mutex> lock(state_mutex);
@@ -399,6 +406,8 @@ struct LiveBattlefield::Impl {
     result.kind = request.kind;
     result.emitters = static_cast<std::size_t>(scenario->emitters);
     result.unmatched = scenario->unmatched;
+    result.silent = scenario->silent;
+    result.untold = scenario->untold;
     result.records_per_s = rate.perSecond(time_s, result.records);
     if (told_last_s) result.age_s = time_s - *told_last_s;
     const auto add = [&result](const std::string& text) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "emscape/base/progress.h"
 #include "interop/import_scenario.h"
@@ -50,6 +51,8 @@ struct StreamStatus {
   long long lost = 0;       ///< datagrams that the system dropped
   long long forgotten = 0;  ///< objects and beams beyond the limits
   std::size_t entities = 0, emitters = 0;
+  /// Platforms of the base that the stream no longer tells of, or as destroyed; those that it never told of.
+  std::vector<std::string> silent, untold;
   int unmatched = 0;            ///< beams that no row of the emitter database matches
   double records_per_s = 0;     ///< of the last second or two
   std::optional<double> age_s;  ///< of the last record; none: none came
@@ -71,6 +74,8 @@ struct BattlefieldNow {
 ///
 /// Objects become platforms of the base scenario, with emitters by the database, as `import` does. An object
 /// with the name of a platform of the base moves that platform instead, whose emitters are those of the base.
+/// Where the stream tells of it no more, it stays where it was last, and its emitters are silent; until the
+/// stream first tells of it, it is as in the base.
 /// When objects or beams change, the scenario is made anew on another thread, at most twice a second;
 /// between, only the poses change. Memory and work are bounded whatever arrives (interop::LiveLimits).
 class LiveBattlefield {

@@ -43,9 +43,34 @@ std::string makeTemporaryFolder() {
 }
 
 /// Lets an object move a platform.
-void addObject(LiveScenario& scenario, std::uint64_t key, const std::string& platform, double raise_m) {
+void addObject(LiveScenario& scenario, std::uint64_t key, const std::string& platform, double raise_m,
+               bool is_present = true) {
   scenario.objects[key] = {scenario.poses.size(), raise_m};
-  scenario.poses.push_back({platform, {}, {}});
+  scenario.poses.push_back({platform, {}, {}, is_present});
+}
+
+bool isThere(const interop::RecordedObject& object) {
+  return object.presence.empty() || object.presence.back().is_present;
+}
+
+/// The platform of a base that each object moves: of several of one name the first, those that are there
+/// before those that are gone.
+std::vector<std::optional<std::size_t>> movedPlatforms(const std::vector<interop::RecordedObject>& objects,
+                                                       const scenario::Scenario& base) {
+  std::vector<std::optional<std::size_t>> moved(objects.size());
+  std::vector<bool> is_moved(base.platforms.size());
+  for (const bool there : {true, false}) {
+    std::vector<std::string> names;
+    for (const interop::RecordedObject& object : objects)
+      names.push_back(isThere(object) == there ? object.name : "");
+    const auto found = interop::movedPlatforms(names, base);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (names[i].empty() || !found[i] || is_moved[*found[i]]) continue;
+      moved[i] = found[i];
+      is_moved[*found[i]] = true;
+    }
+  }
+  return moved;
 }
 
 }  // namespace
@@ -73,24 +98,49 @@ std::shared_ptr<const LiveScenario> LiveScenarioMaker::base() const {
   auto made = std::make_shared<LiveScenario>();
   made->loaded = base_;
   made->emitters = static_cast<int>(base_.scenario->emitters.size());
+  keepBase(*made, {});
   return made;
 }
 
-std::shared_ptr<const LiveScenario> LiveScenarioMaker::make(interop::LiveRecording live) {
+/// Where the platforms of the base are that no object moves now.
+void LiveScenarioMaker::keepBase(LiveScenario& made, const std::vector<NamedPose>& before) const {
+  const auto poseIn = [](const std::vector<NamedPose>& poses, const std::string& platform) {
+    return std::find_if(poses.begin(), poses.end(), [&](auto& pose) { return pose.platform == platform; });
+  };
+  for (const scenario::Platform& platform : base_.scenario->platforms) {
+    const auto now = poseIn(made.poses, platform.name);
+    if (now != made.poses.end()) {
+      if (!now->is_present) made.silent.push_back(platform.name);
+      continue;
+    }
+    const auto last = poseIn(before, platform.name);
+    if (last == before.end() || !last->position.height_msl_m) {
+      made.untold.push_back(platform.name);
+      continue;
+    }
+    made.poses.push_back(*last);
+    made.poses.back().is_present = false;
+    made.silent.push_back(platform.name);
+  }
+}
+
+std::shared_ptr<const LiveScenario> LiveScenarioMaker::make(interop::LiveRecording live,
+                                                            const std::vector<NamedPose>& before) {
   auto made = std::make_shared<LiveScenario>();
   interop::Recording& recording = live.recording;
   std::vector<interop::LivePose> poses;
   for (std::size_t i = 0; i < recording.objects.size(); ++i)
     poses.push_back({live.keys[i], recording.objects[i].poses.front()});
   // Platforms of the base that the stream moves.
-  std::vector<std::string> names;
-  for (const interop::RecordedObject& object : recording.objects) names.push_back(object.name);
-  const auto moved = interop::movedPlatforms(names, *base_.scenario);
+  const auto moved = movedPlatforms(recording.objects, *base_.scenario);
   std::vector<bool> is_of_base(recording.objects.size());
   for (std::size_t i = 0; i < moved.size(); ++i) {
     is_of_base[i] = moved[i].has_value();
-    if (moved[i]) addObject(*made, live.keys[i], base_.scenario->platforms[*moved[i]].name, 0);
+    if (!moved[i]) continue;
+    addObject(*made, live.keys[i], base_.scenario->platforms[*moved[i]].name, 0,
+              isThere(recording.objects[i]));
   }
+  keepBase(*made, before);
   auto& beams = recording.beams;
   beams.erase(std::remove_if(beams.begin(), beams.end(),
                              [&](const interop::RecordedBeam& beam) { return is_of_base[beam.object]; }),

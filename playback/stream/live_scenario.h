@@ -24,6 +24,7 @@ struct LiveScenario {
   std::vector<NamedPose> poses;  ///< of the platforms that the stream moves, when the scenario was made
   std::unordered_map<std::uint64_t, Object> objects;  ///< by their keys
   int emitters = 0, unmatched = 0;
+  std::vector<std::string> silent, untold;  ///< platforms of the base (StreamStatus)
 };
 
 /// Makes scenarios from a base, in a file of a folder of its own.
@@ -38,10 +39,14 @@ class LiveScenarioMaker {
   const std::string& file() const { return file_; }
   /// The base alone.
   std::shared_ptr<const LiveScenario> base() const;
+  /// @param before  the last poses: platforms of the base that the recording lacks stay there, absent
   /// @throws Error
-  std::shared_ptr<const LiveScenario> make(interop::LiveRecording recording);
+  std::shared_ptr<const LiveScenario> make(interop::LiveRecording recording,
+                                           const std::vector<NamedPose>& before);
 
  private:
+  void keepBase(LiveScenario& made, const std::vector<NamedPose>& before) const;
+
   const StreamRequest request_;
   std::string folder_, file_;
   LoadedScenario base_, last_;

@@ -1,5 +1,7 @@
 #include "playback/stream/named_poses.h"
 
+#include "playback/stream/steady_time.h"
+
 namespace emscape::playback {
 
 PlatformIndices platformIndices(const scenario::Scenario& scenario) {
@@ -9,13 +11,15 @@ PlatformIndices platformIndices(const scenario::Scenario& scenario) {
   return indices;
 }
 
-PosesPtr posesOf(const PlatformIndices& indices, const std::vector<NamedPose>& poses) {
-  auto found = std::make_shared<std::vector<scenario::PlatformPose>>();
-  found->reserve(poses.size());
+PosesPtr posesOf(const PlatformIndices& indices, const std::vector<NamedPose>& poses, double arrival_s) {
+  auto found = std::make_shared<StreamedPoses>();
+  found->platforms.reserve(poses.size());
+  found->told = arrival_s > 0 ? "live, " + utcTextOf(arrival_s) : "live, nothing received";
   for (const NamedPose& pose : poses) {
     if (!pose.position.height_msl_m) continue;  // it has had no sound pose yet
     const auto at = indices.find(pose.platform);
-    if (at != indices.end()) found->push_back({at->second, pose.position, pose.attitude});
+    if (at != indices.end())
+      found->platforms.push_back({at->second, pose.position, pose.attitude, pose.is_present});
   }
   return found;
 }

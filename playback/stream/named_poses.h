@@ -14,6 +14,7 @@ struct NamedPose {
   std::string platform;
   scenario::SitePosition position;
   scenario::Attitude attitude;
+  bool is_present = true;  ///< false: it was there last
 };
 
 using NamedPosesPtr = std::shared_ptr<const std::vector<NamedPose>>;
@@ -23,6 +24,7 @@ using PlatformIndices = std::unordered_map<std::string, int>;
 PlatformIndices platformIndices(const scenario::Scenario& scenario);
 
 /// The poses for a scenario; those of other platforms are left out.
-PosesPtr posesOf(const PlatformIndices& indices, const std::vector<NamedPose>& poses);
+/// @param arrival_s  of the last record in them (steady clock); 0: none came
+PosesPtr posesOf(const PlatformIndices& indices, const std::vector<NamedPose>& poses, double arrival_s);
 
 }  // namespace emscape::playback

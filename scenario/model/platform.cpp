@@ -77,6 +77,7 @@ SitePosition positionOnLeg(const SitePosition& a, const SitePosition& b, double 
 
 /// "its track runs from 100 to 130 s ('track: {outside: hold}' keeps it at the track's ends)"
 std::string spanText(const Platform& platform) {
+  if (!platform.moves()) return "its place is the last one known";
   const bool has_gap = std::any_of(platform.track.begin(), platform.track.end(),
                                    [](const TrackPoint& point) { return point.gap_after; });
   return fmt::format(
@@ -87,7 +88,7 @@ std::string spanText(const Platform& platform) {
 }  // namespace
 
 bool Platform::isPresentAt(double t_s) const {
-  if (!moves()) return true;
+  if (!moves()) return !track.front().gap_after;  // a pose that was the last one (PlatformPose)
   if (t_s < track.front().t_s - interop::kTickRounding_s || t_s > track.back().t_s + interop::kTickRounding_s)
     return outside_track == OutsideTrack::hold;
   const std::size_t leg = legAt(track, t_s);

@@ -62,6 +62,7 @@ Platform posed(const Platform& platform, const PlatformPose& pose) {
   there.name = platform.name;
   there.track.emplace_back();
   there.track.front().position = pose.position;
+  there.track.front().gap_after = !pose.is_present;
   there.attitude = pose.attitude;
   there.side = platform.side;
   there.sidc = platform.sidc;

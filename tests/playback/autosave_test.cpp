@@ -48,7 +48,7 @@ TEST_F(Autosave, IsOfferedAfterItsProgramEnded) {
   }
   EXPECT_EQ(files, 1);
 
-  saves_.remove(input);
+  saves_.discard(input);
   EXPECT_FALSE(saves_.find(input));
 }
 
@@ -134,9 +134,10 @@ TEST_F(Autosave, ProgramsThatRunAtTheSameTimeHaveOneEach) {
   EXPECT_EQ(saves_.find(input)->file, autosaveFileOf(input, 2));
   EXPECT_EQ(saves_.find(input)->state.time_s, 4);
   other.end();
-  saves_.remove(input);
+  EXPECT_EQ(saves_.find(input)->others, 1);
+  saves_.discard(input);
   EXPECT_EQ(saves_.find(input)->state.time_s, 3);
-  saves_.remove(input);
+  saves_.discard(input);
   EXPECT_TRUE(fs::is_empty(stateFolder() / "autosave"));
 }
 
@@ -149,6 +150,24 @@ TEST_F(Autosave, IsNotReplacedByAProgramThatWasNotOfferedIt) {
   EXPECT_EQ(saves_.find(input)->file, autosaveFileOf(input, 2));
   Autosaves next;
   EXPECT_EQ(next.find(input)->state.time_s, 3);
+}
+
+TEST_F(Autosave, WhatWasFoundIsNotReplacedUntilItIsAdoptedOrDiscarded) {
+  const std::string input = quickScenario(folder_);
+  ViewState state;
+  state.time_s = 3;
+  OtherProgram(input, state).end();
+  ASSERT_TRUE(saves_.find(input));
+  state.time_s = 4;
+  saves_.keep(input, state);
+  EXPECT_EQ(readViewState(autosaveFileOf(input).string()).time_s, 3);
+  EXPECT_EQ(readViewState(autosaveFileOf(input, 2).string()).time_s, 4);
+  saves_.remove(input);  // a regular end
+  EXPECT_EQ(saves_.find(input)->state.time_s, 3);
+  saves_.adopt(input);
+  saves_.keep(input, state);
+  EXPECT_EQ(readViewState(autosaveFileOf(input).string()).time_s, 4);
+  EXPECT_FALSE(fs::exists(autosaveFileOf(input, 2)));
 }
 
 TEST_F(Autosave, AFileThatCannotBeLockedIsAnErrorAndNotAnotherProgram) {

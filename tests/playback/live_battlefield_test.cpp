@@ -120,6 +120,47 @@ TEST(LiveBattlefield, AnEntityWithTheNameOfAPlatformOfTheBaseMovesIt) {
   EXPECT_EQ(battlefield.now().poses->front().platform, name);
 }
 
+/// The present battlefield as the field is computed of it.
+scenario::Snapshot snapshotOf(const LiveBattlefield& battlefield) {
+  const BattlefieldNow now = battlefield.now();
+  return scenario::snapshotAt(now.scenario, nullptr, 0,
+                              posesOf(platformIndices(*now.scenario), *now.poses, 1)->platforms);
+}
+
+TEST(LiveBattlefield, APlatformThatTheStreamNoLongerTellsOfStaysAtItsLastPlaceAndIsSilent) {
+  const std::uint16_t port = freePort();
+  StreamRequest request = requestAt(port);
+  request.read.entity_timeout_s = 0.6;
+  LiveBattlefield battlefield(request, {});
+  const auto base = battlefield.now().scenario;
+  const std::string name = base->platforms.front().name;
+  const auto is_active = [&] {
+    const scenario::Snapshot now = snapshotOf(battlefield);
+    for (std::size_t e = 0; e < now.emitters.size(); ++e) {
+      if (now.scenario->emitters[e].platform == 0 && now.emitters[e].active) return true;
+    }
+    return false;
+  };
+  EXPECT_TRUE(is_active()) << "as in the scenario";
+  EXPECT_THAT(battlefield.status().untold, testing::Contains(name));
+  DatagramSender sender({kLocal, port}, kLocal, 0);
+  send(sender, stateOf(name, 52.04, 5.01));
+  ASSERT_TRUE(waitFor([&] { return battlefield.status().untold.size() + 1 == base->platforms.size(); }));
+  EXPECT_TRUE(is_active());
+  ASSERT_TRUE(waitFor([&] { return !battlefield.status().silent.empty(); })) << "it has timed out";
+  EXPECT_FALSE(is_active());
+  EXPECT_NEAR(snapshotOf(battlefield).platforms.front().position.latitude_deg, 52.04, 1e-6);
+  EXPECT_THAT(battlefield.status().text(), HasSubstr("silent at the last known place: " + name));
+  interop::dis::EntityState destroyed = stateOf(name, 52.05, 5.01);
+  send(sender, destroyed);
+  ASSERT_TRUE(waitFor([&] { return is_active(); })) << "it is back";
+  constexpr std::uint32_t kDestroyed = 3u << 3;
+  destroyed.appearance |= kDestroyed;
+  destroyed.position_m = toEcef({52.06, 5.01, 100});
+  send(sender, destroyed);
+  EXPECT_TRUE(waitFor([&] { return !is_active(); })) << "destroyed";
+}
+
 TEST(LiveBattlefield, WhatArrivesIsRecordedAndReadAgain) {
   const emscape::test::TemporaryFolder folder;
   StreamRequest request = requestAt(freePort());
@@ -289,6 +330,21 @@ bool hasPlatform(const LiveBattlefield& battlefield, const std::string& name) {
   return platformIndices(*scenario).count(name) == 1;
 }
 
+TEST(LiveBattlefield, APlatformWhoseAcmiObjectIsRemovedIsSilentUntilAnotherOneOfItsNameComes) {
+  const std::uint16_t port = freePort();
+  Host host(port, {"1,T=5|52|3000,Type=Air,Name=mast"});
+  LiveBattlefield battlefield(requestAt(port, StreamKind::acmi), {});
+  const auto is_active = [&] { return snapshotOf(battlefield).emitters.back().active; };
+  ASSERT_TRUE(waitFor([&] { return !battlefield.now().poses->empty(); }));
+  EXPECT_TRUE(is_active());
+  host.send("#5");
+  host.send("-1");
+  ASSERT_TRUE(waitFor([&] { return !is_active(); }));
+  host.send("#6");
+  host.send("2,T=5.02|52|3000,Type=Air,Name=mast");
+  EXPECT_TRUE(waitFor([&] { return is_active(); }));
+}
+
 TEST(LiveBattlefield, AfterAnotherConnectionTheObjectsAreThoseOfTheNewHost) {
   const std::uint16_t port = freePort();
   auto host = std::make_unique<Host>(port, std::vector<std::string>{"1,T=5|52|3000,Type=Air,Name=First"});
@@ -314,7 +370,7 @@ TEST(LiveBattlefield, WhateverItsPosesAreTheyCanBeShown) {
   EXPECT_TRUE(waitFor([&] {
     const BattlefieldNow now = battlefield.now();
     const auto shown =
-        scenario::withPoses(*now.scenario, *posesOf(platformIndices(*now.scenario), *now.poses));
+        scenario::withPoses(*now.scenario, posesOf(platformIndices(*now.scenario), *now.poses, 1)->platforms);
     const auto index = static_cast<std::size_t>(scenario::platformNamed(*shown, "Other"));
     return std::abs(shown->platforms[index].track.front().position.longitude_deg - 5.03) < 1e-9;
   }));

@@ -233,6 +233,23 @@ class Selecting : public RealInput {
   }
 };
 
+TEST_F(Selecting, InADragTheStatusLineTellsThePointUnderTheCursor) {
+  const Place object = select(), there{object.x + 60, object.y + 30};
+  const auto latitude = [&](const Place& place, const char* hand) {
+    const Json before = log("frame").back().value("cursor_latitude_deg", Json());
+    EXPECT_TRUE(xdotool(at(place) + hand));
+    EXPECT_TRUE(
+        reports("cursor_latitude_deg", [&](const Json& now) { return now.is_number() && now != before; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));
+    return log("frame").back().value("cursor_latitude_deg", 0.0);
+  };
+  const double before = latitude(there, "");
+  latitude(object, " mousedown 1");
+  EXPECT_NEAR(latitude(there, " sleep 0.5"), before, 1e-6);
+  ASSERT_TRUE(xdotool("mouseup 1"));
+  EXPECT_TRUE(comesToLog("edit"));
+}
+
 TEST_F(Selecting, AClickOnTheGroundSelectsNothingAndOneOnAThingSelectsIt) {
   const Place radar = select();
   ASSERT_TRUE(xdotool(click(kPicture)));

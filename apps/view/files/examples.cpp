@@ -23,7 +23,7 @@ fs::path scenarioFolder() {
 
 /// The first sentence of the comment at the beginning of a file, shortened to whole words.
 std::string firstSentence(const fs::path& file) {
-  constexpr std::size_t kMaxCharacters = 110;
+  constexpr std::size_t kMaxCharacters = 240;
   std::ifstream lines(file);
   std::string text;
   for (std::string line; std::getline(lines, line) && line.rfind("# ", 0) == 0;) {

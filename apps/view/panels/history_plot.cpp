@@ -75,9 +75,11 @@ void drawHistory(PanelContext& context) {
                                                               ? ", being computed …"
                                                           : has_values ? ""
                                                                        : ": no field at any step");
-  ImGui::SameLine();
-  if (ImGui::SmallButton("copy as CSV")) perform(context, R"({"do":"copy_history"})");
   if (!has_values) return;
+  const float button = ImGui::CalcTextSize("copy as CSV").x + 2 * ImGui::GetStyle().FramePadding.x;
+  ImGui::SameLine();
+  if (ImGui::GetContentRegionAvail().x < button) ImGui::NewLine();
+  if (ImGui::SmallButton("copy as CSV")) perform(context, R"({"do":"copy_history"})");
   const ImVec2 corner = ImGui::GetCursorScreenPos();
   const ImVec2 size{ImGui::GetContentRegionAvail().x, 92 * s};
   ImGui::InvisibleButton("history", size);

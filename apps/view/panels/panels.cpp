@@ -38,6 +38,19 @@ void keepRowsInPlace(bool has_rows, bool has_same_panels) {
   top_before = top;
 }
 
+/// True from the locking of the probe until the user scrolls, clicks or types: its head stays in sight
+/// while its readings come.
+bool showsProbe(const Session& session) {
+  static bool is_shown = false, was_locked = false;
+  const ImGuiIO& io = ImGui::GetIO();
+  const bool is_locked = session.panels.probe && session.prober().isLocked();
+  const bool is_new = is_locked && !std::exchange(was_locked, is_locked);
+  if (!is_locked) was_locked = false;
+  const bool is_other_input = io.MouseWheel != 0 || ImGui::IsAnyMouseDown() || ImGui::IsAnyItemActive();
+  is_shown = is_new || (is_shown && is_locked && !is_other_input);
+  return is_shown;
+}
+
 bool isMeasuring(const Session& session) {
   return session.tool().kind == PickTool::Kind::measure;
 }
@@ -106,11 +119,14 @@ void drawSidePanel(PanelContext& context, const Layout& layout) {
                                          {panels.probe, drawProbePanel}}};
   static std::array<bool, 4> was_open{};
   bool has_same_panels = true;
+  const bool shows_probe = showsProbe(context.session);
   for (std::size_t i = 0; i < sections.size(); ++i) {
     const bool is_open = sections[i].is_open, is_other = std::exchange(was_open[i], is_open) != is_open;
     has_same_panels = has_same_panels && !is_other;
     if (!is_open) continue;
-    if (is_other) ImGui::SetScrollY(ImGui::GetCursorPosY() - ImGui::GetStyle().WindowPadding.y);
+    const bool is_probe = sections[i].draw == drawProbePanel;
+    if (is_other || (is_probe && shows_probe))
+      ImGui::SetScrollY(ImGui::GetCursorPosY() - ImGui::GetStyle().WindowPadding.y);
     sections[i].draw(context);
     const bool has_more =
         panels.scenario || std::any_of(sections.begin() + static_cast<std::ptrdiff_t>(i) + 1, sections.end(),
@@ -120,7 +136,7 @@ void drawSidePanel(PanelContext& context, const Layout& layout) {
     ImGui::Separator();
     ImGui::Spacing();
   }
-  keepRowsInPlace(panels.scenario, has_same_panels);
+  keepRowsInPlace(panels.scenario, has_same_panels && !shows_probe);
   if (panels.scenario) drawScenarioPanel(context);
   ImGui::End();
 }
@@ -145,11 +161,17 @@ void drawStatusBar(PanelContext& context, const Area& area) {
     ImGui::SameLine(0, 8 * s);
   }
   const float right_x = area.width - ImGui::CalcTextSize(right.c_str()).x - 12 * s;
-  // The value under the cursor has priority over how the picture was made.
-  const std::string under = session.picture() ? cursorText(session) : "";
+  // The state has priority over where the cursor is, the value there over how the picture was made.
+  std::string under;
+  const float essential_x = stateBadgeWidth(context) + ImGui::GetCursorPosX() + 24 * s;
+  for (const std::string& text : cursorTexts(session)) {
+    under = text;
+    if (right_x - ImGui::CalcTextSize(under.c_str()).x - 24 * s >= essential_x) break;
+  }
   const float under_x = right_x - (under.empty() ? 0 : ImGui::CalcTextSize(under.c_str()).x + 24 * s);
   drawStateBadge(context, under_x - 12 * s);
   if (!under.empty()) {
+    const std::string all = cursorTexts(session).front();
     ImGui::SameLine(0, 12 * s);
     const float from_x = std::max(under_x, ImGui::GetCursorPosX());
     ImGui::SetCursorPosX(from_x);
@@ -157,7 +179,7 @@ void drawStatusBar(PanelContext& context, const Area& area) {
     const float room = std::max(0.0F, right_x - from_x);
     const bool is_long = drawName(*ImGui::GetWindowDrawList(), under, at, at.x + room);
     ImGui::Dummy({room, ImGui::GetTextLineHeight()});
-    tooltipOfLongName(under, is_long);
+    tooltipOfLongName(all, is_long || under != all);
   }
   if (!right.empty()) {
     ImGui::SameLine();
@@ -189,8 +211,11 @@ void drawNotice(PanelContext& context, const Area& picture) {
   // the bottom, and below them the values and the state.
   const float top =
       std::max(0.0F, std::min({120 * s, 0.3F * picture.height, picture.height - size.y - 20 * s}));
-  ImGui::SetNextWindowPos({picture.x + free_width / 2, picture.y + top}, ImGuiCond_Always, {0.5F, 0.0F});
-  ImGui::SetNextWindowSize({size.x + 32 * s, size.y + 20 * s});
+  const ImVec2 box{size.x + 32 * s, size.y + 20 * s};
+  ImGui::SetNextWindowPos(besideDialogs({picture.x + (free_width - box.x) / 2, picture.y + top}, box,
+                                        {picture.x, picture.y},
+                                        {picture.x + picture.width, picture.y + picture.height}, 8 * s));
+  ImGui::SetNextWindowSize(box);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 6 * s);
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(16 * s, 10 * s));
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, std::max(1.0F, s));

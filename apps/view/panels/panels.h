@@ -57,6 +57,8 @@ void drawTransport(PanelContext& context);
 void drawStatusBar(PanelContext& context, const Area& area);
 /// The state of the program at the left of the status bar: state_badge.cpp. @param right_x  end of its room
 void drawStateBadge(PanelContext& context, float right_x);
+/// Its width with the state in words, without the costs of the picture.
+float stateBadgeWidth(const PanelContext& context);
 /// Shown in place of the picture while nothing is open.
 void drawStart(PanelContext& context, const Area& picture);
 /// A list of recently opened inputs to choose from. @param max_count  largest number of entries

@@ -283,20 +283,26 @@ void drawContextMenu(PanelContext& context, const Area& picture, ContextMenu& me
   ImGui::EndPopup();
 }
 
-std::string cursorText(const Session& session) {
-  const ProbeResult* const result = session.cursor().isOver() ? session.cursor().result() : nullptr;
-  if (result == nullptr || !result->reading) return "";
+std::vector<std::string> cursorTexts(const Session& session) {
+  const ProbeResult* const result =
+      session.picture() && session.cursor().isOver() ? session.cursor().result() : nullptr;
+  if (result == nullptr || !result->reading) return {};
   const playback::ProbeReading& reading = *result->reading;
   const playback::ViewState& view = session.view();
+  const std::string value = valueText(reading, session.picture()->info(), view);
   if (!reading.position) {
-    return fmt::format("{:g}, {:g}, {:g}   ·   {}", reading.position_m.x, reading.position_m.y,
-                       reading.position_m.z, valueText(reading, session.picture()->info(), view));
+    return {fmt::format("{:g}, {:g}, {:g}   ·   {}", reading.position_m.x, reading.position_m.y,
+                        reading.position_m.z, value),
+            value};
   }
-  std::string text = positionText(*reading.position, view);
-  if (reading.height_agl_m)
-    text += "   ground " + heightText(*reading.height_msl_m - *reading.height_agl_m, view);
-  return text + "   ·   at " + heightText(*reading.height_msl_m, view) + ": " +
-         valueText(reading, session.picture()->info(), view);
+  const std::string position = positionText(*reading.position, view);
+  const std::string at_height = "at " + heightText(*reading.height_msl_m, view) + ": " + value;
+  std::vector<std::string> texts{position + "   ·   " + at_height, at_height};
+  if (reading.height_agl_m) {
+    const std::string ground = heightText(*reading.height_msl_m - *reading.height_agl_m, view);
+    texts.insert(texts.begin(), position + "   ground " + ground + "   ·   " + at_height);
+  }
+  return texts;
 }
 
 }  // namespace emscape::view

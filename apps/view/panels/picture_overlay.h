@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "apps/view/panels/panels.h"
 
@@ -23,7 +24,8 @@ void drawPictureOverlay(const PanelContext& context, const Area& picture);
 void drawToolHint(PanelContext& context, const Area& picture);
 void drawContextMenu(PanelContext& context, const Area& picture, ContextMenu& menu);
 
-/// Position, ground, height and value under the cursor; empty if there is none.
-std::string cursorText(const Session& session);
+/// What is under the cursor: position, ground, height and value; then shorter texts, the last one of height
+/// and value alone. Empty if there is nothing.
+std::vector<std::string> cursorTexts(const Session& session);
 
 }  // namespace emscape::view

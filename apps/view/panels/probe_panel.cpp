@@ -74,7 +74,8 @@ void drawTerms(const emfield::PathBudget& budget, render::Theme theme, float s) 
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     ImGui::TextWrapped("%s%s", is_sum ? "= " : "", drawable(term.label).c_str());
-    if (!term.note.empty() && ImGui::IsItemHovered()) ImGui::SetTooltip("%s", drawable(term.note).c_str());
+    if (!term.note.empty() && ImGui::IsItemHovered())
+      ImGui::SetTooltip("%s", drawable(withDegreeSigns(term.note)).c_str());
     ImGui::TableNextColumn();
     const float free = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(value.c_str()).x;
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(free, 0.0F));
@@ -99,7 +100,7 @@ void drawObstacles(const emfield::PathBudget& budget, render::Theme theme, float
 void drawPath(PanelContext& context, const emfield::PathBudget& budget) {
   const render::Theme theme = context.session.theme();
   const float s = context.scale;
-  ImGui::TextWrapped("%s", drawable(budget.verdict).c_str());
+  ImGui::TextWrapped("%s", drawable(withDegreeSigns(budget.verdict)).c_str());
   drawPathPlot(budget, {ImGui::GetContentRegionAvail().x, 150 * s}, theme, context.session.view().units, s);
   drawTerms(budget, theme, s);
   ImGui::TextDisabled("%s:", toString(budget.model));
@@ -108,12 +109,13 @@ void drawPath(PanelContext& context, const emfield::PathBudget& budget) {
   drawObstacles(budget, theme, s);
   {
     const Table table("geometry", 96 * s, theme);
-    for (const emfield::ReportLine& line : emfield::geometryLines(budget)) table.row(line.name, line.text);
+    for (const emfield::ReportLine& line : emfield::geometryLines(budget))
+      table.row(line.name, withDegreeSigns(line.text));
   }
   for (const std::string& warning : budget.warnings) {
     ImGui::TextColored(stateColor(render::ControllerState::busy), "Warning:");
     ImGui::SameLine();
-    ImGui::TextWrapped("%s", drawable(warning).c_str());
+    ImGui::TextWrapped("%s", drawable(withDegreeSigns(warning)).c_str());
   }
   if (ImGui::SmallButton("copy as command")) {
     context.session.perform({"copy_profile", {{"emitter", budget.emitter}}});

@@ -49,7 +49,13 @@ void drawRestoreQuestion(PanelContext& context) {
   if (ImGui::Button("Discard")) perform(context, R"({"do":"discard"})");
   ImGui::SameLine();
   if (ImGui::Button("Later (Esc)")) session.panels.restore = false;
-  ImGui::TextDisabled("Later: it is kept until the next edit.");
+  ImGui::TextDisabled("Later: it is kept until it is restored or discarded (menu File).");
+  if (kept.others > 0) {
+    ImGui::TextDisabled("%s",
+                        fmt::format("{} older view{} kept, too: offered after Discard, or at the next start.",
+                                    kept.others, kept.others == 1 ? " is" : "s are")
+                            .c_str());
+  }
   endDialog();
 }
 

@@ -110,7 +110,9 @@ void drawOutput(PanelContext& context, Typed& typed) {
 
 void drawSize(const PanelContext& context, Typed& typed) {
   const auto nameOf = [&](std::size_t preset) {
-    const render::ImageSize size = preset == 0 ? context.session.pictureSize() : kSizes[preset].size;
+    Typed of_preset = typed;
+    of_preset.preset = preset;
+    const render::ImageSize size = of_preset.size(context.session);
     return fmt::format("{}, {} x {}", kSizes[preset].name, size.width, size.height);
   };
   ImGui::SetNextItemWidth(260 * context.scale);
@@ -119,6 +121,10 @@ void drawSize(const PanelContext& context, Typed& typed) {
     if (ImGui::Selectable(nameOf(preset).c_str(), preset == typed.preset)) typed.preset = preset;
   }
   ImGui::EndCombo();
+  if (typed.isVideo() && typed.size(context.session) != context.session.pictureSize() && typed.preset == 0) {
+    ImGui::SameLine();
+    ImGui::TextDisabled("(films have even sizes)");
+  }
 }
 
 /// How the camera moves; with the bookmarks that it flies along.
@@ -192,8 +198,8 @@ void drawEstimate(const PanelContext& context, const Typed& typed) {
   const std::string time =
       estimate.work_s > 0
           ? fmt::format("about {} to record", timeText(std::max(1.0, std::round(estimate.work_s))))
-          : "time to record: known when another step was shown";
-  ImGui::TextDisabled("%s, %s", time.c_str(), bytesText(estimate.bytes).c_str());
+          : "time known after another step";
+  ImGui::TextDisabled("about %s; %s", bytesText(estimate.bytes).c_str(), time.c_str());
 }
 
 /// The same on the command line.

@@ -37,10 +37,8 @@ namespace {
 void drawExamples(PanelContext& context) {
   Session& session = context.session;
   ImGui::TextColored(accentColor(session.theme()), "Examples");
-  const float wanted =
-      1.6F * static_cast<float>(session.files().examples.size()) * ImGui::GetTextLineHeightWithSpacing();
-  const float height = std::min(wanted, 0.4F * ImGui::GetIO().DisplaySize.y);
-  ImGui::BeginChild("examples", {0, height});
+  static float wanted = 0;  // height of the table in the frame before
+  ImGui::BeginChild("examples", {0, std::clamp(wanted, 1.0F, 0.4F * ImGui::GetIO().DisplaySize.y)});
   if (ImGui::BeginTable("examples", 2)) {
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthFixed);
     ImGui::TableSetupColumn("text", ImGuiTableColumnFlags_WidthStretch);
@@ -59,6 +57,7 @@ void drawExamples(PanelContext& context) {
     }
     ImGui::EndTable();
   }
+  wanted = ImGui::GetCursorPosY();
   ImGui::EndChild();
 }
 

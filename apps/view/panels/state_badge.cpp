@@ -16,11 +16,22 @@ namespace {
 
 constexpr double kMebibyte = 1 << 20;
 
+constexpr char kBetween[] = "   ·   ";
+
+float badgeWidth(const PanelContext& context, const ProgramState& state) {
+  return std::max(ImGui::CalcTextSize(state.badge.c_str()).x, ImGui::CalcTextSize("COMPUTING 00 %").x) +
+         16 * context.scale;
+}
+
+bool hasCancel(const ProgramState& state) {
+  return state.can_cancel && state.activity != Activity::playing;
+}
+
 void drawBadge(const PanelContext& context, const ProgramState& state) {
   const float s = context.scale;
   const ImVec4 color = activityColor(state.activity, context.session.theme());
   const ImVec2 at = ImGui::GetCursorScreenPos(), text = ImGui::CalcTextSize(state.badge.c_str());
-  const float width = std::max(text.x, ImGui::CalcTextSize("COMPUTING 00 %").x) + 16 * s;
+  const float width = badgeWidth(context, state);
   const ImVec2 low{at.x, at.y - s}, high{at.x + width, at.y + text.y + 2 * s};
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const auto fill = [&](float to, float alpha) {
@@ -42,9 +53,9 @@ std::vector<std::string> partsOf(const Session& session, const ProgramState& sta
     if (!text.empty()) parts.push_back(text);
   };
   if (session.picture() && volume::isDifference(session.picture()->info())) add("DIFFERENCE");
-  add(state.stream);
   add(state.what);
   add(state.picture);
+  add(state.stream);
   if (!session.picture()) return parts;
   add(fmt::format("cast {:.0f} ms", status.cast_ms));
   if (status.field_ms > 0) add(fmt::format("field {:.0f} ms", status.field_ms));
@@ -54,6 +65,14 @@ std::vector<std::string> partsOf(const Session& session, const ProgramState& sta
 
 }  // namespace
 
+float stateBadgeWidth(const PanelContext& context) {
+  const ProgramState state = context.session.programState();
+  std::string text = "Cancel";  // whether it is there or not: the rest keeps its place
+  for (const std::string& part : {state.what, state.picture, state.stream})
+    text += (part.empty() ? "" : kBetween) + part;
+  return badgeWidth(context, state) + 24 * context.scale + ImGui::CalcTextSize(drawable(text).c_str()).x;
+}
+
 void drawStateBadge(PanelContext& context, float right_x) {
   const Session& session = context.session;
   const ProgramState state = session.programState();
@@ -62,7 +81,7 @@ void drawStateBadge(PanelContext& context, float right_x) {
   bool is_on_button = false;
   ImGui::BeginGroup();
   drawBadge(context, state);
-  if (state.can_cancel && state.activity != Activity::playing) {
+  if (hasCancel(state)) {
     ImGui::SameLine(0, 8 * s);
     if (ImGui::SmallButton("Cancel")) perform(context, R"({"do":"cancel"})");
     is_on_button = ImGui::IsItemHovered();
@@ -73,14 +92,16 @@ void drawStateBadge(PanelContext& context, float right_x) {
   bool fits = true;
   for (const std::string& part : parts) {
     all += (all.empty() ? "" : "\n") + drawable(part);
-    const std::string longer = text + (text.empty() ? "" : "   ·   ") + part;
+    const std::string longer = text + (text.empty() ? "" : kBetween) + part;
+    // The first part and the stream's are shortened, not left out.
+    const bool is_needed = fits && (text.empty() || part == state.stream);
     fits = fits && ImGui::CalcTextSize(longer.c_str()).x <= room;
-    if (fits) text = longer;
+    if (fits || is_needed) text = longer;
   }
   ImGui::SameLine(0, 12 * s);
-  if (text.empty() && !parts.empty() && room > 0) {  // the first part is shortened, not left out
+  if (!fits && room > 0) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    drawName(*ImGui::GetWindowDrawList(), parts.front(), at, at.x + room);
+    drawName(*ImGui::GetWindowDrawList(), text, at, at.x + room);
     ImGui::Dummy({room, ImGui::GetTextLineHeight()});
   } else {
     ImGui::TextUnformatted(drawable(text).c_str());

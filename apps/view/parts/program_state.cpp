@@ -14,6 +14,8 @@ namespace {
 
 /// Fields that take longer are explained.
 constexpr double kExplainedAfter_s = 0.3;
+/// A picture that is farther behind while playing is told.
+constexpr double kToldLag_s = 0.5;
 
 Activity activityOf(const ProgramFacts& facts, const playback::LiveStatus& status) {
   const bool begins = facts.has_input && (!facts.has_picture || (!facts.has_field && status.computing));
@@ -33,6 +35,12 @@ Activity activityOf(const ProgramFacts& facts, const playback::LiveStatus& statu
   }
   // Until the picture with the last rays is published.
   return status.exact || status.failed ? Activity::idle : Activity::restore;
+}
+
+/// Time (s, of the user) by which the picture is behind while playing; negative after a jump.
+double lagOf(const ProgramFacts& facts, const playback::LiveStatus& status) {
+  const bool is_known = facts.has_picture && facts.has_field && facts.rate != 0;
+  return is_known ? (status.asked_s - status.shown_s) / facts.rate : 0;
 }
 
 /// With the title of the quantity in place of its name.
@@ -77,6 +85,8 @@ ProgramState programState(const ProgramFacts& facts, const playback::LiveStatus&
     }
     case Activity::playing:
       state.what = fmt::format("× {:g}", facts.rate);
+      if (const double lag_s = lagOf(facts, status); lag_s > kToldLag_s)
+        state.what += fmt::format(", {:.1f} s behind", lag_s);
       if (status.fields_per_s > 0) state.what += fmt::format(", {:.1f} fields/s", status.fields_per_s);
       if (status.column_step > 1) state.what += ", " + playback::columnsText(status.column_step);
       if (status.computing && is_long && status.fields_per_s < 1) {

@@ -19,13 +19,14 @@ class PlatformDrag {
   /// @throws Error (bad_input) if the picture has no scenario, or the platform moves along a track
   PlatformDrag(const playback::LivePicture& picture, const SceneObject& object, double x, double y);
 
-  const std::string& platform() const { return platform_; }
+  /// The object where moveTo() has last moved it.
+  const SceneObject& object() const { return object_; }
   /// The edits that move the platform to the cursor; empty if there is no position under it.
-  std::optional<std::vector<scenario::Edit>> moveTo(const playback::LivePicture& picture, double x,
-                                                    double y) const;
+  std::optional<std::vector<scenario::Edit>> moveTo(const playback::LivePicture& picture, double x, double y);
 
  private:
   std::string platform_;
+  SceneObject object_;
   bool follows_ground_ = false;
   Vec3d grip_m_;  // the point under the cursor, at its height
   double offset_x_ = 0, offset_y_ = 0;

@@ -416,7 +416,7 @@ class Session {
     playback::PlatformIndices indices;  // in the shown scenario
     std::shared_ptr<void> wake;
     std::string text;  // of its status
-    double told_s = -1e9;
+    double told_s = -1e9, arrival_s = 0;
     long long records = 0;
     std::size_t entities = 0;
     bool has_trouble = false, is_moving = false;

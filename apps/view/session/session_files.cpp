@@ -156,7 +156,6 @@ void Session::keepEdits(double now_s) {
 void Session::keepView() {
   if (options_.stream) return;  // no other run has its scenario
   has_kept_ = true;
-  kept_view_.reset();  // replaced
   jobs_.run([this, autosaves = files_->autosaves, input = options_.view.input,
              view = viewState()]() -> BackgroundJobs::Finish {
     autosaves->keep(input, view);
@@ -251,6 +250,7 @@ std::vector<Verb> Session::fileVerbs() {
        "Shows the view with its edits that was kept when the program did not exit normally",
        [](Session& session, const Command&) {
          if (!session.kept_view_) throw Error(ErrorCode::bad_input, "no edits were kept for this input");
+         session.files_->autosaves->adopt(session.options_.view.input);
          session.ask(
              {session.options_.view.input, session.options_.view.scenario, session.kept_view_->state, true});
        }},
@@ -261,8 +261,12 @@ std::vector<Verb> Session::fileVerbs() {
          session.panels.restore = false;
          if (!session.kept_view_) throw Error(ErrorCode::bad_input, "no edits were kept for this input");
          session.kept_view_.reset();
-         session.has_kept_ = true;
-         session.dropKeptView();
+         session.jobs_.run([autosaves = session.files_->autosaves,
+                            input = session.options_.view.input]() -> BackgroundJobs::Finish {
+           autosaves->discard(input);
+           return {};
+         });
+         session.lookForKeptView();  // an older one
        }},
   };
 }

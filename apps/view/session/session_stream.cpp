@@ -29,7 +29,7 @@ void Session::takeStream() {
     const bool has_trouble = !status.trouble.empty();
     if (has_trouble != stream_.has_trouble) {
       if (has_trouble) {
-        tell("the stream: " + status.trouble, true);
+        tell("live: " + status.trouble, true);
       } else {
         tell("the stream is well again");
       }
@@ -42,11 +42,12 @@ void Session::takeStream() {
   stream_.is_moving = now.poses != stream_.poses;
   if (!is_other && !stream_.is_moving) return;
   stream_.poses = now.poses;
+  stream_.arrival_s = now.arrival_s;
   if (is_other) {
     stream_.scenario = now.scenario;
     adoptStreamed();
   } else {
-    live_.pose(playback::posesOf(stream_.indices, *stream_.poses));
+    live_.pose(playback::posesOf(stream_.indices, *stream_.poses, stream_.arrival_s));
   }
 }
 
@@ -75,7 +76,7 @@ void Session::indexStreamed() {
     const auto renamed = indices.find(nameAfter(edits_->edits(), "platforms", platform.name));
     if (renamed != indices.end()) indices[platform.name] = renamed->second;
   }
-  live_.pose(playback::posesOf(indices, *stream_.poses), shown_scenario_);
+  live_.pose(playback::posesOf(indices, *stream_.poses, stream_.arrival_s), shown_scenario_);
 }
 
 double Session::untilStream_s() const {

@@ -43,7 +43,10 @@ class Collector {
     object.kind = kind;
     object.platform = platform;
     object.present = state.present;
-    if (!state.present) object.details = "absent at this time";
+    if (!state.present)
+      object.details = snapshot_.scenario->platforms[static_cast<std::size_t>(platform)].moves()
+                           ? "absent at this time"
+                           : "silent: this is the last place known";
     object.position = state.position;
     object.position_m = frame_.toLocal(state.position);
     object.height_msl_m = state.height_msl_m;

@@ -18,7 +18,7 @@ struct SceneObject {
   std::string kind;     ///< "radar", "receiver", ...
   std::string details;  ///< frequency and power of an emitter, "absent at this time"; may be empty
   int platform = -1;    ///< index into Scenario::platforms
-  bool present = true;  ///< false: before or after its track, at whose nearer end the position is
+  bool present = true;  ///< false: the position is the nearer end of its track, or the last one known
   Vec3d position_m;     ///< frame metres
   GeodeticPosition position;
   double height_msl_m = 0;

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "apps/view/values/position_text.h"
 #include "base/text/quantity_text.h"
 #include "emscape/base/error.h"
 #include "scenario/file/parameters.h"
@@ -36,7 +37,7 @@ std::string withUnit(const Parameter& parameter, const std::string& value) {
   char* rest = nullptr;
   const double number = std::strtod(value.c_str(), &rest);
   const bool is_number = parameter.type == Parameter::Type::number && !value.empty() && *rest == '\0';
-  return is_number ? quantityText(number, parameter.unit, kDigits) : value;
+  return is_number ? withDegreeSigns(quantityText(number, parameter.unit, kDigits)) : value;
 }
 
 }  // namespace

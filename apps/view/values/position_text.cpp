@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cctype>
 #include <cmath>
 
 #include "base/geodesy/position_text.h"
@@ -33,6 +34,19 @@ std::string valueText(double stored, const std::string& unit, const std::string&
   const render::FieldScale scale = render::fieldScale(unit, view.field_unit);
   return render::unitText(scale.unit != unit ? fmt::format("{:.4g} {}", scale.shown(stored), scale.unit)
                                              : text);
+}
+
+std::string withDegreeSigns(std::string text) {
+  constexpr const char kUnit[] = " deg", kSign[] = "°";
+  constexpr std::size_t kLength = sizeof kUnit - 1;
+  const auto is = [&](std::size_t at, int (*of_kind)(int)) {
+    return at < text.size() && of_kind(static_cast<unsigned char>(text[at])) != 0;
+  };
+  for (std::size_t at = text.find(kUnit); at != std::string::npos; at = text.find(kUnit, at + 1)) {
+    if (at > 0 && is(at - 1, std::isdigit) && !is(at + kLength, std::isalpha))
+      text.replace(at, kLength, kSign);
+  }
+  return text;
 }
 
 std::string bearingText(double bearing_deg) {

@@ -21,6 +21,8 @@ std::string valueText(const playback::ProbeReading& reading, const volume::Volum
 /// A value in the unit in which fields are shown. @param text  in the unit of the quantity, or other words
 std::string valueText(double stored, const std::string& unit, const std::string& text,
                       const playback::ViewState& view);
+/// A text with "12.5 deg" as "12.5°".
+std::string withDegreeSigns(std::string text);
 /// "087.5°". @param bearing_deg  any angle, clockwise from north
 std::string bearingText(double bearing_deg);
 

@@ -91,10 +91,12 @@ void drawBehind(const char* title, float scale, Waits waits) {
   if (!dims) flags |= ImGuiWindowFlags_NoInputs;
   ImGui::Begin((std::string(title) + "##behind").c_str(), nullptr, flags);
   ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRectFullScreen();  // without the window's padding
   if (dims) {
     list.AddRectFilled({0, 0}, ImGui::GetIO().DisplaySize, ImGui::GetColorU32(ImGuiCol_ModalWindowDimBg));
   }
   if (place.to.x > place.from.x) drawShadow(list, place, scale);
+  list.PopClipRect();
   ImGui::End();
 }
 
@@ -127,6 +129,22 @@ bool beginDialog(PanelContext& context, const char* title, bool& open, const ImV
   if (inside.x != at.x || inside.y != at.y) ImGui::SetWindowPos(inside);
   placeOf(title) = {inside, {inside.x + own.x, inside.y + own.y}};
   return true;
+}
+
+ImVec2 besideDialogs(const ImVec2& at, const ImVec2& size, const ImVec2& low, const ImVec2& high, float gap) {
+  const std::vector<OpenDialog>& dialogs = openDialogs();
+  if (dialogs.empty()) return at;
+  const Place dialog = placeOf(dialogs.back().title);
+  const auto isFree = [&](const ImVec2& from) {
+    return from.x >= low.x && from.y >= low.y && from.x + size.x <= high.x && from.y + size.y <= high.y &&
+           (from.x >= dialog.to.x || from.x + size.x <= dialog.from.x || from.y >= dialog.to.y ||
+            from.y + size.y <= dialog.from.y);
+  };
+  for (const ImVec2& from : {at, ImVec2(at.x, dialog.to.y + gap), ImVec2(at.x, dialog.from.y - gap - size.y),
+                             ImVec2(dialog.to.x + gap, at.y), ImVec2(dialog.from.x - gap - size.x, at.y)}) {
+    if (isFree(from)) return from;
+  }
+  return {at.x, high.y - size.y};  // over its buttons rather than its title
 }
 
 void endDialog() {

@@ -14,6 +14,9 @@ enum class Waits { no, yes };
 /// @return true if it is open; endDialog() must follow then
 bool beginDialog(PanelContext& context, const char* title, bool& open, const ImVec2& size = {0, 0},
                  Waits waits = Waits::yes, ImGuiWindowFlags flags = 0);
+/// The place of a message: at `at` if the dialog on top leaves room there, else below, above or beside it.
+/// @param low, high  corners of the area in which it must be
+ImVec2 besideDialogs(const ImVec2& at, const ImVec2& size, const ImVec2& low, const ImVec2& high, float gap);
 void endDialog();
 
 /// The default button of a dialog, also pressed by Enter if no other dialog was opened after it.

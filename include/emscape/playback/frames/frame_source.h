@@ -17,7 +17,12 @@
 
 namespace emscape::playback {
 
-using PosesPtr = std::shared_ptr<const std::vector<scenario::PlatformPose>>;
+/// Where a stream has the platforms.
+struct StreamedPoses {
+  std::vector<scenario::PlatformPose> platforms;
+  std::string told;  ///< "live, 2026-06-01T06:00:22Z": when the last record came
+};
+using PosesPtr = std::shared_ptr<const StreamedPoses>;
 
 struct Frame;
 
@@ -37,6 +42,7 @@ struct Frame : ShownField {
   render::ColorRange color_range;     ///< of the series; none: that of the field's values
   std::optional<FieldBeside> beside = std::nullopt;
   int column_step = 1;  ///< FieldSolver::columnStep(): above 1 columns between others are interpolated
+  std::string live = {};  ///< StreamedPoses::told; empty: no stream moves its platforms
 };
 
 /// What frames show of a field and its reference.

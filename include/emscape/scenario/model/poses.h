@@ -15,6 +15,7 @@ struct PlatformPose {
   int platform = -1;  ///< index into Scenario::platforms
   SitePosition position;
   Attitude attitude;
+  bool is_present = true;  ///< false: it was there last; its emitters are silent
 };
 
 /// A position at a height above mean sea level, and above ground.
