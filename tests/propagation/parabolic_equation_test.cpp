@@ -291,6 +291,23 @@ TEST(RadialMarch, PlateauEqualsSmoothEarthAtItsHeight) {
   EXPECT_NEAR(above.factorDb(0, 30), below.factorDb(0, 30), 1e-6);
 }
 
+// The lobes are 1.7 height steps apart; a line between the heights is 1 dB below their maxima.
+TEST(RadialMarch, PointsBetweenTheHeightsEqualTwoRays) {
+  constexpr double kSource_m = 1500, kRange_m = 50e3;
+  const MarchGrid grid = gridOf(3e8, 5.73, 2048, 500);
+  RadialMarch<double, 1> march(grid, {pathOf(kSource_m, linearRefractivity(0))});
+  marchTo(march, kRange_m);
+  for (double z = 270; z < 330; z += 3) {
+    const double direct_m = std::hypot(kRange_m, z - kSource_m);
+    const double reflected_m = std::hypot(kRange_m, z + kSource_m);
+    const std::complex<double> field =
+        1.0 - std::sqrt(direct_m / reflected_m) *
+                  std::polar(1.0, 2 * kPi / wavelength_m(3e8) * (reflected_m - direct_m));
+    if (std::abs(field) < 0.2) continue;
+    EXPECT_NEAR(march.factorDb(0, z), 20 * std::log10(std::abs(field)), 0.05) << z;
+  }
+}
+
 TEST(RadialMarch, TakesACliffAsAStepAndCountsIt) {
   RadialPath path = pathOf(80, linearRefractivity(0));
   path.ground_msl_m.assign(100, 0);

@@ -34,8 +34,9 @@ double RadialMarch<Real, kLanes>::factorDb(int l, double height_agl_m) const {
   const double source_m = groundAt(lane.path, 0) + lane.path.source.height_agl_m;
   MarchGrid now = grid_;
   now.intervals = intervals();
+  const int halvings = int(std::lround(std::log2(double(grid_.intervals) / intervals())));
   const double height_m = std::min(height_agl_m, grid_.top_m - heightStep_m());
-  const std::vector<std::complex<double>> receiver = startField(now, {height_m, {}}, lane.ratio);
+  const std::vector<std::complex<double>> receiver = startField(now, {height_m, {}}, lane.ratio, halvings);
   std::complex<double> received = 0;
   for (int j = 0; j < intervals(); ++j)
     received += receiver[j] * std::complex<double>(double(field_[j].re[l]), double(field_[j].im[l]));

@@ -43,9 +43,9 @@ std::vector<Cx> seriesSum(const std::vector<Cx>& sines, const std::vector<Cx>& c
 /// The source as a sum of the discrete surface's waves e^(-i p z) + R e^(i p z), R(p) = -(1 - r e^(i p dz)) /
 /// (1 - r e^(-i p dz)): for r = 0 the source and its image. The surface wave r^j of the
 /// delta at the source is added separately.
-std::vector<Cx> startField(const MarchGrid& grid, const PeSource& source, Cx ratio) {
+std::vector<Cx> startField(const MarchGrid& grid, const PeSource& source, Cx ratio, int halvings) {
   const int n = grid.intervals;
-  const double dz = grid.heightStep_m(), k = grid.wavenumber(), p_max = kPi / dz;
+  const double dz = grid.heightStep_m(), k = grid.wavenumber(), p_max = kPi / dz * (1 << halvings);
   const bool wide = grid.form == PeForm::wide;
   std::vector<Cx> sines(n), cosines(n);
   for (int i = 1; i < n; ++i) {

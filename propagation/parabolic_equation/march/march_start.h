@@ -12,10 +12,11 @@
 namespace emscape::propagation {
 
 /// The field at range 0.
-/// @param ratio  r of the mixed transform; 0: Dirichlet
+/// @param ratio     r of the mixed transform; 0: Dirichlet
+/// @param halvings  of N since the start of the march, whose band the source has
 /// @return at the heights 0, 1, ... N-1
 std::vector<std::complex<double>> startField(const MarchGrid& grid, const PeSource& source,
-                                             std::complex<double> ratio);
+                                             std::complex<double> ratio, int halvings = 0);
 
 /// @throws Error (bad_input) for a source below the ground (on a perfect surface: at it) or above the usable
 /// domain
