@@ -75,7 +75,8 @@ namespace {
 double azimuthAhead(const std::string& file, const MeasuredCut& horizontal, const MeasuredCut& vertical,
                     PatternFile& pattern) {
   constexpr double kTolerance_db = 3, kLargestTilt_deg = 45;
-  const double horizontal_db = horizontal.attenuationAt_db(0), vertical_db = vertical.attenuationAt_db(0);
+  const double horizontal_db = horizontal.attenuationAt_db(0) + 0.0,
+               vertical_db = vertical.attenuationAt_db(0) + 0.0;  // 0, not -0
   const double peak_deg = peakAngle_deg(vertical);
   const bool is_turned = horizontal_db > vertical_db + kTolerance_db;
   const bool is_raised = vertical_db > horizontal_db + kTolerance_db && std::abs(peak_deg) > kLargestTilt_deg;

@@ -255,13 +255,13 @@ TEST(MsiAntenna, CutsThatContradictEachOtherAheadAreToldAndJoinedAtTheHorizontal
   const PatternFile pattern = turned(120, 0);
   ASSERT_EQ(pattern.warnings.size(), 1u);
   EXPECT_NE(
-      pattern.warnings[0].find("25.0 dB below the maximum in the horizontal cut, 0.0 dB in the vertical one"),
+      pattern.warnings[0].find("21.3 dB below the maximum in the horizontal cut, 0.0 dB in the vertical one"),
       std::string::npos)
       << pattern.warnings[0];
   const AntennaPtr antenna = makeGridAntenna(pattern.nodes, pattern.amplitudes, 10, "x");
   EXPECT_NEAR(lossAt_db(antenna, 120, 0), 0, 0.1);
   EXPECT_NEAR(lossAt_db(antenna, 75, 0), 3, 0.1);
-  EXPECT_NEAR(lossAt_db(antenna, 0, 0), 25, 0.1);
+  EXPECT_NEAR(lossAt_db(antenna, 0, 0), 21.333, 0.1);
   EXPECT_NEAR(lossAt_db(antenna, 120, 10), 3, 0.1);
   EXPECT_EQ(turned(0, 93).warnings.size(), 1u) << "a vertical cut from the zenith";
   EXPECT_EQ(turned(0, 15).warnings.size(), 0u) << "a horizontal cut through a tilted maximum";
