@@ -49,8 +49,7 @@ struct ImportOptions {
   std::optional<TimeSpan> times;        ///< part of the recording, in its own seconds
   std::vector<std::string> only;  ///< patterns of names and types of objects; empty: see importRecording()
   BeamwidthMeaning beamwidth = BeamwidthMeaning::by_size;
-  bool replace = false;         ///< files that exist; else they are an error
-  bool allows_silence = false;  ///< a scenario without emitters is made; else it is an error
+  bool replace = false;  ///< files that exist; else they are an error
 };
 
 /// Objects of one type.

@@ -256,7 +256,7 @@ void Importer::makeEmitters() {
   }
   const bool has_emitter =
       std::any_of(chosen_.begin(), chosen_.end(), [](const Chosen& c) { return !c.emitters.empty(); });
-  if (has_emitter || base_ || options_.allows_silence) return;
+  if (has_emitter || base_) return;
   std::string unmatched;
   for (const ImportedEmitters& use : result_.emitters)
     unmatched += (unmatched.empty() ? ": " : "; ") + use.name + " (" + use.fault + ")";

@@ -109,7 +109,7 @@ std::string scenarioText(const ScenarioParts& parts, const fs::path& folder) {
   if (!parts.terrain.empty())
     text += "terrain: {files: " + document::flowText(*terrainFiles(parts.terrain, folder), false) + "}\n";
   text += "\nplatforms:\n" + blockText(parts.platforms, 2);
-  text += parts.emitters.empty() ? "\nemitters: []\n" : "\nemitters:\n" + blockText(parts.emitters, 2);
+  text += "\nemitters:\n" + blockText(parts.emitters, 2);
   text += "\noutput:\n  quantities: [power_density_dbwm2]\n";
   return text;
 }

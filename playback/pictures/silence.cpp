@@ -20,7 +20,6 @@ std::string silenceText(const scenario::Scenario& scenario, const std::string& q
   const auto row = std::find_if(table.begin(), table.end(),
                                 [&](const scenario::QuantityInfo& each) { return name == each.name; });
   if (row == table.end()) return "";
-  if (scenario.emitters.empty()) return "the scenario has no emitter";
   const scenario::IntervalSpec& interval = scenario.output.interval;
   const bool is_instant = interval.kind == scenario::IntervalKind::instant;
   // Turns of the scan last as long as each emitter's scan: there, only switched off emitters are silent.

@@ -36,8 +36,8 @@ const ObjectSpec& scenarioSpec() {
           optional("ground", object(groundSpec()), "electrical properties of the ground"),
           required("platforms", listOf(object(platformSpec()), 1, kMaxItems).distinct(),
                    "carriers of emitters, receivers and targets"),
-          required("emitters", listOf(object(emitterSpec()), 0, kMaxItems).distinct(),
-                   "radars, transmitters and jammers; without any the field is empty"),
+          required("emitters", listOf(object(emitterSpec()), 1, kMaxItems).distinct(),
+                   "radars, transmitters and jammers"),
           optional("receivers", listOf(object(receiverSpec()), 1, kMaxItems).distinct(),
                    "at every voxel, for received_power_dbm, sinr_db and intercept_margin_db; with a platform "
                    "there, for `emscape link`"),

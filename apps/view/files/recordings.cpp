@@ -29,27 +29,25 @@ std::string importRecordingFile(const std::string& file, std::string& note) {
   const std::string database = file + ".emitters.yaml";
   std::error_code ignored;
   if (fs::exists(database, ignored)) options.emitters = database;
-  options.allows_silence = true;
-  const interop::ImportResult result = interop::importRecording(interop::readRecording(file), options);
+  const interop::ImportResult result = [&] {
+    const auto recorded = interop::readRecording(file);
+    try {
+      return interop::importRecording(recorded, options);
+    } catch (const Error& error) {
+      const bool lacks_database =
+          options.emitters.empty() && error.message().find("--emitters") != std::string::npos;
+      if (!lacks_database) throw;
+      throw Error(error.code(), error.location(),
+                  error.message() + "; the window reads the database " + database);
+    }
+  }();
   int unmatched = 0;
   for (const interop::ImportedEmitters& use : result.emitters) unmatched += use.fault.empty() ? 0 : use.count;
-  int emitters = 0;
-  for (const interop::ImportedType& type : result.types) emitters += type.emitters;
-  const std::string name = recording.filename().string(),
-                    platforms = countText(result.platforms.size(), "platform", "platforms"),
-                    beams = countText(unmatched, "beam", "beams");
-  if (emitters == 0) {
-    note = fmt::format(
-        "{}: {} without emitters{}: the field is empty. Add emitters (What if, + add), or write {}, a "
-        "database that matches the objects, and open the recording again",
-        name, platforms, unmatched > 0 ? ", " + beams + " not matched" : "",
-        fs::path(database).filename().string());
-    return options.scenario;
-  }
-  note = fmt::format("{}: {}, emitters of {}{}; `emscape import` has further options (terrain, region)", name,
-                     platforms,
-                     options.emitters.empty() ? "the starter set" : fs::path(database).filename().string(),
-                     unmatched > 0 ? fmt::format(", {} left out", beams) : "");
+  note =
+      fmt::format("{}: {}, emitters of {}{}; `emscape import` has further options (terrain, region)",
+                  recording.filename().string(), countText(result.platforms.size(), "platform", "platforms"),
+                  options.emitters.empty() ? "the starter set" : fs::path(database).filename().string(),
+                  unmatched > 0 ? fmt::format(", {} left out", countText(unmatched, "beam", "beams")) : "");
   return options.scenario;
 }
 
