@@ -51,6 +51,7 @@ struct VerticalCut {
 struct VerticalDiagram {
   VerticalRequest request;
   std::string scenario, emitter, model, unit;
+  std::string title;  ///< name of the scenario with the number of edits
   double latitude_deg = 0, longitude_deg = 0;
   double station_msl_m = 0;  ///< of the emitter; smooth_earth: above that surface
   double station_agl_m = 0;
