@@ -101,13 +101,14 @@ TEST(LikelyMistakes, TheIntervalThatAWarningOffersIsAccepted) {
 
 TEST(LikelyMistakes, JammersOfAFewHertzAndWithoutABandwidthAreTold) {
   const auto with = [](const std::string& hz) {
-    return messagesOf("jamming.yaml", {{"emitters.jammer.bandwidth_hz", hz}});
+    return messagesOf("jamming.yaml", {{"emitters.stand-off jammer.bandwidth_hz", hz}});
   };
-  EXPECT_THAT(with("30"),
-              AllOf(HasSubstr("the signal of jammer 'jammer' is 30 Hz wide, narrower than any noise"),
-                    HasSubstr("'bandwidth_hz' is in hertz")));
+  EXPECT_THAT(
+      with("30"),
+      AllOf(HasSubstr("the signal of jammer 'stand-off jammer' is 30 Hz wide, narrower than any noise"),
+            HasSubstr("'bandwidth_hz' is in hertz")));
   EXPECT_THAT(with("null"),
-              HasSubstr("jammer 'jammer' has no 'bandwidth_hz': it is narrower than any receiver"));
+              HasSubstr("jammer 'stand-off jammer' has no 'bandwidth_hz': it is narrower than any receiver"));
   EXPECT_THAT(with("30e6"), Not(HasSubstr("narrower than")));
   EXPECT_THAT(with("0"), Not(HasSubstr("narrower than"))) << "so it is written";
 }
